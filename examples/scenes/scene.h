@@ -1,0 +1,99 @@
+/// @file scene.h
+/// The scenes that examples, tests and bench share: each is made in one place only.
+///
+/// A scene is a filled builder together with what its maker knows of it. All functions return true, or false
+/// with a message for people in error (what happened, where, what to do) and nothing to free.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef SCENE_H
+#define SCENE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <massspring/massspring.h>
+
+/// Mass of one particle of iron, kg.
+#define SCENE_IRON_MASS 73.3975f
+/// Stiffness of iron, N/m: half of the explicit limit at 30 substeps in 1/64 s.
+#define SCENE_IRON_STIFFNESS 6.7643e7f
+
+typedef struct scene_error {
+    char text[512];
+} scene_error;
+
+typedef struct scene {
+    char name[64];            ///< such as "bar_80x5"; for a file its base name without extension
+    mspring_builder *builder;
+    mspring_id probe;         ///< the particle whose drop is the bending, or MSPRING_NONE
+    float *break_strain;      ///< [springs] strain at which the material breaks (> 0), or NULL if no material has one
+} scene;
+
+/// What the springs of a scene are like. Fill with scene_options_default().
+typedef struct scene_options {
+    float mass;      ///< kg per particle (scenes that are not files); default SCENE_IRON_MASS
+    float stiffness; ///< N/m, or a fraction if relative; < 0 in files: the material's own. Default iron's;
+                     ///< scene_options_from_file() gives -1
+    float damping;   ///< N s/m, or a fraction if relative; < 0 in files: the material's own. Default 0 / -1
+    bool relative;   ///< stiffness and damping are fractions (MSPRING_SPRING_RELATIVE); default false
+    double spacing;  ///< m; default 1
+} scene_options;
+
+scene_options scene_options_default(void);
+/// The same with stiffness and damping left to the file's materials.
+scene_options scene_options_from_file(void);
+
+void scene_free(scene *scene);
+
+/* shapes.c */
+
+/// A full grid of columns x rows particles with all 8-neighbour springs, its leftmost column pinned, the probe at
+/// its top right. Named "bar_<columns>x<rows>".
+bool scene_bar(uint32_t columns, uint32_t rows, const scene_options *options, scene *out, scene_error *error);
+
+/// A hanging rope: a horizontal chain of particles, both ends pinned, the probe in its middle. "rope_<particles>".
+bool scene_rope(uint32_t particles, const scene_options *options, scene *out, scene_error *error);
+
+/// Particles at random places in a square (one per square spacing on average), each joined to about
+/// neighbours / 2 of those after it that lie nearest, at rest; no grid in it. Particle 0 is pinned, no probe. The
+/// same seed gives the same graph. "graph_<particles>".
+bool scene_random_graph(uint32_t particles, uint32_t neighbours, uint64_t seed, const scene_options *options,
+                        scene *out, scene_error *error);
+
+/// Add count ropes of segments springs each between pairs of particles chosen by seed (never neighbours on the
+/// grid); rope_mass and the rope's stiffness come from options.
+bool scene_add_ropes(scene *scene, uint32_t count, uint32_t segments, uint64_t seed, const scene_options *options,
+                     scene_error *error);
+
+/* image_scene.c: an image is a lattice, a pixel a cell, its colour a material */
+
+typedef struct scene_material {
+    uint8_t red, green, blue;
+    char name[32];
+    float mass, stiffness, damping, break_strain; ///< break_strain 0: never
+    bool pinned, probe;
+} scene_material;
+
+typedef struct scene_materials {
+    scene_material *items;
+    size_t count;
+} scene_materials;
+
+/// The built-in table: #0A0A0A pinned iron, #216CCF iron with the probe, #808090 iron. White is always empty.
+bool scene_materials_builtin(scene_materials *out, scene_error *error);
+/// Read a CSV file with the header colour,name,mass,stiffness,damping,break_strain,pinned,probe.
+bool scene_materials_read(const char *path, scene_materials *out, scene_error *error);
+void scene_materials_free(scene_materials *materials);
+
+/// Read an image (PNM always; PNG and what else stb_image reads where it was found at build time).
+bool scene_image(const char *path, const scene_materials *materials, const scene_options *options, scene *out,
+                 scene_error *error);
+
+/* network_file.c */
+
+/// Read a plain text network: `P S`, then P lines `x y mass pinned probe`, then S lines
+/// `a b rest stiffness damping`. `#` starts a comment.
+bool scene_network_file(const char *path, const scene_options *options, scene *out, scene_error *error);
+
+#endif

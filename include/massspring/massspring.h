@@ -1,0 +1,650 @@
+/// @file massspring.h
+/// libmassspring: simulation of two-dimensional mass-spring-damper networks.
+///
+/// A network is a set of particles with mass, joined by springs with stiffness and damping. You describe it to
+/// a **builder**, create a **network** from the builder, **step** it by dt, and read it through **views** and
+/// **measurements**.
+///
+///     builder --create--> network (topology + state) --step--> views, measurements
+///
+/// **Units** are SI: metres, kilograms, seconds, newtons, N/m, N s/m. The y axis points up.
+///
+/// **Physics.** One substep of length h, for a spring between particles a and b (semi-implicit, also called
+/// symplectic, Euler):
+///
+///     d = p_b - p_a;  L = |d|;  u = d / L
+///     f = (L - rest_length) * stiffness + ((v_b - v_a) . u) * damping
+///     F_a += f u;  F_b -= f u
+///     v(t+h) = (v + (F / m + gravity) h) * exp(-global_damping h);   p(t+h) = p + v(t+h) h
+///
+/// A spring of length 0 has no direction and exerts no force. A pinned particle feels no force: it keeps the
+/// velocity that the host gives it (zero at first) and moves by it.
+///
+/// **Precision.** The state is single precision relative to a local origin that the network holds in double
+/// and moves along by itself, so a network behaves 10 km away from the world's origin as it does at it.
+///
+/// **Same bits.** The same calls give the same state, bit for bit, at every SIMD level, with every supported
+/// compiler and optimisation level. mspring_network_state_hash() is the way to check it.
+///
+/// **Errors.** Every function that can fail returns a mspring_result. A failed call changes nothing but the
+/// object's error message, which says what is wrong and where; out-parameters are left untouched. No function
+/// prints, exits or aborts. Passing a handle that was destroyed is the one mistake that cannot be detected.
+///
+/// **Threads.** The library has no global state. Calls on one object must not overlap; calls on different
+/// objects may. Where a function says "shared", several threads may call such functions on one object at once.
+///
+/// **Memory.** Functions say whether they allocate; a step never does.
+///
+/// **ABI.** Handles are opaque, ids are integers, no struct is passed by value. Every public struct starts with
+/// struct_size; its init function fills in defaults. Structs may grow at the end in later versions, and a
+/// program built against an older header goes on working.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MASSSPRING_MASSSPRING_H
+#define MASSSPRING_MASSSPRING_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "version.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ------------------------------------------------------------------------------------------ export macros */
+
+/// Marks the functions of the library. Define MSPRING_SHARED where you use the library as a Windows DLL.
+#if defined(_WIN32) && defined(MSPRING_BUILD_SHARED)
+#define MSPRING_API __declspec(dllexport)
+#elif defined(_WIN32) && defined(MSPRING_SHARED)
+#define MSPRING_API __declspec(dllimport)
+#elif defined(__GNUC__)
+#define MSPRING_API __attribute__((visibility("default")))
+#else
+#define MSPRING_API
+#endif
+
+/// Marks results that must not be ignored.
+#if defined(__cplusplus) && __cplusplus >= 201703L
+#define MSPRING_NODISCARD [[nodiscard]]
+#elif defined(__GNUC__)
+#define MSPRING_NODISCARD __attribute__((warn_unused_result))
+#else
+#define MSPRING_NODISCARD
+#endif
+
+/* ------------------------------------------------------------------------------------------------ version */
+
+/// Version of the library that runs, in the form of MSPRING_VERSION.
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API uint32_t mspring_version(void);
+
+/// Version of the library that runs, as text, such as "0.1.0". Static storage.
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API const char *mspring_version_string(void);
+
+/* ------------------------------------------------------------------------------------------- result codes */
+
+/// What a call came to: MSPRING_OK or one of the negative errors below.
+typedef int32_t mspring_result;
+
+enum {
+    MSPRING_OK = 0,
+    MSPRING_ERROR_ARGUMENT = -1,  ///< NULL, NaN, infinite, or outside the range that the function states
+    MSPRING_ERROR_ID = -2,        ///< no such particle or spring
+    MSPRING_ERROR_MEMORY = -3,    ///< the allocator returned NULL
+    MSPRING_ERROR_LIMIT = -4,     ///< more particles, springs or cells than the library can index
+    MSPRING_ERROR_STRUCT = -5,    ///< struct_size is not one that any version of this struct had
+    MSPRING_ERROR_DUPLICATE = -6, ///< two springs join the same two particles
+    MSPRING_ERROR_UNSTABLE = -7,  ///< the step would have left the bounded range; the state is that before it
+    MSPRING_ERROR_BUSY = -8       ///< called from inside a hook, where only shared calls are allowed
+};
+
+/// Short English name of a result code, such as "out of memory". Never NULL; static storage.
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API const char *mspring_result_string(mspring_result result);
+
+/* -------------------------------------------------------------------------------------------- identifiers */
+
+/// Particles and springs are named by dense integers, 0, 1, 2 ... in the order in which they were added. They
+/// never change. (Slots, the places inside a view's arrays, are another numbering: see mspring_view.)
+typedef uint32_t mspring_id;
+
+/// No particle, no spring.
+#define MSPRING_NONE UINT32_MAX
+
+/// Most particles and most springs in one network.
+#define MSPRING_MAX_PARTICLES ((uint32_t)1 << 26)
+#define MSPRING_MAX_SPRINGS ((uint32_t)1 << 28)
+
+/// Largest absolute world coordinate (m) that positions may have when given, and largest coordinate relative
+/// to the local origin that a step may lead to.
+#define MSPRING_MAX_COORDINATE 1e12
+
+/* ---------------------------------------------------------------------------------------------- allocator */
+
+/// Where an object takes its memory from. All fields must be set; the struct is copied.
+/// alloc returns at least size bytes aligned to alignment (a power of two, at most 64), or NULL.
+/// free gets the size that was asked for. Both are called only inside calls that say that they allocate, and
+/// inside the destroy functions.
+typedef struct mspring_allocator {
+    uint32_t struct_size; ///< sizeof(mspring_allocator)
+    void *(*alloc)(size_t size, size_t alignment, void *user);
+    void (*free)(void *memory, size_t size, void *user);
+    void *user;
+} mspring_allocator;
+
+/* -------------------------------------------------------------------------------------------- definitions */
+
+/// Flags of particles.
+enum {
+    MSPRING_PARTICLE_PINNED = 1u << 0 ///< feels no force
+};
+
+/// Flags of springs.
+enum {
+    /// stiffness and damping are fractions of what an explicit substep bears, instead of N/m and N s/m:
+    ///     k = stiffness * mu / h^2,   c = damping * mu / h,   mu = m_a m_b / (m_a + m_b)
+    /// with h the substep. They follow the substep, so such a network is as stiff as its step allows. A full
+    /// lattice of equal springs and masses is stable below stiffness = 1.
+    MSPRING_SPRING_RELATIVE = 1u << 0
+};
+
+/// One particle. Fill with mspring_particle_def_init() first.
+typedef struct mspring_particle_def {
+    uint32_t struct_size;
+    uint32_t flags;    ///< MSPRING_PARTICLE_PINNED or 0; default 0
+    double x, y;       ///< world position, m, at most MSPRING_MAX_COORDINATE in absolute value; default 0
+    float vx, vy;      ///< velocity, m/s, finite; default 0
+    float mass;        ///< kg, 1e-30 to 1e30; default 1
+} mspring_particle_def;
+
+/// rest_length for "the distance at which the two particles are added".
+#define MSPRING_REST_LENGTH_DISTANCE (-1.0f)
+
+/// One spring. Fill with mspring_spring_def_init() first.
+typedef struct mspring_spring_def {
+    uint32_t struct_size;
+    uint32_t flags;    ///< MSPRING_SPRING_RELATIVE or 0; default 0
+    mspring_id a, b;   ///< the particles it joins, not the same; default MSPRING_NONE
+    float stiffness;   ///< N/m (or a fraction, see MSPRING_SPRING_RELATIVE), 0 to 1e30; default 0
+    float damping;     ///< N s/m (or a fraction), 0 to 1e30; default 0
+    float rest_length; ///< m, > 0 and at most 1e12, or MSPRING_REST_LENGTH_DISTANCE, the default
+} mspring_spring_def;
+
+/// What a lattice cell is made of. Fill with mspring_material_init() first.
+typedef struct mspring_material {
+    uint32_t struct_size;
+    uint32_t particle_flags; ///< MSPRING_PARTICLE_PINNED or 0; default 0
+    uint32_t spring_flags;   ///< MSPRING_SPRING_RELATIVE or 0; default 0; all materials of a lattice must agree
+    float mass;              ///< kg per cell, 1e-30 to 1e30; default 1
+    float stiffness;         ///< as in mspring_spring_def
+    float damping;           ///< as in mspring_spring_def
+} mspring_material;
+
+/// Cell of a lattice with nothing in it.
+#define MSPRING_CELL_EMPTY UINT16_MAX
+
+/// A grid of cells, as an image gives it: every cell that is not empty becomes a particle, every pair of
+/// neighbours (8 to a cell) is joined by a spring at its rest length. The spring's stiffness and damping are
+/// the means of its two materials'. Fill with mspring_lattice_def_init() first.
+typedef struct mspring_lattice_def {
+    uint32_t struct_size;
+    uint32_t width, height;            ///< cells, each at least 1, product at most MSPRING_MAX_PARTICLES
+    uint32_t material_count;           ///< at most 65535
+    double x, y;                       ///< world position of the bottom left cell's centre; default 0
+    double spacing;                    ///< m between neighbouring columns and rows, 1e-9 to 1e9; default 1
+    const uint16_t *cells;             ///< [height][width], the top row first: index into materials, or empty
+    const mspring_material *materials; ///< [material_count]
+} mspring_lattice_def;
+
+/// A chain of equal springs between two particles that are there already. Its inner particles lie evenly on the
+/// straight line between the two. Fill with mspring_rope_def_init() first.
+typedef struct mspring_rope_def {
+    uint32_t struct_size;
+    uint32_t spring_flags;  ///< MSPRING_SPRING_RELATIVE or 0; default 0
+    mspring_id from, to;    ///< its ends; default MSPRING_NONE
+    uint32_t segment_count; ///< springs, at least 1; default 1. The rope has one inner particle fewer.
+    float mass;             ///< kg of each inner particle; default 1
+    float stiffness;        ///< of each spring, as in mspring_spring_def
+    float damping;          ///< of each spring
+    float slack;            ///< rest length of the whole over the distance of its ends, 0.001 to 1000; default 1
+} mspring_rope_def;
+
+/// How a network is evolved.
+typedef int32_t mspring_solver;
+enum {
+    /// Symplectic Euler in substeps of equal length. First order, conserves momentum, cost proportional to the
+    /// number of substeps. Stable while omega_max * h < 2: on a full lattice of equal springs and masses,
+    /// stiffness < mass / (2 h^2).
+    MSPRING_SOLVER_EXPLICIT = 0
+};
+
+/// Solver and its settings. Fill with mspring_solver_def_init() first.
+typedef struct mspring_solver_def {
+    uint32_t struct_size;
+    mspring_solver solver; ///< default MSPRING_SOLVER_EXPLICIT
+    uint32_t substeps;     ///< substeps in one step, 1 to 1000000; default 1
+} mspring_solver_def;
+
+/// Instruction sets. All give the same bits.
+typedef int32_t mspring_simd;
+enum {
+    MSPRING_SIMD_AUTO = 0, ///< the best that CPU and operating system offer
+    MSPRING_SIMD_SCALAR = 1,
+    MSPRING_SIMD_SSE2 = 2,
+    MSPRING_SIMD_AVX2 = 3,
+    MSPRING_SIMD_AVX512 = 4
+};
+
+/// A network's settings at the start. Fill with mspring_network_def_init() first.
+typedef struct mspring_network_def {
+    uint32_t struct_size;
+    mspring_simd simd_level;  ///< highest level to use; default MSPRING_SIMD_AUTO. The environment variable
+                              ///< MSPRING_SIMD (scalar, sse2, avx2, avx512) can lower it further, never raise.
+    float gravity_x;          ///< m/s^2, finite; default 0
+    float gravity_y;          ///< m/s^2, finite; default -9.8
+    float global_damping;     ///< 1/s, 0 to 1e6; velocities decay by exp(-global_damping t); default 0
+    float max_speed;          ///< m/s, > 0 and at most 1e15: a step that ends with a particle faster than this in
+                              ///< x or y is refused with MSPRING_ERROR_UNSTABLE; default 1e6
+    mspring_solver solver;    ///< default MSPRING_SOLVER_EXPLICIT
+    uint32_t substeps;        ///< as in mspring_solver_def; default 1
+    const mspring_allocator *allocator; ///< default NULL: malloc and free
+} mspring_network_def;
+
+/// Fill a definition with its defaults. Pass the size that your header gives it: sizeof *def.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL; MSPRING_ERROR_STRUCT for an impossible size.
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API mspring_result mspring_particle_def_init(mspring_particle_def *def, size_t size);
+MSPRING_API mspring_result mspring_spring_def_init(mspring_spring_def *def, size_t size);
+MSPRING_API mspring_result mspring_material_init(mspring_material *material, size_t size);
+MSPRING_API mspring_result mspring_lattice_def_init(mspring_lattice_def *def, size_t size);
+MSPRING_API mspring_result mspring_rope_def_init(mspring_rope_def *def, size_t size);
+MSPRING_API mspring_result mspring_solver_def_init(mspring_solver_def *def, size_t size);
+MSPRING_API mspring_result mspring_network_def_init(mspring_network_def *def, size_t size);
+
+/* ------------------------------------------------------------------------------------------------ builder */
+
+/// Collects particles and springs. It can make any number of networks and is not needed after that.
+typedef struct mspring_builder mspring_builder;
+
+/// Make an empty builder.
+/// @param allocator  NULL for malloc and free; copied
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT or MSPRING_ERROR_MEMORY.
+/// @threads any   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_create(const mspring_allocator *allocator,
+                                                                    mspring_builder **builder);
+
+/// Free a builder. NULL is allowed.
+/// @threads exclusive access to builder   @allocates never   @since 0.1
+MSPRING_API void mspring_builder_destroy(mspring_builder *builder);
+
+/// What was wrong with the last call on this builder that failed, naming the culprit; "" if none has failed.
+/// Belongs to the builder, valid until the next call on it. NULL gives "".
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API const char *mspring_builder_error(const mspring_builder *builder);
+
+/// Number of particles and springs added so far. NULL gives 0.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API uint32_t mspring_builder_particle_count(const mspring_builder *builder);
+MSPRING_API uint32_t mspring_builder_spring_count(const mspring_builder *builder);
+
+/// Add one particle.
+/// @param id  receives its id; may be NULL
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
+/// @threads exclusive access to builder   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_particle(mspring_builder *builder,
+                                                                          const mspring_particle_def *def,
+                                                                          mspring_id *id);
+
+/// Add many particles: all of them or, on error, none.
+/// @param defs      [count], all with the same struct_size
+/// @param first_id  receives the id of the first; the others follow; may be NULL
+/// @return as mspring_builder_add_particle(); the error message names the index.
+/// @threads exclusive access to builder   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_particles(mspring_builder *builder,
+                                                                           const mspring_particle_def *defs,
+                                                                           size_t count, mspring_id *first_id);
+
+/// Add one spring between particles that were added before.
+/// @param id  receives its id; may be NULL
+/// @return MSPRING_OK; MSPRING_ERROR_ID for a particle that does not exist; MSPRING_ERROR_ARGUMENT for a value
+///         out of range, a spring from a particle to itself, or a rest length to be taken from the distance of
+///         two particles in the same place; MSPRING_ERROR_STRUCT, MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
+///         A second spring between the same two particles is found by mspring_network_create().
+/// @threads exclusive access to builder   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_spring(mspring_builder *builder,
+                                                                        const mspring_spring_def *def,
+                                                                        mspring_id *id);
+
+/// Add many springs: all of them or, on error, none. As mspring_builder_add_particles().
+/// @threads exclusive access to builder   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_springs(mspring_builder *builder,
+                                                                         const mspring_spring_def *defs,
+                                                                         size_t count, mspring_id *first_id);
+
+/// Add a lattice: all of it or, on error, nothing. Particle ids follow the cells, row by row from the top, left
+/// to right, empty cells left out. Spring ids follow the particles; each brings those to its right, lower left,
+/// lower and lower right neighbour, in this order, where they exist.
+/// @param cell_ids  [height][width], receives each cell's particle id or MSPRING_NONE; may be NULL
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT (the message names cell or material), MSPRING_ERROR_STRUCT,
+///         MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
+/// @threads exclusive access to builder   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_lattice(mspring_builder *builder,
+                                                                         const mspring_lattice_def *def,
+                                                                         mspring_id *cell_ids);
+
+/// Add a rope: all of it or, on error, nothing. Ids of particles and of springs follow the rope from its first
+/// end to its second.
+/// @param first_particle  receives the id of the first inner particle, MSPRING_NONE if there is none; may be NULL
+/// @param first_spring    receives the id of the first spring; may be NULL
+/// @return as mspring_builder_add_spring()
+/// @threads exclusive access to builder   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_rope(mspring_builder *builder,
+                                                                      const mspring_rope_def *def,
+                                                                      mspring_id *first_particle,
+                                                                      mspring_id *first_spring);
+
+/* ---------------------------------------------------------------------------------------------- lifecycle */
+
+/// A network: its topology, which is fixed, and its state.
+typedef struct mspring_network mspring_network;
+
+/// Make a network of what the builder holds. Reads the builder once, finds the lattices and chains in it from
+/// positions and springs (whatever the order they were added in), and lays the state out for them: see
+/// mspring_plan. On failure the builder's error message says why.
+/// @param def  settings; NULL for the defaults
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT if the builder has no particle or a setting is out of range;
+///         MSPRING_ERROR_DUPLICATE if two springs join the same two particles; MSPRING_ERROR_STRUCT,
+///         MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
+/// @threads exclusive access to builder   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_create(mspring_builder *builder,
+                                                                    const mspring_network_def *def,
+                                                                    mspring_network **network);
+
+/// Free a network. NULL is allowed. Must not be called from a hook.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_API void mspring_network_destroy(mspring_network *network);
+
+/// What was wrong with the last call on this network that failed; as mspring_builder_error().
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API const char *mspring_network_error(const mspring_network *network);
+
+/// Number of particles and springs. NULL gives 0.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API uint32_t mspring_network_particle_count(const mspring_network *network);
+MSPRING_API uint32_t mspring_network_spring_count(const mspring_network *network);
+
+/// Choose how the following steps are made.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT or MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_solver(mspring_network *network,
+                                                                        const mspring_solver_def *def);
+
+/// Set the acceleration of gravity, m/s^2, finite.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_gravity(mspring_network *network, float x,
+                                                                         float y);
+
+/// Set the rate (1/s, 0 to 1e6) at which all velocities decay: by exp(-rate t), whatever the step.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_global_damping(mspring_network *network,
+                                                                                float rate);
+
+/* --------------------------------------------------------------------------------------------------- step */
+
+/// Evolve the network by dt.
+///
+/// A step that would end with a coordinate or speed that is not finite or out of bounds (MSPRING_MAX_COORDINATE,
+/// mspring_network_def.max_speed) is taken back: the state is the one of before the step, bit for bit, forces
+/// given for it are still there, and the error message names the particle. Take a shorter dt, more substeps or
+/// a lower stiffness.
+/// @param dt  seconds, finite, > 0, and long enough that dt / substeps is a normal float
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_UNSTABLE, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_step(mspring_network *network, double dt);
+
+/* --------------------------------------------------------------------------------------- forces and hooks */
+
+/// Add a force (N) to one particle. It acts during the whole of the next step and is gone after it.
+/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT if not finite, MSPRING_ERROR_MEMORY,
+///         MSPRING_ERROR_BUSY (in a hook use its force arrays).
+/// @threads exclusive access to network   @allocates at the first force given to a network   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_apply_force(mspring_network *network,
+                                                                         mspring_id particle, float x, float y);
+
+/// Add forces to the particles first ... first + count - 1: to all or, on error, to none.
+/// @param x, y  [count], N
+/// @return as mspring_network_apply_force(); the message names the index.
+/// @threads exclusive access to network   @allocates at the first force given to a network   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_apply_forces(mspring_network *network,
+                                                                          mspring_id first, uint32_t count,
+                                                                          const float *x, const float *y);
+
+/// When a hook is called.
+typedef int32_t mspring_phase;
+enum {
+    MSPRING_PHASE_BEFORE_STEP = 0,    ///< once; may change x, y, vx, vy; forces it adds act all through the step
+    MSPRING_PHASE_BEFORE_SUBSTEP = 1, ///< adds forces for this substep; must not change x, y, vx, vy
+    MSPRING_PHASE_AFTER_SUBSTEP = 2   ///< may change x, y, vx, vy: collisions; there are no force arrays
+};
+
+/// What a hook gets: arrays by slot, of which it is to handle first_slot ... first_slot + slot_count - 1. One
+/// phase may come as several calls with different ranges. Some slots hold no particle: there
+/// particle_of_slot is MSPRING_NONE and whatever finite value a hook writes is ignored.
+typedef struct mspring_hook_args {
+    uint32_t struct_size;
+    mspring_phase phase;
+    uint32_t substep, substep_count; ///< 0 ... substep_count - 1; before the step 0
+    uint32_t first_slot, slot_count;
+    double dt;                       ///< length of the substep (before the step: of the step), s
+    double origin_x, origin_y;       ///< world position = origin + (x, y)
+    float *x, *y, *vx, *vy;          ///< m, relative to the origin; m/s
+    float *force_x, *force_y;        ///< N: add to them; NULL after a substep
+    const float *inverse_mass;       ///< 1/kg; 0 if pinned or no particle
+    const uint32_t *particle_of_slot;
+} mspring_hook_args;
+
+/// A hook. It must not call functions on the network but those marked shared.
+typedef void (*mspring_hook_fn)(const mspring_hook_args *args, void *user);
+
+/// Have fn called in a phase of every step from now on, after the hooks added before it.
+/// @param hook  receives a number for mspring_network_remove_hook(); may be NULL
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_add_hook(mspring_network *network,
+                                                                      mspring_phase phase, mspring_hook_fn fn,
+                                                                      void *user, uint32_t *hook);
+
+/// Remove a hook. Numbers of removed hooks are not used again.
+/// @return MSPRING_OK; MSPRING_ERROR_ID if there is no such hook; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_remove_hook(mspring_network *network,
+                                                                         uint32_t hook);
+
+/* -------------------------------------------------------------------------------------------------- views */
+
+/// The state as it lies in memory: arrays by slot. The pointers stay valid, and their contents follow the
+/// steps, until the network is destroyed; origin_x and origin_y are as of the call. Positions and velocities
+/// may be written between steps; finite values only.
+typedef struct mspring_view {
+    uint32_t struct_size;
+    uint32_t slot_count;             ///< length of the arrays by slot; some slots hold no particle
+    uint32_t particle_count;         ///< length of slot_of_particle
+    uint32_t reserved;               ///< 0
+    double origin_x, origin_y;       ///< world position = origin + (x, y), m
+    float *x, *y;                    ///< [slot_count], m, relative to the origin
+    float *vx, *vy;                  ///< [slot_count], m/s
+    const float *inverse_mass;       ///< [slot_count], 1/kg; 0 if pinned or no particle
+    const uint32_t *particle_of_slot; ///< [slot_count], particle id or MSPRING_NONE
+    const uint32_t *slot_of_particle; ///< [particle_count]
+} mspring_view;
+
+/// Fill a view. Set struct_size first.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_view(mspring_network *network, mspring_view *view);
+
+/// Copy out world positions (m) of the particles first ... first + count - 1, in id order.
+/// @param x, y  [count] each
+/// @return MSPRING_OK; MSPRING_ERROR_ID if the range leaves the network; MSPRING_ERROR_ARGUMENT for NULL.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_positions(const mspring_network *network,
+                                                                           mspring_id first, uint32_t count,
+                                                                           double *x, double *y);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_positions_float(const mspring_network *network,
+                                                                                 mspring_id first, uint32_t count,
+                                                                                 float *x, float *y);
+
+/// Copy out velocities (m/s), as mspring_network_get_positions().
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_velocities(const mspring_network *network,
+                                                                            mspring_id first, uint32_t count,
+                                                                            float *vx, float *vy);
+
+/// Set world positions (m) of the particles first ... first + count - 1: all or, on error, none. Setting those
+/// of all particles at once also moves the local origin to them; setting a part of them leaves it where it is.
+/// @param x, y  [count], at most MSPRING_MAX_COORDINATE in absolute value and so far from the origin
+/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the index),
+///         MSPRING_ERROR_BUSY (in a hook use its arrays).
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_positions(mspring_network *network,
+                                                                           mspring_id first, uint32_t count,
+                                                                           const double *x, const double *y);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_positions_float(mspring_network *network,
+                                                                                 mspring_id first, uint32_t count,
+                                                                                 const float *x, const float *y);
+
+/// Set velocities (m/s, finite), as mspring_network_set_positions(). A pinned particle moves by its velocity.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_velocities(mspring_network *network,
+                                                                            mspring_id first, uint32_t count,
+                                                                            const float *vx, const float *vy);
+
+/// Copy out masses (kg) in id order; pinned particles have theirs too.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_masses(const mspring_network *network,
+                                                                        mspring_id first, uint32_t count,
+                                                                        float *mass);
+
+/* ------------------------------------------------------------------------------------------- measurements */
+
+/// Energies in J, summed in double precision in a fixed order.
+///   kinetic    sum of m v^2 / 2 over particles that are not pinned
+///   elastic    sum of stiffness (L - rest_length)^2 / 2 over springs; a relative spring counts with the
+///              stiffness of the last step (before the first: 0)
+///   potential  - sum of m (gravity . p) over particles that are not pinned, p in world coordinates
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL. Any of the out-parameters may be NULL.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_energy(const mspring_network *network,
+                                                                    double *kinetic, double *elastic,
+                                                                    double *potential);
+
+/// Momentum (kg m/s) and angular momentum about the world's origin (kg m^2/s) of the particles that are not
+/// pinned. Any of the out-parameters may be NULL.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_momentum(const mspring_network *network, double *px,
+                                                                      double *py, double *angular);
+
+/// Smallest box around all particles, world coordinates (m).
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_bounds(const mspring_network *network, double *min_x,
+                                                                    double *min_y, double *max_x, double *max_y);
+
+/// What a spring is and does. Set struct_size first.
+typedef struct mspring_spring_info {
+    uint32_t struct_size;
+    uint32_t flags;    ///< as in mspring_spring_def
+    mspring_id a, b;   ///< its particles, the lower id first
+    float stiffness;   ///< N/m in force; of a relative spring that of the last step, 0 before the first
+    float damping;     ///< N s/m, likewise
+    float rest_length; ///< m
+    float length;      ///< m, now
+    float strain;      ///< (length - rest_length) / rest_length
+    float force;       ///< N along the spring: > 0 pulls its ends together; with the damper's share
+} mspring_spring_info;
+
+/// Look at one spring.
+/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_spring(const mspring_network *network,
+                                                                        mspring_id spring,
+                                                                        mspring_spring_info *info);
+
+/// Strain of the springs first ... first + count - 1: (length - rest_length) / rest_length.
+/// @param strain  [count]
+/// @return MSPRING_OK; MSPRING_ERROR_ID or MSPRING_ERROR_ARGUMENT.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_strains(const mspring_network *network,
+                                                                         mspring_id first, uint32_t count,
+                                                                         float *strain);
+
+/// The largest absolute strain and the spring that has it (the lowest id of several). A network without springs
+/// has strain 0 and spring MSPRING_NONE. Either out-parameter may be NULL.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_max_strain(const mspring_network *network,
+                                                                        float *strain, mspring_id *spring);
+
+/// A 64-bit hash of positions, velocities and local origin, over their bits in id order: equal states have equal
+/// hashes on every machine. (Not cryptographic.)
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_state_hash(const mspring_network *network,
+                                                                        uint64_t *hash);
+
+/* ------------------------------------------------------------------------------------- plan and SIMD level */
+
+/// How the network was laid out. A particle belongs to one of three kinds of row: a lattice row (8 neighbours on
+/// a grid), a chain (ropes and single strands) or a loose row (everything else). A spring between neighbours in
+/// those rows is swept with them, without any index; the others are leftover springs, which cost more each.
+typedef struct mspring_plan {
+    uint32_t struct_size;
+    uint32_t particle_count, spring_count;
+    uint32_t lattice_count;      ///< grids found
+    uint32_t lattice_particles, lattice_springs;
+    uint32_t lattice_rows;       ///< rows of the grids
+    uint32_t lattice_blocks;     ///< blocks of block_width columns in those rows
+    uint32_t chain_count;        ///< strands found
+    uint32_t chain_particles, chain_springs;
+    uint32_t loose_particles;
+    uint32_t leftover_springs;
+    uint32_t slot_count;         ///< slots of the state, empty ones among them
+    uint32_t block_width;        ///< slots in a block
+    uint32_t has_damping;        ///< 1: some spring has damping. 0: steps neither read nor compute any.
+    uint32_t has_relative;       ///< 1: some spring is relative, and a change of substep costs a pass over all
+    mspring_simd simd_level;     ///< what runs
+} mspring_plan;
+
+/// Get the plan. Set struct_size first.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_plan(const mspring_network *network,
+                                                                  mspring_plan *plan);
+
+/// The instruction set that the network's steps use. NULL gives MSPRING_SIMD_AUTO.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API mspring_simd mspring_network_simd_level(const mspring_network *network);
+
+/// The best instruction set that this CPU and operating system offer.
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API mspring_simd mspring_simd_supported(void);
+
+/// Name of a level as in MSPRING_SIMD: "scalar", "sse2", "avx2", "avx512", "auto"; "unknown" for others.
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API const char *mspring_simd_name(mspring_simd level);
+
+/// Bytes that the network has taken from its allocator. NULL gives 0.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API size_t mspring_network_memory_used(const mspring_network *network);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
