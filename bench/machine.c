@@ -1,0 +1,76 @@
+/// @file machine.c
+/// Clock, processor, caches and compiler.
+///
+/// SPDX-License-Identifier: MIT
+#define _POSIX_C_SOURCE 200809L /* clock_gettime, sysconf */
+#include "machine.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#if defined(__unix__) || defined(__APPLE__)
+#include <unistd.h>
+#endif
+#if defined(__x86_64__) || defined(__i386__)
+#include <cpuid.h>
+#endif
+
+double bench_seconds(void)
+{
+    struct timespec now;
+#ifdef CLOCK_MONOTONIC
+    clock_gettime(CLOCK_MONOTONIC, &now);
+#else
+    timespec_get(&now, TIME_UTC);
+#endif
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+const char *bench_cpu_name(char *text, size_t size)
+{
+    const char *name = "unknown processor";
+#if defined(__x86_64__) || defined(__i386__)
+    unsigned registers[13] = {0}; /* three leaves of 16 characters, and the end of the string */
+    bool known = true;
+    for (unsigned leaf = 0; leaf < 3; leaf++) {
+        unsigned *part = &registers[4 * leaf];
+        known = known && __get_cpuid(0x80000002u + leaf, &part[0], &part[1], &part[2], &part[3]);
+    }
+    char brand[sizeof registers];
+    memcpy(brand, registers, sizeof brand);
+    const char *start = brand + strspn(brand, " ");
+    if (known && *start != '\0') {
+        name = start;
+    }
+#endif
+    snprintf(text, size, "%s", name);
+    size_t length = strlen(text);
+    while (length > 0 && text[length - 1] == ' ') {
+        text[--length] = '\0';
+    }
+    return text;
+}
+
+const char *bench_compiler(void)
+{
+#if defined(__clang__)
+    return __VERSION__; /* says "Clang" itself */
+#elif defined(__GNUC__)
+    return "gcc " __VERSION__;
+#else
+    return "unknown compiler";
+#endif
+}
+
+size_t bench_cache_size(int level)
+{
+    static const size_t usual[3] = {(size_t)32 << 10, (size_t)1 << 20, (size_t)16 << 20};
+    long size = 0;
+#ifdef _SC_LEVEL1_DCACHE_SIZE
+    static const int names[3] = {_SC_LEVEL1_DCACHE_SIZE, _SC_LEVEL2_CACHE_SIZE, _SC_LEVEL3_CACHE_SIZE};
+    size = sysconf(names[level - 1]);
+#endif
+    return size > 0 ? (size_t)size : usual[level - 1];
+}
