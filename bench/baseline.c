@@ -9,8 +9,7 @@
 
 #include "network.h"
 
-static bool fill_particles(const bench_network *from, bench_baseline *baseline, scene_error *error)
-{
+static bool fill_particles(const bench_network *from, bench_baseline *baseline, scene_error *error) {
     mspring_view view;
     view.struct_size = sizeof view;
     mspring_result result = mspring_network_view(from->network, &view);
@@ -43,8 +42,7 @@ static bool fill_particles(const bench_network *from, bench_baseline *baseline, 
     return result == MSPRING_OK;
 }
 
-static bool fill_springs(const bench_network *from, bench_baseline *baseline, scene_error *error)
-{
+static bool fill_springs(const bench_network *from, bench_baseline *baseline, scene_error *error) {
     mspring_spring_info info;
     info.struct_size = sizeof info;
     for (uint32_t i = 0; i < from->spring_count; i++) {
@@ -64,8 +62,7 @@ static bool fill_springs(const bench_network *from, bench_baseline *baseline, sc
     return true;
 }
 
-static bool reset(void *self, scene_error *error)
-{
+static bool reset(void *self, scene_error *error) {
     (void)error;
     bench_baseline *baseline = self;
     memcpy(baseline->network.particles, baseline->start,
@@ -73,8 +70,7 @@ static bool reset(void *self, scene_error *error)
     return true;
 }
 
-static bool run(void *self, uint32_t steps, scene_error *error)
-{
+static bool run(void *self, uint32_t steps, scene_error *error) {
     (void)error;
     bench_baseline *baseline = self;
     for (uint32_t i = 0; i < steps; i++) {
@@ -83,8 +79,7 @@ static bool run(void *self, uint32_t steps, scene_error *error)
     return true;
 }
 
-bool bench_baseline_create(bench_network *from, bench_baseline *out, scene_error *error)
-{
+bool bench_baseline_create(bench_network *from, bench_baseline *out, scene_error *error) {
     /* A relative spring has its stiffness only after a step; the origin is that of the reset state. */
     bench_runner runner = bench_network_runner(from);
     if (!runner.run(from, 1, error) || !runner.reset(from, error)) {
@@ -105,12 +100,11 @@ bool bench_baseline_create(bench_network *from, bench_baseline *out, scene_error
         .substeps = from->substeps,
     };
     naive_network *network = &baseline.network;
-    bool ok = (network->particles = bench_allocate(from->particle_count, sizeof *network->particles, error)) !=
-                  NULL &&
-              (network->springs = bench_allocate(from->spring_count, sizeof *network->springs, error)) != NULL &&
-              (baseline.start = bench_allocate(from->particle_count, sizeof *baseline.start, error)) != NULL &&
-              fill_particles(from, &baseline, error) && fill_springs(from, &baseline, error) &&
-              reset(&baseline, error);
+    bool ok =
+        (network->particles = bench_allocate(from->particle_count, sizeof *network->particles, error)) != NULL &&
+        (network->springs = bench_allocate(from->spring_count, sizeof *network->springs, error)) != NULL &&
+        (baseline.start = bench_allocate(from->particle_count, sizeof *baseline.start, error)) != NULL &&
+        fill_particles(from, &baseline, error) && fill_springs(from, &baseline, error) && reset(&baseline, error);
     if (!ok) {
         bench_baseline_free(&baseline);
         return false;
@@ -119,28 +113,26 @@ bool bench_baseline_create(bench_network *from, bench_baseline *out, scene_error
     return true;
 }
 
-void bench_baseline_free(bench_baseline *baseline)
-{
+void bench_baseline_free(bench_baseline *baseline) {
     free(baseline->network.particles);
     free(baseline->network.springs);
     free(baseline->start);
     memset(baseline, 0, sizeof *baseline);
 }
 
-bench_runner bench_baseline_runner(bench_baseline *baseline)
-{
+bench_runner bench_baseline_runner(bench_baseline *baseline) {
     return (bench_runner){.self = baseline, .reset = reset, .run = run};
 }
 
-bool bench_baseline_check(const bench_baseline *baseline, scene_error *error)
-{
+bool bench_baseline_check(const bench_baseline *baseline, scene_error *error) {
     const naive_network *network = &baseline->network;
     for (uint32_t i = 0; i < network->particle_count; i++) {
         const naive_particle *p = &network->particles[i];
         if (!isfinite(p->x) || !isfinite(p->y) || !isfinite(p->vx) || !isfinite(p->vy)) {
             snprintf(error->text, sizeof error->text,
                      "the naive state of particle %u is not finite after the run: use more --substeps or less "
-                     "--stiffness", i);
+                     "--stiffness",
+                     i);
             return false;
         }
     }

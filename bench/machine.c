@@ -17,8 +17,7 @@
 #include <cpuid.h>
 #endif
 
-double bench_seconds(void)
-{
+double bench_seconds(void) {
     struct timespec now;
 #ifdef CLOCK_MONOTONIC
     clock_gettime(CLOCK_MONOTONIC, &now);
@@ -28,8 +27,7 @@ double bench_seconds(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-const char *bench_cpu_name(char *text, size_t size)
-{
+const char *bench_cpu_name(char *text, size_t size) {
     const char *name = "unknown processor";
 #if defined(__x86_64__) || defined(__i386__)
     unsigned registers[13] = {0}; /* three leaves of 16 characters, and the end of the string */
@@ -53,8 +51,7 @@ const char *bench_cpu_name(char *text, size_t size)
     return text;
 }
 
-const char *bench_compiler(void)
-{
+const char *bench_compiler(void) {
 #if defined(__clang__)
     return __VERSION__; /* says "Clang" itself */
 #elif defined(__GNUC__)
@@ -64,8 +61,7 @@ const char *bench_compiler(void)
 #endif
 }
 
-size_t bench_cache_size(int level)
-{
+size_t bench_cache_size(int level) {
     static const size_t usual[3] = {(size_t)32 << 10, (size_t)1 << 20, (size_t)16 << 20};
     long size = 0;
 #ifdef _SC_LEVEL1_DCACHE_SIZE

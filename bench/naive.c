@@ -7,8 +7,7 @@
 #include <math.h>
 
 static void add_spring_forces(naive_particle *restrict particles, const naive_spring *restrict springs,
-                              uint32_t count)
-{
+                              uint32_t count) {
     for (uint32_t i = 0; i < count; i++) {
         const naive_spring *spring = &springs[i];
         naive_particle *a = &particles[spring->a];
@@ -32,8 +31,7 @@ static void add_spring_forces(naive_particle *restrict particles, const naive_sp
 }
 
 static void move_particles(naive_particle *restrict particles, uint32_t count, float gravity_x, float gravity_y,
-                           float keep, float h)
-{
+                           float keep, float h) {
     for (uint32_t i = 0; i < count; i++) {
         naive_particle *p = &particles[i];
         if (p->inverse_mass > 0.0f) {
@@ -47,8 +45,7 @@ static void move_particles(naive_particle *restrict particles, uint32_t count, f
     }
 }
 
-void naive_step(naive_network *network, double dt, uint32_t substeps)
-{
+void naive_step(naive_network *network, double dt, uint32_t substeps) {
     float h = (float)(dt / substeps);
     float keep = expf(-network->global_damping * h);
     for (uint32_t i = 0; i < network->particle_count; i++) {

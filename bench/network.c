@@ -16,14 +16,12 @@
 /// Force held on every particle where a scene asks for it, N: a thousandth of the weight of one of iron.
 #define HELD_FORCE 0.7f
 
-void bench_library_error(scene_error *error, const char *doing, mspring_result result, const char *message)
-{
+void bench_library_error(scene_error *error, const char *doing, mspring_result result, const char *message) {
     snprintf(error->text, sizeof error->text, "%s: %s%s%s", doing, mspring_result_string(result),
              message[0] != '\0' ? ": " : "", message);
 }
 
-void *bench_allocate(size_t count, size_t size, scene_error *error)
-{
+void *bench_allocate(size_t count, size_t size, scene_error *error) {
     size_t bytes = (count * size + 63) / 64 * 64;
     void *memory = aligned_alloc(64, bytes > 0 ? bytes : 64);
     if (memory == NULL) {
@@ -33,16 +31,14 @@ void *bench_allocate(size_t count, size_t size, scene_error *error)
 }
 
 /// A number in -1 ... 1 that depends on index alone.
-static float scatter(uint32_t index)
-{
+static float scatter(uint32_t index) {
     uint32_t bits = index * 2654435769u;
     bits = (bits ^ (bits >> 16)) * 2246822519u;
     bits ^= bits >> 13;
     return (float)(int32_t)(bits >> 8) / 8388608.0f - 1.0f;
 }
 
-static bool set_start_velocities(bench_network *network, scene_error *error)
-{
+static bool set_start_velocities(bench_network *network, scene_error *error) {
     mspring_view view;
     view.struct_size = sizeof view;
     mspring_result result = mspring_network_view(network->network, &view);
@@ -58,12 +54,11 @@ static bool set_start_velocities(bench_network *network, scene_error *error)
     return true;
 }
 
-static bool reset(void *self, scene_error *error)
-{
+static bool reset(void *self, scene_error *error) {
     bench_network *network = self;
     uint32_t count = network->particle_count;
-    mspring_result result = mspring_network_set_positions(network->network, 0, count, network->start_x,
-                                                          network->start_y);
+    mspring_result result =
+        mspring_network_set_positions(network->network, 0, count, network->start_x, network->start_y);
     if (result == MSPRING_OK) {
         result = mspring_network_set_velocities(network->network, 0, count, network->start_vx, network->start_vy);
     }
@@ -74,8 +69,7 @@ static bool reset(void *self, scene_error *error)
     return true;
 }
 
-static bool run(void *self, uint32_t steps, scene_error *error)
-{
+static bool run(void *self, uint32_t steps, scene_error *error) {
     bench_network *network = self;
     mspring_result result = MSPRING_OK;
     for (uint32_t i = 0; i < steps && result == MSPRING_OK; i++) {
@@ -95,8 +89,7 @@ static bool run(void *self, uint32_t steps, scene_error *error)
 }
 
 bool bench_network_create(mspring_builder *builder, mspring_simd level, uint32_t substeps, bench_network *out,
-                          scene_error *error)
-{
+                          scene_error *error) {
     mspring_network_def def;
     mspring_result result = mspring_network_def_init(&def, sizeof def);
     if (result != MSPRING_OK) {
@@ -137,8 +130,7 @@ bool bench_network_create(mspring_builder *builder, mspring_simd level, uint32_t
     return true;
 }
 
-void bench_network_free(bench_network *network)
-{
+void bench_network_free(bench_network *network) {
     mspring_network_destroy(network->network);
     free(network->start_x);
     free(network->start_y);
@@ -149,8 +141,7 @@ void bench_network_free(bench_network *network)
     memset(network, 0, sizeof *network);
 }
 
-bool bench_network_hold_forces(bench_network *network, scene_error *error)
-{
+bool bench_network_hold_forces(bench_network *network, scene_error *error) {
     network->held_x = bench_allocate(network->particle_count, sizeof *network->held_x, error);
     network->held_y = bench_allocate(network->particle_count, sizeof *network->held_y, error);
     if (network->held_x == NULL || network->held_y == NULL) {
@@ -163,18 +154,15 @@ bool bench_network_hold_forces(bench_network *network, scene_error *error)
     return true;
 }
 
-bench_runner bench_network_runner(bench_network *network)
-{
+bench_runner bench_network_runner(bench_network *network) {
     return (bench_runner){.self = network, .reset = reset, .run = run};
 }
 
-static bool is_denormal(float value)
-{
+static bool is_denormal(float value) {
     return value != 0.0f && fabsf(value) < FLT_MIN;
 }
 
-bool bench_network_check(const bench_network *network, scene_error *error)
-{
+bool bench_network_check(const bench_network *network, scene_error *error) {
     mspring_view view;
     view.struct_size = sizeof view;
     mspring_result result = mspring_network_view(network->network, &view);
@@ -189,7 +177,8 @@ bool bench_network_check(const bench_network *network, scene_error *error)
             !isfinite(view.vy[slot])) {
             snprintf(error->text, sizeof error->text,
                      "the state of particle %u is not finite after the run: use more --substeps or less "
-                     "--stiffness", i);
+                     "--stiffness",
+                     i);
             return false;
         }
         denormal += is_denormal(view.vx[slot]) || is_denormal(view.vy[slot]);
@@ -197,7 +186,8 @@ bool bench_network_check(const bench_network *network, scene_error *error)
     if (denormal > view.particle_count / 100) {
         snprintf(error->text, sizeof error->text,
                  "%u of %u particles have come to rest (denormal velocities), which falsifies the timing: use "
-                 "less --damping", denormal, view.particle_count);
+                 "less --damping",
+                 denormal, view.particle_count);
         return false;
     }
     return true;

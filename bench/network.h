@@ -22,9 +22,9 @@
 typedef struct bench_network {
     mspring_network *network;
     uint32_t particle_count, spring_count, substeps;
-    double *start_x, *start_y;   ///< [particle_count] state that reset goes back to
+    double *start_x, *start_y; ///< [particle_count] state that reset goes back to
     float *start_vx, *start_vy;
-    float *held_x, *held_y;      ///< [particle_count] forces given before every step, or NULL
+    float *held_x, *held_y; ///< [particle_count] forces given before every step, or NULL
 } bench_network;
 
 /// Make a network of a builder. Every particle that is not pinned gets a small velocity of its own, so that all of

@@ -17,21 +17,18 @@
 /// A sample has at most so many steps, which for the smallest scenes bounds the time they simulate.
 #define MAX_STEPS 4096u
 
-static int compare_doubles(const void *left, const void *right)
-{
+static int compare_doubles(const void *left, const void *right) {
     double a = *(const double *)left;
     double b = *(const double *)right;
     return (a > b) - (a < b);
 }
 
-double bench_median(double *values, uint32_t count)
-{
+double bench_median(double *values, uint32_t count) {
     qsort(values, count, sizeof *values, compare_doubles);
     return count % 2 == 1 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
 }
 
-static bool sample(const bench_runner *runner, uint32_t steps, double *seconds, scene_error *error)
-{
+static bool sample(const bench_runner *runner, uint32_t steps, double *seconds, scene_error *error) {
     if (!runner->reset(runner->self, error) || !runner->run(runner->self, 1, error)) {
         return false;
     }
@@ -44,8 +41,7 @@ static bool sample(const bench_runner *runner, uint32_t steps, double *seconds, 
 }
 
 /// Find the number of steps that fill a sample.
-static bool calibrate(const bench_runner *runner, uint32_t *steps, scene_error *error)
-{
+static bool calibrate(const bench_runner *runner, uint32_t *steps, scene_error *error) {
     uint32_t count = 1;
     double seconds = 0.0;
     for (;;) {
@@ -61,9 +57,8 @@ static bool calibrate(const bench_runner *runner, uint32_t *steps, scene_error *
     }
 }
 
-bool bench_turns_measure(const bench_runner *first, const bench_runner *second, uint32_t repeat,
-                         bench_turns *out, scene_error *error)
-{
+bool bench_turns_measure(const bench_runner *first, const bench_runner *second, uint32_t repeat, bench_turns *out,
+                         scene_error *error) {
     uint32_t first_steps = 0;
     uint32_t second_steps = 0;
     if (!calibrate(first, &first_steps, error) || !calibrate(second, &second_steps, error)) {

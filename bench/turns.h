@@ -29,8 +29,8 @@ typedef struct bench_turns {
 
 /// Measure repeat pairs. Every sample starts from the same state, is preceded by a step that is not timed, and
 /// has as many steps as fill some milliseconds.
-bool bench_turns_measure(const bench_runner *first, const bench_runner *second, uint32_t repeat,
-                         bench_turns *out, scene_error *error);
+bool bench_turns_measure(const bench_runner *first, const bench_runner *second, uint32_t repeat, bench_turns *out,
+                         scene_error *error);
 
 /// Median; sorts the values.
 double bench_median(double *values, uint32_t count);

@@ -1,0 +1,170 @@
+/// @file features.c
+/// Pay for what the scene has: each feature against the plain scene, measured in turn.
+///
+/// SPDX-License-Identifier: MIT
+#include "copy.h"
+#include "modes.h"
+
+typedef struct variant {
+    const char *name;
+    bool undamped;    ///< springs without dampers
+    uint32_t ropes;   ///< more of them
+    bool absolute;    ///< the same springs in N/m and N s/m
+    bool held_forces; ///< a force on every particle in every step
+    bool hooked;
+    mspring_phase hook;
+} variant;
+
+static const variant variants[] = {
+    {.name = "plain again"},
+    {.name = "no damper", .undamped = true},
+    {.name = "absolute stiffness", .absolute = true},
+    {.name = "empty hook before the step", .hooked = true, .hook = MSPRING_PHASE_BEFORE_STEP},
+    {.name = "empty hook before substeps", .hooked = true, .hook = MSPRING_PHASE_BEFORE_SUBSTEP},
+    {.name = "empty hook after substeps", .hooked = true, .hook = MSPRING_PHASE_AFTER_SUBSTEP},
+    {.name = "force on every particle", .held_forces = true},
+    {.name = "4 ropes", .ropes = 4},
+    {.name = "40 ropes", .ropes = 40},
+    {.name = "400 ropes", .ropes = 400},
+};
+
+static const char *const default_scenes[] = {"bar_544x68", "ship", NULL};
+
+static const bench_column columns[] = {
+    {"scene", "scene", -16},
+    {"feature", "feature", -26},
+    {"springs", "springs", 8},
+    {"substeps", "substeps", 8},
+    {"level", "level", -6},
+    {"us_per_step_median", "us/step median", 14},
+    {"ns_per_spring_substep_median", "ns/spring", 9},
+    {"step_time_ratio_median", "step/plain", 10},
+};
+
+#define COLUMN_COUNT ((int)(sizeof columns / sizeof *columns))
+
+static void empty_hook(const mspring_hook_args *args, void *user) {
+    (void)args;
+    (void)user;
+}
+
+static bool create_absolute(const bench_network *plain, mspring_simd level, bench_network *out,
+                            scene_error *error) {
+    mspring_builder *builder = NULL;
+    if (!bench_copy_absolute(plain, &builder, error)) {
+        return false;
+    }
+    bool ok = bench_network_create(builder, level, plain->substeps, out, error);
+    mspring_builder_destroy(builder);
+    return ok;
+}
+
+/// Make the network of a variant of the plain scene.
+static bool create_variant(const variant *kind, const bench_scene *subject, const bench_options *options,
+                           const bench_network *plain, mspring_simd level, bench_network *out, scene_error *error) {
+    bool ok;
+    if (kind->absolute) {
+        ok = create_absolute(plain, level, out, error);
+    } else if (kind->undamped || kind->ropes > 0) {
+        bench_scene_settings settings = options->settings;
+        settings.damping = kind->undamped ? 0.0f : settings.damping;
+        settings.ropes += kind->ropes;
+        bench_scene other;
+        if (!bench_scene_make(&subject->source, &settings, &other, error)) {
+            return false;
+        }
+        ok = bench_network_create(other.made.builder, level, plain->substeps, out, error);
+        bench_scene_free(&other);
+    } else {
+        ok = bench_network_create(subject->made.builder, level, plain->substeps, out, error);
+    }
+    if (!ok) {
+        return false;
+    }
+    if (kind->held_forces && !bench_network_hold_forces(out, error)) {
+        bench_network_free(out);
+        return false;
+    }
+    if (kind->hooked) {
+        mspring_result result = mspring_network_add_hook(out->network, kind->hook, empty_hook, NULL, NULL);
+        if (result != MSPRING_OK) {
+            bench_library_error(error, "adding a hook", result, mspring_network_error(out->network));
+            bench_network_free(out);
+            return false;
+        }
+    }
+    return true;
+}
+
+static void print_row(const bench_options *options, const bench_scene *subject, const char *feature,
+                      const bench_network *network, double seconds, double ratio) {
+    double springs = (double)network->spring_count * network->substeps;
+    const bench_cell cells[COLUMN_COUNT] = {
+        bench_cell_of("%s", subject->label),
+        bench_cell_of("%s", feature),
+        bench_cell_of("%u", network->spring_count),
+        bench_cell_of("%u", network->substeps),
+        bench_cell_of("%s", mspring_simd_name(mspring_network_simd_level(network->network))),
+        bench_cell_of("%.3f", 1e6 * seconds),
+        bench_cell_of("%.4f", 1e9 * seconds / springs),
+        bench_cell_of("%.3f", ratio),
+    };
+    bench_table_row(options->format, columns, COLUMN_COUNT, cells);
+}
+
+static bool measure_variants(const bench_scene *subject, const bench_options *options, bench_network *plain,
+                             mspring_simd level, scene_error *error) {
+    uint32_t repeat = options->repeat > 0 ? options->repeat : bench_default_repeat(plain->spring_count);
+    bench_runner plain_runner = bench_network_runner(plain);
+    if (!plain_runner.run(plain, 1, error)) {
+        return false;
+    }
+    for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
+        bench_network other;
+        if (!create_variant(&variants[i], subject, options, plain, level, &other, error)) {
+            return false;
+        }
+        bench_runner runner = bench_network_runner(&other);
+        bench_turns turns;
+        bool ok = bench_turns_measure(&plain_runner, &runner, repeat, &turns, error) &&
+                  bench_network_check(plain, error) && bench_network_check(&other, error);
+        if (ok) {
+            if (i == 0) {
+                print_row(options, subject, "plain", plain, turns.first_median, 1.0);
+            }
+            print_row(options, subject, variants[i].name, &other, turns.second_median, turns.ratio_median);
+        }
+        bench_network_free(&other);
+        if (!ok) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool visit(const bench_scene *subject, const bench_options *options) {
+    mspring_simd levels[4];
+    scene_error error;
+    int count = bench_options_levels(options, levels, &error);
+    uint32_t springs = mspring_builder_spring_count(subject->made.builder);
+    uint32_t substeps = options->substeps > 0 ? options->substeps : bench_default_substeps(springs);
+    for (int i = 0; i < count; i++) {
+        bench_network plain;
+        bool ok = bench_network_create(subject->made.builder, levels[i], substeps, &plain, &error);
+        if (ok) {
+            ok = measure_variants(subject, options, &plain, levels[i], &error);
+            bench_network_free(&plain);
+        }
+        if (!ok) {
+            bench_complain(subject->label, &error);
+            return false;
+        }
+    }
+    return true;
+}
+
+bool bench_run_features(const bench_options *options) {
+    bench_table_preamble(options->format);
+    bench_table_head(options->format, columns, COLUMN_COUNT);
+    return bench_for_each_scene(options, default_scenes, visit);
+}

@@ -1,0 +1,41 @@
+/// @file main.c
+/// massspring-bench: see README.md.
+///
+/// SPDX-License-Identifier: MIT
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "modes.h"
+
+int main(int count, char **arguments) {
+    bench_options options;
+    mspring_simd levels[4];
+    scene_error error;
+    if (!bench_options_read(count, arguments, &options, &error) ||
+        bench_options_levels(&options, levels, &error) == 0) {
+        bench_complain("command line", &error);
+        return 2;
+    }
+    bool ok = true;
+    switch (options.mode) {
+    case BENCH_SCENES:
+        ok = bench_run_scenes(&options);
+        break;
+    case BENCH_FEATURES:
+        ok = bench_run_features(&options);
+        break;
+    case BENCH_ROOFLINE:
+        ok = bench_run_roofline(&options);
+        break;
+    case BENCH_CHECK:
+        ok = bench_run_check(&options);
+        break;
+    case BENCH_LIST:
+        bench_catalogue_print();
+        break;
+    case BENCH_HELP:
+        bench_options_help();
+        break;
+    }
+    return ok ? EXIT_SUCCESS : EXIT_FAILURE;
+}

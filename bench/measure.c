@@ -1,0 +1,74 @@
+/// @file measure.c
+/// Going through scenes, and measuring one against the naive step.
+///
+/// SPDX-License-Identifier: MIT
+#include <stdio.h>
+
+#include "modes.h"
+
+void bench_complain(const char *about, const scene_error *error) {
+    fprintf(stderr, "massspring-bench: %s: %s\n", about, error->text);
+}
+
+static bool make_and_visit(const char *name, bool is_file, const bench_options *options, bench_visit_fn visit) {
+    bench_scene subject;
+    scene_error error;
+    const bench_source source = {.name = name, .is_file = is_file};
+    if (!bench_scene_make(&source, &options->settings, &subject, &error)) {
+        bench_complain(name, &error);
+        return false;
+    }
+    bool ok = visit(&subject, options);
+    bench_scene_free(&subject);
+    return ok;
+}
+
+bool bench_for_each_scene(const bench_options *options, const char *const *otherwise, bench_visit_fn visit) {
+    bool none_named = options->scene_count == 0 && options->network == NULL;
+    bool ok = true;
+    for (const char *const *name = none_named ? otherwise : options->scenes; *name != NULL; name++) {
+        ok = make_and_visit(*name, false, options, visit) && ok;
+    }
+    if (options->network != NULL) {
+        ok = make_and_visit(options->network, true, options, visit) && ok;
+    }
+    return ok;
+}
+
+bool bench_measure(const bench_scene *subject, const bench_options *options, mspring_simd level,
+                   bench_measurement *out, scene_error *error) {
+    uint32_t springs = mspring_builder_spring_count(subject->made.builder);
+    if (springs == 0) {
+        snprintf(error->text, sizeof error->text, "the scene has no springs, and speed is measured per spring");
+        return false;
+    }
+    uint32_t substeps = options->substeps > 0 ? options->substeps : bench_default_substeps(springs);
+    uint32_t repeat = options->repeat > 0 ? options->repeat : bench_default_repeat(springs);
+    bench_network network;
+    if (!bench_network_create(subject->made.builder, level, substeps, &network, error)) {
+        return false;
+    }
+    bench_baseline baseline;
+    if (!bench_baseline_create(&network, &baseline, error)) {
+        bench_network_free(&network);
+        return false;
+    }
+    bench_runner ours = bench_network_runner(&network);
+    bench_runner naive = bench_baseline_runner(&baseline);
+    bench_measurement result = {
+        .particles = network.particle_count,
+        .springs = network.spring_count,
+        .substeps = substeps,
+        .level = mspring_network_simd_level(network.network),
+    };
+    bool ok = bench_turns_measure(&ours, &naive, repeat, &result.turns, error) &&
+              bench_network_check(&network, error) && bench_baseline_check(&baseline, error);
+    if (ok) {
+        result.ns = 1e9 * result.turns.first_median / ((double)springs * substeps);
+        result.bytes_per_particle = (double)mspring_network_memory_used(network.network) / network.particle_count;
+        *out = result;
+    }
+    bench_baseline_free(&baseline);
+    bench_network_free(&network);
+    return ok;
+}

@@ -1,0 +1,42 @@
+/// @file modes.h
+/// What the bench can do: one file each.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef BENCH_MODES_H
+#define BENCH_MODES_H
+
+#include "network.h"
+#include "options.h"
+
+/// Measure scenes against the naive step (scenes.c), what features cost (features.c), how far from the machine's
+/// bounds the scenes are (roofline.c), or compare positions with those of the naive step (check.c).
+/// @return false if anything failed; messages have gone to stderr
+bool bench_run_scenes(const bench_options *options);
+bool bench_run_features(const bench_options *options);
+bool bench_run_roofline(const bench_options *options);
+bool bench_run_check(const bench_options *options);
+
+/// One scene at one level.
+typedef struct bench_measurement {
+    uint32_t particles, springs, substeps;
+    mspring_simd level; ///< the one that ran
+    bench_turns turns;  ///< first: the library; second: the naive step
+    double ns;          ///< median, per spring and substep
+    double bytes_per_particle;
+} bench_measurement;
+
+/// Measure one scene at one level against the naive step.
+bool bench_measure(const bench_scene *subject, const bench_options *options, mspring_simd level,
+                   bench_measurement *out, scene_error *error);
+
+/// What is to be done with one scene. Prints its own messages.
+typedef bool (*bench_visit_fn)(const bench_scene *subject, const bench_options *options);
+
+/// Go through the scenes of the command line (or, if it names none, those given), making one after the other.
+/// @return false if one could not be made or visit returned false for one; the others are visited all the same
+bool bench_for_each_scene(const bench_options *options, const char *const *otherwise, bench_visit_fn visit);
+
+/// Print a message to stderr, after the program's name and what it is about.
+void bench_complain(const char *about, const scene_error *error);
+
+#endif
