@@ -170,7 +170,7 @@ typedef struct mspring_spring_def {
     mspring_id a, b;   ///< the particles it joins, not the same; default MSPRING_NONE
     float stiffness;   ///< N/m (or a fraction, see MSPRING_SPRING_RELATIVE), 0 to 1e30; default 0
     float damping;     ///< N s/m (or a fraction), 0 to 1e30; default 0
-    float rest_length; ///< m, > 0 and at most 1e12, or MSPRING_REST_LENGTH_DISTANCE, the default
+    float rest_length; ///< m, > 0 and at most 4e12, or MSPRING_REST_LENGTH_DISTANCE, the default
 } mspring_spring_def;
 
 /// What a lattice cell is made of. Fill with mspring_material_init() first.

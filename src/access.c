@@ -1,0 +1,218 @@
+/// Reading and writing the state from outside: views, ranges in id order, forces.
+#include <math.h>
+
+#include "network.h"
+
+static bool is_finite_pair(float x, float y)
+{
+    return isfinite(x) && isfinite(y);
+}
+
+/* ------------------------------------------------------------------------------------------------------- views */
+
+mspring_result mspring_network_view(mspring_network *network, mspring_view *view)
+{
+    if (!network || !view)
+        return MSPRING_ERROR_ARGUMENT;
+    if (view->struct_size != sizeof *view)
+        return MSPRING_ERROR_STRUCT;
+    *view = (mspring_view){
+        .struct_size = sizeof *view,
+        .slot_count = (uint32_t)mspringi_slot_count(network),
+        .particle_count = network->topology.particle_count,
+        .origin_x = network->origin_x,
+        .origin_y = network->origin_y,
+        .x = network->state.x,
+        .y = network->state.y,
+        .vx = network->state.vx,
+        .vy = network->state.vy,
+        .inverse_mass = network->inverse_mass,
+        .particle_of_slot = network->topology.particle_of_slot,
+        .slot_of_particle = network->topology.slot_of_particle,
+    };
+    return MSPRING_OK;
+}
+
+/* --------------------------------------------------------------------------------------------------- get ranges */
+
+// A range for a shared function: no message, as several threads may be here.
+static mspring_result check_get(const mspring_network *network, mspring_id first, uint32_t count, const void *a,
+                                const void *b)
+{
+    if (!network || (count > 0 && (!a || !b)))
+        return MSPRING_ERROR_ARGUMENT;
+    const uint32_t total = network->topology.particle_count;
+    return first <= total && count <= total - first ? MSPRING_OK : MSPRING_ERROR_ID;
+}
+
+mspring_result mspring_network_get_positions(const mspring_network *network, mspring_id first, uint32_t count,
+                                             double *x, double *y)
+{
+    mspring_result result = check_get(network, first, count, x, y);
+    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
+        const uint32_t slot = network->topology.slot_of_particle[first + i];
+        x[i] = network->origin_x + (double)network->state.x[slot];
+        y[i] = network->origin_y + (double)network->state.y[slot];
+    }
+    return result;
+}
+
+mspring_result mspring_network_get_positions_float(const mspring_network *network, mspring_id first,
+                                                   uint32_t count, float *x, float *y)
+{
+    mspring_result result = check_get(network, first, count, x, y);
+    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
+        const uint32_t slot = network->topology.slot_of_particle[first + i];
+        x[i] = (float)(network->origin_x + (double)network->state.x[slot]);
+        y[i] = (float)(network->origin_y + (double)network->state.y[slot]);
+    }
+    return result;
+}
+
+mspring_result mspring_network_get_velocities(const mspring_network *network, mspring_id first, uint32_t count,
+                                              float *vx, float *vy)
+{
+    mspring_result result = check_get(network, first, count, vx, vy);
+    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
+        const uint32_t slot = network->topology.slot_of_particle[first + i];
+        vx[i] = network->state.vx[slot];
+        vy[i] = network->state.vy[slot];
+    }
+    return result;
+}
+
+mspring_result mspring_network_get_masses(const mspring_network *network, mspring_id first, uint32_t count,
+                                          float *mass)
+{
+    mspring_result result = check_get(network, first, count, mass, mass);
+    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
+        mass[i] = network->mass[first + i];
+    return result;
+}
+
+/* --------------------------------------------------------------------------------------------------- set ranges */
+
+static mspring_result check_set(mspring_network *network, mspring_id first, uint32_t count, const void *a,
+                                const void *b)
+{
+    mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK)
+        return result;
+    if (count > 0 && (!a || !b))
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "an array of %u values is NULL",
+                             (unsigned)count);
+    return mspringi_check_range(network, "particle", first, count, network->topology.particle_count);
+}
+
+void mspringi_set_position(mspring_network *network, mspring_id particle, double x, double y)
+{
+    const uint32_t slot = network->topology.slot_of_particle[particle];
+    network->state.x[slot] = (float)(x - network->origin_x);
+    network->state.y[slot] = (float)(y - network->origin_y);
+}
+
+static mspring_result check_position(mspring_network *network, mspring_id id, double x, double y, bool keep_origin)
+{
+    const double largest = MSPRING_MAX_COORDINATE;
+    const double origin_x = keep_origin ? network->origin_x : 0.0, origin_y = keep_origin ? network->origin_y : 0.0;
+    if (fabs(x) <= largest && fabs(y) <= largest && fabs(x - origin_x) <= largest && fabs(y - origin_y) <= largest)
+        return MSPRING_OK;
+    return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                         "particle %u: position (%g, %g) m is not within 1e12 of world and local origin",
+                         (unsigned)id, x, y);
+}
+
+// Positions in either precision: exactly one of the two pairs of arrays is there.
+typedef struct positions {
+    const double *x, *y;
+    const float *x_float, *y_float;
+} positions;
+
+static double x_of(const positions *p, uint32_t i)
+{
+    return p->x ? p->x[i] : (double)p->x_float[i];
+}
+
+static double y_of(const positions *p, uint32_t i)
+{
+    return p->y ? p->y[i] : (double)p->y_float[i];
+}
+
+static mspring_result set_positions(mspring_network *network, mspring_id first, uint32_t count, const positions *to)
+{
+    const bool all = count == network->topology.particle_count;
+    mspringi_box box = mspringi_box_empty();
+    for (uint32_t i = 0; i < count; ++i) {
+        mspring_result result = check_position(network, first + i, x_of(to, i), y_of(to, i), !all);
+        if (result != MSPRING_OK)
+            return result;
+        mspringi_box_include(&box, x_of(to, i), y_of(to, i));
+    }
+    if (all)
+        mspringi_origin_choose(network, &box);
+    for (uint32_t i = 0; i < count; ++i)
+        mspringi_set_position(network, first + i, x_of(to, i), y_of(to, i));
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_set_positions(mspring_network *network, mspring_id first, uint32_t count,
+                                             const double *x, const double *y)
+{
+    mspring_result result = check_set(network, first, count, x, y);
+    const positions to = {.x = x, .y = y};
+    return result == MSPRING_OK ? set_positions(network, first, count, &to) : result;
+}
+
+mspring_result mspring_network_set_positions_float(mspring_network *network, mspring_id first, uint32_t count,
+                                                   const float *x, const float *y)
+{
+    mspring_result result = check_set(network, first, count, x, y);
+    const positions to = {.x_float = x, .y_float = y};
+    return result == MSPRING_OK ? set_positions(network, first, count, &to) : result;
+}
+
+mspring_result mspring_network_set_velocities(mspring_network *network, mspring_id first, uint32_t count,
+                                              const float *vx, const float *vy)
+{
+    mspring_result result = check_set(network, first, count, vx, vy);
+    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
+        if (!is_finite_pair(vx[i], vy[i]))
+            result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                                   "particle %u: velocity (%g, %g) m/s is not finite", (unsigned)(first + i),
+                                   (double)vx[i], (double)vy[i]);
+    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
+        const uint32_t slot = network->topology.slot_of_particle[first + i];
+        network->state.vx[slot] = vx[i];
+        network->state.vy[slot] = vy[i];
+    }
+    return result;
+}
+
+/* ------------------------------------------------------------------------------------------------------- forces */
+
+mspring_result mspring_network_apply_forces(mspring_network *network, mspring_id first, uint32_t count,
+                                            const float *x, const float *y)
+{
+    mspring_result result = check_set(network, first, count, x, y);
+    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
+        if (!is_finite_pair(x[i], y[i]))
+            result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                                   "particle %u: force (%g, %g) N is not finite", (unsigned)(first + i),
+                                   (double)x[i], (double)y[i]);
+    if (result == MSPRING_OK)
+        result = mspringi_field_reserve(network, &network->forces.held);
+    if (result != MSPRING_OK)
+        return result;
+    for (uint32_t i = 0; i < count; ++i) {
+        const uint32_t slot = network->topology.slot_of_particle[first + i];
+        network->forces.held.x[slot] += x[i];
+        network->forces.held.y[slot] += y[i];
+    }
+    network->forces.held_any = network->forces.held_any || count > 0;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_apply_force(mspring_network *network, mspring_id particle, float x, float y)
+{
+    return mspring_network_apply_forces(network, particle, 1, &x, &y);
+}

@@ -1,0 +1,57 @@
+/// @file analysis.h
+/// The steps by which a topology is found: graph, then strands, then grids.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_ANALYSIS_H
+#define MSPRINGI_ANALYSIS_H
+
+#include "topology.h"
+
+/// Springs by particle: those of particle p are springs[first[p]] ... springs[first[p + 1] - 1], by rising id.
+typedef struct mspringi_graph {
+    const mspring_builder *builder;
+    uint32_t *first;   ///< [particles + 1]
+    uint32_t *springs; ///< [2 * springs]
+} mspringi_graph;
+
+/// Strands, laid end to end.
+typedef struct mspringi_strands {
+    uint32_t *particles; ///< [count] in order along each strand, strand after strand
+    uint32_t *springs;   ///< [count] the spring to the next entry, or MSPRING_NONE at a strand's end
+    uint32_t count, strand_count, spring_count;
+} mspringi_strands;
+
+/// Grids: for each, its particles with their column and row, both from 0.
+typedef struct mspringi_grids {
+    uint32_t *grid_of;       ///< [particles] number of the grid, or MSPRING_NONE
+    uint32_t *column, *row;  ///< [particles]
+    uint32_t *members;       ///< [member_count] particles, grid after grid
+    uint32_t *first_member;  ///< [count + 1]
+    uint32_t count, member_count;
+} mspringi_grids;
+
+static inline mspring_id mspringi_other_end(const mspringi_spring *spring, mspring_id particle)
+{
+    return spring->a == particle ? spring->b : spring->a;
+}
+
+/// Index the springs by particle. Fails with MSPRING_ERROR_DUPLICATE if two springs join the same particles.
+mspring_result mspringi_graph_create(mspringi_graph *graph, const mspring_builder *builder,
+                                     mspringi_memory *memory, mspringi_message *message);
+void mspringi_graph_destroy(mspringi_graph *graph, mspringi_memory *memory);
+
+/// Find the strands: paths of at least three particles that have at most two springs each, and shorter ones that
+/// are attached to nothing. Their particles get MSPRINGI_ROW_CHAIN in kinds.
+mspring_result mspringi_strands_find(mspringi_strands *strands, const mspringi_graph *graph, uint8_t *kinds,
+                                     mspringi_memory *memory, mspringi_message *message);
+void mspringi_strands_destroy(mspringi_strands *strands, mspringi_memory *memory);
+
+/// Find the grids among the particles that are loose in kinds: their particles get MSPRINGI_ROW_LATTICE.
+mspring_result mspringi_grids_find(mspringi_grids *grids, const mspringi_graph *graph, uint8_t *kinds,
+                                   mspringi_memory *memory, mspringi_message *message);
+void mspringi_grids_destroy(mspringi_grids *grids, mspringi_memory *memory);
+
+/// Sort keys in place by radix; scratch is as long as keys.
+void mspringi_sort_keys(uint64_t *keys, uint64_t *scratch, size_t count);
+
+#endif

@@ -1,0 +1,135 @@
+#include "cpu.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#if defined(MSPRINGI_X86_64)
+#include <immintrin.h>
+#if defined(_MSC_VER)
+#include <intrin.h>
+#else
+#include <cpuid.h>
+#endif
+#endif
+
+/* ------------------------------------------------------------------------------------------------ levels */
+
+#if defined(MSPRINGI_X86_64)
+
+typedef struct cpuid_words {
+    uint32_t a, b, c, d;
+} cpuid_words;
+
+static cpuid_words cpuid(uint32_t leaf)
+{
+    cpuid_words words = {0, 0, 0, 0};
+#if defined(_MSC_VER)
+    int out[4];
+    __cpuid(out, 0);
+    if ((uint32_t)out[0] >= leaf) {
+        __cpuidex(out, (int)leaf, 0);
+        words = (cpuid_words){(uint32_t)out[0], (uint32_t)out[1], (uint32_t)out[2], (uint32_t)out[3]};
+    }
+#else
+    if (!__get_cpuid_count(leaf, 0, &words.a, &words.b, &words.c, &words.d))
+        words = (cpuid_words){0, 0, 0, 0};
+#endif
+    return words;
+}
+
+// Which registers the operating system saves: bits 1 and 2 for the 256-bit ones, 5 to 7 for the 512-bit ones.
+static uint64_t saved_registers(void)
+{
+#if defined(_MSC_VER)
+    return _xgetbv(0);
+#else
+    uint32_t low, high;
+    __asm__ volatile("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
+    return (uint64_t)high << 32 | low;
+#endif
+}
+
+mspring_simd mspring_simd_supported(void)
+{
+    const uint32_t osxsave = 1u << 27, avx = 1u << 28, avx2 = 1u << 5, avx512f = 1u << 16;
+    const uint64_t saves_256 = 0x06, saves_512 = 0xe6;
+    const cpuid_words features = cpuid(1), extended = cpuid(7);
+    if (!(features.c & osxsave) || !(features.c & avx) || (saved_registers() & saves_256) != saves_256 ||
+        !(extended.b & avx2))
+        return MSPRING_SIMD_SSE2;
+    if (!(extended.b & avx512f) || (saved_registers() & saves_512) != saves_512)
+        return MSPRING_SIMD_AVX2;
+    return MSPRING_SIMD_AVX512;
+}
+
+#else
+
+mspring_simd mspring_simd_supported(void)
+{
+    return MSPRING_SIMD_SCALAR;
+}
+
+#endif
+
+const char *mspring_simd_name(mspring_simd level)
+{
+    static const char *const names[] = {"auto", "scalar", "sse2", "avx2", "avx512"};
+    return level >= MSPRING_SIMD_AUTO && level <= MSPRING_SIMD_AVX512 ? names[level] : "unknown";
+}
+
+mspring_simd mspringi_cpu_choose(mspring_simd wanted)
+{
+    mspring_simd level = mspring_simd_supported();
+    if (wanted != MSPRING_SIMD_AUTO && wanted < level)
+        level = wanted;
+    const char *name = getenv("MSPRING_SIMD");
+    for (mspring_simd l = MSPRING_SIMD_SCALAR; name && l < level; ++l)
+        if (strcmp(name, mspring_simd_name(l)) == 0)
+            level = l;
+    return level;
+}
+
+/* -------------------------------------------------------------------------------- floating-point environment */
+
+#if defined(MSPRINGI_X86_64)
+
+mspringi_fp_state mspringi_fp_enter(void)
+{
+    const mspringi_fp_state before = _mm_getcsr();
+    _mm_setcsr(0x1f80); // all exceptions masked, round to nearest, no flush to zero
+    return before;
+}
+
+void mspringi_fp_leave(mspringi_fp_state before)
+{
+    _mm_setcsr((unsigned)before);
+}
+
+#elif defined(__aarch64__) && defined(__GNUC__)
+
+mspringi_fp_state mspringi_fp_enter(void)
+{
+    mspringi_fp_state before;
+    __asm__ volatile("mrs %0, fpcr" : "=r"(before));
+    __asm__ volatile("msr fpcr, %0" : : "r"((mspringi_fp_state)0));
+    return before;
+}
+
+void mspringi_fp_leave(mspringi_fp_state before)
+{
+    __asm__ volatile("msr fpcr, %0" : : "r"(before));
+}
+
+#else
+
+mspringi_fp_state mspringi_fp_enter(void)
+{
+    return 0;
+}
+
+void mspringi_fp_leave(mspringi_fp_state before)
+{
+    (void)before;
+}
+
+#endif

@@ -1,0 +1,24 @@
+/// @file cpu.h
+/// What the CPU can do, and the floating-point environment of a step.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_CPU_H
+#define MSPRINGI_CPU_H
+
+#include <stdint.h>
+
+#include <massspring/massspring.h>
+
+/// The level to run at: the best supported one, lowered by wanted (MSPRING_SIMD_AUTO: not) and by the environment
+/// variable MSPRING_SIMD.
+mspring_simd mspringi_cpu_choose(mspring_simd wanted);
+
+/// The calling thread's floating-point control word, as a step must find it again.
+typedef uint64_t mspringi_fp_state;
+
+/// Switch to rounding to nearest with denormals kept and no exception trapped: the state of the host's thread
+/// must not change a step's bits. Returns what was there.
+mspringi_fp_state mspringi_fp_enter(void);
+void mspringi_fp_leave(mspringi_fp_state before);
+
+#endif

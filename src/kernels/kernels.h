@@ -1,0 +1,65 @@
+/// @file kernels.h
+/// The inner loops, one table of them per instruction set.
+///
+/// Every table computes the same values by the same operations in the same order, so all give the same bits; the
+/// scalar one is the definition. No table uses fused multiply-add or an approximate reciprocal.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_KERNELS_H
+#define MSPRINGI_KERNELS_H
+
+#include "../topology.h"
+
+/// The parts of a spring record, each one value per slot; damping only if the network has any.
+typedef enum mspringi_part {
+    MSPRINGI_REST_LENGTH = 0,
+    MSPRINGI_STIFFNESS = 1,
+    MSPRINGI_DAMPING = 2
+} mspringi_part;
+
+/// What a sweep works on: arrays by slot, and what is the same for all of them.
+typedef struct mspringi_sweep {
+    float *x, *y, *vx, *vy;
+    const float *inverse_mass;
+    const float *force_x, *force_y; ///< forces from outside; read by the kernels with forces only
+    float *carry_x, *carry_y;       ///< forces that the row below exerts, by column
+    const float *lattice_springs;   ///< records: [block][direction][part][lane]
+    const float *chain_springs;     ///< records: [block][part][lane]
+    uint32_t parts;                 ///< parts in a record: 2 or, with damping, 3
+    float h;                        ///< substep, s
+    float decay;                    ///< what global damping leaves of a velocity
+    float gravity_h_x, gravity_h_y; ///< gravity times h
+} mspringi_sweep;
+
+/// What a span hands over to the one that continues it: the forces of its last springs on the next slot and on
+/// the slot above that. Only the last lane counts; vectors, so that a kernel can store its last one whole.
+typedef struct mspringi_edge {
+    float right_x[MSPRINGI_WIDTH], right_y[MSPRINGI_WIDTH];
+    float diagonal_x[MSPRINGI_WIDTH], diagonal_y[MSPRINGI_WIDTH];
+} mspringi_edge;
+
+/// Compute the forces of one span's springs and move its particles, in place.
+typedef void (*mspringi_sweep_fn)(const mspringi_sweep *sweep, const mspringi_span *span, mspringi_edge *edge);
+
+/// Whether all of count values (a multiple of MSPRINGI_WIDTH) are at most limit in absolute value; NaN is not.
+typedef bool (*mspringi_bounded_fn)(const float *values, size_t count, float limit);
+
+typedef struct mspringi_kernels {
+    mspring_simd level;
+    mspringi_sweep_fn lattice[2][2]; ///< [with damping][with forces]
+    mspringi_sweep_fn chain[2][2];
+    mspringi_sweep_fn loose[2]; ///< [with forces]
+    mspringi_bounded_fn bounded;
+} mspringi_kernels;
+
+extern const mspringi_kernels mspringi_kernels_scalar;
+#if defined(MSPRINGI_X86_64)
+extern const mspringi_kernels mspringi_kernels_sse2;
+extern const mspringi_kernels mspringi_kernels_avx2;
+extern const mspringi_kernels mspringi_kernels_avx512;
+#endif
+
+/// The table of a level; of the next lower one that was built if it is not there.
+const mspringi_kernels *mspringi_kernels_of(mspring_simd level);
+
+#endif

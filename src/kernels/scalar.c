@@ -1,0 +1,121 @@
+/// The definition of a sweep: plain C, one slot at a time. What the other kernels compute, they compute in this
+/// order.
+#include "kernels.h"
+
+#include <math.h>
+
+typedef struct vector {
+    float x, y;
+} vector;
+
+// The force of one spring on its base, towards its tip; the force on the tip is the opposite. record is the slot's
+// first value in a spring record.
+static inline vector spring_force(const mspringi_sweep *s, size_t base, size_t tip, const float *record, bool damped)
+{
+    const float dx = s->x[tip] - s->x[base], dy = s->y[tip] - s->y[base];
+    const float length = sqrtf(dx * dx + dy * dy);
+    const float inverse = length > 0.0f ? 1.0f / length : 0.0f; // a spring of length 0 has no direction
+    float force = (length - record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH]) * record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH];
+    if (damped) {
+        const float dvx = s->vx[tip] - s->vx[base], dvy = s->vy[tip] - s->vy[base];
+        const float rate = (dvx * dx + dvy * dy) * inverse; // of lengthening, m/s
+        force = force + rate * record[MSPRINGI_DAMPING * MSPRINGI_WIDTH];
+    }
+    force = force * inverse;
+    return (vector){force * dx, force * dy};
+}
+
+// Symplectic Euler. A pinned particle keeps its velocity.
+static inline void move(const mspringi_sweep *s, size_t slot, vector force, bool forced)
+{
+    if (forced) {
+        force.x = force.x + s->force_x[slot];
+        force.y = force.y + s->force_y[slot];
+    }
+    const float inverse_mass = s->inverse_mass[slot];
+    if (inverse_mass > 0.0f) {
+        const float inverse_mass_h = inverse_mass * s->h;
+        s->vx[slot] = (s->vx[slot] + (force.x * inverse_mass_h + s->gravity_h_x)) * s->decay;
+        s->vy[slot] = (s->vy[slot] + (force.y * inverse_mass_h + s->gravity_h_y)) * s->decay;
+    }
+    s->x[slot] = s->x[slot] + s->vx[slot] * s->h;
+    s->y[slot] = s->y[slot] + s->vy[slot] * s->h;
+}
+
+static inline void lattice(const mspringi_sweep *s, const mspringi_span *span, mspringi_edge *edge, bool damped,
+                           bool forced)
+{
+    const size_t part = (size_t)s->parts * MSPRINGI_WIDTH; // values of one direction
+    const size_t last = MSPRINGI_WIDTH - 1;
+    vector left = {edge->right_x[last], edge->right_y[last]};
+    vector below_left = {edge->diagonal_x[last], edge->diagonal_y[last]};
+    for (size_t block = 0; block < span->block_count; ++block) {
+        const float *record = s->lattice_springs + (span->record + block) * MSPRINGI_DIRECTIONS * part;
+        for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane, ++record) {
+            const size_t slot = (span->first_block + block) * MSPRINGI_WIDTH + lane;
+            const size_t up = (span->up_block + block) * MSPRINGI_WIDTH + lane;
+            const size_t in = (span->carry_in + block) * MSPRINGI_WIDTH + lane;
+            const size_t out = (span->carry_out + block) * MSPRINGI_WIDTH + lane;
+            const vector east = spring_force(s, slot, slot + 1, record + MSPRINGI_EAST * part, damped);
+            const vector north = spring_force(s, slot, up, record + MSPRINGI_NORTH * part, damped);
+            const vector north_east = spring_force(s, slot, up + 1, record + MSPRINGI_NORTH_EAST * part, damped);
+            const vector south_east = spring_force(s, up, slot + 1, record + MSPRINGI_SOUTH_EAST * part, damped);
+
+            const vector force = {(s->carry_x[in] + ((east.x + north.x) + north_east.x)) - left.x,
+                                  (s->carry_y[in] + ((east.y + north.y) + north_east.y)) - left.y};
+            s->carry_x[out] = (south_east.x - north.x) - below_left.x;
+            s->carry_y[out] = (south_east.y - north.y) - below_left.y;
+            left = (vector){east.x + south_east.x, east.y + south_east.y};
+            below_left = north_east;
+            move(s, slot, force, forced);
+        }
+    }
+    edge->right_x[last] = left.x;
+    edge->right_y[last] = left.y;
+    edge->diagonal_x[last] = below_left.x;
+    edge->diagonal_y[last] = below_left.y;
+}
+
+// East springs only.
+static inline void chain(const mspringi_sweep *s, const mspringi_span *span, mspringi_edge *edge, bool damped,
+                         bool forced)
+{
+    const size_t last = MSPRINGI_WIDTH - 1;
+    const size_t stride = (size_t)s->parts * span->record_slots;
+    const float *records =
+        (span->record_slots == MSPRINGI_WIDTH ? s->chain_springs : s->lattice_springs) + span->record * stride;
+    vector left = {edge->right_x[last], edge->right_y[last]};
+    for (size_t block = 0; block < span->block_count; ++block) {
+        for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
+            const size_t slot = (span->first_block + block) * MSPRINGI_WIDTH + lane;
+            const size_t in = (span->carry_in + block) * MSPRINGI_WIDTH + lane;
+            const vector east = spring_force(s, slot, slot + 1, records + block * stride + lane, damped);
+            const vector force = {(s->carry_x[in] + east.x) - left.x, (s->carry_y[in] + east.y) - left.y};
+            left = east;
+            move(s, slot, force, forced);
+        }
+    }
+    edge->right_x[last] = left.x;
+    edge->right_y[last] = left.y;
+    edge->diagonal_x[last] = 0.0f;
+    edge->diagonal_y[last] = 0.0f;
+}
+
+static inline void loose(const mspringi_sweep *s, const mspringi_span *span, bool forced)
+{
+    const size_t first = (size_t)span->first_block * MSPRINGI_WIDTH;
+    for (size_t slot = first; slot < first + (size_t)span->block_count * MSPRINGI_WIDTH; ++slot)
+        move(s, slot, (vector){0.0f, 0.0f}, forced);
+}
+
+static bool bounded(const float *values, size_t count, float limit)
+{
+    bool all = true;
+    for (size_t i = 0; i < count; ++i)
+        all = all & (fabsf(values[i]) <= limit);
+    return all;
+}
+
+#define MSPRINGI_TABLE mspringi_kernels_scalar
+#define MSPRINGI_LEVEL MSPRING_SIMD_SCALAR
+#include "table.h"

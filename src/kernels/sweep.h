@@ -1,0 +1,181 @@
+/// @file sweep.h
+/// The sweeps of scalar.c, written for vectors of LANES slots. Each instruction set's file defines the type vec,
+/// LANES and the operations used below, as static functions of its own, and includes this.
+///
+/// Why this shape: a row of particles is done in one go - forces of its four springs per slot, then motion, in
+/// place - and all that lives on is one row of forces for the row above. Neighbours are read by loads at the slot
+/// and at the slot + 1, so there are no gathers; forces on the slot + 1 are handed on by a shift across
+/// registers.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_SWEEP_H
+#define MSPRINGI_SWEEP_H
+
+#if defined(_MSC_VER)
+#define MSPRINGI_INLINE static __forceinline
+#else
+#define MSPRINGI_INLINE static inline __attribute__((always_inline))
+#endif
+
+typedef struct vector {
+    vec x, y;
+} vector;
+
+/// Position and velocity of LANES particles.
+typedef struct motion {
+    vec x, y, vx, vy;
+} motion;
+
+MSPRINGI_INLINE motion load_motion(const mspringi_sweep *s, size_t slot, bool damped)
+{
+    motion m = {load(s->x + slot), load(s->y + slot), zero(), zero()};
+    if (damped) {
+        m.vx = load(s->vx + slot);
+        m.vy = load(s->vy + slot);
+    }
+    return m;
+}
+
+// The same from a slot that is no multiple of LANES.
+MSPRINGI_INLINE motion load_motion_unaligned(const mspringi_sweep *s, size_t slot, bool damped)
+{
+    motion m = {load_unaligned(s->x + slot), load_unaligned(s->y + slot), zero(), zero()};
+    if (damped) {
+        m.vx = load_unaligned(s->vx + slot);
+        m.vy = load_unaligned(s->vy + slot);
+    }
+    return m;
+}
+
+MSPRINGI_INLINE vector spring_force(motion base, motion tip, const float *record, bool damped)
+{
+    const vec dx = sub(tip.x, base.x), dy = sub(tip.y, base.y);
+    const vec length = square_root(add(mul(dx, dx), mul(dy, dy)));
+    const vec inverse = inverse_or_zero(length);
+    vec force = mul(sub(length, load(record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH)),
+                    load(record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH));
+    if (damped) {
+        const vec dvx = sub(tip.vx, base.vx), dvy = sub(tip.vy, base.vy);
+        const vec rate = mul(add(mul(dvx, dx), mul(dvy, dy)), inverse);
+        force = add(force, mul(rate, load(record + MSPRINGI_DAMPING * MSPRINGI_WIDTH)));
+    }
+    force = mul(force, inverse);
+    const vector result = {mul(force, dx), mul(force, dy)};
+    return result;
+}
+
+MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, vector force, bool forced)
+{
+    if (forced) {
+        force.x = add(force.x, load(s->force_x + slot));
+        force.y = add(force.y, load(s->force_y + slot));
+    }
+    const vec h = set(s->h), decay = set(s->decay);
+    const vec inverse_mass = load(s->inverse_mass + slot);
+    const vec inverse_mass_h = mul(inverse_mass, h);
+    vec vx = load(s->vx + slot), vy = load(s->vy + slot);
+    vx = choose_positive(inverse_mass,
+                         mul(add(vx, add(mul(force.x, inverse_mass_h), set(s->gravity_h_x))), decay), vx);
+    vy = choose_positive(inverse_mass,
+                         mul(add(vy, add(mul(force.y, inverse_mass_h), set(s->gravity_h_y))), decay), vy);
+    store(s->vx + slot, vx);
+    store(s->vy + slot, vy);
+    store(s->x + slot, add(load(s->x + slot), mul(vx, h)));
+    store(s->y + slot, add(load(s->y + slot), mul(vy, h)));
+}
+
+MSPRINGI_INLINE void lattice(const mspringi_sweep *s, const mspringi_span *span, mspringi_edge *edge, bool damped,
+                             bool forced)
+{
+    const size_t part = (size_t)(damped ? 3 : 2) * MSPRINGI_WIDTH; // values of one direction
+    const size_t last = MSPRINGI_WIDTH - LANES;
+    const float *record = s->lattice_springs + (size_t)span->record * MSPRINGI_DIRECTIONS * part;
+    const float *carry_in_x = s->carry_x + (size_t)span->carry_in * MSPRINGI_WIDTH;
+    const float *carry_in_y = s->carry_y + (size_t)span->carry_in * MSPRINGI_WIDTH;
+    float *carry_out_x = s->carry_x + (size_t)span->carry_out * MSPRINGI_WIDTH;
+    float *carry_out_y = s->carry_y + (size_t)span->carry_out * MSPRINGI_WIDTH;
+    size_t slot = (size_t)span->first_block * MSPRINGI_WIDTH, up = (size_t)span->up_block * MSPRINGI_WIDTH;
+    vector right_before = {load(edge->right_x + last), load(edge->right_y + last)};
+    vector diagonal_before = {load(edge->diagonal_x + last), load(edge->diagonal_y + last)};
+
+    for (uint32_t block = 0; block < span->block_count; ++block) {
+        for (size_t lane = 0; lane < MSPRINGI_WIDTH; lane += LANES) {
+            const motion here = load_motion(s, slot, damped);
+            const motion next = load_motion_unaligned(s, slot + 1, damped);
+            const motion above = load_motion(s, up, damped);
+            const motion above_next = load_motion_unaligned(s, up + 1, damped);
+            const vector east = spring_force(here, next, record + lane + MSPRINGI_EAST * part, damped);
+            const vector north = spring_force(here, above, record + lane + MSPRINGI_NORTH * part, damped);
+            const vector north_east =
+                spring_force(here, above_next, record + lane + MSPRINGI_NORTH_EAST * part, damped);
+            const vector south_east = spring_force(above, next, record + lane + MSPRINGI_SOUTH_EAST * part, damped);
+
+            const vector right = {add(east.x, south_east.x), add(east.y, south_east.y)};
+            const vector force = {
+                sub(add(load(carry_in_x), add(add(east.x, north.x), north_east.x)), shift_in(right_before.x, right.x)),
+                sub(add(load(carry_in_y), add(add(east.y, north.y), north_east.y)), shift_in(right_before.y, right.y))};
+            store(carry_out_x,
+                  sub(sub(south_east.x, north.x), shift_in(diagonal_before.x, north_east.x)));
+            store(carry_out_y,
+                  sub(sub(south_east.y, north.y), shift_in(diagonal_before.y, north_east.y)));
+            right_before = right;
+            diagonal_before = north_east;
+            move(s, slot, force, forced);
+
+            slot += LANES;
+            up += LANES;
+            carry_in_x += LANES;
+            carry_in_y += LANES;
+            carry_out_x += LANES;
+            carry_out_y += LANES;
+        }
+        record += MSPRINGI_DIRECTIONS * part;
+    }
+    store(edge->right_x + last, right_before.x);
+    store(edge->right_y + last, right_before.y);
+    store(edge->diagonal_x + last, diagonal_before.x);
+    store(edge->diagonal_y + last, diagonal_before.y);
+}
+
+MSPRINGI_INLINE void chain(const mspringi_sweep *s, const mspringi_span *span, mspringi_edge *edge, bool damped,
+                           bool forced)
+{
+    const size_t last = MSPRINGI_WIDTH - LANES;
+    const size_t stride = (size_t)(damped ? 3 : 2) * span->record_slots;
+    const float *record =
+        (span->record_slots == MSPRINGI_WIDTH ? s->chain_springs : s->lattice_springs) + span->record * stride;
+    const float *carry_x = s->carry_x + (size_t)span->carry_in * MSPRINGI_WIDTH;
+    const float *carry_y = s->carry_y + (size_t)span->carry_in * MSPRINGI_WIDTH;
+    size_t slot = (size_t)span->first_block * MSPRINGI_WIDTH;
+    vector before = {load(edge->right_x + last), load(edge->right_y + last)};
+
+    for (uint32_t block = 0; block < span->block_count; ++block) {
+        for (size_t lane = 0; lane < MSPRINGI_WIDTH; lane += LANES) {
+            const vector east = spring_force(load_motion(s, slot, damped), load_motion_unaligned(s, slot + 1, damped),
+                                             record + lane, damped);
+            const vector force = {sub(add(load(carry_x), east.x), shift_in(before.x, east.x)),
+                                  sub(add(load(carry_y), east.y), shift_in(before.y, east.y))};
+            before = east;
+            move(s, slot, force, forced);
+
+            slot += LANES;
+            carry_x += LANES;
+            carry_y += LANES;
+        }
+        record += stride;
+    }
+    store(edge->right_x + last, before.x);
+    store(edge->right_y + last, before.y);
+    store(edge->diagonal_x + last, zero());
+    store(edge->diagonal_y + last, zero());
+}
+
+MSPRINGI_INLINE void loose(const mspringi_sweep *s, const mspringi_span *span, bool forced)
+{
+    const size_t first = (size_t)span->first_block * MSPRINGI_WIDTH;
+    const vector none = {zero(), zero()};
+    for (size_t slot = first; slot < first + (size_t)span->block_count * MSPRINGI_WIDTH; slot += LANES)
+        move(s, slot, none, forced);
+}
+
+#endif

@@ -1,0 +1,176 @@
+/// Measurements of the state, summed in double precision in id order.
+#include <math.h>
+#include <string.h>
+
+#include "network.h"
+
+static bool is_pinned(const mspring_network *network, mspring_id particle)
+{
+    return network->inverse_mass[network->topology.slot_of_particle[particle]] == 0.0f;
+}
+
+// Length of a spring, and how fast it grows.
+static double spring_length(const mspring_network *network, const mspringi_spring_record *r, double *rate)
+{
+    const mspringi_state *s = &network->state;
+    const double dx = (double)s->x[r->tip] - (double)s->x[r->base];
+    const double dy = (double)s->y[r->tip] - (double)s->y[r->base];
+    const double dvx = (double)s->vx[r->tip] - (double)s->vx[r->base];
+    const double dvy = (double)s->vy[r->tip] - (double)s->vy[r->base];
+    const double length = sqrt(dx * dx + dy * dy);
+    *rate = length > 0.0 ? (dvx * dx + dvy * dy) / length : 0.0;
+    return length;
+}
+
+static float spring_strain(const mspring_network *network, mspring_id spring)
+{
+    const mspringi_spring_record r = mspringi_spring_at(network, spring);
+    const double rest_length = (double)*r.rest_length;
+    double rate;
+    return (float)((spring_length(network, &r, &rate) - rest_length) / rest_length);
+}
+
+mspring_result mspring_network_energy(const mspring_network *network, double *kinetic, double *elastic,
+                                      double *potential)
+{
+    if (!network)
+        return MSPRING_ERROR_ARGUMENT;
+    const mspringi_topology *t = &network->topology;
+    const mspringi_state *s = &network->state;
+    double kinetic_sum = 0.0, potential_sum = 0.0, elastic_sum = 0.0;
+    for (mspring_id p = 0; p < t->particle_count; ++p) {
+        const uint32_t slot = t->slot_of_particle[p];
+        if (is_pinned(network, p))
+            continue;
+        const double mass = (double)network->mass[p], vx = (double)s->vx[slot], vy = (double)s->vy[slot];
+        const double x = network->origin_x + (double)s->x[slot], y = network->origin_y + (double)s->y[slot];
+        kinetic_sum += 0.5 * mass * (vx * vx + vy * vy);
+        potential_sum -= mass * ((double)network->gravity_x * x + (double)network->gravity_y * y);
+    }
+    for (mspring_id i = 0; elastic && i < t->spring_count; ++i) {
+        const mspringi_spring_record r = mspringi_spring_at(network, i);
+        double rate;
+        const double stretch = spring_length(network, &r, &rate) - (double)*r.rest_length;
+        elastic_sum += 0.5 * (double)*r.stiffness * stretch * stretch;
+    }
+    if (kinetic)
+        *kinetic = kinetic_sum;
+    if (elastic)
+        *elastic = elastic_sum;
+    if (potential)
+        *potential = potential_sum;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_momentum(const mspring_network *network, double *px, double *py, double *angular)
+{
+    if (!network)
+        return MSPRING_ERROR_ARGUMENT;
+    const mspringi_topology *t = &network->topology;
+    const mspringi_state *s = &network->state;
+    double sum_x = 0.0, sum_y = 0.0, sum_angular = 0.0;
+    for (mspring_id p = 0; p < t->particle_count; ++p) {
+        const uint32_t slot = t->slot_of_particle[p];
+        if (is_pinned(network, p))
+            continue;
+        const double mass = (double)network->mass[p];
+        const double x = network->origin_x + (double)s->x[slot], y = network->origin_y + (double)s->y[slot];
+        const double momentum_x = mass * (double)s->vx[slot], momentum_y = mass * (double)s->vy[slot];
+        sum_x += momentum_x;
+        sum_y += momentum_y;
+        sum_angular += x * momentum_y - y * momentum_x;
+    }
+    if (px)
+        *px = sum_x;
+    if (py)
+        *py = sum_y;
+    if (angular)
+        *angular = sum_angular;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_bounds(const mspring_network *network, double *min_x, double *min_y, double *max_x,
+                                      double *max_y)
+{
+    if (!network || !min_x || !min_y || !max_x || !max_y)
+        return MSPRING_ERROR_ARGUMENT;
+    const mspringi_topology *t = &network->topology;
+    const mspringi_state *s = &network->state;
+    float low_x = INFINITY, low_y = INFINITY, high_x = -INFINITY, high_y = -INFINITY;
+    for (mspring_id p = 0; p < t->particle_count; ++p) {
+        const uint32_t slot = t->slot_of_particle[p];
+        low_x = fminf(low_x, s->x[slot]);
+        low_y = fminf(low_y, s->y[slot]);
+        high_x = fmaxf(high_x, s->x[slot]);
+        high_y = fmaxf(high_y, s->y[slot]);
+    }
+    *min_x = network->origin_x + (double)low_x;
+    *min_y = network->origin_y + (double)low_y;
+    *max_x = network->origin_x + (double)high_x;
+    *max_y = network->origin_y + (double)high_y;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_get_spring(const mspring_network *network, mspring_id spring,
+                                          mspring_spring_info *info)
+{
+    if (!network || !info)
+        return MSPRING_ERROR_ARGUMENT;
+    if (info->struct_size != sizeof *info)
+        return MSPRING_ERROR_STRUCT;
+    const mspringi_topology *t = &network->topology;
+    if (spring >= t->spring_count)
+        return MSPRING_ERROR_ID;
+    const mspringi_spring_record r = mspringi_spring_at(network, spring);
+    const mspring_id a = t->particle_of_slot[r.base], b = t->particle_of_slot[r.tip];
+    double rate;
+    const double length = spring_length(network, &r, &rate), rest_length = (double)*r.rest_length;
+    const double stiffness = (double)*r.stiffness, damping = r.damping ? (double)*r.damping : 0.0;
+    const double force = length > 0.0 ? (length - rest_length) * stiffness + rate * damping : 0.0;
+    *info = (mspring_spring_info){
+        .struct_size = sizeof *info,
+        .flags = network->relative && network->relative[spring].stiffness >= 0.0f ? MSPRING_SPRING_RELATIVE : 0,
+        .a = a < b ? a : b,
+        .b = a < b ? b : a,
+        .stiffness = *r.stiffness,
+        .damping = r.damping ? *r.damping : 0.0f,
+        .rest_length = *r.rest_length,
+        .length = (float)length,
+        .strain = (float)((length - rest_length) / rest_length),
+        .force = (float)force,
+    };
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_get_strains(const mspring_network *network, mspring_id first, uint32_t count,
+                                           float *strain)
+{
+    if (!network || (count > 0 && !strain))
+        return MSPRING_ERROR_ARGUMENT;
+    const uint32_t total = network->topology.spring_count;
+    if (first > total || count > total - first)
+        return MSPRING_ERROR_ID;
+    for (uint32_t i = 0; i < count; ++i)
+        strain[i] = spring_strain(network, first + i);
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_max_strain(const mspring_network *network, float *strain, mspring_id *spring)
+{
+    if (!network)
+        return MSPRING_ERROR_ARGUMENT;
+    float largest = 0.0f;
+    mspring_id where = MSPRING_NONE;
+    for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
+        const float size = fabsf(spring_strain(network, i));
+        if (where == MSPRING_NONE || size > largest) {
+            largest = size;
+            where = i;
+        }
+    }
+    if (strain)
+        *strain = largest;
+    if (spring)
+        *spring = where;
+    return MSPRING_OK;
+}

@@ -1,0 +1,50 @@
+#include "message.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+mspring_result mspringi_fail(mspringi_message *message, mspring_result result, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message->text, sizeof message->text, format, arguments);
+    va_end(arguments);
+    return result;
+}
+
+mspring_result mspringi_check_struct(mspringi_message *message, const char *name, size_t given, size_t first,
+                                     size_t current)
+{
+    if (given >= first && given <= current)
+        return MSPRING_OK;
+    return mspringi_fail(message, MSPRING_ERROR_STRUCT,
+                         "%s.struct_size is %zu, this library knows %zu to %zu: fill the struct with its init "
+                         "function",
+                         name, given, first, current);
+}
+
+const char *mspring_result_string(mspring_result result)
+{
+    switch (result) {
+    case MSPRING_OK:
+        return "success";
+    case MSPRING_ERROR_ARGUMENT:
+        return "invalid argument";
+    case MSPRING_ERROR_ID:
+        return "no such particle, spring or hook";
+    case MSPRING_ERROR_MEMORY:
+        return "out of memory";
+    case MSPRING_ERROR_LIMIT:
+        return "too many particles, springs or cells";
+    case MSPRING_ERROR_STRUCT:
+        return "unknown struct size";
+    case MSPRING_ERROR_DUPLICATE:
+        return "two springs join the same particles";
+    case MSPRING_ERROR_UNSTABLE:
+        return "the step is unstable";
+    case MSPRING_ERROR_BUSY:
+        return "not allowed inside a hook";
+    default:
+        return "unknown result code";
+    }
+}

@@ -1,0 +1,28 @@
+/// @file message.h
+/// The error message that every object holds.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_MESSAGE_H
+#define MSPRINGI_MESSAGE_H
+
+#include <massspring/massspring.h>
+
+typedef struct mspringi_message {
+    char text[256];
+} mspringi_message;
+
+#if defined(__GNUC__)
+#define MSPRINGI_PRINTF(format_index, first_index) __attribute__((format(printf, format_index, first_index)))
+#else
+#define MSPRINGI_PRINTF(format_index, first_index)
+#endif
+
+/// Write the message, cut to fit, and return result.
+mspring_result mspringi_fail(mspringi_message *message, mspring_result result, const char *format, ...)
+    MSPRINGI_PRINTF(3, 4);
+
+/// Check a public struct's size against those of its first and of this version.
+mspring_result mspringi_check_struct(mspringi_message *message, const char *name, size_t given, size_t first,
+                                     size_t current);
+
+#endif

@@ -1,0 +1,389 @@
+/// Making, describing and destroying a network.
+#include "network.h"
+
+#include <string.h>
+
+#include "cpu.h"
+
+/* --------------------------------------------------------------------------------------------------- checks */
+
+mspring_result mspringi_enter(mspring_network *network)
+{
+    if (!network)
+        return MSPRING_ERROR_ARGUMENT;
+    if (network->in_hook)
+        return mspringi_fail(&network->message, MSPRING_ERROR_BUSY,
+                             "called from inside a hook, where only functions marked as shared are allowed");
+    return MSPRING_OK;
+}
+
+mspring_result mspringi_check_range(mspring_network *network, const char *what, mspring_id first, uint32_t count,
+                                    uint32_t total)
+{
+    if (first <= total && count <= total - first)
+        return MSPRING_OK;
+    return mspringi_fail(&network->message, MSPRING_ERROR_ID, "%u %ss from %u on, but there are only %u",
+                         (unsigned)count, what, (unsigned)first, (unsigned)total);
+}
+
+static mspring_result check_def(const mspring_network_def *def, mspringi_message *message)
+{
+    mspring_result result =
+        mspringi_check_struct(message, "mspring_network_def", def->struct_size, sizeof *def, sizeof *def);
+    if (result != MSPRING_OK)
+        return result;
+    if (def->simd_level < MSPRING_SIMD_AUTO || def->simd_level > MSPRING_SIMD_AVX512)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "simd_level is %d, which is no level",
+                             (int)def->simd_level);
+    if (!(def->max_speed > 0.0f && def->max_speed <= 1e15f))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "max_speed is %g m/s, it must be > 0 and at most 1e15",
+                             (double)def->max_speed);
+    return MSPRING_OK;
+}
+
+/* --------------------------------------------------------------------------------------------- spring records */
+
+mspringi_spring_record mspringi_spring_at(const mspring_network *network, mspring_id spring)
+{
+    const mspringi_topology *t = &network->topology;
+    const mspringi_place place = t->place_of_spring[spring];
+    mspringi_spring_record r;
+    mspringi_topology_ends(t, place, &r.base, &r.tip);
+    if (place >= t->chain_places) {
+        mspringi_leftover *leftover = &network->leftovers[place - t->chain_places];
+        r.rest_length = &leftover->rest_length;
+        r.stiffness = &leftover->stiffness;
+        r.damping = network->parts > MSPRINGI_DAMPING ? &leftover->damping : NULL;
+        return r;
+    }
+    const bool in_chain = place >= t->lattice_places;
+    const size_t index = in_chain ? place - t->lattice_places : place;
+    float *record = (in_chain ? network->chain_springs : network->lattice_springs) +
+                    index / MSPRINGI_WIDTH * MSPRINGI_WIDTH * network->parts + index % MSPRINGI_WIDTH;
+    r.rest_length = record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH;
+    r.stiffness = record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH;
+    r.damping = network->parts > MSPRINGI_DAMPING ? record + MSPRINGI_DAMPING * MSPRINGI_WIDTH : NULL;
+    return r;
+}
+
+void mspringi_derive_relative(mspring_network *network, float h)
+{
+    if (!network->relative || network->relative_h == h)
+        return;
+    const mspringi_topology *t = &network->topology;
+    for (mspring_id s = 0; s < t->spring_count; ++s) {
+        const mspringi_relative *relative = &network->relative[s];
+        if (relative->stiffness < 0.0f)
+            continue;
+        const mspringi_spring_record r = mspringi_spring_at(network, s);
+        const double ma = (double)network->mass[t->particle_of_slot[r.base]];
+        const double mb = (double)network->mass[t->particle_of_slot[r.tip]];
+        const double reduced_mass = 1.0 / (1.0 / ma + 1.0 / mb);
+        *r.stiffness = (float)((double)relative->stiffness * reduced_mass / ((double)h * (double)h));
+        if (r.damping)
+            *r.damping = (float)((double)relative->damping * reduced_mass / (double)h);
+    }
+    network->relative_h = h;
+}
+
+/* ---------------------------------------------------------------------------------------------------- filling */
+
+mspring_result mspringi_field_reserve(mspring_network *network, mspringi_field *field)
+{
+    if (field->x)
+        return MSPRING_OK;
+    const size_t slots = mspringi_slot_count(network);
+    float *values = mspringi_alloc(&network->memory, 2 * slots, sizeof *values);
+    if (!values)
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for the forces on %zu slots",
+                             slots);
+    *field = (mspringi_field){values, values + slots};
+    return MSPRING_OK;
+}
+
+static bool reserve_state(mspring_network *network, mspringi_state *state)
+{
+    const size_t slots = mspringi_slot_count(network);
+    float *values = mspringi_alloc(&network->memory, 4 * slots, sizeof *values);
+    if (values)
+        *state = (mspringi_state){values, values + slots, values + 2 * slots, values + 3 * slots};
+    return values != NULL;
+}
+
+// What the springs have in common decides what a network has to hold for them.
+static void look_at_springs(const mspring_builder *builder, bool *damped, bool *relative)
+{
+    *damped = *relative = false;
+    for (size_t s = 0; s < builder->spring_count; ++s) {
+        *damped = *damped || builder->springs[s].damping > 0.0f;
+        *relative = *relative || (builder->springs[s].flags & MSPRING_SPRING_RELATIVE);
+    }
+}
+
+static mspring_result allocate(mspring_network *network, bool relative)
+{
+    const mspringi_topology *t = &network->topology;
+    mspringi_memory *memory = &network->memory;
+    const size_t parts = network->parts;
+    network->inverse_mass = mspringi_alloc(memory, mspringi_slot_count(network), sizeof *network->inverse_mass);
+    network->mass = mspringi_alloc(memory, t->particle_count, sizeof *network->mass);
+    network->lattice_springs = mspringi_alloc(memory, parts * t->lattice_places, sizeof *network->lattice_springs);
+    network->chain_springs =
+        mspringi_alloc(memory, parts * (t->chain_places - t->lattice_places), sizeof *network->chain_springs);
+    network->leftovers = mspringi_alloc(memory, t->leftover_count, sizeof *network->leftovers);
+    network->carry = mspringi_alloc(memory, (size_t)2 * t->carry_blocks * MSPRINGI_WIDTH, sizeof *network->carry);
+    network->leftover_slots =
+        mspringi_alloc(memory, (size_t)2 * t->leftover_count, sizeof *network->leftover_slots);
+    if (relative)
+        network->relative = mspringi_alloc(memory, t->spring_count, sizeof *network->relative);
+    if (!reserve_state(network, &network->state) || !reserve_state(network, &network->backup) ||
+        !network->inverse_mass || !network->mass || !network->lattice_springs || !network->chain_springs ||
+        !network->leftovers || !network->carry || !network->leftover_slots || (relative && !network->relative))
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                             "no memory for a network of %u particles and %u springs", (unsigned)t->particle_count,
+                             (unsigned)t->spring_count);
+    return t->leftover_count > 0 ? mspringi_field_reserve(network, &network->forces.total) : MSPRING_OK;
+}
+
+static void fill_particles(mspring_network *network, const mspring_builder *builder)
+{
+    const mspringi_topology *t = &network->topology;
+    mspringi_box box = mspringi_box_empty();
+    for (uint32_t p = 0; p < t->particle_count; ++p)
+        mspringi_box_include(&box, builder->particles[p].x, builder->particles[p].y);
+    mspringi_origin_choose(network, &box);
+    for (uint32_t p = 0; p < t->particle_count; ++p) {
+        const mspringi_particle *particle = &builder->particles[p];
+        const uint32_t slot = t->slot_of_particle[p];
+        network->mass[p] = particle->mass;
+        network->inverse_mass[slot] = particle->flags & MSPRING_PARTICLE_PINNED ? 0.0f : 1.0f / particle->mass;
+        network->state.vx[slot] = particle->vx;
+        network->state.vy[slot] = particle->vy;
+        mspringi_set_position(network, p, particle->x, particle->y);
+    }
+}
+
+static void fill_springs(mspring_network *network, const mspring_builder *builder)
+{
+    const mspringi_topology *t = &network->topology;
+    for (mspring_id s = 0; s < t->spring_count; ++s) {
+        const mspringi_spring *spring = &builder->springs[s];
+        const mspringi_spring_record r = mspringi_spring_at(network, s);
+        const bool relative = spring->flags & MSPRING_SPRING_RELATIVE;
+        *r.rest_length = spring->rest_length;
+        *r.stiffness = relative ? 0.0f : spring->stiffness;
+        if (r.damping)
+            *r.damping = relative ? 0.0f : spring->damping;
+        if (network->relative)
+            network->relative[s] = relative ? (mspringi_relative){spring->stiffness, spring->damping}
+                                            : (mspringi_relative){-1.0f, 0.0f};
+    }
+    // Slots that leftover springs pull at, each once: the total field serves as the mark.
+    float *mark = network->forces.total.x;
+    for (uint32_t i = 0; i < t->leftover_count; ++i) {
+        const uint32_t ends[] = {t->leftover_a[i], t->leftover_b[i]};
+        for (int end = 0; end < 2; ++end) {
+            if (mark[ends[end]] == 0.0f)
+                network->leftover_slots[network->leftover_slot_count++] = ends[end];
+            mark[ends[end]] = 1.0f;
+        }
+    }
+    for (uint32_t i = 0; i < network->leftover_slot_count; ++i)
+        mark[network->leftover_slots[i]] = 0.0f;
+}
+
+/* -------------------------------------------------------------------------------------------------- lifecycle */
+
+// Fill a network that knows its memory and nothing else. Its message tells what failed.
+static mspring_result fill(mspring_network *network, const mspring_builder *builder,
+                           const mspring_network_def *def)
+{
+    bool damped, relative;
+    mspring_result result =
+        mspringi_topology_create(&network->topology, builder, &network->memory, &network->message);
+    if (result != MSPRING_OK)
+        return result;
+    look_at_springs(builder, &damped, &relative);
+    network->parts = damped ? MSPRINGI_DAMPING + 1 : MSPRINGI_STIFFNESS + 1;
+    result = allocate(network, relative);
+    if (result != MSPRING_OK)
+        return result;
+    network->kernels = mspringi_kernels_of(mspringi_cpu_choose(def->simd_level));
+    network->max_speed = def->max_speed;
+    result = mspring_network_set_gravity(network, def->gravity_x, def->gravity_y);
+    if (result == MSPRING_OK)
+        result = mspring_network_set_global_damping(network, def->global_damping);
+    if (result == MSPRING_OK) {
+        const mspring_solver_def solver = {
+            .struct_size = sizeof solver, .solver = def->solver, .substeps = def->substeps};
+        result = mspring_network_set_solver(network, &solver);
+    }
+    if (result == MSPRING_OK) {
+        fill_particles(network, builder);
+        fill_springs(network, builder);
+    }
+    return result;
+}
+
+mspring_result mspring_network_create(mspring_builder *builder, const mspring_network_def *def,
+                                      mspring_network **network)
+{
+    mspring_network_def defaults;
+    mspringi_memory memory;
+    if (!builder)
+        return MSPRING_ERROR_ARGUMENT;
+    mspringi_message *message = &builder->message;
+    if (!network)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the place for the network is NULL");
+    if (!def) {
+        (void)mspring_network_def_init(&defaults, sizeof defaults);
+        def = &defaults;
+    }
+    mspring_result result = check_def(def, message);
+    if (result != MSPRING_OK)
+        return result;
+    if (builder->particle_count == 0)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the builder has no particle");
+    result = mspringi_memory_init(&memory, def->allocator, message);
+    if (result != MSPRING_OK)
+        return result;
+    mspring_network *created = mspringi_alloc(&memory, 1, sizeof *created);
+    if (!created)
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for a network");
+    created->memory = memory;
+    result = fill(created, builder, def);
+    if (result != MSPRING_OK) {
+        *message = created->message;
+        mspring_network_destroy(created);
+        return result;
+    }
+    *network = created;
+    return MSPRING_OK;
+}
+
+void mspring_network_destroy(mspring_network *network)
+{
+    if (!network)
+        return;
+    mspringi_memory memory = network->memory;
+    mspringi_topology_destroy(&network->topology, &memory);
+    mspringi_free(&memory, network->state.x);
+    mspringi_free(&memory, network->backup.x);
+    mspringi_free(&memory, network->inverse_mass);
+    mspringi_free(&memory, network->mass);
+    mspringi_free(&memory, network->lattice_springs);
+    mspringi_free(&memory, network->chain_springs);
+    mspringi_free(&memory, network->leftovers);
+    mspringi_free(&memory, network->carry);
+    mspringi_free(&memory, network->leftover_slots);
+    mspringi_free(&memory, network->relative);
+    mspringi_free(&memory, network->forces.held.x);
+    mspringi_free(&memory, network->forces.base.x);
+    mspringi_free(&memory, network->forces.total.x);
+    mspringi_free(&memory, network->hooks);
+    mspringi_free(&memory, network);
+}
+
+/* --------------------------------------------------------------------------------------------------- settings */
+
+mspring_result mspring_network_set_solver(mspring_network *network, const mspring_solver_def *def)
+{
+    mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK)
+        return result;
+    mspringi_message *message = &network->message;
+    if (!def)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "solver definition is NULL");
+    result = mspringi_check_struct(message, "mspring_solver_def", def->struct_size, sizeof *def, sizeof *def);
+    if (result != MSPRING_OK)
+        return result;
+    if (def->solver != MSPRING_SOLVER_EXPLICIT)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "solver is %d, which is none", (int)def->solver);
+    if (def->substeps < 1 || def->substeps > 1000000)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "substeps is %u, it must be 1 to 1000000",
+                             (unsigned)def->substeps);
+    network->substeps = def->substeps;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_set_gravity(mspring_network *network, float x, float y)
+{
+    mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK)
+        return result;
+    if (!(x - x == 0.0f && y - y == 0.0f))
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "gravity (%g, %g) m/s^2 is not finite",
+                             (double)x, (double)y);
+    network->gravity_x = x;
+    network->gravity_y = y;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_set_global_damping(mspring_network *network, float rate)
+{
+    mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK)
+        return result;
+    if (!(rate >= 0.0f && rate <= 1e6f))
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "global damping is %g 1/s, it must be 0 to 1e6", (double)rate);
+    network->global_damping = rate;
+    return MSPRING_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------ description */
+
+const char *mspring_network_error(const mspring_network *network)
+{
+    return network ? network->message.text : "";
+}
+
+uint32_t mspring_network_particle_count(const mspring_network *network)
+{
+    return network ? network->topology.particle_count : 0;
+}
+
+uint32_t mspring_network_spring_count(const mspring_network *network)
+{
+    return network ? network->topology.spring_count : 0;
+}
+
+mspring_simd mspring_network_simd_level(const mspring_network *network)
+{
+    return network ? network->kernels->level : MSPRING_SIMD_AUTO;
+}
+
+size_t mspring_network_memory_used(const mspring_network *network)
+{
+    return network ? network->memory.used : 0;
+}
+
+mspring_result mspring_network_plan(const mspring_network *network, mspring_plan *plan)
+{
+    if (!network || !plan)
+        return MSPRING_ERROR_ARGUMENT;
+    if (plan->struct_size != sizeof *plan)
+        return MSPRING_ERROR_STRUCT;
+    const mspringi_topology *t = &network->topology;
+    *plan = (mspring_plan){
+        .struct_size = sizeof *plan,
+        .particle_count = t->particle_count,
+        .spring_count = t->spring_count,
+        .lattice_count = t->lattice_count,
+        .lattice_particles = t->lattice_particles,
+        .lattice_springs = t->lattice_springs,
+        .lattice_rows = t->lattice_rows,
+        .lattice_blocks = t->lattice_blocks,
+        .chain_count = t->chain_count,
+        .chain_particles = t->chain_particles,
+        .chain_springs = t->chain_springs,
+        .loose_particles = t->particle_count - t->lattice_particles - t->chain_particles,
+        .leftover_springs = t->leftover_count,
+        .slot_count = (uint32_t)mspringi_slot_count(network),
+        .block_width = MSPRINGI_WIDTH,
+        .has_damping = network->parts > MSPRINGI_DAMPING,
+        .has_relative = network->relative != NULL,
+        .simd_level = network->kernels->level,
+    };
+    return MSPRING_OK;
+}

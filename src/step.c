@@ -1,0 +1,144 @@
+/// One step: substeps with the forces that act in them, and the way back if it goes wrong.
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "cpu.h"
+#include "network.h"
+
+static void copy_state(const mspring_network *network, const mspringi_state *from, const mspringi_state *to)
+{
+    memcpy(to->x, from->x, 4 * mspringi_slot_count(network) * sizeof *to->x);
+}
+
+static void copy_field(const mspring_network *network, mspringi_field from, mspringi_field to)
+{
+    memcpy(to.x, from.x, 2 * mspringi_slot_count(network) * sizeof *to.x);
+}
+
+static void clear_field(const mspring_network *network, mspringi_field field)
+{
+    memset(field.x, 0, 2 * mspringi_slot_count(network) * sizeof *field.x);
+}
+
+/* ----------------------------------------------------------------------------------------------- force fields */
+
+// The field that each substep starts from: what the host holds, with what the hooks before the step add. No field
+// at all if there is nothing in it.
+static mspringi_field prepare_base(mspring_network *network, double dt)
+{
+    mspringi_forces *forces = &network->forces;
+    const mspringi_field none = {NULL, NULL};
+    if (!mspringi_hooks_any(network, MSPRING_PHASE_BEFORE_STEP))
+        return forces->held_any ? forces->held : none;
+    if (forces->held_any)
+        copy_field(network, forces->held, forces->base);
+    else
+        clear_field(network, forces->base);
+    mspringi_hooks_call(network, MSPRING_PHASE_BEFORE_STEP, 0, dt, forces->base);
+    return forces->base;
+}
+
+// Set slots of the total field to what they are in base.
+static void reset_leftover_slots(mspring_network *network, mspringi_field base)
+{
+    const mspringi_field total = network->forces.total;
+    for (uint32_t i = 0; i < network->leftover_slot_count; ++i) {
+        const uint32_t slot = network->leftover_slots[i];
+        total.x[slot] = base.x ? base.x[slot] : 0.0f;
+        total.y[slot] = base.x ? base.y[slot] : 0.0f;
+    }
+}
+
+static void reset_total(mspring_network *network, mspringi_field base)
+{
+    if (base.x)
+        copy_field(network, base, network->forces.total);
+    else
+        clear_field(network, network->forces.total);
+}
+
+/* -------------------------------------------------------------------------------------------------- substeps */
+
+static void run_substeps(mspring_network *network, double dt, float h)
+{
+    const bool hooks_before = mspringi_hooks_any(network, MSPRING_PHASE_BEFORE_SUBSTEP);
+    const bool hooks_after = mspringi_hooks_any(network, MSPRING_PHASE_AFTER_SUBSTEP);
+    const bool leftovers = network->topology.leftover_count > 0;
+    const mspringi_field base = prepare_base(network, dt), none = {NULL, NULL};
+    const mspringi_field field = hooks_before || leftovers ? network->forces.total : base;
+
+    for (uint32_t substep = 0; substep < network->substeps; ++substep) {
+        if (hooks_before || (leftovers && substep == 0))
+            reset_total(network, base);
+        else if (leftovers)
+            reset_leftover_slots(network, base);
+        if (hooks_before)
+            mspringi_hooks_call(network, MSPRING_PHASE_BEFORE_SUBSTEP, substep, (double)h, field);
+        if (leftovers)
+            mspringi_leftovers_pull(network);
+        mspringi_explicit_substep(network, h, field);
+        if (hooks_after)
+            mspringi_hooks_call(network, MSPRING_PHASE_AFTER_SUBSTEP, substep, (double)h, none);
+    }
+}
+
+/* ----------------------------------------------------------------------------------------------------- the guard */
+
+static bool is_bounded(const mspring_network *network)
+{
+    const mspringi_state *s = &network->state;
+    const size_t slots = mspringi_slot_count(network);
+    const float largest = (float)MSPRING_MAX_COORDINATE;
+    return network->kernels->bounded(s->x, slots, largest) && network->kernels->bounded(s->y, slots, largest) &&
+           network->kernels->bounded(s->vx, slots, network->max_speed) &&
+           network->kernels->bounded(s->vy, slots, network->max_speed);
+}
+
+// Name the first particle that left the bounds.
+static mspring_result explain(mspring_network *network, double dt)
+{
+    const mspringi_state *s = &network->state;
+    const float largest = (float)MSPRING_MAX_COORDINATE, fastest = network->max_speed;
+    for (uint32_t p = 0; p < network->topology.particle_count; ++p) {
+        const uint32_t i = network->topology.slot_of_particle[p];
+        if (fabsf(s->x[i]) <= largest && fabsf(s->y[i]) <= largest && fabsf(s->vx[i]) <= fastest &&
+            fabsf(s->vy[i]) <= fastest)
+            continue;
+        return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
+                             "a step of %g s in %u substeps would throw particle %u to (%g, %g) m at (%g, %g) m/s: "
+                             "take a shorter step, more substeps or less stiffness",
+                             dt, (unsigned)network->substeps, (unsigned)p, (double)s->x[i], (double)s->y[i],
+                             (double)s->vx[i], (double)s->vy[i]);
+    }
+    return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
+                         "a hook has written a value out of bounds to a slot without particle");
+}
+
+mspring_result mspring_network_step(mspring_network *network, double dt)
+{
+    mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK)
+        return result;
+    const float h = (float)(dt / (double)network->substeps);
+    if (!(h >= FLT_MIN && h <= FLT_MAX))
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "dt is %g s in %u substeps: each must be a finite number of at least 1.2e-38 s", dt,
+                             (unsigned)network->substeps);
+
+    const mspringi_fp_state fp = mspringi_fp_enter();
+    mspringi_derive_relative(network, h);
+    copy_state(network, &network->state, &network->backup);
+    run_substeps(network, dt, h);
+    if (is_bounded(network)) {
+        mspringi_origin_follow(network);
+        if (network->forces.held_any)
+            clear_field(network, network->forces.held);
+        network->forces.held_any = false;
+    } else {
+        result = explain(network, dt);
+        copy_state(network, &network->backup, &network->state);
+    }
+    mspringi_fp_leave(fp);
+    return result;
+}

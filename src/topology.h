@@ -1,0 +1,91 @@
+/// @file topology.h
+/// From particles and springs to rows: which particles lie on grids, which on strands, and in which slot.
+///
+/// A slot is a place in the state arrays. Slots come in blocks of MSPRINGI_WIDTH, a block being that many columns
+/// of one row. There are three kinds of row:
+///
+///   lattice  one row of a grid; each block has a record of four springs per slot (see mspringi_direction)
+///   chain    strands packed end to end; a record of one spring per slot, to the next slot
+///   loose    everything else; no record
+///
+/// A spring that is none of those is left over and kept in a list of its own.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_TOPOLOGY_H
+#define MSPRINGI_TOPOLOGY_H
+
+#include "builder.h"
+
+/// Slots in a block: the lanes of the widest vector register, so that every instruction set sees whole blocks.
+#define MSPRINGI_WIDTH 16
+
+/// The springs of a lattice slot in column c of row r. East, north and north-east start at the slot; south-east
+/// starts one row up, at (c, r + 1), so that all of them reach one column to the right at most and every load is
+/// contiguous.
+typedef enum mspringi_direction {
+    MSPRINGI_EAST = 0,       ///< (c, r)     to (c + 1, r)
+    MSPRINGI_NORTH = 1,      ///< (c, r)     to (c, r + 1)
+    MSPRINGI_NORTH_EAST = 2, ///< (c, r)     to (c + 1, r + 1)
+    MSPRINGI_SOUTH_EAST = 3, ///< (c, r + 1) to (c + 1, r)
+    MSPRINGI_DIRECTIONS = 4
+} mspringi_direction;
+
+typedef enum mspringi_row_kind {
+    MSPRINGI_ROW_LATTICE, ///< all four springs
+    MSPRINGI_ROW_CHAIN,   ///< east springs only
+    MSPRINGI_ROW_LOOSE    ///< none
+} mspringi_row_kind;
+
+/// Consecutive blocks of one row that are swept in one go. All block numbers count from the first block of the
+/// state.
+typedef struct mspringi_span {
+    mspringi_row_kind kind;
+    uint32_t continues;    ///< 1: its first slot is the east neighbour of the last slot of the span before
+    uint32_t first_block, block_count;
+    uint32_t up_block;     ///< the block above first_block (lattice)
+    uint32_t carry_in;     ///< block of the carry row to take forces from (lattice, chain)
+    uint32_t carry_out;    ///< block of the carry row to leave forces for the row above in (lattice)
+    uint32_t record;       ///< number of first_block's record among the records
+    uint32_t record_slots; ///< springs per record: MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH or MSPRINGI_WIDTH
+} mspringi_span;
+
+/// Where a spring lies: below lattice_places a lattice record, (block * MSPRINGI_DIRECTIONS + direction) *
+/// MSPRINGI_WIDTH + lane; below chain_places a chain record, lattice_places + block * MSPRINGI_WIDTH + lane; above
+/// that, chain_places + number among the leftover springs. Block counts from the first of its kind.
+typedef uint32_t mspringi_place;
+
+typedef struct mspringi_topology {
+    uint32_t particle_count, spring_count;
+    uint32_t block_count;  ///< with one of padding in front and one behind, so that lane + 1 can always be read
+    uint32_t lattice_first, lattice_blocks; ///< blocks: first, number
+    uint32_t chain_first, chain_blocks;
+    uint32_t loose_first, loose_blocks;
+
+    uint32_t *slot_of_particle;   ///< [particle_count]
+    uint32_t *particle_of_slot;   ///< [block_count * MSPRINGI_WIDTH], MSPRING_NONE where there is none
+    mspringi_place *place_of_spring; ///< [spring_count]
+    uint32_t *up_of_block;        ///< [lattice_blocks] block above each lattice block; itself if there is none
+
+    mspringi_place lattice_places, chain_places;
+    uint32_t leftover_count;
+    uint32_t *leftover_a, *leftover_b; ///< [leftover_count] slots
+
+    mspringi_span *spans;
+    uint32_t span_count;
+    uint32_t carry_blocks; ///< blocks of the carry row; the first half stays zero
+
+    // For the plan.
+    uint32_t lattice_count, lattice_particles, lattice_springs, lattice_rows;
+    uint32_t chain_count, chain_particles, chain_springs;
+} mspringi_topology;
+
+/// Lay out what the builder holds.
+mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
+                                        mspringi_memory *memory, mspringi_message *message);
+void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *memory);
+
+/// The two slots that a spring joins; where the place has a direction, base and tip in its sense.
+void mspringi_topology_ends(const mspringi_topology *topology, mspringi_place place, uint32_t *base,
+                            uint32_t *tip);
+
+#endif
