@@ -100,7 +100,8 @@ static bool check_level(const bench_scene *subject, const bench_options *options
     return ok;
 }
 
-static bool visit(const bench_scene *subject, const bench_options *options) {
+static bool visit(const bench_scene *subject, const bench_options *options, void *user) {
+    (void)user;
     bench_options all = *options;
     all.all_levels = options->level == MSPRING_SIMD_AUTO;
     mspring_simd levels[4];
@@ -119,5 +120,5 @@ static bool visit(const bench_scene *subject, const bench_options *options) {
 bool bench_run_check(const bench_options *options) {
     bench_table_preamble(options->format);
     bench_table_head(options->format, columns, COLUMN_COUNT);
-    return bench_for_each_scene(options, bench_catalogue_checked(), visit);
+    return bench_for_each_scene(options, bench_catalogue_checked(), visit, NULL);
 }

@@ -142,7 +142,8 @@ static bool measure_variants(const bench_scene *subject, const bench_options *op
     return true;
 }
 
-static bool visit(const bench_scene *subject, const bench_options *options) {
+static bool visit(const bench_scene *subject, const bench_options *options, void *user) {
+    (void)user;
     mspring_simd levels[4];
     scene_error error;
     int count = bench_options_levels(options, levels, &error);
@@ -166,5 +167,5 @@ static bool visit(const bench_scene *subject, const bench_options *options) {
 bool bench_run_features(const bench_options *options) {
     bench_table_preamble(options->format);
     bench_table_head(options->format, columns, COLUMN_COUNT);
-    return bench_for_each_scene(options, default_scenes, visit);
+    return bench_for_each_scene(options, default_scenes, visit, NULL);
 }

@@ -10,7 +10,8 @@ void bench_complain(const char *about, const scene_error *error) {
     fprintf(stderr, "massspring-bench: %s: %s\n", about, error->text);
 }
 
-static bool make_and_visit(const char *name, bool is_file, const bench_options *options, bench_visit_fn visit) {
+static bool make_and_visit(const char *name, bool is_file, const bench_options *options, bench_visit_fn visit,
+                           void *user) {
     bench_scene subject;
     scene_error error;
     const bench_source source = {.name = name, .is_file = is_file};
@@ -18,19 +19,20 @@ static bool make_and_visit(const char *name, bool is_file, const bench_options *
         bench_complain(name, &error);
         return false;
     }
-    bool ok = visit(&subject, options);
+    bool ok = visit(&subject, options, user);
     bench_scene_free(&subject);
     return ok;
 }
 
-bool bench_for_each_scene(const bench_options *options, const char *const *otherwise, bench_visit_fn visit) {
+bool bench_for_each_scene(const bench_options *options, const char *const *otherwise, bench_visit_fn visit,
+                          void *user) {
     bool none_named = options->scene_count == 0 && options->network == NULL;
     bool ok = true;
     for (const char *const *name = none_named ? otherwise : options->scenes; *name != NULL; name++) {
-        ok = make_and_visit(*name, false, options, visit) && ok;
+        ok = make_and_visit(*name, false, options, visit, user) && ok;
     }
     if (options->network != NULL) {
-        ok = make_and_visit(options->network, true, options, visit) && ok;
+        ok = make_and_visit(options->network, true, options, visit, user) && ok;
     }
     return ok;
 }

@@ -30,11 +30,12 @@ bool bench_measure(const bench_scene *subject, const bench_options *options, msp
                    bench_measurement *out, scene_error *error);
 
 /// What is to be done with one scene. Prints its own messages.
-typedef bool (*bench_visit_fn)(const bench_scene *subject, const bench_options *options);
+typedef bool (*bench_visit_fn)(const bench_scene *subject, const bench_options *options, void *user);
 
 /// Go through the scenes of the command line (or, if it names none, those given), making one after the other.
 /// @return false if one could not be made or visit returned false for one; the others are visited all the same
-bool bench_for_each_scene(const bench_options *options, const char *const *otherwise, bench_visit_fn visit);
+bool bench_for_each_scene(const bench_options *options, const char *const *otherwise, bench_visit_fn visit,
+                          void *user);
 
 /// Print a message to stderr, after the program's name and what it is about.
 void bench_complain(const char *about, const scene_error *error);

@@ -22,7 +22,8 @@ static const bench_column columns[] = {
 
 #define COLUMN_COUNT ((int)(sizeof columns / sizeof *columns))
 
-static bool visit(const bench_scene *subject, const bench_options *options) {
+static bool visit(const bench_scene *subject, const bench_options *options, void *user) {
+    (void)user;
     mspring_simd levels[4];
     scene_error error;
     int count = bench_options_levels(options, levels, &error);
@@ -56,5 +57,5 @@ static bool visit(const bench_scene *subject, const bench_options *options) {
 bool bench_run_scenes(const bench_options *options) {
     bench_table_preamble(options->format);
     bench_table_head(options->format, columns, COLUMN_COUNT);
-    return bench_for_each_scene(options, bench_catalogue_quick(), visit);
+    return bench_for_each_scene(options, bench_catalogue_quick(), visit, NULL);
 }
