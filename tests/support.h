@@ -1,0 +1,82 @@
+/// @file support.h
+/// What the test programs share: checks that say what they saw, a random generator, short ways to make a network.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef TEST_SUPPORT_H
+#define TEST_SUPPORT_H
+
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <setjmp.h>
+
+#include <cmocka.h>
+#include <massspring/massspring.h>
+
+#define COUNT_OF(array) (sizeof(array) / sizeof((array)[0]))
+
+/* ------------------------------------------------------------------------------------------------- checks */
+
+/// The call succeeds.
+#define check_ok(call) support_check_result((call), MSPRING_OK, #call, __FILE__, __LINE__)
+
+/// The call fails with this code.
+#define check_error(call, code) support_check_result((call), (code), #call, __FILE__, __LINE__)
+
+/// A number lies within tolerance of what is expected. NaN never does.
+#define check_near(actual, expected, tolerance)                                                                   \
+    support_check_near((actual), (expected), (tolerance), #actual, __FILE__, __LINE__)
+
+/// A message contains this text.
+#define check_contains(text, part) support_check_contains((text), (part), __FILE__, __LINE__)
+
+void support_check_result(mspring_result actual, mspring_result expected, const char *call, const char *file,
+                          int line);
+void support_check_near(double actual, double expected, double tolerance, const char *what, const char *file,
+                        int line);
+void support_check_contains(const char *text, const char *part, const char *file, int line);
+
+/* ------------------------------------------------------------------------------------------------- random */
+
+/// The next 64 random bits of a seed (SplitMix64): the same on every machine.
+uint64_t support_random(uint64_t *seed);
+
+/// A random number, low <= number < high.
+double support_random_between(uint64_t *seed, double low, double high);
+
+/* --------------------------------------------------------------------------------------- making a network */
+
+mspring_builder *support_builder(void);
+
+/// Add a particle at rest.
+mspring_id support_particle(mspring_builder *builder, double x, double y, float mass);
+mspring_id support_pinned(mspring_builder *builder, double x, double y, float mass);
+
+/// Add a spring whose rest length is the distance of its ends.
+mspring_id support_spring(mspring_builder *builder, mspring_id a, mspring_id b, float stiffness, float damping);
+
+/// Defaults with this gravity along y and this number of substeps.
+mspring_network_def support_def(float gravity_y, uint32_t substeps);
+
+/// Make a network of a builder and destroy the builder.
+mspring_network *support_network(mspring_builder *builder, const mspring_network_def *def);
+
+/// Step count times by dt; every step succeeds.
+void support_steps(mspring_network *network, uint32_t count, double dt);
+
+/* -------------------------------------------------------------------------------------- reading a network */
+
+typedef struct support_point {
+    double x, y;
+} support_point;
+
+support_point support_position(const mspring_network *network, mspring_id particle);
+support_point support_velocity(const mspring_network *network, mspring_id particle);
+uint64_t support_hash(const mspring_network *network);
+
+/// Levels that this machine can run, worst (scalar) first.
+/// @return how many
+uint32_t support_levels(mspring_simd levels[MSPRING_SIMD_AVX512]);
+
+#endif

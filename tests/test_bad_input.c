@@ -1,0 +1,443 @@
+/// @file test_bad_input.c
+/// What a builder refuses: with which error, naming whom, and that nothing has changed afterwards.
+///
+/// SPDX-License-Identifier: MIT
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "support.h"
+
+/// The builder of every test: particles 0 to 9 on a line (9 in the place of 8), a spring 0 - 1.
+static int make_builder(void **state)
+{
+    mspring_builder *builder = support_builder();
+    for (int i = 0; i < 9; i++) {
+        support_particle(builder, i, 0, 1);
+    }
+    support_particle(builder, 8, 0, 1);
+    support_spring(builder, 0, 1, 1, 0);
+    *state = builder;
+    return 0;
+}
+
+/// Whatever was refused has left the ten particles and the spring as they were, and the builder works.
+static int check_builder(void **state)
+{
+    mspring_builder *builder = *state;
+    assert_int_equal(mspring_builder_particle_count(builder), 10);
+    assert_int_equal(mspring_builder_spring_count(builder), 1);
+    assert_int_equal(support_particle(builder, 20, 20, 1), 10);
+    assert_int_equal(support_spring(builder, 3, 10, 1, 0), 1);
+    mspring_network *network = support_network(builder, NULL);
+    assert_int_equal(mspring_network_particle_count(network), 11);
+    assert_int_equal(mspring_network_spring_count(network), 2);
+    mspring_network_destroy(network);
+    return 0;
+}
+
+/// A call is refused with this code; the message contains this text; the counts are as before.
+#define check_refused(builder, call, code, part)                                                                  \
+    do {                                                                                                          \
+        check_error((call), (code));                                                                              \
+        check_contains(mspring_builder_error(builder), (part));                                                   \
+        assert_int_equal(mspring_builder_particle_count(builder), 10);                                            \
+        assert_int_equal(mspring_builder_spring_count(builder), 1);                                               \
+    } while (0)
+
+static const float not_finite[] = {NAN, INFINITY, -INFINITY};
+
+static void create_needs_a_place_and_a_whole_allocator(void **state)
+{
+    (void)state;
+    mspring_builder *const untouched = (mspring_builder *)(uintptr_t)16;
+    mspring_builder *builder = untouched;
+    check_error(mspring_builder_create(NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    mspring_allocator allocator = {.struct_size = sizeof allocator};
+    check_error(mspring_builder_create(&allocator, &builder), MSPRING_ERROR_ARGUMENT);
+    allocator.struct_size = 0;
+    check_error(mspring_builder_create(&allocator, &builder), MSPRING_ERROR_STRUCT);
+    allocator.struct_size = sizeof allocator + 8;
+    check_error(mspring_builder_create(&allocator, &builder), MSPRING_ERROR_STRUCT);
+    assert_ptr_equal(builder, untouched);
+}
+
+/* --------------------------------------------------------------------------------------------- particles */
+
+typedef struct particle_case {
+    mspring_particle_def def;
+    mspring_result code;
+    const char *part; ///< of the message
+} particle_case;
+
+static particle_case *bad_particles(size_t *count)
+{
+    static particle_case cases[64];
+    size_t n = 0;
+    mspring_particle_def good;
+    check_ok(mspring_particle_def_init(&good, sizeof good));
+#define BAD(field, value, wrong, word)                                                                            \
+    do {                                                                                                          \
+        assert_true(n < COUNT_OF(cases));                                                                         \
+        cases[n] = (particle_case){.def = good, .code = (wrong), .part = (word)};                                 \
+        cases[n].def.field = (value);                                                                             \
+        n++;                                                                                                      \
+    } while (0)
+    for (size_t i = 0; i < COUNT_OF(not_finite); i++) {
+        BAD(x, (double)not_finite[i], MSPRING_ERROR_ARGUMENT, "position");
+        BAD(y, (double)not_finite[i], MSPRING_ERROR_ARGUMENT, "position");
+        BAD(vx, not_finite[i], MSPRING_ERROR_ARGUMENT, "velocity");
+        BAD(vy, not_finite[i], MSPRING_ERROR_ARGUMENT, "velocity");
+        BAD(mass, not_finite[i], MSPRING_ERROR_ARGUMENT, "mass");
+    }
+    BAD(x, 1.001e12, MSPRING_ERROR_ARGUMENT, "position");
+    BAD(y, -1.001e12, MSPRING_ERROR_ARGUMENT, "position");
+    BAD(mass, 0, MSPRING_ERROR_ARGUMENT, "mass");
+    BAD(mass, -1, MSPRING_ERROR_ARGUMENT, "mass");
+    BAD(mass, 0.9e-30f, MSPRING_ERROR_ARGUMENT, "mass");
+    BAD(mass, 1.1e30f, MSPRING_ERROR_ARGUMENT, "mass");
+    BAD(flags, MSPRING_PARTICLE_PINNED << 1, MSPRING_ERROR_ARGUMENT, "flags");
+    BAD(flags, 0x80000001u, MSPRING_ERROR_ARGUMENT, "flags");
+    BAD(struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_particle_def");
+    BAD(struct_size, sizeof good - 4, MSPRING_ERROR_STRUCT, "mspring_particle_def");
+    BAD(struct_size, sizeof good + 4, MSPRING_ERROR_STRUCT, "mspring_particle_def");
+#undef BAD
+    *count = n;
+    return cases;
+}
+
+static void bad_particle_is_refused(void **state)
+{
+    mspring_builder *builder = *state;
+    size_t count;
+    const particle_case *cases = bad_particles(&count);
+    for (size_t i = 0; i < count; i++) {
+        mspring_id id = 4711;
+        check_refused(builder, mspring_builder_add_particle(builder, &cases[i].def, &id), cases[i].code,
+                      cases[i].part);
+        assert_int_equal(id, 4711);
+    }
+    check_refused(builder, mspring_builder_add_particle(builder, NULL, NULL), MSPRING_ERROR_ARGUMENT, "NULL");
+    check_error(mspring_builder_add_particle(NULL, &cases[0].def, NULL), MSPRING_ERROR_ARGUMENT);
+}
+
+static void bulk_particles_are_all_or_nothing(void **state)
+{
+    mspring_builder *builder = *state;
+    size_t count;
+    const particle_case *cases = bad_particles(&count);
+    enum { MANY = 50, CULPRIT = 37 };
+    mspring_particle_def defs[MANY];
+    for (size_t i = 0; i < MANY; i++) {
+        check_ok(mspring_particle_def_init(&defs[i], sizeof defs[i]));
+    }
+    const mspring_particle_def good = defs[CULPRIT];
+    for (size_t i = 0; i < count; i++) {
+        mspring_id first = 4711;
+        defs[CULPRIT] = cases[i].def;
+        check_refused(builder, mspring_builder_add_particles(builder, defs, MANY, &first), cases[i].code, "37");
+        assert_int_equal(first, 4711);
+    }
+    defs[CULPRIT] = good;
+    check_refused(builder, mspring_builder_add_particles(builder, NULL, MANY, NULL), MSPRING_ERROR_ARGUMENT, "NULL");
+    check_error(mspring_builder_add_particles(NULL, defs, MANY, NULL), MSPRING_ERROR_ARGUMENT);
+    // Refused by the count alone: there is no such array.
+    check_refused(builder, mspring_builder_add_particles(builder, defs, SIZE_MAX, NULL), MSPRING_ERROR_LIMIT, "limit");
+    check_refused(builder, mspring_builder_add_particles(builder, defs, (size_t)MSPRING_MAX_PARTICLES - 9, NULL),
+                  MSPRING_ERROR_LIMIT, "limit");
+}
+
+static void particles_at_the_ends_of_the_ranges_are_accepted(void **state)
+{
+    (void)state;
+    mspring_builder *builder = support_builder();
+    mspring_particle_def def;
+    check_ok(mspring_particle_def_init(&def, sizeof def));
+    def.x = MSPRING_MAX_COORDINATE;
+    def.y = -MSPRING_MAX_COORDINATE;
+    def.mass = 1e-30f;
+    check_ok(mspring_builder_add_particle(builder, &def, NULL));
+    def.mass = 1e30f;
+    def.x = -MSPRING_MAX_COORDINATE;
+    check_ok(mspring_builder_add_particle(builder, &def, NULL));
+    mspring_network *network = support_network(builder, NULL);
+    mspring_network_destroy(network);
+}
+
+/* ----------------------------------------------------------------------------------------------- springs */
+
+typedef struct spring_case {
+    mspring_spring_def def;
+    mspring_result code;
+    const char *part;
+} spring_case;
+
+static spring_case *bad_springs(size_t *count)
+{
+    static spring_case cases[64];
+    size_t n = 0;
+    mspring_spring_def good;
+    check_ok(mspring_spring_def_init(&good, sizeof good));
+    good.a = 2;
+    good.b = 3;
+#define BAD(field, value, wrong, word)                                                                            \
+    do {                                                                                                          \
+        assert_true(n < COUNT_OF(cases));                                                                         \
+        cases[n] = (spring_case){.def = good, .code = (wrong), .part = (word)};                                   \
+        cases[n].def.field = (value);                                                                             \
+        n++;                                                                                                      \
+    } while (0)
+    for (size_t i = 0; i < COUNT_OF(not_finite); i++) {
+        BAD(stiffness, not_finite[i], MSPRING_ERROR_ARGUMENT, "stiffness");
+        BAD(damping, not_finite[i], MSPRING_ERROR_ARGUMENT, "damping");
+        BAD(rest_length, not_finite[i], MSPRING_ERROR_ARGUMENT, "rest length");
+    }
+    BAD(stiffness, -1, MSPRING_ERROR_ARGUMENT, "stiffness");
+    BAD(stiffness, 1.1e30f, MSPRING_ERROR_ARGUMENT, "stiffness");
+    BAD(damping, -FLT_MIN, MSPRING_ERROR_ARGUMENT, "damping");
+    BAD(damping, FLT_MAX, MSPRING_ERROR_ARGUMENT, "damping");
+    BAD(rest_length, 0, MSPRING_ERROR_ARGUMENT, "rest length");
+    BAD(rest_length, -0.5f, MSPRING_ERROR_ARGUMENT, "rest length");
+    BAD(rest_length, -2, MSPRING_ERROR_ARGUMENT, "rest length");
+    BAD(rest_length, 4.1e12f, MSPRING_ERROR_ARGUMENT, "rest length");
+    BAD(flags, MSPRING_SPRING_RELATIVE << 1, MSPRING_ERROR_ARGUMENT, "flags");
+    BAD(b, 2, MSPRING_ERROR_ARGUMENT, "particle 2");    // to itself
+    BAD(b, 10, MSPRING_ERROR_ID, "10");                 // to nowhere
+    BAD(a, 12345, MSPRING_ERROR_ID, "12345");           // from nowhere
+    BAD(a, MSPRING_NONE, MSPRING_ERROR_ID, "particles"); // the default
+    BAD(struct_size, 4, MSPRING_ERROR_STRUCT, "mspring_spring_def");
+    BAD(struct_size, sizeof good + 4, MSPRING_ERROR_STRUCT, "mspring_spring_def");
+    BAD(a, 8, MSPRING_ERROR_ARGUMENT, "8 and 9"); // the distance of two particles in the same place
+    cases[n - 1].def.b = 9;
+#undef BAD
+    *count = n;
+    return cases;
+}
+
+static void bad_spring_is_refused(void **state)
+{
+    mspring_builder *builder = *state;
+    size_t count;
+    const spring_case *cases = bad_springs(&count);
+    for (size_t i = 0; i < count; i++) {
+        mspring_id id = 4711;
+        check_refused(builder, mspring_builder_add_spring(builder, &cases[i].def, &id), cases[i].code, cases[i].part);
+        assert_int_equal(id, 4711);
+    }
+    check_refused(builder, mspring_builder_add_spring(builder, NULL, NULL), MSPRING_ERROR_ARGUMENT, "NULL");
+    check_error(mspring_builder_add_spring(NULL, &cases[0].def, NULL), MSPRING_ERROR_ARGUMENT);
+}
+
+static void bulk_springs_are_all_or_nothing(void **state)
+{
+    mspring_builder *builder = *state;
+    size_t count;
+    const spring_case *cases = bad_springs(&count);
+    enum { MANY = 40, CULPRIT = 33 };
+    mspring_spring_def defs[MANY];
+    for (size_t i = 0; i < MANY; i++) {
+        check_ok(mspring_spring_def_init(&defs[i], sizeof defs[i]));
+        defs[i].a = (mspring_id)(i % 7);
+        defs[i].b = (mspring_id)(i % 7 + 1);
+    }
+    for (size_t i = 0; i < count; i++) {
+        mspring_id first = 4711;
+        defs[CULPRIT] = cases[i].def;
+        check_refused(builder, mspring_builder_add_springs(builder, defs, MANY, &first), cases[i].code, "33");
+        assert_int_equal(first, 4711);
+    }
+    check_refused(builder, mspring_builder_add_springs(builder, NULL, MANY, NULL), MSPRING_ERROR_ARGUMENT, "NULL");
+    check_error(mspring_builder_add_springs(NULL, defs, MANY, NULL), MSPRING_ERROR_ARGUMENT);
+    check_refused(builder, mspring_builder_add_springs(builder, defs, SIZE_MAX, NULL), MSPRING_ERROR_LIMIT, "limit");
+    check_refused(builder, mspring_builder_add_springs(builder, defs, MSPRING_MAX_SPRINGS, NULL),
+                  MSPRING_ERROR_LIMIT, "limit");
+}
+
+static void coincident_particles_may_have_a_spring_with_a_rest_length(void **state)
+{
+    (void)state;
+    mspring_builder *builder = support_builder();
+    support_particle(builder, 1, 1, 1);
+    support_particle(builder, 1, 1, 1);
+    mspring_spring_def def;
+    check_ok(mspring_spring_def_init(&def, sizeof def));
+    def.a = 1;
+    def.b = 0;
+    def.rest_length = 2;
+    check_ok(mspring_builder_add_spring(builder, &def, NULL));
+    mspring_builder_destroy(builder);
+}
+
+/* ---------------------------------------------------------------------------------------------- lattices */
+
+static void bad_lattice_is_refused(void **state)
+{
+    mspring_builder *builder = *state;
+    uint16_t cells[12] = {0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1};
+    mspring_material materials[2];
+    mspring_lattice_def good;
+    mspring_id ids[12];
+    memset(ids, 0x33, sizeof ids);
+    for (int i = 0; i < 2; i++) {
+        check_ok(mspring_material_init(&materials[i], sizeof materials[i]));
+    }
+    check_ok(mspring_lattice_def_init(&good, sizeof good));
+    good.width = 4;
+    good.height = 3;
+    good.cells = cells;
+    good.materials = materials;
+    good.material_count = 2;
+#define REFUSED(field, value, code, part)                                                                         \
+    do {                                                                                                          \
+        mspring_lattice_def def = good;                                                                           \
+        def.field = (value);                                                                                      \
+        check_refused(builder, mspring_builder_add_lattice(builder, &def, ids), (code), (part));                  \
+    } while (0)
+    for (size_t i = 0; i < COUNT_OF(not_finite); i++) {
+        REFUSED(x, (double)not_finite[i], MSPRING_ERROR_ARGUMENT, "lattice");
+        REFUSED(y, (double)not_finite[i], MSPRING_ERROR_ARGUMENT, "lattice");
+        REFUSED(spacing, (double)not_finite[i], MSPRING_ERROR_ARGUMENT, "spacing");
+    }
+    REFUSED(spacing, 0, MSPRING_ERROR_ARGUMENT, "spacing");
+    REFUSED(spacing, -1, MSPRING_ERROR_ARGUMENT, "spacing");
+    REFUSED(spacing, 0.9e-9, MSPRING_ERROR_ARGUMENT, "spacing");
+    REFUSED(spacing, 1.1e9, MSPRING_ERROR_ARGUMENT, "spacing");
+    REFUSED(x, 1e12, MSPRING_ERROR_ARGUMENT, "1e12"); // its right columns would be outside
+    REFUSED(y, 1e12, MSPRING_ERROR_ARGUMENT, "1e12"); // its upper rows would
+    REFUSED(x, -1.001e12, MSPRING_ERROR_ARGUMENT, "1e12");
+    REFUSED(width, 0, MSPRING_ERROR_ARGUMENT, "0 x 3");
+    REFUSED(height, 0, MSPRING_ERROR_ARGUMENT, "4 x 0");
+    REFUSED(width, UINT32_MAX, MSPRING_ERROR_LIMIT, "limit");
+    REFUSED(height, UINT32_MAX, MSPRING_ERROR_LIMIT, "limit");
+    REFUSED(width, MSPRING_MAX_PARTICLES / 2, MSPRING_ERROR_LIMIT, "limit"); // times 3 rows
+    REFUSED(cells, NULL, MSPRING_ERROR_ARGUMENT, "cells");
+    REFUSED(materials, NULL, MSPRING_ERROR_ARGUMENT, "materials");
+    REFUSED(material_count, 65536, MSPRING_ERROR_LIMIT, "65536");
+    REFUSED(material_count, 1, MSPRING_ERROR_ARGUMENT, "column 1, row 0"); // cells of material 1
+    REFUSED(struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_lattice_def");
+    REFUSED(struct_size, sizeof good + 8, MSPRING_ERROR_STRUCT, "mspring_lattice_def");
+#undef REFUSED
+    // 2^32 cells: the product does not fit 32 bits.
+    mspring_lattice_def huge = good;
+    huge.width = huge.height = 65536;
+    check_refused(builder, mspring_builder_add_lattice(builder, &huge, ids), MSPRING_ERROR_LIMIT, "limit");
+
+    cells[11] = 2;
+    check_refused(builder, mspring_builder_add_lattice(builder, &good, ids), MSPRING_ERROR_ARGUMENT, "column 3, row 2");
+    cells[11] = MSPRING_CELL_EMPTY - 1;
+    check_refused(builder, mspring_builder_add_lattice(builder, &good, ids), MSPRING_ERROR_ARGUMENT, "65534");
+    cells[11] = 1;
+
+    check_refused(builder, mspring_builder_add_lattice(builder, NULL, ids), MSPRING_ERROR_ARGUMENT, "NULL");
+    check_error(mspring_builder_add_lattice(NULL, &good, ids), MSPRING_ERROR_ARGUMENT);
+    for (size_t i = 0; i < COUNT_OF(ids); i++) {
+        assert_int_equal(ids[i], 0x33333333);
+    }
+}
+
+static void bad_material_is_refused_and_named(void **state)
+{
+    mspring_builder *builder = *state;
+    const uint16_t cells[2] = {0, 1};
+    mspring_material materials[2];
+    mspring_lattice_def def;
+    check_ok(mspring_lattice_def_init(&def, sizeof def));
+    def.width = 2;
+    def.height = 1;
+    def.cells = cells;
+    def.materials = materials;
+    def.material_count = 2;
+#define REFUSED(field, value, code, part)                                                                         \
+    do {                                                                                                          \
+        check_ok(mspring_material_init(&materials[0], sizeof materials[0]));                                      \
+        check_ok(mspring_material_init(&materials[1], sizeof materials[1]));                                      \
+        materials[1].field = (value);                                                                             \
+        check_refused(builder, mspring_builder_add_lattice(builder, &def, NULL), (code), (part));                 \
+    } while (0)
+    for (size_t i = 0; i < COUNT_OF(not_finite); i++) {
+        REFUSED(mass, not_finite[i], MSPRING_ERROR_ARGUMENT, "material 1: mass");
+        REFUSED(stiffness, not_finite[i], MSPRING_ERROR_ARGUMENT, "material 1: stiffness");
+        REFUSED(damping, not_finite[i], MSPRING_ERROR_ARGUMENT, "material 1: damping");
+    }
+    REFUSED(mass, 0, MSPRING_ERROR_ARGUMENT, "material 1: mass");
+    REFUSED(mass, -3, MSPRING_ERROR_ARGUMENT, "material 1: mass");
+    REFUSED(stiffness, -3, MSPRING_ERROR_ARGUMENT, "material 1: stiffness");
+    REFUSED(damping, -3, MSPRING_ERROR_ARGUMENT, "material 1: damping");
+    REFUSED(particle_flags, 2, MSPRING_ERROR_ARGUMENT, "material 1");
+    REFUSED(spring_flags, 2, MSPRING_ERROR_ARGUMENT, "material 1");
+    REFUSED(spring_flags, MSPRING_SPRING_RELATIVE, MSPRING_ERROR_ARGUMENT, "material 1"); // material 0 is not
+    REFUSED(struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_material");
+    REFUSED(struct_size, sizeof materials[0] + 8, MSPRING_ERROR_STRUCT, "mspring_material");
+#undef REFUSED
+}
+
+/* ------------------------------------------------------------------------------------------------- ropes */
+
+static void bad_rope_is_refused(void **state)
+{
+    mspring_builder *builder = *state;
+    mspring_rope_def good;
+    check_ok(mspring_rope_def_init(&good, sizeof good));
+    good.from = 2;
+    good.to = 6;
+    good.segment_count = 3;
+    mspring_id first_particle = 4711, first_spring = 4712;
+#define REFUSED(field, value, code, part)                                                                         \
+    do {                                                                                                          \
+        mspring_rope_def def = good;                                                                              \
+        def.field = (value);                                                                                      \
+        check_refused(builder, mspring_builder_add_rope(builder, &def, &first_particle, &first_spring), (code),   \
+                      (part));                                                                                    \
+    } while (0)
+    for (size_t i = 0; i < COUNT_OF(not_finite); i++) {
+        REFUSED(mass, not_finite[i], MSPRING_ERROR_ARGUMENT, "mass");
+        REFUSED(stiffness, not_finite[i], MSPRING_ERROR_ARGUMENT, "stiffness");
+        REFUSED(damping, not_finite[i], MSPRING_ERROR_ARGUMENT, "damping");
+        REFUSED(slack, not_finite[i], MSPRING_ERROR_ARGUMENT, "slack");
+    }
+    REFUSED(mass, 0, MSPRING_ERROR_ARGUMENT, "mass");
+    REFUSED(stiffness, -1, MSPRING_ERROR_ARGUMENT, "stiffness");
+    REFUSED(damping, -1, MSPRING_ERROR_ARGUMENT, "damping");
+    REFUSED(slack, 0, MSPRING_ERROR_ARGUMENT, "slack");
+    REFUSED(slack, 0.0009f, MSPRING_ERROR_ARGUMENT, "slack");
+    REFUSED(slack, 1001, MSPRING_ERROR_ARGUMENT, "slack");
+    REFUSED(spring_flags, 2, MSPRING_ERROR_ARGUMENT, "flags");
+    REFUSED(segment_count, 0, MSPRING_ERROR_ARGUMENT, "segment");
+    REFUSED(segment_count, MSPRING_MAX_PARTICLES + 2, MSPRING_ERROR_LIMIT, "limit");
+    REFUSED(segment_count, UINT32_MAX, MSPRING_ERROR_LIMIT, "limit");
+    REFUSED(to, 2, MSPRING_ERROR_ARGUMENT, "particle 2");
+    REFUSED(to, 10, MSPRING_ERROR_ID, "10");
+    REFUSED(from, 77777, MSPRING_ERROR_ID, "77777");
+    REFUSED(from, MSPRING_NONE, MSPRING_ERROR_ID, "particles");
+    REFUSED(struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_rope_def");
+    REFUSED(struct_size, sizeof good + 4, MSPRING_ERROR_STRUCT, "mspring_rope_def");
+#undef REFUSED
+    // Between two particles in the same place: segments of no length.
+    mspring_rope_def def = good;
+    def.from = 8;
+    def.to = 9;
+    check_refused(builder, mspring_builder_add_rope(builder, &def, NULL, NULL), MSPRING_ERROR_ARGUMENT, "8 to 9");
+    check_refused(builder, mspring_builder_add_rope(builder, NULL, NULL, NULL), MSPRING_ERROR_ARGUMENT, "NULL");
+    check_error(mspring_builder_add_rope(NULL, &good, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    assert_int_equal(first_particle, 4711);
+    assert_int_equal(first_spring, 4712);
+}
+
+int main(void)
+{
+#define REFUSAL(test) cmocka_unit_test_setup_teardown(test, make_builder, check_builder)
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(create_needs_a_place_and_a_whole_allocator),
+        REFUSAL(bad_particle_is_refused),
+        REFUSAL(bulk_particles_are_all_or_nothing),
+        cmocka_unit_test(particles_at_the_ends_of_the_ranges_are_accepted),
+        REFUSAL(bad_spring_is_refused),
+        REFUSAL(bulk_springs_are_all_or_nothing),
+        cmocka_unit_test(coincident_particles_may_have_a_spring_with_a_rest_length),
+        REFUSAL(bad_lattice_is_refused),
+        REFUSAL(bad_material_is_refused_and_named),
+        REFUSAL(bad_rope_is_refused),
+    };
+    return cmocka_run_group_tests_name("bad_input", tests, NULL, NULL);
+}
