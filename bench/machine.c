@@ -2,17 +2,15 @@
 /// Clock, processor, caches and compiler.
 ///
 /// SPDX-License-Identifier: MIT
-#define _POSIX_C_SOURCE 200809L /* clock_gettime, sysconf */
+#define _POSIX_C_SOURCE 200809L /* clock_gettime */
 #include "machine.h"
 
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#if defined(__unix__) || defined(__APPLE__)
-#include <unistd.h>
-#endif
 #if defined(__x86_64__) || defined(__i386__)
 #include <cpuid.h>
 #endif
@@ -61,12 +59,36 @@ const char *bench_compiler(void) {
 #endif
 }
 
+/// One word of a file of the system, or "".
+static void read_word(const char *path, char word[32]) {
+    word[0] = '\0';
+    FILE *file = fopen(path, "r");
+    if (file != NULL) {
+        if (fscanf(file, "%31s", word) != 1) {
+            word[0] = '\0';
+        }
+        fclose(file);
+    }
+}
+
 size_t bench_cache_size(int level) {
     static const size_t usual[3] = {(size_t)32 << 10, (size_t)1 << 20, (size_t)16 << 20};
-    long size = 0;
-#ifdef _SC_LEVEL1_DCACHE_SIZE
-    static const int names[3] = {_SC_LEVEL1_DCACHE_SIZE, _SC_LEVEL2_CACHE_SIZE, _SC_LEVEL3_CACHE_SIZE};
-    size = sysconf(names[level - 1]);
-#endif
-    return size > 0 ? (size_t)size : usual[level - 1];
+    for (int index = 0; index < 8; index++) {
+        static const char folder[] = "/sys/devices/system/cpu/cpu0/cache/index";
+        char path[96];
+        char type[32];
+        char its_level[32];
+        char size[32];
+        snprintf(path, sizeof path, "%s%d/level", folder, index);
+        read_word(path, its_level);
+        snprintf(path, sizeof path, "%s%d/type", folder, index);
+        read_word(path, type);
+        snprintf(path, sizeof path, "%s%d/size", folder, index);
+        read_word(path, size);
+        unsigned long kilobytes = strtoul(size, NULL, 10); /* the file says "48K" */
+        if (strtol(its_level, NULL, 10) == level && strcmp(type, "Instruction") != 0 && kilobytes > 0) {
+            return (size_t)kilobytes << 10;
+        }
+    }
+    return usual[level - 1];
 }

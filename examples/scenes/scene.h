@@ -24,10 +24,10 @@ typedef struct scene_error {
 } scene_error;
 
 typedef struct scene {
-    char name[64];            ///< such as "bar_80x5"; for a file its base name without extension
+    char name[64]; ///< such as "bar_80x5"; for a file its base name without extension
     mspring_builder *builder;
-    mspring_id probe;         ///< the particle whose drop is the bending, or MSPRING_NONE
-    float *break_strain;      ///< [springs] strain at which the material breaks (> 0), or NULL if no material has one
+    mspring_id probe;    ///< the particle whose drop is the bending, or MSPRING_NONE
+    float *break_strain; ///< [springs] strain at which each breaks, 0: never; NULL if none ever does
 } scene;
 
 /// What the springs of a scene are like. Fill with scene_options_default().
@@ -36,7 +36,8 @@ typedef struct scene_options {
     float stiffness; ///< N/m, or a fraction if relative; < 0 in files: the material's own. Default iron's;
                      ///< scene_options_from_file() gives -1
     float damping;   ///< N s/m, or a fraction if relative; < 0 in files: the material's own. Default 0 / -1
-    bool relative;   ///< stiffness and damping are fractions (MSPRING_SPRING_RELATIVE); default false
+    bool relative;   ///< stiffness and damping are fractions (MSPRING_SPRING_RELATIVE); default false. Files hold
+                     ///< no fractions: stiffness must then be given, and damping < 0 means 0.
     double spacing;  ///< m; default 1
 } scene_options;
 
@@ -44,16 +45,19 @@ scene_options scene_options_default(void);
 /// The same with stiffness and damping left to the file's materials.
 scene_options scene_options_from_file(void);
 
-void scene_free(scene *scene);
+void scene_free(scene *unwanted);
 
 /* shapes.c */
 
 /// A full grid of columns x rows particles with all 8-neighbour springs, its leftmost column pinned, the probe at
-/// its top right. Named "bar_<columns>x<rows>".
+/// its top right. Named "bar_<columns>x<rows>". At least 2 columns.
 bool scene_bar(uint32_t columns, uint32_t rows, const scene_options *options, scene *out, scene_error *error);
 
-/// A hanging rope: a horizontal chain of particles, both ends pinned, the probe in its middle. "rope_<particles>".
+/// A hanging rope: a horizontal chain of particles (at least 3), both ends pinned, the probe in its middle.
+/// "rope_<particles>".
 bool scene_rope(uint32_t particles, const scene_options *options, scene *out, scene_error *error);
+
+/* random_graph.c */
 
 /// Particles at random places in a square (one per square spacing on average), each joined to about
 /// neighbours / 2 of those after it that lie nearest, at rest; no grid in it. Particle 0 is pinned, no probe. The
@@ -61,12 +65,14 @@ bool scene_rope(uint32_t particles, const scene_options *options, scene *out, sc
 bool scene_random_graph(uint32_t particles, uint32_t neighbours, uint64_t seed, const scene_options *options,
                         scene *out, scene_error *error);
 
-/// Add count ropes of segments springs each between pairs of particles chosen by seed (never neighbours on the
-/// grid); rope_mass and the rope's stiffness come from options.
-bool scene_add_ropes(scene *scene, uint32_t count, uint32_t segments, uint64_t seed, const scene_options *options,
+/* random_ropes.c */
+
+/// Add count ropes of segments springs each between pairs of particles chosen by seed, never two that a spring or
+/// another of these ropes joins already. Mass, stiffness and damping of the ropes come from options.
+bool scene_add_ropes(scene *target, uint32_t count, uint32_t segments, uint64_t seed, const scene_options *options,
                      scene_error *error);
 
-/* image_scene.c: an image is a lattice, a pixel a cell, its colour a material */
+/* materials.c */
 
 typedef struct scene_material {
     uint8_t red, green, blue;
@@ -84,16 +90,30 @@ typedef struct scene_materials {
 bool scene_materials_builtin(scene_materials *out, scene_error *error);
 /// Read a CSV file with the header colour,name,mass,stiffness,damping,break_strain,pinned,probe.
 bool scene_materials_read(const char *path, scene_materials *out, scene_error *error);
+/// The same from memory; name stands for the path in messages.
+bool scene_materials_parse(const char *text, size_t length, const char *name, scene_materials *out,
+                           scene_error *error);
 void scene_materials_free(scene_materials *materials);
 
-/// Read an image (PNM always; PNG and what else stb_image reads where it was found at build time).
+/* image_scene.c: an image is a lattice, a pixel a cell, its colour a material */
+
+/// Read an image: PNM always; PNG and BMP where stb_image.h was found at build time. White and transparent
+/// pixels are empty. At most one pixel may be a probe; without one, probe is MSPRING_NONE. A spring breaks at the
+/// smaller of its two materials' break strains.
 bool scene_image(const char *path, const scene_materials *materials, const scene_options *options, scene *out,
                  scene_error *error);
+/// The same from memory; name stands for the path in messages and for the scene's name.
+bool scene_image_parse(const void *bytes, size_t length, const char *name, const scene_materials *materials,
+                       const scene_options *options, scene *out, scene_error *error);
 
 /* network_file.c */
 
 /// Read a plain text network: `P S`, then P lines `x y mass pinned probe`, then S lines
-/// `a b rest stiffness damping`. `#` starts a comment.
+/// `a b rest stiffness damping`. `#` starts a comment. At most one particle may be a probe; without one, probe is
+/// MSPRING_NONE.
 bool scene_network_file(const char *path, const scene_options *options, scene *out, scene_error *error);
+/// The same from memory; name stands for the path in messages and for the scene's name.
+bool scene_network_parse(const char *text, size_t length, const char *name, const scene_options *options,
+                         scene *out, scene_error *error);
 
 #endif

@@ -34,7 +34,7 @@ typedef struct mspringi_sweep {
 /// What a span hands over to the one that continues it: the forces of its last springs on the next slot and on
 /// the slot above that. Only the last lane counts; vectors, so that a kernel can store its last one whole.
 typedef struct mspringi_edge {
-    float right_x[MSPRINGI_WIDTH], right_y[MSPRINGI_WIDTH];
+    _Alignas(MSPRINGI_ALIGNMENT) float right_x[MSPRINGI_WIDTH], right_y[MSPRINGI_WIDTH];
     float diagonal_x[MSPRINGI_WIDTH], diagonal_y[MSPRINGI_WIDTH];
 } mspringi_edge;
 
