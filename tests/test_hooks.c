@@ -1,0 +1,496 @@
+/// @file test_hooks.c
+/// Hooks: when they are called and with what, what they may do, and what is refused inside of them.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "recipe.h"
+#include "support.h"
+
+/// A network with rows of every kind, leftover springs and empty slots.
+static recipe mixed_recipe(void)
+{
+    uint64_t seed = 3;
+    const recipe_stuff stuff = {
+        .mass = {1, 2}, .stiffness = {50, 100}, .damping = {0, 1}, .pinned = 0.05, .holes = 0.2};
+    recipe made = {0};
+    recipe_lattice(&made, 19, 6, 0, 0, 1, &stuff, &seed);
+    mspring_id end = recipe_particle(&made, 30, 20, 1, MSPRING_PARTICLE_PINNED);
+    recipe_rope(&made, 2, end, 9, &stuff, &seed);
+    recipe_random_springs(&made, 8, &stuff, &seed);
+    recipe_disturb(&made, 0.05, 0.5, &seed);
+    return made;
+}
+
+static mspring_network *mixed_network(uint32_t substeps)
+{
+    recipe made = mixed_recipe();
+    mspring_network_def def = support_def(-9.8f, substeps);
+    mspring_network *network = recipe_network(&made, &def);
+    recipe_free(&made);
+    return network;
+}
+
+/* --------------------------------------------------------------------------------------------- call order */
+
+enum { SLOTS = 4096, SUBSTEPS = 3, HOOKS = 6 };
+
+/// Six hooks, two to a phase, in the order of adding. Each slot goes through the same sequence of calls:
+///     before step: 0, 1;  then for each substep before: 2, 3;  after: 4, 5.
+typedef struct recorder {
+    uint32_t calls_seen[SLOTS]; ///< by slot, in this step
+    double dt;
+    mspring_view view;
+} recorder;
+
+typedef struct recorder_hook {
+    recorder *to;
+    uint32_t number;
+} recorder_hook;
+
+static void record(const mspring_hook_args *args, void *user)
+{
+    const recorder_hook *hook = user;
+    recorder *to = hook->to;
+    assert_int_equal(args->struct_size, sizeof *args);
+    assert_int_equal(args->substep_count, SUBSTEPS);
+    const mspring_phase phases[HOOKS] = {
+        MSPRING_PHASE_BEFORE_STEP,    MSPRING_PHASE_BEFORE_STEP,   MSPRING_PHASE_BEFORE_SUBSTEP,
+        MSPRING_PHASE_BEFORE_SUBSTEP, MSPRING_PHASE_AFTER_SUBSTEP, MSPRING_PHASE_AFTER_SUBSTEP};
+    assert_int_equal(args->phase, phases[hook->number]);
+
+    uint32_t expected = hook->number;
+    if (args->phase == MSPRING_PHASE_BEFORE_STEP) {
+        assert_int_equal(args->substep, 0);
+        assert_true(args->dt == to->dt);
+    } else {
+        expected += 4 * args->substep;
+        assert_true(args->substep < SUBSTEPS);
+        check_near(args->dt, to->dt / SUBSTEPS, to->dt * 6e-8); // the substep as a float: half an ulp
+    }
+    assert_int_equal(args->force_x == NULL, args->phase == MSPRING_PHASE_AFTER_SUBSTEP);
+    assert_int_equal(args->force_y == NULL, args->phase == MSPRING_PHASE_AFTER_SUBSTEP);
+
+    assert_ptr_equal(args->x, to->view.x);
+    assert_ptr_equal(args->vy, to->view.vy);
+    assert_ptr_equal(args->inverse_mass, to->view.inverse_mass);
+    assert_ptr_equal(args->particle_of_slot, to->view.particle_of_slot);
+    assert_true(args->origin_x == to->view.origin_x && args->origin_y == to->view.origin_y);
+
+    assert_true(args->slot_count > 0 && args->first_slot < to->view.slot_count &&
+                args->slot_count <= to->view.slot_count - args->first_slot);
+    for (uint32_t i = 0; i < args->slot_count; i++) {
+        uint32_t slot = args->first_slot + i;
+        if (args->particle_of_slot[slot] != MSPRING_NONE) {
+            assert_int_equal(to->calls_seen[slot], expected);
+            to->calls_seen[slot]++;
+        }
+    }
+}
+
+static void hooks_are_called_in_order_for_every_particle(void **state)
+{
+    (void)state;
+    mspring_network *network = mixed_network(SUBSTEPS);
+    recorder seen = {.dt = 0.01, .view = {.struct_size = sizeof seen.view}};
+    recorder_hook hooks[HOOKS];
+    check_ok(mspring_network_view(network, &seen.view));
+    assert_true(seen.view.slot_count <= SLOTS);
+    // Added out of the order of phases: it is the phase that decides, and within it the order of adding.
+    const uint32_t order[HOOKS] = {4, 2, 0, 5, 1, 3};
+    const mspring_phase phases[] = {MSPRING_PHASE_BEFORE_STEP, MSPRING_PHASE_BEFORE_SUBSTEP,
+                                    MSPRING_PHASE_AFTER_SUBSTEP};
+    for (uint32_t i = 0; i < HOOKS; i++) {
+        hooks[i] = (recorder_hook){.to = &seen, .number = order[i]};
+        check_ok(mspring_network_add_hook(network, phases[order[i] / 2], record, &hooks[i], NULL));
+    }
+    for (int step = 0; step < 3; step++) {
+        memset(seen.calls_seen, 0, sizeof seen.calls_seen);
+        check_ok(mspring_network_step(network, seen.dt));
+        for (uint32_t slot = 0; slot < seen.view.slot_count; slot++) {
+            bool particle = seen.view.particle_of_slot[slot] != MSPRING_NONE;
+            assert_int_equal(seen.calls_seen[slot], particle ? 2 + 4 * SUBSTEPS : 0);
+        }
+    }
+    mspring_network_destroy(network);
+}
+
+/* ------------------------------------------------------------------------------------------------- forces */
+
+/// Pulls every particle by what the table says.
+typedef struct puller {
+    const float *x, *y; ///< by particle
+} puller;
+
+static void pull(const mspring_hook_args *args, void *user)
+{
+    const puller *forces = user;
+    for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
+        mspring_id id = args->particle_of_slot[slot];
+        if (id != MSPRING_NONE) {
+            args->force_x[slot] += forces->x[id];
+            args->force_y[slot] += forces->y[id];
+        }
+    }
+}
+
+static void forces_of_hooks_equal_forces_of_the_host(void **state)
+{
+    (void)state;
+    const mspring_phase phases[] = {MSPRING_PHASE_BEFORE_STEP, MSPRING_PHASE_BEFORE_SUBSTEP};
+    for (size_t i = 0; i < COUNT_OF(phases); i++) {
+        mspring_network *hooked = mixed_network(4), *hosted = mixed_network(4);
+        float x[300], y[300];
+        const uint32_t count = mspring_network_particle_count(hooked);
+        uint64_t seed = 77;
+        assert_true(count <= 300);
+        for (uint32_t id = 0; id < count; id++) {
+            x[id] = (float)support_random_between(&seed, -20, 20);
+            y[id] = (float)support_random_between(&seed, -20, 20);
+        }
+        puller forces = {x, y};
+        check_ok(mspring_network_add_hook(hooked, phases[i], pull, &forces, NULL));
+        for (int step = 0; step < 25; step++) {
+            check_ok(mspring_network_apply_forces(hosted, 0, count, x, y));
+            check_ok(mspring_network_step(hosted, 0.02));
+            check_ok(mspring_network_step(hooked, 0.02));
+        }
+        double moved = 0;
+        for (uint32_t id = 0; id < count; id++) {
+            support_point a = support_position(hooked, id), b = support_position(hosted, id);
+            // The same numbers, possibly added in another order: 100 substeps of half an ulp (1e-6 m) of
+            // coordinates below 32 m at most.
+            check_near(a.x, b.x, 1e-4);
+            check_near(a.y, b.y, 1e-4);
+            moved += fabs(support_velocity(hooked, id).x);
+        }
+        assert_true(moved > count); // m/s: the forces did something
+        mspring_network_destroy(hooked);
+        mspring_network_destroy(hosted);
+    }
+}
+
+static void poison(const mspring_hook_args *args, void *user)
+{
+    const mspring_id *victim = user;
+    for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
+        if (args->particle_of_slot[slot] == *victim) {
+            if (args->phase == MSPRING_PHASE_AFTER_SUBSTEP) {
+                args->x[slot] = NAN;
+            } else {
+                args->force_x[slot] = NAN;
+            }
+        }
+    }
+}
+
+static void what_a_hook_spoils_is_taken_back(void **state)
+{
+    (void)state;
+    for (mspring_phase phase = MSPRING_PHASE_BEFORE_STEP; phase <= MSPRING_PHASE_AFTER_SUBSTEP; phase++) {
+        mspring_network *network = mixed_network(2);
+        uint32_t hook;
+        support_steps(network, 3, 0.01);
+        const uint64_t hash = support_hash(network);
+        mspring_id victim = 0; // not pinned
+        mspring_view view = {.struct_size = sizeof view};
+        check_ok(mspring_network_view(network, &view));
+        while (view.inverse_mass[view.slot_of_particle[victim]] == 0) {
+            victim++;
+        }
+        check_ok(mspring_network_add_hook(network, phase, poison, &victim, &hook));
+        check_error(mspring_network_step(network, 0.01), MSPRING_ERROR_UNSTABLE);
+        assert_int_equal(support_hash(network), hash);
+        check_ok(mspring_network_remove_hook(network, hook));
+        support_steps(network, 3, 0.01);
+        mspring_network *clean = mixed_network(2);
+        support_steps(clean, 6, 0.01);
+        assert_int_equal(support_hash(network), support_hash(clean));
+        mspring_network_destroy(network);
+        mspring_network_destroy(clean);
+    }
+}
+
+/* ----------------------------------------------------------------------------------------------- movement */
+
+static void floor_hook(const mspring_hook_args *args, void *user)
+{
+    const double *level = user;
+    for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
+        if (args->inverse_mass[slot] > 0 && args->origin_y + (double)args->y[slot] < *level) {
+            args->y[slot] = (float)(*level - args->origin_y);
+            args->vy[slot] = 0;
+        }
+    }
+}
+
+static void a_hook_can_be_a_floor(void **state)
+{
+    (void)state;
+    mspring_builder *builder = support_builder();
+    // A square with diagonals, tilted, that falls onto y = -5 with one corner first.
+    const double corners[4][2] = {{0, 0}, {0.96, 0.28}, {0.68, 1.24}, {-0.28, 0.96}};
+    for (int i = 0; i < 4; i++) {
+        support_particle(builder, corners[i][0], corners[i][1], 2);
+    }
+    for (mspring_id a = 0; a < 4; a++) {
+        for (mspring_id b = 0; b < a; b++) {
+            support_spring(builder, a, b, 5000, 20);
+        }
+    }
+    mspring_network_def def = support_def(-9.8f, 8);
+    def.global_damping = 2;
+    mspring_network *network = support_network(builder, &def);
+    double level = -5;
+    check_ok(mspring_network_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, floor_hook, &level, NULL));
+    double lowest = 0;
+    for (int step = 0; step < 640; step++) {
+        check_ok(mspring_network_step(network, 1.0 / 64));
+        for (mspring_id id = 0; id < 4; id++) {
+            support_point p = support_position(network, id);
+            assert_true(p.y >= level); // it is put there exactly, and the network's origin is in whole metres
+            lowest = fmin(lowest, p.y);
+        }
+    }
+    assert_true(lowest == level);
+    // It has come to rest on a side: two corners on the floor, two 1 m above it less the weight's compression.
+    int down = 0;
+    for (mspring_id id = 0; id < 4; id++) {
+        check_near(support_velocity(network, id).y, 0, 1e-3); // exp(-2/2 10) of some m/s are left of any swing
+        double height = support_position(network, id).y - level;
+        down += height == 0;
+        // 4 kg 9.8 m/s^2 on two sides and two diagonals of 5000 N/m and more press it by less than 5 mm.
+        assert_true(height == 0 || (height > 0.995 && height < 1));
+    }
+    assert_int_equal(down, 2);
+    mspring_network_destroy(network);
+}
+
+static void shift(const mspring_hook_args *args, void *user)
+{
+    const float *by = user;
+    for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
+        args->x[slot] += *by;
+        args->vx[slot] = *by;
+    }
+}
+
+static void hooks_before_the_step_and_after_the_substep_may_move(void **state)
+{
+    (void)state;
+    mspring_builder *builder = support_builder();
+    support_particle(builder, 0, 0, 1);
+    mspring_network_def def = support_def(0, 4);
+    mspring_network *network = support_network(builder, &def);
+    float by = 0.5f;
+    uint32_t hook;
+    check_ok(mspring_network_add_hook(network, MSPRING_PHASE_BEFORE_STEP, shift, &by, &hook));
+    check_ok(mspring_network_step(network, 1));
+    assert_true(support_position(network, 0).x == 0.5 + 0.5);
+    check_ok(mspring_network_remove_hook(network, hook));
+    check_ok(mspring_network_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, shift, &by, NULL));
+    check_ok(mspring_network_step(network, 1));
+    assert_true(support_position(network, 0).x == 1 + 0.5 + 4 * 0.5);
+    mspring_network_destroy(network);
+}
+
+typedef struct scribble {
+    float value;
+    uint32_t empty_slots; ///< written to
+} scribble;
+
+static void scribble_on_empty_slots(const mspring_hook_args *args, void *user)
+{
+    scribble *with = user;
+    for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
+        if (args->particle_of_slot[slot] != MSPRING_NONE) {
+            continue;
+        }
+        with->empty_slots++;
+        if (args->phase != MSPRING_PHASE_BEFORE_SUBSTEP) {
+            args->x[slot] = with->value;
+            args->y[slot] = -with->value;
+            args->vx[slot] = -with->value;
+            args->vy[slot] = with->value;
+        }
+        if (args->force_x != NULL) {
+            args->force_x[slot] += with->value;
+            args->force_y[slot] -= with->value;
+        }
+    }
+}
+
+static void what_hooks_write_to_empty_slots_is_ignored(void **state)
+{
+    (void)state;
+    const float values[] = {0, 1, -77.5f, 1e6f, 1e20f, 3e38f};
+    mspring_network *clean = mixed_network(2);
+    support_steps(clean, 20, 0.01);
+    for (size_t i = 0; i < COUNT_OF(values); i++) {
+        mspring_network *network = mixed_network(2);
+        scribble with = {.value = values[i]};
+        for (mspring_phase phase = MSPRING_PHASE_BEFORE_STEP; phase <= MSPRING_PHASE_AFTER_SUBSTEP; phase++) {
+            check_ok(mspring_network_add_hook(network, phase, scribble_on_empty_slots, &with, NULL));
+        }
+        support_steps(network, 20, 0.01);
+        assert_true(with.empty_slots > 0);
+        assert_int_equal(support_hash(network), support_hash(clean));
+        mspring_network_destroy(network);
+    }
+    mspring_network_destroy(clean);
+}
+
+/* --------------------------------------------------------------------------------------- calls from inside */
+
+typedef struct caller {
+    mspring_network *network;
+    int calls;
+} caller;
+
+static void call_from_inside(const mspring_hook_args *args, void *user)
+{
+    caller *inside = user;
+    mspring_network *network = inside->network;
+    inside->calls++;
+
+    float f[2] = {1, 1};
+    double d[2] = {1, 1};
+    uint32_t number = 4711;
+    mspring_solver_def solver;
+    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    check_error(mspring_network_step(network, 0.01), MSPRING_ERROR_BUSY);
+    check_contains(mspring_network_error(network), "hook");
+    check_error(mspring_network_set_solver(network, &solver), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_set_gravity(network, 0, 0), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_set_global_damping(network, 1), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_apply_force(network, 0, 1, 1), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_apply_forces(network, 0, 2, f, f), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_add_hook(network, args->phase, call_from_inside, user, &number), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_remove_hook(network, 0), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_set_positions(network, 0, 2, d, d), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_set_positions_float(network, 0, 2, f, f), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_set_velocities(network, 0, 2, f, f), MSPRING_ERROR_BUSY);
+    assert_int_equal(number, 4711);
+
+    // What is marked shared works.
+    mspring_view view = {.struct_size = sizeof view};
+    mspring_plan plan = {.struct_size = sizeof plan};
+    mspring_spring_info info = {.struct_size = sizeof info};
+    mspring_id spring;
+    uint64_t hash;
+    double energy;
+    check_ok(mspring_network_view(network, &view));
+    check_ok(mspring_network_plan(network, &plan));
+    check_ok(mspring_network_get_spring(network, 0, &info));
+    check_ok(mspring_network_get_positions(network, 0, 2, d, d));
+    check_ok(mspring_network_get_velocities(network, 0, 2, f, f));
+    check_ok(mspring_network_get_masses(network, 0, 2, f));
+    check_ok(mspring_network_get_strains(network, 0, 2, f));
+    check_ok(mspring_network_energy(network, &energy, NULL, NULL));
+    check_ok(mspring_network_momentum(network, &energy, NULL, NULL));
+    check_ok(mspring_network_max_strain(network, NULL, &spring));
+    check_ok(mspring_network_state_hash(network, &hash));
+}
+
+static void exclusive_calls_from_inside_are_refused(void **state)
+{
+    (void)state;
+    mspring_network *network = mixed_network(2), *clean = mixed_network(2);
+    caller inside = {.network = network};
+    for (mspring_phase phase = MSPRING_PHASE_BEFORE_STEP; phase <= MSPRING_PHASE_AFTER_SUBSTEP; phase++) {
+        check_ok(mspring_network_add_hook(network, phase, call_from_inside, &inside, NULL));
+    }
+    support_steps(network, 3, 0.01);
+    support_steps(clean, 3, 0.01);
+    assert_true(inside.calls >= 3 * (1 + 2 + 2));
+    assert_int_equal(support_hash(network), support_hash(clean));
+    // Outside they work again.
+    check_ok(mspring_network_set_gravity(network, 0, 0));
+    mspring_network_destroy(network);
+    mspring_network_destroy(clean);
+}
+
+/* ------------------------------------------------------------------------------------------ adding, removing */
+
+static void count_call(const mspring_hook_args *args, void *user)
+{
+    (void)args;
+    ++*(int *)user;
+}
+
+static void removed_hooks_are_not_called(void **state)
+{
+    (void)state;
+    mspring_network *network = mixed_network(1);
+    int calls[3] = {0, 0, 0};
+    uint32_t numbers[4];
+    for (int i = 0; i < 3; i++) {
+        check_ok(mspring_network_add_hook(network, MSPRING_PHASE_BEFORE_STEP, count_call, &calls[i], &numbers[i]));
+    }
+    check_ok(mspring_network_step(network, 0.01));
+    assert_true(calls[0] >= 1 && calls[1] == calls[0] && calls[2] == calls[0]);
+    const int once = calls[0];
+    check_ok(mspring_network_remove_hook(network, numbers[1]));
+    check_ok(mspring_network_step(network, 0.01));
+    assert_true(calls[0] == 2 * once && calls[1] == once && calls[2] == 2 * once);
+    check_error(mspring_network_remove_hook(network, numbers[1]), MSPRING_ERROR_ID);
+    check_error(mspring_network_remove_hook(network, 12345), MSPRING_ERROR_ID);
+    check_contains(mspring_network_error(network), "12345");
+    check_error(mspring_network_remove_hook(NULL, numbers[0]), MSPRING_ERROR_ARGUMENT);
+
+    // Numbers are not used again.
+    check_ok(mspring_network_add_hook(network, MSPRING_PHASE_BEFORE_STEP, count_call, &calls[1], &numbers[3]));
+    for (int i = 0; i < 3; i++) {
+        assert_int_not_equal(numbers[3], numbers[i]);
+    }
+    check_ok(mspring_network_remove_hook(network, numbers[3]));
+    check_ok(mspring_network_remove_hook(network, numbers[2]));
+    check_ok(mspring_network_remove_hook(network, numbers[0]));
+    check_ok(mspring_network_step(network, 0.01));
+    assert_true(calls[0] == 2 * once && calls[1] == once && calls[2] == 2 * once);
+
+    // And a network that has had hooks moves like one that never had.
+    mspring_network *clean = mixed_network(1);
+    support_steps(clean, 3, 0.01);
+    assert_int_equal(support_hash(network), support_hash(clean));
+    mspring_network_destroy(network);
+    mspring_network_destroy(clean);
+}
+
+static void bad_hooks_are_refused(void **state)
+{
+    (void)state;
+    mspring_network *network = mixed_network(1);
+    uint32_t number = 4711;
+    int calls = 0;
+    check_error(mspring_network_add_hook(network, MSPRING_PHASE_BEFORE_STEP, NULL, NULL, &number),
+                MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_network_error(network), "NULL");
+    check_error(mspring_network_add_hook(network, -1, count_call, &calls, &number), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_add_hook(network, 3, count_call, &calls, &number), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_network_error(network), "phase");
+    check_error(mspring_network_add_hook(NULL, MSPRING_PHASE_BEFORE_STEP, count_call, &calls, &number),
+                MSPRING_ERROR_ARGUMENT);
+    assert_int_equal(number, 4711);
+    check_ok(mspring_network_step(network, 0.01));
+    assert_int_equal(calls, 0);
+    mspring_network_destroy(network);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(hooks_are_called_in_order_for_every_particle),
+        cmocka_unit_test(forces_of_hooks_equal_forces_of_the_host),
+        cmocka_unit_test(what_a_hook_spoils_is_taken_back),
+        cmocka_unit_test(a_hook_can_be_a_floor),
+        cmocka_unit_test(hooks_before_the_step_and_after_the_substep_may_move),
+        cmocka_unit_test(what_hooks_write_to_empty_slots_is_ignored),
+        cmocka_unit_test(exclusive_calls_from_inside_are_refused),
+        cmocka_unit_test(removed_hooks_are_not_called),
+        cmocka_unit_test(bad_hooks_are_refused),
+    };
+    return cmocka_run_group_tests_name("hooks", tests, NULL, NULL);
+}

@@ -1,0 +1,285 @@
+/// @file test_network.c
+/// Making a network and changing its settings: what is refused, with which message, and that nothing has changed.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <string.h>
+
+#include "support.h"
+
+static const float not_finite[] = {NAN, INFINITY, -INFINITY};
+
+/// A triangle with a pinned corner, as a builder.
+static mspring_builder *triangle(void)
+{
+    mspring_builder *builder = support_builder();
+    support_pinned(builder, 0, 0, 1);
+    support_particle(builder, 1, 0, 1);
+    support_particle(builder, 0, 1, 1);
+    support_spring(builder, 0, 1, 100, 0);
+    support_spring(builder, 1, 2, 100, 0);
+    return builder;
+}
+
+static mspring_network *const untouched = (mspring_network *)(uintptr_t)16;
+
+/// Making a network is refused, and the place for it is left alone.
+#define check_no_network(builder, def, code, part)                                                                \
+    do {                                                                                                          \
+        mspring_network *network = untouched;                                                                     \
+        check_error(mspring_network_create((builder), (def), &network), (code));                                  \
+        check_contains(mspring_builder_error(builder), (part));                                                   \
+        assert_ptr_equal(network, untouched);                                                                     \
+    } while (0)
+
+/* ------------------------------------------------------------------------------------------------ creating */
+
+static void defaults_make_a_network(void **state)
+{
+    (void)state;
+    mspring_network *network = support_network(triangle(), NULL);
+    assert_int_equal(mspring_network_particle_count(network), 3);
+    assert_int_equal(mspring_network_spring_count(network), 2);
+    assert_string_equal(mspring_network_error(network), "");
+    assert_true(mspring_network_memory_used(network) > 0);
+    check_ok(mspring_network_step(network, 0.01));
+    // The default gravity.
+    check_near(support_velocity(network, 2).y, -9.8 * 0.01, 1e-6); // an ulp or two of 0.1 and of 0.01
+    mspring_network_destroy(network);
+}
+
+static void empty_builder_is_refused(void **state)
+{
+    (void)state;
+    mspring_builder *builder = support_builder();
+    check_no_network(builder, NULL, MSPRING_ERROR_ARGUMENT, "no particle");
+    support_particle(builder, 0, 0, 1);
+    mspring_network *network = support_network(builder, NULL);
+    assert_int_equal(mspring_network_particle_count(network), 1);
+    assert_int_equal(mspring_network_spring_count(network), 0);
+    mspring_network_destroy(network);
+}
+
+static void duplicate_springs_are_refused_and_named(void **state)
+{
+    (void)state;
+    for (int turned = 0; turned < 2; turned++) {
+        mspring_builder *builder = support_builder();
+        for (int i = 0; i < 60; i++) {
+            support_particle(builder, i, 0, 1);
+        }
+        for (mspring_id i = 0; i < 55; i++) {
+            support_spring(builder, i, i + 1, 1, 0);
+        }
+        // Spring 55 is number 41 again.
+        assert_int_equal(support_spring(builder, turned ? 42 : 41, turned ? 41 : 42, 1, 0), 55);
+        support_spring(builder, 57, 58, 1, 0);
+        check_no_network(builder, NULL, MSPRING_ERROR_DUPLICATE, "41");
+        check_contains(mspring_builder_error(builder), "55");
+        assert_int_equal(mspring_builder_spring_count(builder), 57);
+        mspring_builder_destroy(builder);
+    }
+}
+
+static void duplicates_inside_lattices_are_found(void **state)
+{
+    (void)state;
+    const uint16_t cells[4] = {0, 0, 0, 0};
+    mspring_material material;
+    mspring_lattice_def lattice;
+    check_ok(mspring_material_init(&material, sizeof material));
+    check_ok(mspring_lattice_def_init(&lattice, sizeof lattice));
+    lattice.width = lattice.height = 2;
+    lattice.cells = cells;
+    lattice.materials = &material;
+    lattice.material_count = 1;
+    mspring_builder *builder = support_builder();
+    check_ok(mspring_builder_add_lattice(builder, &lattice, NULL));
+    support_spring(builder, 3, 0, 5, 0); // the diagonal, which is there as spring 2
+    check_no_network(builder, NULL, MSPRING_ERROR_DUPLICATE, "2");
+    check_contains(mspring_builder_error(builder), "6");
+    mspring_builder_destroy(builder);
+}
+
+static void bad_settings_are_refused(void **state)
+{
+    (void)state;
+    mspring_builder *builder = triangle();
+    const mspring_network_def good = support_def(-9.8f, 1);
+#define REFUSED(field, value, code, part)                                                                         \
+    do {                                                                                                          \
+        mspring_network_def def = good;                                                                           \
+        def.field = (value);                                                                                      \
+        check_no_network(builder, &def, (code), (part));                                                          \
+    } while (0)
+    for (size_t i = 0; i < COUNT_OF(not_finite); i++) {
+        REFUSED(gravity_x, not_finite[i], MSPRING_ERROR_ARGUMENT, "gravity");
+        REFUSED(gravity_y, not_finite[i], MSPRING_ERROR_ARGUMENT, "gravity");
+        REFUSED(global_damping, not_finite[i], MSPRING_ERROR_ARGUMENT, "damping");
+        REFUSED(max_speed, not_finite[i], MSPRING_ERROR_ARGUMENT, "max_speed");
+    }
+    REFUSED(global_damping, -1, MSPRING_ERROR_ARGUMENT, "damping");
+    REFUSED(global_damping, 1.1e6f, MSPRING_ERROR_ARGUMENT, "damping");
+    REFUSED(max_speed, 0, MSPRING_ERROR_ARGUMENT, "max_speed");
+    REFUSED(max_speed, -1, MSPRING_ERROR_ARGUMENT, "max_speed");
+    REFUSED(max_speed, 1.1e15f, MSPRING_ERROR_ARGUMENT, "max_speed");
+    REFUSED(solver, 1, MSPRING_ERROR_ARGUMENT, "solver");
+    REFUSED(solver, -1, MSPRING_ERROR_ARGUMENT, "solver");
+    REFUSED(substeps, 0, MSPRING_ERROR_ARGUMENT, "substeps");
+    REFUSED(substeps, 1000001, MSPRING_ERROR_ARGUMENT, "substeps");
+    REFUSED(simd_level, -1, MSPRING_ERROR_ARGUMENT, "simd_level");
+    REFUSED(simd_level, MSPRING_SIMD_AVX512 + 1, MSPRING_ERROR_ARGUMENT, "simd_level");
+    REFUSED(struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_network_def");
+    REFUSED(struct_size, sizeof good - 8, MSPRING_ERROR_STRUCT, "mspring_network_def");
+    REFUSED(struct_size, sizeof good + 8, MSPRING_ERROR_STRUCT, "mspring_network_def");
+
+    mspring_allocator allocator = {.struct_size = sizeof allocator};
+    REFUSED(allocator, &allocator, MSPRING_ERROR_ARGUMENT, "alloc");
+    allocator.struct_size = 4;
+    REFUSED(allocator, &allocator, MSPRING_ERROR_STRUCT, "mspring_allocator");
+#undef REFUSED
+
+    mspring_network *network = untouched;
+    check_error(mspring_network_create(NULL, &good, &network), MSPRING_ERROR_ARGUMENT);
+    assert_ptr_equal(network, untouched);
+    check_error(mspring_network_create(builder, &good, NULL), MSPRING_ERROR_ARGUMENT);
+
+    // After all that the builder still makes a network.
+    network = support_network(builder, &good);
+    check_ok(mspring_network_step(network, 0.01));
+    mspring_network_destroy(network);
+}
+
+/* ------------------------------------------------------------------------------------------------ settings */
+
+static void bad_solver_is_refused(void **state)
+{
+    (void)state;
+    mspring_network_def def = support_def(-9.8f, 2);
+    mspring_network *network = support_network(triangle(), &def), *twin = support_network(triangle(), &def);
+    mspring_solver_def good;
+    check_ok(mspring_solver_def_init(&good, sizeof good));
+#define REFUSED(field, value, code, part)                                                                         \
+    do {                                                                                                          \
+        mspring_solver_def solver = good;                                                                         \
+        solver.field = (value);                                                                                   \
+        check_error(mspring_network_set_solver(network, &solver), (code));                                        \
+        check_contains(mspring_network_error(network), (part));                                                   \
+    } while (0)
+    REFUSED(substeps, 0, MSPRING_ERROR_ARGUMENT, "substeps");
+    REFUSED(substeps, 1000001, MSPRING_ERROR_ARGUMENT, "substeps");
+    REFUSED(solver, 1, MSPRING_ERROR_ARGUMENT, "solver");
+    REFUSED(solver, -7, MSPRING_ERROR_ARGUMENT, "solver");
+    REFUSED(struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_solver_def");
+    REFUSED(struct_size, sizeof good + 4, MSPRING_ERROR_STRUCT, "mspring_solver_def");
+#undef REFUSED
+    check_error(mspring_network_set_solver(network, NULL), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_network_error(network), "NULL");
+    check_error(mspring_network_set_solver(NULL, &good), MSPRING_ERROR_ARGUMENT);
+
+    // Still two substeps.
+    support_steps(network, 5, 0.02);
+    support_steps(twin, 5, 0.02);
+    assert_int_equal(support_hash(network), support_hash(twin));
+    mspring_network_destroy(network);
+    mspring_network_destroy(twin);
+}
+
+static void substeps_are_shorter_steps(void **state)
+{
+    (void)state;
+    mspring_network_def def = support_def(-9.8f, 1);
+    mspring_network *network = support_network(triangle(), &def), *twin = support_network(triangle(), &def);
+    mspring_solver_def solver;
+    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    solver.substeps = 8;
+    check_ok(mspring_network_set_solver(network, &solver));
+    support_steps(network, 10, 0.125);      // a power of two: dt / 8 is exact
+    support_steps(twin, 80, 0.125 / 8);
+    assert_int_equal(support_hash(network), support_hash(twin));
+    mspring_network_destroy(network);
+    mspring_network_destroy(twin);
+}
+
+static void bad_gravity_and_damping_are_refused(void **state)
+{
+    (void)state;
+    mspring_network *network = support_network(triangle(), NULL), *twin = support_network(triangle(), NULL);
+    for (size_t i = 0; i < COUNT_OF(not_finite); i++) {
+        check_error(mspring_network_set_gravity(network, not_finite[i], 0), MSPRING_ERROR_ARGUMENT);
+        check_contains(mspring_network_error(network), "gravity");
+        check_error(mspring_network_set_gravity(network, 0, not_finite[i]), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_set_global_damping(network, not_finite[i]), MSPRING_ERROR_ARGUMENT);
+        check_contains(mspring_network_error(network), "damping");
+    }
+    check_error(mspring_network_set_global_damping(network, -0.5f), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_global_damping(network, 1.1e6f), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_gravity(NULL, 0, 0), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_global_damping(NULL, 0), MSPRING_ERROR_ARGUMENT);
+    support_steps(network, 5, 0.02);
+    support_steps(twin, 5, 0.02);
+    assert_int_equal(support_hash(network), support_hash(twin));
+
+    check_ok(mspring_network_set_gravity(network, 3, 0));
+    check_ok(mspring_network_set_global_damping(network, 1e6f));
+    check_ok(mspring_network_step(network, 1)); // exp(-1e6): all that moved stands
+    assert_true(support_velocity(network, 2).x == 0 && support_velocity(network, 2).y == 0);
+    mspring_network_destroy(network);
+    mspring_network_destroy(twin);
+}
+
+static void null_network_has_nothing(void **state)
+{
+    (void)state;
+    assert_int_equal(mspring_network_particle_count(NULL), 0);
+    assert_int_equal(mspring_network_spring_count(NULL), 0);
+    assert_int_equal(mspring_network_memory_used(NULL), 0);
+    assert_int_equal(mspring_network_simd_level(NULL), MSPRING_SIMD_AUTO);
+    assert_string_equal(mspring_network_error(NULL), "");
+    mspring_network_destroy(NULL);
+}
+
+static void plan_counts_what_is_there(void **state)
+{
+    (void)state;
+    mspring_network *network = support_network(triangle(), NULL);
+    mspring_plan plan = {.struct_size = sizeof plan};
+    check_ok(mspring_network_plan(network, &plan));
+    assert_int_equal(plan.struct_size, sizeof plan);
+    assert_int_equal(plan.particle_count, 3);
+    assert_int_equal(plan.spring_count, 2);
+    assert_int_equal(plan.lattice_particles + plan.chain_particles + plan.loose_particles, 3);
+    assert_int_equal(plan.lattice_springs + plan.chain_springs + plan.leftover_springs, 2);
+    assert_int_equal(plan.has_damping, 0);
+    assert_int_equal(plan.has_relative, 0);
+    assert_int_equal(plan.simd_level, mspring_network_simd_level(network));
+    assert_true(plan.slot_count >= 3);
+
+    mspring_plan before = plan;
+    check_error(mspring_network_plan(NULL, &plan), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_plan(network, NULL), MSPRING_ERROR_ARGUMENT);
+    plan.struct_size = 0;
+    check_error(mspring_network_plan(network, &plan), MSPRING_ERROR_STRUCT);
+    plan.struct_size = sizeof plan + 4;
+    check_error(mspring_network_plan(network, &plan), MSPRING_ERROR_STRUCT);
+    plan.struct_size = sizeof plan;
+    assert_memory_equal(&plan, &before, sizeof plan);
+    mspring_network_destroy(network);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(defaults_make_a_network),
+        cmocka_unit_test(empty_builder_is_refused),
+        cmocka_unit_test(duplicate_springs_are_refused_and_named),
+        cmocka_unit_test(duplicates_inside_lattices_are_found),
+        cmocka_unit_test(bad_settings_are_refused),
+        cmocka_unit_test(bad_solver_is_refused),
+        cmocka_unit_test(substeps_are_shorter_steps),
+        cmocka_unit_test(bad_gravity_and_damping_are_refused),
+        cmocka_unit_test(null_network_has_nothing),
+        cmocka_unit_test(plan_counts_what_is_there),
+    };
+    return cmocka_run_group_tests_name("network", tests, NULL, NULL);
+}

@@ -1,0 +1,334 @@
+/// @file test_state.c
+/// Reading and writing the state: views, ranges in id order, the local origin.
+///
+/// SPDX-License-Identifier: MIT
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "recipe.h"
+#include "support.h"
+
+/// A network with rows of every kind and empty slots between: a lattice with holes, a rope, loose particles.
+static int make_network(void **state)
+{
+    uint64_t seed = 11;
+    const recipe_stuff stuff = {
+        .mass = {1, 2}, .stiffness = {50, 100}, .damping = {0, 1}, .pinned = 0.1, .holes = 0.3};
+    recipe made = {0};
+    recipe_lattice(&made, 20, 7, 0, 0, 1, &stuff, &seed);
+    mspring_id end = recipe_particle(&made, 40, 20, 1, MSPRING_PARTICLE_PINNED);
+    recipe_rope(&made, 0, end, 12, &stuff, &seed);
+    for (int i = 0; i < 5; i++) {
+        recipe_particle(&made, 50 + i, 3, 1, 0);
+    }
+    recipe_random_springs(&made, 10, &stuff, &seed);
+    recipe_shuffle(&made, &seed, NULL);
+    mspring_network_def def = support_def(-9.8f, 2);
+    *state = recipe_network(&made, &def);
+    recipe_free(&made);
+    return 0;
+}
+
+static int free_network(void **state)
+{
+    mspring_network_destroy(*state);
+    return 0;
+}
+
+/* --------------------------------------------------------------------------------------------------- views */
+
+static void slots_and_ids_are_inverse_maps(void **state)
+{
+    mspring_network *network = *state;
+    mspring_view view = {.struct_size = sizeof view};
+    mspring_plan plan = {.struct_size = sizeof plan};
+    check_ok(mspring_network_view(network, &view));
+    check_ok(mspring_network_plan(network, &plan));
+    assert_int_equal(view.particle_count, mspring_network_particle_count(network));
+    assert_int_equal(view.slot_count, plan.slot_count);
+    assert_int_equal(view.reserved, 0);
+    for (mspring_id id = 0; id < view.particle_count; id++) {
+        assert_true(view.slot_of_particle[id] < view.slot_count);
+        assert_int_equal(view.particle_of_slot[view.slot_of_particle[id]], id);
+    }
+    uint32_t taken = 0;
+    for (uint32_t slot = 0; slot < view.slot_count; slot++) {
+        mspring_id id = view.particle_of_slot[slot];
+        if (id == MSPRING_NONE) {
+            assert_true(view.inverse_mass[slot] == 0);
+        } else {
+            assert_int_equal(view.slot_of_particle[id], slot);
+            taken++;
+        }
+    }
+    assert_int_equal(taken, view.particle_count);
+    assert_true(taken < view.slot_count); // there are holes: the network of this test is meant to have some
+}
+
+static void views_show_the_state_and_follow_the_steps(void **state)
+{
+    mspring_network *network = *state;
+    mspring_view before = {.struct_size = sizeof before}, after = {.struct_size = sizeof after};
+    check_ok(mspring_network_view(network, &before));
+    support_steps(network, 30, 0.01);
+    check_ok(mspring_network_view(network, &after));
+    assert_ptr_equal(before.x, after.x);
+    assert_ptr_equal(before.y, after.y);
+    assert_ptr_equal(before.vx, after.vx);
+    assert_ptr_equal(before.vy, after.vy);
+    assert_ptr_equal(before.inverse_mass, after.inverse_mass);
+    assert_ptr_equal(before.slot_of_particle, after.slot_of_particle);
+    assert_ptr_equal(before.particle_of_slot, after.particle_of_slot);
+    float mass;
+    for (mspring_id id = 0; id < after.particle_count; id++) {
+        uint32_t slot = after.slot_of_particle[id];
+        support_point p = support_position(network, id), v = support_velocity(network, id);
+        assert_true(p.x == after.origin_x + (double)after.x[slot]);
+        assert_true(p.y == after.origin_y + (double)after.y[slot]);
+        assert_true(v.x == (double)after.vx[slot] && v.y == (double)after.vy[slot]);
+        check_ok(mspring_network_get_masses(network, id, 1, &mass));
+        assert_true(after.inverse_mass[slot] == 0 || after.inverse_mass[slot] == 1.0f / mass);
+        assert_true(mass >= 1 && mass <= 2); // the pinned ones have theirs, too
+    }
+}
+
+static void what_is_written_through_a_view_counts(void **state)
+{
+    mspring_network *network = *state;
+    mspring_view view = {.struct_size = sizeof view};
+    check_ok(mspring_network_view(network, &view));
+    uint32_t slot = view.slot_of_particle[7];
+    view.x[slot] = 3.25f;
+    view.vy[slot] = -2;
+    assert_true(support_position(network, 7).x == view.origin_x + 3.25);
+    assert_true(support_velocity(network, 7).y == -2);
+}
+
+static void bad_views_are_refused(void **state)
+{
+    mspring_network *network = *state;
+    mspring_view view, before;
+    memset(&view, 0x5a, sizeof view);
+    view.struct_size = sizeof view + 8;
+    before = view;
+    check_error(mspring_network_view(network, &view), MSPRING_ERROR_STRUCT);
+    assert_memory_equal(&view, &before, sizeof view);
+    view.struct_size = 0;
+    check_error(mspring_network_view(network, &view), MSPRING_ERROR_STRUCT);
+    check_error(mspring_network_view(network, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_view(NULL, &view), MSPRING_ERROR_ARGUMENT);
+}
+
+/* -------------------------------------------------------------------------------------------------- ranges */
+
+enum { MANY = 200 };
+
+static void ranges_read_and_write_in_id_order(void **state)
+{
+    mspring_network *network = *state;
+    const uint32_t count = mspring_network_particle_count(network);
+    double x[MANY], y[MANY], x2[MANY], y2[MANY];
+    float fx[MANY], fy[MANY], vx[MANY], vy[MANY];
+    assert_true(count <= MANY);
+    check_ok(mspring_network_get_positions(network, 0, count, x, y));
+    check_ok(mspring_network_get_positions_float(network, 0, count, fx, fy));
+    for (uint32_t i = 0; i < count; i++) {
+        support_point one = support_position(network, i);
+        assert_true(one.x == x[i] && one.y == y[i] && fx[i] == (float)x[i] && fy[i] == (float)y[i]);
+    }
+
+    // A part: ids 5 to 14, values that a float has exactly.
+    for (int i = 0; i < 10; i++) {
+        x[5 + i] = 0.25 * i;
+        y[5 + i] = 0.5 * (i - 20);
+        vx[i] = (float)i;
+        vy[i] = (float)-i;
+    }
+    check_ok(mspring_network_set_positions(network, 5, 10, x + 5, y + 5));
+    check_ok(mspring_network_set_velocities(network, 5, 10, vx, vy));
+    check_ok(mspring_network_get_positions(network, 0, count, x2, y2));
+    assert_memory_equal(x, x2, count * sizeof *x);
+    assert_memory_equal(y, y2, count * sizeof *y);
+    for (mspring_id id = 5; id < 15; id++) {
+        assert_true(support_velocity(network, id).x == id - 5 && support_velocity(network, id).y == -(double)(id - 5));
+    }
+    assert_true(support_velocity(network, 15).x == 0);
+
+    // As float, and of nobody.
+    for (uint32_t i = 0; i < count; i++) {
+        fx[i] = (float)i;
+        fy[i] = (float)(count - i);
+    }
+    check_ok(mspring_network_set_positions_float(network, 20, 3, fx + 20, fy + 20));
+    assert_true(support_position(network, 22).x == 22 && support_position(network, 22).y == count - 22);
+    assert_true(support_position(network, 23).x == x2[23]);
+    check_ok(mspring_network_get_positions(network, count, 0, x2, y2));
+    check_ok(mspring_network_set_positions(network, count, 0, x2, y2));
+}
+
+static void ranges_that_leave_the_network_are_refused(void **state)
+{
+    mspring_network *network = *state;
+    const uint32_t count = mspring_network_particle_count(network);
+    const struct {
+        mspring_id first;
+        uint32_t count;
+    } bad[] = {{count, 1}, {0, count + 1}, {count - 1, 2}, {count + 1, 0}, {UINT32_MAX, 2}, {2, UINT32_MAX}};
+    double x[2] = {7, 7}, y[2] = {7, 7};
+    float fx[2] = {7, 7}, fy[2] = {7, 7};
+    const uint64_t hash = support_hash(network);
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        mspring_id first = bad[i].first;
+        uint32_t n = bad[i].count;
+        check_error(mspring_network_get_positions(network, first, n, x, y), MSPRING_ERROR_ID);
+        check_error(mspring_network_get_positions_float(network, first, n, fx, fy), MSPRING_ERROR_ID);
+        check_error(mspring_network_get_velocities(network, first, n, fx, fy), MSPRING_ERROR_ID);
+        check_error(mspring_network_get_masses(network, first, n, fx), MSPRING_ERROR_ID);
+        check_error(mspring_network_set_positions(network, first, n, x, y), MSPRING_ERROR_ID);
+        check_error(mspring_network_set_positions_float(network, first, n, fx, fy), MSPRING_ERROR_ID);
+        check_error(mspring_network_set_velocities(network, first, n, fx, fy), MSPRING_ERROR_ID);
+        check_error(mspring_network_apply_forces(network, first, n, fx, fy), MSPRING_ERROR_ID);
+    }
+    check_error(mspring_network_apply_force(network, count, 1, 1), MSPRING_ERROR_ID);
+    check_error(mspring_network_apply_force(network, MSPRING_NONE, 1, 1), MSPRING_ERROR_ID);
+    assert_true(x[0] == 7 && y[0] == 7 && fx[0] == 7 && fy[0] == 7);
+    assert_int_equal(support_hash(network), hash);
+}
+
+static void null_arrays_are_refused(void **state)
+{
+    mspring_network *network = *state;
+    double d[2] = {0, 0};
+    float f[2] = {0, 0};
+    const uint64_t hash = support_hash(network);
+    check_error(mspring_network_get_positions(network, 0, 2, NULL, d), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_positions(network, 0, 2, d, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_positions_float(network, 0, 2, NULL, f), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_velocities(network, 0, 2, f, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_masses(network, 0, 2, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_positions(network, 0, 2, NULL, d), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_positions_float(network, 0, 2, f, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_velocities(network, 0, 2, NULL, f), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_apply_forces(network, 0, 2, NULL, f), MSPRING_ERROR_ARGUMENT);
+
+    check_error(mspring_network_get_positions(NULL, 0, 1, d, d), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_positions_float(NULL, 0, 1, f, f), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_velocities(NULL, 0, 1, f, f), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_masses(NULL, 0, 1, f), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_positions(NULL, 0, 1, d, d), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_positions_float(NULL, 0, 1, f, f), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_velocities(NULL, 0, 1, f, f), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_apply_forces(NULL, 0, 1, f, f), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_apply_force(NULL, 0, 1, 1), MSPRING_ERROR_ARGUMENT);
+    assert_int_equal(support_hash(network), hash);
+}
+
+static void writes_are_all_or_nothing_and_name_the_particle(void **state)
+{
+    mspring_network *network = *state;
+    const uint32_t count = mspring_network_particle_count(network);
+    const double bad[] = {NAN, INFINITY, -INFINITY, 1.001e12, -1.001e12};
+    double x[MANY], y[MANY];
+    float fx[MANY], fy[MANY];
+    const uint64_t hash = support_hash(network);
+    for (uint32_t i = 0; i < count; i++) {
+        x[i] = y[i] = i;
+        fx[i] = fy[i] = (float)i;
+    }
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        x[97] = bad[i];
+        fx[97] = (float)bad[i];
+        check_error(mspring_network_set_positions(network, 0, count, x, y), MSPRING_ERROR_ARGUMENT);
+        check_contains(mspring_network_error(network), "97");
+        check_error(mspring_network_set_positions(network, 0, count, y, x), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_set_positions(network, 0, 100, x, y), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_set_positions_float(network, 0, count, fx, fy), MSPRING_ERROR_ARGUMENT);
+        check_contains(mspring_network_error(network), "97");
+        check_error(mspring_network_set_positions_float(network, 0, 100, fy, fx), MSPRING_ERROR_ARGUMENT);
+        if (!isfinite(bad[i])) {
+            check_error(mspring_network_set_velocities(network, 0, count, fx, fy), MSPRING_ERROR_ARGUMENT);
+            check_contains(mspring_network_error(network), "97");
+            check_error(mspring_network_set_velocities(network, 0, count, fy, fx), MSPRING_ERROR_ARGUMENT);
+            check_error(mspring_network_apply_forces(network, 0, count, fx, fy), MSPRING_ERROR_ARGUMENT);
+            check_contains(mspring_network_error(network), "97");
+            check_error(mspring_network_apply_forces(network, 0, count, fy, fx), MSPRING_ERROR_ARGUMENT);
+            check_error(mspring_network_apply_force(network, 97, fx[97], 0), MSPRING_ERROR_ARGUMENT);
+            check_error(mspring_network_apply_force(network, 97, 0, fx[97]), MSPRING_ERROR_ARGUMENT);
+        }
+        assert_int_equal(support_hash(network), hash);
+    }
+    // None of the refused forces is there: the network moves as an untouched one.
+    void *other = NULL;
+    make_network(&other);
+    support_steps(network, 5, 0.01);
+    support_steps(other, 5, 0.01);
+    assert_int_equal(support_hash(network), support_hash(other));
+    free_network(&other);
+}
+
+/* ------------------------------------------------------------------------------------------------- origin */
+
+static void setting_all_positions_moves_the_origin(void **state)
+{
+    mspring_network *network = *state;
+    const uint32_t count = mspring_network_particle_count(network);
+    double x[MANY], y[MANY];
+    check_ok(mspring_network_get_positions(network, 0, count, x, y));
+    for (uint32_t i = 0; i < count; i++) {
+        x[i] += 123456789.3;
+        y[i] -= 987654321.7;
+    }
+    check_ok(mspring_network_set_positions(network, 0, count, x, y));
+    mspring_view view = {.struct_size = sizeof view};
+    check_ok(mspring_network_view(network, &view));
+    for (uint32_t i = 0; i < count; i++) {
+        support_point p = support_position(network, i);
+        // Within half an ulp of local coordinates up to 64 m (2^-19 m); in world coordinates it would be 32 m.
+        check_near(p.x, x[i], 2e-6);
+        check_near(p.y, y[i], 2e-6);
+    }
+
+    // A part of them leaves the origin where it is, also when it goes far away.
+    const double far_x[] = {x[3] + 1e6}, far_y[] = {y[3]};
+    mspring_view again = {.struct_size = sizeof again};
+    check_ok(mspring_network_set_positions(network, 3, 1, far_x, far_y));
+    check_ok(mspring_network_view(network, &again));
+    assert_true(view.origin_x == again.origin_x && view.origin_y == again.origin_y);
+    check_near(support_position(network, 3).x, far_x[0], 0.04); // half an ulp of 1e6 is 1/32
+}
+
+static void parts_may_not_go_too_far_from_the_origin(void **state)
+{
+    mspring_network *network = *state;
+    const uint32_t count = mspring_network_particle_count(network);
+    double x[MANY], y[MANY];
+    for (uint32_t i = 0; i < count; i++) {
+        x[i] = -9e11 + i;
+        y[i] = i;
+    }
+    check_ok(mspring_network_set_positions(network, 0, count, x, y));
+    const uint64_t hash = support_hash(network);
+    const double opposite = 9e11, zero = 0; // within the world's bounds, but 1.8e12 m from the origin
+    check_error(mspring_network_set_positions(network, 4, 1, &opposite, &zero), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_network_error(network), "4");
+    assert_int_equal(support_hash(network), hash);
+}
+
+int main(void)
+{
+#define STATE_TEST(test) cmocka_unit_test_setup_teardown(test, make_network, free_network)
+    const struct CMUnitTest tests[] = {
+        STATE_TEST(slots_and_ids_are_inverse_maps),
+        STATE_TEST(views_show_the_state_and_follow_the_steps),
+        STATE_TEST(what_is_written_through_a_view_counts),
+        STATE_TEST(bad_views_are_refused),
+        STATE_TEST(ranges_read_and_write_in_id_order),
+        STATE_TEST(ranges_that_leave_the_network_are_refused),
+        STATE_TEST(null_arrays_are_refused),
+        STATE_TEST(writes_are_all_or_nothing_and_name_the_particle),
+        STATE_TEST(setting_all_positions_moves_the_origin),
+        STATE_TEST(parts_may_not_go_too_far_from_the_origin),
+    };
+    return cmocka_run_group_tests_name("state", tests, NULL, NULL);
+}

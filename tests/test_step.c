@@ -1,0 +1,250 @@
+/// @file test_step.c
+/// Steps that are refused or taken back, and forces that the host gives for one step.
+///
+/// SPDX-License-Identifier: MIT
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+
+#include "recipe.h"
+#include "support.h"
+
+/// Free particles of 2 kg in a row, no gravity, no springs.
+static mspring_network *particles(uint32_t count, uint32_t substeps, float max_speed)
+{
+    mspring_builder *builder = support_builder();
+    for (uint32_t i = 0; i < count; i++) {
+        support_particle(builder, i, 0, 2);
+    }
+    mspring_network_def def = support_def(0, substeps);
+    def.max_speed = max_speed;
+    return support_network(builder, &def);
+}
+
+static void bad_dt_is_refused(void **state)
+{
+    (void)state;
+    mspring_network *network = particles(3, 4, 1e6f);
+    const float vx[] = {1, 2, 3}, vy[] = {0, 0, 0};
+    check_ok(mspring_network_set_velocities(network, 0, 3, vx, vy));
+    const uint64_t hash = support_hash(network);
+    // The last ones: a substep that is a denormal number, that is nothing, and that is infinite as a float.
+    const double bad[] = {0.0, -0.0,  -0.01, NAN,   INFINITY, -INFINITY, (double)FLT_MIN,
+                          1e-40, 1e-300, 1e40, 1e300};
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        check_error(mspring_network_step(network, bad[i]), MSPRING_ERROR_ARGUMENT);
+        check_contains(mspring_network_error(network), "dt");
+        assert_int_equal(support_hash(network), hash);
+    }
+    check_error(mspring_network_step(NULL, 0.01), MSPRING_ERROR_ARGUMENT);
+    // The shortest that is none of these.
+    check_ok(mspring_network_step(network, 4.0 * (double)FLT_MIN));
+    check_ok(mspring_network_step(network, 0.5));
+    check_near(support_position(network, 2).x, 2 + 3 * 0.5, 1e-6); // a few ulp
+    mspring_network_destroy(network);
+}
+
+/* ------------------------------------------------------------------------------------------------- forces */
+
+static void a_force_acts_during_one_step(void **state)
+{
+    (void)state;
+    for (uint32_t substeps = 1; substeps <= 8; substeps *= 8) {
+        mspring_network *network = particles(40, substeps, 1e6f);
+        check_ok(mspring_network_apply_force(network, 17, 8, -16));
+        check_ok(mspring_network_step(network, 0.25));
+        // F / m dt, every operation exact in binary.
+        assert_true(support_velocity(network, 17).x == 1 && support_velocity(network, 17).y == -2);
+        check_ok(mspring_network_step(network, 0.25));
+        assert_true(support_velocity(network, 17).x == 1 && support_velocity(network, 17).y == -2);
+        for (mspring_id id = 0; id < 40; id++) {
+            if (id != 17) {
+                assert_true(support_velocity(network, id).x == 0 && support_velocity(network, id).y == 0);
+            }
+        }
+        mspring_network_destroy(network);
+    }
+}
+
+static void forces_add_up(void **state)
+{
+    (void)state;
+    mspring_network *network = particles(20, 2, 1e6f);
+    float x[10], y[10];
+    for (int i = 0; i < 10; i++) {
+        x[i] = 8.0f * (float)i;
+        y[i] = 16;
+    }
+    check_ok(mspring_network_apply_forces(network, 5, 10, x, y));
+    check_ok(mspring_network_apply_forces(network, 10, 10, x, y));
+    check_ok(mspring_network_apply_force(network, 10, 80, 0));
+    check_ok(mspring_network_step(network, 0.25));
+    for (mspring_id id = 0; id < 20; id++) {
+        double fx = (id >= 5 && id < 15 ? 8.0 * (id - 5) : 0) + (id >= 10 ? 8.0 * (id - 10) : 0) + (id == 10 ? 80 : 0);
+        double fy = (id >= 5 && id < 15 ? 16 : 0) + (id >= 10 ? 16 : 0);
+        assert_true(support_velocity(network, id).x == fx / 8 && support_velocity(network, id).y == fy / 8);
+    }
+    mspring_network_destroy(network);
+}
+
+static void forces_on_springs_and_leftovers_add_to_the_springs(void **state)
+{
+    (void)state;
+    // Two equal networks of lattice, rope and leftover springs. A force equal to gravity on each particle of one,
+    // gravity on the other.
+    uint64_t seed = 5;
+    const recipe_stuff stuff = {.mass = {2, 2}, .stiffness = {100, 200}, .damping = {0, 1}, .holes = 0.1};
+    recipe made = {0};
+    recipe_lattice(&made, 18, 5, 0, 0, 1, &stuff, &seed);
+    recipe_rope(&made, 3, 60, 9, &stuff, &seed);
+    recipe_random_springs(&made, 12, &stuff, &seed);
+    recipe_disturb(&made, 0.05, 1, &seed);
+    mspring_network_def with = support_def(-8, 2), without = support_def(0, 2);
+    mspring_network *heavy = recipe_network(&made, &with), *pulled = recipe_network(&made, &without);
+    for (int step = 0; step < 20; step++) {
+        for (mspring_id id = 0; id < made.particle_count; id++) {
+            check_ok(mspring_network_apply_force(pulled, id, 0, -16));
+        }
+        check_ok(mspring_network_step(pulled, 1.0 / 64));
+        check_ok(mspring_network_step(heavy, 1.0 / 64));
+    }
+    for (mspring_id id = 0; id < made.particle_count; id++) {
+        support_point a = support_position(heavy, id), b = support_position(pulled, id);
+        // Both add the same numbers in another order: 40 roundings of a velocity of up to 8 m/s (2.4e-7 each), for
+        // up to 0.3 s, and of a position of up to 16 m (5e-7 each).
+        check_near(a.x, b.x, 4e-5);
+        check_near(a.y, b.y, 4e-5);
+    }
+    mspring_network_destroy(heavy);
+    mspring_network_destroy(pulled);
+    recipe_free(&made);
+}
+
+static void pinned_particles_feel_no_force(void **state)
+{
+    (void)state;
+    mspring_builder *builder = support_builder();
+    support_pinned(builder, 0, 0, 2);
+    support_particle(builder, 1, 0, 2);
+    mspring_network_def def = support_def(0, 1);
+    mspring_network *network = support_network(builder, &def);
+    check_ok(mspring_network_apply_force(network, 0, 100, 100));
+    check_ok(mspring_network_step(network, 0.25));
+    assert_true(support_position(network, 0).x == 0 && support_velocity(network, 0).x == 0);
+    mspring_network_destroy(network);
+}
+
+/* --------------------------------------------------------------------------------------------- steps taken back */
+
+static void a_step_out_of_bounds_is_taken_back(void **state)
+{
+    (void)state;
+    mspring_network *network = particles(50, 4, 10);
+    float vx[50], vy[50];
+    for (int i = 0; i < 50; i++) {
+        vx[i] = 1;
+        vy[i] = 0.25f * (float)(i % 8);
+    }
+    check_ok(mspring_network_set_velocities(network, 0, 50, vx, vy));
+    check_ok(mspring_network_step(network, 0.125));
+    const uint64_t hash = support_hash(network);
+    const support_point before = support_position(network, 37);
+
+    check_ok(mspring_network_apply_force(network, 37, 0, 64)); // 64 / 2 * 0.5 = 16 m/s on top
+    for (int again = 0; again < 3; again++) {
+        check_error(mspring_network_step(network, 0.5), MSPRING_ERROR_UNSTABLE);
+        check_contains(mspring_network_error(network), "particle 37");
+        assert_int_equal(support_hash(network), hash);
+    }
+    // The force is still there for the step that succeeds: 64 / 2 * 0.125 = 4 m/s, ...
+    check_ok(mspring_network_step(network, 0.125));
+    assert_true(support_velocity(network, 37).y == 1.25 + 4);
+    assert_true(support_position(network, 37).x == before.x + 0.125);
+    // ... and gone after it.
+    check_ok(mspring_network_step(network, 0.125));
+    assert_true(support_velocity(network, 37).y == 1.25 + 4);
+    mspring_network_destroy(network);
+}
+
+static void an_explosion_is_taken_back(void **state)
+{
+    (void)state;
+    // A hundred times too stiff for its step: it doubles tenfold in each. The speed limit stops it before anything
+    // is infinite, and at the end of a step of many substeps everything is NaN.
+    uint64_t seed = 21;
+    const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {1e6, 1e6}};
+    for (uint32_t substeps = 1; substeps <= 400; substeps *= 400) {
+        recipe made = {0};
+        recipe_lattice(&made, 20, 6, 0, 0, 1, &stuff, &seed);
+        recipe_disturb(&made, 1e-4, 0, &seed);
+        mspring_network_def def = support_def(0, substeps);
+        mspring_network *network = recipe_network(&made, &def);
+        mspring_result result = MSPRING_OK;
+        uint64_t hash = 0;
+        for (int step = 0; step < 100 && result == MSPRING_OK; step++) {
+            hash = support_hash(network);
+            result = mspring_network_step(network, 0.01 * substeps);
+        }
+        check_error(result, MSPRING_ERROR_UNSTABLE);
+        assert_int_equal(support_hash(network), hash);
+        for (mspring_id id = 0; id < made.particle_count; id++) {
+            support_point p = support_position(network, id), v = support_velocity(network, id);
+            assert_true(isfinite(p.x) && isfinite(p.y) && isfinite(v.x) && isfinite(v.y));
+        }
+        // A step short enough goes on from there.
+        mspring_solver_def solver;
+        check_ok(mspring_solver_def_init(&solver, sizeof solver));
+        check_ok(mspring_network_set_solver(network, &solver));
+        check_ok(mspring_network_step(network, 1e-6));
+        mspring_network_destroy(network);
+        recipe_free(&made);
+    }
+}
+
+static void what_is_not_finite_in_a_view_is_noticed(void **state)
+{
+    (void)state;
+    const float bad[] = {NAN, INFINITY, -INFINITY, 1.1e12f};
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        for (int array = 0; array < 4; array++) {
+            mspring_network *network = particles(40, 1, 1e6f);
+            mspring_view view = {.struct_size = sizeof view};
+            check_ok(mspring_network_view(network, &view));
+            float *const arrays[] = {view.x, view.y, view.vx, view.vy};
+            arrays[array][view.slot_of_particle[33]] = bad[i];
+            check_error(mspring_network_step(network, 0.01), MSPRING_ERROR_UNSTABLE);
+            check_contains(mspring_network_error(network), "33");
+            arrays[array][view.slot_of_particle[33]] = 0;
+            check_ok(mspring_network_step(network, 0.01));
+            mspring_network_destroy(network);
+        }
+    }
+}
+
+static void the_speed_limit_is_one(void **state)
+{
+    (void)state;
+    mspring_network *network = particles(1, 1, 10);
+    const float limit = 10, zero = 0, above = nextafterf(10, 11);
+    check_ok(mspring_network_set_velocities(network, 0, 1, &limit, &zero));
+    check_ok(mspring_network_step(network, 0.1));
+    check_ok(mspring_network_set_velocities(network, 0, 1, &zero, &above));
+    check_error(mspring_network_step(network, 0.1), MSPRING_ERROR_UNSTABLE);
+    mspring_network_destroy(network);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bad_dt_is_refused),
+        cmocka_unit_test(a_force_acts_during_one_step),
+        cmocka_unit_test(forces_add_up),
+        cmocka_unit_test(forces_on_springs_and_leftovers_add_to_the_springs),
+        cmocka_unit_test(pinned_particles_feel_no_force),
+        cmocka_unit_test(a_step_out_of_bounds_is_taken_back),
+        cmocka_unit_test(an_explosion_is_taken_back),
+        cmocka_unit_test(what_is_not_finite_in_a_view_is_noticed),
+        cmocka_unit_test(the_speed_limit_is_one),
+    };
+    return cmocka_run_group_tests_name("step", tests, NULL, NULL);
+}
