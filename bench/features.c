@@ -2,6 +2,8 @@
 /// Pay for what the scene has: each feature against the plain scene, measured in turn.
 ///
 /// SPDX-License-Identifier: MIT
+#include <stdio.h>
+
 #include "copy.h"
 #include "modes.h"
 
@@ -112,34 +114,54 @@ static void print_row(const bench_options *options, const bench_scene *subject, 
     bench_table_row(options->format, columns, COLUMN_COUNT, cells);
 }
 
-static bool measure_variants(const bench_scene *subject, const bench_options *options, bench_network *plain,
-                             mspring_simd level, scene_error *error) {
+/// Measure one variant in turn with the plain scene, and print it; with the first one the plain scene as well.
+static bool measure_variant(const variant *kind, const bench_scene *subject, const bench_options *options,
+                            bench_network *plain, mspring_simd level, scene_error *error) {
     uint32_t repeat = options->repeat > 0 ? options->repeat : bench_default_repeat(plain->spring_count);
-    bench_runner plain_runner = bench_network_runner(plain);
-    if (!plain_runner.run(plain, 1, error)) {
+    bench_network other;
+    if (!create_variant(kind, subject, options, plain, level, &other, error)) {
         return false;
     }
-    for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
-        bench_network other;
-        if (!create_variant(&variants[i], subject, options, plain, level, &other, error)) {
-            return false;
+    bench_runner plain_runner = bench_network_runner(plain);
+    bench_runner runner = bench_network_runner(&other);
+    bench_turns turns;
+    bool ok = bench_turns_measure(&plain_runner, &runner, repeat, &turns, error) &&
+              bench_network_check(plain, error) && bench_network_check(&other, error);
+    if (ok) {
+        if (kind == variants) {
+            print_row(options, subject, "plain", plain, turns.first_median, 1.0);
         }
-        bench_runner runner = bench_network_runner(&other);
-        bench_turns turns;
-        bool ok = bench_turns_measure(&plain_runner, &runner, repeat, &turns, error) &&
-                  bench_network_check(plain, error) && bench_network_check(&other, error);
-        if (ok) {
-            if (i == 0) {
-                print_row(options, subject, "plain", plain, turns.first_median, 1.0);
-            }
-            print_row(options, subject, variants[i].name, &other, turns.second_median, turns.ratio_median);
-        }
-        bench_network_free(&other);
-        if (!ok) {
-            return false;
+        print_row(options, subject, kind->name, &other, turns.second_median, turns.ratio_median);
+    }
+    bench_network_free(&other);
+    return ok;
+}
+
+static bool measure_level(const bench_scene *subject, const bench_options *options, mspring_simd level) {
+    uint32_t springs = mspring_builder_spring_count(subject->made.builder);
+    uint32_t substeps = options->substeps > 0 ? options->substeps : bench_default_substeps(springs);
+    bench_network plain;
+    scene_error error;
+    if (!bench_network_create(subject->made.builder, level, substeps, &plain, &error)) {
+        bench_complain(subject->label, &error);
+        return false;
+    }
+    bench_runner runner = bench_network_runner(&plain);
+    bool ok = runner.run(&plain, 1, &error); /* relative springs have their stiffness after a step */
+    if (!ok) {
+        bench_complain(subject->label, &error);
+    }
+    bool all = ok;
+    for (size_t i = 0; ok && i < sizeof variants / sizeof *variants; i++) {
+        if (!measure_variant(&variants[i], subject, options, &plain, level, &error)) {
+            char about[160];
+            snprintf(about, sizeof about, "%s, %s", subject->label, variants[i].name);
+            bench_complain(about, &error);
+            all = false;
         }
     }
-    return true;
+    bench_network_free(&plain);
+    return all;
 }
 
 static bool visit(const bench_scene *subject, const bench_options *options, void *user) {
@@ -147,21 +169,11 @@ static bool visit(const bench_scene *subject, const bench_options *options, void
     mspring_simd levels[4];
     scene_error error;
     int count = bench_options_levels(options, levels, &error);
-    uint32_t springs = mspring_builder_spring_count(subject->made.builder);
-    uint32_t substeps = options->substeps > 0 ? options->substeps : bench_default_substeps(springs);
+    bool ok = true;
     for (int i = 0; i < count; i++) {
-        bench_network plain;
-        bool ok = bench_network_create(subject->made.builder, levels[i], substeps, &plain, &error);
-        if (ok) {
-            ok = measure_variants(subject, options, &plain, levels[i], &error);
-            bench_network_free(&plain);
-        }
-        if (!ok) {
-            bench_complain(subject->label, &error);
-            return false;
-        }
+        ok = measure_level(subject, options, levels[i]) && ok;
     }
-    return true;
+    return ok;
 }
 
 bool bench_run_features(const bench_options *options) {

@@ -206,12 +206,25 @@ bool bench_options_read(int count, char **arguments, bench_options *out, scene_e
     return true;
 }
 
-int bench_options_levels(const bench_options *options, mspring_simd levels[4], scene_error *error) {
+/// The best level that a network will run at: the machine's, unless the environment lowers it.
+static mspring_simd best_level(void) {
     mspring_simd best = mspring_simd_supported();
+    const char *wish = getenv("MSPRING_SIMD");
+    for (mspring_simd level = MSPRING_SIMD_SCALAR; wish != NULL && level < best; level++) {
+        if (strcmp(wish, mspring_simd_name(level)) == 0) {
+            return level;
+        }
+    }
+    return best;
+}
+
+int bench_options_levels(const bench_options *options, mspring_simd levels[4], scene_error *error) {
+    mspring_simd best = best_level();
     if (!options->all_levels) {
         levels[0] = options->level != MSPRING_SIMD_AUTO ? options->level : best;
         if (levels[0] > best) {
-            snprintf(error->text, sizeof error->text, "this machine does not offer %s: its best level is %s",
+            snprintf(error->text, sizeof error->text,
+                     "%s is not to be had here: the best level of this machine (and of MSPRING_SIMD, if set) is %s",
                      mspring_simd_name(levels[0]), mspring_simd_name(best));
             return 0;
         }

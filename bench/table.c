@@ -21,11 +21,13 @@ bench_cell bench_cell_of(const char *format, ...) {
     return cell;
 }
 
-static void print_cell(bench_format format, const bench_column *column, const char *text, bool first) {
+static void print_cell(bench_format format, const bench_column *column, const char *text, bool first, bool last) {
     if (format == BENCH_CSV) {
         printf("%s%s", first ? "" : ",", text);
     } else if (format == BENCH_MARKDOWN) {
         printf("%s %s |", first ? "|" : "", text);
+    } else if (column->width < 0 && last) {
+        printf("%s%s", first ? "" : "  ", text);
     } else if (column->width < 0) {
         printf("%s%-*s", first ? "" : "  ", -column->width, text);
     } else {
@@ -41,7 +43,7 @@ void bench_table_head(bench_format format, const bench_column *columns, int coun
     bool first = true;
     for (int i = 0; i < count; i++) {
         if (heading(format, &columns[i]) != NULL) {
-            print_cell(format, &columns[i], heading(format, &columns[i]), first);
+            print_cell(format, &columns[i], heading(format, &columns[i]), first, i == count - 1);
             first = false;
         }
     }
@@ -61,7 +63,7 @@ void bench_table_row(bench_format format, const bench_column *columns, int count
     bool first = true;
     for (int i = 0; i < count; i++) {
         if (heading(format, &columns[i]) != NULL) {
-            print_cell(format, &columns[i], cells[i].text, first);
+            print_cell(format, &columns[i], cells[i].text, first, i == count - 1);
             first = false;
         }
     }
