@@ -49,8 +49,8 @@ static const entry entries[] = {
 static const char *const quick[] = {"bar_80x5",      "grid_96x96", "bar_544x68", "ship",
                                     "ship_ropes_40", "rope_1000",  NULL};
 
-static const char *const checked[] = {"bar_80x5",      "bar_80x5_undamped", "bar_544x68",  "bar_1800x5", "ship",
-                                      "ship_ropes_40", "rope_1000",         "graph_10000", NULL};
+static const char *const checked[] = {"bar_80x5",          "bar_80x5_undamped", "bar_544x68",  "bar_1800x5",
+                                      "bar_80x5_ropes_40", "rope_1000",         "graph_10000", NULL};
 
 const char *const *bench_catalogue_quick(void) {
     return quick;

@@ -39,7 +39,7 @@ void bench_scene_free(bench_scene *unwanted);
 /// Names of the scenes measured when none is asked for, ended by NULL; they take some seconds together.
 const char *const *bench_catalogue_quick(void);
 
-/// Names of scenes that are small enough to be checked against the baseline in a second or two, ended by NULL.
+/// Names of the scenes checked against the baseline when none is asked for, ended by NULL; they need no file.
 const char *const *bench_catalogue_checked(void);
 
 void bench_catalogue_print(void);
