@@ -3,15 +3,13 @@
 
 #include "network.h"
 
-static bool is_finite_pair(float x, float y)
-{
+static bool is_finite_pair(float x, float y) {
     return isfinite(x) && isfinite(y);
 }
 
 /* ------------------------------------------------------------------------------------------------------- views */
 
-mspring_result mspring_network_view(mspring_network *network, mspring_view *view)
-{
+mspring_result mspring_network_view(mspring_network *network, mspring_view *view) {
     if (!network || !view)
         return MSPRING_ERROR_ARGUMENT;
     if (view->struct_size != sizeof *view)
@@ -37,8 +35,7 @@ mspring_result mspring_network_view(mspring_network *network, mspring_view *view
 
 // A range for a shared function: no message, as several threads may be here.
 static mspring_result check_get(const mspring_network *network, mspring_id first, uint32_t count, const void *a,
-                                const void *b)
-{
+                                const void *b) {
     if (!network || (count > 0 && (!a || !b)))
         return MSPRING_ERROR_ARGUMENT;
     const uint32_t total = network->topology.particle_count;
@@ -46,8 +43,7 @@ static mspring_result check_get(const mspring_network *network, mspring_id first
 }
 
 mspring_result mspring_network_get_positions(const mspring_network *network, mspring_id first, uint32_t count,
-                                             double *x, double *y)
-{
+                                             double *x, double *y) {
     mspring_result result = check_get(network, first, count, x, y);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
         const uint32_t slot = network->topology.slot_of_particle[first + i];
@@ -57,9 +53,8 @@ mspring_result mspring_network_get_positions(const mspring_network *network, msp
     return result;
 }
 
-mspring_result mspring_network_get_positions_float(const mspring_network *network, mspring_id first,
-                                                   uint32_t count, float *x, float *y)
-{
+mspring_result mspring_network_get_positions_float(const mspring_network *network, mspring_id first, uint32_t count,
+                                                   float *x, float *y) {
     mspring_result result = check_get(network, first, count, x, y);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
         const uint32_t slot = network->topology.slot_of_particle[first + i];
@@ -70,8 +65,7 @@ mspring_result mspring_network_get_positions_float(const mspring_network *networ
 }
 
 mspring_result mspring_network_get_velocities(const mspring_network *network, mspring_id first, uint32_t count,
-                                              float *vx, float *vy)
-{
+                                              float *vx, float *vy) {
     mspring_result result = check_get(network, first, count, vx, vy);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
         const uint32_t slot = network->topology.slot_of_particle[first + i];
@@ -82,8 +76,7 @@ mspring_result mspring_network_get_velocities(const mspring_network *network, ms
 }
 
 mspring_result mspring_network_get_masses(const mspring_network *network, mspring_id first, uint32_t count,
-                                          float *mass)
-{
+                                          float *mass) {
     mspring_result result = check_get(network, first, count, mass, mass);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
         mass[i] = network->mass[first + i];
@@ -93,8 +86,7 @@ mspring_result mspring_network_get_masses(const mspring_network *network, msprin
 /* --------------------------------------------------------------------------------------------------- set ranges */
 
 static mspring_result check_set(mspring_network *network, mspring_id first, uint32_t count, const void *a,
-                                const void *b)
-{
+                                const void *b) {
     mspring_result result = mspringi_enter(network);
     if (result != MSPRING_OK)
         return result;
@@ -104,15 +96,14 @@ static mspring_result check_set(mspring_network *network, mspring_id first, uint
     return mspringi_check_range(network, "particle", first, count, network->topology.particle_count);
 }
 
-void mspringi_set_position(mspring_network *network, mspring_id particle, double x, double y)
-{
+void mspringi_set_position(mspring_network *network, mspring_id particle, double x, double y) {
     const uint32_t slot = network->topology.slot_of_particle[particle];
     network->state.x[slot] = (float)(x - network->origin_x);
     network->state.y[slot] = (float)(y - network->origin_y);
 }
 
-static mspring_result check_position(mspring_network *network, mspring_id id, double x, double y, bool keep_origin)
-{
+static mspring_result check_position(mspring_network *network, mspring_id id, double x, double y,
+                                     bool keep_origin) {
     const double largest = MSPRING_MAX_COORDINATE;
     const double origin_x = keep_origin ? network->origin_x : 0.0, origin_y = keep_origin ? network->origin_y : 0.0;
     if (fabs(x) <= largest && fabs(y) <= largest && fabs(x - origin_x) <= largest && fabs(y - origin_y) <= largest)
@@ -128,18 +119,16 @@ typedef struct positions {
     const float *x_float, *y_float;
 } positions;
 
-static double x_of(const positions *p, uint32_t i)
-{
+static double x_of(const positions *p, uint32_t i) {
     return p->x ? p->x[i] : (double)p->x_float[i];
 }
 
-static double y_of(const positions *p, uint32_t i)
-{
+static double y_of(const positions *p, uint32_t i) {
     return p->y ? p->y[i] : (double)p->y_float[i];
 }
 
-static mspring_result set_positions(mspring_network *network, mspring_id first, uint32_t count, const positions *to)
-{
+static mspring_result set_positions(mspring_network *network, mspring_id first, uint32_t count,
+                                    const positions *to) {
     const bool all = count == network->topology.particle_count;
     mspringi_box box = mspringi_box_empty();
     for (uint32_t i = 0; i < count; ++i) {
@@ -156,24 +145,21 @@ static mspring_result set_positions(mspring_network *network, mspring_id first, 
 }
 
 mspring_result mspring_network_set_positions(mspring_network *network, mspring_id first, uint32_t count,
-                                             const double *x, const double *y)
-{
+                                             const double *x, const double *y) {
     mspring_result result = check_set(network, first, count, x, y);
     const positions to = {.x = x, .y = y};
     return result == MSPRING_OK ? set_positions(network, first, count, &to) : result;
 }
 
 mspring_result mspring_network_set_positions_float(mspring_network *network, mspring_id first, uint32_t count,
-                                                   const float *x, const float *y)
-{
+                                                   const float *x, const float *y) {
     mspring_result result = check_set(network, first, count, x, y);
     const positions to = {.x_float = x, .y_float = y};
     return result == MSPRING_OK ? set_positions(network, first, count, &to) : result;
 }
 
 mspring_result mspring_network_set_velocities(mspring_network *network, mspring_id first, uint32_t count,
-                                              const float *vx, const float *vy)
-{
+                                              const float *vx, const float *vy) {
     mspring_result result = check_set(network, first, count, vx, vy);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
         if (!is_finite_pair(vx[i], vy[i]))
@@ -191,8 +177,7 @@ mspring_result mspring_network_set_velocities(mspring_network *network, mspring_
 /* ------------------------------------------------------------------------------------------------------- forces */
 
 mspring_result mspring_network_apply_forces(mspring_network *network, mspring_id first, uint32_t count,
-                                            const float *x, const float *y)
-{
+                                            const float *x, const float *y) {
     mspring_result result = check_set(network, first, count, x, y);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
         if (!is_finite_pair(x[i], y[i]))
@@ -212,7 +197,6 @@ mspring_result mspring_network_apply_forces(mspring_network *network, mspring_id
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_apply_force(mspring_network *network, mspring_id particle, float x, float y)
-{
+mspring_result mspring_network_apply_force(mspring_network *network, mspring_id particle, float x, float y) {
     return mspring_network_apply_forces(network, particle, 1, &x, &y);
 }

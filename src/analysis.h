@@ -23,21 +23,20 @@ typedef struct mspringi_strands {
 
 /// Grids: for each, its particles with their column and row, both from 0.
 typedef struct mspringi_grids {
-    uint32_t *grid_of;       ///< [particles] number of the grid, or MSPRING_NONE
-    uint32_t *column, *row;  ///< [particles]
-    uint32_t *members;       ///< [member_count] particles, grid after grid
-    uint32_t *first_member;  ///< [count + 1]
+    uint32_t *grid_of;      ///< [particles] number of the grid, or MSPRING_NONE
+    uint32_t *column, *row; ///< [particles]
+    uint32_t *members;      ///< [member_count] particles, grid after grid
+    uint32_t *first_member; ///< [count + 1]
     uint32_t count, member_count;
 } mspringi_grids;
 
-static inline mspring_id mspringi_other_end(const mspringi_spring *spring, mspring_id particle)
-{
+static inline mspring_id mspringi_other_end(const mspringi_spring *spring, mspring_id particle) {
     return spring->a == particle ? spring->b : spring->a;
 }
 
 /// Index the springs by particle. Fails with MSPRING_ERROR_DUPLICATE if two springs join the same particles.
-mspring_result mspringi_graph_create(mspringi_graph *graph, const mspring_builder *builder,
-                                     mspringi_memory *memory, mspringi_message *message);
+mspring_result mspringi_graph_create(mspringi_graph *graph, const mspring_builder *builder, mspringi_memory *memory,
+                                     mspringi_message *message);
 void mspringi_graph_destroy(mspringi_graph *graph, mspringi_memory *memory);
 
 /// Find the strands: paths of at least three particles that have at most two springs each, and shorter ones that

@@ -8,8 +8,7 @@
 #define SMALLEST_MASS 1e-30f
 #define LARGEST_LENGTH 4e12f // over any distance between two places within MSPRING_MAX_COORDINATE
 
-mspring_result mspring_builder_create(const mspring_allocator *allocator, mspring_builder **builder)
-{
+mspring_result mspring_builder_create(const mspring_allocator *allocator, mspring_builder **builder) {
     mspringi_memory memory;
     mspringi_message message;
     if (!builder)
@@ -25,8 +24,7 @@ mspring_result mspring_builder_create(const mspring_allocator *allocator, msprin
     return MSPRING_OK;
 }
 
-void mspring_builder_destroy(mspring_builder *builder)
-{
+void mspring_builder_destroy(mspring_builder *builder) {
     if (!builder)
         return;
     mspringi_memory memory = builder->memory;
@@ -35,25 +33,21 @@ void mspring_builder_destroy(mspring_builder *builder)
     mspringi_free(&memory, builder);
 }
 
-const char *mspring_builder_error(const mspring_builder *builder)
-{
+const char *mspring_builder_error(const mspring_builder *builder) {
     return builder ? builder->message.text : "";
 }
 
-uint32_t mspring_builder_particle_count(const mspring_builder *builder)
-{
+uint32_t mspring_builder_particle_count(const mspring_builder *builder) {
     return builder ? (uint32_t)builder->particle_count : 0;
 }
 
-uint32_t mspring_builder_spring_count(const mspring_builder *builder)
-{
+uint32_t mspring_builder_spring_count(const mspring_builder *builder) {
     return builder ? (uint32_t)builder->spring_count : 0;
 }
 
 /* ---------------------------------------------------------------------------------------------- reserving */
 
-static mspring_result reserve_particles(mspring_builder *builder, size_t count)
-{
+static mspring_result reserve_particles(mspring_builder *builder, size_t count) {
     if (count > MSPRING_MAX_PARTICLES - builder->particle_count)
         return mspringi_fail(&builder->message, MSPRING_ERROR_LIMIT,
                              "%zu particles more on top of %zu are over the limit of %u", count,
@@ -62,51 +56,45 @@ static mspring_result reserve_particles(mspring_builder *builder, size_t count)
     bool grown = mspringi_grow(&builder->memory, &particles, &builder->particle_capacity,
                                builder->particle_count + count, sizeof *builder->particles);
     builder->particles = particles;
-    return grown ? MSPRING_OK
-                 : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for %zu particles more",
-                                 count);
+    return grown
+               ? MSPRING_OK
+               : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for %zu particles more", count);
 }
 
-static mspring_result reserve_springs(mspring_builder *builder, size_t count)
-{
+static mspring_result reserve_springs(mspring_builder *builder, size_t count) {
     if (count > MSPRING_MAX_SPRINGS - builder->spring_count)
         return mspringi_fail(&builder->message, MSPRING_ERROR_LIMIT,
                              "%zu springs more on top of %zu are over the limit of %u", count,
                              builder->spring_count, (unsigned)MSPRING_MAX_SPRINGS);
     void *springs = builder->springs;
-    bool grown = mspringi_grow(&builder->memory, &springs, &builder->spring_capacity,
-                               builder->spring_count + count, sizeof *builder->springs);
+    bool grown = mspringi_grow(&builder->memory, &springs, &builder->spring_capacity, builder->spring_count + count,
+                               sizeof *builder->springs);
     builder->springs = springs;
-    return grown
-               ? MSPRING_OK
-               : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for %zu springs more", count);
+    return grown ? MSPRING_OK
+                 : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for %zu springs more", count);
 }
 
 /* ----------------------------------------------------------------------------------------------- checking */
 
 // Comparisons are written so that NaN fails them.
 
-static bool in_range(float value, float low, float high)
-{
+static bool in_range(float value, float low, float high) {
     return value >= low && value <= high;
 }
 
-static bool is_coordinate(double value)
-{
+static bool is_coordinate(double value) {
     return value >= -MSPRING_MAX_COORDINATE && value <= MSPRING_MAX_COORDINATE;
 }
 
-static mspring_result check_mass(mspring_builder *builder, const char *what, size_t index, float mass)
-{
+static mspring_result check_mass(mspring_builder *builder, const char *what, size_t index, float mass) {
     if (in_range(mass, SMALLEST_MASS, LARGEST_VALUE))
         return MSPRING_OK;
     return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT,
                          "%s %zu: mass is %g kg, it must be 1e-30 to 1e30", what, index, (double)mass);
 }
 
-static mspring_result check_coefficients(mspring_builder *builder, const char *what, size_t index,
-                                         float stiffness, float damping, uint32_t flags)
-{
+static mspring_result check_coefficients(mspring_builder *builder, const char *what, size_t index, float stiffness,
+                                         float damping, uint32_t flags) {
     if (!in_range(stiffness, 0.0f, LARGEST_VALUE))
         return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT,
                              "%s %zu: stiffness is %g, it must be 0 to 1e30", what, index, (double)stiffness);
@@ -114,13 +102,12 @@ static mspring_result check_coefficients(mspring_builder *builder, const char *w
         return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT,
                              "%s %zu: damping is %g, it must be 0 to 1e30", what, index, (double)damping);
     if (flags & ~(uint32_t)MSPRING_SPRING_RELATIVE)
-        return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "%s %zu: unknown spring flags 0x%x",
-                             what, index, (unsigned)flags);
+        return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "%s %zu: unknown spring flags 0x%x", what,
+                             index, (unsigned)flags);
     return MSPRING_OK;
 }
 
-static mspring_result check_particle(mspring_builder *builder, size_t index, const mspring_particle_def *def)
-{
+static mspring_result check_particle(mspring_builder *builder, size_t index, const mspring_particle_def *def) {
     mspringi_message *message = &builder->message;
     mspring_result result =
         mspringi_check_struct(message, "mspring_particle_def", def->struct_size, sizeof *def, sizeof *def);
@@ -140,8 +127,7 @@ static mspring_result check_particle(mspring_builder *builder, size_t index, con
 
 // Check a spring and find its rest length.
 static mspring_result check_spring(mspring_builder *builder, size_t index, const mspring_spring_def *def,
-                                   float *rest_length)
-{
+                                   float *rest_length) {
     mspringi_message *message = &builder->message;
     mspring_result result =
         mspringi_check_struct(message, "mspring_spring_def", def->struct_size, sizeof *def, sizeof *def);
@@ -179,14 +165,12 @@ static mspring_result check_spring(mspring_builder *builder, size_t index, const
 
 /* ------------------------------------------------------------------------------------ particles and springs */
 
-static void append_particle(mspring_builder *builder, const mspring_particle_def *def)
-{
+static void append_particle(mspring_builder *builder, const mspring_particle_def *def) {
     builder->particles[builder->particle_count++] = (mspringi_particle){
         .x = def->x, .y = def->y, .vx = def->vx, .vy = def->vy, .mass = def->mass, .flags = def->flags};
 }
 
-static void append_spring(mspring_builder *builder, const mspring_spring_def *def, float rest_length)
-{
+static void append_spring(mspring_builder *builder, const mspring_spring_def *def, float rest_length) {
     builder->springs[builder->spring_count++] = (mspringi_spring){.a = def->a,
                                                                   .b = def->b,
                                                                   .stiffness = def->stiffness,
@@ -196,8 +180,7 @@ static void append_spring(mspring_builder *builder, const mspring_spring_def *de
 }
 
 mspring_result mspring_builder_add_particles(mspring_builder *builder, const mspring_particle_def *defs,
-                                             size_t count, mspring_id *first_id)
-{
+                                             size_t count, mspring_id *first_id) {
     if (!builder)
         return MSPRING_ERROR_ARGUMENT;
     if (!defs && count > 0)
@@ -217,14 +200,12 @@ mspring_result mspring_builder_add_particles(mspring_builder *builder, const msp
 }
 
 mspring_result mspring_builder_add_particle(mspring_builder *builder, const mspring_particle_def *def,
-                                            mspring_id *id)
-{
+                                            mspring_id *id) {
     return mspring_builder_add_particles(builder, def, 1, id);
 }
 
 mspring_result mspring_builder_add_springs(mspring_builder *builder, const mspring_spring_def *defs, size_t count,
-                                           mspring_id *first_id)
-{
+                                           mspring_id *first_id) {
     if (!builder)
         return MSPRING_ERROR_ARGUMENT;
     if (!defs && count > 0)
@@ -244,15 +225,13 @@ mspring_result mspring_builder_add_springs(mspring_builder *builder, const mspri
     return result;
 }
 
-mspring_result mspring_builder_add_spring(mspring_builder *builder, const mspring_spring_def *def, mspring_id *id)
-{
+mspring_result mspring_builder_add_spring(mspring_builder *builder, const mspring_spring_def *def, mspring_id *id) {
     return mspring_builder_add_springs(builder, def, 1, id);
 }
 
 /* ------------------------------------------------------------------------------------------------- lattice */
 
-static mspring_result check_materials(mspring_builder *builder, const mspring_lattice_def *def)
-{
+static mspring_result check_materials(mspring_builder *builder, const mspring_lattice_def *def) {
     mspringi_message *message = &builder->message;
     if (!def->materials && def->material_count > 0)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "lattice materials are NULL");
@@ -282,8 +261,7 @@ static mspring_result check_materials(mspring_builder *builder, const mspring_la
 
 // Check a lattice's cells and count what it will add.
 static mspring_result check_lattice(mspring_builder *builder, const mspring_lattice_def *def, size_t *particles,
-                                    size_t *springs)
-{
+                                    size_t *springs) {
     mspringi_message *message = &builder->message;
     mspring_result result =
         mspringi_check_struct(message, "mspring_lattice_def", def->struct_size, sizeof *def, sizeof *def);
@@ -299,14 +277,13 @@ static mspring_result check_lattice(mspring_builder *builder, const mspring_latt
     if (!def->cells)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "lattice cells are NULL");
     if (!(def->spacing >= 1e-9 && def->spacing <= 1e9))
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
-                             "lattice spacing is %g m, it must be 1e-9 to 1e9", def->spacing);
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "lattice spacing is %g m, it must be 1e-9 to 1e9",
+                             def->spacing);
     const double right = def->x + (double)(width - 1) * def->spacing;
     const double top = def->y + (double)(height - 1) * def->spacing;
     if (!is_coordinate(def->x) || !is_coordinate(def->y) || !is_coordinate(right) || !is_coordinate(top))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
-                             "lattice from (%g, %g) to (%g, %g) m is not within 1e12", def->x, def->y, right,
-                             top);
+                             "lattice from (%g, %g) to (%g, %g) m is not within 1e12", def->x, def->y, right, top);
     if (right != def->x && def->x + def->spacing == def->x)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "lattice spacing %g m is lost in its position (%g, %g) m", def->spacing, def->x,
@@ -337,9 +314,8 @@ static mspring_result check_lattice(mspring_builder *builder, const mspring_latt
 }
 
 // The ids of a lattice's particles are dense in cell order, so those of two rows are enough to join them.
-static void join_cells(mspring_builder *builder, const mspring_lattice_def *def, mspring_id a,
-                       uint16_t material_a, mspring_id b, uint16_t material_b, bool diagonal)
-{
+static void join_cells(mspring_builder *builder, const mspring_lattice_def *def, mspring_id a, uint16_t material_a,
+                       mspring_id b, uint16_t material_b, bool diagonal) {
     const mspring_material *ma = &def->materials[material_a], *mb = &def->materials[material_b];
     const double length = diagonal ? def->spacing * 1.4142135623730951 : def->spacing;
     builder->springs[builder->spring_count++] =
@@ -351,8 +327,7 @@ static void join_cells(mspring_builder *builder, const mspring_lattice_def *def,
                           .flags = ma->spring_flags};
 }
 
-static void append_lattice(mspring_builder *builder, const mspring_lattice_def *def, mspring_id *cell_ids)
-{
+static void append_lattice(mspring_builder *builder, const mspring_lattice_def *def, mspring_id *cell_ids) {
     const size_t width = def->width, height = def->height;
     mspring_id id = (mspring_id)builder->particle_count;
     mspring_id next_below = id; // id of the first particle of the row below
@@ -394,8 +369,7 @@ static void append_lattice(mspring_builder *builder, const mspring_lattice_def *
 }
 
 mspring_result mspring_builder_add_lattice(mspring_builder *builder, const mspring_lattice_def *def,
-                                           mspring_id *cell_ids)
-{
+                                           mspring_id *cell_ids) {
     size_t particles = 0, springs = 0;
     if (!builder)
         return MSPRING_ERROR_ARGUMENT;
@@ -413,8 +387,7 @@ mspring_result mspring_builder_add_lattice(mspring_builder *builder, const mspri
 
 /* ---------------------------------------------------------------------------------------------------- rope */
 
-static mspring_result check_rope(mspring_builder *builder, const mspring_rope_def *def, double *distance)
-{
+static mspring_result check_rope(mspring_builder *builder, const mspring_rope_def *def, double *distance) {
     mspringi_message *message = &builder->message;
     mspring_result result =
         mspringi_check_struct(message, "mspring_rope_def", def->struct_size, sizeof *def, sizeof *def);
@@ -422,8 +395,8 @@ static mspring_result check_rope(mspring_builder *builder, const mspring_rope_de
         return result;
     if (def->from >= builder->particle_count || def->to >= builder->particle_count)
         return mspringi_fail(message, MSPRING_ERROR_ID,
-                             "rope from particle %u to %u, but there are only %zu particles",
-                             (unsigned)def->from, (unsigned)def->to, builder->particle_count);
+                             "rope from particle %u to %u, but there are only %zu particles", (unsigned)def->from,
+                             (unsigned)def->to, builder->particle_count);
     if (def->from == def->to)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "rope from particle %u to itself",
                              (unsigned)def->from);
@@ -451,8 +424,7 @@ static mspring_result check_rope(mspring_builder *builder, const mspring_rope_de
 }
 
 mspring_result mspring_builder_add_rope(mspring_builder *builder, const mspring_rope_def *def,
-                                        mspring_id *first_particle, mspring_id *first_spring)
-{
+                                        mspring_id *first_particle, mspring_id *first_spring) {
     double distance = 0.0;
     if (!builder)
         return MSPRING_ERROR_ARGUMENT;

@@ -20,8 +20,7 @@ typedef struct cpuid_words {
     uint32_t a, b, c, d;
 } cpuid_words;
 
-static cpuid_words cpuid(uint32_t leaf)
-{
+static cpuid_words cpuid(uint32_t leaf) {
     cpuid_words words = {0, 0, 0, 0};
 #if defined(_MSC_VER)
     int out[4];
@@ -38,8 +37,7 @@ static cpuid_words cpuid(uint32_t leaf)
 }
 
 // Which registers the operating system saves: bits 1 and 2 for the 256-bit ones, 5 to 7 for the 512-bit ones.
-static uint64_t saved_registers(void)
-{
+static uint64_t saved_registers(void) {
 #if defined(_MSC_VER)
     return _xgetbv(0);
 #else
@@ -49,8 +47,7 @@ static uint64_t saved_registers(void)
 #endif
 }
 
-mspring_simd mspring_simd_supported(void)
-{
+mspring_simd mspring_simd_supported(void) {
     const uint32_t osxsave = 1u << 27, avx = 1u << 28, avx2 = 1u << 5, avx512f = 1u << 16;
     const uint64_t saves_256 = 0x06, saves_512 = 0xe6;
     const cpuid_words features = cpuid(1), extended = cpuid(7);
@@ -64,21 +61,18 @@ mspring_simd mspring_simd_supported(void)
 
 #else
 
-mspring_simd mspring_simd_supported(void)
-{
+mspring_simd mspring_simd_supported(void) {
     return MSPRING_SIMD_SCALAR;
 }
 
 #endif
 
-const char *mspring_simd_name(mspring_simd level)
-{
+const char *mspring_simd_name(mspring_simd level) {
     static const char *const names[] = {"auto", "scalar", "sse2", "avx2", "avx512"};
     return level >= MSPRING_SIMD_AUTO && level <= MSPRING_SIMD_AVX512 ? names[level] : "unknown";
 }
 
-mspring_simd mspringi_cpu_choose(mspring_simd wanted)
-{
+mspring_simd mspringi_cpu_choose(mspring_simd wanted) {
     mspring_simd level = mspring_simd_supported();
     if (wanted != MSPRING_SIMD_AUTO && wanted < level)
         level = wanted;
@@ -93,42 +87,36 @@ mspring_simd mspringi_cpu_choose(mspring_simd wanted)
 
 #if defined(MSPRINGI_X86_64)
 
-mspringi_fp_state mspringi_fp_enter(void)
-{
+mspringi_fp_state mspringi_fp_enter(void) {
     const mspringi_fp_state before = _mm_getcsr();
     _mm_setcsr(0x1f80); // all exceptions masked, round to nearest, no flush to zero
     return before;
 }
 
-void mspringi_fp_leave(mspringi_fp_state before)
-{
+void mspringi_fp_leave(mspringi_fp_state before) {
     _mm_setcsr((unsigned)before);
 }
 
 #elif defined(__aarch64__) && defined(__GNUC__)
 
-mspringi_fp_state mspringi_fp_enter(void)
-{
+mspringi_fp_state mspringi_fp_enter(void) {
     mspringi_fp_state before;
     __asm__ volatile("mrs %0, fpcr" : "=r"(before));
     __asm__ volatile("msr fpcr, %0" : : "r"((mspringi_fp_state)0));
     return before;
 }
 
-void mspringi_fp_leave(mspringi_fp_state before)
-{
+void mspringi_fp_leave(mspringi_fp_state before) {
     __asm__ volatile("msr fpcr, %0" : : "r"(before));
 }
 
 #else
 
-mspringi_fp_state mspringi_fp_enter(void)
-{
+mspringi_fp_state mspringi_fp_enter(void) {
     return 0;
 }
 
-void mspringi_fp_leave(mspringi_fp_state before)
-{
+void mspringi_fp_leave(mspringi_fp_state before) {
     (void)before;
 }
 

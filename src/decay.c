@@ -1,7 +1,6 @@
 #include "decay.h"
 
-float mspringi_decay(float rate, float h)
-{
+float mspringi_decay(float rate, float h) {
     double x = (double)rate * (double)h;
     // exp(-104) is below the smallest float.
     if (!(x < 104.0))

@@ -5,8 +5,7 @@
 
 // Copy the defaults into a struct that may be of another version: fields that this library does not know are
 // refused by their size when the struct is used, fields that an older header lacks are not written.
-static mspring_result fill(void *def, size_t size, const void *defaults, size_t known)
-{
+static mspring_result fill(void *def, size_t size, const void *defaults, size_t known) {
     if (!def)
         return MSPRING_ERROR_ARGUMENT;
     if (size != known)
@@ -15,14 +14,12 @@ static mspring_result fill(void *def, size_t size, const void *defaults, size_t 
     return MSPRING_OK;
 }
 
-mspring_result mspring_particle_def_init(mspring_particle_def *def, size_t size)
-{
+mspring_result mspring_particle_def_init(mspring_particle_def *def, size_t size) {
     const mspring_particle_def defaults = {.struct_size = sizeof defaults, .mass = 1.0f};
     return fill(def, size, &defaults, sizeof defaults);
 }
 
-mspring_result mspring_spring_def_init(mspring_spring_def *def, size_t size)
-{
+mspring_result mspring_spring_def_init(mspring_spring_def *def, size_t size) {
     const mspring_spring_def defaults = {.struct_size = sizeof defaults,
                                          .a = MSPRING_NONE,
                                          .b = MSPRING_NONE,
@@ -30,20 +27,17 @@ mspring_result mspring_spring_def_init(mspring_spring_def *def, size_t size)
     return fill(def, size, &defaults, sizeof defaults);
 }
 
-mspring_result mspring_material_init(mspring_material *material, size_t size)
-{
+mspring_result mspring_material_init(mspring_material *material, size_t size) {
     const mspring_material defaults = {.struct_size = sizeof defaults, .mass = 1.0f};
     return fill(material, size, &defaults, sizeof defaults);
 }
 
-mspring_result mspring_lattice_def_init(mspring_lattice_def *def, size_t size)
-{
+mspring_result mspring_lattice_def_init(mspring_lattice_def *def, size_t size) {
     const mspring_lattice_def defaults = {.struct_size = sizeof defaults, .spacing = 1.0};
     return fill(def, size, &defaults, sizeof defaults);
 }
 
-mspring_result mspring_rope_def_init(mspring_rope_def *def, size_t size)
-{
+mspring_result mspring_rope_def_init(mspring_rope_def *def, size_t size) {
     const mspring_rope_def defaults = {.struct_size = sizeof defaults,
                                        .from = MSPRING_NONE,
                                        .to = MSPRING_NONE,
@@ -53,15 +47,13 @@ mspring_result mspring_rope_def_init(mspring_rope_def *def, size_t size)
     return fill(def, size, &defaults, sizeof defaults);
 }
 
-mspring_result mspring_solver_def_init(mspring_solver_def *def, size_t size)
-{
+mspring_result mspring_solver_def_init(mspring_solver_def *def, size_t size) {
     const mspring_solver_def defaults = {
         .struct_size = sizeof defaults, .solver = MSPRING_SOLVER_EXPLICIT, .substeps = 1};
     return fill(def, size, &defaults, sizeof defaults);
 }
 
-mspring_result mspring_network_def_init(mspring_network_def *def, size_t size)
-{
+mspring_result mspring_network_def_init(mspring_network_def *def, size_t size) {
     const mspring_network_def defaults = {.struct_size = sizeof defaults,
                                           .simd_level = MSPRING_SIMD_AUTO,
                                           .gravity_y = -9.8f,

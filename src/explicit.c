@@ -5,8 +5,7 @@
 #include "decay.h"
 #include "network.h"
 
-void mspringi_leftovers_pull(mspring_network *network)
-{
+void mspringi_leftovers_pull(mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const mspringi_state *s = &network->state;
     const mspringi_field total = network->forces.total;
@@ -18,8 +17,7 @@ void mspringi_leftovers_pull(mspring_network *network)
         const float inverse = length > 0.0f ? 1.0f / length : 0.0f;
         const float dvx = s->vx[b] - s->vx[a], dvy = s->vy[b] - s->vy[a];
         const float rate = (dvx * dx + dvy * dy) * inverse;
-        const float force =
-            ((length - spring.rest_length) * spring.stiffness + rate * spring.damping) * inverse;
+        const float force = ((length - spring.rest_length) * spring.stiffness + rate * spring.damping) * inverse;
         total.x[a] += force * dx;
         total.y[a] += force * dy;
         total.x[b] -= force * dx;
@@ -27,8 +25,7 @@ void mspringi_leftovers_pull(mspring_network *network)
     }
 }
 
-void mspringi_explicit_substep(mspring_network *network, float h, mspringi_field field)
-{
+void mspringi_explicit_substep(mspring_network *network, float h, mspringi_field field) {
     const mspringi_topology *t = &network->topology;
     const mspringi_kernels *kernels = network->kernels;
     const bool damped = network->parts > MSPRINGI_DAMPING, forced = field.x != NULL;

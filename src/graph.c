@@ -4,8 +4,7 @@
 // Refuse two springs between the same particles: each particle's neighbours are stamped with the spring that
 // leads there, and a stamp that is there already names the first of the two.
 static mspring_result check_duplicates(const mspringi_graph *graph, uint32_t *stamp_of, uint32_t *spring_to,
-                                       mspringi_message *message)
-{
+                                       mspringi_message *message) {
     const mspring_builder *builder = graph->builder;
     for (uint32_t p = 0; p < builder->particle_count; ++p) {
         for (uint32_t i = graph->first[p]; i < graph->first[p + 1]; ++i) {
@@ -22,9 +21,8 @@ static mspring_result check_duplicates(const mspringi_graph *graph, uint32_t *st
     return MSPRING_OK;
 }
 
-mspring_result mspringi_graph_create(mspringi_graph *graph, const mspring_builder *builder,
-                                     mspringi_memory *memory, mspringi_message *message)
-{
+mspring_result mspringi_graph_create(mspringi_graph *graph, const mspring_builder *builder, mspringi_memory *memory,
+                                     mspringi_message *message) {
     const size_t particles = builder->particle_count, springs = builder->spring_count;
     graph->builder = builder;
     graph->first = mspringi_alloc(memory, particles + 2, sizeof *graph->first);
@@ -54,8 +52,7 @@ mspring_result mspringi_graph_create(mspringi_graph *graph, const mspring_builde
     return result;
 }
 
-void mspringi_graph_destroy(mspringi_graph *graph, mspringi_memory *memory)
-{
+void mspringi_graph_destroy(mspringi_graph *graph, mspringi_memory *memory) {
     mspringi_free(memory, graph->first);
     mspringi_free(memory, graph->springs);
 }

@@ -19,18 +19,17 @@ typedef struct finder {
     const mspringi_graph *graph;
     mspringi_grids *grids;
     uint8_t *kinds;
-    uint8_t *given_up;  ///< [particles] was in a grid that was not worth it
-    int32_t *column;    ///< [particles] relative to the seed
-    int32_t *row;       ///< [particles]
-    uint32_t *cell;     ///< hash table of the current grid's particles
+    uint8_t *given_up; ///< [particles] was in a grid that was not worth it
+    int32_t *column;   ///< [particles] relative to the seed
+    int32_t *row;      ///< [particles]
+    uint32_t *cell;    ///< hash table of the current grid's particles
     size_t cell_mask;
     uint64_t *keys, *scratch;
 } finder;
 
 /* --------------------------------------------------------------------------------------- the cells of a grid */
 
-static size_t hash_cell(int32_t column, int32_t row, size_t mask)
-{
+static size_t hash_cell(int32_t column, int32_t row, size_t mask) {
     uint64_t key = (uint64_t)(uint32_t)column << 32 | (uint32_t)row;
     key ^= key >> 33;
     key *= 0xff51afd7ed558ccdu; // an odd number with well spread bits
@@ -39,8 +38,7 @@ static size_t hash_cell(int32_t column, int32_t row, size_t mask)
 }
 
 // Put a particle into a cell; false if somebody is there.
-static bool occupy(finder *f, uint32_t particle, int32_t column, int32_t row)
-{
+static bool occupy(finder *f, uint32_t particle, int32_t column, int32_t row) {
     size_t i = hash_cell(column, row, f->cell_mask);
     while (f->cell[i] != 0) {
         const uint32_t there = f->cell[i] - 1;
@@ -55,8 +53,7 @@ static bool occupy(finder *f, uint32_t particle, int32_t column, int32_t row)
 }
 
 // Empty the hash table again: probe for each member, then clear.
-static void vacate(finder *f, const uint32_t *members, uint32_t count)
-{
+static void vacate(finder *f, const uint32_t *members, uint32_t count) {
     for (uint32_t m = 0; m < count; ++m) {
         size_t i = hash_cell(f->column[members[m]], f->row[members[m]], f->cell_mask);
         while (f->cell[i] != 0) {
@@ -68,15 +65,13 @@ static void vacate(finder *f, const uint32_t *members, uint32_t count)
 
 /* ------------------------------------------------------------------------------------------------- the search */
 
-static bool is_free(const finder *f, uint32_t particle)
-{
+static bool is_free(const finder *f, uint32_t particle) {
     return f->kinds[particle] == MSPRINGI_ROW_LOOSE && f->grids->grid_of[particle] == MSPRING_NONE &&
            !f->given_up[particle];
 }
 
 // The shortest of a particle's springs that lie along an axis; 0 if it has none.
-static double shortest_axial_spring(const finder *f, uint32_t particle)
-{
+static double shortest_axial_spring(const finder *f, uint32_t particle) {
     const mspring_builder *builder = f->graph->builder;
     double shortest = 0.0;
     for (uint32_t i = f->graph->first[particle]; i < f->graph->first[particle + 1]; ++i) {
@@ -91,8 +86,7 @@ static double shortest_axial_spring(const finder *f, uint32_t particle)
 }
 
 // Round an offset to a cell; false if it lies off any of the 3 x 3 cells around.
-static bool round_offset(double offset, int32_t *cell)
-{
+static bool round_offset(double offset, int32_t *cell) {
     const double rounded = floor(offset + 0.5);
     if (!(fabs(rounded) <= 1.0 && fabs(offset - rounded) <= CELL_TOLERANCE))
         return false;
@@ -101,8 +95,7 @@ static bool round_offset(double offset, int32_t *cell)
 }
 
 // Collect all particles that can be reached from seed, cell by cell, behind those of the earlier grids.
-static void flood(finder *f, uint32_t seed, double spacing, uint32_t number)
-{
+static void flood(finder *f, uint32_t seed, double spacing, uint32_t number) {
     const mspringi_graph *graph = f->graph;
     const mspring_builder *builder = graph->builder;
     mspringi_grids *grids = f->grids;
@@ -129,8 +122,7 @@ static void flood(finder *f, uint32_t seed, double spacing, uint32_t number)
 
 /* --------------------------------------------------------------------------------------------- is it worth it */
 
-static uint32_t count_distinct(uint64_t *keys, uint64_t *scratch, uint32_t count)
-{
+static uint32_t count_distinct(uint64_t *keys, uint64_t *scratch, uint32_t count) {
     mspringi_sort_keys(keys, scratch, count);
     uint32_t distinct = 0;
     for (uint32_t i = 0; i < count; ++i)
@@ -140,8 +132,7 @@ static uint32_t count_distinct(uint64_t *keys, uint64_t *scratch, uint32_t count
 
 // Blocks that a grid takes with its columns along the rows, or the other way round.
 static uint32_t count_blocks(finder *f, const uint32_t *members, uint32_t count, int32_t min_column,
-                             int32_t min_row, bool transposed)
-{
+                             int32_t min_row, bool transposed) {
     for (uint32_t m = 0; m < count; ++m) {
         const uint32_t column = (uint32_t)(f->column[members[m]] - min_column);
         const uint32_t row = (uint32_t)(f->row[members[m]] - min_row);
@@ -153,8 +144,7 @@ static uint32_t count_blocks(finder *f, const uint32_t *members, uint32_t count,
 
 // Count the springs of a grid's particles: those between neighbouring cells, and all.
 static void count_springs(const finder *f, const uint32_t *members, uint32_t count, size_t *neighbours,
-                          size_t *all)
-{
+                          size_t *all) {
     const mspringi_graph *graph = f->graph;
     size_t ends = 0;
     *all = 0;
@@ -172,8 +162,7 @@ static void count_springs(const finder *f, const uint32_t *members, uint32_t cou
 }
 
 // Keep the grid that was flooded last, in its better orientation, or give it up.
-static void judge(finder *f, uint32_t begin)
-{
+static void judge(finder *f, uint32_t begin) {
     mspringi_grids *grids = f->grids;
     uint32_t *members = grids->members + begin;
     const uint32_t count = grids->member_count - begin;
@@ -207,8 +196,7 @@ static void judge(finder *f, uint32_t begin)
     grids->first_member[++grids->count] = grids->member_count;
 }
 
-static void find_all(finder *f)
-{
+static void find_all(finder *f) {
     mspringi_grids *grids = f->grids;
     const uint32_t particles = (uint32_t)f->graph->builder->particle_count;
     for (uint32_t seed = 0; seed < particles; ++seed) {
@@ -223,8 +211,7 @@ static void find_all(finder *f)
 }
 
 mspring_result mspringi_grids_find(mspringi_grids *grids, const mspringi_graph *graph, uint8_t *kinds,
-                                   mspringi_memory *memory, mspringi_message *message)
-{
+                                   mspringi_memory *memory, mspringi_message *message) {
     const size_t particles = graph->builder->particle_count;
     size_t table = 16;
     while (table < 2 * particles)
@@ -244,8 +231,8 @@ mspring_result mspringi_grids_find(mspringi_grids *grids, const mspringi_graph *
     mspring_result result = MSPRING_OK;
     if (!grids->grid_of || !grids->column || !grids->row || !grids->members || !grids->first_member ||
         !f.given_up || !f.column || !f.row || !f.cell || !f.keys || !f.scratch) {
-        result = mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to search %zu particles for grids",
-                               particles);
+        result =
+            mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to search %zu particles for grids", particles);
     } else {
         for (size_t p = 0; p < particles; ++p)
             grids->grid_of[p] = MSPRING_NONE;
@@ -260,8 +247,7 @@ mspring_result mspringi_grids_find(mspringi_grids *grids, const mspringi_graph *
     return result;
 }
 
-void mspringi_grids_destroy(mspringi_grids *grids, mspringi_memory *memory)
-{
+void mspringi_grids_destroy(mspringi_grids *grids, mspringi_memory *memory) {
     mspringi_free(memory, grids->grid_of);
     mspringi_free(memory, grids->column);
     mspringi_free(memory, grids->row);

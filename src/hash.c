@@ -4,29 +4,25 @@
 
 #include "network.h"
 
-static uint64_t add_word(uint64_t hash, uint64_t word)
-{
+static uint64_t add_word(uint64_t hash, uint64_t word) {
     hash = (hash ^ word) * UINT64_C(0x100000001b3);
     return hash ^ hash >> 32;
 }
 
-static uint64_t add_floats(uint64_t hash, float a, float b)
-{
+static uint64_t add_floats(uint64_t hash, float a, float b) {
     uint32_t low, high;
     memcpy(&low, &a, sizeof low);
     memcpy(&high, &b, sizeof high);
     return add_word(hash, (uint64_t)high << 32 | low);
 }
 
-static uint64_t add_double(uint64_t hash, double value)
-{
+static uint64_t add_double(uint64_t hash, double value) {
     uint64_t word;
     memcpy(&word, &value, sizeof word);
     return add_word(hash, word);
 }
 
-mspring_result mspring_network_state_hash(const mspring_network *network, uint64_t *hash)
-{
+mspring_result mspring_network_state_hash(const mspring_network *network, uint64_t *hash) {
     if (!network || !hash)
         return MSPRING_ERROR_ARGUMENT;
     const mspringi_topology *t = &network->topology;

@@ -2,8 +2,7 @@
 #include "network.h"
 
 mspring_result mspring_network_add_hook(mspring_network *network, mspring_phase phase, mspring_hook_fn fn,
-                                        void *user, uint32_t *hook)
-{
+                                        void *user, uint32_t *hook) {
     mspring_result result = mspringi_enter(network);
     if (result != MSPRING_OK)
         return result;
@@ -20,8 +19,8 @@ mspring_result mspring_network_add_hook(mspring_network *network, mspring_phase 
     void *hooks = network->hooks;
     if (result == MSPRING_OK && !mspringi_grow(&network->memory, &hooks, &network->hook_capacity,
                                                network->hook_count + 1, sizeof *network->hooks))
-        result = mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for hook %zu",
-                               network->hook_count);
+        result =
+            mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for hook %zu", network->hook_count);
     network->hooks = hooks;
     if (result != MSPRING_OK)
         return result;
@@ -33,8 +32,7 @@ mspring_result mspring_network_add_hook(mspring_network *network, mspring_phase 
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_remove_hook(mspring_network *network, uint32_t hook)
-{
+mspring_result mspring_network_remove_hook(mspring_network *network, uint32_t hook) {
     mspring_result result = mspringi_enter(network);
     if (result != MSPRING_OK)
         return result;
@@ -49,8 +47,7 @@ mspring_result mspring_network_remove_hook(mspring_network *network, uint32_t ho
     return MSPRING_OK;
 }
 
-bool mspringi_hooks_any(const mspring_network *network, mspring_phase phase)
-{
+bool mspringi_hooks_any(const mspring_network *network, mspring_phase phase) {
     for (size_t i = 0; i < network->hook_count; ++i)
         if (network->hooks[i].phase == phase)
             return true;
@@ -58,8 +55,7 @@ bool mspringi_hooks_any(const mspring_network *network, mspring_phase phase)
 }
 
 void mspringi_hooks_call(mspring_network *network, mspring_phase phase, uint32_t substep, double dt,
-                         mspringi_field field)
-{
+                         mspringi_field field) {
     for (size_t i = 0; i < network->hook_count; ++i) {
         const mspringi_hook *hook = &network->hooks[i];
         if (hook->phase != phase)

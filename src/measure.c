@@ -4,14 +4,12 @@
 
 #include "network.h"
 
-static bool is_pinned(const mspring_network *network, mspring_id particle)
-{
+static bool is_pinned(const mspring_network *network, mspring_id particle) {
     return network->inverse_mass[network->topology.slot_of_particle[particle]] == 0.0f;
 }
 
 // Length of a spring, and how fast it grows.
-static double spring_length(const mspring_network *network, const mspringi_spring_record *r, double *rate)
-{
+static double spring_length(const mspring_network *network, const mspringi_spring_record *r, double *rate) {
     const mspringi_state *s = &network->state;
     const double dx = (double)s->x[r->tip] - (double)s->x[r->base];
     const double dy = (double)s->y[r->tip] - (double)s->y[r->base];
@@ -22,8 +20,7 @@ static double spring_length(const mspring_network *network, const mspringi_sprin
     return length;
 }
 
-static float spring_strain(const mspring_network *network, mspring_id spring)
-{
+static float spring_strain(const mspring_network *network, mspring_id spring) {
     const mspringi_spring_record r = mspringi_spring_at(network, spring);
     const double rest_length = (double)*r.rest_length;
     double rate;
@@ -31,8 +28,7 @@ static float spring_strain(const mspring_network *network, mspring_id spring)
 }
 
 mspring_result mspring_network_energy(const mspring_network *network, double *kinetic, double *elastic,
-                                      double *potential)
-{
+                                      double *potential) {
     if (!network)
         return MSPRING_ERROR_ARGUMENT;
     const mspringi_topology *t = &network->topology;
@@ -62,8 +58,7 @@ mspring_result mspring_network_energy(const mspring_network *network, double *ki
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_momentum(const mspring_network *network, double *px, double *py, double *angular)
-{
+mspring_result mspring_network_momentum(const mspring_network *network, double *px, double *py, double *angular) {
     if (!network)
         return MSPRING_ERROR_ARGUMENT;
     const mspringi_topology *t = &network->topology;
@@ -90,8 +85,7 @@ mspring_result mspring_network_momentum(const mspring_network *network, double *
 }
 
 mspring_result mspring_network_bounds(const mspring_network *network, double *min_x, double *min_y, double *max_x,
-                                      double *max_y)
-{
+                                      double *max_y) {
     if (!network || !min_x || !min_y || !max_x || !max_y)
         return MSPRING_ERROR_ARGUMENT;
     const mspringi_topology *t = &network->topology;
@@ -112,8 +106,7 @@ mspring_result mspring_network_bounds(const mspring_network *network, double *mi
 }
 
 mspring_result mspring_network_get_spring(const mspring_network *network, mspring_id spring,
-                                          mspring_spring_info *info)
-{
+                                          mspring_spring_info *info) {
     if (!network || !info)
         return MSPRING_ERROR_ARGUMENT;
     if (info->struct_size != sizeof *info)
@@ -143,8 +136,7 @@ mspring_result mspring_network_get_spring(const mspring_network *network, msprin
 }
 
 mspring_result mspring_network_get_strains(const mspring_network *network, mspring_id first, uint32_t count,
-                                           float *strain)
-{
+                                           float *strain) {
     if (!network || (count > 0 && !strain))
         return MSPRING_ERROR_ARGUMENT;
     const uint32_t total = network->topology.spring_count;
@@ -155,8 +147,7 @@ mspring_result mspring_network_get_strains(const mspring_network *network, mspri
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_max_strain(const mspring_network *network, float *strain, mspring_id *spring)
-{
+mspring_result mspring_network_max_strain(const mspring_network *network, float *strain, mspring_id *spring) {
     if (!network)
         return MSPRING_ERROR_ARGUMENT;
     float largest = 0.0f;

@@ -12,8 +12,7 @@ typedef struct block_header {
     size_t size;
 } block_header;
 
-static void *default_alloc(size_t size, size_t alignment, void *user)
-{
+static void *default_alloc(size_t size, size_t alignment, void *user) {
     (void)user;
 #if defined(_WIN32)
     return _aligned_malloc(size, alignment);
@@ -22,8 +21,7 @@ static void *default_alloc(size_t size, size_t alignment, void *user)
 #endif
 }
 
-static void default_free(void *memory, size_t size, void *user)
-{
+static void default_free(void *memory, size_t size, void *user) {
     (void)size;
     (void)user;
 #if defined(_WIN32)
@@ -34,8 +32,7 @@ static void default_free(void *memory, size_t size, void *user)
 }
 
 mspring_result mspringi_memory_init(mspringi_memory *memory, const mspring_allocator *allocator,
-                                    mspringi_message *message)
-{
+                                    mspringi_message *message) {
     const mspring_allocator defaults = {
         .struct_size = sizeof defaults, .alloc = default_alloc, .free = default_free};
     if (allocator) {
@@ -51,8 +48,7 @@ mspring_result mspringi_memory_init(mspringi_memory *memory, const mspring_alloc
     return MSPRING_OK;
 }
 
-void *mspringi_alloc(mspringi_memory *memory, size_t count, size_t size)
-{
+void *mspringi_alloc(mspringi_memory *memory, size_t count, size_t size) {
     if (size != 0 && count > (SIZE_MAX - 2 * MSPRINGI_ALIGNMENT) / size)
         return NULL;
     // The header takes one alignment unit; whole units are what aligned_alloc asks for.
@@ -66,8 +62,7 @@ void *mspringi_alloc(mspringi_memory *memory, size_t count, size_t size)
     return raw + MSPRINGI_ALIGNMENT;
 }
 
-void mspringi_free(mspringi_memory *memory, void *block)
-{
+void mspringi_free(mspringi_memory *memory, void *block) {
     if (!block)
         return;
     char *raw = (char *)block - MSPRINGI_ALIGNMENT;
@@ -76,8 +71,7 @@ void mspringi_free(mspringi_memory *memory, void *block)
     memory->allocator.free(raw, total, memory->allocator.user);
 }
 
-bool mspringi_grow(mspringi_memory *memory, void **array, size_t *capacity, size_t needed, size_t size)
-{
+bool mspringi_grow(mspringi_memory *memory, void **array, size_t *capacity, size_t needed, size_t size) {
     if (needed <= *capacity)
         return true;
     size_t target = *capacity < SIZE_MAX / 2 ? *capacity * 2 : SIZE_MAX;

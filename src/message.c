@@ -3,8 +3,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-mspring_result mspringi_fail(mspringi_message *message, mspring_result result, const char *format, ...)
-{
+mspring_result mspringi_fail(mspringi_message *message, mspring_result result, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(message->text, sizeof message->text, format, arguments);
@@ -13,8 +12,7 @@ mspring_result mspringi_fail(mspringi_message *message, mspring_result result, c
 }
 
 mspring_result mspringi_check_struct(mspringi_message *message, const char *name, size_t given, size_t first,
-                                     size_t current)
-{
+                                     size_t current) {
     if (given >= first && given <= current)
         return MSPRING_OK;
     return mspringi_fail(message, MSPRING_ERROR_STRUCT,
@@ -23,8 +21,7 @@ mspring_result mspringi_check_struct(mspringi_message *message, const char *name
                          name, given, first, current);
 }
 
-const char *mspring_result_string(mspring_result result)
-{
+const char *mspring_result_string(mspring_result result) {
     switch (result) {
     case MSPRING_OK:
         return "success";

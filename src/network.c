@@ -7,8 +7,7 @@
 
 /* --------------------------------------------------------------------------------------------------- checks */
 
-mspring_result mspringi_enter(mspring_network *network)
-{
+mspring_result mspringi_enter(mspring_network *network) {
     if (!network)
         return MSPRING_ERROR_ARGUMENT;
     if (network->in_hook)
@@ -18,16 +17,14 @@ mspring_result mspringi_enter(mspring_network *network)
 }
 
 mspring_result mspringi_check_range(mspring_network *network, const char *what, mspring_id first, uint32_t count,
-                                    uint32_t total)
-{
+                                    uint32_t total) {
     if (first <= total && count <= total - first)
         return MSPRING_OK;
     return mspringi_fail(&network->message, MSPRING_ERROR_ID, "%u %ss from %u on, but there are only %u",
                          (unsigned)count, what, (unsigned)first, (unsigned)total);
 }
 
-static mspring_result check_def(const mspring_network_def *def, mspringi_message *message)
-{
+static mspring_result check_def(const mspring_network_def *def, mspringi_message *message) {
     mspring_result result =
         mspringi_check_struct(message, "mspring_network_def", def->struct_size, sizeof *def, sizeof *def);
     if (result != MSPRING_OK)
@@ -36,15 +33,14 @@ static mspring_result check_def(const mspring_network_def *def, mspringi_message
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "simd_level is %d, which is no level",
                              (int)def->simd_level);
     if (!(def->max_speed > 0.0f && def->max_speed <= 1e15f))
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "max_speed is %g m/s, it must be > 0 and at most 1e15",
-                             (double)def->max_speed);
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "max_speed is %g m/s, it must be > 0 and at most 1e15", (double)def->max_speed);
     return MSPRING_OK;
 }
 
 /* --------------------------------------------------------------------------------------------- spring records */
 
-mspringi_spring_record mspringi_spring_at(const mspring_network *network, mspring_id spring)
-{
+mspringi_spring_record mspringi_spring_at(const mspring_network *network, mspring_id spring) {
     const mspringi_topology *t = &network->topology;
     const mspringi_place place = t->place_of_spring[spring];
     mspringi_spring_record r;
@@ -66,8 +62,7 @@ mspringi_spring_record mspringi_spring_at(const mspring_network *network, msprin
     return r;
 }
 
-void mspringi_derive_relative(mspring_network *network, float h)
-{
+void mspringi_derive_relative(mspring_network *network, float h) {
     if (!network->relative || network->relative_h == h)
         return;
     const mspringi_topology *t = &network->topology;
@@ -88,8 +83,7 @@ void mspringi_derive_relative(mspring_network *network, float h)
 
 /* ---------------------------------------------------------------------------------------------------- filling */
 
-mspring_result mspringi_field_reserve(mspring_network *network, mspringi_field *field)
-{
+mspring_result mspringi_field_reserve(mspring_network *network, mspringi_field *field) {
     if (field->x)
         return MSPRING_OK;
     const size_t slots = mspringi_slot_count(network);
@@ -101,8 +95,7 @@ mspring_result mspringi_field_reserve(mspring_network *network, mspringi_field *
     return MSPRING_OK;
 }
 
-static bool reserve_state(mspring_network *network, mspringi_state *state)
-{
+static bool reserve_state(mspring_network *network, mspringi_state *state) {
     const size_t slots = mspringi_slot_count(network);
     float *values = mspringi_alloc(&network->memory, 4 * slots, sizeof *values);
     if (values)
@@ -111,8 +104,7 @@ static bool reserve_state(mspring_network *network, mspringi_state *state)
 }
 
 // What the springs have in common decides what a network has to hold for them.
-static void look_at_springs(const mspring_builder *builder, bool *damped, bool *relative)
-{
+static void look_at_springs(const mspring_builder *builder, bool *damped, bool *relative) {
     *damped = *relative = false;
     for (size_t s = 0; s < builder->spring_count; ++s) {
         *damped = *damped || builder->springs[s].damping > 0.0f;
@@ -120,8 +112,7 @@ static void look_at_springs(const mspring_builder *builder, bool *damped, bool *
     }
 }
 
-static mspring_result allocate(mspring_network *network, bool relative)
-{
+static mspring_result allocate(mspring_network *network, bool relative) {
     const mspringi_topology *t = &network->topology;
     mspringi_memory *memory = &network->memory;
     const size_t parts = network->parts;
@@ -145,8 +136,7 @@ static mspring_result allocate(mspring_network *network, bool relative)
     return t->leftover_count > 0 ? mspringi_field_reserve(network, &network->forces.total) : MSPRING_OK;
 }
 
-static void fill_particles(mspring_network *network, const mspring_builder *builder)
-{
+static void fill_particles(mspring_network *network, const mspring_builder *builder) {
     const mspringi_topology *t = &network->topology;
     mspringi_box box = mspringi_box_empty();
     for (uint32_t p = 0; p < t->particle_count; ++p)
@@ -163,8 +153,7 @@ static void fill_particles(mspring_network *network, const mspring_builder *buil
     }
 }
 
-static void fill_springs(mspring_network *network, const mspring_builder *builder)
-{
+static void fill_springs(mspring_network *network, const mspring_builder *builder) {
     const mspringi_topology *t = &network->topology;
     for (mspring_id s = 0; s < t->spring_count; ++s) {
         const mspringi_spring *spring = &builder->springs[s];
@@ -196,8 +185,7 @@ static void fill_springs(mspring_network *network, const mspring_builder *builde
 
 // Fill a network that knows its memory and nothing else. Its message tells what failed.
 static mspring_result fill(mspring_network *network, const mspring_builder *builder,
-                           const mspring_network_def *def)
-{
+                           const mspring_network_def *def) {
     bool damped, relative;
     mspring_result result =
         mspringi_topology_create(&network->topology, builder, &network->memory, &network->message);
@@ -226,8 +214,7 @@ static mspring_result fill(mspring_network *network, const mspring_builder *buil
 }
 
 mspring_result mspring_network_create(mspring_builder *builder, const mspring_network_def *def,
-                                      mspring_network **network)
-{
+                                      mspring_network **network) {
     mspring_network_def defaults;
     mspringi_memory memory;
     if (!builder)
@@ -261,8 +248,7 @@ mspring_result mspring_network_create(mspring_builder *builder, const mspring_ne
     return MSPRING_OK;
 }
 
-void mspring_network_destroy(mspring_network *network)
-{
+void mspring_network_destroy(mspring_network *network) {
     if (!network)
         return;
     mspringi_memory memory = network->memory;
@@ -286,8 +272,7 @@ void mspring_network_destroy(mspring_network *network)
 
 /* --------------------------------------------------------------------------------------------------- settings */
 
-mspring_result mspring_network_set_solver(mspring_network *network, const mspring_solver_def *def)
-{
+mspring_result mspring_network_set_solver(mspring_network *network, const mspring_solver_def *def) {
     mspring_result result = mspringi_enter(network);
     if (result != MSPRING_OK)
         return result;
@@ -306,8 +291,7 @@ mspring_result mspring_network_set_solver(mspring_network *network, const msprin
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_set_gravity(mspring_network *network, float x, float y)
-{
+mspring_result mspring_network_set_gravity(mspring_network *network, float x, float y) {
     mspring_result result = mspringi_enter(network);
     if (result != MSPRING_OK)
         return result;
@@ -319,8 +303,7 @@ mspring_result mspring_network_set_gravity(mspring_network *network, float x, fl
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_set_global_damping(mspring_network *network, float rate)
-{
+mspring_result mspring_network_set_global_damping(mspring_network *network, float rate) {
     mspring_result result = mspringi_enter(network);
     if (result != MSPRING_OK)
         return result;
@@ -333,33 +316,27 @@ mspring_result mspring_network_set_global_damping(mspring_network *network, floa
 
 /* ------------------------------------------------------------------------------------------------ description */
 
-const char *mspring_network_error(const mspring_network *network)
-{
+const char *mspring_network_error(const mspring_network *network) {
     return network ? network->message.text : "";
 }
 
-uint32_t mspring_network_particle_count(const mspring_network *network)
-{
+uint32_t mspring_network_particle_count(const mspring_network *network) {
     return network ? network->topology.particle_count : 0;
 }
 
-uint32_t mspring_network_spring_count(const mspring_network *network)
-{
+uint32_t mspring_network_spring_count(const mspring_network *network) {
     return network ? network->topology.spring_count : 0;
 }
 
-mspring_simd mspring_network_simd_level(const mspring_network *network)
-{
+mspring_simd mspring_network_simd_level(const mspring_network *network) {
     return network ? network->kernels->level : MSPRING_SIMD_AUTO;
 }
 
-size_t mspring_network_memory_used(const mspring_network *network)
-{
+size_t mspring_network_memory_used(const mspring_network *network) {
     return network ? network->memory.used : 0;
 }
 
-mspring_result mspring_network_plan(const mspring_network *network, mspring_plan *plan)
-{
+mspring_result mspring_network_plan(const mspring_network *network, mspring_plan *plan) {
     if (!network || !plan)
         return MSPRING_ERROR_ARGUMENT;
     if (plan->struct_size != sizeof *plan)

@@ -53,8 +53,8 @@ struct mspring_network {
 
     // State.
     mspringi_state state, backup;
-    double origin_x, origin_y;  ///< world = origin + local
-    float recentre_distance;    ///< how far the network may be from its origin until that is moved along
+    double origin_x, origin_y; ///< world = origin + local
+    float recentre_distance;   ///< how far the network may be from its origin until that is moved along
 
     // Parameters.
     float *inverse_mass; ///< [slots] 0 if pinned or empty
@@ -78,8 +78,7 @@ struct mspring_network {
     bool in_hook;
 };
 
-static inline size_t mspringi_slot_count(const mspring_network *network)
-{
+static inline size_t mspringi_slot_count(const mspring_network *network) {
     return (size_t)network->topology.block_count * MSPRINGI_WIDTH;
 }
 

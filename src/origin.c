@@ -7,13 +7,11 @@
 /// Smallest distance from the origin at which it is worth to move it, m.
 #define SMALLEST_RECENTRE_DISTANCE 64.0f
 
-mspringi_box mspringi_box_empty(void)
-{
+mspringi_box mspringi_box_empty(void) {
     return (mspringi_box){INFINITY, INFINITY, -INFINITY, -INFINITY};
 }
 
-void mspringi_box_include(mspringi_box *box, double x, double y)
-{
+void mspringi_box_include(mspringi_box *box, double x, double y) {
     box->min_x = x < box->min_x ? x : box->min_x;
     box->min_y = y < box->min_y ? y : box->min_y;
     box->max_x = x > box->max_x ? x : box->max_x;
@@ -21,30 +19,26 @@ void mspringi_box_include(mspringi_box *box, double x, double y)
 }
 
 // Whole metres, so that the same network at another whole number of metres has the same local coordinates.
-static double middle(double low, double high)
-{
+static double middle(double low, double high) {
     return floor(0.5 * (low + high) + 0.5);
 }
 
-void mspringi_origin_choose(mspring_network *network, const mspringi_box *box)
-{
+void mspringi_origin_choose(mspring_network *network, const mspringi_box *box) {
     network->origin_x = middle(box->min_x, box->max_x);
     network->origin_y = middle(box->min_y, box->max_y);
     network->recentre_distance = SMALLEST_RECENTRE_DISTANCE;
 }
 
-// One coordinate's shift: the middle of the network, if all particles are on one side of the origin and the farthest
-// is at most about three times as far as the nearest. Then every coordinate is within a factor 2 of the middle, and
-// the difference of two floats within a factor 2 of each other is exact (Sterbenz 1974). Else 0.
-static float exact_shift(double low, double high)
-{
-    const double nearest = low > 0.0 ? low : -high;        // < 0 if the network is on both sides of the origin
-    const double half = 0.501 * (high - low) + 1.0;        // with room for the rounding of the middle
+// One coordinate's shift: the middle of the network, if all particles are on one side of the origin and the
+// farthest is at most about three times as far as the nearest. Then every coordinate is within a factor 2 of the
+// middle, and the difference of two floats within a factor 2 of each other is exact (Sterbenz 1974). Else 0.
+static float exact_shift(double low, double high) {
+    const double nearest = low > 0.0 ? low : -high; // < 0 if the network is on both sides of the origin
+    const double half = 0.501 * (high - low) + 1.0; // with room for the rounding of the middle
     return nearest >= half ? (float)middle(low, high) : 0.0f;
 }
 
-void mspringi_origin_follow(mspring_network *network)
-{
+void mspringi_origin_follow(mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     mspringi_state *state = &network->state;
     // The first particle stands for all of them until it is far away.

@@ -7,8 +7,7 @@
 #define DIGITS (64 / DIGIT_BITS)
 #define DIGIT_VALUES (1 << DIGIT_BITS)
 
-void mspringi_sort_keys(uint64_t *keys, uint64_t *scratch, size_t count)
-{
+void mspringi_sort_keys(uint64_t *keys, uint64_t *scratch, size_t count) {
     uint64_t *from = keys, *to = scratch;
     for (int digit = 0; digit < DIGITS; ++digit) {
         const int shift = digit * DIGIT_BITS;

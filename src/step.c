@@ -6,18 +6,15 @@
 #include "cpu.h"
 #include "network.h"
 
-static void copy_state(const mspring_network *network, const mspringi_state *from, const mspringi_state *to)
-{
+static void copy_state(const mspring_network *network, const mspringi_state *from, const mspringi_state *to) {
     memcpy(to->x, from->x, 4 * mspringi_slot_count(network) * sizeof *to->x);
 }
 
-static void copy_field(const mspring_network *network, mspringi_field from, mspringi_field to)
-{
+static void copy_field(const mspring_network *network, mspringi_field from, mspringi_field to) {
     memcpy(to.x, from.x, 2 * mspringi_slot_count(network) * sizeof *to.x);
 }
 
-static void clear_field(const mspring_network *network, mspringi_field field)
-{
+static void clear_field(const mspring_network *network, mspringi_field field) {
     memset(field.x, 0, 2 * mspringi_slot_count(network) * sizeof *field.x);
 }
 
@@ -25,8 +22,7 @@ static void clear_field(const mspring_network *network, mspringi_field field)
 
 // The field that each substep starts from: what the host holds, with what the hooks before the step add. No field
 // at all if there is nothing in it.
-static mspringi_field prepare_base(mspring_network *network, double dt)
-{
+static mspringi_field prepare_base(mspring_network *network, double dt) {
     mspringi_forces *forces = &network->forces;
     const mspringi_field none = {NULL, NULL};
     if (!mspringi_hooks_any(network, MSPRING_PHASE_BEFORE_STEP))
@@ -40,8 +36,7 @@ static mspringi_field prepare_base(mspring_network *network, double dt)
 }
 
 // Set slots of the total field to what they are in base.
-static void reset_leftover_slots(mspring_network *network, mspringi_field base)
-{
+static void reset_leftover_slots(mspring_network *network, mspringi_field base) {
     const mspringi_field total = network->forces.total;
     for (uint32_t i = 0; i < network->leftover_slot_count; ++i) {
         const uint32_t slot = network->leftover_slots[i];
@@ -50,8 +45,7 @@ static void reset_leftover_slots(mspring_network *network, mspringi_field base)
     }
 }
 
-static void reset_total(mspring_network *network, mspringi_field base)
-{
+static void reset_total(mspring_network *network, mspringi_field base) {
     if (base.x)
         copy_field(network, base, network->forces.total);
     else
@@ -60,8 +54,7 @@ static void reset_total(mspring_network *network, mspringi_field base)
 
 /* -------------------------------------------------------------------------------------------------- substeps */
 
-static void run_substeps(mspring_network *network, double dt, float h)
-{
+static void run_substeps(mspring_network *network, double dt, float h) {
     const bool hooks_before = mspringi_hooks_any(network, MSPRING_PHASE_BEFORE_SUBSTEP);
     const bool hooks_after = mspringi_hooks_any(network, MSPRING_PHASE_AFTER_SUBSTEP);
     const bool leftovers = network->topology.leftover_count > 0;
@@ -83,10 +76,10 @@ static void run_substeps(mspring_network *network, double dt, float h)
     }
 }
 
-/* ----------------------------------------------------------------------------------------------------- the guard */
+/* ----------------------------------------------------------------------------------------------------- the guard
+ */
 
-static bool is_bounded(const mspring_network *network)
-{
+static bool is_bounded(const mspring_network *network) {
     const mspringi_state *s = &network->state;
     const size_t slots = mspringi_slot_count(network);
     const float largest = (float)MSPRING_MAX_COORDINATE;
@@ -96,8 +89,7 @@ static bool is_bounded(const mspring_network *network)
 }
 
 // Name the first particle that left the bounds.
-static mspring_result explain(mspring_network *network, double dt)
-{
+static mspring_result explain(mspring_network *network, double dt) {
     const mspringi_state *s = &network->state;
     const float largest = (float)MSPRING_MAX_COORDINATE, fastest = network->max_speed;
     for (uint32_t p = 0; p < network->topology.particle_count; ++p) {
@@ -115,8 +107,7 @@ static mspring_result explain(mspring_network *network, double dt)
                          "a hook has written a value out of bounds to a slot without particle");
 }
 
-mspring_result mspring_network_step(mspring_network *network, double dt)
-{
+mspring_result mspring_network_step(mspring_network *network, double dt) {
     mspring_result result = mspringi_enter(network);
     if (result != MSPRING_OK)
         return result;

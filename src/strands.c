@@ -3,19 +3,16 @@
 
 #define SHORTEST_ATTACHED_STRAND 3
 
-static uint32_t degree(const mspringi_graph *graph, uint32_t particle)
-{
+static uint32_t degree(const mspringi_graph *graph, uint32_t particle) {
     return graph->first[particle + 1] - graph->first[particle];
 }
 
-static bool may_be_in_strand(const mspringi_graph *graph, uint32_t particle)
-{
+static bool may_be_in_strand(const mspringi_graph *graph, uint32_t particle) {
     return degree(graph, particle) == 1 || degree(graph, particle) == 2;
 }
 
 // The spring of particle, other than came_by, that leads on along the strand; MSPRING_NONE at its end.
-static uint32_t next_spring(const mspringi_graph *graph, uint32_t particle, uint32_t came_by)
-{
+static uint32_t next_spring(const mspringi_graph *graph, uint32_t particle, uint32_t came_by) {
     for (uint32_t i = graph->first[particle]; i < graph->first[particle + 1]; ++i) {
         const uint32_t spring = graph->springs[i];
         if (spring != came_by &&
@@ -26,8 +23,7 @@ static uint32_t next_spring(const mspringi_graph *graph, uint32_t particle, uint
 }
 
 // Walk from any particle of a strand to one of its ends. In a ring, end where the walk started.
-static uint32_t find_end(const mspringi_graph *graph, uint32_t start)
-{
+static uint32_t find_end(const mspringi_graph *graph, uint32_t start) {
     uint32_t at = start, came_by = MSPRING_NONE;
     for (;;) {
         const uint32_t spring = next_spring(graph, at, came_by);
@@ -41,19 +37,16 @@ static uint32_t find_end(const mspringi_graph *graph, uint32_t start)
 }
 
 // Whether some spring of the particle leads to one that can be in no strand.
-static bool is_attached(const mspringi_graph *graph, uint32_t particle)
-{
+static bool is_attached(const mspringi_graph *graph, uint32_t particle) {
     for (uint32_t i = graph->first[particle]; i < graph->first[particle + 1]; ++i)
-        if (!may_be_in_strand(graph,
-                              mspringi_other_end(&graph->builder->springs[graph->springs[i]], particle)))
+        if (!may_be_in_strand(graph, mspringi_other_end(&graph->builder->springs[graph->springs[i]], particle)))
             return true;
     return false;
 }
 
 // Append the strand that begins at end; take it back if it is too short.
 static void append_strand(mspringi_strands *strands, const mspringi_graph *graph, uint32_t end, uint8_t *kinds,
-                          uint8_t *visited)
-{
+                          uint8_t *visited) {
     const uint32_t begin = strands->count;
     bool attached = false;
     uint32_t at = end, came_by = MSPRING_NONE;
@@ -81,8 +74,7 @@ static void append_strand(mspringi_strands *strands, const mspringi_graph *graph
 }
 
 mspring_result mspringi_strands_find(mspringi_strands *strands, const mspringi_graph *graph, uint8_t *kinds,
-                                     mspringi_memory *memory, mspringi_message *message)
-{
+                                     mspringi_memory *memory, mspringi_message *message) {
     const uint32_t particles = (uint32_t)graph->builder->particle_count;
     uint32_t candidates = 0;
     for (uint32_t p = 0; p < particles; ++p)
@@ -93,8 +85,7 @@ mspring_result mspringi_strands_find(mspringi_strands *strands, const mspringi_g
     strands->springs = mspringi_alloc(memory, candidates, sizeof *strands->springs);
     mspring_result result = MSPRING_OK;
     if (!visited || !strands->particles || !strands->springs) {
-        result =
-            mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for strands of %u particles", candidates);
+        result = mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for strands of %u particles", candidates);
     } else {
         for (uint32_t p = 0; p < particles; ++p)
             if (may_be_in_strand(graph, p) && !visited[p])
@@ -104,8 +95,7 @@ mspring_result mspringi_strands_find(mspringi_strands *strands, const mspringi_g
     return result;
 }
 
-void mspringi_strands_destroy(mspringi_strands *strands, mspringi_memory *memory)
-{
+void mspringi_strands_destroy(mspringi_strands *strands, mspringi_memory *memory) {
     mspringi_free(memory, strands->particles);
     mspringi_free(memory, strands->springs);
 }

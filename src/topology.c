@@ -11,18 +11,15 @@
 /// A block of a grid on its way to a number: row, then column block.
 typedef uint64_t block_key;
 
-static block_key make_key(uint32_t row, uint32_t column_block)
-{
+static block_key make_key(uint32_t row, uint32_t column_block) {
     return (uint64_t)row << 32 | column_block;
 }
 
-static uint32_t row_of(block_key key)
-{
+static uint32_t row_of(block_key key) {
     return (uint32_t)(key >> 32);
 }
 
-static uint32_t column_block_of(block_key key)
-{
+static uint32_t column_block_of(block_key key) {
     return (uint32_t)key;
 }
 
@@ -36,15 +33,14 @@ typedef struct assembly {
     mspringi_graph graph;
     mspringi_strands strands;
     mspringi_grids grids;
-    block_key *blocks;       ///< of all grids, grid after grid, each sorted
+    block_key *blocks; ///< of all grids, grid after grid, each sorted
     size_t block_count, block_capacity;
-    size_t grid_begin;       ///< where the blocks of the grid that is being listed begin
-    uint32_t *first_block;   ///< [grids + 1] in blocks
+    size_t grid_begin;     ///< where the blocks of the grid that is being listed begin
+    uint32_t *first_block; ///< [grids + 1] in blocks
     size_t span_capacity;
 } assembly;
 
-static mspring_result out_of_memory(assembly *a)
-{
+static mspring_result out_of_memory(assembly *a) {
     return mspringi_fail(a->message, MSPRING_ERROR_MEMORY, "no memory to lay out %zu particles and %zu springs",
                          a->builder->particle_count, a->builder->spring_count);
 }
@@ -57,8 +53,7 @@ typedef struct lattice_spring {
     uint32_t column, row; ///< the slot whose record it is in
 } lattice_spring;
 
-static bool find_direction(const mspringi_grids *grids, const mspringi_spring *spring, lattice_spring *found)
-{
+static bool find_direction(const mspringi_grids *grids, const mspringi_spring *spring, lattice_spring *found) {
     uint32_t base = spring->a, tip = spring->b;
     if (grids->grid_of[base] == MSPRING_NONE || grids->grid_of[base] != grids->grid_of[tip])
         return false;
@@ -74,20 +69,18 @@ static bool find_direction(const mspringi_grids *grids, const mspringi_spring *s
         return false;
     found->column = grids->column[base];
     found->row = grids->row[base] - (up < 0);
-    found->direction = up < 0     ? MSPRINGI_SOUTH_EAST
-                       : up == 0  ? MSPRINGI_EAST
+    found->direction = up < 0       ? MSPRINGI_SOUTH_EAST
+                       : up == 0    ? MSPRINGI_EAST
                        : right == 0 ? MSPRINGI_NORTH
                                     : MSPRINGI_NORTH_EAST;
     return true;
 }
 
-static bool append_block(assembly *a, uint32_t row, uint32_t column_block)
-{
+static bool append_block(assembly *a, uint32_t row, uint32_t column_block) {
     if (a->block_count > a->grid_begin && a->blocks[a->block_count - 1] == make_key(row, column_block))
         return true; // most particles are in the block of the one before; sorting drops the other repetitions
     void *blocks = a->blocks;
-    const bool grown =
-        mspringi_grow(a->memory, &blocks, &a->block_capacity, a->block_count + 1, sizeof *a->blocks);
+    const bool grown = mspringi_grow(a->memory, &blocks, &a->block_capacity, a->block_count + 1, sizeof *a->blocks);
     a->blocks = blocks;
     if (grown)
         a->blocks[a->block_count++] = make_key(row, column_block);
@@ -97,8 +90,7 @@ static bool append_block(assembly *a, uint32_t row, uint32_t column_block)
 // List the blocks of one grid: those with particles; those that own a spring; and, where a block's last slot has a
 // north-east spring, the block to its right, through which the spring's force is handed on to the row above, and
 // the block above it, so that the slot to the right of that is the spring's other end.
-static bool list_blocks(assembly *a, uint32_t grid)
-{
+static bool list_blocks(assembly *a, uint32_t grid) {
     const mspringi_grids *grids = &a->grids;
     for (uint32_t m = grids->first_member[grid]; m < grids->first_member[grid + 1]; ++m) {
         const uint32_t p = grids->members[m];
@@ -112,8 +104,8 @@ static bool list_blocks(assembly *a, uint32_t grid)
             const uint32_t column_block = spring.column / MSPRINGI_WIDTH;
             if (spring.direction == MSPRINGI_SOUTH_EAST && !append_block(a, spring.row, column_block))
                 return false;
-            if (spring.direction == MSPRINGI_NORTH_EAST && (!append_block(a, spring.row, column_block + 1) ||
-                                                            !append_block(a, spring.row + 1, column_block)))
+            if (spring.direction == MSPRINGI_NORTH_EAST &&
+                (!append_block(a, spring.row, column_block + 1) || !append_block(a, spring.row + 1, column_block)))
                 return false;
         }
     }
@@ -121,8 +113,7 @@ static bool list_blocks(assembly *a, uint32_t grid)
 }
 
 // Sort the blocks of the grid that has been listed and drop repeated ones.
-static bool sort_blocks(assembly *a)
-{
+static bool sort_blocks(assembly *a) {
     const size_t count = a->block_count - a->grid_begin;
     block_key *keys = a->blocks + a->grid_begin;
     block_key *scratch = mspringi_alloc(a->memory, count, sizeof *scratch);
@@ -138,8 +129,7 @@ static bool sort_blocks(assembly *a)
     return true;
 }
 
-static mspring_result number_blocks(assembly *a)
-{
+static mspring_result number_blocks(assembly *a) {
     mspringi_topology *t = a->topology;
     a->first_block = mspringi_alloc(a->memory, a->grids.count + 1, sizeof *a->first_block);
     if (!a->first_block)
@@ -166,8 +156,7 @@ static mspring_result number_blocks(assembly *a)
 }
 
 // The number of a grid's block among all lattice blocks; MSPRING_NONE if it is not stored.
-static uint32_t find_block(const assembly *a, uint32_t grid, uint32_t row, uint32_t column_block)
-{
+static uint32_t find_block(const assembly *a, uint32_t grid, uint32_t row, uint32_t column_block) {
     const block_key key = make_key(row, column_block);
     uint32_t low = a->first_block[grid], high = a->first_block[grid + 1];
     while (low < high) {
@@ -182,14 +171,12 @@ static uint32_t find_block(const assembly *a, uint32_t grid, uint32_t row, uint3
 
 /* -------------------------------------------------------------------------------------------- slots and places */
 
-static void place_particle(mspringi_topology *t, uint32_t particle, uint32_t slot)
-{
+static void place_particle(mspringi_topology *t, uint32_t particle, uint32_t slot) {
     t->slot_of_particle[particle] = slot;
     t->particle_of_slot[slot] = particle;
 }
 
-static void assign_slots(assembly *a)
-{
+static void assign_slots(assembly *a) {
     mspringi_topology *t = a->topology;
     const mspringi_grids *grids = &a->grids;
     for (uint32_t slot = 0; slot < t->block_count * MSPRINGI_WIDTH; ++slot)
@@ -208,8 +195,7 @@ static void assign_slots(assembly *a)
         place_particle(t, a->strands.particles[i], t->chain_first * MSPRINGI_WIDTH + i);
 }
 
-static mspring_result assign_places(assembly *a)
-{
+static mspring_result assign_places(assembly *a) {
     mspringi_topology *t = a->topology;
     t->lattice_places = t->lattice_blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
     t->chain_places = t->lattice_places + t->chain_blocks * MSPRINGI_WIDTH;
@@ -247,8 +233,8 @@ static mspring_result assign_places(assembly *a)
     return MSPRING_OK;
 }
 
-void mspringi_topology_ends(const mspringi_topology *topology, mspringi_place place, uint32_t *base, uint32_t *tip)
-{
+void mspringi_topology_ends(const mspringi_topology *topology, mspringi_place place, uint32_t *base,
+                            uint32_t *tip) {
     const uint32_t lane = place % MSPRINGI_WIDTH;
     if (place >= topology->chain_places) {
         *base = topology->leftover_a[place - topology->chain_places];
@@ -284,13 +270,13 @@ void mspringi_topology_ends(const mspringi_topology *topology, mspringi_place pl
 /* ------------------------------------------------------------------------------------------------------- spans */
 
 // Append a span, or lengthen the last one if this is what it would go on with.
-static bool append_span(assembly *a, const mspringi_span *span)
-{
+static bool append_span(assembly *a, const mspringi_span *span) {
     mspringi_topology *t = a->topology;
     if (t->span_count > 0 && span->continues) {
         mspringi_span *last = &t->spans[t->span_count - 1];
         if (last->kind == span->kind && last->up_block + last->block_count == span->up_block &&
-            last->carry_out + last->block_count == span->carry_out && (last->carry_in == 0) == (span->carry_in == 0)) {
+            last->carry_out + last->block_count == span->carry_out &&
+            (last->carry_in == 0) == (span->carry_in == 0)) {
             last->block_count += span->block_count;
             return true;
         }
@@ -304,8 +290,7 @@ static bool append_span(assembly *a, const mspringi_span *span)
 }
 
 // The widest row in blocks, from its first column on; the carry row has a zero half and a working half of that.
-static uint32_t widest_row(const assembly *a)
-{
+static uint32_t widest_row(const assembly *a) {
     uint32_t widest = 1;
     for (size_t i = 0; i < a->block_count; ++i)
         widest = column_block_of(a->blocks[i]) + 1 > widest ? column_block_of(a->blocks[i]) + 1 : widest;
@@ -314,8 +299,7 @@ static uint32_t widest_row(const assembly *a)
     return widest > chain ? widest : chain;
 }
 
-static bool append_lattice_spans(assembly *a, uint32_t grid, uint32_t carry_half)
-{
+static bool append_lattice_spans(assembly *a, uint32_t grid, uint32_t carry_half) {
     mspringi_topology *t = a->topology;
     for (uint32_t i = a->first_block[grid]; i < a->first_block[grid + 1]; ++i) {
         const uint32_t row = row_of(a->blocks[i]), column_block = column_block_of(a->blocks[i]);
@@ -342,8 +326,7 @@ static bool append_lattice_spans(assembly *a, uint32_t grid, uint32_t carry_half
     return true;
 }
 
-static mspring_result make_spans(assembly *a)
-{
+static mspring_result make_spans(assembly *a) {
     mspringi_topology *t = a->topology;
     const uint32_t carry_half = widest_row(a);
     t->carry_blocks = 2 * carry_half;
@@ -378,8 +361,7 @@ static mspring_result make_spans(assembly *a)
 
 /* ---------------------------------------------------------------------------------------------------- the whole */
 
-static mspring_result allocate_maps(assembly *a)
-{
+static mspring_result allocate_maps(assembly *a) {
     mspringi_topology *t = a->topology;
     const size_t slots = (size_t)t->block_count * MSPRINGI_WIDTH;
     t->slot_of_particle = mspringi_alloc(a->memory, t->particle_count, sizeof *t->slot_of_particle);
@@ -388,8 +370,7 @@ static mspring_result allocate_maps(assembly *a)
     return t->slot_of_particle && t->particle_of_slot && t->place_of_spring ? MSPRING_OK : out_of_memory(a);
 }
 
-static mspring_result assemble(assembly *a)
-{
+static mspring_result assemble(assembly *a) {
     const size_t particles = a->builder->particle_count;
     a->kinds = mspringi_alloc(a->memory, particles, sizeof *a->kinds);
     if (!a->kinds)
@@ -412,8 +393,7 @@ static mspring_result assemble(assembly *a)
 }
 
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
-                                        mspringi_memory *memory, mspringi_message *message)
-{
+                                        mspringi_memory *memory, mspringi_message *message) {
     *topology = (mspringi_topology){.particle_count = (uint32_t)builder->particle_count,
                                     .spring_count = (uint32_t)builder->spring_count};
     assembly a = {.topology = topology, .memory = memory, .message = message, .builder = builder};
@@ -436,8 +416,7 @@ mspring_result mspringi_topology_create(mspringi_topology *topology, const mspri
     return result;
 }
 
-void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *memory)
-{
+void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *memory) {
     mspringi_free(memory, topology->slot_of_particle);
     mspringi_free(memory, topology->particle_of_slot);
     mspringi_free(memory, topology->place_of_spring);

@@ -40,7 +40,7 @@ typedef enum mspringi_row_kind {
 /// state.
 typedef struct mspringi_span {
     mspringi_row_kind kind;
-    uint32_t continues;    ///< 1: its first slot is the east neighbour of the last slot of the span before
+    uint32_t continues; ///< 1: its first slot is the east neighbour of the last slot of the span before
     uint32_t first_block, block_count;
     uint32_t up_block;     ///< the block above first_block (lattice)
     uint32_t carry_in;     ///< block of the carry row to take forces from (lattice, chain)
@@ -56,15 +56,15 @@ typedef uint32_t mspringi_place;
 
 typedef struct mspringi_topology {
     uint32_t particle_count, spring_count;
-    uint32_t block_count;  ///< with one of padding in front and one behind, so that lane + 1 can always be read
+    uint32_t block_count; ///< with one of padding in front and one behind, so that lane + 1 can always be read
     uint32_t lattice_first, lattice_blocks; ///< blocks: first, number
     uint32_t chain_first, chain_blocks;
     uint32_t loose_first, loose_blocks;
 
-    uint32_t *slot_of_particle;   ///< [particle_count]
-    uint32_t *particle_of_slot;   ///< [block_count * MSPRINGI_WIDTH], MSPRING_NONE where there is none
+    uint32_t *slot_of_particle;      ///< [particle_count]
+    uint32_t *particle_of_slot;      ///< [block_count * MSPRINGI_WIDTH], MSPRING_NONE where there is none
     mspringi_place *place_of_spring; ///< [spring_count]
-    uint32_t *up_of_block;        ///< [lattice_blocks] block above each lattice block; itself if there is none
+    uint32_t *up_of_block;           ///< [lattice_blocks] block above each lattice block; itself if there is none
 
     mspringi_place lattice_places, chain_places;
     uint32_t leftover_count;
@@ -85,7 +85,6 @@ mspring_result mspringi_topology_create(mspringi_topology *topology, const mspri
 void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *memory);
 
 /// The two slots that a spring joins; where the place has a direction, base and tip in its sense.
-void mspringi_topology_ends(const mspringi_topology *topology, mspringi_place place, uint32_t *base,
-                            uint32_t *tip);
+void mspringi_topology_ends(const mspringi_topology *topology, mspringi_place place, uint32_t *base, uint32_t *tip);
 
 #endif

@@ -154,10 +154,10 @@ enum {
 /// One particle. Fill with mspring_particle_def_init() first.
 typedef struct mspring_particle_def {
     uint32_t struct_size;
-    uint32_t flags;    ///< MSPRING_PARTICLE_PINNED or 0; default 0
-    double x, y;       ///< world position, m, at most MSPRING_MAX_COORDINATE in absolute value; default 0
-    float vx, vy;      ///< velocity, m/s, finite; default 0
-    float mass;        ///< kg, 1e-30 to 1e30; default 1
+    uint32_t flags; ///< MSPRING_PARTICLE_PINNED or 0; default 0
+    double x, y;    ///< world position, m, at most MSPRING_MAX_COORDINATE in absolute value; default 0
+    float vx, vy;   ///< velocity, m/s, finite; default 0
+    float mass;     ///< kg, 1e-30 to 1e30; default 1
 } mspring_particle_def;
 
 /// rest_length for "the distance at which the two particles are added".
@@ -241,15 +241,15 @@ enum {
 /// A network's settings at the start. Fill with mspring_network_def_init() first.
 typedef struct mspring_network_def {
     uint32_t struct_size;
-    mspring_simd simd_level;  ///< highest level to use; default MSPRING_SIMD_AUTO. The environment variable
-                              ///< MSPRING_SIMD (scalar, sse2, avx2, avx512) can lower it further, never raise.
-    float gravity_x;          ///< m/s^2, finite; default 0
-    float gravity_y;          ///< m/s^2, finite; default -9.8
-    float global_damping;     ///< 1/s, 0 to 1e6; velocities decay by exp(-global_damping t); default 0
-    float max_speed;          ///< m/s, > 0 and at most 1e15: a step that ends with a particle faster than this in
-                              ///< x or y is refused with MSPRING_ERROR_UNSTABLE; default 1e6
-    mspring_solver solver;    ///< default MSPRING_SOLVER_EXPLICIT
-    uint32_t substeps;        ///< as in mspring_solver_def; default 1
+    mspring_simd simd_level; ///< highest level to use; default MSPRING_SIMD_AUTO. The environment variable
+                             ///< MSPRING_SIMD (scalar, sse2, avx2, avx512) can lower it further, never raise.
+    float gravity_x;         ///< m/s^2, finite; default 0
+    float gravity_y;         ///< m/s^2, finite; default -9.8
+    float global_damping;    ///< 1/s, 0 to 1e6; velocities decay by exp(-global_damping t); default 0
+    float max_speed;         ///< m/s, > 0 and at most 1e15: a step that ends with a particle faster than this in
+                             ///< x or y is refused with MSPRING_ERROR_UNSTABLE; default 1e6
+    mspring_solver solver;   ///< default MSPRING_SOLVER_EXPLICIT
+    uint32_t substeps;       ///< as in mspring_solver_def; default 1
     const mspring_allocator *allocator; ///< default NULL: malloc and free
 } mspring_network_def;
 
@@ -440,11 +440,11 @@ typedef struct mspring_hook_args {
     mspring_phase phase;
     uint32_t substep, substep_count; ///< 0 ... substep_count - 1; before the step 0
     uint32_t first_slot, slot_count;
-    double dt;                       ///< length of the substep (before the step: of the step), s
-    double origin_x, origin_y;       ///< world position = origin + (x, y)
-    float *x, *y, *vx, *vy;          ///< m, relative to the origin; m/s
-    float *force_x, *force_y;        ///< N: add to them; NULL after a substep
-    const float *inverse_mass;       ///< 1/kg; 0 if pinned or no particle
+    double dt;                 ///< length of the substep (before the step: of the step), s
+    double origin_x, origin_y; ///< world position = origin + (x, y)
+    float *x, *y, *vx, *vy;    ///< m, relative to the origin; m/s
+    float *force_x, *force_y;  ///< N: add to them; NULL after a substep
+    const float *inverse_mass; ///< 1/kg; 0 if pinned or no particle
     const uint32_t *particle_of_slot;
 } mspring_hook_args;
 
@@ -455,15 +455,14 @@ typedef void (*mspring_hook_fn)(const mspring_hook_args *args, void *user);
 /// @param hook  receives a number for mspring_network_remove_hook(); may be NULL
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network   @allocates yes   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_add_hook(mspring_network *network,
-                                                                      mspring_phase phase, mspring_hook_fn fn,
-                                                                      void *user, uint32_t *hook);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_add_hook(mspring_network *network, mspring_phase phase,
+                                                                      mspring_hook_fn fn, void *user,
+                                                                      uint32_t *hook);
 
 /// Remove a hook. Numbers of removed hooks are not used again.
 /// @return MSPRING_OK; MSPRING_ERROR_ID if there is no such hook; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_remove_hook(mspring_network *network,
-                                                                         uint32_t hook);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_remove_hook(mspring_network *network, uint32_t hook);
 
 /* -------------------------------------------------------------------------------------------------- views */
 
@@ -472,13 +471,13 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_remove_hook(mspring
 /// may be written between steps; finite values only.
 typedef struct mspring_view {
     uint32_t struct_size;
-    uint32_t slot_count;             ///< length of the arrays by slot; some slots hold no particle
-    uint32_t particle_count;         ///< length of slot_of_particle
-    uint32_t reserved;               ///< 0
-    double origin_x, origin_y;       ///< world position = origin + (x, y), m
-    float *x, *y;                    ///< [slot_count], m, relative to the origin
-    float *vx, *vy;                  ///< [slot_count], m/s
-    const float *inverse_mass;       ///< [slot_count], 1/kg; 0 if pinned or no particle
+    uint32_t slot_count;              ///< length of the arrays by slot; some slots hold no particle
+    uint32_t particle_count;          ///< length of slot_of_particle
+    uint32_t reserved;                ///< 0
+    double origin_x, origin_y;        ///< world position = origin + (x, y), m
+    float *x, *y;                     ///< [slot_count], m, relative to the origin
+    float *vx, *vy;                   ///< [slot_count], m/s
+    const float *inverse_mass;        ///< [slot_count], 1/kg; 0 if pinned or no particle
     const uint32_t *particle_of_slot; ///< [slot_count], particle id or MSPRING_NONE
     const uint32_t *slot_of_particle; ///< [particle_count]
 } mspring_view;
@@ -539,9 +538,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_masses(const ms
 ///   potential  - sum of m (gravity . p) over particles that are not pinned, p in world coordinates
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL. Any of the out-parameters may be NULL.
 /// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_energy(const mspring_network *network,
-                                                                    double *kinetic, double *elastic,
-                                                                    double *potential);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_energy(const mspring_network *network, double *kinetic,
+                                                                    double *elastic, double *potential);
 
 /// Momentum (kg m/s) and angular momentum about the world's origin (kg m^2/s) of the particles that are not
 /// pinned. Any of the out-parameters may be NULL.
@@ -606,19 +604,19 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_state_hash(const ms
 typedef struct mspring_plan {
     uint32_t struct_size;
     uint32_t particle_count, spring_count;
-    uint32_t lattice_count;      ///< grids found
+    uint32_t lattice_count; ///< grids found
     uint32_t lattice_particles, lattice_springs;
-    uint32_t lattice_rows;       ///< rows of the grids
-    uint32_t lattice_blocks;     ///< blocks of block_width columns in those rows
-    uint32_t chain_count;        ///< strands found
+    uint32_t lattice_rows;   ///< rows of the grids
+    uint32_t lattice_blocks; ///< blocks of block_width columns in those rows
+    uint32_t chain_count;    ///< strands found
     uint32_t chain_particles, chain_springs;
     uint32_t loose_particles;
     uint32_t leftover_springs;
-    uint32_t slot_count;         ///< slots of the state, empty ones among them
-    uint32_t block_width;        ///< slots in a block
-    uint32_t has_damping;        ///< 1: some spring has damping. 0: steps neither read nor compute any.
-    uint32_t has_relative;       ///< 1: some spring is relative, and a change of substep costs a pass over all
-    mspring_simd simd_level;     ///< what runs
+    uint32_t slot_count;     ///< slots of the state, empty ones among them
+    uint32_t block_width;    ///< slots in a block
+    uint32_t has_damping;    ///< 1: some spring has damping. 0: steps neither read nor compute any.
+    uint32_t has_relative;   ///< 1: some spring is relative, and a change of substep costs a pass over all
+    mspring_simd simd_level; ///< what runs
 } mspring_plan;
 
 /// Get the plan. Set struct_size first.

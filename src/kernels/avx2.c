@@ -6,67 +6,55 @@
 #define LANES 8
 typedef __m256 vec;
 
-static inline vec zero(void)
-{
+static inline vec zero(void) {
     return _mm256_setzero_ps();
 }
-static inline vec set(float value)
-{
+static inline vec set(float value) {
     return _mm256_set1_ps(value);
 }
-static inline vec load(const float *from)
-{
+static inline vec load(const float *from) {
     return _mm256_load_ps(from);
 }
-static inline vec load_unaligned(const float *from)
-{
+static inline vec load_unaligned(const float *from) {
     return _mm256_loadu_ps(from);
 }
-static inline void store(float *to, vec a)
-{
+static inline void store(float *to, vec a) {
     _mm256_store_ps(to, a);
 }
-static inline vec add(vec a, vec b)
-{
+static inline vec add(vec a, vec b) {
     return _mm256_add_ps(a, b);
 }
-static inline vec sub(vec a, vec b)
-{
+static inline vec sub(vec a, vec b) {
     return _mm256_sub_ps(a, b);
 }
-static inline vec mul(vec a, vec b)
-{
+static inline vec mul(vec a, vec b) {
     return _mm256_mul_ps(a, b);
 }
-static inline vec square_root(vec a)
-{
+static inline vec square_root(vec a) {
     return _mm256_sqrt_ps(a);
 }
 // 1 / length, or 0 where length is 0.
-static inline vec inverse_or_zero(vec length)
-{
+static inline vec inverse_or_zero(vec length) {
     return _mm256_and_ps(_mm256_div_ps(_mm256_set1_ps(1.0f), length),
                          _mm256_cmp_ps(length, _mm256_setzero_ps(), _CMP_GT_OQ));
 }
 // a where selector > 0, b elsewhere.
-static inline vec choose_positive(vec selector, vec a, vec b)
-{
+static inline vec choose_positive(vec selector, vec a, vec b) {
     return _mm256_blendv_ps(b, a, _mm256_cmp_ps(selector, _mm256_setzero_ps(), _CMP_GT_OQ));
 }
 // The last lane of before, then all lanes of a but its last.
-static inline vec shift_in(vec before, vec a)
-{
-    const __m256i seam = _mm256_castps_si256(_mm256_permute2f128_ps(before, a, 0x21)); // upper of before, lower of a
+static inline vec shift_in(vec before, vec a) {
+    const __m256i seam =
+        _mm256_castps_si256(_mm256_permute2f128_ps(before, a, 0x21)); // upper of before, lower of a
     return _mm256_castsi256_ps(_mm256_alignr_epi8(_mm256_castps_si256(a), seam, 12));
 }
 
-static bool bounded(const float *values, size_t count, float limit)
-{
+static bool bounded(const float *values, size_t count, float limit) {
     const __m256 absolute = _mm256_castsi256_ps(_mm256_set1_epi32(0x7fffffff)), limits = _mm256_set1_ps(limit);
     __m256 all = _mm256_cmp_ps(limits, limits, _CMP_EQ_OQ);
     for (size_t i = 0; i < count; i += LANES)
-        all = _mm256_and_ps(
-            all, _mm256_cmp_ps(_mm256_and_ps(_mm256_load_ps(values + i), absolute), limits, _CMP_LE_OQ));
+        all = _mm256_and_ps(all,
+                            _mm256_cmp_ps(_mm256_and_ps(_mm256_load_ps(values + i), absolute), limits, _CMP_LE_OQ));
     return _mm256_movemask_ps(all) == 0xff;
 }
 

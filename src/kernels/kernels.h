@@ -11,11 +11,7 @@
 #include "../topology.h"
 
 /// The parts of a spring record, each one value per slot; damping only if the network has any.
-typedef enum mspringi_part {
-    MSPRINGI_REST_LENGTH = 0,
-    MSPRINGI_STIFFNESS = 1,
-    MSPRINGI_DAMPING = 2
-} mspringi_part;
+typedef enum mspringi_part { MSPRINGI_REST_LENGTH = 0, MSPRINGI_STIFFNESS = 1, MSPRINGI_DAMPING = 2 } mspringi_part;
 
 /// What a sweep works on: arrays by slot, and what is the same for all of them.
 typedef struct mspringi_sweep {

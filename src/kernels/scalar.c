@@ -10,12 +10,13 @@ typedef struct vector {
 
 // The force of one spring on its base, towards its tip; the force on the tip is the opposite. record is the slot's
 // first value in a spring record.
-static inline vector spring_force(const mspringi_sweep *s, size_t base, size_t tip, const float *record, bool damped)
-{
+static inline vector spring_force(const mspringi_sweep *s, size_t base, size_t tip, const float *record,
+                                  bool damped) {
     const float dx = s->x[tip] - s->x[base], dy = s->y[tip] - s->y[base];
     const float length = sqrtf(dx * dx + dy * dy);
     const float inverse = length > 0.0f ? 1.0f / length : 0.0f; // a spring of length 0 has no direction
-    float force = (length - record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH]) * record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH];
+    float force =
+        (length - record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH]) * record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH];
     if (damped) {
         const float dvx = s->vx[tip] - s->vx[base], dvy = s->vy[tip] - s->vy[base];
         const float rate = (dvx * dx + dvy * dy) * inverse; // of lengthening, m/s
@@ -26,8 +27,7 @@ static inline vector spring_force(const mspringi_sweep *s, size_t base, size_t t
 }
 
 // Symplectic Euler. A pinned particle keeps its velocity.
-static inline void move(const mspringi_sweep *s, size_t slot, vector force, bool forced)
-{
+static inline void move(const mspringi_sweep *s, size_t slot, vector force, bool forced) {
     if (forced) {
         force.x = force.x + s->force_x[slot];
         force.y = force.y + s->force_y[slot];
@@ -43,8 +43,7 @@ static inline void move(const mspringi_sweep *s, size_t slot, vector force, bool
 }
 
 static inline void lattice(const mspringi_sweep *s, const mspringi_span *span, mspringi_edge *edge, bool damped,
-                           bool forced)
-{
+                           bool forced) {
     const size_t part = (size_t)s->parts * MSPRINGI_WIDTH; // values of one direction
     const size_t last = MSPRINGI_WIDTH - 1;
     vector left = {edge->right_x[last], edge->right_y[last]};
@@ -78,8 +77,7 @@ static inline void lattice(const mspringi_sweep *s, const mspringi_span *span, m
 
 // East springs only.
 static inline void chain(const mspringi_sweep *s, const mspringi_span *span, mspringi_edge *edge, bool damped,
-                         bool forced)
-{
+                         bool forced) {
     const size_t last = MSPRINGI_WIDTH - 1;
     const size_t stride = (size_t)s->parts * span->record_slots;
     const float *records =
@@ -101,15 +99,13 @@ static inline void chain(const mspringi_sweep *s, const mspringi_span *span, msp
     edge->diagonal_y[last] = 0.0f;
 }
 
-static inline void loose(const mspringi_sweep *s, const mspringi_span *span, bool forced)
-{
+static inline void loose(const mspringi_sweep *s, const mspringi_span *span, bool forced) {
     const size_t first = (size_t)span->first_block * MSPRINGI_WIDTH;
     for (size_t slot = first; slot < first + (size_t)span->block_count * MSPRINGI_WIDTH; ++slot)
         move(s, slot, (vector){0.0f, 0.0f}, forced);
 }
 
-static bool bounded(const float *values, size_t count, float limit)
-{
+static bool bounded(const float *values, size_t count, float limit) {
     bool all = true;
     for (size_t i = 0; i < count; ++i)
         all = all & (fabsf(values[i]) <= limit);

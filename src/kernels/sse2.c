@@ -6,62 +6,49 @@
 #define LANES 4
 typedef __m128 vec;
 
-static inline vec zero(void)
-{
+static inline vec zero(void) {
     return _mm_setzero_ps();
 }
-static inline vec set(float value)
-{
+static inline vec set(float value) {
     return _mm_set1_ps(value);
 }
-static inline vec load(const float *from)
-{
+static inline vec load(const float *from) {
     return _mm_load_ps(from);
 }
-static inline vec load_unaligned(const float *from)
-{
+static inline vec load_unaligned(const float *from) {
     return _mm_loadu_ps(from);
 }
-static inline void store(float *to, vec a)
-{
+static inline void store(float *to, vec a) {
     _mm_store_ps(to, a);
 }
-static inline vec add(vec a, vec b)
-{
+static inline vec add(vec a, vec b) {
     return _mm_add_ps(a, b);
 }
-static inline vec sub(vec a, vec b)
-{
+static inline vec sub(vec a, vec b) {
     return _mm_sub_ps(a, b);
 }
-static inline vec mul(vec a, vec b)
-{
+static inline vec mul(vec a, vec b) {
     return _mm_mul_ps(a, b);
 }
-static inline vec square_root(vec a)
-{
+static inline vec square_root(vec a) {
     return _mm_sqrt_ps(a);
 }
 // 1 / length, or 0 where length is 0.
-static inline vec inverse_or_zero(vec length)
-{
+static inline vec inverse_or_zero(vec length) {
     return _mm_and_ps(_mm_div_ps(_mm_set1_ps(1.0f), length), _mm_cmpgt_ps(length, _mm_setzero_ps()));
 }
 // a where selector > 0, b elsewhere.
-static inline vec choose_positive(vec selector, vec a, vec b)
-{
+static inline vec choose_positive(vec selector, vec a, vec b) {
     const vec mask = _mm_cmpgt_ps(selector, _mm_setzero_ps());
     return _mm_or_ps(_mm_and_ps(mask, a), _mm_andnot_ps(mask, b));
 }
 // The last lane of before, then all lanes of a but its last.
-static inline vec shift_in(vec before, vec a)
-{
+static inline vec shift_in(vec before, vec a) {
     const vec seam = _mm_shuffle_ps(before, a, _MM_SHUFFLE(0, 0, 3, 3));
     return _mm_shuffle_ps(seam, a, _MM_SHUFFLE(2, 1, 2, 0));
 }
 
-static bool bounded(const float *values, size_t count, float limit)
-{
+static bool bounded(const float *values, size_t count, float limit) {
     const __m128 absolute = _mm_castsi128_ps(_mm_set1_epi32(0x7fffffff)), limits = _mm_set1_ps(limit);
     __m128 all = _mm_cmpeq_ps(limits, limits);
     for (size_t i = 0; i < count; i += LANES)

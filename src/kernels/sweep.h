@@ -26,8 +26,7 @@ typedef struct motion {
     vec x, y, vx, vy;
 } motion;
 
-MSPRINGI_INLINE motion load_motion(const mspringi_sweep *s, size_t slot, bool damped)
-{
+MSPRINGI_INLINE motion load_motion(const mspringi_sweep *s, size_t slot, bool damped) {
     motion m = {load(s->x + slot), load(s->y + slot), zero(), zero()};
     if (damped) {
         m.vx = load(s->vx + slot);
@@ -37,8 +36,7 @@ MSPRINGI_INLINE motion load_motion(const mspringi_sweep *s, size_t slot, bool da
 }
 
 // The same from a slot that is no multiple of LANES.
-MSPRINGI_INLINE motion load_motion_unaligned(const mspringi_sweep *s, size_t slot, bool damped)
-{
+MSPRINGI_INLINE motion load_motion_unaligned(const mspringi_sweep *s, size_t slot, bool damped) {
     motion m = {load_unaligned(s->x + slot), load_unaligned(s->y + slot), zero(), zero()};
     if (damped) {
         m.vx = load_unaligned(s->vx + slot);
@@ -47,25 +45,34 @@ MSPRINGI_INLINE motion load_motion_unaligned(const mspringi_sweep *s, size_t slo
     return m;
 }
 
-MSPRINGI_INLINE vector spring_force(motion base, motion tip, const float *record, bool damped)
-{
-    const vec dx = sub(tip.x, base.x), dy = sub(tip.y, base.y);
-    const vec length = square_root(add(mul(dx, dx), mul(dy, dy)));
-    const vec inverse = inverse_or_zero(length);
-    vec force = mul(sub(length, load(record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH)),
+/// Extent of LANES springs.
+typedef struct extent {
+    vec dx, dy, length;
+} extent;
+
+MSPRINGI_INLINE extent spring_extent(motion base, motion tip) {
+    extent e;
+    e.dx = sub(tip.x, base.x);
+    e.dy = sub(tip.y, base.y);
+    e.length = square_root(add(mul(e.dx, e.dx), mul(e.dy, e.dy)));
+    return e;
+}
+
+MSPRINGI_INLINE vector spring_force(extent e, vec inverse, motion base, motion tip, const float *record,
+                                    bool damped) {
+    vec force = mul(sub(e.length, load(record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH)),
                     load(record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH));
     if (damped) {
         const vec dvx = sub(tip.vx, base.vx), dvy = sub(tip.vy, base.vy);
-        const vec rate = mul(add(mul(dvx, dx), mul(dvy, dy)), inverse);
+        const vec rate = mul(add(mul(dvx, e.dx), mul(dvy, e.dy)), inverse);
         force = add(force, mul(rate, load(record + MSPRINGI_DAMPING * MSPRINGI_WIDTH)));
     }
     force = mul(force, inverse);
-    const vector result = {mul(force, dx), mul(force, dy)};
+    const vector result = {mul(force, e.dx), mul(force, e.dy)};
     return result;
 }
 
-MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, vector force, bool forced)
-{
+MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, vector force, bool forced) {
     if (forced) {
         force.x = add(force.x, load(s->force_x + slot));
         force.y = add(force.y, load(s->force_y + slot));
@@ -74,10 +81,10 @@ MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, vector force, bo
     const vec inverse_mass = load(s->inverse_mass + slot);
     const vec inverse_mass_h = mul(inverse_mass, h);
     vec vx = load(s->vx + slot), vy = load(s->vy + slot);
-    vx = choose_positive(inverse_mass,
-                         mul(add(vx, add(mul(force.x, inverse_mass_h), set(s->gravity_h_x))), decay), vx);
-    vy = choose_positive(inverse_mass,
-                         mul(add(vy, add(mul(force.y, inverse_mass_h), set(s->gravity_h_y))), decay), vy);
+    vx = choose_positive(inverse_mass, mul(add(vx, add(mul(force.x, inverse_mass_h), set(s->gravity_h_x))), decay),
+                         vx);
+    vy = choose_positive(inverse_mass, mul(add(vy, add(mul(force.y, inverse_mass_h), set(s->gravity_h_y))), decay),
+                         vy);
     store(s->vx + slot, vx);
     store(s->vy + slot, vy);
     store(s->x + slot, add(load(s->x + slot), mul(vx, h)));
@@ -85,8 +92,7 @@ MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, vector force, bo
 }
 
 MSPRINGI_INLINE void lattice(const mspringi_sweep *s, const mspringi_span *span, mspringi_edge *edge, bool damped,
-                             bool forced)
-{
+                             bool forced) {
     const size_t part = (size_t)(damped ? 3 : 2) * MSPRINGI_WIDTH; // values of one direction
     const size_t last = MSPRINGI_WIDTH - LANES;
     const float *record = s->lattice_springs + (size_t)span->record * MSPRINGI_DIRECTIONS * part;
@@ -104,20 +110,32 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *s, const mspringi_span *span,
             const motion next = load_motion_unaligned(s, slot + 1, damped);
             const motion above = load_motion(s, up, damped);
             const motion above_next = load_motion_unaligned(s, up + 1, damped);
-            const vector east = spring_force(here, next, record + lane + MSPRINGI_EAST * part, damped);
-            const vector north = spring_force(here, above, record + lane + MSPRINGI_NORTH * part, damped);
-            const vector north_east =
-                spring_force(here, above_next, record + lane + MSPRINGI_NORTH_EAST * part, damped);
-            const vector south_east = spring_force(above, next, record + lane + MSPRINGI_SOUTH_EAST * part, damped);
+            // All square roots, then all divisions: in turn, each waits for the other (measured on Zen 5: 2.4 ns
+            // for one of each in turn, 1.9 ns in groups of four).
+            const extent to_east = spring_extent(here, next);
+            const extent to_north = spring_extent(here, above);
+            const extent to_north_east = spring_extent(here, above_next);
+            const extent to_south_east = spring_extent(above, next);
+            const vec per_east = inverse_or_zero(to_east.length);
+            const vec per_north = inverse_or_zero(to_north.length);
+            const vec per_north_east = inverse_or_zero(to_north_east.length);
+            const vec per_south_east = inverse_or_zero(to_south_east.length);
+            const float *springs = record + lane;
+            const vector east = spring_force(to_east, per_east, here, next, springs + MSPRINGI_EAST * part, damped);
+            const vector north =
+                spring_force(to_north, per_north, here, above, springs + MSPRINGI_NORTH * part, damped);
+            const vector north_east = spring_force(to_north_east, per_north_east, here, above_next,
+                                                   springs + MSPRINGI_NORTH_EAST * part, damped);
+            const vector south_east = spring_force(to_south_east, per_south_east, above, next,
+                                                   springs + MSPRINGI_SOUTH_EAST * part, damped);
 
             const vector right = {add(east.x, south_east.x), add(east.y, south_east.y)};
-            const vector force = {
-                sub(add(load(carry_in_x), add(add(east.x, north.x), north_east.x)), shift_in(right_before.x, right.x)),
-                sub(add(load(carry_in_y), add(add(east.y, north.y), north_east.y)), shift_in(right_before.y, right.y))};
-            store(carry_out_x,
-                  sub(sub(south_east.x, north.x), shift_in(diagonal_before.x, north_east.x)));
-            store(carry_out_y,
-                  sub(sub(south_east.y, north.y), shift_in(diagonal_before.y, north_east.y)));
+            const vector force = {sub(add(load(carry_in_x), add(add(east.x, north.x), north_east.x)),
+                                      shift_in(right_before.x, right.x)),
+                                  sub(add(load(carry_in_y), add(add(east.y, north.y), north_east.y)),
+                                      shift_in(right_before.y, right.y))};
+            store(carry_out_x, sub(sub(south_east.x, north.x), shift_in(diagonal_before.x, north_east.x)));
+            store(carry_out_y, sub(sub(south_east.y, north.y), shift_in(diagonal_before.y, north_east.y)));
             right_before = right;
             diagonal_before = north_east;
             move(s, slot, force, forced);
@@ -138,8 +156,7 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *s, const mspringi_span *span,
 }
 
 MSPRINGI_INLINE void chain(const mspringi_sweep *s, const mspringi_span *span, mspringi_edge *edge, bool damped,
-                           bool forced)
-{
+                           bool forced) {
     const size_t last = MSPRINGI_WIDTH - LANES;
     const size_t stride = (size_t)(damped ? 3 : 2) * span->record_slots;
     const float *record =
@@ -151,8 +168,10 @@ MSPRINGI_INLINE void chain(const mspringi_sweep *s, const mspringi_span *span, m
 
     for (uint32_t block = 0; block < span->block_count; ++block) {
         for (size_t lane = 0; lane < MSPRINGI_WIDTH; lane += LANES) {
-            const vector east = spring_force(load_motion(s, slot, damped), load_motion_unaligned(s, slot + 1, damped),
-                                             record + lane, damped);
+            const motion here = load_motion(s, slot, damped), next = load_motion_unaligned(s, slot + 1, damped);
+            const extent to_east = spring_extent(here, next);
+            const vector east =
+                spring_force(to_east, inverse_or_zero(to_east.length), here, next, record + lane, damped);
             const vector force = {sub(add(load(carry_x), east.x), shift_in(before.x, east.x)),
                                   sub(add(load(carry_y), east.y), shift_in(before.y, east.y))};
             before = east;
@@ -170,8 +189,7 @@ MSPRINGI_INLINE void chain(const mspringi_sweep *s, const mspringi_span *span, m
     store(edge->diagonal_y + last, zero());
 }
 
-MSPRINGI_INLINE void loose(const mspringi_sweep *s, const mspringi_span *span, bool forced)
-{
+MSPRINGI_INLINE void loose(const mspringi_sweep *s, const mspringi_span *span, bool forced) {
     const size_t first = (size_t)span->first_block * MSPRINGI_WIDTH;
     const vector none = {zero(), zero()};
     for (size_t slot = first; slot < first + (size_t)span->block_count * MSPRINGI_WIDTH; slot += LANES)

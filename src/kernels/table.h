@@ -4,10 +4,9 @@
 ///
 /// SPDX-License-Identifier: MIT
 
-#define MSPRINGI_VARIANT(kind, name, damped, forced)                                                             \
-    static void kind##_##name(const mspringi_sweep *sweep, const mspringi_span *span, mspringi_edge *edge)       \
-    {                                                                                                            \
-        kind(sweep, span, edge, damped, forced);                                                                 \
+#define MSPRINGI_VARIANT(kind, name, damped, forced)                                                               \
+    static void kind##_##name(const mspringi_sweep *sweep, const mspringi_span *span, mspringi_edge *edge) {       \
+        kind(sweep, span, edge, damped, forced);                                                                   \
     }
 
 MSPRINGI_VARIANT(lattice, plain, false, false)
@@ -19,14 +18,12 @@ MSPRINGI_VARIANT(chain, forced, false, true)
 MSPRINGI_VARIANT(chain, damped, true, false)
 MSPRINGI_VARIANT(chain, damped_forced, true, true)
 
-static void loose_plain(const mspringi_sweep *sweep, const mspringi_span *span, mspringi_edge *edge)
-{
+static void loose_plain(const mspringi_sweep *sweep, const mspringi_span *span, mspringi_edge *edge) {
     (void)edge;
     loose(sweep, span, false);
 }
 
-static void loose_forced(const mspringi_sweep *sweep, const mspringi_span *span, mspringi_edge *edge)
-{
+static void loose_forced(const mspringi_sweep *sweep, const mspringi_span *span, mspringi_edge *edge) {
     (void)edge;
     loose(sweep, span, true);
 }
