@@ -86,6 +86,17 @@ static bool is_coordinate(double value) {
     return value >= -MSPRING_MAX_COORDINATE && value <= MSPRING_MAX_COORDINATE;
 }
 
+// A definition's struct_size, where it is one of several.
+static mspring_result check_struct_of(mspring_builder *builder, const char *what, size_t index, size_t given,
+                                      size_t known) {
+    if (given == known)
+        return MSPRING_OK;
+    return mspringi_fail(&builder->message, MSPRING_ERROR_STRUCT,
+                         "%s %zu: struct_size is %zu, this library knows %zu: fill the struct with its init "
+                         "function",
+                         what, index, given, known);
+}
+
 static mspring_result check_mass(mspring_builder *builder, const char *what, size_t index, float mass) {
     if (in_range(mass, SMALLEST_MASS, LARGEST_VALUE))
         return MSPRING_OK;
@@ -109,8 +120,7 @@ static mspring_result check_coefficients(mspring_builder *builder, const char *w
 
 static mspring_result check_particle(mspring_builder *builder, size_t index, const mspring_particle_def *def) {
     mspringi_message *message = &builder->message;
-    mspring_result result =
-        mspringi_check_struct(message, "mspring_particle_def", def->struct_size, sizeof *def, sizeof *def);
+    mspring_result result = check_struct_of(builder, "particle", index, def->struct_size, sizeof *def);
     if (result != MSPRING_OK)
         return result;
     if (!is_coordinate(def->x) || !is_coordinate(def->y))
@@ -129,8 +139,7 @@ static mspring_result check_particle(mspring_builder *builder, size_t index, con
 static mspring_result check_spring(mspring_builder *builder, size_t index, const mspring_spring_def *def,
                                    float *rest_length) {
     mspringi_message *message = &builder->message;
-    mspring_result result =
-        mspringi_check_struct(message, "mspring_spring_def", def->struct_size, sizeof *def, sizeof *def);
+    mspring_result result = check_struct_of(builder, "spring", index, def->struct_size, sizeof *def);
     if (result != MSPRING_OK)
         return result;
     if (def->a >= builder->particle_count || def->b >= builder->particle_count)
@@ -240,8 +249,7 @@ static mspring_result check_materials(mspring_builder *builder, const mspring_la
                              (unsigned)def->material_count, (unsigned)MSPRING_CELL_EMPTY);
     for (uint32_t i = 0; i < def->material_count; ++i) {
         const mspring_material *material = &def->materials[i];
-        mspring_result result = mspringi_check_struct(message, "mspring_material", material->struct_size,
-                                                      sizeof *material, sizeof *material);
+        mspring_result result = check_struct_of(builder, "material", i, material->struct_size, sizeof *material);
         if (result == MSPRING_OK)
             result = check_mass(builder, "material", i, material->mass);
         if (result == MSPRING_OK)

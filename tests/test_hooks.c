@@ -325,7 +325,7 @@ static void scribble_on_empty_slots(const mspring_hook_args *args, void *user)
 static void what_hooks_write_to_empty_slots_is_ignored(void **state)
 {
     (void)state;
-    const float values[] = {0, 1, -77.5f, 1e6f, 1e20f, 3e38f};
+    const float values[] = {0, 1, -77.5f, 1e6f};
     mspring_network *clean = mixed_network(2);
     support_steps(clean, 20, 0.01);
     for (size_t i = 0; i < COUNT_OF(values); i++) {

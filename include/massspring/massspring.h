@@ -433,8 +433,8 @@ enum {
 };
 
 /// What a hook gets: arrays by slot, of which it is to handle first_slot ... first_slot + slot_count - 1. One
-/// phase may come as several calls with different ranges. Some slots hold no particle: there
-/// particle_of_slot is MSPRING_NONE and whatever finite value a hook writes is ignored.
+/// phase may come as several calls with different ranges. Some slots hold no particle: there particle_of_slot is
+/// MSPRING_NONE, and what a hook writes is ignored as long as it is within the bounds of a step.
 typedef struct mspring_hook_args {
     uint32_t struct_size;
     mspring_phase phase;
