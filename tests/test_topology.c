@@ -1,0 +1,271 @@
+/// @file test_topology.c
+/// What a network recognises in what it is given: lattices and strands, whatever the order they were added in.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdbool.h>
+
+#include "recipe.h"
+#include "support.h"
+
+static const recipe_stuff solid = {.mass = {1, 1}, .stiffness = {100, 100}};
+static const recipe_stuff holed = {.mass = {1, 1}, .stiffness = {100, 100}, .holes = 0.3};
+
+/// The plan of a recipe, whose parts add up.
+static mspring_plan plan_of(const recipe *made)
+{
+    mspring_network *network = recipe_network(made, NULL);
+    mspring_plan plan = {.struct_size = sizeof plan};
+    check_ok(mspring_network_plan(network, &plan));
+    assert_int_equal(plan.particle_count, made->particle_count);
+    assert_int_equal(plan.spring_count, made->spring_count);
+    assert_int_equal(plan.lattice_particles + plan.chain_particles + plan.loose_particles, made->particle_count);
+    assert_int_equal(plan.lattice_springs + plan.chain_springs + plan.leftover_springs, made->spring_count);
+    assert_int_equal(plan.slot_count % plan.block_width, 0);
+    assert_true(plan.slot_count >= made->particle_count);
+    mspring_network_destroy(network);
+    return plan;
+}
+
+static mspring_plan shuffled_plan_of(recipe *made)
+{
+    uint64_t seed = 99;
+    recipe_shuffle(made, &seed, NULL);
+    return plan_of(made);
+}
+
+static void a_lattice_is_found_in_any_order(void **state)
+{
+    (void)state;
+    // Much smaller ones are cheaper spring by spring.
+    const uint32_t sizes[][2] = {{8, 4}, {80, 5}, {5, 80}, {33, 31}, {128, 16}};
+    for (size_t i = 0; i < COUNT_OF(sizes); i++) {
+        uint64_t seed = i;
+        recipe made = {0};
+        recipe_lattice(&made, sizes[i][0], sizes[i][1], 100, -50, 0.5, &solid, &seed);
+        for (int shuffled = 0; shuffled < 2; shuffled++) {
+            mspring_plan plan = shuffled ? shuffled_plan_of(&made) : plan_of(&made);
+            assert_int_equal(plan.lattice_count, 1);
+            assert_int_equal(plan.lattice_particles, made.particle_count);
+            assert_int_equal(plan.lattice_springs, made.spring_count);
+            assert_int_equal(plan.leftover_springs, 0);
+        }
+        recipe_free(&made);
+    }
+}
+
+static void holes_do_not_break_a_lattice_up(void **state)
+{
+    (void)state;
+    uint64_t seed = 12;
+    recipe made = {0};
+    recipe_lattice(&made, 70, 40, -20, 3, 1, &holed, &seed);
+    mspring_plan plan = shuffled_plan_of(&made);
+    // Particles that holes cut off are strands or loose, but hardly any spring is.
+    assert_true(plan.lattice_springs >= 0.99 * made.spring_count);
+    assert_true(plan.lattice_particles >= 0.99 * made.particle_count);
+    assert_true(plan.leftover_springs <= 0.01 * made.spring_count);
+    recipe_free(&made);
+}
+
+static void a_lattice_need_not_lie_on_whole_numbers(void **state)
+{
+    (void)state;
+    const double spacings[] = {0.1, 1.0 / 3, 7.3, 1e-4, 12345.678};
+    for (size_t i = 0; i < COUNT_OF(spacings); i++) {
+        uint64_t seed = i;
+        recipe made = {0};
+        recipe_lattice(&made, 30, 20, 0.123 + 1000 * spacings[i], -0.7, spacings[i], &holed, &seed);
+        mspring_plan plan = shuffled_plan_of(&made);
+        assert_true(plan.lattice_springs >= 0.99 * made.spring_count);
+        recipe_free(&made);
+    }
+}
+
+static void several_lattices_are_found_side_by_side(void **state)
+{
+    (void)state;
+    uint64_t seed = 2;
+    recipe made = {0};
+    recipe_lattice(&made, 20, 10, 0, 0, 1, &solid, &seed);
+    recipe_lattice(&made, 20, 10, 0.4, 20.3, 1, &solid, &seed);    // between the first one's grid points
+    recipe_lattice(&made, 15, 30, 50, 0, 0.25, &solid, &seed);     // of another spacing
+    recipe_lattice(&made, 10, 10, 5.3, 5.1, 1, &solid, &seed);     // on top of the first
+    mspring_plan plan = shuffled_plan_of(&made);
+    assert_int_equal(plan.lattice_count, 4);
+    assert_int_equal(plan.lattice_springs, made.spring_count);
+    recipe_free(&made);
+}
+
+static void a_rope_is_a_chain(void **state)
+{
+    (void)state;
+    uint64_t seed = 6;
+    recipe made = {0};
+    mspring_id first = recipe_lattice(&made, 20, 10, 0, 0, 1, &solid, &seed);
+    mspring_id weight = recipe_particle(&made, 10.3, -45.7, 5, 0);
+    recipe_rope(&made, first + 10, weight, 50, &solid, &seed);
+    const uint32_t lattice_springs = made.spring_count - 50;
+    mspring_plan plan = shuffled_plan_of(&made);
+    assert_int_equal(plan.lattice_springs, lattice_springs);
+    assert_int_equal(plan.chain_count, 1);
+    // The springs at its two ends may be left over, the others must not.
+    assert_true(plan.chain_springs >= 48);
+    assert_true(plan.leftover_springs <= 2);
+    assert_true(plan.chain_particles >= 49);
+    recipe_free(&made);
+}
+
+static void many_ropes_are_many_chains(void **state)
+{
+    (void)state;
+    uint64_t seed = 7;
+    recipe made = {0};
+    recipe_lattice(&made, 60, 20, 0, 0, 1, &solid, &seed);
+    const uint32_t lattice_springs = made.spring_count;
+    for (int i = 0; i < 40; i++) {
+        mspring_id a = (mspring_id)(support_random(&seed) % 1200), b = (mspring_id)(support_random(&seed) % 1200);
+        if (a != b) {
+            recipe_rope(&made, a, b, 10 + (uint32_t)i, &solid, &seed);
+        }
+    }
+    const uint32_t rope_springs = made.spring_count - lattice_springs;
+    mspring_plan plan = shuffled_plan_of(&made);
+    assert_int_equal(plan.lattice_springs, lattice_springs);
+    assert_true(plan.leftover_springs <= 2 * 40);
+    assert_true(plan.chain_springs >= rope_springs - 2 * 40);
+    recipe_free(&made);
+}
+
+static void a_strand_of_its_own_is_a_chain(void **state)
+{
+    (void)state;
+    uint64_t seed = 7;
+    recipe made = {0};
+    mspring_id a = recipe_particle(&made, 0, 0, 1, MSPRING_PARTICLE_PINNED);
+    mspring_id b = recipe_particle(&made, 70, 71, 1, 0);
+    recipe_rope(&made, a, b, 100, &solid, &seed);
+    mspring_plan plan = shuffled_plan_of(&made);
+    assert_int_equal(plan.chain_springs, 100);
+    assert_int_equal(plan.chain_particles, 101);
+    assert_int_equal(plan.leftover_springs, 0);
+    assert_int_equal(plan.lattice_particles, 0);
+    recipe_free(&made);
+}
+
+static void a_ring_is_a_chain_but_for_one_spring(void **state)
+{
+    (void)state;
+    recipe made = {0};
+    for (uint32_t i = 0; i < 50; i++) {
+        recipe_particle(&made, 10 * cos(0.1256637 * i), 10 * sin(0.1256637 * i), 1, 0);
+    }
+    for (uint32_t i = 0; i < 50; i++) {
+        recipe_spring(&made, i, (i + 1) % 50, 100, 0, 0);
+    }
+    mspring_plan plan = shuffled_plan_of(&made);
+    assert_int_equal(plan.chain_springs + plan.leftover_springs, 50);
+    assert_true(plan.leftover_springs <= 1);
+    recipe_free(&made);
+}
+
+static void a_standing_bar_is_as_cheap_as_a_lying_one(void **state)
+{
+    (void)state;
+    uint64_t seed = 4;
+    recipe lying = {0}, standing = {0};
+    recipe_lattice(&lying, 1800, 5, 0, 0, 1, &solid, &seed);
+    recipe_lattice(&standing, 5, 1800, 0, 0, 1, &solid, &seed);
+    mspring_plan a = plan_of(&lying), b = shuffled_plan_of(&standing);
+    assert_int_equal(a.lattice_springs, lying.spring_count);
+    assert_int_equal(b.lattice_springs, standing.spring_count);
+    assert_int_equal(a.lattice_blocks, b.lattice_blocks);
+    assert_int_equal(a.lattice_blocks, 5 * ((1800 + a.block_width - 1) / a.block_width));
+    recipe_free(&lying);
+    recipe_free(&standing);
+}
+
+static void a_random_graph_is_no_lattice(void **state)
+{
+    (void)state;
+    uint64_t seed = 9;
+    recipe made = {0};
+    for (int i = 0; i < 400; i++) {
+        recipe_particle(&made, support_random_between(&seed, 0, 20), support_random_between(&seed, 0, 20), 1, 0);
+    }
+    recipe_random_springs(&made, 1500, &solid, &seed);
+    mspring_plan plan = plan_of(&made);
+    assert_int_equal(plan.lattice_springs, 0);
+    // 7.5 springs to a particle: strands of them are short and few.
+    assert_true(plan.leftover_springs > 1000);
+    recipe_free(&made);
+}
+
+static void what_a_network_has_not_it_does_not_hold(void **state)
+{
+    (void)state;
+    const recipe_stuff damped = {.mass = {1, 1}, .stiffness = {100, 100}, .damping = {1, 1}};
+    const recipe_stuff relative = {.mass = {1, 1}, .stiffness = {0.1, 0.1}, .spring_flags = MSPRING_SPRING_RELATIVE};
+    const struct {
+        const recipe_stuff *stuff;
+        uint32_t has_damping, has_relative;
+    } cases[] = {{&solid, 0, 0}, {&damped, 1, 0}, {&relative, 0, 1}};
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        uint64_t seed = 1;
+        recipe made = {0};
+        recipe_lattice(&made, 10, 10, 0, 0, 1, cases[i].stuff, &seed);
+        mspring_plan plan = plan_of(&made);
+        assert_int_equal(plan.has_damping, cases[i].has_damping);
+        assert_int_equal(plan.has_relative, cases[i].has_relative);
+        recipe_free(&made);
+    }
+}
+
+static void order_does_not_change_the_motion(void **state)
+{
+    (void)state;
+    uint64_t seed = 41;
+    const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {500, 1000}, .damping = {0, 2}, .pinned = 0.03, .holes = 0.2};
+    recipe made = {0};
+    mspring_id new_ids[1000];
+    recipe_lattice(&made, 30, 20, 0, 0, 1, &stuff, &seed);
+    mspring_id end = recipe_particle(&made, 50, 30, 1, MSPRING_PARTICLE_PINNED);
+    recipe_rope(&made, 11, end, 30, &stuff, &seed);
+    recipe_random_springs(&made, 20, &stuff, &seed);
+    recipe_disturb(&made, 0.05, 1, &seed);
+    assert_true(made.particle_count <= COUNT_OF(new_ids));
+    mspring_network_def def = support_def(-9.8f, 2);
+    mspring_network *first = recipe_network(&made, &def);
+    recipe_shuffle(&made, &seed, new_ids);
+    mspring_network *second = recipe_network(&made, &def);
+    support_steps(first, 50, 1.0 / 64);
+    support_steps(second, 50, 1.0 / 64);
+    for (mspring_id id = 0; id < made.particle_count; id++) {
+        support_point a = support_position(first, id), b = support_position(second, new_ids[id]);
+        // Sums of forces may be taken in another order: some ulp of 32 m (2e-6 m) after 100 substeps.
+        check_near(a.x, b.x, 2e-4);
+        check_near(a.y, b.y, 2e-4);
+    }
+    mspring_network_destroy(first);
+    mspring_network_destroy(second);
+    recipe_free(&made);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_lattice_is_found_in_any_order),
+        cmocka_unit_test(holes_do_not_break_a_lattice_up),
+        cmocka_unit_test(a_lattice_need_not_lie_on_whole_numbers),
+        cmocka_unit_test(several_lattices_are_found_side_by_side),
+        cmocka_unit_test(a_rope_is_a_chain),
+        cmocka_unit_test(many_ropes_are_many_chains),
+        cmocka_unit_test(a_strand_of_its_own_is_a_chain),
+        cmocka_unit_test(a_ring_is_a_chain_but_for_one_spring),
+        cmocka_unit_test(a_standing_bar_is_as_cheap_as_a_lying_one),
+        cmocka_unit_test(a_random_graph_is_no_lattice),
+        cmocka_unit_test(what_a_network_has_not_it_does_not_hold),
+        cmocka_unit_test(order_does_not_change_the_motion),
+    };
+    return cmocka_run_group_tests_name("topology", tests, NULL, NULL);
+}
