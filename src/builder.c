@@ -87,14 +87,20 @@ static bool is_coordinate(double value) {
 }
 
 // A definition's struct_size, where it is one of several.
-static mspring_result check_struct_of(mspring_builder *builder, const char *what, size_t index, size_t given,
-                                      size_t known) {
+static mspring_result check_struct_of(mspring_builder *builder, const char *what, size_t index, const char *name,
+                                      size_t given, size_t known) {
     if (given == known)
         return MSPRING_OK;
     return mspringi_fail(&builder->message, MSPRING_ERROR_STRUCT,
-                         "%s %zu: struct_size is %zu, this library knows %zu: fill the struct with its init "
+                         "%s %zu: %s.struct_size is %zu, this library knows %zu: fill the struct with its init "
                          "function",
-                         what, index, given, known);
+                         what, index, name, given, known);
+}
+
+// Put the place in the caller's array in front of what was wrong with it.
+static mspring_result name_definition(mspring_builder *builder, mspring_result result, size_t index) {
+    const mspringi_message reason = builder->message;
+    return mspringi_fail(&builder->message, result, "definition %zu: %s", index, reason.text);
 }
 
 static mspring_result check_mass(mspring_builder *builder, const char *what, size_t index, float mass) {
@@ -120,7 +126,8 @@ static mspring_result check_coefficients(mspring_builder *builder, const char *w
 
 static mspring_result check_particle(mspring_builder *builder, size_t index, const mspring_particle_def *def) {
     mspringi_message *message = &builder->message;
-    mspring_result result = check_struct_of(builder, "particle", index, def->struct_size, sizeof *def);
+    mspring_result result =
+        check_struct_of(builder, "particle", index, "mspring_particle_def", def->struct_size, sizeof *def);
     if (result != MSPRING_OK)
         return result;
     if (!is_coordinate(def->x) || !is_coordinate(def->y))
@@ -139,7 +146,8 @@ static mspring_result check_particle(mspring_builder *builder, size_t index, con
 static mspring_result check_spring(mspring_builder *builder, size_t index, const mspring_spring_def *def,
                                    float *rest_length) {
     mspringi_message *message = &builder->message;
-    mspring_result result = check_struct_of(builder, "spring", index, def->struct_size, sizeof *def);
+    mspring_result result =
+        check_struct_of(builder, "spring", index, "mspring_spring_def", def->struct_size, sizeof *def);
     if (result != MSPRING_OK)
         return result;
     if (def->a >= builder->particle_count || def->b >= builder->particle_count)
@@ -200,6 +208,8 @@ mspring_result mspring_builder_add_particles(mspring_builder *builder, const msp
         result = check_particle(builder, before + i, &defs[i]);
         if (result == MSPRING_OK)
             append_particle(builder, &defs[i]);
+        else if (count > 1)
+            result = name_definition(builder, result, i);
     }
     if (result != MSPRING_OK)
         builder->particle_count = before;
@@ -226,6 +236,8 @@ mspring_result mspring_builder_add_springs(mspring_builder *builder, const mspri
         result = check_spring(builder, before + i, &defs[i], &rest_length);
         if (result == MSPRING_OK)
             append_spring(builder, &defs[i], rest_length);
+        else if (count > 1)
+            result = name_definition(builder, result, i);
     }
     if (result != MSPRING_OK)
         builder->spring_count = before;
@@ -249,7 +261,8 @@ static mspring_result check_materials(mspring_builder *builder, const mspring_la
                              (unsigned)def->material_count, (unsigned)MSPRING_CELL_EMPTY);
     for (uint32_t i = 0; i < def->material_count; ++i) {
         const mspring_material *material = &def->materials[i];
-        mspring_result result = check_struct_of(builder, "material", i, material->struct_size, sizeof *material);
+        mspring_result result =
+            check_struct_of(builder, "material", i, "mspring_material", material->struct_size, sizeof *material);
         if (result == MSPRING_OK)
             result = check_mass(builder, "material", i, material->mass);
         if (result == MSPRING_OK)
