@@ -22,13 +22,11 @@ typedef struct block_head {
     uint32_t mark;
 } block_head;
 
-static block_head *head_of(unsigned char *memory)
-{
+static block_head *head_of(unsigned char *memory) {
     return (block_head *)(void *)(memory - GUARD - ((sizeof(block_head) + 63) & ~(size_t)63));
 }
 
-static void *watched_alloc(size_t size, size_t alignment, void *user)
-{
+static void *watched_alloc(size_t size, size_t alignment, void *user) {
     watched_allocator *watched = user;
     watched->calls++;
     if (alignment == 0 || (alignment & (alignment - 1)) != 0 || alignment > 64) {
@@ -60,8 +58,7 @@ static void *watched_alloc(size_t size, size_t alignment, void *user)
     return memory;
 }
 
-static int guard_intact(const unsigned char *guard)
-{
+static int guard_intact(const unsigned char *guard) {
     for (size_t i = 0; i < GUARD; i++) {
         if (guard[i] != GUARD_BYTE) {
             return 0;
@@ -70,8 +67,7 @@ static int guard_intact(const unsigned char *guard)
     return 1;
 }
 
-static void watched_free(void *memory, size_t size, void *user)
-{
+static void watched_free(void *memory, size_t size, void *user) {
     watched_allocator *watched = user;
     if (memory == NULL) {
         watched->foreign++;
@@ -95,14 +91,12 @@ static void watched_free(void *memory, size_t size, void *user)
     free(head->base);
 }
 
-mspring_allocator watched_interface(watched_allocator *watched)
-{
+mspring_allocator watched_interface(watched_allocator *watched) {
     return (mspring_allocator){
         .struct_size = sizeof(mspring_allocator), .alloc = watched_alloc, .free = watched_free, .user = watched};
 }
 
-void support_check_watched(const watched_allocator *watched, const char *file, int line)
-{
+void support_check_watched(const watched_allocator *watched, const char *file, int line) {
     if (watched->live != 0 || watched->live_bytes != 0 || watched->damaged != 0 || watched->wrong_size != 0 ||
         watched->foreign != 0 || watched->bad_asks != 0) {
         print_error("allocator: %zu blocks (%zu bytes) not freed, %zu damaged, %zu freed with a wrong size, "

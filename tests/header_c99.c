@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <massspring/massspring.h>
 
-int main(void)
-{
+int main(void) {
     mspring_network_def def;
     return mspring_network_def_init(&def, sizeof def) == MSPRING_OK && mspring_version() == MSPRING_VERSION ? 0 : 1;
 }

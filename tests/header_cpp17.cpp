@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <massspring/massspring.h>
 
-int main()
-{
+int main() {
     mspring_builder *builder = nullptr;
     mspring_network *network = nullptr;
     mspring_particle_def particle;

@@ -9,15 +9,13 @@
 
 #include "support.h"
 
-void recipe_free(recipe *made)
-{
+void recipe_free(recipe *made) {
     free(made->particles);
     free(made->springs);
     *made = (recipe){0};
 }
 
-mspring_id recipe_particle(recipe *made, double x, double y, double mass, uint32_t flags)
-{
+mspring_id recipe_particle(recipe *made, double x, double y, double mass, uint32_t flags) {
     if (made->particle_count == made->particle_room) {
         made->particle_room = made->particle_room * 2 + 64;
         made->particles = realloc(made->particles, made->particle_room * sizeof *made->particles);
@@ -32,8 +30,8 @@ mspring_id recipe_particle(recipe *made, double x, double y, double mass, uint32
     return made->particle_count++;
 }
 
-mspring_id recipe_spring(recipe *made, mspring_id a, mspring_id b, double stiffness, double damping, uint32_t flags)
-{
+mspring_id recipe_spring(recipe *made, mspring_id a, mspring_id b, double stiffness, double damping,
+                         uint32_t flags) {
     if (made->spring_count == made->spring_room) {
         made->spring_room = made->spring_room * 2 + 64;
         made->springs = realloc(made->springs, made->spring_room * sizeof *made->springs);
@@ -49,23 +47,20 @@ mspring_id recipe_spring(recipe *made, mspring_id a, mspring_id b, double stiffn
     return made->spring_count++;
 }
 
-static mspring_id add_particle(recipe *made, double x, double y, const recipe_stuff *stuff, uint64_t *seed)
-{
+static mspring_id add_particle(recipe *made, double x, double y, const recipe_stuff *stuff, uint64_t *seed) {
     bool pinned = support_random_between(seed, 0, 1) < stuff->pinned;
     return recipe_particle(made, x, y, support_random_between(seed, stuff->mass[0], stuff->mass[1]),
                            pinned ? MSPRING_PARTICLE_PINNED : 0);
 }
 
-static mspring_id add_spring(recipe *made, mspring_id a, mspring_id b, const recipe_stuff *stuff, uint64_t *seed)
-{
+static mspring_id add_spring(recipe *made, mspring_id a, mspring_id b, const recipe_stuff *stuff, uint64_t *seed) {
     double stiffness = support_random_between(seed, stuff->stiffness[0], stuff->stiffness[1]);
     double damping = support_random_between(seed, stuff->damping[0], stuff->damping[1]);
     return recipe_spring(made, a, b, stiffness, damping, stuff->spring_flags);
 }
 
 mspring_id recipe_lattice(recipe *made, uint32_t width, uint32_t height, double x, double y, double spacing,
-                          const recipe_stuff *stuff, uint64_t *seed)
-{
+                          const recipe_stuff *stuff, uint64_t *seed) {
     mspring_id first = made->particle_count;
     mspring_id *ids = malloc((size_t)width * height * sizeof *ids);
     assert_non_null(ids);
@@ -97,8 +92,7 @@ mspring_id recipe_lattice(recipe *made, uint32_t width, uint32_t height, double 
 }
 
 mspring_id recipe_rope(recipe *made, mspring_id from, mspring_id to, uint32_t segments, const recipe_stuff *stuff,
-                       uint64_t *seed)
-{
+                       uint64_t *seed) {
     mspring_id first = made->particle_count, last = from;
     double x = made->particles[from].x, y = made->particles[from].y;
     double dx = made->particles[to].x - x, dy = made->particles[to].y - y;
@@ -112,8 +106,7 @@ mspring_id recipe_rope(recipe *made, mspring_id from, mspring_id to, uint32_t se
     return first;
 }
 
-static bool joined(const recipe *made, mspring_id a, mspring_id b)
-{
+static bool joined(const recipe *made, mspring_id a, mspring_id b) {
     for (uint32_t i = 0; i < made->spring_count; i++) {
         const mspring_spring_def *spring = &made->springs[i];
         if ((spring->a == a && spring->b == b) || (spring->a == b && spring->b == a)) {
@@ -123,13 +116,11 @@ static bool joined(const recipe *made, mspring_id a, mspring_id b)
     return false;
 }
 
-static mspring_id random_id(const recipe *made, uint64_t *seed)
-{
+static mspring_id random_id(const recipe *made, uint64_t *seed) {
     return (mspring_id)(support_random(seed) % made->particle_count);
 }
 
-void recipe_random_springs(recipe *made, uint32_t count, const recipe_stuff *stuff, uint64_t *seed)
-{
+void recipe_random_springs(recipe *made, uint32_t count, const recipe_stuff *stuff, uint64_t *seed) {
     while (count > 0) {
         mspring_id a = random_id(made, seed), b = random_id(made, seed);
         if (a != b && !joined(made, a, b)) {
@@ -139,13 +130,14 @@ void recipe_random_springs(recipe *made, uint32_t count, const recipe_stuff *stu
     }
 }
 
-void recipe_disturb(recipe *made, double distance, double speed, uint64_t *seed)
-{
+void recipe_disturb(recipe *made, double distance, double speed, uint64_t *seed) {
     for (uint32_t i = 0; i < made->spring_count; i++) {
         mspring_spring_def *spring = &made->springs[i];
         if (spring->rest_length == MSPRING_REST_LENGTH_DISTANCE) {
             const mspring_particle_def *a = &made->particles[spring->a], *b = &made->particles[spring->b];
-            spring->rest_length = (float)hypot(b->x - a->x, b->y - a->y);
+            // No hypot(): its last bit is not the same in every C library.
+            double dx = b->x - a->x, dy = b->y - a->y;
+            spring->rest_length = (float)sqrt(dx * dx + dy * dy);
         }
     }
     for (uint32_t i = 0; i < made->particle_count; i++) {
@@ -159,8 +151,7 @@ void recipe_disturb(recipe *made, double distance, double speed, uint64_t *seed)
     }
 }
 
-void recipe_shuffle(recipe *made, uint64_t *seed, mspring_id *new_ids)
-{
+void recipe_shuffle(recipe *made, uint64_t *seed, mspring_id *new_ids) {
     uint32_t count = made->particle_count;
     mspring_id *old_of_new = malloc(count * sizeof *old_of_new);
     mspring_id *new_of_old = malloc(count * sizeof *new_of_old);
@@ -199,12 +190,10 @@ void recipe_shuffle(recipe *made, uint64_t *seed, mspring_id *new_ids)
     made->particle_room = count;
 }
 
-mspring_builder *recipe_builder(const recipe *made, const mspring_allocator *allocator)
-{
+mspring_builder *recipe_builder(const recipe *made, const mspring_allocator *allocator) {
     mspring_builder *builder = NULL;
     check_ok(mspring_builder_create(allocator, &builder));
-    mspring_result result =
-        mspring_builder_add_particles(builder, made->particles, made->particle_count, NULL);
+    mspring_result result = mspring_builder_add_particles(builder, made->particles, made->particle_count, NULL);
     if (result == MSPRING_OK && made->spring_count > 0) {
         result = mspring_builder_add_springs(builder, made->springs, made->spring_count, NULL);
     }
@@ -215,7 +204,6 @@ mspring_builder *recipe_builder(const recipe *made, const mspring_allocator *all
     return builder;
 }
 
-mspring_network *recipe_network(const recipe *made, const mspring_network_def *def)
-{
+mspring_network *recipe_network(const recipe *made, const mspring_network_def *def) {
     return support_network(recipe_builder(made, NULL), def);
 }

@@ -8,8 +8,7 @@
 
 #include "support.h"
 
-reference reference_of(const recipe *made, double gravity_x, double gravity_y, double global_damping)
-{
+reference reference_of(const recipe *made, double gravity_x, double gravity_y, double global_damping) {
     reference net = {
         .particles = calloc(made->particle_count, sizeof *net.particles),
         .springs = calloc(made->spring_count + 1, sizeof *net.springs),
@@ -47,15 +46,13 @@ reference reference_of(const recipe *made, double gravity_x, double gravity_y, d
     return net;
 }
 
-void reference_free(reference *net)
-{
+void reference_free(reference *net) {
     free(net->particles);
     free(net->springs);
     *net = (reference){0};
 }
 
-void reference_substep(reference *net, double h)
-{
+void reference_substep(reference *net, double h) {
     for (uint32_t i = 0; i < net->particle_count; i++) {
         net->particles[i].force_x = 0;
         net->particles[i].force_y = 0;

@@ -7,8 +7,7 @@
 #include <string.h>
 
 void support_check_result(mspring_result actual, mspring_result expected, const char *call, const char *file,
-                          int line)
-{
+                          int line) {
     if (actual != expected) {
         print_error("%s\n  gave %d (%s), expected %d (%s)\n", call, actual, mspring_result_string(actual), expected,
                     mspring_result_string(expected));
@@ -17,8 +16,7 @@ void support_check_result(mspring_result actual, mspring_result expected, const 
 }
 
 void support_check_near(double actual, double expected, double tolerance, const char *what, const char *file,
-                        int line)
-{
+                        int line) {
     if (!(fabs(actual - expected) <= tolerance)) {
         print_error("%s\n  is %.9g, expected %.9g within %.3g (off by %.3g)\n", what, actual, expected, tolerance,
                     actual - expected);
@@ -26,16 +24,14 @@ void support_check_near(double actual, double expected, double tolerance, const 
     }
 }
 
-void support_check_contains(const char *text, const char *part, const char *file, int line)
-{
+void support_check_contains(const char *text, const char *part, const char *file, int line) {
     if (text == NULL || strstr(text, part) == NULL) {
         print_error("message \"%s\"\n  does not contain \"%s\"\n", text == NULL ? "(NULL)" : text, part);
         _fail(file, line);
     }
 }
 
-uint64_t support_random(uint64_t *seed)
-{
+uint64_t support_random(uint64_t *seed) {
     *seed += 0x9e3779b97f4a7c15u;
     uint64_t bits = *seed;
     bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -43,20 +39,17 @@ uint64_t support_random(uint64_t *seed)
     return bits ^ (bits >> 31);
 }
 
-double support_random_between(uint64_t *seed, double low, double high)
-{
+double support_random_between(uint64_t *seed, double low, double high) {
     return low + (high - low) * ((double)(support_random(seed) >> 11) * 0x1p-53);
 }
 
-mspring_builder *support_builder(void)
-{
+mspring_builder *support_builder(void) {
     mspring_builder *builder = NULL;
     check_ok(mspring_builder_create(NULL, &builder));
     return builder;
 }
 
-static mspring_id add_particle(mspring_builder *builder, double x, double y, float mass, uint32_t flags)
-{
+static mspring_id add_particle(mspring_builder *builder, double x, double y, float mass, uint32_t flags) {
     mspring_particle_def def;
     mspring_id id = MSPRING_NONE;
     check_ok(mspring_particle_def_init(&def, sizeof def));
@@ -68,18 +61,15 @@ static mspring_id add_particle(mspring_builder *builder, double x, double y, flo
     return id;
 }
 
-mspring_id support_particle(mspring_builder *builder, double x, double y, float mass)
-{
+mspring_id support_particle(mspring_builder *builder, double x, double y, float mass) {
     return add_particle(builder, x, y, mass, 0);
 }
 
-mspring_id support_pinned(mspring_builder *builder, double x, double y, float mass)
-{
+mspring_id support_pinned(mspring_builder *builder, double x, double y, float mass) {
     return add_particle(builder, x, y, mass, MSPRING_PARTICLE_PINNED);
 }
 
-mspring_id support_spring(mspring_builder *builder, mspring_id a, mspring_id b, float stiffness, float damping)
-{
+mspring_id support_spring(mspring_builder *builder, mspring_id a, mspring_id b, float stiffness, float damping) {
     mspring_spring_def def;
     mspring_id id = MSPRING_NONE;
     check_ok(mspring_spring_def_init(&def, sizeof def));
@@ -91,8 +81,7 @@ mspring_id support_spring(mspring_builder *builder, mspring_id a, mspring_id b, 
     return id;
 }
 
-mspring_network_def support_def(float gravity_y, uint32_t substeps)
-{
+mspring_network_def support_def(float gravity_y, uint32_t substeps) {
     mspring_network_def def;
     check_ok(mspring_network_def_init(&def, sizeof def));
     def.gravity_y = gravity_y;
@@ -100,8 +89,7 @@ mspring_network_def support_def(float gravity_y, uint32_t substeps)
     return def;
 }
 
-mspring_network *support_network(mspring_builder *builder, const mspring_network_def *def)
-{
+mspring_network *support_network(mspring_builder *builder, const mspring_network_def *def) {
     mspring_network *network = NULL;
     mspring_result result = mspring_network_create(builder, def, &network);
     if (result != MSPRING_OK) {
@@ -112,8 +100,7 @@ mspring_network *support_network(mspring_builder *builder, const mspring_network
     return network;
 }
 
-void support_steps(mspring_network *network, uint32_t count, double dt)
-{
+void support_steps(mspring_network *network, uint32_t count, double dt) {
     for (uint32_t step = 0; step < count; step++) {
         mspring_result result = mspring_network_step(network, dt);
         if (result != MSPRING_OK) {
@@ -123,29 +110,25 @@ void support_steps(mspring_network *network, uint32_t count, double dt)
     }
 }
 
-support_point support_position(const mspring_network *network, mspring_id particle)
-{
+support_point support_position(const mspring_network *network, mspring_id particle) {
     support_point point = {0, 0};
     check_ok(mspring_network_get_positions(network, particle, 1, &point.x, &point.y));
     return point;
 }
 
-support_point support_velocity(const mspring_network *network, mspring_id particle)
-{
+support_point support_velocity(const mspring_network *network, mspring_id particle) {
     float vx = 0, vy = 0;
     check_ok(mspring_network_get_velocities(network, particle, 1, &vx, &vy));
     return (support_point){vx, vy};
 }
 
-uint64_t support_hash(const mspring_network *network)
-{
+uint64_t support_hash(const mspring_network *network) {
     uint64_t hash = 0;
     check_ok(mspring_network_state_hash(network, &hash));
     return hash;
 }
 
-uint32_t support_levels(mspring_simd levels[MSPRING_SIMD_AVX512])
-{
+uint32_t support_levels(mspring_simd levels[MSPRING_SIMD_AVX512]) {
     uint32_t count = 0;
     mspring_simd best = mspring_simd_supported();
     for (mspring_simd level = MSPRING_SIMD_SCALAR; level <= best; level++) {

@@ -25,7 +25,7 @@
 #define check_error(call, code) support_check_result((call), (code), #call, __FILE__, __LINE__)
 
 /// A number lies within tolerance of what is expected. NaN never does.
-#define check_near(actual, expected, tolerance)                                                                   \
+#define check_near(actual, expected, tolerance)                                                                    \
     support_check_near((actual), (expected), (tolerance), #actual, __FILE__, __LINE__)
 
 /// A message contains this text.

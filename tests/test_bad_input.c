@@ -10,8 +10,7 @@
 #include "support.h"
 
 /// The builder of every test: particles 0 to 9 on a line (9 in the place of 8), a spring 0 - 1.
-static int make_builder(void **state)
-{
+static int make_builder(void **state) {
     mspring_builder *builder = support_builder();
     for (int i = 0; i < 9; i++) {
         support_particle(builder, i, 0, 1);
@@ -23,8 +22,7 @@ static int make_builder(void **state)
 }
 
 /// Whatever was refused has left the ten particles and the spring as they were, and the builder works.
-static int check_builder(void **state)
-{
+static int check_builder(void **state) {
     mspring_builder *builder = *state;
     assert_int_equal(mspring_builder_particle_count(builder), 10);
     assert_int_equal(mspring_builder_spring_count(builder), 1);
@@ -38,18 +36,17 @@ static int check_builder(void **state)
 }
 
 /// A call is refused with this code; the message contains this text; the counts are as before.
-#define check_refused(builder, call, code, part)                                                                  \
-    do {                                                                                                          \
-        check_error((call), (code));                                                                              \
-        check_contains(mspring_builder_error(builder), (part));                                                   \
-        assert_int_equal(mspring_builder_particle_count(builder), 10);                                            \
-        assert_int_equal(mspring_builder_spring_count(builder), 1);                                               \
+#define check_refused(builder, call, code, part)                                                                   \
+    do {                                                                                                           \
+        check_error((call), (code));                                                                               \
+        check_contains(mspring_builder_error(builder), (part));                                                    \
+        assert_int_equal(mspring_builder_particle_count(builder), 10);                                             \
+        assert_int_equal(mspring_builder_spring_count(builder), 1);                                                \
     } while (0)
 
 static const float not_finite[] = {NAN, INFINITY, -INFINITY};
 
-static void create_needs_a_place_and_a_whole_allocator(void **state)
-{
+static void create_needs_a_place_and_a_whole_allocator(void **state) {
     (void)state;
     mspring_builder *const untouched = (mspring_builder *)(uintptr_t)16;
     mspring_builder *builder = untouched;
@@ -71,18 +68,17 @@ typedef struct particle_case {
     const char *part; ///< of the message
 } particle_case;
 
-static particle_case *bad_particles(size_t *count)
-{
+static particle_case *bad_particles(size_t *count) {
     static particle_case cases[64];
     size_t n = 0;
     mspring_particle_def good;
     check_ok(mspring_particle_def_init(&good, sizeof good));
-#define BAD(field, value, wrong, word)                                                                            \
-    do {                                                                                                          \
-        assert_true(n < COUNT_OF(cases));                                                                         \
-        cases[n] = (particle_case){.def = good, .code = (wrong), .part = (word)};                                 \
-        cases[n].def.field = (value);                                                                             \
-        n++;                                                                                                      \
+#define BAD(field, value, wrong, word)                                                                             \
+    do {                                                                                                           \
+        assert_true(n < COUNT_OF(cases));                                                                          \
+        cases[n] = (particle_case){.def = good, .code = (wrong), .part = (word)};                                  \
+        cases[n].def.field = (value);                                                                              \
+        n++;                                                                                                       \
     } while (0)
     for (size_t i = 0; i < COUNT_OF(not_finite); i++) {
         BAD(x, (double)not_finite[i], MSPRING_ERROR_ARGUMENT, "position");
@@ -107,8 +103,7 @@ static particle_case *bad_particles(size_t *count)
     return cases;
 }
 
-static void bad_particle_is_refused(void **state)
-{
+static void bad_particle_is_refused(void **state) {
     mspring_builder *builder = *state;
     size_t count;
     const particle_case *cases = bad_particles(&count);
@@ -122,8 +117,7 @@ static void bad_particle_is_refused(void **state)
     check_error(mspring_builder_add_particle(NULL, &cases[0].def, NULL), MSPRING_ERROR_ARGUMENT);
 }
 
-static void bulk_particles_are_all_or_nothing(void **state)
-{
+static void bulk_particles_are_all_or_nothing(void **state) {
     mspring_builder *builder = *state;
     size_t count;
     const particle_case *cases = bad_particles(&count);
@@ -140,16 +134,17 @@ static void bulk_particles_are_all_or_nothing(void **state)
         assert_int_equal(first, 4711);
     }
     defs[CULPRIT] = good;
-    check_refused(builder, mspring_builder_add_particles(builder, NULL, MANY, NULL), MSPRING_ERROR_ARGUMENT, "NULL");
+    check_refused(builder, mspring_builder_add_particles(builder, NULL, MANY, NULL), MSPRING_ERROR_ARGUMENT,
+                  "NULL");
     check_error(mspring_builder_add_particles(NULL, defs, MANY, NULL), MSPRING_ERROR_ARGUMENT);
     // Refused by the count alone: there is no such array.
-    check_refused(builder, mspring_builder_add_particles(builder, defs, SIZE_MAX, NULL), MSPRING_ERROR_LIMIT, "limit");
+    check_refused(builder, mspring_builder_add_particles(builder, defs, SIZE_MAX, NULL), MSPRING_ERROR_LIMIT,
+                  "limit");
     check_refused(builder, mspring_builder_add_particles(builder, defs, (size_t)MSPRING_MAX_PARTICLES - 9, NULL),
                   MSPRING_ERROR_LIMIT, "limit");
 }
 
-static void particles_at_the_ends_of_the_ranges_are_accepted(void **state)
-{
+static void particles_at_the_ends_of_the_ranges_are_accepted(void **state) {
     (void)state;
     mspring_builder *builder = support_builder();
     mspring_particle_def def;
@@ -173,20 +168,19 @@ typedef struct spring_case {
     const char *part;
 } spring_case;
 
-static spring_case *bad_springs(size_t *count)
-{
+static spring_case *bad_springs(size_t *count) {
     static spring_case cases[64];
     size_t n = 0;
     mspring_spring_def good;
     check_ok(mspring_spring_def_init(&good, sizeof good));
     good.a = 2;
     good.b = 3;
-#define BAD(field, value, wrong, word)                                                                            \
-    do {                                                                                                          \
-        assert_true(n < COUNT_OF(cases));                                                                         \
-        cases[n] = (spring_case){.def = good, .code = (wrong), .part = (word)};                                   \
-        cases[n].def.field = (value);                                                                             \
-        n++;                                                                                                      \
+#define BAD(field, value, wrong, word)                                                                             \
+    do {                                                                                                           \
+        assert_true(n < COUNT_OF(cases));                                                                          \
+        cases[n] = (spring_case){.def = good, .code = (wrong), .part = (word)};                                    \
+        cases[n].def.field = (value);                                                                              \
+        n++;                                                                                                       \
     } while (0)
     for (size_t i = 0; i < COUNT_OF(not_finite); i++) {
         BAD(stiffness, not_finite[i], MSPRING_ERROR_ARGUMENT, "stiffness");
@@ -202,9 +196,9 @@ static spring_case *bad_springs(size_t *count)
     BAD(rest_length, -2, MSPRING_ERROR_ARGUMENT, "rest length");
     BAD(rest_length, 4.1e12f, MSPRING_ERROR_ARGUMENT, "rest length");
     BAD(flags, MSPRING_SPRING_RELATIVE << 1, MSPRING_ERROR_ARGUMENT, "flags");
-    BAD(b, 2, MSPRING_ERROR_ARGUMENT, "particle 2");    // to itself
-    BAD(b, 10, MSPRING_ERROR_ID, "10");                 // to nowhere
-    BAD(a, 12345, MSPRING_ERROR_ID, "12345");           // from nowhere
+    BAD(b, 2, MSPRING_ERROR_ARGUMENT, "particle 2");     // to itself
+    BAD(b, 10, MSPRING_ERROR_ID, "10");                  // to nowhere
+    BAD(a, 12345, MSPRING_ERROR_ID, "12345");            // from nowhere
     BAD(a, MSPRING_NONE, MSPRING_ERROR_ID, "particles"); // the default
     BAD(struct_size, 4, MSPRING_ERROR_STRUCT, "mspring_spring_def");
     BAD(struct_size, sizeof good + 4, MSPRING_ERROR_STRUCT, "mspring_spring_def");
@@ -215,22 +209,21 @@ static spring_case *bad_springs(size_t *count)
     return cases;
 }
 
-static void bad_spring_is_refused(void **state)
-{
+static void bad_spring_is_refused(void **state) {
     mspring_builder *builder = *state;
     size_t count;
     const spring_case *cases = bad_springs(&count);
     for (size_t i = 0; i < count; i++) {
         mspring_id id = 4711;
-        check_refused(builder, mspring_builder_add_spring(builder, &cases[i].def, &id), cases[i].code, cases[i].part);
+        check_refused(builder, mspring_builder_add_spring(builder, &cases[i].def, &id), cases[i].code,
+                      cases[i].part);
         assert_int_equal(id, 4711);
     }
     check_refused(builder, mspring_builder_add_spring(builder, NULL, NULL), MSPRING_ERROR_ARGUMENT, "NULL");
     check_error(mspring_builder_add_spring(NULL, &cases[0].def, NULL), MSPRING_ERROR_ARGUMENT);
 }
 
-static void bulk_springs_are_all_or_nothing(void **state)
-{
+static void bulk_springs_are_all_or_nothing(void **state) {
     mspring_builder *builder = *state;
     size_t count;
     const spring_case *cases = bad_springs(&count);
@@ -249,13 +242,13 @@ static void bulk_springs_are_all_or_nothing(void **state)
     }
     check_refused(builder, mspring_builder_add_springs(builder, NULL, MANY, NULL), MSPRING_ERROR_ARGUMENT, "NULL");
     check_error(mspring_builder_add_springs(NULL, defs, MANY, NULL), MSPRING_ERROR_ARGUMENT);
-    check_refused(builder, mspring_builder_add_springs(builder, defs, SIZE_MAX, NULL), MSPRING_ERROR_LIMIT, "limit");
+    check_refused(builder, mspring_builder_add_springs(builder, defs, SIZE_MAX, NULL), MSPRING_ERROR_LIMIT,
+                  "limit");
     check_refused(builder, mspring_builder_add_springs(builder, defs, MSPRING_MAX_SPRINGS, NULL),
                   MSPRING_ERROR_LIMIT, "limit");
 }
 
-static void coincident_particles_may_have_a_spring_with_a_rest_length(void **state)
-{
+static void coincident_particles_may_have_a_spring_with_a_rest_length(void **state) {
     (void)state;
     mspring_builder *builder = support_builder();
     support_particle(builder, 1, 1, 1);
@@ -271,8 +264,7 @@ static void coincident_particles_may_have_a_spring_with_a_rest_length(void **sta
 
 /* ---------------------------------------------------------------------------------------------- lattices */
 
-static void bad_lattice_is_refused(void **state)
-{
+static void bad_lattice_is_refused(void **state) {
     mspring_builder *builder = *state;
     uint16_t cells[12] = {0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1};
     mspring_material materials[2];
@@ -288,11 +280,11 @@ static void bad_lattice_is_refused(void **state)
     good.cells = cells;
     good.materials = materials;
     good.material_count = 2;
-#define REFUSED(field, value, code, part)                                                                         \
-    do {                                                                                                          \
-        mspring_lattice_def def = good;                                                                           \
-        def.field = (value);                                                                                      \
-        check_refused(builder, mspring_builder_add_lattice(builder, &def, ids), (code), (part));                  \
+#define REFUSED(field, value, code, part)                                                                          \
+    do {                                                                                                           \
+        mspring_lattice_def def = good;                                                                            \
+        def.field = (value);                                                                                       \
+        check_refused(builder, mspring_builder_add_lattice(builder, &def, ids), (code), (part));                   \
     } while (0)
     for (size_t i = 0; i < COUNT_OF(not_finite); i++) {
         REFUSED(x, (double)not_finite[i], MSPRING_ERROR_ARGUMENT, "lattice");
@@ -324,7 +316,8 @@ static void bad_lattice_is_refused(void **state)
     check_refused(builder, mspring_builder_add_lattice(builder, &huge, ids), MSPRING_ERROR_LIMIT, "limit");
 
     cells[11] = 2;
-    check_refused(builder, mspring_builder_add_lattice(builder, &good, ids), MSPRING_ERROR_ARGUMENT, "column 3, row 2");
+    check_refused(builder, mspring_builder_add_lattice(builder, &good, ids), MSPRING_ERROR_ARGUMENT,
+                  "column 3, row 2");
     cells[11] = MSPRING_CELL_EMPTY - 1;
     check_refused(builder, mspring_builder_add_lattice(builder, &good, ids), MSPRING_ERROR_ARGUMENT, "65534");
     cells[11] = 1;
@@ -336,8 +329,7 @@ static void bad_lattice_is_refused(void **state)
     }
 }
 
-static void bad_material_is_refused_and_named(void **state)
-{
+static void bad_material_is_refused_and_named(void **state) {
     mspring_builder *builder = *state;
     const uint16_t cells[2] = {0, 1};
     mspring_material materials[2];
@@ -348,12 +340,12 @@ static void bad_material_is_refused_and_named(void **state)
     def.cells = cells;
     def.materials = materials;
     def.material_count = 2;
-#define REFUSED(field, value, code, part)                                                                         \
-    do {                                                                                                          \
-        check_ok(mspring_material_init(&materials[0], sizeof materials[0]));                                      \
-        check_ok(mspring_material_init(&materials[1], sizeof materials[1]));                                      \
-        materials[1].field = (value);                                                                             \
-        check_refused(builder, mspring_builder_add_lattice(builder, &def, NULL), (code), (part));                 \
+#define REFUSED(field, value, code, part)                                                                          \
+    do {                                                                                                           \
+        check_ok(mspring_material_init(&materials[0], sizeof materials[0]));                                       \
+        check_ok(mspring_material_init(&materials[1], sizeof materials[1]));                                       \
+        materials[1].field = (value);                                                                              \
+        check_refused(builder, mspring_builder_add_lattice(builder, &def, NULL), (code), (part));                  \
     } while (0)
     for (size_t i = 0; i < COUNT_OF(not_finite); i++) {
         REFUSED(mass, not_finite[i], MSPRING_ERROR_ARGUMENT, "material 1: mass");
@@ -374,8 +366,7 @@ static void bad_material_is_refused_and_named(void **state)
 
 /* ------------------------------------------------------------------------------------------------- ropes */
 
-static void bad_rope_is_refused(void **state)
-{
+static void bad_rope_is_refused(void **state) {
     mspring_builder *builder = *state;
     mspring_rope_def good;
     check_ok(mspring_rope_def_init(&good, sizeof good));
@@ -383,12 +374,12 @@ static void bad_rope_is_refused(void **state)
     good.to = 6;
     good.segment_count = 3;
     mspring_id first_particle = 4711, first_spring = 4712;
-#define REFUSED(field, value, code, part)                                                                         \
-    do {                                                                                                          \
-        mspring_rope_def def = good;                                                                              \
-        def.field = (value);                                                                                      \
-        check_refused(builder, mspring_builder_add_rope(builder, &def, &first_particle, &first_spring), (code),   \
-                      (part));                                                                                    \
+#define REFUSED(field, value, code, part)                                                                          \
+    do {                                                                                                           \
+        mspring_rope_def def = good;                                                                               \
+        def.field = (value);                                                                                       \
+        check_refused(builder, mspring_builder_add_rope(builder, &def, &first_particle, &first_spring), (code),    \
+                      (part));                                                                                     \
     } while (0)
     for (size_t i = 0; i < COUNT_OF(not_finite); i++) {
         REFUSED(mass, not_finite[i], MSPRING_ERROR_ARGUMENT, "mass");
@@ -424,8 +415,7 @@ static void bad_rope_is_refused(void **state)
     assert_int_equal(first_spring, 4712);
 }
 
-int main(void)
-{
+int main(void) {
 #define REFUSAL(test) cmocka_unit_test_setup_teardown(test, make_builder, check_builder)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(create_needs_a_place_and_a_whole_allocator),

@@ -16,15 +16,14 @@
 typedef struct bar {
     uint32_t columns, rows;
     double stiffness;
-    double bending; ///< m, the oracle's
+    double bending;    ///< m, the oracle's
     uint32_t substeps; ///< of 1/64 s: half of the explicit limit
 } bar;
 
 static const double gravity = 9.8;
 
 /// How far the top right particle ends below its place, m.
-static double settled_bending(const bar *b)
-{
+static double settled_bending(const bar *b) {
     uint64_t seed = 1;
     const recipe_stuff iron = {.mass = {73.3975, 73.3975}, .stiffness = {b->stiffness, b->stiffness}};
     recipe made = {0};
@@ -56,34 +55,29 @@ static double settled_bending(const bar *b)
     return later;
 }
 
-static void check_bending(const bar *b)
-{
+static void check_bending(const bar *b) {
     // The springs of the library are floats: rest lengths and stiffness off by 6e-8, lengths by a few ulp of the
     // coordinates (1.5e-5 m at 256 m, at random over many springs). 0.1 % is ten times what that is worth, and the
     // smallest mistake in the model, such as a row more or a column less pinned, costs over 1 %.
     check_near(settled_bending(b), b->bending, 1e-3 * b->bending);
 }
 
-static void bar_80x5_bends_as_in_equilibrium(void **state)
-{
+static void bar_80x5_bends_as_in_equilibrium(void **state) {
     (void)state;
     check_bending(&(bar){.columns = 80, .rows = 5, .stiffness = 6.7643e7, .bending = 20.0586, .substeps = 30});
 }
 
-static void bar_80x5_four_times_as_stiff(void **state)
-{
+static void bar_80x5_four_times_as_stiff(void **state) {
     (void)state;
     check_bending(&(bar){.columns = 80, .rows = 5, .stiffness = 2.706e8, .bending = 5.2448, .substeps = 60});
 }
 
-static void bar_544x68_bends_as_in_equilibrium(void **state)
-{
+static void bar_544x68_bends_as_in_equilibrium(void **state) {
     (void)state;
     check_bending(&(bar){.columns = 544, .rows = 68, .stiffness = 6.7643e7, .bending = 188.464, .substeps = 30});
 }
 
-int main(int argc, char **argv)
-{
+int main(int argc, char **argv) {
     // Ten billion springs take seconds at the best level and a minute without any: a test of its own.
     const struct CMUnitTest small[] = {
         cmocka_unit_test(bar_80x5_bends_as_in_equilibrium),

@@ -8,8 +8,7 @@
 
 #include "support.h"
 
-static void ids_are_dense_and_in_order(void **state)
-{
+static void ids_are_dense_and_in_order(void **state) {
     (void)state;
     mspring_builder *builder = support_builder();
     assert_int_equal(mspring_builder_particle_count(builder), 0);
@@ -26,8 +25,7 @@ static void ids_are_dense_and_in_order(void **state)
     mspring_builder_destroy(builder);
 }
 
-static void bulk_adds_return_the_first_id(void **state)
-{
+static void bulk_adds_return_the_first_id(void **state) {
     (void)state;
     mspring_builder *builder = support_builder();
     mspring_particle_def particles[40];
@@ -72,8 +70,7 @@ static void bulk_adds_return_the_first_id(void **state)
     mspring_network_destroy(network);
 }
 
-static void null_handles_count_nothing(void **state)
-{
+static void null_handles_count_nothing(void **state) {
     (void)state;
     assert_int_equal(mspring_builder_particle_count(NULL), 0);
     assert_int_equal(mspring_builder_spring_count(NULL), 0);
@@ -90,7 +87,8 @@ static void null_handles_count_nothing(void **state)
 ///     row 1         1 . 0 1
 ///     row 2         . 0 0 .
 static const uint16_t cells[3][4] = {{0, 1, E, 0}, {1, E, 0, 1}, {E, 0, 0, E}};
-static const mspring_id ids[3][4] = {{0, 1, MSPRING_NONE, 2}, {3, MSPRING_NONE, 4, 5}, {MSPRING_NONE, 6, 7, MSPRING_NONE}};
+static const mspring_id ids[3][4] = {
+    {0, 1, MSPRING_NONE, 2}, {3, MSPRING_NONE, 4, 5}, {MSPRING_NONE, 6, 7, MSPRING_NONE}};
 
 /// Its springs by the documented rule: for each particle those to the right, lower left, below, lower right.
 static const mspring_id ends[][2] = {
@@ -103,8 +101,7 @@ static const mspring_id ends[][2] = {
     {6, 7},                 // 6: right
 };
 
-static void fill_materials(mspring_material materials[2])
-{
+static void fill_materials(mspring_material materials[2]) {
     for (int i = 0; i < 2; i++) {
         check_ok(mspring_material_init(&materials[i], sizeof materials[i]));
     }
@@ -117,8 +114,7 @@ static void fill_materials(mspring_material materials[2])
     materials[1].particle_flags = MSPRING_PARTICLE_PINNED;
 }
 
-static mspring_lattice_def lattice_of(const mspring_material *materials)
-{
+static mspring_lattice_def lattice_of(const mspring_material *materials) {
     mspring_lattice_def def;
     check_ok(mspring_lattice_def_init(&def, sizeof def));
     def.width = 4;
@@ -132,8 +128,7 @@ static mspring_lattice_def lattice_of(const mspring_material *materials)
     return def;
 }
 
-static void lattice_ids_and_springs_follow_the_cells(void **state)
-{
+static void lattice_ids_and_springs_follow_the_cells(void **state) {
     (void)state;
     mspring_material materials[2];
     fill_materials(materials);
@@ -178,8 +173,7 @@ static void lattice_ids_and_springs_follow_the_cells(void **state)
     mspring_network_destroy(network);
 }
 
-static void lattice_after_other_particles(void **state)
-{
+static void lattice_after_other_particles(void **state) {
     (void)state;
     mspring_material materials[2];
     fill_materials(materials);
@@ -202,8 +196,7 @@ static void lattice_after_other_particles(void **state)
     mspring_network_destroy(network);
 }
 
-static void lattice_of_one_cell_and_of_none(void **state)
-{
+static void lattice_of_one_cell_and_of_none(void **state) {
     (void)state;
     mspring_material materials[2];
     fill_materials(materials);
@@ -230,8 +223,7 @@ static void lattice_of_one_cell_and_of_none(void **state)
 
 /* ------------------------------------------------------------------------------------------------- ropes */
 
-static void rope_runs_evenly_from_end_to_end(void **state)
-{
+static void rope_runs_evenly_from_end_to_end(void **state) {
     (void)state;
     mspring_builder *builder = support_builder();
     mspring_id from = support_pinned(builder, 1, 1, 5), to = support_particle(builder, 4, 5, 5);
@@ -292,8 +284,7 @@ static void rope_runs_evenly_from_end_to_end(void **state)
 
 /* --------------------------------------------------------------------------------------------- rest length */
 
-static void rest_length_is_the_distance_or_as_given(void **state)
-{
+static void rest_length_is_the_distance_or_as_given(void **state) {
     (void)state;
     mspring_builder *builder = support_builder();
     // A distance of 5 m at coordinates where a float's ulp is 0.06 m: it is taken in double.
@@ -317,8 +308,7 @@ static void rest_length_is_the_distance_or_as_given(void **state)
     mspring_network_destroy(network);
 }
 
-static void one_builder_makes_many_equal_networks(void **state)
-{
+static void one_builder_makes_many_equal_networks(void **state) {
     (void)state;
     mspring_material materials[2];
     fill_materials(materials);
@@ -344,8 +334,7 @@ static void one_builder_makes_many_equal_networks(void **state)
     mspring_network_destroy(third);
 }
 
-static void lattice_is_the_same_as_its_parts_added_one_by_one(void **state)
-{
+static void lattice_is_the_same_as_its_parts_added_one_by_one(void **state) {
     (void)state;
     mspring_material materials[2];
     fill_materials(materials);
@@ -378,8 +367,7 @@ static void lattice_is_the_same_as_its_parts_added_one_by_one(void **state)
     mspring_network_destroy(b);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ids_are_dense_and_in_order),
         cmocka_unit_test(bulk_adds_return_the_first_id),

@@ -7,8 +7,7 @@
 
 #include "support.h"
 
-static void version_is_that_of_the_header(void **state)
-{
+static void version_is_that_of_the_header(void **state) {
     (void)state;
     char text[64];
     snprintf(text, sizeof text, "%d.%d.%d", MSPRING_VERSION_MAJOR, MSPRING_VERSION_MINOR, MSPRING_VERSION_PATCH);
@@ -16,8 +15,7 @@ static void version_is_that_of_the_header(void **state)
     assert_string_equal(mspring_version_string(), text);
 }
 
-static void every_result_has_its_own_name(void **state)
-{
+static void every_result_has_its_own_name(void **state) {
     (void)state;
     for (mspring_result a = MSPRING_ERROR_BUSY; a <= MSPRING_OK; a++) {
         assert_non_null(mspring_result_string(a));
@@ -31,8 +29,7 @@ static void every_result_has_its_own_name(void **state)
     assert_string_not_equal(mspring_result_string(1), mspring_result_string(MSPRING_OK));
 }
 
-static void simd_levels_have_the_names_of_the_variable(void **state)
-{
+static void simd_levels_have_the_names_of_the_variable(void **state) {
     (void)state;
     assert_string_equal(mspring_simd_name(MSPRING_SIMD_AUTO), "auto");
     assert_string_equal(mspring_simd_name(MSPRING_SIMD_SCALAR), "scalar");
@@ -46,8 +43,7 @@ static void simd_levels_have_the_names_of_the_variable(void **state)
 
 /* ---------------------------------------------------------------------------------------------- defaults */
 
-static void particle_defaults(void **state)
-{
+static void particle_defaults(void **state) {
     (void)state;
     mspring_particle_def def;
     memset(&def, 0xff, sizeof def);
@@ -57,8 +53,7 @@ static void particle_defaults(void **state)
     assert_true(def.x == 0 && def.y == 0 && def.vx == 0 && def.vy == 0 && def.mass == 1);
 }
 
-static void spring_defaults(void **state)
-{
+static void spring_defaults(void **state) {
     (void)state;
     mspring_spring_def def;
     memset(&def, 0xff, sizeof def);
@@ -70,8 +65,7 @@ static void spring_defaults(void **state)
     assert_true(def.stiffness == 0 && def.damping == 0 && def.rest_length == MSPRING_REST_LENGTH_DISTANCE);
 }
 
-static void material_defaults(void **state)
-{
+static void material_defaults(void **state) {
     (void)state;
     mspring_material material;
     memset(&material, 0xff, sizeof material);
@@ -82,8 +76,7 @@ static void material_defaults(void **state)
     assert_true(material.mass == 1 && material.stiffness == 0 && material.damping == 0);
 }
 
-static void lattice_defaults(void **state)
-{
+static void lattice_defaults(void **state) {
     (void)state;
     mspring_lattice_def def;
     memset(&def, 0xff, sizeof def);
@@ -95,8 +88,7 @@ static void lattice_defaults(void **state)
     assert_null(def.materials);
 }
 
-static void rope_defaults(void **state)
-{
+static void rope_defaults(void **state) {
     (void)state;
     mspring_rope_def def;
     memset(&def, 0xff, sizeof def);
@@ -109,8 +101,7 @@ static void rope_defaults(void **state)
     assert_true(def.mass == 1 && def.stiffness == 0 && def.damping == 0 && def.slack == 1);
 }
 
-static void solver_defaults(void **state)
-{
+static void solver_defaults(void **state) {
     (void)state;
     mspring_solver_def def;
     memset(&def, 0xff, sizeof def);
@@ -120,8 +111,7 @@ static void solver_defaults(void **state)
     assert_int_equal(def.substeps, 1);
 }
 
-static void network_defaults(void **state)
-{
+static void network_defaults(void **state) {
     (void)state;
     mspring_network_def def;
     memset(&def, 0xff, sizeof def);
@@ -136,10 +126,9 @@ static void network_defaults(void **state)
 
 /* ------------------------------------------------------------------------------------------------- sizes */
 
-#define INIT(name, type)                                                                                          \
-    static mspring_result init_##name(void *def, size_t size)                                                     \
-    {                                                                                                             \
-        return mspring_##name##_init((type *)def, size);                                                          \
+#define INIT(name, type)                                                                                           \
+    static mspring_result init_##name(void *def, size_t size) {                                                    \
+        return mspring_##name##_init((type *)def, size);                                                           \
     }
 INIT(particle_def, mspring_particle_def)
 INIT(spring_def, mspring_spring_def)
@@ -149,8 +138,7 @@ INIT(rope_def, mspring_rope_def)
 INIT(solver_def, mspring_solver_def)
 INIT(network_def, mspring_network_def)
 
-static void init_refuses_null_and_other_sizes(void **state)
-{
+static void init_refuses_null_and_other_sizes(void **state) {
     (void)state;
     const struct {
         mspring_result (*init)(void *, size_t);
@@ -176,8 +164,7 @@ static void init_refuses_null_and_other_sizes(void **state)
     }
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(version_is_that_of_the_header),
         cmocka_unit_test(every_result_has_its_own_name),

@@ -10,8 +10,7 @@
 #include "support.h"
 
 /// A network with rows of every kind, leftover springs and empty slots.
-static recipe mixed_recipe(void)
-{
+static recipe mixed_recipe(void) {
     uint64_t seed = 3;
     const recipe_stuff stuff = {
         .mass = {1, 2}, .stiffness = {50, 100}, .damping = {0, 1}, .pinned = 0.05, .holes = 0.2};
@@ -24,8 +23,7 @@ static recipe mixed_recipe(void)
     return made;
 }
 
-static mspring_network *mixed_network(uint32_t substeps)
-{
+static mspring_network *mixed_network(uint32_t substeps) {
     recipe made = mixed_recipe();
     mspring_network_def def = support_def(-9.8f, substeps);
     mspring_network *network = recipe_network(&made, &def);
@@ -50,15 +48,14 @@ typedef struct recorder_hook {
     uint32_t number;
 } recorder_hook;
 
-static void record(const mspring_hook_args *args, void *user)
-{
+static void record(const mspring_hook_args *args, void *user) {
     const recorder_hook *hook = user;
     recorder *to = hook->to;
     assert_int_equal(args->struct_size, sizeof *args);
     assert_int_equal(args->substep_count, SUBSTEPS);
-    const mspring_phase phases[HOOKS] = {
-        MSPRING_PHASE_BEFORE_STEP,    MSPRING_PHASE_BEFORE_STEP,   MSPRING_PHASE_BEFORE_SUBSTEP,
-        MSPRING_PHASE_BEFORE_SUBSTEP, MSPRING_PHASE_AFTER_SUBSTEP, MSPRING_PHASE_AFTER_SUBSTEP};
+    const mspring_phase phases[HOOKS] = {MSPRING_PHASE_BEFORE_STEP,    MSPRING_PHASE_BEFORE_STEP,
+                                         MSPRING_PHASE_BEFORE_SUBSTEP, MSPRING_PHASE_BEFORE_SUBSTEP,
+                                         MSPRING_PHASE_AFTER_SUBSTEP,  MSPRING_PHASE_AFTER_SUBSTEP};
     assert_int_equal(args->phase, phases[hook->number]);
 
     uint32_t expected = hook->number;
@@ -90,8 +87,7 @@ static void record(const mspring_hook_args *args, void *user)
     }
 }
 
-static void hooks_are_called_in_order_for_every_particle(void **state)
-{
+static void hooks_are_called_in_order_for_every_particle(void **state) {
     (void)state;
     mspring_network *network = mixed_network(SUBSTEPS);
     recorder seen = {.dt = 0.01, .view = {.struct_size = sizeof seen.view}};
@@ -124,8 +120,7 @@ typedef struct puller {
     const float *x, *y; ///< by particle
 } puller;
 
-static void pull(const mspring_hook_args *args, void *user)
-{
+static void pull(const mspring_hook_args *args, void *user) {
     const puller *forces = user;
     for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
         mspring_id id = args->particle_of_slot[slot];
@@ -136,8 +131,7 @@ static void pull(const mspring_hook_args *args, void *user)
     }
 }
 
-static void forces_of_hooks_equal_forces_of_the_host(void **state)
-{
+static void forces_of_hooks_equal_forces_of_the_host(void **state) {
     (void)state;
     const mspring_phase phases[] = {MSPRING_PHASE_BEFORE_STEP, MSPRING_PHASE_BEFORE_SUBSTEP};
     for (size_t i = 0; i < COUNT_OF(phases); i++) {
@@ -172,8 +166,7 @@ static void forces_of_hooks_equal_forces_of_the_host(void **state)
     }
 }
 
-static void poison(const mspring_hook_args *args, void *user)
-{
+static void poison(const mspring_hook_args *args, void *user) {
     const mspring_id *victim = user;
     for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
         if (args->particle_of_slot[slot] == *victim) {
@@ -186,8 +179,7 @@ static void poison(const mspring_hook_args *args, void *user)
     }
 }
 
-static void what_a_hook_spoils_is_taken_back(void **state)
-{
+static void what_a_hook_spoils_is_taken_back(void **state) {
     (void)state;
     for (mspring_phase phase = MSPRING_PHASE_BEFORE_STEP; phase <= MSPRING_PHASE_AFTER_SUBSTEP; phase++) {
         mspring_network *network = mixed_network(2);
@@ -215,8 +207,7 @@ static void what_a_hook_spoils_is_taken_back(void **state)
 
 /* ----------------------------------------------------------------------------------------------- movement */
 
-static void floor_hook(const mspring_hook_args *args, void *user)
-{
+static void floor_hook(const mspring_hook_args *args, void *user) {
     const double *level = user;
     for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
         if (args->inverse_mass[slot] > 0 && args->origin_y + (double)args->y[slot] < *level) {
@@ -226,8 +217,7 @@ static void floor_hook(const mspring_hook_args *args, void *user)
     }
 }
 
-static void a_hook_can_be_a_floor(void **state)
-{
+static void a_hook_can_be_a_floor(void **state) {
     (void)state;
     mspring_builder *builder = support_builder();
     // A square with diagonals, tilted, that falls onto y = -5 with one corner first.
@@ -268,8 +258,7 @@ static void a_hook_can_be_a_floor(void **state)
     mspring_network_destroy(network);
 }
 
-static void shift(const mspring_hook_args *args, void *user)
-{
+static void shift(const mspring_hook_args *args, void *user) {
     const float *by = user;
     for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
         args->x[slot] += *by;
@@ -277,8 +266,7 @@ static void shift(const mspring_hook_args *args, void *user)
     }
 }
 
-static void hooks_before_the_step_and_after_the_substep_may_move(void **state)
-{
+static void hooks_before_the_step_and_after_the_substep_may_move(void **state) {
     (void)state;
     mspring_builder *builder = support_builder();
     support_particle(builder, 0, 0, 1);
@@ -301,8 +289,7 @@ typedef struct scribble {
     uint32_t empty_slots; ///< written to
 } scribble;
 
-static void scribble_on_empty_slots(const mspring_hook_args *args, void *user)
-{
+static void scribble_on_empty_slots(const mspring_hook_args *args, void *user) {
     scribble *with = user;
     for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
         if (args->particle_of_slot[slot] != MSPRING_NONE) {
@@ -322,8 +309,7 @@ static void scribble_on_empty_slots(const mspring_hook_args *args, void *user)
     }
 }
 
-static void what_hooks_write_to_empty_slots_is_ignored(void **state)
-{
+static void what_hooks_write_to_empty_slots_is_ignored(void **state) {
     (void)state;
     const float values[] = {0, 1, -77.5f, 1e6f};
     mspring_network *clean = mixed_network(2);
@@ -349,8 +335,7 @@ typedef struct caller {
     int calls;
 } caller;
 
-static void call_from_inside(const mspring_hook_args *args, void *user)
-{
+static void call_from_inside(const mspring_hook_args *args, void *user) {
     caller *inside = user;
     mspring_network *network = inside->network;
     inside->calls++;
@@ -367,7 +352,8 @@ static void call_from_inside(const mspring_hook_args *args, void *user)
     check_error(mspring_network_set_global_damping(network, 1), MSPRING_ERROR_BUSY);
     check_error(mspring_network_apply_force(network, 0, 1, 1), MSPRING_ERROR_BUSY);
     check_error(mspring_network_apply_forces(network, 0, 2, f, f), MSPRING_ERROR_BUSY);
-    check_error(mspring_network_add_hook(network, args->phase, call_from_inside, user, &number), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_add_hook(network, args->phase, call_from_inside, user, &number),
+                MSPRING_ERROR_BUSY);
     check_error(mspring_network_remove_hook(network, 0), MSPRING_ERROR_BUSY);
     check_error(mspring_network_set_positions(network, 0, 2, d, d), MSPRING_ERROR_BUSY);
     check_error(mspring_network_set_positions_float(network, 0, 2, f, f), MSPRING_ERROR_BUSY);
@@ -394,8 +380,7 @@ static void call_from_inside(const mspring_hook_args *args, void *user)
     check_ok(mspring_network_state_hash(network, &hash));
 }
 
-static void exclusive_calls_from_inside_are_refused(void **state)
-{
+static void exclusive_calls_from_inside_are_refused(void **state) {
     (void)state;
     mspring_network *network = mixed_network(2), *clean = mixed_network(2);
     caller inside = {.network = network};
@@ -414,14 +399,12 @@ static void exclusive_calls_from_inside_are_refused(void **state)
 
 /* ------------------------------------------------------------------------------------------ adding, removing */
 
-static void count_call(const mspring_hook_args *args, void *user)
-{
+static void count_call(const mspring_hook_args *args, void *user) {
     (void)args;
     ++*(int *)user;
 }
 
-static void removed_hooks_are_not_called(void **state)
-{
+static void removed_hooks_are_not_called(void **state) {
     (void)state;
     mspring_network *network = mixed_network(1);
     int calls[3] = {0, 0, 0};
@@ -459,8 +442,7 @@ static void removed_hooks_are_not_called(void **state)
     mspring_network_destroy(clean);
 }
 
-static void bad_hooks_are_refused(void **state)
-{
+static void bad_hooks_are_refused(void **state) {
     (void)state;
     mspring_network *network = mixed_network(1);
     uint32_t number = 4711;
@@ -479,8 +461,7 @@ static void bad_hooks_are_refused(void **state)
     mspring_network_destroy(network);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(hooks_are_called_in_order_for_every_particle),
         cmocka_unit_test(forces_of_hooks_equal_forces_of_the_host),

@@ -10,8 +10,7 @@
 static const float not_finite[] = {NAN, INFINITY, -INFINITY};
 
 /// A triangle with a pinned corner, as a builder.
-static mspring_builder *triangle(void)
-{
+static mspring_builder *triangle(void) {
     mspring_builder *builder = support_builder();
     support_pinned(builder, 0, 0, 1);
     support_particle(builder, 1, 0, 1);
@@ -24,18 +23,17 @@ static mspring_builder *triangle(void)
 static mspring_network *const untouched = (mspring_network *)(uintptr_t)16;
 
 /// Making a network is refused, and the place for it is left alone.
-#define check_no_network(builder, def, code, part)                                                                \
-    do {                                                                                                          \
-        mspring_network *network = untouched;                                                                     \
-        check_error(mspring_network_create((builder), (def), &network), (code));                                  \
-        check_contains(mspring_builder_error(builder), (part));                                                   \
-        assert_ptr_equal(network, untouched);                                                                     \
+#define check_no_network(builder, def, code, part)                                                                 \
+    do {                                                                                                           \
+        mspring_network *network = untouched;                                                                      \
+        check_error(mspring_network_create((builder), (def), &network), (code));                                   \
+        check_contains(mspring_builder_error(builder), (part));                                                    \
+        assert_ptr_equal(network, untouched);                                                                      \
     } while (0)
 
 /* ------------------------------------------------------------------------------------------------ creating */
 
-static void defaults_make_a_network(void **state)
-{
+static void defaults_make_a_network(void **state) {
     (void)state;
     mspring_network *network = support_network(triangle(), NULL);
     assert_int_equal(mspring_network_particle_count(network), 3);
@@ -48,8 +46,7 @@ static void defaults_make_a_network(void **state)
     mspring_network_destroy(network);
 }
 
-static void empty_builder_is_refused(void **state)
-{
+static void empty_builder_is_refused(void **state) {
     (void)state;
     mspring_builder *builder = support_builder();
     check_no_network(builder, NULL, MSPRING_ERROR_ARGUMENT, "no particle");
@@ -60,8 +57,7 @@ static void empty_builder_is_refused(void **state)
     mspring_network_destroy(network);
 }
 
-static void duplicate_springs_are_refused_and_named(void **state)
-{
+static void duplicate_springs_are_refused_and_named(void **state) {
     (void)state;
     for (int turned = 0; turned < 2; turned++) {
         mspring_builder *builder = support_builder();
@@ -81,8 +77,7 @@ static void duplicate_springs_are_refused_and_named(void **state)
     }
 }
 
-static void duplicates_inside_lattices_are_found(void **state)
-{
+static void duplicates_inside_lattices_are_found(void **state) {
     (void)state;
     const uint16_t cells[4] = {0, 0, 0, 0};
     mspring_material material;
@@ -101,16 +96,15 @@ static void duplicates_inside_lattices_are_found(void **state)
     mspring_builder_destroy(builder);
 }
 
-static void bad_settings_are_refused(void **state)
-{
+static void bad_settings_are_refused(void **state) {
     (void)state;
     mspring_builder *builder = triangle();
     const mspring_network_def good = support_def(-9.8f, 1);
-#define REFUSED(field, value, code, part)                                                                         \
-    do {                                                                                                          \
-        mspring_network_def def = good;                                                                           \
-        def.field = (value);                                                                                      \
-        check_no_network(builder, &def, (code), (part));                                                          \
+#define REFUSED(field, value, code, part)                                                                          \
+    do {                                                                                                           \
+        mspring_network_def def = good;                                                                            \
+        def.field = (value);                                                                                       \
+        check_no_network(builder, &def, (code), (part));                                                           \
     } while (0)
     for (size_t i = 0; i < COUNT_OF(not_finite); i++) {
         REFUSED(gravity_x, not_finite[i], MSPRING_ERROR_ARGUMENT, "gravity");
@@ -152,19 +146,18 @@ static void bad_settings_are_refused(void **state)
 
 /* ------------------------------------------------------------------------------------------------ settings */
 
-static void bad_solver_is_refused(void **state)
-{
+static void bad_solver_is_refused(void **state) {
     (void)state;
     mspring_network_def def = support_def(-9.8f, 2);
     mspring_network *network = support_network(triangle(), &def), *twin = support_network(triangle(), &def);
     mspring_solver_def good;
     check_ok(mspring_solver_def_init(&good, sizeof good));
-#define REFUSED(field, value, code, part)                                                                         \
-    do {                                                                                                          \
-        mspring_solver_def solver = good;                                                                         \
-        solver.field = (value);                                                                                   \
-        check_error(mspring_network_set_solver(network, &solver), (code));                                        \
-        check_contains(mspring_network_error(network), (part));                                                   \
+#define REFUSED(field, value, code, part)                                                                          \
+    do {                                                                                                           \
+        mspring_solver_def solver = good;                                                                          \
+        solver.field = (value);                                                                                    \
+        check_error(mspring_network_set_solver(network, &solver), (code));                                         \
+        check_contains(mspring_network_error(network), (part));                                                    \
     } while (0)
     REFUSED(substeps, 0, MSPRING_ERROR_ARGUMENT, "substeps");
     REFUSED(substeps, 1000001, MSPRING_ERROR_ARGUMENT, "substeps");
@@ -185,8 +178,7 @@ static void bad_solver_is_refused(void **state)
     mspring_network_destroy(twin);
 }
 
-static void substeps_are_shorter_steps(void **state)
-{
+static void substeps_are_shorter_steps(void **state) {
     (void)state;
     mspring_network_def def = support_def(-9.8f, 1);
     mspring_network *network = support_network(triangle(), &def), *twin = support_network(triangle(), &def);
@@ -194,15 +186,14 @@ static void substeps_are_shorter_steps(void **state)
     check_ok(mspring_solver_def_init(&solver, sizeof solver));
     solver.substeps = 8;
     check_ok(mspring_network_set_solver(network, &solver));
-    support_steps(network, 10, 0.125);      // a power of two: dt / 8 is exact
+    support_steps(network, 10, 0.125); // a power of two: dt / 8 is exact
     support_steps(twin, 80, 0.125 / 8);
     assert_int_equal(support_hash(network), support_hash(twin));
     mspring_network_destroy(network);
     mspring_network_destroy(twin);
 }
 
-static void bad_gravity_and_damping_are_refused(void **state)
-{
+static void bad_gravity_and_damping_are_refused(void **state) {
     (void)state;
     mspring_network *network = support_network(triangle(), NULL), *twin = support_network(triangle(), NULL);
     for (size_t i = 0; i < COUNT_OF(not_finite); i++) {
@@ -228,8 +219,7 @@ static void bad_gravity_and_damping_are_refused(void **state)
     mspring_network_destroy(twin);
 }
 
-static void null_network_has_nothing(void **state)
-{
+static void null_network_has_nothing(void **state) {
     (void)state;
     assert_int_equal(mspring_network_particle_count(NULL), 0);
     assert_int_equal(mspring_network_spring_count(NULL), 0);
@@ -239,8 +229,7 @@ static void null_network_has_nothing(void **state)
     mspring_network_destroy(NULL);
 }
 
-static void plan_counts_what_is_there(void **state)
-{
+static void plan_counts_what_is_there(void **state) {
     (void)state;
     mspring_network *network = support_network(triangle(), NULL);
     mspring_plan plan = {.struct_size = sizeof plan};
@@ -267,8 +256,7 @@ static void plan_counts_what_is_there(void **state)
     mspring_network_destroy(network);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(defaults_make_a_network),
         cmocka_unit_test(empty_builder_is_refused),

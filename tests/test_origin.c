@@ -9,8 +9,7 @@
 #include "support.h"
 
 /// A wobbling ship with an anchored corner: lattice with holes, ropes, leftover springs.
-static recipe ship(void)
-{
+static recipe ship(void) {
     uint64_t seed = 17;
     const recipe_stuff stuff = {.mass = {2, 3}, .stiffness = {3000, 5000}, .damping = {1, 2}, .holes = 0.1};
     recipe made = {0};
@@ -24,8 +23,7 @@ static recipe ship(void)
     return made;
 }
 
-static void far_away_is_as_here(void **state)
-{
+static void far_away_is_as_here(void **state) {
     (void)state;
     // Sums of whole metres and fractions are exact in double up to here, so the local states are the same bits; a
     // float that held world coordinates would have an ulp of 1 mm, 16 m and 64 km at these places.
@@ -62,8 +60,7 @@ static void far_away_is_as_here(void **state)
     recipe_free(&here);
 }
 
-static void at_any_offset_it_stays_as_still(void **state)
-{
+static void at_any_offset_it_stays_as_still(void **state) {
     (void)state;
     // A stiff square lattice at rest, 10 km away and at no whole number of metres. In world coordinates in float it
     // would tremble at over 1 m/s.
@@ -88,8 +85,7 @@ static void at_any_offset_it_stays_as_still(void **state)
     recipe_free(&made);
 }
 
-static void a_flying_ship_keeps_its_shape(void **state)
-{
+static void a_flying_ship_keeps_its_shape(void **state) {
     (void)state;
     // 100 km in 300 s, with a wobble that dampers take out. In the end every spring has its rest length.
     uint64_t seed = 23;
@@ -136,8 +132,7 @@ static void a_flying_ship_keeps_its_shape(void **state)
     recipe_free(&made);
 }
 
-static void moving_the_origin_moves_no_particle(void **state)
-{
+static void moving_the_origin_moves_no_particle(void **state) {
     (void)state;
     // 2 m in each substep, every operation exact in binary: the world position has to be exact, too, through all
     // moves of the origin.
@@ -170,8 +165,7 @@ static void moving_the_origin_moves_no_particle(void **state)
     mspring_network_destroy(network);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(far_away_is_as_here),
         cmocka_unit_test(at_any_offset_it_stays_as_still),

@@ -19,7 +19,7 @@ static const double pi = 3.14159265358979323846;
 typedef struct oscillator {
     double mass, stiffness, damping, global_damping;
     double h;
-    double stretch;                ///< m, at the start
+    double stretch;                  ///< m, at the start
     double direction_x, direction_y; ///< of length 1
 } oscillator;
 
@@ -27,8 +27,7 @@ typedef struct oscillator {
 ///     v' = decay (v - (k x + c v) h / m),   x' = x + v' h
 /// which is a 2x2 matrix with trace T and determinant D. While T^2 < 4 D its powers turn by theta and shrink by
 /// sqrt(D) each: x_n = D^(n/2) (x_0 cos(n theta) + s sin(n theta)).
-static void check_oscillator(oscillator o, uint32_t steps)
-{
+static void check_oscillator(oscillator o, uint32_t steps) {
     mspring_builder *builder = support_builder();
     mspring_spring_def spring;
     support_pinned(builder, 0, 0, 1);
@@ -71,7 +70,7 @@ static void check_oscillator(oscillator o, uint32_t steps)
         }
         check_near(x, exact, bound);
         check_near(p.x * o.direction_y - p.y * o.direction_x, 0, bound); // stays on its line
-        if (pow(determinant, n / 2.0) * fabs(o.stretch) > 10 * bound) { // while there is a swing to see
+        if (pow(determinant, n / 2.0) * fabs(o.stretch) > 10 * bound) {  // while there is a swing to see
             crossings += (x < 0) != (last < 0);
             counted = n;
         }
@@ -83,8 +82,7 @@ static void check_oscillator(oscillator o, uint32_t steps)
     mspring_network_destroy(network);
 }
 
-static void undamped_oscillator_has_the_schemes_period(void **state)
-{
+static void undamped_oscillator_has_the_schemes_period(void **state) {
     (void)state;
     // omega h from 0.01 (hardly any error of the scheme) to 1.9 (near the limit of stability at 2).
     const double omega_h[] = {0.01, 0.1, 0.5, 1.0, 1.5, 1.9};
@@ -97,8 +95,7 @@ static void undamped_oscillator_has_the_schemes_period(void **state)
     }
 }
 
-static void oscillator_works_in_every_direction(void **state)
-{
+static void oscillator_works_in_every_direction(void **state) {
     (void)state;
     for (int i = 0; i < 16; i++) {
         oscillator o = {.mass = 3, .stiffness = 700, .h = 0.015625, .stretch = -0.2};
@@ -108,8 +105,7 @@ static void oscillator_works_in_every_direction(void **state)
     }
 }
 
-static void dampers_make_the_amplitude_decay(void **state)
-{
+static void dampers_make_the_amplitude_decay(void **state) {
     (void)state;
     const double damping[] = {0.01, 1, 10, 40};
     for (size_t i = 0; i < COUNT_OF(damping); i++) {
@@ -121,8 +117,7 @@ static void dampers_make_the_amplitude_decay(void **state)
     }
 }
 
-static void global_damping_makes_the_amplitude_decay(void **state)
-{
+static void global_damping_makes_the_amplitude_decay(void **state) {
     (void)state;
     const double rates[] = {0.001, 0.125, 1, 20};
     for (size_t i = 0; i < COUNT_OF(rates); i++) {
@@ -134,8 +129,7 @@ static void global_damping_makes_the_amplitude_decay(void **state)
 
 /* ---------------------------------------------------------------------------------------------- free motion */
 
-static void free_fall_is_the_discrete_sum(void **state)
-{
+static void free_fall_is_the_discrete_sum(void **state) {
     (void)state;
     mspring_builder *builder = support_builder();
     mspring_particle_def particle;
@@ -155,7 +149,8 @@ static void free_fall_is_the_discrete_sum(void **state)
         support_point p = support_position(network, 0), v = support_velocity(network, 0);
         // n roundings of a velocity v, each lasting for the rest of the time; n of a position of up to 128 m from
         // the local origin.
-        double v_bound = (n + 2) * HALF_ULP * (fabs(gy) * n * h + 10), p_bound = v_bound * n * h + n * 128 * HALF_ULP;
+        double v_bound = (n + 2) * HALF_ULP * (fabs(gy) * n * h + 10),
+               p_bound = v_bound * n * h + n * 128 * HALF_ULP;
         check_near(v.x, 2 + n * h * gx, v_bound);
         check_near(v.y, 10 + n * h * gy, v_bound);
         check_near(p.x, 3 + n * h * 2 + h * h * gx * n * (n + 1) / 2, p_bound);
@@ -164,8 +159,7 @@ static void free_fall_is_the_discrete_sum(void **state)
     mspring_network_destroy(network);
 }
 
-static void global_damping_is_exact_whatever_the_step(void **state)
-{
+static void global_damping_is_exact_whatever_the_step(void **state) {
     (void)state;
     const uint32_t substeps[] = {1, 2, 64, 1000};
     const float rates[] = {0.01f, 1, 30};
@@ -195,8 +189,7 @@ static void global_damping_is_exact_whatever_the_step(void **state)
 /* ------------------------------------------------------------------------------------------------- conservation */
 
 /// A square with diagonals that spins and flies, without anything around it.
-static mspring_network *spinning_square(double stiffness, double damping)
-{
+static mspring_network *spinning_square(double stiffness, double damping) {
     mspring_builder *builder = support_builder();
     const double corners[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     const float masses[] = {1, 2, 3, 4};
@@ -219,8 +212,7 @@ static mspring_network *spinning_square(double stiffness, double damping)
     return support_network(builder, &def);
 }
 
-static void momentum_is_conserved(void **state)
-{
+static void momentum_is_conserved(void **state) {
     (void)state;
     for (int damped = 0; damped < 2; damped++) {
         mspring_network *network = spinning_square(2000, damped ? 5 : 0);
@@ -244,8 +236,7 @@ static void momentum_is_conserved(void **state)
     }
 }
 
-static void energy_has_no_trend(void **state)
-{
+static void energy_has_no_trend(void **state) {
     (void)state;
     // Symplectic Euler keeps a modified energy, so the true one swings by O(omega h) but goes nowhere.
     mspring_network *network = spinning_square(2000, 0);
@@ -272,8 +263,7 @@ static void energy_has_no_trend(void **state)
 
 /* ----------------------------------------------------------------------------------------------- pinned */
 
-static void pinned_particles_keep_their_velocity(void **state)
-{
+static void pinned_particles_keep_their_velocity(void **state) {
     (void)state;
     mspring_builder *builder = support_builder();
     support_pinned(builder, 0, 0, 1);
@@ -304,8 +294,7 @@ static void pinned_particles_keep_their_velocity(void **state)
 
 /* ------------------------------------------------------------------------------------------------ coincidence */
 
-static void particles_in_one_place_exert_no_force(void **state)
-{
+static void particles_in_one_place_exert_no_force(void **state) {
     (void)state;
     // As a strand, as a leftover spring, and within a lattice: wherever a spring may be computed.
     for (int kind = 0; kind < 3; kind++) {
@@ -350,8 +339,7 @@ static void particles_in_one_place_exert_no_force(void **state)
     }
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(undamped_oscillator_has_the_schemes_period),
         cmocka_unit_test(oscillator_works_in_every_direction),

@@ -25,8 +25,7 @@ typedef struct setting {
 } setting;
 
 /// Step both and compare all positions and velocities.
-static void check_against_reference(const char *name, recipe *made, setting with, double spacing)
-{
+static void check_against_reference(const char *name, recipe *made, setting with, double spacing) {
     reference exact = reference_of(made, with.gravity_x, with.gravity_y, with.global_damping);
     mspring_network_def def = support_def((float)with.gravity_y, 4);
     def.gravity_x = (float)with.gravity_x;
@@ -60,8 +59,8 @@ static void check_against_reference(const char *name, recipe *made, setting with
 }
 
 /// Lattice, and whatever else, disturbed; dampers or none; in the order of making and shuffled.
-static void check_variants(const char *name, void (*make)(recipe *, const recipe_stuff *, uint64_t *), double spacing)
-{
+static void check_variants(const char *name, void (*make)(recipe *, const recipe_stuff *, uint64_t *),
+                           double spacing) {
     const setting settings[] = {{0, -9.8, 0}, {1.5, -3, 0.7}};
     for (int variant = 0; variant < 8; variant++) {
         uint64_t seed = 100 + variant;
@@ -88,19 +87,16 @@ static void check_variants(const char *name, void (*make)(recipe *, const recipe
     }
 }
 
-static void make_lattice(recipe *made, const recipe_stuff *stuff, uint64_t *seed)
-{
+static void make_lattice(recipe *made, const recipe_stuff *stuff, uint64_t *seed) {
     recipe_lattice(made, 41, 23, -3, 2, 1, stuff, seed);
 }
 
-static void lattice_with_holes_and_pins(void **state)
-{
+static void lattice_with_holes_and_pins(void **state) {
     (void)state;
     check_variants("lattice", make_lattice, 1);
 }
 
-static void make_two_lattices(recipe *made, const recipe_stuff *stuff, uint64_t *seed)
-{
+static void make_two_lattices(recipe *made, const recipe_stuff *stuff, uint64_t *seed) {
     mspring_id a = recipe_lattice(made, 20, 15, 0, 0, 1, stuff, seed);
     mspring_id b = recipe_lattice(made, 17, 9, 25, 3, 0.75, stuff, seed);
     // Tied by a few springs, neither on the one grid nor on the other.
@@ -108,14 +104,12 @@ static void make_two_lattices(recipe *made, const recipe_stuff *stuff, uint64_t 
     recipe_spring(made, a + 50, b + 13, 500, 1, 0);
 }
 
-static void two_lattices_of_different_spacing(void **state)
-{
+static void two_lattices_of_different_spacing(void **state) {
     (void)state;
     check_variants("two lattices", make_two_lattices, 0.75);
 }
 
-static void make_ship(recipe *made, const recipe_stuff *stuff, uint64_t *seed)
-{
+static void make_ship(recipe *made, const recipe_stuff *stuff, uint64_t *seed) {
     mspring_id hull = recipe_lattice(made, 35, 12, 0, 0, 1, stuff, seed);
     mspring_id hull_end = made->particle_count;
     mspring_id mast = recipe_particle(made, 17, 30, 1.2, 0);
@@ -127,14 +121,12 @@ static void make_ship(recipe *made, const recipe_stuff *stuff, uint64_t *seed)
     recipe_random_springs(made, 30, stuff, seed);
 }
 
-static void ship_with_ropes_and_leftover_springs(void **state)
-{
+static void ship_with_ropes_and_leftover_springs(void **state) {
     (void)state;
     check_variants("ship", make_ship, 1);
 }
 
-static void make_chains(recipe *made, const recipe_stuff *stuff, uint64_t *seed)
-{
+static void make_chains(recipe *made, const recipe_stuff *stuff, uint64_t *seed) {
     // Strands of many lengths between fixed ends, a closed ring, and strands that meet in one knot.
     for (uint32_t segments = 1; segments <= 40; segments++) {
         mspring_id a = recipe_particle(made, 0, 3.0 * segments, 1, MSPRING_PARTICLE_PINNED);
@@ -146,7 +138,8 @@ static void make_chains(recipe *made, const recipe_stuff *stuff, uint64_t *seed)
         double angle = 2 * 3.14159265358979 * i / 20;
         recipe_particle(made, -20 + 3 * cos(angle), 3 * sin(angle), 1, 0);
         if (i > 0) {
-            recipe_spring(made, first + i - 1, first + i, stuff->stiffness[1], stuff->damping[1], stuff->spring_flags);
+            recipe_spring(made, first + i - 1, first + i, stuff->stiffness[1], stuff->damping[1],
+                          stuff->spring_flags);
         }
     }
     recipe_spring(made, first + 19, first, stuff->stiffness[1], stuff->damping[1], stuff->spring_flags);
@@ -158,14 +151,12 @@ static void make_chains(recipe *made, const recipe_stuff *stuff, uint64_t *seed)
     }
 }
 
-static void strands_rings_and_knots(void **state)
-{
+static void strands_rings_and_knots(void **state) {
     (void)state;
     check_variants("chains", make_chains, 1);
 }
 
-static void make_graph(recipe *made, const recipe_stuff *stuff, uint64_t *seed)
-{
+static void make_graph(recipe *made, const recipe_stuff *stuff, uint64_t *seed) {
     for (int i = 0; i < 300; i++) {
         double x = support_random_between(seed, 0, 17), y = support_random_between(seed, 0, 17);
         recipe_particle(made, x, y, support_random_between(seed, stuff->mass[0], stuff->mass[1]), i % 50 == 0);
@@ -173,27 +164,23 @@ static void make_graph(recipe *made, const recipe_stuff *stuff, uint64_t *seed)
     recipe_random_springs(made, 500, stuff, seed);
 }
 
-static void random_graph(void **state)
-{
+static void random_graph(void **state) {
     (void)state;
     check_variants("graph", make_graph, 1);
 }
 
-static void make_loose(recipe *made, const recipe_stuff *stuff, uint64_t *seed)
-{
+static void make_loose(recipe *made, const recipe_stuff *stuff, uint64_t *seed) {
     for (int i = 0; i < 100; i++) {
         recipe_particle(made, i, i % 7, support_random_between(seed, stuff->mass[0], stuff->mass[1]), i % 10 == 0);
     }
 }
 
-static void particles_without_springs(void **state)
-{
+static void particles_without_springs(void **state) {
     (void)state;
     check_variants("loose", make_loose, 1);
 }
 
-static void make_turned_lattice(recipe *made, const recipe_stuff *stuff, uint64_t *seed)
-{
+static void make_turned_lattice(recipe *made, const recipe_stuff *stuff, uint64_t *seed) {
     // On no grid along the axes: rotated by 30 degrees, and one sheared.
     const double matrices[2][4] = {{0.8660254, -0.5, 0.5, 0.8660254}, {1, 0.3, 0, 1}};
     for (int i = 0; i < 2; i++) {
@@ -208,14 +195,12 @@ static void make_turned_lattice(recipe *made, const recipe_stuff *stuff, uint64_
     }
 }
 
-static void lattices_off_the_axes(void **state)
-{
+static void lattices_off_the_axes(void **state) {
     (void)state;
     check_variants("turned lattices", make_turned_lattice, 1);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lattice_with_holes_and_pins),
         cmocka_unit_test(two_lattices_of_different_spacing),

@@ -9,8 +9,7 @@
 #include "support.h"
 
 /// A full lattice of 24 x 24 equal particles and springs, a little disturbed, nothing pinned, no gravity.
-static recipe full_lattice(double mass, double stiffness, double damping, uint32_t flags)
-{
+static recipe full_lattice(double mass, double stiffness, double damping, uint32_t flags) {
     uint64_t seed = 8;
     const recipe_stuff stuff = {.mass = {mass, mass},
                                 .stiffness = {stiffness, stiffness},
@@ -24,8 +23,7 @@ static recipe full_lattice(double mass, double stiffness, double damping, uint32
 }
 
 /// Fastest particle after this many substeps, or infinity if the network explodes.
-static double speed_after(mspring_network *network, uint32_t steps, double dt)
-{
+static double speed_after(mspring_network *network, uint32_t steps, double dt) {
     for (uint32_t step = 0; step < steps; step++) {
         mspring_result result = mspring_network_step(network, dt);
         if (result == MSPRING_ERROR_UNSTABLE) {
@@ -48,8 +46,7 @@ static const double mass = 73.3975;
 /// The springs' own speed for a disturbance of 1e-4 m at the limit: half the square root of 8 k / m, in m/s.
 static const double calm = 1e-4 * 2 * 64;
 
-static void full_lattice_is_stable_up_to_the_limit(void **state)
-{
+static void full_lattice_is_stable_up_to_the_limit(void **state) {
     (void)state;
     // omega_max^2 = 8 k / m in an endless lattice: k < m / (2 dt^2). In one of 24 x 24 the fastest mode is slower
     // by about (pi / 24)^2 / 4, half a percent, so a few percent on both sides decide.
@@ -76,8 +73,7 @@ static void full_lattice_is_stable_up_to_the_limit(void **state)
     }
 }
 
-static void the_articles_bar_explodes_and_is_cured(void **state)
-{
+static void the_articles_bar_explodes_and_is_cured(void **state) {
     (void)state;
     // The article's numbers, for a bar of 80 x 5 that hangs from its left end. The limit of a lattice at rest is
     // 150,318 N/m at 1/64 s and 955,300 at 0.006198 s; as the bar falls and whips, its springs are stretched, which
@@ -106,8 +102,7 @@ static void the_articles_bar_explodes_and_is_cured(void **state)
     }
 }
 
-static void relative_stiffness_is_a_share_of_the_limit(void **state)
-{
+static void relative_stiffness_is_a_share_of_the_limit(void **state) {
     (void)state;
     const double shares[] = {0.5, 0.97, 1.03};
     for (size_t i = 0; i < COUNT_OF(shares); i++) {
@@ -125,8 +120,7 @@ static void relative_stiffness_is_a_share_of_the_limit(void **state)
 
 /* ------------------------------------------------------------------------------------------------- relative */
 
-static recipe relative_recipe(uint32_t flags, double h)
-{
+static recipe relative_recipe(uint32_t flags, double h) {
     uint64_t seed = 31;
     const recipe_stuff stuff = {.mass = {1, 5}, .pinned = 0.03, .holes = 0.15};
     recipe made = {0};
@@ -152,8 +146,7 @@ static recipe relative_recipe(uint32_t flags, double h)
     return made;
 }
 
-static void relative_springs_equal_the_formula(void **state)
-{
+static void relative_springs_equal_the_formula(void **state) {
     (void)state;
     // Half-way through the substep changes: so does the stiffness.
     const double h[] = {1.0 / 256, 1.0 / 512};
@@ -203,8 +196,7 @@ static void relative_springs_equal_the_formula(void **state)
     recipe_free(&relative);
 }
 
-static void relative_and_absolute_springs_live_together(void **state)
-{
+static void relative_and_absolute_springs_live_together(void **state) {
     (void)state;
     mspring_builder *builder = support_builder();
     support_pinned(builder, 0, 0, 1);
@@ -234,8 +226,7 @@ static void relative_and_absolute_springs_live_together(void **state)
     mspring_network_destroy(network);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(full_lattice_is_stable_up_to_the_limit),
         cmocka_unit_test(the_articles_bar_explodes_and_is_cured),

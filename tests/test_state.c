@@ -10,8 +10,7 @@
 #include "support.h"
 
 /// A network with rows of every kind and empty slots between: a lattice with holes, a rope, loose particles.
-static int make_network(void **state)
-{
+static int make_network(void **state) {
     uint64_t seed = 11;
     const recipe_stuff stuff = {
         .mass = {1, 2}, .stiffness = {50, 100}, .damping = {0, 1}, .pinned = 0.1, .holes = 0.3};
@@ -30,16 +29,14 @@ static int make_network(void **state)
     return 0;
 }
 
-static int free_network(void **state)
-{
+static int free_network(void **state) {
     mspring_network_destroy(*state);
     return 0;
 }
 
 /* --------------------------------------------------------------------------------------------------- views */
 
-static void slots_and_ids_are_inverse_maps(void **state)
-{
+static void slots_and_ids_are_inverse_maps(void **state) {
     mspring_network *network = *state;
     mspring_view view = {.struct_size = sizeof view};
     mspring_plan plan = {.struct_size = sizeof plan};
@@ -66,8 +63,7 @@ static void slots_and_ids_are_inverse_maps(void **state)
     assert_true(taken < view.slot_count); // there are holes: the network of this test is meant to have some
 }
 
-static void views_show_the_state_and_follow_the_steps(void **state)
-{
+static void views_show_the_state_and_follow_the_steps(void **state) {
     mspring_network *network = *state;
     mspring_view before = {.struct_size = sizeof before}, after = {.struct_size = sizeof after};
     check_ok(mspring_network_view(network, &before));
@@ -93,8 +89,7 @@ static void views_show_the_state_and_follow_the_steps(void **state)
     }
 }
 
-static void what_is_written_through_a_view_counts(void **state)
-{
+static void what_is_written_through_a_view_counts(void **state) {
     mspring_network *network = *state;
     mspring_view view = {.struct_size = sizeof view};
     check_ok(mspring_network_view(network, &view));
@@ -105,8 +100,7 @@ static void what_is_written_through_a_view_counts(void **state)
     assert_true(support_velocity(network, 7).y == -2);
 }
 
-static void bad_views_are_refused(void **state)
-{
+static void bad_views_are_refused(void **state) {
     mspring_network *network = *state;
     mspring_view view, before;
     memset(&view, 0x5a, sizeof view);
@@ -124,8 +118,7 @@ static void bad_views_are_refused(void **state)
 
 enum { MANY = 200 };
 
-static void ranges_read_and_write_in_id_order(void **state)
-{
+static void ranges_read_and_write_in_id_order(void **state) {
     mspring_network *network = *state;
     const uint32_t count = mspring_network_particle_count(network);
     double x[MANY], y[MANY], x2[MANY], y2[MANY];
@@ -151,7 +144,8 @@ static void ranges_read_and_write_in_id_order(void **state)
     assert_memory_equal(x, x2, count * sizeof *x);
     assert_memory_equal(y, y2, count * sizeof *y);
     for (mspring_id id = 5; id < 15; id++) {
-        assert_true(support_velocity(network, id).x == id - 5 && support_velocity(network, id).y == -(double)(id - 5));
+        assert_true(support_velocity(network, id).x == id - 5 &&
+                    support_velocity(network, id).y == -(double)(id - 5));
     }
     assert_true(support_velocity(network, 15).x == 0);
 
@@ -167,8 +161,7 @@ static void ranges_read_and_write_in_id_order(void **state)
     check_ok(mspring_network_set_positions(network, count, 0, x2, y2));
 }
 
-static void ranges_that_leave_the_network_are_refused(void **state)
-{
+static void ranges_that_leave_the_network_are_refused(void **state) {
     mspring_network *network = *state;
     const uint32_t count = mspring_network_particle_count(network);
     const struct {
@@ -196,8 +189,7 @@ static void ranges_that_leave_the_network_are_refused(void **state)
     assert_int_equal(support_hash(network), hash);
 }
 
-static void null_arrays_are_refused(void **state)
-{
+static void null_arrays_are_refused(void **state) {
     mspring_network *network = *state;
     double d[2] = {0, 0};
     float f[2] = {0, 0};
@@ -224,8 +216,7 @@ static void null_arrays_are_refused(void **state)
     assert_int_equal(support_hash(network), hash);
 }
 
-static void writes_are_all_or_nothing_and_name_the_particle(void **state)
-{
+static void writes_are_all_or_nothing_and_name_the_particle(void **state) {
     mspring_network *network = *state;
     const uint32_t count = mspring_network_particle_count(network);
     const double bad[] = {NAN, INFINITY, -INFINITY, 1.001e12, -1.001e12};
@@ -269,8 +260,7 @@ static void writes_are_all_or_nothing_and_name_the_particle(void **state)
 
 /* ------------------------------------------------------------------------------------------------- origin */
 
-static void setting_all_positions_moves_the_origin(void **state)
-{
+static void setting_all_positions_moves_the_origin(void **state) {
     mspring_network *network = *state;
     const uint32_t count = mspring_network_particle_count(network);
     double x[MANY], y[MANY];
@@ -298,8 +288,7 @@ static void setting_all_positions_moves_the_origin(void **state)
     check_near(support_position(network, 3).x, far_x[0], 0.04); // half an ulp of 1e6 is 1/32
 }
 
-static void parts_may_not_go_too_far_from_the_origin(void **state)
-{
+static void parts_may_not_go_too_far_from_the_origin(void **state) {
     mspring_network *network = *state;
     const uint32_t count = mspring_network_particle_count(network);
     double x[MANY], y[MANY];
@@ -315,8 +304,7 @@ static void parts_may_not_go_too_far_from_the_origin(void **state)
     assert_int_equal(support_hash(network), hash);
 }
 
-int main(void)
-{
+int main(void) {
 #define STATE_TEST(test) cmocka_unit_test_setup_teardown(test, make_network, free_network)
     const struct CMUnitTest tests[] = {
         STATE_TEST(slots_and_ids_are_inverse_maps),

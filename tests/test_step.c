@@ -10,8 +10,7 @@
 #include "support.h"
 
 /// Free particles of 2 kg in a row, no gravity, no springs.
-static mspring_network *particles(uint32_t count, uint32_t substeps, float max_speed)
-{
+static mspring_network *particles(uint32_t count, uint32_t substeps, float max_speed) {
     mspring_builder *builder = support_builder();
     for (uint32_t i = 0; i < count; i++) {
         support_particle(builder, i, 0, 2);
@@ -21,16 +20,14 @@ static mspring_network *particles(uint32_t count, uint32_t substeps, float max_s
     return support_network(builder, &def);
 }
 
-static void bad_dt_is_refused(void **state)
-{
+static void bad_dt_is_refused(void **state) {
     (void)state;
     mspring_network *network = particles(3, 4, 1e6f);
     const float vx[] = {1, 2, 3}, vy[] = {0, 0, 0};
     check_ok(mspring_network_set_velocities(network, 0, 3, vx, vy));
     const uint64_t hash = support_hash(network);
     // The last ones: a substep that is a denormal number, that is nothing, and that is infinite as a float.
-    const double bad[] = {0.0, -0.0,  -0.01, NAN,   INFINITY, -INFINITY, (double)FLT_MIN,
-                          1e-40, 1e-300, 1e40, 1e300};
+    const double bad[] = {0.0, -0.0, -0.01, NAN, INFINITY, -INFINITY, (double)FLT_MIN, 1e-40, 1e-300, 1e40, 1e300};
     for (size_t i = 0; i < COUNT_OF(bad); i++) {
         check_error(mspring_network_step(network, bad[i]), MSPRING_ERROR_ARGUMENT);
         check_contains(mspring_network_error(network), "dt");
@@ -46,8 +43,7 @@ static void bad_dt_is_refused(void **state)
 
 /* ------------------------------------------------------------------------------------------------- forces */
 
-static void a_force_acts_during_one_step(void **state)
-{
+static void a_force_acts_during_one_step(void **state) {
     (void)state;
     for (uint32_t substeps = 1; substeps <= 8; substeps *= 8) {
         mspring_network *network = particles(40, substeps, 1e6f);
@@ -66,8 +62,7 @@ static void a_force_acts_during_one_step(void **state)
     }
 }
 
-static void forces_add_up(void **state)
-{
+static void forces_add_up(void **state) {
     (void)state;
     mspring_network *network = particles(20, 2, 1e6f);
     float x[10], y[10];
@@ -80,15 +75,15 @@ static void forces_add_up(void **state)
     check_ok(mspring_network_apply_force(network, 10, 80, 0));
     check_ok(mspring_network_step(network, 0.25));
     for (mspring_id id = 0; id < 20; id++) {
-        double fx = (id >= 5 && id < 15 ? 8.0 * (id - 5) : 0) + (id >= 10 ? 8.0 * (id - 10) : 0) + (id == 10 ? 80 : 0);
+        double fx =
+            (id >= 5 && id < 15 ? 8.0 * (id - 5) : 0) + (id >= 10 ? 8.0 * (id - 10) : 0) + (id == 10 ? 80 : 0);
         double fy = (id >= 5 && id < 15 ? 16 : 0) + (id >= 10 ? 16 : 0);
         assert_true(support_velocity(network, id).x == fx / 8 && support_velocity(network, id).y == fy / 8);
     }
     mspring_network_destroy(network);
 }
 
-static void forces_on_springs_and_leftovers_add_to_the_springs(void **state)
-{
+static void forces_on_springs_and_leftovers_add_to_the_springs(void **state) {
     (void)state;
     // Two equal networks of lattice, rope and leftover springs. A force equal to gravity on each particle of one,
     // gravity on the other.
@@ -120,8 +115,7 @@ static void forces_on_springs_and_leftovers_add_to_the_springs(void **state)
     recipe_free(&made);
 }
 
-static void pinned_particles_feel_no_force(void **state)
-{
+static void pinned_particles_feel_no_force(void **state) {
     (void)state;
     mspring_builder *builder = support_builder();
     support_pinned(builder, 0, 0, 2);
@@ -136,8 +130,7 @@ static void pinned_particles_feel_no_force(void **state)
 
 /* --------------------------------------------------------------------------------------------- steps taken back */
 
-static void a_step_out_of_bounds_is_taken_back(void **state)
-{
+static void a_step_out_of_bounds_is_taken_back(void **state) {
     (void)state;
     mspring_network *network = particles(50, 4, 10);
     float vx[50], vy[50];
@@ -166,8 +159,7 @@ static void a_step_out_of_bounds_is_taken_back(void **state)
     mspring_network_destroy(network);
 }
 
-static void an_explosion_is_taken_back(void **state)
-{
+static void an_explosion_is_taken_back(void **state) {
     (void)state;
     // A hundred times too stiff for its step: it doubles tenfold in each. The speed limit stops it before anything
     // is infinite, and at the end of a step of many substeps everything is NaN.
@@ -201,8 +193,7 @@ static void an_explosion_is_taken_back(void **state)
     }
 }
 
-static void what_is_not_finite_in_a_view_is_noticed(void **state)
-{
+static void what_is_not_finite_in_a_view_is_noticed(void **state) {
     (void)state;
     const float bad[] = {NAN, INFINITY, -INFINITY, 1.1e12f};
     for (size_t i = 0; i < COUNT_OF(bad); i++) {
@@ -221,8 +212,7 @@ static void what_is_not_finite_in_a_view_is_noticed(void **state)
     }
 }
 
-static void the_speed_limit_is_one(void **state)
-{
+static void the_speed_limit_is_one(void **state) {
     (void)state;
     mspring_network *network = particles(1, 1, 10);
     const float limit = 10, zero = 0, above = nextafterf(10, 11);
@@ -233,8 +223,7 @@ static void the_speed_limit_is_one(void **state)
     mspring_network_destroy(network);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bad_dt_is_refused),
         cmocka_unit_test(a_force_acts_during_one_step),

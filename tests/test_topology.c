@@ -12,8 +12,7 @@ static const recipe_stuff solid = {.mass = {1, 1}, .stiffness = {100, 100}};
 static const recipe_stuff holed = {.mass = {1, 1}, .stiffness = {100, 100}, .holes = 0.3};
 
 /// The plan of a recipe, whose parts add up.
-static mspring_plan plan_of(const recipe *made)
-{
+static mspring_plan plan_of(const recipe *made) {
     mspring_network *network = recipe_network(made, NULL);
     mspring_plan plan = {.struct_size = sizeof plan};
     check_ok(mspring_network_plan(network, &plan));
@@ -27,15 +26,13 @@ static mspring_plan plan_of(const recipe *made)
     return plan;
 }
 
-static mspring_plan shuffled_plan_of(recipe *made)
-{
+static mspring_plan shuffled_plan_of(recipe *made) {
     uint64_t seed = 99;
     recipe_shuffle(made, &seed, NULL);
     return plan_of(made);
 }
 
-static void a_lattice_is_found_in_any_order(void **state)
-{
+static void a_lattice_is_found_in_any_order(void **state) {
     (void)state;
     // Much smaller ones are cheaper spring by spring.
     const uint32_t sizes[][2] = {{8, 4}, {80, 5}, {5, 80}, {33, 31}, {128, 16}};
@@ -54,8 +51,7 @@ static void a_lattice_is_found_in_any_order(void **state)
     }
 }
 
-static void holes_do_not_break_a_lattice_up(void **state)
-{
+static void holes_do_not_break_a_lattice_up(void **state) {
     (void)state;
     uint64_t seed = 12;
     recipe made = {0};
@@ -68,8 +64,7 @@ static void holes_do_not_break_a_lattice_up(void **state)
     recipe_free(&made);
 }
 
-static void a_lattice_need_not_lie_on_whole_numbers(void **state)
-{
+static void a_lattice_need_not_lie_on_whole_numbers(void **state) {
     (void)state;
     const double spacings[] = {0.1, 1.0 / 3, 7.3, 1e-4, 12345.678};
     for (size_t i = 0; i < COUNT_OF(spacings); i++) {
@@ -82,23 +77,21 @@ static void a_lattice_need_not_lie_on_whole_numbers(void **state)
     }
 }
 
-static void several_lattices_are_found_side_by_side(void **state)
-{
+static void several_lattices_are_found_side_by_side(void **state) {
     (void)state;
     uint64_t seed = 2;
     recipe made = {0};
     recipe_lattice(&made, 20, 10, 0, 0, 1, &solid, &seed);
-    recipe_lattice(&made, 20, 10, 0.4, 20.3, 1, &solid, &seed);    // between the first one's grid points
-    recipe_lattice(&made, 15, 30, 50, 0, 0.25, &solid, &seed);     // of another spacing
-    recipe_lattice(&made, 10, 10, 5.3, 5.1, 1, &solid, &seed);     // on top of the first
+    recipe_lattice(&made, 20, 10, 0.4, 20.3, 1, &solid, &seed); // between the first one's grid points
+    recipe_lattice(&made, 15, 30, 50, 0, 0.25, &solid, &seed);  // of another spacing
+    recipe_lattice(&made, 10, 10, 5.3, 5.1, 1, &solid, &seed);  // on top of the first
     mspring_plan plan = shuffled_plan_of(&made);
     assert_int_equal(plan.lattice_count, 4);
     assert_int_equal(plan.lattice_springs, made.spring_count);
     recipe_free(&made);
 }
 
-static void a_rope_is_a_chain(void **state)
-{
+static void a_rope_is_a_chain(void **state) {
     (void)state;
     uint64_t seed = 6;
     recipe made = {0};
@@ -116,8 +109,7 @@ static void a_rope_is_a_chain(void **state)
     recipe_free(&made);
 }
 
-static void many_ropes_are_many_chains(void **state)
-{
+static void many_ropes_are_many_chains(void **state) {
     (void)state;
     uint64_t seed = 7;
     recipe made = {0};
@@ -137,8 +129,7 @@ static void many_ropes_are_many_chains(void **state)
     recipe_free(&made);
 }
 
-static void a_strand_of_its_own_is_a_chain(void **state)
-{
+static void a_strand_of_its_own_is_a_chain(void **state) {
     (void)state;
     uint64_t seed = 7;
     recipe made = {0};
@@ -153,8 +144,7 @@ static void a_strand_of_its_own_is_a_chain(void **state)
     recipe_free(&made);
 }
 
-static void a_ring_is_a_chain_but_for_one_spring(void **state)
-{
+static void a_ring_is_a_chain_but_for_one_spring(void **state) {
     (void)state;
     recipe made = {0};
     for (uint32_t i = 0; i < 50; i++) {
@@ -169,8 +159,7 @@ static void a_ring_is_a_chain_but_for_one_spring(void **state)
     recipe_free(&made);
 }
 
-static void a_standing_bar_is_as_cheap_as_a_lying_one(void **state)
-{
+static void a_standing_bar_is_as_cheap_as_a_lying_one(void **state) {
     (void)state;
     uint64_t seed = 4;
     recipe lying = {0}, standing = {0};
@@ -185,8 +174,7 @@ static void a_standing_bar_is_as_cheap_as_a_lying_one(void **state)
     recipe_free(&standing);
 }
 
-static void a_random_graph_is_no_lattice(void **state)
-{
+static void a_random_graph_is_no_lattice(void **state) {
     (void)state;
     uint64_t seed = 9;
     recipe made = {0};
@@ -201,11 +189,11 @@ static void a_random_graph_is_no_lattice(void **state)
     recipe_free(&made);
 }
 
-static void what_a_network_has_not_it_does_not_hold(void **state)
-{
+static void what_a_network_has_not_it_does_not_hold(void **state) {
     (void)state;
     const recipe_stuff damped = {.mass = {1, 1}, .stiffness = {100, 100}, .damping = {1, 1}};
-    const recipe_stuff relative = {.mass = {1, 1}, .stiffness = {0.1, 0.1}, .spring_flags = MSPRING_SPRING_RELATIVE};
+    const recipe_stuff relative = {
+        .mass = {1, 1}, .stiffness = {0.1, 0.1}, .spring_flags = MSPRING_SPRING_RELATIVE};
     const struct {
         const recipe_stuff *stuff;
         uint32_t has_damping, has_relative;
@@ -221,11 +209,11 @@ static void what_a_network_has_not_it_does_not_hold(void **state)
     }
 }
 
-static void order_does_not_change_the_motion(void **state)
-{
+static void order_does_not_change_the_motion(void **state) {
     (void)state;
     uint64_t seed = 41;
-    const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {500, 1000}, .damping = {0, 2}, .pinned = 0.03, .holes = 0.2};
+    const recipe_stuff stuff = {
+        .mass = {1, 2}, .stiffness = {500, 1000}, .damping = {0, 2}, .pinned = 0.03, .holes = 0.2};
     recipe made = {0};
     mspring_id new_ids[1000];
     recipe_lattice(&made, 30, 20, 0, 0, 1, &stuff, &seed);
@@ -251,8 +239,7 @@ static void order_does_not_change_the_motion(void **state)
     recipe_free(&made);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_lattice_is_found_in_any_order),
         cmocka_unit_test(holes_do_not_break_a_lattice_up),

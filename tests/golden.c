@@ -1,0 +1,160 @@
+/// @file golden.c
+///
+/// SPDX-License-Identifier: MIT
+#include "golden.h"
+
+#include "level.h"
+#include "recipe.h"
+#include "scenes/scene.h"
+#include "support.h"
+
+/// Take over a scene that its maker has filled.
+static mspring_network *network_of(bool made, scene *made_scene, const scene_error *error,
+                                   const mspring_network_def *def) {
+    if (!made) {
+        print_error("%s\n", error->text);
+    }
+    assert_true(made);
+    mspring_network *network = NULL;
+    check_ok(mspring_network_create(made_golden->builder, def, &network));
+    scene_free(made_scene);
+    return network;
+}
+
+static mspring_network *bar_80x5(mspring_network_def *def) {
+    scene made;
+    scene_error error;
+    scene_options options = scene_options_default();
+    return network_of(scene_bar(80, 5, &options, &made, &error), &made, &error, def);
+}
+
+static mspring_network *bar_544x68(mspring_network_def *def) {
+    scene made;
+    scene_error error;
+    scene_options options = scene_options_default();
+    return network_of(scene_bar(544, 68, &options, &made, &error), &made, &error, def);
+}
+
+static mspring_network *bar_standing_damped(mspring_network_def *def) {
+    scene made;
+    scene_error error;
+    scene_options options = scene_options_default();
+    options.damping = 5000;
+    options.spacing = 0.7;
+    def->gravity_x = 3;
+    return network_of(scene_bar(6, 90, &options, &made, &error), &made, &error, def);
+}
+
+static mspring_network *bar_relative(mspring_network_def *def) {
+    scene made;
+    scene_error error;
+    scene_options options = scene_options_default();
+    options.relative = true;
+    options.stiffness = 0.5f;
+    options.damping = 0.03f;
+    return network_of(scene_bar(50, 9, &options, &made, &error), &made, &error, def);
+}
+
+static mspring_network *bar_with_ropes(mspring_network_def *def) {
+    scene made;
+    scene_error error;
+    scene_options options = scene_options_default();
+    options.damping = 100;
+    bool ok = scene_bar(100, 20, &options, &made, &error) && scene_add_ropes(&made, 12, 15, 5, &options, &error);
+    return network_of(ok, &made, &error, def);
+}
+
+static mspring_network *rope(mspring_network_def *def) {
+    scene made;
+    scene_error error;
+    scene_options options = scene_options_default();
+    def->global_damping = 0.3f;
+    return network_of(scene_rope(201, &options, &made, &error), &made, &error, def);
+}
+
+static mspring_network *graph(mspring_network_def *def) {
+    scene made;
+    scene_error error;
+    scene_options options = scene_options_default();
+    options.damping = 50;
+    return network_of(scene_random_graph(1000, 8, 3, &options, &made, &error), &made, &error, def);
+}
+
+/// Two lattices with holes and pins, ropes between them, springs across, loose particles; all of it shuffled.
+static recipe everything(void) {
+    uint64_t seed = 2026;
+    const recipe_stuff stuff = {
+        .mass = {0.5, 2}, .stiffness = {2000, 8000}, .damping = {0, 20}, .pinned = 0.02, .holes = 0.25};
+    recipe made = {0};
+    mspring_id a = recipe_lattice(&made, 45, 21, 0, 0, 1, &stuff, &seed);
+    mspring_id b = recipe_lattice(&made, 13, 33, 60, -5, 0.625, &stuff, &seed);
+    recipe_rope(&made, a + 3, b + 7, 64, &stuff, &seed);
+    recipe_rope(&made, a + 100, b + 20, 31, &stuff, &seed);
+    recipe_random_springs(&made, 40, &stuff, &seed);
+    for (int i = 0; i < 21; i++) {
+        recipe_particle(&made, i, -10, 1 + i, i == 3 ? MSPRING_PARTICLE_PINNED : 0);
+    }
+    recipe_disturb(&made, 0.05, 2, &seed);
+    recipe_shuffle(&made, &seed, NULL);
+    return made;
+}
+
+static mspring_network *everything_damped(mspring_network_def *def) {
+    recipe made = everything();
+    def->gravity_x = -1.5f;
+    def->global_damping = 0.1f;
+    mspring_network *network = recipe_network(&made, def);
+    recipe_free(&made);
+    return network;
+}
+
+static void push_some(mspring_network *network, uint32_t step) {
+    for (mspring_id id = step % 7; id < mspring_network_particle_count(network); id += 50) {
+        check_ok(mspring_network_apply_force(network, id, 25, 300));
+    }
+}
+
+/// Flies at several hundred m/s, so that the origin comes along.
+static mspring_network *everything_flying(mspring_network_def *def) {
+    recipe made = everything();
+    for (uint32_t i = 0; i < made.particle_count; i++) {
+        made.particles[i].flags = 0;
+        made.particles[i].vx += 500;
+        made.particles[i].vy -= 321;
+    }
+    def->gravity_y = 0;
+    mspring_network *network = recipe_network(&made, def);
+    recipe_free(&made);
+    return network;
+}
+
+const golden_scene golden_scenes[] = {
+    {"bar_80x5", bar_80x5, NULL, 30, 64, 1.0 / 64},
+    {"bar_544x68", bar_544x68, NULL, 30, 3, 1.0 / 64},
+    {"bar_standing_damped", bar_standing_damped, NULL, 31, 50, 1.0 / 60},
+    {"bar_relative", bar_relative, NULL, 7, 100, 0.017},
+    {"bar_with_ropes", bar_with_ropes, NULL, 40, 20, 1.0 / 64},
+    {"rope", rope, NULL, 50, 64, 1.0 / 64},
+    {"graph", graph, NULL, 40, 40, 1.0 / 64},
+    {"everything_damped", everything_damped, push_some, 4, 100, 1.0 / 64},
+    {"everything_flying", everything_flying, NULL, 5, 100, 1.0 / 50},
+};
+const uint32_t golden_scene_count = COUNT_OF(golden_scenes);
+
+uint64_t golden_run(const golden_scene *golden, mspring_simd level) {
+    mspring_network_def def = support_def(-9.8f, golden->substeps);
+    def.simd_level = level;
+    mspring_network *network = golden->make(&def);
+    level_check(network, level);
+    uint64_t hash = support_hash(network);
+    for (uint32_t step = 0; step < golden->steps; step++) {
+        if (golden->before_step != NULL) {
+            golden->before_step(network, step);
+        }
+        support_steps(network, 1, golden->dt);
+        // Rotated and mixed, so that every step's state counts and not only the last one's.
+        hash = (hash << 7 | hash >> 57) ^ support_hash(network);
+    }
+    mspring_network_destroy(network);
+    return hash;
+}

@@ -1,0 +1,32 @@
+/// @file level.c
+///
+/// SPDX-License-Identifier: MIT
+#define _POSIX_C_SOURCE 200112L // unsetenv
+
+#include "level.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "support.h"
+
+mspring_simd level_from_arguments(int argc, char **argv) {
+    for (mspring_simd level = MSPRING_SIMD_SCALAR; argc > 1 && level <= MSPRING_SIMD_AVX512; level++) {
+        if (strcmp(argv[1], mspring_simd_name(level)) != 0) {
+            continue;
+        }
+        if (level > mspring_simd_supported()) {
+            printf("skipped: this machine lacks %s\n", argv[1]);
+            exit(LEVEL_SKIPPED);
+        }
+        unsetenv("MSPRING_SIMD");
+        return level;
+    }
+    fprintf(stderr, "usage: %s scalar|sse2|avx2|avx512 ...\n", argv[0]);
+    exit(2);
+}
+
+void level_check(const mspring_network *network, mspring_simd level) {
+    assert_string_equal(mspring_simd_name(mspring_network_simd_level(network)), mspring_simd_name(level));
+}

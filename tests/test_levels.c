@@ -1,0 +1,212 @@
+/// @file test_levels.c
+/// A level gives the scalar level's state, byte for byte, on networks of every awkward size, and writes nowhere but
+/// into its own memory; and the host's floating-point modes do not matter.
+///
+/// SPDX-License-Identifier: MIT
+#include <fenv.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "allocator.h"
+#include "level.h"
+#include "recipe.h"
+#include "support.h"
+
+static mspring_simd level;
+
+/// The state of a network, by id.
+typedef struct snapshot {
+    float *values; ///< x, y, vx, vy of particle 0, of particle 1, ...
+    size_t size;   ///< bytes
+    uint64_t hash;
+} snapshot;
+
+static snapshot run(const recipe *made, mspring_simd at, uint32_t steps) {
+    watched_allocator watched = {0};
+    mspring_allocator allocator = watched_interface(&watched);
+    mspring_network_def def = support_def(-9.8f, 3);
+    def.simd_level = at;
+    def.global_damping = 0.25f;
+    def.max_speed = 1e15f;
+    def.allocator = &allocator;
+    mspring_network *network = recipe_network(made, &def);
+    level_check(network, at);
+    for (uint32_t step = 0; step < steps; step++) {
+        // Forces in half of the steps: the kernels with and those without.
+        if (step % 2 == 1) {
+            check_ok(mspring_network_apply_force(network, step % made->particle_count, 30, -20));
+        }
+        support_steps(network, 1, 1.0 / 64);
+    }
+    snapshot taken = {.size = made->particle_count * 4 * sizeof(float), .hash = support_hash(network)};
+    taken.values = malloc(taken.size);
+    assert_non_null(taken.values);
+    mspring_view view = {.struct_size = sizeof view};
+    check_ok(mspring_network_view(network, &view));
+    for (mspring_id id = 0; id < made->particle_count; id++) {
+        uint32_t slot = view.slot_of_particle[id];
+        const float values[4] = {view.x[slot], view.y[slot], view.vx[slot], view.vy[slot]};
+        memcpy(taken.values + (size_t)4 * id, values, sizeof values);
+    }
+    mspring_network_destroy(network);
+    check_watched_clean(&watched);
+    return taken;
+}
+
+static void check_equal_to_scalar(const recipe *made, const char *what, uint32_t a, uint32_t b) {
+    const uint32_t steps = 6;
+    snapshot mine = run(made, level, steps), scalar = run(made, MSPRING_SIMD_SCALAR, steps);
+    if (mine.hash != scalar.hash || memcmp(mine.values, scalar.values, mine.size) != 0) {
+        print_error("%s %u x %u, %u particles, %u springs\n", what, a, b, made->particle_count, made->spring_count);
+    }
+    assert_memory_equal(mine.values, scalar.values, mine.size);
+    assert_int_equal(mine.hash, scalar.hash);
+    free(mine.values);
+    free(scalar.values);
+}
+
+static recipe_stuff random_stuff(uint32_t variant) {
+    recipe_stuff stuff = {.mass = {0.5, 2}, .stiffness = {500, 3000}, .pinned = 0.05};
+    stuff.damping[1] = variant % 2 == 0 ? 0 : 10;
+    stuff.holes = variant % 3 == 0 ? 0 : 0.15 * (variant % 3);
+    return stuff;
+}
+
+static void lattices_of_every_size(void **state) {
+    (void)state;
+    for (uint32_t columns = 1; columns <= 40; columns++) {
+        for (uint32_t rows = 1; rows <= 5; rows++) {
+            for (uint32_t variant = 0; variant < 4; variant++) {
+                uint64_t seed = columns * 100 + rows * 10 + variant;
+                recipe_stuff stuff = random_stuff(variant);
+                recipe made = {0};
+                recipe_lattice(&made, columns, rows, 0, 0, 1, &stuff, &seed);
+                if (made.particle_count > 0) {
+                    recipe_disturb(&made, 0.1, 3, &seed);
+                    check_equal_to_scalar(&made, "lattice", columns, rows);
+                }
+                recipe_free(&made);
+            }
+        }
+    }
+}
+
+static void chains_of_every_length(void **state) {
+    (void)state;
+    for (uint32_t segments = 1; segments <= 70; segments++) {
+        uint64_t seed = segments;
+        recipe_stuff stuff = random_stuff(segments);
+        recipe made = {0};
+        mspring_id a = recipe_particle(&made, 0, 0, 1, MSPRING_PARTICLE_PINNED);
+        mspring_id b = recipe_particle(&made, segments, 1, 1, 0);
+        recipe_rope(&made, a, b, segments, &stuff, &seed);
+        recipe_disturb(&made, 0.1, 3, &seed);
+        check_equal_to_scalar(&made, "chain", segments, 1);
+        recipe_free(&made);
+    }
+}
+
+static void loose_particles_of_every_number(void **state) {
+    (void)state;
+    for (uint32_t count = 1; count <= 40; count++) {
+        uint64_t seed = count;
+        recipe made = {0};
+        for (uint32_t i = 0; i < count; i++) {
+            recipe_particle(&made, i, 0, 1 + 0.1 * i, i % 5 == 4 ? MSPRING_PARTICLE_PINNED : 0);
+        }
+        recipe_disturb(&made, 0.1, 3, &seed);
+        check_equal_to_scalar(&made, "loose", count, 1);
+        recipe_free(&made);
+    }
+}
+
+static void mixtures_of_all(void **state) {
+    (void)state;
+    for (uint32_t variant = 0; variant < 30; variant++) {
+        uint64_t seed = 1000 + variant;
+        recipe_stuff stuff = random_stuff(variant);
+        recipe made = {0};
+        uint32_t columns = 10 + (uint32_t)(support_random(&seed) % 60),
+                 rows = 3 + (uint32_t)(support_random(&seed) % 12);
+        recipe_lattice(&made, columns, rows, 0, 0, 1, &stuff, &seed);
+        recipe_lattice(&made, rows, columns, 100, 0, 0.5, &stuff, &seed);
+        for (uint32_t i = 0; i < 5; i++) {
+            recipe_rope(&made, (mspring_id)i, made.particle_count - 1 - i, 3 + 7 * i, &stuff, &seed);
+        }
+        recipe_random_springs(&made, 25, &stuff, &seed);
+        recipe_disturb(&made, 0.1, 3, &seed);
+        recipe_shuffle(&made, &seed, NULL);
+        check_equal_to_scalar(&made, "mixture", columns, rows);
+        recipe_free(&made);
+    }
+}
+
+static void extreme_values(void **state) {
+    (void)state;
+    // Denormal numbers, overflowing squares and coincident particles: same bits here, too.
+    for (uint32_t variant = 0; variant < 4; variant++) {
+        uint64_t seed = 50 + variant;
+        const double spacings[] = {1e-9, 1e-4, 1e9, 1};
+        const double scale = spacings[variant];
+        const recipe_stuff stuff = {
+            .mass = {1e-3, 1e3}, .stiffness = {1e-3, 1}, .damping = {0, 1e-3}, .holes = 0.1};
+        recipe made = {0};
+        recipe_lattice(&made, 37, 8, 0, 0, scale, &stuff, &seed);
+        recipe_disturb(&made, 0.1 * scale, 1e-30, &seed);
+        if (variant == 3) {
+            for (uint32_t i = 0; i < made.particle_count; i++) {
+                made.particles[i].x = made.particles[i].y = 0; // rest lengths are those of the lattice
+            }
+        }
+        check_equal_to_scalar(&made, "extreme", variant, 0);
+        recipe_free(&made);
+    }
+}
+
+static void rounding_mode_of_the_host_does_not_matter(void **state) {
+    (void)state;
+    const int modes[] = {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
+    uint64_t seed = 8;
+    recipe_stuff stuff = random_stuff(1);
+    recipe made = {0};
+    recipe_lattice(&made, 30, 10, 0, 0, 1, &stuff, &seed);
+    recipe_rope(&made, 5, 200, 12, &stuff, &seed);
+    recipe_random_springs(&made, 10, &stuff, &seed);
+    recipe_disturb(&made, 0.1, 3, &seed);
+    mspring_network_def def = support_def(-9.8f, 3);
+    def.simd_level = level;
+    def.global_damping = 0.25f;
+    mspring_network *nearest = recipe_network(&made, &def);
+    support_steps(nearest, 10, 1.0 / 64);
+    for (size_t i = 0; i < COUNT_OF(modes); i++) {
+        mspring_network *network = recipe_network(&made, &def);
+        assert_int_equal(fesetround(modes[i]), 0);
+        for (int step = 0; step < 10; step++) {
+            mspring_result result = mspring_network_step(network, 1.0 / 64);
+            int mode = fegetround();
+            if (result != MSPRING_OK || mode != modes[i]) {
+                fesetround(FE_TONEAREST);
+            }
+            check_ok(result);
+            assert_int_equal(mode, modes[i]); // and it is the host's again afterwards
+        }
+        fesetround(FE_TONEAREST);
+        assert_int_equal(support_hash(network), support_hash(nearest));
+        mspring_network_destroy(network);
+    }
+    mspring_network_destroy(nearest);
+    recipe_free(&made);
+}
+
+int main(int argc, char **argv) {
+    level = level_from_arguments(argc, argv);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lattices_of_every_size),
+        cmocka_unit_test(chains_of_every_length),
+        cmocka_unit_test(loose_particles_of_every_number),
+        cmocka_unit_test(mixtures_of_all),
+        cmocka_unit_test(extreme_values),
+        cmocka_unit_test(rounding_mode_of_the_host_does_not_matter),
+    };
+    return cmocka_run_group_tests_name("levels", tests, NULL, NULL);
+}
