@@ -16,7 +16,7 @@ static mspring_network *network_of(bool made, scene *made_scene, const scene_err
     }
     assert_true(made);
     mspring_network *network = NULL;
-    check_ok(mspring_network_create(made_golden->builder, def, &network));
+    check_ok(mspring_network_create(made_scene->builder, def, &network));
     scene_free(made_scene);
     return network;
 }

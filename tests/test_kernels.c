@@ -1,0 +1,303 @@
+/// @file test_kernels.c
+/// Every kernel of a level against the scalar one, byte for byte, with canaries around all that it may touch:
+/// sweeps of 0 to 3 blocks, of 0 to 2 w + 1 particles, in one span and in two that continue each other.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "kernels/kernels.h"
+#include "level.h"
+#include "support.h"
+
+static const mspringi_kernels *kernels;
+
+enum {
+    W = MSPRINGI_WIDTH,
+    ROW = 3,                             // most blocks in a sweep
+    SLOTS = (1 + ROW + 1 + ROW + 1) * W, // padding, the row, padding, the row above, padding
+    FIRST = 1,                           // block where the row begins,
+    ABOVE = 1 + ROW + 1,                 // and the one above it
+    CARRY = 2 * ROW * W,                 // a half of zeros, a working half
+    RECORDS = ROW * MSPRINGI_DIRECTIONS * 3 * W,
+    GUARD = 4 * W
+};
+
+#define CANARY 0xc5c5c5c5u
+
+/// All memory of a sweep, each array between two canaries. One of these per run, so that runs can be compared
+/// whole.
+typedef struct arena {
+    uint32_t front[GUARD];
+    float x[SLOTS];
+    uint32_t after_x[GUARD];
+    float y[SLOTS];
+    uint32_t after_y[GUARD];
+    float vx[SLOTS];
+    uint32_t after_vx[GUARD];
+    float vy[SLOTS];
+    uint32_t after_vy[GUARD];
+    float inverse_mass[SLOTS];
+    uint32_t after_inverse_mass[GUARD];
+    float force_x[SLOTS];
+    uint32_t after_force_x[GUARD];
+    float force_y[SLOTS];
+    uint32_t after_force_y[GUARD];
+    float carry_x[CARRY];
+    uint32_t after_carry_x[GUARD];
+    float carry_y[CARRY];
+    uint32_t after_carry_y[GUARD];
+    float records[RECORDS];
+    uint32_t after_records[GUARD];
+    mspringi_edge edge;
+    uint32_t back[GUARD];
+} arena;
+
+static arena *arena_new(void) {
+    arena *made = aligned_alloc(64, (sizeof *made + 63) / 64 * 64);
+    assert_non_null(made);
+    assert_int_equal(offsetof(arena, x) % 64, 0);
+    assert_int_equal(offsetof(arena, records) % 64, 0);
+    for (size_t i = 0; i < sizeof *made / sizeof(uint32_t); i++) {
+        ((uint32_t *)(void *)made)[i] = CANARY;
+    }
+    return made;
+}
+
+static void check_canaries(const arena *a) {
+    const uint32_t *guards[] = {a->front,         a->after_x,       a->after_y,       a->after_vx,
+                                a->after_vy,      a->after_carry_x, a->after_records, a->after_inverse_mass,
+                                a->after_force_x, a->after_force_y, a->after_carry_y, a->back};
+    for (size_t i = 0; i < COUNT_OF(guards); i++) {
+        for (size_t j = 0; j < GUARD; j++) {
+            assert_int_equal(guards[i][j], CANARY);
+        }
+    }
+}
+
+/// How a sweep is set up.
+typedef struct setup {
+    uint32_t blocks; ///< 0 to ROW
+    uint32_t live;   ///< particles in the row; the slots behind them are empty
+    uint32_t split;  ///< blocks in the first of two spans; 0: one span
+    uint32_t parts;  ///< 2 or 3
+    bool from_below; ///< a row below has left forces
+    bool has_above;  ///< there is a row above; else the row itself stands for it
+    uint32_t record_slots;
+    uint64_t seed;
+} setup;
+
+static float random_float(uint64_t *seed, double low, double high) {
+    return (float)support_random_between(seed, low, high);
+}
+
+static void fill(arena *a, const setup *s) {
+    uint64_t seed = s->seed;
+    for (uint32_t i = 0; i < SLOTS; i++) {
+        // A grid that is off by a little; every seventh particle lies on the next one.
+        uint32_t slot = i % ((ROW + 1) * W);
+        a->x[i] = i % 7 == 6 && i > 0 ? a->x[i - 1] : (float)slot - 30 + random_float(&seed, -0.2, 0.2);
+        a->y[i] = i % 7 == 6 && i > 0 ? a->y[i - 1] : (i >= ABOVE * W) + random_float(&seed, -0.2, 0.2);
+        a->vx[i] = random_float(&seed, -5, 5);
+        a->vy[i] = random_float(&seed, -5, 5);
+        a->inverse_mass[i] = support_random(&seed) % 9 == 0 ? 0 : random_float(&seed, 0.1, 3);
+        a->force_x[i] = random_float(&seed, -50, 50);
+        a->force_y[i] = random_float(&seed, -50, 50);
+        bool in_row = i >= FIRST * W && i < FIRST * W + s->live;
+        bool in_row_above = s->has_above && i >= ABOVE * W && i < ABOVE * W + s->live;
+        if (!in_row && !in_row_above) {
+            a->x[i] = a->y[i] = a->vx[i] = a->vy[i] = a->inverse_mass[i] = 0;
+        }
+    }
+    for (uint32_t i = 0; i < CARRY; i++) {
+        a->carry_x[i] = i < CARRY / 2 ? 0 : random_float(&seed, -100, 100);
+        a->carry_y[i] = i < CARRY / 2 ? 0 : random_float(&seed, -100, 100);
+    }
+    for (uint32_t i = 0; i < RECORDS; i++) {
+        a->records[i] = 0;
+    }
+    for (uint32_t i = 0; i < ROW * s->record_slots; i++) {
+        uint32_t record = i / s->record_slots, direction = i % s->record_slots / W, lane = i % W;
+        float *first = a->records + ((size_t)record * s->record_slots + direction * W) * s->parts + lane;
+        bool spring = record * W + lane < s->live && support_random(&seed) % 5 != 0 &&
+                      (s->has_above || direction == MSPRINGI_EAST);
+        first[MSPRINGI_REST_LENGTH * W] = spring ? random_float(&seed, 0.9, 1.5) : 0;
+        first[MSPRINGI_STIFFNESS * W] = spring ? random_float(&seed, 10, 1000) : 0;
+        if (s->parts > MSPRINGI_DAMPING) {
+            first[MSPRINGI_DAMPING * W] = spring ? random_float(&seed, 0, 30) : 0;
+        }
+    }
+    memset(&a->edge, 0, sizeof a->edge);
+    a->edge.right_x[W - 1] = random_float(&seed, -100, 100);
+    a->edge.right_y[W - 1] = random_float(&seed, -100, 100);
+    a->edge.diagonal_x[W - 1] = random_float(&seed, -100, 100);
+    a->edge.diagonal_y[W - 1] = random_float(&seed, -100, 100);
+}
+
+static void run(arena *a, const setup *s, mspringi_sweep_fn kernel, mspringi_row_kind kind) {
+    const mspringi_sweep sweep = {
+        .x = a->x,
+        .y = a->y,
+        .vx = a->vx,
+        .vy = a->vy,
+        .inverse_mass = a->inverse_mass,
+        .force_x = a->force_x,
+        .force_y = a->force_y,
+        .carry_x = a->carry_x,
+        .carry_y = a->carry_y,
+        .lattice_springs = a->records,
+        .chain_springs = a->records,
+        .parts = s->parts,
+        .h = 0.01f,
+        .decay = 0.99f,
+        .gravity_h_x = 0.015f,
+        .gravity_h_y = -0.098f,
+    };
+    mspringi_span span = {
+        .kind = kind,
+        .first_block = FIRST,
+        .block_count = s->split > 0 ? s->split : s->blocks,
+        .up_block = s->has_above ? ABOVE : FIRST,
+        .carry_in = s->from_below ? ROW : 0,
+        .carry_out = ROW,
+        .record_slots = s->record_slots,
+    };
+    kernel(&sweep, &span, &a->edge);
+    if (s->split > 0) {
+        span.continues = 1;
+        span.first_block += s->split;
+        span.up_block += s->split;
+        span.carry_in += s->from_below ? s->split : 0;
+        span.carry_out += s->split;
+        span.record += s->split;
+        span.block_count = s->blocks - s->split;
+        kernel(&sweep, &span, &a->edge);
+    }
+}
+
+/// Of the edge only the last lanes count.
+static void keep_last_lanes(mspringi_edge *edge) {
+    for (int lane = 0; lane < W - 1; lane++) {
+        edge->right_x[lane] = edge->right_y[lane] = edge->diagonal_x[lane] = edge->diagonal_y[lane] = 0;
+    }
+}
+
+static void compare(const setup *s, mspringi_sweep_fn kernel, mspringi_sweep_fn scalar, mspringi_row_kind kind) {
+    arena *mine = arena_new(), *reference = arena_new(), *before = arena_new();
+    fill(mine, s);
+    fill(reference, s);
+    fill(before, s);
+    run(mine, s, kernel, kind);
+    run(reference, s, scalar, kind);
+    check_canaries(mine);
+    check_canaries(reference);
+    keep_last_lanes(&mine->edge);
+    keep_last_lanes(&reference->edge);
+    if (memcmp(mine, reference, sizeof *mine) != 0) {
+        size_t place = 0;
+        while (((const char *)mine)[place] == ((const char *)reference)[place]) {
+            place++;
+        }
+        print_error(
+            "kind %d, blocks %u, live %u, split %u, parts %u, below %d, above %d: differs in byte %zu (x at "
+            "%zu, vx at %zu, carry at %zu, edge at %zu)\n",
+            kind, s->blocks, s->live, s->split, s->parts, s->from_below, s->has_above, place, offsetof(arena, x),
+            offsetof(arena, vx), offsetof(arena, carry_x), offsetof(arena, edge));
+        fail();
+    }
+    // And the sweep has moved something, if there is anything.
+    assert_int_equal(memcmp(mine->x, before->x, sizeof mine->x) != 0, s->blocks > 0 && s->live > 0);
+    free(mine);
+    free(reference);
+    free(before);
+}
+
+/// All setups for one kernel.
+static void compare_all(mspringi_row_kind kind, uint32_t parts, uint32_t record_slots, mspringi_sweep_fn kernel,
+                        mspringi_sweep_fn scalar) {
+    for (uint32_t blocks = 0; blocks <= ROW; blocks++) {
+        for (uint32_t live = 0; live <= 2 * W + 1 && live <= blocks * W; live++) {
+            for (uint32_t variant = 0; variant < 8; variant++) {
+                setup s = {
+                    .blocks = blocks,
+                    .live = live,
+                    .parts = parts,
+                    .from_below = (variant & 1) && kind == MSPRINGI_ROW_LATTICE,
+                    .has_above = (variant & 2) && kind == MSPRINGI_ROW_LATTICE,
+                    .split = (variant & 4) && blocks > 1 ? 1 + live % (blocks - 1) : 0,
+                    .record_slots = record_slots,
+                    .seed = blocks * 1000 + live * 10 + variant,
+                };
+                compare(&s, kernel, scalar, kind);
+            }
+        }
+    }
+}
+
+static void lattice_kernels(void **state) {
+    (void)state;
+    for (int damped = 0; damped < 2; damped++) {
+        for (int forced = 0; forced < 2; forced++) {
+            compare_all(MSPRINGI_ROW_LATTICE, damped ? 3 : 2, MSPRINGI_DIRECTIONS * W,
+                        kernels->lattice[damped][forced], mspringi_kernels_scalar.lattice[damped][forced]);
+        }
+    }
+}
+
+static void chain_kernels(void **state) {
+    (void)state;
+    for (int damped = 0; damped < 2; damped++) {
+        for (int forced = 0; forced < 2; forced++) {
+            // Records of their own, and those of a lattice that has but one row.
+            for (uint32_t record_slots = W; record_slots <= MSPRINGI_DIRECTIONS * W;
+                 record_slots *= MSPRINGI_DIRECTIONS) {
+                compare_all(MSPRINGI_ROW_CHAIN, damped ? 3 : 2, record_slots, kernels->chain[damped][forced],
+                            mspringi_kernels_scalar.chain[damped][forced]);
+            }
+        }
+    }
+}
+
+static void loose_kernels(void **state) {
+    (void)state;
+    for (int forced = 0; forced < 2; forced++) {
+        compare_all(MSPRINGI_ROW_LOOSE, 2, W, kernels->loose[forced], mspringi_kernels_scalar.loose[forced]);
+    }
+}
+
+static void bounded_sees_every_lane(void **state) {
+    (void)state;
+    const float limit = 1e6f;
+    const float bad[] = {NAN, INFINITY, -INFINITY, 1.0001e6f, -1.0001e6f}, good[] = {0, -0.0f, 1e6f, -1e6f, 1e-40f};
+    _Alignas(64) float values[3 * W];
+    for (size_t count = 0; count <= COUNT_OF(values); count += W) {
+        for (size_t place = 0; place < COUNT_OF(values); place++) {
+            for (size_t i = 0; i < COUNT_OF(bad); i++) {
+                for (size_t j = 0; j < COUNT_OF(values); j++) {
+                    values[j] = good[j % COUNT_OF(good)];
+                }
+                assert_true(kernels->bounded(values, count, limit));
+                values[place] = bad[i];
+                assert_int_equal(kernels->bounded(values, count, limit), place >= count);
+            }
+        }
+    }
+}
+
+int main(int argc, char **argv) {
+    mspring_simd level = level_from_arguments(argc, argv);
+    kernels = mspringi_kernels_of(level);
+    if (kernels->level != level) {
+        print_error("the kernels of %s were not built\n", mspring_simd_name(level));
+        return 1;
+    }
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lattice_kernels),
+        cmocka_unit_test(chain_kernels),
+        cmocka_unit_test(loose_kernels),
+        cmocka_unit_test(bounded_sees_every_lane),
+    };
+    return cmocka_run_group_tests_name("kernels", tests, NULL, NULL);
+}
