@@ -1,0 +1,279 @@
+/// @file test_measure.c
+/// Measurements against sums of the test's own, taken from positions, velocities, masses and springs.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <string.h>
+
+#include "recipe.h"
+#include "support.h"
+
+/// A network in motion, far from the world's origin, and what it was made of.
+typedef struct moving {
+    recipe made;
+    mspring_network *network;
+} moving;
+
+static const double gravity_x = 0.5, gravity_y = -9;
+
+static int make_moving(void **state) {
+    static moving m;
+    uint64_t seed = 91;
+    const recipe_stuff stuff = {
+        .mass = {1, 3}, .stiffness = {100, 500}, .damping = {0, 5}, .pinned = 0.1, .holes = 0.2};
+    m.made = (recipe){0};
+    recipe_lattice(&m.made, 20, 9, 1000, -500, 1, &stuff, &seed);
+    mspring_id end = recipe_particle(&m.made, 1030, -480, 2, MSPRING_PARTICLE_PINNED);
+    recipe_rope(&m.made, 0, end, 10, &stuff, &seed);
+    recipe_random_springs(&m.made, 10, &stuff, &seed);
+    recipe_disturb(&m.made, 0.1, 2, &seed);
+    recipe_shuffle(&m.made, &seed, NULL);
+    mspring_network_def def = support_def((float)gravity_y, 2);
+    def.gravity_x = (float)gravity_x;
+    m.network = recipe_network(&m.made, &def);
+    support_steps(m.network, 10, 0.01);
+    // Pinned particles that move: they count in no sum.
+    for (mspring_id id = 0; id < m.made.particle_count; id++) {
+        const float v = 1.5f;
+        if (m.made.particles[id].flags != 0) {
+            check_ok(mspring_network_set_velocities(m.network, id, 1, &v, &v));
+        }
+    }
+    *state = &m;
+    return 0;
+}
+
+static int free_moving(void **state) {
+    moving *m = *state;
+    mspring_network_destroy(m->network);
+    recipe_free(&m->made);
+    return 0;
+}
+
+static void energies_and_momenta(void **state) {
+    moving *m = *state;
+    double kinetic = 0, elastic = 0, potential = 0, px = 0, py = 0, angular = 0;
+    for (mspring_id id = 0; id < m->made.particle_count; id++) {
+        const mspring_particle_def *def = &m->made.particles[id];
+        if (def->flags != 0) {
+            continue;
+        }
+        support_point p = support_position(m->network, id), v = support_velocity(m->network, id);
+        double mass = (double)def->mass;
+        kinetic += mass * (v.x * v.x + v.y * v.y) / 2;
+        potential -= mass * (gravity_x * p.x + gravity_y * p.y);
+        px += mass * v.x;
+        py += mass * v.y;
+        angular += mass * (p.x * v.y - p.y * v.x);
+    }
+    for (mspring_id id = 0; id < m->made.spring_count; id++) {
+        const mspring_spring_def *def = &m->made.springs[id];
+        support_point a = support_position(m->network, def->a), b = support_position(m->network, def->b);
+        double stretch = hypot(b.x - a.x, b.y - a.y) - (double)def->rest_length;
+        elastic += (double)def->stiffness * stretch * stretch / 2;
+    }
+    double got[6];
+    check_ok(mspring_network_energy(m->network, &got[0], &got[1], &got[2]));
+    check_ok(mspring_network_momentum(m->network, &got[3], &got[4], &got[5]));
+    // Sums of some hundred doubles, 2^-53 each; angular momentum is a difference of two a hundred times larger.
+    check_near(got[0], kinetic, 1e-12 * kinetic);
+    check_near(got[1], elastic, 1e-9 * elastic); // lengths from world coordinates of 1000 m here
+    check_near(got[2], potential, 1e-12 * fabs(potential));
+    check_near(got[3], px, 1e-10);
+    check_near(got[4], py, 1e-10);
+    check_near(got[5], angular, 1e-7);
+    assert_true(kinetic > 1 && elastic > 1 && fabs(px) > 0.1);
+
+    // Each alone.
+    double alone = 0;
+    check_ok(mspring_network_energy(m->network, &alone, NULL, NULL));
+    assert_true(alone == got[0]);
+    check_ok(mspring_network_energy(m->network, NULL, &alone, NULL));
+    assert_true(alone == got[1]);
+    check_ok(mspring_network_energy(m->network, NULL, NULL, &alone));
+    assert_true(alone == got[2]);
+    check_ok(mspring_network_momentum(m->network, NULL, NULL, &alone));
+    assert_true(alone == got[5]);
+    check_ok(mspring_network_energy(m->network, NULL, NULL, NULL));
+    check_ok(mspring_network_momentum(m->network, NULL, NULL, NULL));
+    check_error(mspring_network_energy(NULL, &alone, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_momentum(NULL, &alone, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+}
+
+static void springs_tell_what_they_are_and_do(void **state) {
+    moving *m = *state;
+    float strains[1000], worst = 0;
+    mspring_id worst_id = MSPRING_NONE;
+    const uint32_t count = m->made.spring_count;
+    assert_true(count <= COUNT_OF(strains));
+    check_ok(mspring_network_get_strains(m->network, 0, count, strains));
+    for (mspring_id id = 0; id < count; id++) {
+        const mspring_spring_def *def = &m->made.springs[id];
+        mspring_spring_info info = {.struct_size = sizeof info};
+        check_ok(mspring_network_get_spring(m->network, id, &info));
+        assert_int_equal(info.struct_size, sizeof info);
+        assert_int_equal(info.flags, 0);
+        assert_int_equal(info.a, def->a < def->b ? def->a : def->b);
+        assert_int_equal(info.b, def->a < def->b ? def->b : def->a);
+        assert_true(info.stiffness == def->stiffness && info.damping == def->damping);
+        assert_true(info.rest_length == def->rest_length);
+
+        support_point a = support_position(m->network, def->a), b = support_position(m->network, def->b);
+        support_point va = support_velocity(m->network, def->a), vb = support_velocity(m->network, def->b);
+        double length = hypot(b.x - a.x, b.y - a.y), rest = (double)def->rest_length;
+        double rate = ((vb.x - va.x) * (b.x - a.x) + (vb.y - va.y) * (b.y - a.y)) / length;
+        double force = (length - rest) * (double)def->stiffness + rate * (double)def->damping;
+        // One rounding to float each, at 2^-24 of the value.
+        check_near((double)info.length, length, 1e-7 * length);
+        check_near((double)info.strain, (length - rest) / rest, 1e-7 * length / rest);
+        check_near((double)info.force, force, 1e-6 * (1 + fabs(force)));
+        assert_true(strains[id] == info.strain);
+        if (worst_id == MSPRING_NONE || fabsf(strains[id]) > worst) {
+            worst = fabsf(strains[id]);
+            worst_id = id;
+        }
+    }
+    float strain;
+    mspring_id spring;
+    check_ok(mspring_network_max_strain(m->network, &strain, &spring));
+    assert_true(strain == worst && strain > 0);
+    assert_int_equal(spring, worst_id);
+    check_ok(mspring_network_max_strain(m->network, NULL, NULL));
+
+    // A part of them, in place.
+    float part[3] = {7, 7, 7};
+    check_ok(mspring_network_get_strains(m->network, 5, 2, part));
+    assert_true(part[0] == strains[5] && part[1] == strains[6] && part[2] == 7);
+    check_ok(mspring_network_get_strains(m->network, count, 0, part));
+}
+
+static void bounds_hold_all_particles(void **state) {
+    moving *m = *state;
+    double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY}, got[4];
+    for (mspring_id id = 0; id < m->made.particle_count; id++) {
+        support_point p = support_position(m->network, id);
+        box[0] = fmin(box[0], p.x);
+        box[1] = fmin(box[1], p.y);
+        box[2] = fmax(box[2], p.x);
+        box[3] = fmax(box[3], p.y);
+    }
+    check_ok(mspring_network_bounds(m->network, &got[0], &got[1], &got[2], &got[3]));
+    assert_memory_equal(got, box, sizeof got);
+    check_error(mspring_network_bounds(NULL, &got[0], &got[1], &got[2], &got[3]), MSPRING_ERROR_ARGUMENT);
+    for (int i = 0; i < 4; i++) {
+        double *out[4] = {&got[0], &got[1], &got[2], &got[3]};
+        out[i] = NULL;
+        check_error(mspring_network_bounds(m->network, out[0], out[1], out[2], out[3]), MSPRING_ERROR_ARGUMENT);
+    }
+    assert_memory_equal(got, box, sizeof got);
+}
+
+static void bad_calls_are_refused(void **state) {
+    moving *m = *state;
+    const uint32_t count = m->made.spring_count;
+    mspring_spring_info info, before;
+    memset(&info, 0x5a, sizeof info);
+    info.struct_size = sizeof info;
+    before = info;
+    float strain[2] = {7, 7};
+    uint64_t hash;
+    check_error(mspring_network_get_spring(m->network, count, &info), MSPRING_ERROR_ID);
+    check_error(mspring_network_get_spring(m->network, MSPRING_NONE, &info), MSPRING_ERROR_ID);
+    check_error(mspring_network_get_spring(NULL, 0, &info), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_spring(m->network, 0, NULL), MSPRING_ERROR_ARGUMENT);
+    assert_memory_equal(&info, &before, sizeof info);
+    info.struct_size = sizeof info - 4;
+    check_error(mspring_network_get_spring(m->network, 0, &info), MSPRING_ERROR_STRUCT);
+    info.struct_size = sizeof info + 4;
+    check_error(mspring_network_get_spring(m->network, 0, &info), MSPRING_ERROR_STRUCT);
+    check_error(mspring_network_get_strains(m->network, count, 1, strain), MSPRING_ERROR_ID);
+    check_error(mspring_network_get_strains(m->network, 1, UINT32_MAX, strain), MSPRING_ERROR_ID);
+    check_error(mspring_network_get_strains(m->network, 0, 1, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_strains(NULL, 0, 1, strain), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_max_strain(NULL, strain, NULL), MSPRING_ERROR_ARGUMENT);
+    assert_true(strain[0] == 7 && strain[1] == 7);
+    check_error(mspring_network_state_hash(m->network, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_state_hash(NULL, &hash), MSPRING_ERROR_ARGUMENT);
+}
+
+static void no_spring_no_strain(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    support_particle(builder, 3, 4, 5);
+    mspring_network *network = support_network(builder, NULL);
+    float strain = 7;
+    mspring_id spring = 7;
+    double kinetic = 7, elastic = 7, potential = 7;
+    check_ok(mspring_network_max_strain(network, &strain, &spring));
+    assert_true(strain == 0);
+    assert_int_equal(spring, MSPRING_NONE);
+    check_ok(mspring_network_energy(network, &kinetic, &elastic, &potential));
+    assert_true(kinetic == 0 && elastic == 0);
+    check_near(potential, 5 * 9.8 * 4, 1e-5); // 9.8 as a float
+    mspring_network_destroy(network);
+}
+
+static void the_lowest_of_equal_strains_is_named(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    for (int i = 0; i < 5; i++) {
+        support_particle(builder, i, 0, 1);
+    }
+    for (mspring_id i = 0; i < 4; i++) {
+        mspring_spring_def spring;
+        check_ok(mspring_spring_def_init(&spring, sizeof spring));
+        spring.a = i;
+        spring.b = i + 1;
+        spring.rest_length = i == 0 ? 1 : i % 2 == 1 ? 0.5f : 2; // strains 0, 1, -0.5, 1
+        check_ok(mspring_builder_add_spring(builder, &spring, NULL));
+    }
+    mspring_network *network = support_network(builder, NULL);
+    float strain, first, third;
+    mspring_id spring;
+    check_ok(mspring_network_get_strains(network, 1, 1, &first));
+    check_ok(mspring_network_get_strains(network, 3, 1, &third));
+    assert_true(first == third);
+    check_ok(mspring_network_max_strain(network, &strain, &spring));
+    assert_true(strain == 1);
+    assert_int_equal(spring, 1);
+    mspring_network_destroy(network);
+}
+
+static void the_hash_sees_every_bit_that_matters(void **state) {
+    moving *m = *state;
+    mspring_view view = {.struct_size = sizeof view};
+    check_ok(mspring_network_view(m->network, &view));
+    const uint64_t hash = support_hash(m->network);
+    assert_int_equal(support_hash(m->network), hash);
+    for (mspring_id id = 0; id < m->made.particle_count; id += 13) {
+        uint32_t slot = view.slot_of_particle[id];
+        float *const places[] = {&view.x[slot], &view.y[slot], &view.vx[slot], &view.vy[slot]};
+        for (size_t i = 0; i < COUNT_OF(places); i++) {
+            const float value = *places[i];
+            *places[i] = nextafterf(value, INFINITY);
+            assert_int_not_equal(support_hash(m->network), hash);
+            *places[i] = value;
+            assert_int_equal(support_hash(m->network), hash);
+        }
+    }
+    // Two particles that swap places are another state.
+    uint32_t a = view.slot_of_particle[3], b = view.slot_of_particle[4];
+    float x = view.x[a];
+    view.x[a] = view.x[b];
+    view.x[b] = x;
+    assert_int_not_equal(support_hash(m->network), hash);
+}
+
+int main(void) {
+#define MEASURE_TEST(test) cmocka_unit_test_setup_teardown(test, make_moving, free_moving)
+    const struct CMUnitTest tests[] = {
+        MEASURE_TEST(energies_and_momenta),
+        MEASURE_TEST(springs_tell_what_they_are_and_do),
+        MEASURE_TEST(bounds_hold_all_particles),
+        MEASURE_TEST(bad_calls_are_refused),
+        cmocka_unit_test(no_spring_no_strain),
+        cmocka_unit_test(the_lowest_of_equal_strains_is_named),
+        MEASURE_TEST(the_hash_sees_every_bit_that_matters),
+    };
+    return cmocka_run_group_tests_name("measure", tests, NULL, NULL);
+}

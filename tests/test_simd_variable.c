@@ -1,0 +1,74 @@
+/// @file test_simd_variable.c
+/// The environment variable MSPRING_SIMD and the setting simd_level: each lowers the level, neither raises it.
+///
+/// SPDX-License-Identifier: MIT
+#define _POSIX_C_SOURCE 200112L // setenv
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "support.h"
+
+static mspring_simd level_with(const char *variable, mspring_simd setting) {
+    if (variable == NULL) {
+        unsetenv("MSPRING_SIMD");
+    } else {
+        assert_int_equal(setenv("MSPRING_SIMD", variable, 1), 0);
+    }
+    mspring_builder *builder = support_builder();
+    support_particle(builder, 0, 0, 1);
+    mspring_network_def def = support_def(0, 1);
+    def.simd_level = setting;
+    mspring_network *network = support_network(builder, &def);
+    mspring_simd level = mspring_network_simd_level(network);
+    mspring_plan plan = {.struct_size = sizeof plan};
+    check_ok(mspring_network_plan(network, &plan));
+    assert_int_equal(plan.simd_level, level);
+    mspring_network_destroy(network);
+    return level;
+}
+
+static mspring_simd lower(mspring_simd a, mspring_simd b) {
+    return a < b ? a : b;
+}
+
+static void each_lowers_and_neither_raises(void **state) {
+    (void)state;
+    const mspring_simd best = mspring_simd_supported();
+    for (mspring_simd setting = MSPRING_SIMD_AUTO; setting <= MSPRING_SIMD_AVX512; setting++) {
+        mspring_simd alone = setting == MSPRING_SIMD_AUTO ? best : lower(setting, best);
+        assert_int_equal(level_with(NULL, setting), alone);
+        for (mspring_simd variable = MSPRING_SIMD_SCALAR; variable <= MSPRING_SIMD_AVX512; variable++) {
+            assert_int_equal(level_with(mspring_simd_name(variable), setting), lower(alone, variable));
+        }
+    }
+}
+
+static void other_values_change_nothing(void **state) {
+    (void)state;
+    const char *const values[] = {"", "auto", "AVX2 ", "scalarx", "sse", "4", "neon"};
+    for (size_t i = 0; i < COUNT_OF(values); i++) {
+        assert_int_equal(level_with(values[i], MSPRING_SIMD_AUTO), mspring_simd_supported());
+    }
+}
+
+static void the_variable_is_read_when_a_network_is_made(void **state) {
+    (void)state;
+    unsetenv("MSPRING_SIMD");
+    mspring_builder *builder = support_builder();
+    support_particle(builder, 0, 0, 1);
+    mspring_network *network = support_network(builder, NULL);
+    setenv("MSPRING_SIMD", "scalar", 1);
+    check_ok(mspring_network_step(network, 0.01));
+    assert_int_equal(mspring_network_simd_level(network), mspring_simd_supported());
+    mspring_network_destroy(network);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_lowers_and_neither_raises),
+        cmocka_unit_test(other_values_change_nothing),
+        cmocka_unit_test(the_variable_is_read_when_a_network_is_made),
+    };
+    return cmocka_run_group_tests_name("simd_variable", tests, NULL, NULL);
+}
