@@ -1,0 +1,57 @@
+// What a program that uses the library looks like: two particles, a spring, a second of time.
+// SPDX-License-Identifier: MIT
+#include <massspring/massspring.h>
+#include <stdio.h>
+
+static int failed(const char *what, const char *why) {
+    fprintf(stderr, "%s: %s\n", what, why);
+    return 1;
+}
+
+int main(void) {
+    mspring_builder *builder;
+    mspring_network *network;
+    mspring_particle_def particle;
+    mspring_spring_def spring;
+    double y[2], x[2];
+
+    if (mspring_builder_create(NULL, &builder) != MSPRING_OK) {
+        return failed("builder", "out of memory");
+    }
+    mspring_particle_def_init(&particle, sizeof particle);
+    particle.flags = MSPRING_PARTICLE_PINNED;
+    mspring_result result = mspring_builder_add_particle(builder, &particle, NULL);
+    particle.flags = 0;
+    particle.x = 1;
+    if (result == MSPRING_OK) {
+        result = mspring_builder_add_particle(builder, &particle, NULL);
+    }
+    mspring_spring_def_init(&spring, sizeof spring);
+    spring.a = 0;
+    spring.b = 1;
+    spring.stiffness = 1000;
+    if (result == MSPRING_OK) {
+        result = mspring_builder_add_spring(builder, &spring, NULL);
+    }
+    if (result == MSPRING_OK) {
+        result = mspring_network_create(builder, NULL, &network);
+    }
+    if (result != MSPRING_OK) {
+        return failed("network", mspring_builder_error(builder));
+    }
+    mspring_builder_destroy(builder);
+
+    for (int step = 0; step < 64; step++) {
+        if (mspring_network_step(network, 1.0 / 64) != MSPRING_OK) {
+            return failed("step", mspring_network_error(network));
+        }
+    }
+    if (mspring_network_get_positions(network, 0, 2, x, y) != MSPRING_OK) {
+        return failed("positions", mspring_network_error(network));
+    }
+    printf("massspring %s at %s: the weight hangs at (%g, %g)\n", mspring_version_string(),
+           mspring_simd_name(mspring_network_simd_level(network)), x[1], y[1]);
+    mspring_network_destroy(network);
+    // A pendulum of 1 m: after 1 s, half of its period, it has swung to the other side and is below its pin.
+    return mspring_version() == MSPRING_VERSION && x[0] == 0 && y[0] == 0 && x[1] < 0 && y[1] < 0 ? 0 : 1;
+}
