@@ -1,6 +1,7 @@
 /// Reading and writing the state from outside: views, ranges in id order, forces.
 #include <math.h>
 
+#include "cpu.h"
 #include "network.h"
 
 static bool is_finite_pair(float x, float y) {
@@ -127,8 +128,8 @@ static double y_of(const positions *p, uint32_t i) {
     return p->y ? p->y[i] : (double)p->y_float[i];
 }
 
-static mspring_result set_positions(mspring_network *network, mspring_id first, uint32_t count,
-                                    const positions *to) {
+static MSPRINGI_NOINLINE mspring_result set_positions(mspring_network *network, mspring_id first, uint32_t count,
+                                                      const positions *to) {
     const bool all = count == network->topology.particle_count;
     mspringi_box box = mspringi_box_empty();
     for (uint32_t i = 0; i < count; ++i) {
@@ -144,18 +145,26 @@ static mspring_result set_positions(mspring_network *network, mspring_id first, 
     return MSPRING_OK;
 }
 
+static mspring_result set_positions_rounding_to_nearest(mspring_network *network, mspring_id first, uint32_t count,
+                                                        const positions *to) {
+    const mspringi_fp_state before = mspringi_fp_enter();
+    mspring_result result = set_positions(network, first, count, to);
+    mspringi_fp_leave(before);
+    return result;
+}
+
 mspring_result mspring_network_set_positions(mspring_network *network, mspring_id first, uint32_t count,
                                              const double *x, const double *y) {
     mspring_result result = check_set(network, first, count, x, y);
     const positions to = {.x = x, .y = y};
-    return result == MSPRING_OK ? set_positions(network, first, count, &to) : result;
+    return result == MSPRING_OK ? set_positions_rounding_to_nearest(network, first, count, &to) : result;
 }
 
 mspring_result mspring_network_set_positions_float(mspring_network *network, mspring_id first, uint32_t count,
                                                    const float *x, const float *y) {
     mspring_result result = check_set(network, first, count, x, y);
     const positions to = {.x_float = x, .y_float = y};
-    return result == MSPRING_OK ? set_positions(network, first, count, &to) : result;
+    return result == MSPRING_OK ? set_positions_rounding_to_nearest(network, first, count, &to) : result;
 }
 
 mspring_result mspring_network_set_velocities(mspring_network *network, mspring_id first, uint32_t count,

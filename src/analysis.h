@@ -50,6 +50,16 @@ mspring_result mspringi_grids_find(mspringi_grids *grids, const mspringi_graph *
                                    mspringi_memory *memory, mspringi_message *message);
 void mspringi_grids_destroy(mspringi_grids *grids, mspringi_memory *memory);
 
+/// The particles of the web: those that are loose in kinds and have springs. They get MSPRINGI_ROW_WEB. In the
+/// list, neighbours in space are near each other, and particles with about as many springs side by side.
+typedef struct mspringi_web_list {
+    uint32_t *particles; ///< [count]
+    uint32_t count;
+} mspringi_web_list;
+mspring_result mspringi_web_list_find(mspringi_web_list *list, const mspringi_graph *graph, uint8_t *kinds,
+                                      mspringi_memory *memory, mspringi_message *message);
+void mspringi_web_list_destroy(mspringi_web_list *list, mspringi_memory *memory);
+
 /// Sort keys in place by radix; scratch is as long as keys.
 void mspringi_sort_keys(uint64_t *keys, uint64_t *scratch, size_t count);
 

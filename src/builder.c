@@ -2,7 +2,8 @@
 #include "builder.h"
 
 #include <math.h>
-#include <string.h>
+
+#include "cpu.h"
 
 #define LARGEST_VALUE 1e30f
 #define SMALLEST_MASS 1e-30f
@@ -76,7 +77,8 @@ static mspring_result reserve_springs(mspring_builder *builder, size_t count) {
 
 /* ----------------------------------------------------------------------------------------------- checking */
 
-// Comparisons are written so that NaN fails them.
+// Comparisons are written so that NaN fails them. What computes values for the network runs in the floating-point
+// environment of a step.
 
 static bool in_range(float value, float low, float high) {
     return value >= low && value <= high;
@@ -223,10 +225,8 @@ mspring_result mspring_builder_add_particle(mspring_builder *builder, const mspr
     return mspring_builder_add_particles(builder, def, 1, id);
 }
 
-mspring_result mspring_builder_add_springs(mspring_builder *builder, const mspring_spring_def *defs, size_t count,
-                                           mspring_id *first_id) {
-    if (!builder)
-        return MSPRING_ERROR_ARGUMENT;
+static MSPRINGI_NOINLINE mspring_result add_springs(mspring_builder *builder, const mspring_spring_def *defs,
+                                                    size_t count, mspring_id *first_id) {
     if (!defs && count > 0)
         return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "spring definitions are NULL");
     const size_t before = builder->spring_count;
@@ -243,6 +243,16 @@ mspring_result mspring_builder_add_springs(mspring_builder *builder, const mspri
         builder->spring_count = before;
     else if (first_id)
         *first_id = (mspring_id)before;
+    return result;
+}
+
+mspring_result mspring_builder_add_springs(mspring_builder *builder, const mspring_spring_def *defs, size_t count,
+                                           mspring_id *first_id) {
+    if (!builder)
+        return MSPRING_ERROR_ARGUMENT;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    mspring_result result = add_springs(builder, defs, count, first_id);
+    mspringi_fp_leave(before);
     return result;
 }
 
@@ -389,11 +399,9 @@ static void append_lattice(mspring_builder *builder, const mspring_lattice_def *
     }
 }
 
-mspring_result mspring_builder_add_lattice(mspring_builder *builder, const mspring_lattice_def *def,
-                                           mspring_id *cell_ids) {
+static MSPRINGI_NOINLINE mspring_result add_lattice(mspring_builder *builder, const mspring_lattice_def *def,
+                                                    mspring_id *cell_ids) {
     size_t particles = 0, springs = 0;
-    if (!builder)
-        return MSPRING_ERROR_ARGUMENT;
     if (!def)
         return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "lattice definition is NULL");
     mspring_result result = check_lattice(builder, def, &particles, &springs);
@@ -403,6 +411,16 @@ mspring_result mspring_builder_add_lattice(mspring_builder *builder, const mspri
         result = reserve_springs(builder, springs);
     if (result == MSPRING_OK)
         append_lattice(builder, def, cell_ids);
+    return result;
+}
+
+mspring_result mspring_builder_add_lattice(mspring_builder *builder, const mspring_lattice_def *def,
+                                           mspring_id *cell_ids) {
+    if (!builder)
+        return MSPRING_ERROR_ARGUMENT;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    mspring_result result = add_lattice(builder, def, cell_ids);
+    mspringi_fp_leave(before);
     return result;
 }
 
@@ -444,11 +462,9 @@ static mspring_result check_rope(mspring_builder *builder, const mspring_rope_de
     return MSPRING_OK;
 }
 
-mspring_result mspring_builder_add_rope(mspring_builder *builder, const mspring_rope_def *def,
-                                        mspring_id *first_particle, mspring_id *first_spring) {
+static MSPRINGI_NOINLINE mspring_result add_rope(mspring_builder *builder, const mspring_rope_def *def,
+                                                 mspring_id *first_particle, mspring_id *first_spring) {
     double distance = 0.0;
-    if (!builder)
-        return MSPRING_ERROR_ARGUMENT;
     if (!def)
         return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "rope definition is NULL");
     mspring_result result = check_rope(builder, def, &distance);
@@ -481,4 +497,14 @@ mspring_result mspring_builder_add_rope(mspring_builder *builder, const mspring_
     if (first_spring)
         *first_spring = spring;
     return MSPRING_OK;
+}
+
+mspring_result mspring_builder_add_rope(mspring_builder *builder, const mspring_rope_def *def,
+                                        mspring_id *first_particle, mspring_id *first_spring) {
+    if (!builder)
+        return MSPRING_ERROR_ARGUMENT;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    mspring_result result = add_rope(builder, def, first_particle, first_spring);
+    mspringi_fp_leave(before);
+    return result;
 }

@@ -16,6 +16,14 @@ mspring_simd mspringi_cpu_choose(mspring_simd wanted);
 /// The calling thread's floating-point control word, as a step must find it again.
 typedef uint64_t mspringi_fp_state;
 
+/// Keeps a function a function: the compiler must not move its arithmetic to before mspringi_fp_enter() or to after
+/// mspringi_fp_leave().
+#if defined(_MSC_VER)
+#define MSPRINGI_NOINLINE __declspec(noinline)
+#else
+#define MSPRINGI_NOINLINE __attribute__((noinline))
+#endif
+
 /// Switch to rounding to nearest with denormals kept and no exception trapped: the state of the host's thread
 /// must not change a step's bits. Returns what was there.
 mspringi_fp_state mspringi_fp_enter(void);

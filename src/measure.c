@@ -9,7 +9,7 @@ static bool is_pinned(const mspring_network *network, mspring_id particle) {
 }
 
 // Length of a spring, and how fast it grows.
-static double spring_length(const mspring_network *network, const mspringi_spring_record *r, double *rate) {
+static double spring_length(const mspring_network *network, const mspringi_spring_values *r, double *rate) {
     const mspringi_state *s = &network->state;
     const double dx = (double)s->x[r->tip] - (double)s->x[r->base];
     const double dy = (double)s->y[r->tip] - (double)s->y[r->base];
@@ -21,8 +21,8 @@ static double spring_length(const mspring_network *network, const mspringi_sprin
 }
 
 static float spring_strain(const mspring_network *network, mspring_id spring) {
-    const mspringi_spring_record r = mspringi_spring_at(network, spring);
-    const double rest_length = (double)*r.rest_length;
+    const mspringi_spring_values r = mspringi_spring_get(network, spring);
+    const double rest_length = (double)r.rest_length;
     double rate;
     return (float)((spring_length(network, &r, &rate) - rest_length) / rest_length);
 }
@@ -44,10 +44,10 @@ mspring_result mspring_network_energy(const mspring_network *network, double *ki
         potential_sum -= mass * ((double)network->gravity_x * x + (double)network->gravity_y * y);
     }
     for (mspring_id i = 0; elastic && i < t->spring_count; ++i) {
-        const mspringi_spring_record r = mspringi_spring_at(network, i);
+        const mspringi_spring_values r = mspringi_spring_get(network, i);
         double rate;
-        const double stretch = spring_length(network, &r, &rate) - (double)*r.rest_length;
-        elastic_sum += 0.5 * (double)*r.stiffness * stretch * stretch;
+        const double stretch = spring_length(network, &r, &rate) - (double)r.rest_length;
+        elastic_sum += 0.5 * (double)r.stiffness * stretch * stretch;
     }
     if (kinetic)
         *kinetic = kinetic_sum;
@@ -114,20 +114,20 @@ mspring_result mspring_network_get_spring(const mspring_network *network, msprin
     const mspringi_topology *t = &network->topology;
     if (spring >= t->spring_count)
         return MSPRING_ERROR_ID;
-    const mspringi_spring_record r = mspringi_spring_at(network, spring);
+    const mspringi_spring_values r = mspringi_spring_get(network, spring);
     const mspring_id a = t->particle_of_slot[r.base], b = t->particle_of_slot[r.tip];
     double rate;
-    const double length = spring_length(network, &r, &rate), rest_length = (double)*r.rest_length;
-    const double stiffness = (double)*r.stiffness, damping = r.damping ? (double)*r.damping : 0.0;
+    const double length = spring_length(network, &r, &rate), rest_length = (double)r.rest_length;
+    const double stiffness = (double)r.stiffness, damping = (double)r.damping;
     const double force = length > 0.0 ? (length - rest_length) * stiffness + rate * damping : 0.0;
     *info = (mspring_spring_info){
         .struct_size = sizeof *info,
         .flags = network->relative && network->relative[spring].stiffness >= 0.0f ? MSPRING_SPRING_RELATIVE : 0,
         .a = a < b ? a : b,
         .b = a < b ? b : a,
-        .stiffness = *r.stiffness,
-        .damping = r.damping ? *r.damping : 0.0f,
-        .rest_length = *r.rest_length,
+        .stiffness = r.stiffness,
+        .damping = r.damping,
+        .rest_length = r.rest_length,
         .length = (float)length,
         .strain = (float)((length - rest_length) / rest_length),
         .force = (float)force,

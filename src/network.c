@@ -40,26 +40,50 @@ static mspring_result check_def(const mspring_network_def *def, mspringi_message
 
 /* --------------------------------------------------------------------------------------------- spring records */
 
-mspringi_spring_record mspringi_spring_at(const mspring_network *network, mspring_id spring) {
+// Where a spring's values are, by part: in one record, or in one at each of its ends.
+typedef struct spring_records {
+    float *parts[2];
+    int count;
+} spring_records;
+
+static float *record_in(float *records, size_t index, uint32_t parts) {
+    return records + index / MSPRINGI_WIDTH * MSPRINGI_WIDTH * parts + index % MSPRINGI_WIDTH;
+}
+
+static spring_records find_records(const mspring_network *network, mspring_id spring) {
     const mspringi_topology *t = &network->topology;
     const mspringi_place place = t->place_of_spring[spring];
-    mspringi_spring_record r;
-    mspringi_topology_ends(t, place, &r.base, &r.tip);
-    if (place >= t->chain_places) {
-        mspringi_leftover *leftover = &network->leftovers[place - t->chain_places];
-        r.rest_length = &leftover->rest_length;
-        r.stiffness = &leftover->stiffness;
-        r.damping = network->parts > MSPRINGI_DAMPING ? &leftover->damping : NULL;
-        return r;
+    const uint32_t parts = network->parts;
+    if (place < t->lattice_places)
+        return (spring_records){{record_in(network->lattice_springs, place, parts), NULL}, 1};
+    if (place < t->chain_places)
+        return (spring_records){{record_in(network->chain_springs, place - t->lattice_places, parts), NULL}, 1};
+    const uint32_t *entry = t->web.entry + 2 * (size_t)(place - t->chain_places);
+    return (spring_records){
+        {record_in(network->web_springs, entry[0], parts), record_in(network->web_springs, entry[1], parts)}, 2};
+}
+
+mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspring_id spring) {
+    const float *record = find_records(network, spring).parts[0];
+    mspringi_spring_values values = {
+        .rest_length = record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
+        .stiffness = record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH],
+        .damping = network->parts > MSPRINGI_DAMPING ? record[MSPRINGI_DAMPING * MSPRINGI_WIDTH] : 0.0f,
+    };
+    mspringi_topology_ends(&network->topology, network->topology.place_of_spring[spring], &values.base,
+                           &values.tip);
+    return values;
+}
+
+void mspringi_spring_set(mspring_network *network, mspring_id spring, const mspringi_spring_values *values) {
+    const spring_records records = find_records(network, spring);
+    for (int i = 0; i < records.count; ++i) {
+        float *record = records.parts[i];
+        record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH] = values->rest_length;
+        record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH] = values->stiffness;
+        if (network->parts > MSPRINGI_DAMPING)
+            record[MSPRINGI_DAMPING * MSPRINGI_WIDTH] = values->damping;
     }
-    const bool in_chain = place >= t->lattice_places;
-    const size_t index = in_chain ? place - t->lattice_places : place;
-    float *record = (in_chain ? network->chain_springs : network->lattice_springs) +
-                    index / MSPRINGI_WIDTH * MSPRINGI_WIDTH * network->parts + index % MSPRINGI_WIDTH;
-    r.rest_length = record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH;
-    r.stiffness = record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH;
-    r.damping = network->parts > MSPRINGI_DAMPING ? record + MSPRINGI_DAMPING * MSPRINGI_WIDTH : NULL;
-    return r;
 }
 
 void mspringi_derive_relative(mspring_network *network, float h) {
@@ -70,13 +94,13 @@ void mspringi_derive_relative(mspring_network *network, float h) {
         const mspringi_relative *relative = &network->relative[s];
         if (relative->stiffness < 0.0f)
             continue;
-        const mspringi_spring_record r = mspringi_spring_at(network, s);
-        const double ma = (double)network->mass[t->particle_of_slot[r.base]];
-        const double mb = (double)network->mass[t->particle_of_slot[r.tip]];
+        mspringi_spring_values values = mspringi_spring_get(network, s);
+        const double ma = (double)network->mass[t->particle_of_slot[values.base]];
+        const double mb = (double)network->mass[t->particle_of_slot[values.tip]];
         const double reduced_mass = 1.0 / (1.0 / ma + 1.0 / mb);
-        *r.stiffness = (float)((double)relative->stiffness * reduced_mass / ((double)h * (double)h));
-        if (r.damping)
-            *r.damping = (float)((double)relative->damping * reduced_mass / (double)h);
+        values.stiffness = (float)((double)relative->stiffness * reduced_mass / ((double)h * (double)h));
+        values.damping = (float)((double)relative->damping * reduced_mass / (double)h);
+        mspringi_spring_set(network, s, &values);
     }
     network->relative_h = h;
 }
@@ -121,19 +145,23 @@ static mspring_result allocate(mspring_network *network, bool relative) {
     network->lattice_springs = mspringi_alloc(memory, parts * t->lattice_places, sizeof *network->lattice_springs);
     network->chain_springs =
         mspringi_alloc(memory, parts * (t->chain_places - t->lattice_places), sizeof *network->chain_springs);
-    network->leftovers = mspringi_alloc(memory, t->leftover_count, sizeof *network->leftovers);
+    const size_t rungs = t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0;
+    network->web_springs = mspringi_alloc(memory, parts * rungs * MSPRINGI_WIDTH, sizeof *network->web_springs);
+    network->packed =
+        mspringi_alloc(memory, (size_t)4 * t->web.group_count * MSPRINGI_WIDTH, sizeof *network->packed);
+    network->attached = mspringi_alloc(memory, (size_t)2 * t->web.attached_count, sizeof *network->attached);
     network->carry = mspringi_alloc(memory, (size_t)2 * t->carry_blocks * MSPRINGI_WIDTH, sizeof *network->carry);
-    network->leftover_slots =
-        mspringi_alloc(memory, (size_t)2 * t->leftover_count, sizeof *network->leftover_slots);
     if (relative)
         network->relative = mspringi_alloc(memory, t->spring_count, sizeof *network->relative);
     if (!reserve_state(network, &network->state) || !reserve_state(network, &network->backup) ||
         !network->inverse_mass || !network->mass || !network->lattice_springs || !network->chain_springs ||
-        !network->leftovers || !network->carry || !network->leftover_slots || (relative && !network->relative))
+        !network->web_springs || !network->packed || !network->attached || !network->carry ||
+        (relative && !network->relative))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for a network of %u particles and %u springs", (unsigned)t->particle_count,
                              (unsigned)t->spring_count);
-    return t->leftover_count > 0 ? mspringi_field_reserve(network, &network->forces.total) : MSPRING_OK;
+    network->forces.total_clean = true;
+    return t->web.attached_count > 0 ? mspringi_field_reserve(network, &network->forces.total) : MSPRING_OK;
 }
 
 static void fill_particles(mspring_network *network, const mspring_builder *builder) {
@@ -157,35 +185,22 @@ static void fill_springs(mspring_network *network, const mspring_builder *builde
     const mspringi_topology *t = &network->topology;
     for (mspring_id s = 0; s < t->spring_count; ++s) {
         const mspringi_spring *spring = &builder->springs[s];
-        const mspringi_spring_record r = mspringi_spring_at(network, s);
         const bool relative = spring->flags & MSPRING_SPRING_RELATIVE;
-        *r.rest_length = spring->rest_length;
-        *r.stiffness = relative ? 0.0f : spring->stiffness;
-        if (r.damping)
-            *r.damping = relative ? 0.0f : spring->damping;
+        const mspringi_spring_values values = {.rest_length = spring->rest_length,
+                                               .stiffness = relative ? 0.0f : spring->stiffness,
+                                               .damping = relative ? 0.0f : spring->damping};
+        mspringi_spring_set(network, s, &values);
         if (network->relative)
             network->relative[s] = relative ? (mspringi_relative){spring->stiffness, spring->damping}
                                             : (mspringi_relative){-1.0f, 0.0f};
     }
-    // Slots that leftover springs pull at, each once: the total field serves as the mark.
-    float *mark = network->forces.total.x;
-    for (uint32_t i = 0; i < t->leftover_count; ++i) {
-        const uint32_t ends[] = {t->leftover_a[i], t->leftover_b[i]};
-        for (int end = 0; end < 2; ++end) {
-            if (mark[ends[end]] == 0.0f)
-                network->leftover_slots[network->leftover_slot_count++] = ends[end];
-            mark[ends[end]] = 1.0f;
-        }
-    }
-    for (uint32_t i = 0; i < network->leftover_slot_count; ++i)
-        mark[network->leftover_slots[i]] = 0.0f;
 }
 
 /* -------------------------------------------------------------------------------------------------- lifecycle */
 
 // Fill a network that knows its memory and nothing else. Its message tells what failed.
-static mspring_result fill(mspring_network *network, const mspring_builder *builder,
-                           const mspring_network_def *def) {
+static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const mspring_builder *builder,
+                                             const mspring_network_def *def) {
     bool damped, relative;
     mspring_result result =
         mspringi_topology_create(&network->topology, builder, &network->memory, &network->message);
@@ -238,7 +253,9 @@ mspring_result mspring_network_create(mspring_builder *builder, const mspring_ne
     if (!created)
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for a network");
     created->memory = memory;
+    const mspringi_fp_state before = mspringi_fp_enter();
     result = fill(created, builder, def);
+    mspringi_fp_leave(before);
     if (result != MSPRING_OK) {
         *message = created->message;
         mspring_network_destroy(created);
@@ -259,9 +276,10 @@ void mspring_network_destroy(mspring_network *network) {
     mspringi_free(&memory, network->mass);
     mspringi_free(&memory, network->lattice_springs);
     mspringi_free(&memory, network->chain_springs);
-    mspringi_free(&memory, network->leftovers);
+    mspringi_free(&memory, network->web_springs);
+    mspringi_free(&memory, network->packed);
+    mspringi_free(&memory, network->attached);
     mspringi_free(&memory, network->carry);
-    mspringi_free(&memory, network->leftover_slots);
     mspringi_free(&memory, network->relative);
     mspringi_free(&memory, network->forces.held.x);
     mspringi_free(&memory, network->forces.base.x);
@@ -354,7 +372,8 @@ mspring_result mspring_network_plan(const mspring_network *network, mspring_plan
         .chain_count = t->chain_count,
         .chain_particles = t->chain_particles,
         .chain_springs = t->chain_springs,
-        .loose_particles = t->particle_count - t->lattice_particles - t->chain_particles,
+        .web_particles = t->web_particles,
+        .loose_particles = t->particle_count - t->lattice_particles - t->chain_particles - t->web_particles,
         .leftover_springs = t->leftover_count,
         .slot_count = (uint32_t)mspringi_slot_count(network),
         .block_width = MSPRINGI_WIDTH,

@@ -25,7 +25,7 @@ typedef struct mspringi_forces {
     mspringi_field base;  ///< held and what hooks before the step added: where each substep starts from
     mspringi_field total; ///< base, hooks before the substep, and leftover springs
     bool held_any;        ///< held is not all zero
-    bool base_any;        ///< base is not all zero
+    bool total_clean;     ///< total is zero but for the slots of attached nodes
 } mspringi_forces;
 
 typedef struct mspringi_hook {
@@ -34,11 +34,6 @@ typedef struct mspringi_hook {
     void *user;
     uint32_t number;
 } mspringi_hook;
-
-/// A spring that is in no row.
-typedef struct mspringi_leftover {
-    float rest_length, stiffness, damping;
-} mspringi_leftover;
 
 /// Stiffness and damping as fractions; stiffness < 0 for a spring that is not relative.
 typedef struct mspringi_relative {
@@ -61,12 +56,12 @@ struct mspring_network {
     float *mass;         ///< [particles]
     uint32_t parts;      ///< values per spring in the records: 2, or 3 with damping
     float *lattice_springs, *chain_springs;
-    mspringi_leftover *leftovers;
+    float *web_springs;
+    float *packed;               ///< [nodes of the web][4]
+    float *attached;             ///< forces on the attached nodes, all x and then all y
     mspringi_relative *relative; ///< [springs], or NULL if no spring is relative
     float relative_h;            ///< the substep that relative springs were derived for; 0: not yet
     float *carry;                ///< the carry row, x and then y
-    uint32_t *leftover_slots;    ///< [leftover_slot_count] slots that leftover springs pull at
-    uint32_t leftover_slot_count;
 
     float gravity_x, gravity_y, global_damping, max_speed;
     uint32_t substeps;
@@ -92,21 +87,20 @@ mspring_result mspringi_check_range(mspring_network *network, const char *what, 
 /// Allocate a field of all slots, zeroed; leaves it alone if it is there.
 mspring_result mspringi_field_reserve(mspring_network *network, mspringi_field *field);
 
-/// Where the values of a spring are: its record, by part, and whether there is a damping part.
-typedef struct mspringi_spring_record {
-    float *rest_length, *stiffness, *damping; ///< damping is NULL if no spring has any
-    uint32_t base, tip;                       ///< slots
-} mspringi_spring_record;
-mspringi_spring_record mspringi_spring_at(const mspring_network *network, mspring_id spring);
+/// What a spring is like, and the slots that it joins.
+typedef struct mspringi_spring_values {
+    float rest_length, stiffness, damping;
+    uint32_t base, tip;
+} mspringi_spring_values;
+mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspring_id spring);
+/// Set rest length, stiffness and damping, wherever the spring has records.
+void mspringi_spring_set(mspring_network *network, mspring_id spring, const mspringi_spring_values *values);
 
 /// Derive stiffness and damping of the relative springs for a substep.
 void mspringi_derive_relative(mspring_network *network, float h);
 
-/// Forces of the leftover springs, added to the total field.
-void mspringi_leftovers_pull(mspring_network *network);
-
-/// Take a substep of length h with the forces that are in field (x NULL: none).
-void mspringi_explicit_substep(mspring_network *network, float h, mspringi_field field);
+/// Take a substep of length h with the forces from outside that are in base (x NULL: none).
+void mspringi_explicit_substep(mspring_network *network, float h, mspringi_field base);
 
 /// Call the hooks of a phase with the given force field (x NULL: none).
 void mspringi_hooks_call(mspring_network *network, mspring_phase phase, uint32_t substep, double dt,

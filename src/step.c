@@ -35,21 +35,13 @@ static mspringi_field prepare_base(mspring_network *network, double dt) {
     return forces->base;
 }
 
-// Set slots of the total field to what they are in base.
-static void reset_leftover_slots(mspring_network *network, mspringi_field base) {
-    const mspringi_field total = network->forces.total;
-    for (uint32_t i = 0; i < network->leftover_slot_count; ++i) {
-        const uint32_t slot = network->leftover_slots[i];
-        total.x[slot] = base.x ? base.x[slot] : 0.0f;
-        total.y[slot] = base.x ? base.y[slot] : 0.0f;
-    }
-}
-
+// Fill the total field with base, or with nothing.
 static void reset_total(mspring_network *network, mspringi_field base) {
     if (base.x)
         copy_field(network, base, network->forces.total);
     else
         clear_field(network, network->forces.total);
+    network->forces.total_clean = !base.x;
 }
 
 /* -------------------------------------------------------------------------------------------------- substeps */
@@ -57,20 +49,19 @@ static void reset_total(mspring_network *network, mspringi_field base) {
 static void run_substeps(mspring_network *network, double dt, float h) {
     const bool hooks_before = mspringi_hooks_any(network, MSPRING_PHASE_BEFORE_SUBSTEP);
     const bool hooks_after = mspringi_hooks_any(network, MSPRING_PHASE_AFTER_SUBSTEP);
-    const bool leftovers = network->topology.leftover_count > 0;
+    const bool pulled = network->topology.web.attached_count > 0;
     const mspringi_field base = prepare_base(network, dt), none = {NULL, NULL};
-    const mspringi_field field = hooks_before || leftovers ? network->forces.total : base;
 
+    // Where the web pulls, it writes its share over the total field; the rest of that stays as it is set here.
+    if (pulled && !hooks_before && (base.x || !network->forces.total_clean))
+        reset_total(network, base);
     for (uint32_t substep = 0; substep < network->substeps; ++substep) {
-        if (hooks_before || (leftovers && substep == 0))
+        if (hooks_before) {
             reset_total(network, base);
-        else if (leftovers)
-            reset_leftover_slots(network, base);
-        if (hooks_before)
-            mspringi_hooks_call(network, MSPRING_PHASE_BEFORE_SUBSTEP, substep, (double)h, field);
-        if (leftovers)
-            mspringi_leftovers_pull(network);
-        mspringi_explicit_substep(network, h, field);
+            mspringi_hooks_call(network, MSPRING_PHASE_BEFORE_SUBSTEP, substep, (double)h, network->forces.total);
+            network->forces.total_clean = false;
+        }
+        mspringi_explicit_substep(network, h, hooks_before ? network->forces.total : base);
         if (hooks_after)
             mspringi_hooks_call(network, MSPRING_PHASE_AFTER_SUBSTEP, substep, (double)h, none);
     }
@@ -107,29 +98,33 @@ static mspring_result explain(mspring_network *network, double dt) {
                          "a hook has written a value out of bounds to a slot without particle");
 }
 
-mspring_result mspring_network_step(mspring_network *network, double dt) {
-    mspring_result result = mspringi_enter(network);
-    if (result != MSPRING_OK)
-        return result;
+static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt) {
     const float h = (float)(dt / (double)network->substeps);
     if (!(h >= FLT_MIN && h <= FLT_MAX))
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                              "dt is %g s in %u substeps: each must be a finite number of at least 1.2e-38 s", dt,
                              (unsigned)network->substeps);
-
-    const mspringi_fp_state fp = mspringi_fp_enter();
     mspringi_derive_relative(network, h);
     copy_state(network, &network->state, &network->backup);
     run_substeps(network, dt, h);
-    if (is_bounded(network)) {
-        mspringi_origin_follow(network);
-        if (network->forces.held_any)
-            clear_field(network, network->forces.held);
-        network->forces.held_any = false;
-    } else {
-        result = explain(network, dt);
+    if (!is_bounded(network)) {
+        mspring_result result = explain(network, dt);
         copy_state(network, &network->backup, &network->state);
+        return result;
     }
-    mspringi_fp_leave(fp);
+    mspringi_origin_follow(network);
+    if (network->forces.held_any)
+        clear_field(network, network->forces.held);
+    network->forces.held_any = false;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_step(mspring_network *network, double dt) {
+    mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK)
+        return result;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    result = step(network, dt);
+    mspringi_fp_leave(before);
     return result;
 }

@@ -33,6 +33,7 @@ typedef struct assembly {
     mspringi_graph graph;
     mspringi_strands strands;
     mspringi_grids grids;
+    mspringi_web_list web;
     block_key *blocks; ///< of all grids, grid after grid, each sorted
     size_t block_count, block_capacity;
     size_t grid_begin;     ///< where the blocks of the grid that is being listed begin
@@ -149,7 +150,9 @@ static mspring_result number_blocks(assembly *a) {
     t->lattice_blocks = (uint32_t)a->block_count;
     t->chain_first = t->lattice_first + t->lattice_blocks;
     t->chain_blocks = (a->strands.count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
-    t->loose_first = t->chain_first + t->chain_blocks;
+    t->web_first = t->chain_first + t->chain_blocks;
+    t->web_blocks = (a->web.count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
+    t->loose_first = t->web_first + t->web_blocks;
     t->loose_blocks = (loose + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
     t->block_count = t->loose_first + t->loose_blocks + 1;
     return MSPRING_OK;
@@ -193,6 +196,8 @@ static void assign_slots(assembly *a) {
     }
     for (uint32_t i = 0; i < a->strands.count; ++i)
         place_particle(t, a->strands.particles[i], t->chain_first * MSPRINGI_WIDTH + i);
+    for (uint32_t i = 0; i < a->web.count; ++i)
+        place_particle(t, a->web.particles[i], t->web_first * MSPRINGI_WIDTH + i);
 }
 
 static mspring_result assign_places(assembly *a) {
@@ -230,7 +235,9 @@ static mspring_result assign_places(assembly *a) {
         t->leftover_a[i] = t->slot_of_particle[a->builder->springs[s].a];
         t->leftover_b[i] = t->slot_of_particle[a->builder->springs[s].b];
     }
-    return MSPRING_OK;
+    return mspringi_web_create(&t->web, t->leftover_a, t->leftover_b, t->leftover_count,
+                               t->web_first * MSPRINGI_WIDTH, t->web_blocks * MSPRINGI_WIDTH,
+                               t->block_count * MSPRINGI_WIDTH, a->memory, a->message);
 }
 
 void mspringi_topology_ends(const mspringi_topology *topology, mspringi_place place, uint32_t *base,
@@ -326,6 +333,17 @@ static bool append_lattice_spans(assembly *a, uint32_t grid, uint32_t carry_half
     return true;
 }
 
+// Mark the spans at whose slots the web pulls. Both lists are in slot order.
+static void mark_pulled_spans(mspringi_topology *t) {
+    uint32_t i = 0;
+    for (uint32_t s = 0; s < t->span_count; ++s) {
+        mspringi_span *span = &t->spans[s];
+        const uint32_t end = (span->first_block + span->block_count) * MSPRINGI_WIDTH;
+        for (; i < t->web.attached_count && t->web.attached_slot[i] < end; ++i)
+            span->pulled = 1;
+    }
+}
+
 static mspring_result make_spans(assembly *a) {
     mspringi_topology *t = a->topology;
     const uint32_t carry_half = widest_row(a);
@@ -350,12 +368,19 @@ static mspring_result make_spans(assembly *a) {
         if (!append_span(a, &span))
             return out_of_memory(a);
     }
+    if (t->web_blocks > 0) {
+        const mspringi_span span = {
+            .kind = MSPRINGI_ROW_WEB, .first_block = t->web_first, .block_count = t->web_blocks};
+        if (!append_span(a, &span))
+            return out_of_memory(a);
+    }
     if (t->loose_blocks > 0) {
         const mspringi_span span = {
             .kind = MSPRINGI_ROW_LOOSE, .first_block = t->loose_first, .block_count = t->loose_blocks};
         if (!append_span(a, &span))
             return out_of_memory(a);
     }
+    mark_pulled_spans(t);
     return MSPRING_OK;
 }
 
@@ -382,6 +407,8 @@ static mspring_result assemble(assembly *a) {
     if (result == MSPRING_OK)
         result = mspringi_grids_find(&a->grids, &a->graph, a->kinds, a->memory, a->message);
     if (result == MSPRING_OK)
+        result = mspringi_web_list_find(&a->web, &a->graph, a->kinds, a->memory, a->message);
+    if (result == MSPRING_OK)
         result = number_blocks(a);
     if (result == MSPRING_OK)
         result = allocate_maps(a);
@@ -404,6 +431,7 @@ mspring_result mspringi_topology_create(mspringi_topology *topology, const mspri
         topology->chain_count = a.strands.strand_count;
         topology->chain_particles = a.strands.count;
         topology->chain_springs = a.strands.spring_count;
+        topology->web_particles = a.web.count;
     } else {
         mspringi_topology_destroy(topology, memory);
     }
@@ -413,6 +441,7 @@ mspring_result mspringi_topology_create(mspringi_topology *topology, const mspri
     mspringi_graph_destroy(&a.graph, memory);
     mspringi_strands_destroy(&a.strands, memory);
     mspringi_grids_destroy(&a.grids, memory);
+    mspringi_web_list_destroy(&a.web, memory);
     return result;
 }
 
@@ -421,6 +450,7 @@ void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *mem
     mspringi_free(memory, topology->particle_of_slot);
     mspringi_free(memory, topology->place_of_spring);
     mspringi_free(memory, topology->up_of_block);
+    mspringi_web_destroy(&topology->web, memory);
     mspringi_free(memory, topology->leftover_a);
     mspringi_free(memory, topology->leftover_b);
     mspringi_free(memory, topology->spans);

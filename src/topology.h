@@ -6,18 +6,17 @@
 ///
 ///   lattice  one row of a grid; each block has a record of four springs per slot (see mspringi_direction)
 ///   chain    strands packed end to end; a record of one spring per slot, to the next slot
-///   loose    everything else; no record
+///   web      particles with other springs; no record, see web.h
+///   loose    particles without a spring; no record
 ///
-/// A spring that is none of those is left over and kept in a list of its own.
+/// A spring that lies in no lattice or chain row is left over: the web has it.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_TOPOLOGY_H
 #define MSPRINGI_TOPOLOGY_H
 
 #include "builder.h"
-
-/// Slots in a block: the lanes of the widest vector register, so that every instruction set sees whole blocks.
-#define MSPRINGI_WIDTH 16
+#include "web.h"
 
 /// The springs of a lattice slot in column c of row r. East, north and north-east start at the slot; south-east
 /// starts one row up, at (c, r + 1), so that all of them reach one column to the right at most and every load is
@@ -33,6 +32,7 @@ typedef enum mspringi_direction {
 typedef enum mspringi_row_kind {
     MSPRINGI_ROW_LATTICE, ///< all four springs
     MSPRINGI_ROW_CHAIN,   ///< east springs only
+    MSPRINGI_ROW_WEB,     ///< springs of the web
     MSPRINGI_ROW_LOOSE    ///< none
 } mspringi_row_kind;
 
@@ -45,7 +45,9 @@ typedef struct mspringi_span {
     uint32_t up_block;     ///< the block above first_block (lattice)
     uint32_t carry_in;     ///< block of the carry row to take forces from (lattice, chain)
     uint32_t carry_out;    ///< block of the carry row to leave forces for the row above in (lattice)
-    uint32_t record;       ///< number of first_block's record among the records
+    uint32_t record;       ///< number of first_block's record among the records (lattice, chain), or of its
+                           ///< group in the web
+    uint32_t pulled;       ///< 1: springs of the web pull at some of its slots (lattice, chain)
     uint32_t record_slots; ///< springs per record: MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH or MSPRINGI_WIDTH
 } mspringi_span;
 
@@ -59,6 +61,7 @@ typedef struct mspringi_topology {
     uint32_t block_count; ///< with one of padding in front and one behind, so that lane + 1 can always be read
     uint32_t lattice_first, lattice_blocks; ///< blocks: first, number
     uint32_t chain_first, chain_blocks;
+    uint32_t web_first, web_blocks;
     uint32_t loose_first, loose_blocks;
 
     uint32_t *slot_of_particle;      ///< [particle_count]
@@ -69,6 +72,7 @@ typedef struct mspringi_topology {
     mspringi_place lattice_places, chain_places;
     uint32_t leftover_count;
     uint32_t *leftover_a, *leftover_b; ///< [leftover_count] slots
+    mspringi_web web;
 
     mspringi_span *spans;
     uint32_t span_count;
@@ -77,6 +81,7 @@ typedef struct mspringi_topology {
     // For the plan.
     uint32_t lattice_count, lattice_particles, lattice_springs, lattice_rows;
     uint32_t chain_count, chain_particles, chain_springs;
+    uint32_t web_particles;
 } mspringi_topology;
 
 /// Lay out what the builder holds.

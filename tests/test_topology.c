@@ -18,7 +18,8 @@ static mspring_plan plan_of(const recipe *made) {
     check_ok(mspring_network_plan(network, &plan));
     assert_int_equal(plan.particle_count, made->particle_count);
     assert_int_equal(plan.spring_count, made->spring_count);
-    assert_int_equal(plan.lattice_particles + plan.chain_particles + plan.loose_particles, made->particle_count);
+    assert_int_equal(plan.lattice_particles + plan.chain_particles + plan.web_particles + plan.loose_particles,
+                     made->particle_count);
     assert_int_equal(plan.lattice_springs + plan.chain_springs + plan.leftover_springs, made->spring_count);
     assert_int_equal(plan.slot_count % plan.block_width, 0);
     assert_true(plan.slot_count >= made->particle_count);

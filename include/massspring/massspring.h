@@ -598,9 +598,10 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_state_hash(const ms
 
 /* ------------------------------------------------------------------------------------- plan and SIMD level */
 
-/// How the network was laid out. A particle belongs to one of three kinds of row: a lattice row (8 neighbours on
-/// a grid), a chain (ropes and single strands) or a loose row (everything else). A spring between neighbours in
-/// those rows is swept with them, without any index; the others are leftover springs, which cost more each.
+/// How the network was laid out. A particle belongs to one of four kinds of row: a lattice row (8 neighbours on a
+/// grid), a chain (ropes and single strands), the web (any other graph) or a loose row (no springs). A spring
+/// between neighbours in lattice and chain rows is swept with them, without any index; the others, leftover
+/// springs, are the web's, and cost more each.
 typedef struct mspring_plan {
     uint32_t struct_size;
     uint32_t particle_count, spring_count;
@@ -610,8 +611,9 @@ typedef struct mspring_plan {
     uint32_t lattice_blocks; ///< blocks of block_width columns in those rows
     uint32_t chain_count;    ///< strands found
     uint32_t chain_particles, chain_springs;
-    uint32_t loose_particles;
-    uint32_t leftover_springs;
+    uint32_t web_particles;      ///< particles of the web: those with springs, but none in a lattice or chain row
+    uint32_t loose_particles;    ///< particles without a spring
+    uint32_t leftover_springs;   ///< springs of the web
     uint32_t slot_count;     ///< slots of the state, empty ones among them
     uint32_t block_width;    ///< slots in a block
     uint32_t has_damping;    ///< 1: some spring has damping. 0: steps neither read nor compute any.

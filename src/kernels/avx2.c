@@ -49,6 +49,36 @@ static inline vec shift_in(vec before, vec a) {
     return _mm256_castsi256_ps(_mm256_alignr_epi8(_mm256_castps_si256(a), seam, 12));
 }
 
+// Transpose the two 4 x 4 halves.
+static inline void transpose(vec *a, vec *b, vec *c, vec *d) {
+    const vec ab_low = _mm256_unpacklo_ps(*a, *b), ab_high = _mm256_unpackhi_ps(*a, *b);
+    const vec cd_low = _mm256_unpacklo_ps(*c, *d), cd_high = _mm256_unpackhi_ps(*c, *d);
+    *a = _mm256_shuffle_ps(ab_low, cd_low, _MM_SHUFFLE(1, 0, 1, 0));
+    *b = _mm256_shuffle_ps(ab_low, cd_low, _MM_SHUFFLE(3, 2, 3, 2));
+    *c = _mm256_shuffle_ps(ab_high, cd_high, _MM_SHUFFLE(1, 0, 1, 0));
+    *d = _mm256_shuffle_ps(ab_high, cd_high, _MM_SHUFFLE(3, 2, 3, 2));
+}
+static inline vec load_two(const float *packed, uint32_t low, uint32_t high) {
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(packed + 4 * (size_t)low)),
+                                _mm_load_ps(packed + 4 * (size_t)high), 1);
+}
+// Four values of each of LANES nodes, from [node][4].
+static inline void load_packed(const float *packed, const uint32_t *nodes, vec *x, vec *y, vec *vx, vec *vy) {
+    *x = load_two(packed, nodes[0], nodes[4]);
+    *y = load_two(packed, nodes[1], nodes[5]);
+    *vx = load_two(packed, nodes[2], nodes[6]);
+    *vy = load_two(packed, nodes[3], nodes[7]);
+    transpose(x, y, vx, vy);
+}
+static inline void store_packed(float *packed, vec x, vec y, vec vx, vec vy) {
+    transpose(&x, &y, &vx, &vy);
+    const vec nodes[] = {x, y, vx, vy};
+    for (int i = 0; i < 4; ++i) {
+        _mm_store_ps(packed + 4 * i, _mm256_castps256_ps128(nodes[i]));
+        _mm_store_ps(packed + 4 * i + 16, _mm256_extractf128_ps(nodes[i], 1));
+    }
+}
+
 static bool bounded(const float *values, size_t count, float limit) {
     const __m256 absolute = _mm256_castsi256_ps(_mm256_set1_epi32(0x7fffffff)), limits = _mm256_set1_ps(limit);
     __m256 all = _mm256_cmp_ps(limits, limits, _CMP_EQ_OQ);

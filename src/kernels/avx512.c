@@ -47,6 +47,41 @@ static inline vec shift_in(vec before, vec a) {
     return _mm512_castsi512_ps(_mm512_alignr_epi32(_mm512_castps_si512(a), _mm512_castps_si512(before), 15));
 }
 
+// Transpose the four 4 x 4 quarters.
+static inline void transpose(vec *a, vec *b, vec *c, vec *d) {
+    const vec ab_low = _mm512_unpacklo_ps(*a, *b), ab_high = _mm512_unpackhi_ps(*a, *b);
+    const vec cd_low = _mm512_unpacklo_ps(*c, *d), cd_high = _mm512_unpackhi_ps(*c, *d);
+    *a = _mm512_shuffle_ps(ab_low, cd_low, _MM_SHUFFLE(1, 0, 1, 0));
+    *b = _mm512_shuffle_ps(ab_low, cd_low, _MM_SHUFFLE(3, 2, 3, 2));
+    *c = _mm512_shuffle_ps(ab_high, cd_high, _MM_SHUFFLE(1, 0, 1, 0));
+    *d = _mm512_shuffle_ps(ab_high, cd_high, _MM_SHUFFLE(3, 2, 3, 2));
+}
+// The nodes first, first + 4, first + 8 and first + 12 of a list.
+static inline vec load_four(const float *packed, const uint32_t *nodes) {
+    vec a = _mm512_castps128_ps512(_mm_load_ps(packed + 4 * (size_t)nodes[0]));
+    a = _mm512_insertf32x4(a, _mm_load_ps(packed + 4 * (size_t)nodes[4]), 1);
+    a = _mm512_insertf32x4(a, _mm_load_ps(packed + 4 * (size_t)nodes[8]), 2);
+    return _mm512_insertf32x4(a, _mm_load_ps(packed + 4 * (size_t)nodes[12]), 3);
+}
+// Four values of each of LANES nodes, from [node][4].
+static inline void load_packed(const float *packed, const uint32_t *nodes, vec *x, vec *y, vec *vx, vec *vy) {
+    *x = load_four(packed, nodes);
+    *y = load_four(packed, nodes + 1);
+    *vx = load_four(packed, nodes + 2);
+    *vy = load_four(packed, nodes + 3);
+    transpose(x, y, vx, vy);
+}
+static inline void store_packed(float *packed, vec x, vec y, vec vx, vec vy) {
+    transpose(&x, &y, &vx, &vy);
+    const vec nodes[] = {x, y, vx, vy};
+    for (int i = 0; i < 4; ++i) {
+        _mm_store_ps(packed + 4 * i, _mm512_castps512_ps128(nodes[i]));
+        _mm_store_ps(packed + 4 * i + 16, _mm512_extractf32x4_ps(nodes[i], 1));
+        _mm_store_ps(packed + 4 * i + 32, _mm512_extractf32x4_ps(nodes[i], 2));
+        _mm_store_ps(packed + 4 * i + 48, _mm512_extractf32x4_ps(nodes[i], 3));
+    }
+}
+
 static bool bounded(const float *values, size_t count, float limit) {
     const __m512 limits = _mm512_set1_ps(limit);
     __mmask16 all = 0xffff;

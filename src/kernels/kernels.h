@@ -21,6 +21,9 @@ typedef struct mspringi_sweep {
     float *carry_x, *carry_y;       ///< forces that the row below exerts, by column
     const float *lattice_springs;   ///< records: [block][direction][part][lane]
     const float *chain_springs;     ///< records: [block][part][lane]
+    const mspringi_web *web;
+    const float *web_springs;       ///< records: [rung][part][lane]
+    float *packed;                  ///< [node][4] x, y, vx, vy of the web's nodes at the start of the substep
     uint32_t parts;                 ///< parts in a record: 2 or, with damping, 3
     float h;                        ///< substep, s
     float decay;                    ///< what global damping leaves of a velocity
@@ -37,6 +40,13 @@ typedef struct mspringi_edge {
 /// Compute the forces of one span's springs and move its particles, in place.
 typedef void (*mspringi_sweep_fn)(const mspringi_sweep *sweep, const mspringi_span *span, mspringi_edge *edge);
 
+/// Copy position and velocity of block_count blocks of slots behind one another into packed.
+typedef void (*mspringi_pack_fn)(const mspringi_sweep *sweep, size_t first_block, size_t block_count,
+                                 float *packed);
+
+/// Compute the forces of the web on all attached nodes, into x and y by number of the attached node.
+typedef void (*mspringi_attached_fn)(const mspringi_sweep *sweep, float *x, float *y);
+
 /// Whether all of count values (a multiple of MSPRINGI_WIDTH) are at most limit in absolute value; NaN is not.
 typedef bool (*mspringi_bounded_fn)(const float *values, size_t count, float limit);
 
@@ -44,7 +54,10 @@ typedef struct mspringi_kernels {
     mspring_simd level;
     mspringi_sweep_fn lattice[2][2]; ///< [with damping][with forces]
     mspringi_sweep_fn chain[2][2];
+    mspringi_sweep_fn web[2][2];
     mspringi_sweep_fn loose[2]; ///< [with forces]
+    mspringi_pack_fn pack;
+    mspringi_attached_fn attached[2]; ///< [with damping]
     mspringi_bounded_fn bounded;
 } mspringi_kernels;
 

@@ -8,17 +8,25 @@ typedef struct vector {
     float x, y;
 } vector;
 
+/// Position and velocity of a particle.
+typedef struct motion {
+    float x, y, vx, vy;
+} motion;
+
+static inline motion at(const mspringi_sweep *s, size_t slot) {
+    return (motion){s->x[slot], s->y[slot], s->vx[slot], s->vy[slot]};
+}
+
 // The force of one spring on its base, towards its tip; the force on the tip is the opposite. record is the slot's
 // first value in a spring record.
-static inline vector spring_force(const mspringi_sweep *s, size_t base, size_t tip, const float *record,
-                                  bool damped) {
-    const float dx = s->x[tip] - s->x[base], dy = s->y[tip] - s->y[base];
+static inline vector spring_force(motion base, motion tip, const float *record, bool damped) {
+    const float dx = tip.x - base.x, dy = tip.y - base.y;
     const float length = sqrtf(dx * dx + dy * dy);
     const float inverse = length > 0.0f ? 1.0f / length : 0.0f; // a spring of length 0 has no direction
     float force =
         (length - record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH]) * record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH];
     if (damped) {
-        const float dvx = s->vx[tip] - s->vx[base], dvy = s->vy[tip] - s->vy[base];
+        const float dvx = tip.vx - base.vx, dvy = tip.vy - base.vy;
         const float rate = (dvx * dx + dvy * dy) * inverse; // of lengthening, m/s
         force = force + rate * record[MSPRINGI_DAMPING * MSPRINGI_WIDTH];
     }
@@ -55,10 +63,11 @@ static inline void lattice(const mspringi_sweep *s, const mspringi_span *span, m
             const size_t up = (span->up_block + block) * MSPRINGI_WIDTH + lane;
             const size_t in = (span->carry_in + block) * MSPRINGI_WIDTH + lane;
             const size_t out = (span->carry_out + block) * MSPRINGI_WIDTH + lane;
-            const vector east = spring_force(s, slot, slot + 1, record + MSPRINGI_EAST * part, damped);
-            const vector north = spring_force(s, slot, up, record + MSPRINGI_NORTH * part, damped);
-            const vector north_east = spring_force(s, slot, up + 1, record + MSPRINGI_NORTH_EAST * part, damped);
-            const vector south_east = spring_force(s, up, slot + 1, record + MSPRINGI_SOUTH_EAST * part, damped);
+            const motion here = at(s, slot), next = at(s, slot + 1), above = at(s, up), above_next = at(s, up + 1);
+            const vector east = spring_force(here, next, record + MSPRINGI_EAST * part, damped);
+            const vector north = spring_force(here, above, record + MSPRINGI_NORTH * part, damped);
+            const vector north_east = spring_force(here, above_next, record + MSPRINGI_NORTH_EAST * part, damped);
+            const vector south_east = spring_force(above, next, record + MSPRINGI_SOUTH_EAST * part, damped);
 
             const vector force = {(s->carry_x[in] + ((east.x + north.x) + north_east.x)) - left.x,
                                   (s->carry_y[in] + ((east.y + north.y) + north_east.y)) - left.y};
@@ -87,7 +96,7 @@ static inline void chain(const mspringi_sweep *s, const mspringi_span *span, msp
         for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
             const size_t slot = (span->first_block + block) * MSPRINGI_WIDTH + lane;
             const size_t in = (span->carry_in + block) * MSPRINGI_WIDTH + lane;
-            const vector east = spring_force(s, slot, slot + 1, records + block * stride + lane, damped);
+            const vector east = spring_force(at(s, slot), at(s, slot + 1), records + block * stride + lane, damped);
             const vector force = {(s->carry_x[in] + east.x) - left.x, (s->carry_y[in] + east.y) - left.y};
             left = east;
             move(s, slot, force, forced);
@@ -97,6 +106,54 @@ static inline void chain(const mspringi_sweep *s, const mspringi_span *span, msp
     edge->right_y[last] = left.y;
     edge->diagonal_x[last] = 0.0f;
     edge->diagonal_y[last] = 0.0f;
+}
+
+static inline motion node_at(const mspringi_sweep *s, size_t node) {
+    const float *packed = s->packed + 4 * node;
+    return (motion){packed[0], packed[1], packed[2], packed[3]};
+}
+
+// The force of the web on one of its nodes: the sum over the rungs of its group, in their order.
+static inline vector web_force(const mspringi_sweep *s, size_t node, bool damped) {
+    const mspringi_web *web = s->web;
+    const size_t lane = node % MSPRINGI_WIDTH;
+    const motion here = node_at(s, node);
+    vector sum = {0.0f, 0.0f};
+    for (size_t rung = web->first_rung[node / MSPRINGI_WIDTH]; rung < web->first_rung[node / MSPRINGI_WIDTH + 1];
+         ++rung) {
+        const motion there = node_at(s, web->neighbour[rung * MSPRINGI_WIDTH + lane]);
+        const vector force =
+            spring_force(here, there, s->web_springs + rung * s->parts * MSPRINGI_WIDTH + lane, damped);
+        sum.x = sum.x + force.x;
+        sum.y = sum.y + force.y;
+    }
+    return sum;
+}
+
+static inline void web(const mspringi_sweep *s, const mspringi_span *span, mspringi_edge *edge, bool damped,
+                       bool forced) {
+    (void)edge;
+    for (size_t i = 0; i < (size_t)span->block_count * MSPRINGI_WIDTH; ++i)
+        move(s, (size_t)span->first_block * MSPRINGI_WIDTH + i,
+             web_force(s, (size_t)span->record * MSPRINGI_WIDTH + i, damped), forced);
+}
+
+static inline void attached(const mspringi_sweep *s, float *x, float *y, bool damped) {
+    for (size_t i = 0; i < s->web->attached_count; ++i) {
+        const vector force = web_force(s, s->web->own_count + i, damped);
+        x[i] = force.x;
+        y[i] = force.y;
+    }
+}
+
+static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count, float *packed) {
+    const size_t first = first_block * MSPRINGI_WIDTH;
+    for (size_t slot = first; slot < first + block_count * MSPRINGI_WIDTH; ++slot, packed += 4) {
+        packed[0] = s->x[slot];
+        packed[1] = s->y[slot];
+        packed[2] = s->vx[slot];
+        packed[3] = s->vy[slot];
+    }
 }
 
 static inline void loose(const mspringi_sweep *s, const mspringi_span *span, bool forced) {

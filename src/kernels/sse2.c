@@ -48,6 +48,22 @@ static inline vec shift_in(vec before, vec a) {
     return _mm_shuffle_ps(seam, a, _MM_SHUFFLE(2, 1, 2, 0));
 }
 
+// Four values of each of LANES nodes, from [node][4].
+static inline void load_packed(const float *packed, const uint32_t *nodes, vec *x, vec *y, vec *vx, vec *vy) {
+    *x = _mm_load_ps(packed + 4 * (size_t)nodes[0]);
+    *y = _mm_load_ps(packed + 4 * (size_t)nodes[1]);
+    *vx = _mm_load_ps(packed + 4 * (size_t)nodes[2]);
+    *vy = _mm_load_ps(packed + 4 * (size_t)nodes[3]);
+    _MM_TRANSPOSE4_PS(*x, *y, *vx, *vy);
+}
+static inline void store_packed(float *packed, vec x, vec y, vec vx, vec vy) {
+    _MM_TRANSPOSE4_PS(x, y, vx, vy);
+    _mm_store_ps(packed, x);
+    _mm_store_ps(packed + 4, y);
+    _mm_store_ps(packed + 8, vx);
+    _mm_store_ps(packed + 12, vy);
+}
+
 static bool bounded(const float *values, size_t count, float limit) {
     const __m128 absolute = _mm_castsi128_ps(_mm_set1_epi32(0x7fffffff)), limits = _mm_set1_ps(limit);
     __m128 all = _mm_cmpeq_ps(limits, limits);

@@ -189,6 +189,60 @@ MSPRINGI_INLINE void chain(const mspringi_sweep *s, const mspringi_span *span, m
     store(edge->diagonal_y + last, zero());
 }
 
+// The force of the web on LANES of its nodes.
+MSPRINGI_INLINE vector web_force(const mspringi_sweep *s, motion here, size_t group, size_t lane, bool damped) {
+    const size_t stride = (size_t)(damped ? 3 : 2) * MSPRINGI_WIDTH;
+    const uint32_t first = s->web->first_rung[group], end = s->web->first_rung[group + 1];
+    const uint32_t *neighbour = s->web->neighbour + (size_t)first * MSPRINGI_WIDTH + lane;
+    const float *record = s->web_springs + first * stride + lane;
+    vector sum = {zero(), zero()};
+    for (uint32_t rung = first; rung < end; ++rung) {
+        motion there;
+        load_packed(s->packed, neighbour, &there.x, &there.y, &there.vx, &there.vy);
+        const extent to = spring_extent(here, there);
+        const vector force = spring_force(to, inverse_or_zero(to.length), here, there, record, damped);
+        sum.x = add(sum.x, force.x);
+        sum.y = add(sum.y, force.y);
+        neighbour += MSPRINGI_WIDTH;
+        record += stride;
+    }
+    return sum;
+}
+
+MSPRINGI_INLINE void web(const mspringi_sweep *s, const mspringi_span *span, mspringi_edge *edge, bool damped,
+                         bool forced) {
+    (void)edge;
+    for (size_t block = 0; block < span->block_count; ++block) {
+        for (size_t lane = 0; lane < MSPRINGI_WIDTH; lane += LANES) {
+            const size_t slot = (span->first_block + block) * MSPRINGI_WIDTH + lane;
+            move(s, slot, web_force(s, load_motion(s, slot, damped), span->record + block, lane, damped), forced);
+        }
+    }
+}
+
+MSPRINGI_INLINE void attached(const mspringi_sweep *s, float *x, float *y, bool damped) {
+    const size_t first = s->web->own_count;
+    for (size_t i = 0; i < s->web->attached_count; i += LANES) {
+        uint32_t nodes[LANES];
+        motion here;
+        for (size_t lane = 0; lane < LANES; ++lane)
+            nodes[lane] = (uint32_t)(first + i + lane);
+        load_packed(s->packed, nodes, &here.x, &here.y, &here.vx, &here.vy);
+        const vector force = web_force(s, here, (first + i) / MSPRINGI_WIDTH, i % MSPRINGI_WIDTH, damped);
+        store(x + i, force.x);
+        store(y + i, force.y);
+    }
+}
+
+static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count, float *packed) {
+    const size_t first = first_block * MSPRINGI_WIDTH;
+    for (size_t slot = first; slot < first + block_count * MSPRINGI_WIDTH; slot += LANES) {
+        const motion m = load_motion(s, slot, true);
+        store_packed(packed, m.x, m.y, m.vx, m.vy);
+        packed += 4 * LANES;
+    }
+}
+
 MSPRINGI_INLINE void loose(const mspringi_sweep *s, const mspringi_span *span, bool forced) {
     const size_t first = (size_t)span->first_block * MSPRINGI_WIDTH;
     const vector none = {zero(), zero()};

@@ -18,6 +18,11 @@ MSPRINGI_VARIANT(chain, forced, false, true)
 MSPRINGI_VARIANT(chain, damped, true, false)
 MSPRINGI_VARIANT(chain, damped_forced, true, true)
 
+MSPRINGI_VARIANT(web, plain, false, false)
+MSPRINGI_VARIANT(web, forced, false, true)
+MSPRINGI_VARIANT(web, damped, true, false)
+MSPRINGI_VARIANT(web, damped_forced, true, true)
+
 static void loose_plain(const mspringi_sweep *sweep, const mspringi_span *span, mspringi_edge *edge) {
     (void)edge;
     loose(sweep, span, false);
@@ -28,10 +33,21 @@ static void loose_forced(const mspringi_sweep *sweep, const mspringi_span *span,
     loose(sweep, span, true);
 }
 
+static void attached_plain(const mspringi_sweep *sweep, float *x, float *y) {
+    attached(sweep, x, y, false);
+}
+
+static void attached_damped(const mspringi_sweep *sweep, float *x, float *y) {
+    attached(sweep, x, y, true);
+}
+
 const mspringi_kernels MSPRINGI_TABLE = {
     .level = MSPRINGI_LEVEL,
     .lattice = {{lattice_plain, lattice_forced}, {lattice_damped, lattice_damped_forced}},
     .chain = {{chain_plain, chain_forced}, {chain_damped, chain_damped_forced}},
     .loose = {loose_plain, loose_forced},
+    .web = {{web_plain, web_forced}, {web_damped, web_damped_forced}},
+    .pack = pack,
+    .attached = {attached_plain, attached_damped},
     .bounded = bounded,
 };

@@ -1,0 +1,107 @@
+#include "web.h"
+
+// Number the attached nodes in slot order, and fill up the last group.
+static void number_attached(mspringi_web *web, const uint32_t *degree_of_slot, uint32_t *node_of_slot,
+                            uint32_t first_slot, uint32_t slot_count) {
+    uint32_t attached = 0;
+    for (uint32_t slot = 0; slot < slot_count; ++slot) {
+        if (slot >= first_slot && slot < first_slot + web->own_count) {
+            node_of_slot[slot] = slot - first_slot;
+        } else if (degree_of_slot[slot] > 0) {
+            node_of_slot[slot] = web->own_count + attached;
+            web->attached_slot[attached++] = slot;
+        }
+    }
+    while (attached < web->attached_count)
+        web->attached_slot[attached++] = MSPRING_NONE;
+}
+
+static uint32_t slot_of_node(const mspringi_web *web, uint32_t node, uint32_t first_slot) {
+    return node < web->own_count ? first_slot + node : web->attached_slot[node - web->own_count];
+}
+
+// Give every group the rungs of its busiest node.
+static void count_rungs(mspringi_web *web, const uint32_t *degree_of_slot, uint32_t first_slot) {
+    for (uint32_t group = 0; group < web->group_count; ++group) {
+        uint32_t rungs = 0;
+        for (uint32_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
+            const uint32_t slot = slot_of_node(web, group * MSPRINGI_WIDTH + lane, first_slot);
+            if (slot != MSPRING_NONE && degree_of_slot[slot] > rungs)
+                rungs = degree_of_slot[slot];
+        }
+        web->first_rung[group + 1] = web->first_rung[group] + rungs;
+    }
+}
+
+// The next free entry of a node; used counts those that are taken.
+static uint32_t take_entry(const mspringi_web *web, uint32_t node, uint32_t *used) {
+    const uint32_t rung = web->first_rung[node / MSPRINGI_WIDTH] + used[node]++;
+    return rung * MSPRINGI_WIDTH + node % MSPRINGI_WIDTH;
+}
+
+static mspring_result fill(mspringi_web *web, const uint32_t *a, const uint32_t *b, uint32_t count,
+                           const uint32_t *node_of_slot, mspringi_memory *memory) {
+    const uint32_t rungs = web->first_rung[web->group_count];
+    web->neighbour = mspringi_alloc(memory, (size_t)rungs * MSPRINGI_WIDTH, sizeof *web->neighbour);
+    web->entry = mspringi_alloc(memory, (size_t)2 * count, sizeof *web->entry);
+    uint32_t *used = mspringi_alloc(memory, (size_t)web->group_count * MSPRINGI_WIDTH, sizeof *used);
+    const bool have_memory = web->neighbour && web->entry && used;
+    if (have_memory) {
+        for (uint32_t group = 0; group < web->group_count; ++group)
+            for (uint32_t rung = web->first_rung[group]; rung < web->first_rung[group + 1]; ++rung)
+                for (uint32_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
+                    web->neighbour[rung * MSPRINGI_WIDTH + lane] = group * MSPRINGI_WIDTH + lane;
+        for (uint32_t s = 0; s < count; ++s) {
+            const uint32_t node_a = node_of_slot[a[s]], node_b = node_of_slot[b[s]];
+            web->entry[2 * s] = take_entry(web, node_a, used);
+            web->entry[2 * s + 1] = take_entry(web, node_b, used);
+            web->neighbour[web->entry[2 * s]] = node_b;
+            web->neighbour[web->entry[2 * s + 1]] = node_a;
+        }
+    }
+    mspringi_free(memory, used);
+    return have_memory ? MSPRING_OK : MSPRING_ERROR_MEMORY;
+}
+
+mspring_result mspringi_web_create(mspringi_web *web, const uint32_t *a, const uint32_t *b, uint32_t count,
+                                   uint32_t first_slot, uint32_t own_count, uint32_t slot_count,
+                                   mspringi_memory *memory, mspringi_message *message) {
+    *web = (mspringi_web){.own_count = own_count};
+    if (count == 0 && own_count == 0)
+        return MSPRING_OK;
+    uint32_t *degree = mspringi_alloc(memory, slot_count, sizeof *degree);
+    uint32_t *node_of_slot = mspringi_alloc(memory, slot_count, sizeof *node_of_slot);
+    mspring_result result = degree && node_of_slot ? MSPRING_OK : MSPRING_ERROR_MEMORY;
+    if (result == MSPRING_OK) {
+        uint32_t attached = 0;
+        for (uint32_t s = 0; s < count; ++s) {
+            const uint32_t ends[] = {a[s], b[s]};
+            for (int end = 0; end < 2; ++end)
+                attached +=
+                    degree[ends[end]]++ == 0 && !(ends[end] >= first_slot && ends[end] < first_slot + own_count);
+        }
+        web->attached_count = (attached + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+        web->group_count = (own_count + web->attached_count) / MSPRINGI_WIDTH;
+        web->attached_slot = mspringi_alloc(memory, web->attached_count, sizeof *web->attached_slot);
+        web->first_rung = mspringi_alloc(memory, (size_t)web->group_count + 1, sizeof *web->first_rung);
+        result = web->attached_slot && web->first_rung ? MSPRING_OK : MSPRING_ERROR_MEMORY;
+    }
+    if (result == MSPRING_OK) {
+        number_attached(web, degree, node_of_slot, first_slot, slot_count);
+        count_rungs(web, degree, first_slot);
+        result = fill(web, a, b, count, node_of_slot, memory);
+    }
+    mspringi_free(memory, degree);
+    mspringi_free(memory, node_of_slot);
+    return result == MSPRING_OK
+               ? result
+               : mspringi_fail(message, result, "no memory for a web of %u springs", (unsigned)count);
+}
+
+void mspringi_web_destroy(mspringi_web *web, mspringi_memory *memory) {
+    mspringi_free(memory, web->attached_slot);
+    mspringi_free(memory, web->first_rung);
+    mspringi_free(memory, web->neighbour);
+    mspringi_free(memory, web->entry);
+    *web = (mspringi_web){0};
+}
