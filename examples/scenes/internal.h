@@ -1,10 +1,11 @@
 /// @file internal.h
-/// What the makers of scenes share: messages, files, numbers in text, random numbers, pairs of particles.
+/// What the makers of scenes share: messages, files, random numbers, pairs of particles.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef SCENES_INTERNAL_H
 #define SCENES_INTERNAL_H
 
+#include "scenes/number.h"
 #include "scenes/scene.h"
 
 #if defined(__GNUC__)
@@ -32,22 +33,6 @@ bool scene_options_check(const scene_options *options, bool from_file, scene_err
 
 /// Read a whole file, which the caller frees. Files over 1 GiB are refused.
 bool file_read(const char *path, char **data, size_t *size, scene_error *error);
-
-/* number.c */
-
-/// A piece of text that is not terminated by a 0.
-typedef struct text_span {
-    const char *start;
-    size_t length;
-} text_span;
-
-/// Read a decimal number such as -1.5e3: no hexadecimal, no inf, no nan, nothing before or after it, and small
-/// enough for a double. Returns false otherwise.
-bool number_parse(text_span text, double *value);
-/// Read a whole number without sign.
-bool number_parse_count(text_span text, uint64_t *value);
-/// Copy text into a message: cut to size - 1 characters, what cannot be printed as '?'. Returns buffer.
-const char *text_quote(text_span text, char *buffer, size_t size);
 
 /* random.c */
 

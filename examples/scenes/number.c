@@ -4,7 +4,7 @@
 /// strtod follows the locale of the process; the programs here never call setlocale(), so it is the "C" locale.
 ///
 /// SPDX-License-Identifier: MIT
-#include "scenes/internal.h"
+#include "scenes/number.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,0 +1,280 @@
+/// @file bending.c
+/// Let a network settle under gravity and measure how far its probe comes down.
+///
+/// SPDX-License-Identifier: MIT
+#include "bending/film.h"
+#include "bending/options.h"
+#include "bending/report.h"
+#include "bending/settle.h"
+#include "common/output.h"
+#include "common/progress.h"
+#include "draw/network_picture.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PICTURE_WIDTH = 1600, PICTURE_HEIGHT = 1200 };
+
+// One run, from the scene to the pictures.
+typedef struct bending_run {
+    const bending_options *options;
+    scene scene;
+    mspring_network *network;
+    network_shape shape;
+    film film;
+    progress line;
+    settle_result settled;
+    spring_measures measures;
+    char picture[OUTPUT_PATH_SIZE], svg[OUTPUT_PATH_SIZE], animation[OUTPUT_PATH_SIZE]; // "" for none
+} bending_run;
+
+static bool fail(const char *message) {
+    fprintf(stderr, "bending: %s\n", message);
+    return false;
+}
+
+static bool has_ending(const char *path, const char *const *endings) {
+    const char *dot = strrchr(path, '.');
+    for (size_t i = 0; dot && endings[i]; i++)
+        if (strcmp(dot, endings[i]) == 0)
+            return true;
+    return false;
+}
+
+// By its name's ending; if that says nothing, by its first bytes.
+static bool is_image(const char *path) {
+    static const char *const images[] = {".png", ".PNG", ".bmp", ".BMP", ".pbm", ".pgm", ".ppm", ".pnm", NULL};
+    static const char *const networks[] = {".msn", ".txt", NULL};
+    if (has_ending(path, images))
+        return true;
+    if (has_ending(path, networks))
+        return false;
+    char start[4] = {0};
+    FILE *stream = fopen(path, "rb");
+    size_t length = stream ? fread(start, 1, sizeof start, stream) : 0;
+    if (stream)
+        fclose(stream);
+    return length == sizeof start && (memcmp(start, "\x89PNG", 4) == 0 || memcmp(start, "BM", 2) == 0 ||
+                                      (start[0] == 'P' && start[1] >= '1' && start[1] <= '6'));
+}
+
+static bool load_scene(bending_run *run) {
+    const bending_options *options = run->options;
+    scene_error error = {""};
+    bool ok = false;
+    if (is_image(options->input)) {
+        scene_materials materials = {0};
+        ok = options->materials ? scene_materials_read(options->materials, &materials, &error)
+                                : scene_materials_builtin(&materials, &error);
+        ok = ok && scene_image(options->input, &materials, &options->scene, &run->scene, &error);
+        scene_materials_free(&materials);
+    } else {
+        ok = scene_network_file(options->input, &options->scene, &run->scene, &error);
+    }
+    if (!ok)
+        return fail(error.text);
+    if (run->scene.probe != MSPRING_NONE)
+        return true;
+    fprintf(
+        stderr,
+        "bending: %s has no probe, so there is nothing to measure: mark one particle as the probe (in an image a "
+        "pixel of a probe material, #216CCF in the built-in table; in a network file the fifth number of its "
+        "line)\n",
+        options->input);
+    return false;
+}
+
+static bool make_network(bending_run *run) {
+    const bending_options *options = run->options;
+    mspring_network_def def;
+    mspring_network_def_init(&def, sizeof def);
+    def.substeps = options->substeps;
+    def.gravity_y = -options->gravity;
+    def.simd_level = options->level;
+    if (mspring_network_create(run->scene.builder, &def, &run->network) != MSPRING_OK)
+        return fail(mspring_builder_error(run->scene.builder));
+    mspring_id loose = MSPRING_NONE;
+    if (!settle_find_loose(run->network, &loose))
+        return fail("out of memory: take a smaller network");
+    if (loose == MSPRING_NONE)
+        return true;
+    double x = 0;
+    double y = 0;
+    if (mspring_network_get_positions(run->network, loose, 1, &x, &y) != MSPRING_OK)
+        return fail(mspring_network_error(run->network));
+    fprintf(
+        stderr,
+        "bending: particle %u at (%g, %g) m is not joined to any pinned particle and would fall for ever: join it, "
+        "pin it or remove it\n",
+        loose, x, y);
+    return false;
+}
+
+// Which files to write.
+static bool choose_files(bending_run *run) {
+    const bending_options *options = run->options;
+    const char *folder = options->folder;
+    if (folder && (!output_make_folder(folder) || !output_path(run->picture, folder, run->scene.name, ".png") ||
+                   !output_path(run->svg, folder, run->scene.name, ".svg") ||
+                   !output_path(run->animation, folder, run->scene.name, "_animation.png")))
+        return false;
+    const char *const given[] = {options->picture, options->svg, options->animation};
+    char *const chosen[] = {run->picture, run->svg, run->animation};
+    for (int i = 0; i < 3; i++) {
+        if (!given[i])
+            continue;
+        if (strlen(given[i]) >= OUTPUT_PATH_SIZE)
+            return fail("the path of a picture is too long: choose a shorter one");
+        strcpy(chosen[i], given[i]);
+    }
+    draw_error error;
+    if ((run->picture[0] || run->svg[0] || run->animation[0]) &&
+        !network_shape_make(&run->shape, run->network, run->scene.probe, &error))
+        return fail(error.text);
+    if (run->animation[0] && !film_start(&run->film, &run->shape, &error))
+        return fail(error.text);
+    return true;
+}
+
+static void after_step(mspring_network *network, const settle_progress *at, void *user) {
+    bending_run *run = user;
+    if (!at->measuring && run->film.x)
+        film_step(&run->film, network);
+    if (!progress_due(&run->line))
+        return;
+    char text[128];
+    snprintf(text, sizeof text, "%-8s step %llu, %.1f s simulated, probe down %.6g m, moving at %.3g m/s",
+             at->measuring ? "swinging" : "settling", (unsigned long long)at->step,
+             (double)at->step * run->options->dt, at->drop, at->rms_speed);
+    progress_write(&run->line, text);
+}
+
+static bool fail_unstable(const bending_run *run) {
+    const spring_measures *measures = &run->measures;
+    fprintf(stderr, "bending: unstable in step %llu: %s\n", (unsigned long long)run->settled.steps + 1,
+            mspring_network_error(run->network));
+    // The limit grows with the square of the number of substeps; half of it leaves room for damping.
+    double wanted = ceil(run->options->substeps * sqrt(measures->most_fraction / 0.5));
+    if (measures->most_fraction > 0.5 && wanted <= 1e6)
+        fprintf(stderr,
+                "bending: the stiffness is up to %.3g of what %u substeps of a step of %g s bear: try --substeps "
+                "%.0f\n",
+                measures->most_fraction, run->options->substeps, run->options->dt, wanted);
+    return false;
+}
+
+static bool settle(bending_run *run) {
+    settle_request request = {
+        .dt = run->options->dt,
+        .most_steps = run->options->steps,
+        .probe = run->scene.probe,
+        .after_step = after_step,
+        .user = run,
+    };
+    progress_start(&run->line);
+    run->settled = settle_network(run->network, &request);
+    progress_clear(&run->line);
+    if (!report_measure(run->network, &run->scene, run->options->dt / run->options->substeps, &run->measures))
+        return fail("out of memory: take a smaller network");
+    switch (run->settled.end) {
+    case SETTLE_AT_REST:
+        return true;
+    case SETTLE_UNSTABLE:
+        return fail_unstable(run);
+    case SETTLE_OUT_OF_STEPS:
+        fprintf(stderr,
+                "bending: not at rest after %llu steps (the probe is %.6g m down): allow more with --steps\n",
+                (unsigned long long)run->settled.steps, run->settled.drop);
+        return false;
+    case SETTLE_NO_MEMORY:
+        return fail("out of memory: take a smaller network, or fewer steps");
+    }
+    return false;
+}
+
+static bool draw_network(const bending_run *run, const char *title, const double *x, const double *y,
+                         draw_error *error) {
+    world_box box = world_box_add(network_shape_bounds(&run->shape), x, y, run->shape.particle_count);
+    network_view view =
+        network_view_fit(&run->shape, box, PICTURE_WIDTH, PICTURE_HEIGHT, network_strain_limit(&run->shape, x, y));
+    figure drawing;
+    figure_start(&drawing, view.width, view.height, 0xffffff);
+    network_picture_draw(&drawing, &run->shape, &view, x, y, title);
+    bool ok = (!run->picture[0] || figure_write_png(&drawing, run->picture, error)) &&
+              (!run->svg[0] || figure_write_svg(&drawing, run->svg, error));
+    figure_free(&drawing);
+    return ok;
+}
+
+static bool draw_final(const bending_run *run, const char *title, draw_error *error) {
+    uint32_t count = run->shape.particle_count;
+    double *x = malloc(count * sizeof *x);
+    double *y = malloc(count * sizeof *y);
+    bool ok = false;
+    if (!x || !y)
+        snprintf(error->text, sizeof error->text, "out of memory for a picture of %u particles", count);
+    else if (mspring_network_get_positions(run->network, 0, count, x, y) != MSPRING_OK)
+        snprintf(error->text, sizeof error->text, "%s", mspring_network_error(run->network));
+    else
+        ok = draw_network(run, title, x, y, error);
+    free(x);
+    free(y);
+    return ok;
+}
+
+static bool write_pictures(bending_run *run) {
+    char title[160];
+    draw_error error = {""};
+    snprintf(title, sizeof title, "%s: bending %.4g m", run->scene.name, run->settled.drop);
+    if ((run->picture[0] || run->svg[0]) && !draw_final(run, title, &error))
+        return fail(error.text);
+    if (run->animation[0] && !film_write(&run->film, run->animation, title, &error))
+        return fail(error.text);
+    if (run->options->csv)
+        return true;
+    const char *const written[] = {run->picture, run->svg, run->animation};
+    for (int i = 0; i < 3; i++)
+        if (written[i][0])
+            printf("  written       %s\n", written[i]);
+    return true;
+}
+
+static void print_report(const bending_run *run) {
+    if (run->options->csv_header)
+        report_print_csv_header();
+    if (run->options->csv)
+        report_print_csv(run->network, &run->scene, run->options, &run->settled, &run->measures);
+    else if (run->settled.end == SETTLE_AT_REST)
+        report_print_table(run->network, &run->scene, run->options, &run->settled, &run->measures);
+}
+
+static bool run_all(bending_run *run) {
+    if (!load_scene(run) || !make_network(run) || !choose_files(run))
+        return false;
+    bool settled = settle(run);
+    print_report(run);
+    return settled && write_pictures(run);
+}
+
+int main(int count, char **arguments) {
+    bending_options options;
+    switch (options_read(count, arguments, &options)) {
+    case OPTIONS_OK:
+        break;
+    case OPTIONS_HELP:
+        return EXIT_SUCCESS;
+    case OPTIONS_WRONG:
+        return 2;
+    }
+    bending_run run = {.options = &options};
+    bool ok = run_all(&run);
+    film_free(&run.film);
+    network_shape_free(&run.shape);
+    mspring_network_destroy(run.network);
+    scene_free(&run.scene);
+    if (fflush(stdout) != 0)
+        ok = fail("cannot write the results: is the disk full?");
+    return ok ? EXIT_SUCCESS : EXIT_FAILURE;
+}

@@ -1,0 +1,30 @@
+/// @file film.h
+/// A moving picture of a network, kept while it moves and drawn afterwards.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef BENDING_FILM_H
+#define BENDING_FILM_H
+
+#include "draw/network_picture.h"
+
+/// Positions at moments that lie evenly apart. How long the motion lasts is not known before: whenever the film is
+/// full, every second frame is dropped and the frames that follow come half as often.
+typedef struct film {
+    const network_shape *shape;
+    double *x, *y; ///< [frame_capacity][particle_count]
+    uint32_t frame_count, frame_capacity;
+    uint64_t interval; ///< steps from frame to frame
+    uint64_t step;     ///< seen
+} film;
+
+/// Start a film of a network of this shape. Large networks get fewer frames.
+bool film_start(film *made, const network_shape *shape, draw_error *error);
+void film_free(film *unwanted);
+
+/// To be called after each step.
+void film_step(film *target, const mspring_network *network);
+
+/// Write the film as a moving PNG.
+bool film_write(const film *source, const char *path, const char *title, draw_error *error);
+
+#endif

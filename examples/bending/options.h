@@ -1,0 +1,29 @@
+/// @file options.h
+/// What the user of `bending` asks for.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef BENDING_OPTIONS_H
+#define BENDING_OPTIONS_H
+
+#include "scenes/scene.h"
+
+typedef struct bending_options {
+    const char *input;     ///< image or network file
+    const char *materials; ///< CSV file, or NULL for the built-in table
+    scene_options scene;
+    double dt;
+    uint32_t substeps;
+    uint64_t steps; ///< most steps
+    float gravity;  ///< m/s^2 downwards
+    mspring_simd level;
+    bool csv, csv_header;
+    const char *picture, *svg, *animation; ///< files to write, or NULL
+    const char *folder;                    ///< for all three of them, or NULL
+} bending_options;
+
+typedef enum options_outcome { OPTIONS_OK, OPTIONS_HELP, OPTIONS_WRONG } options_outcome;
+
+/// Read the arguments. Prints help to stdout, mistakes to stderr.
+options_outcome options_read(int count, char **arguments, bending_options *options);
+
+#endif
