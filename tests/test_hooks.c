@@ -407,7 +407,7 @@ static void removed_hooks_are_not_called(void **state) {
     (void)state;
     mspring_network *network = mixed_network(1);
     int calls[3] = {0, 0, 0};
-    uint32_t numbers[4];
+    uint32_t numbers[6];
     for (int i = 0; i < 3; i++) {
         check_ok(mspring_network_add_hook(network, MSPRING_PHASE_BEFORE_STEP, count_call, &calls[i], &numbers[i]));
     }
@@ -423,11 +423,13 @@ static void removed_hooks_are_not_called(void **state) {
     check_error(mspring_network_remove_hook(NULL, numbers[0]), MSPRING_ERROR_ARGUMENT);
 
     // Numbers are not used again.
-    check_ok(mspring_network_add_hook(network, MSPRING_PHASE_BEFORE_STEP, count_call, &calls[1], &numbers[3]));
-    for (int i = 0; i < 3; i++) {
-        assert_int_not_equal(numbers[3], numbers[i]);
+    for (int i = 3; i < 6; i++) {
+        check_ok(mspring_network_add_hook(network, MSPRING_PHASE_BEFORE_STEP, count_call, &calls[1], &numbers[i]));
+        for (int j = 0; j < i; j++) {
+            assert_int_not_equal(numbers[i], numbers[j]);
+        }
+        check_ok(mspring_network_remove_hook(network, numbers[i]));
     }
-    check_ok(mspring_network_remove_hook(network, numbers[3]));
     check_ok(mspring_network_remove_hook(network, numbers[2]));
     check_ok(mspring_network_remove_hook(network, numbers[0]));
     check_ok(mspring_network_step(network, 0.01));
