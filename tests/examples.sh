@@ -1,0 +1,310 @@
+#!/bin/sh
+# The program `bending` given what is wrong in every way: it must say what is wrong and where, with exit status 1 (what
+# it was given) or 2 (how it was called), and never crash. And given what is right: the numbers it must print.
+#
+#   examples.sh errors|results|memory BENDING SOURCE
+set -eu
+part=$1 bending=$2 source=$3
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+cases=0 wrong=0
+
+complain() {
+  wrong=$((wrong + 1))
+  echo "WRONG: $*"
+  sed 's/^/    /' "$scratch/err"
+}
+
+# Status, words that the message has to contain (separated by |), arguments.
+refused() {
+  status=$1 words=$2
+  shift 2
+  cases=$((cases + 1))
+  got=0
+  "$bending" "$@" >"$scratch/out" 2>"$scratch/err" </dev/null || got=$?
+  [ "$got" -eq "$status" ] || complain "exit status $got instead of $status: $*"
+  [ -s "$scratch/err" ] || complain "no message: $*"
+  old_ifs=$IFS
+  IFS='|'
+  for word in $words; do
+    grep -qiF -e "$word" "$scratch/err" || complain "the message does not contain \"$word\": $*"
+  done
+  IFS=$old_ifs
+}
+
+# A text network from the lines given as arguments; the path is in $network.
+network=$scratch/net.msn
+lines() {
+  printf '%s\n' "$@" >"$network"
+}
+
+image=$scratch/image.ppm
+
+# Two particles and a spring, in which one line is replaced: number of the line, its new text, status and words.
+broken_line() {
+  lines '2 1' '0 0 1 1 0' '1 0 1 0 1' '0 1 1 100 0'
+  sed "$1s/.*/$2/" "$network" >"$network.new"
+  mv "$network.new" "$network"
+  refused 1 "net.msn:$1|$3" "$network"
+}
+
+errors() {
+  good=$source/examples/data/bar_80x5.png
+
+  # How it is called.
+  refused 2 'no file'
+  refused 2 '--wobble' --wobble "$good"
+  refused 2 'two files' "$good" "$good"
+  refused 2 '--dt|value' "$good" --dt
+  for value in 0 -1 nan inf -inf 1e400 abc '' 0x; do
+    refused 2 '--dt' "$good" --dt "$value"
+  done
+  for value in 0 -1 1.5 nan inf 1000001 99999999999999999999 x; do
+    refused 2 '--substeps' "$good" --substeps "$value"
+  done
+  for value in 0 -3 nan x; do
+    refused 2 '--steps' "$good" --steps "$value"
+  done
+  for value in -1 nan inf 1e31 x; do
+    refused 2 '--stiffness' "$good" --stiffness "$value"
+    refused 2 '--damping' "$good" --damping "$value"
+  done
+  for value in nan inf x; do
+    refused 2 '--gravity' "$good" --gravity "$value"
+  done
+  for value in mmx AVX2 '' 3; do
+    refused 2 '--level' "$good" --level "$value"
+  done
+  refused 2 'relative|stiffness' "$good" --relative
+
+  # Images that are none.
+  refused 1 'missing.png|No such file' "$scratch/missing.png"
+  mkdir "$scratch/folder.png"
+  refused 1 'folder.png' "$scratch/folder.png"
+  : >"$scratch/empty.png"
+  refused 1 'empty.png|empty' "$scratch/empty.png"
+  echo 'This is no picture.' >"$scratch/text.png"
+  refused 1 'text.png|not an image' "$scratch/text.png"
+
+  # Truncated images: after every so many bytes.
+  if "$bending" "$good" --steps 1 2>&1 | grep -q 'without stb_image'; then
+    echo "skipped: PNG images, which this build does not read"
+  else
+    size=$(wc -c <"$good")
+    length=8
+    while [ "$length" -lt "$((size - 12))" ]; do # the last 12 bytes only say that the image ends
+      head -c "$length" "$good" >"$scratch/cut.png"
+      refused 1 'cut.png' "$scratch/cut.png"
+      length=$((length + 1 + size / 60))
+    done
+    # Headers of 10,000, of 70,000 and of 2^31 - 1 columns and rows.
+    for size in '\000\000\047\020' '\000\001\021\160' '\177\377\377\377'; do
+      # shellcheck disable=SC2059 # the size is part of the format
+      printf "\\211PNG\\r\\n\\032\\n\\0\\0\\0\\rIHDR$size$size\\010\\006\\0\\0\\0" >"$scratch/huge.png"
+      head -c 100 /dev/zero >>"$scratch/huge.png"
+      refused 1 'huge.png' "$scratch/huge.png"
+      [ "$size" != '\000\000\047\020' ] || grep -q 'too large: 10000 x 10000' "$scratch/err" || complain 'size not named'
+    done
+  fi
+  printf 'P6\n3 2\n255\n' >"$image"
+  head -c 17 /dev/zero >>"$image"
+  refused 1 'image.ppm|cut off' "$image"
+  for text in 'P6' 'P6 3' 'P6 3 2' 'P6 3 2 255' 'P3 3 2 255 1 2 3' 'P1 2 2 1 0 1'; do
+    printf '%s' "$text" >"$image"
+    refused 1 'image.ppm|image' "$image"
+  done
+  printf 'P6 0 5 255\n' >"$image"
+  refused 1 'no pixel|0 x 5' "$image"
+  printf 'P6 100000 100000 255\n' >"$image"
+  refused 1 'too large|100000 x 100000' "$image"
+  printf 'P6 4294967295 4294967295 255\n' >"$image"
+  refused 1 'too large' "$image"
+  printf 'P6 99999999999999999999 1 255\n' >"$image"
+  refused 1 'width' "$image"
+  printf 'P3 1 1 255 256 0 0\n' >"$image"
+  refused 1 '255' "$image"
+
+  # Images of what cannot be simulated.
+  printf 'P3 3 2 255\n 10 10 10  128 128 144  128 128 144\n 128 128 144  33 108 207  18 52 86\n' >"$image"
+  refused 1 '#123456|column 2|row 1' "$image"
+  printf 'P3 2 2 255\n 255 255 255  255 255 255  255 255 255  255 255 255\n' >"$image"
+  refused 1 'no particle' "$image"
+  printf 'P3 2 1 255\n 10 10 10  128 128 144\n' >"$image"
+  refused 1 'no probe' "$image"
+  printf 'P3 3 1 255\n 10 10 10  33 108 207  33 108 207\n' >"$image"
+  refused 1 'probe|column 1|column 2' "$image"
+  printf 'P3 3 1 255\n 10 10 10  255 255 255  33 108 207\n' >"$image"
+  refused 1 'not joined|particle 1' "$image"
+
+  # Tables of materials.
+  table=$scratch/table.csv
+  header=colour,name,mass,stiffness,damping,break_strain,pinned,probe
+  rows() {
+    printf '%s\n' "$@" >"$table"
+  }
+  refused 1 'missing.csv' "$good" --materials "$scratch/missing.csv"
+  : >"$table"
+  refused 1 'table.csv' "$good" --materials "$table"
+  rows "$header"
+  refused 1 'table.csv|no material' "$good" --materials "$table"
+  rows 'color,name' '#000000,x'
+  refused 1 'table.csv:1' "$good" --materials "$table"
+  for row in '#12345,x,1,1,0,0,0,0|colour' '#12345g,x,1,1,0,0,0,0|colour' '#ffffff,x,1,1,0,0,0,0|white' \
+    '#123456,x,0,1,0,0,0,0|mass' '#123456,x,-1,1,0,0,0,0|mass' '#123456,x,nan,1,0,0,0,0|mass' \
+    '#123456,x,inf,1,0,0,0,0|mass' '#123456,x,1,-1,0,0,0,0|stiffness' '#123456,x,1,nan,0,0,0,0|stiffness' \
+    '#123456,x,1,1,-1,0,0,0|damping' '#123456,x,1,1,inf,0,0,0|damping' '#123456,x,1,1,0,nan,0,0|strain' \
+    '#123456,x,1,1,0,0,2,0|pinned' '#123456,x,1,1,0,0,0,yes|probe' '#123456,x,1|column' \
+    '#123456,x,1,1,0,0,0,0,0|column' '#123456,,1,1,0,0,0,0|name'; do
+    rows "$header" "${row%|*}"
+    refused 1 "table.csv:2|${row##*|}" "$good" --materials "$table"
+  done
+  rows "$header" '#123456,x,1,1,0,0,0,0' '#123456,y,1,1,0,0,0,0'
+  refused 1 'table.csv:3|#123456|line 2' "$good" --materials "$table"
+  rows "$header" '#123456,x,1,1,0,0,0,0'
+  refused 1 '#0A0A0A' "$good" --materials "$table" # a colour of the image that the table lacks
+
+  # Text networks.
+  refused 1 'missing.msn' "$scratch/missing.msn"
+  : >"$network"
+  refused 1 'net.msn' "$network"
+  for first in '0 0|no particle' '2|two whole numbers' '2 1 1|two whole numbers' 'x y|two whole numbers' \
+    '-1 0|whole numbers' '1.5 0|whole numbers' 'nan 0|whole numbers' '99999999999 0|at most' \
+    '0x2 1|whole numbers' '3 1|flag' '2 2|ends after 1 of 2 springs' '1 1|no particle 1'; do
+    lines "${first%|*}" '0 0 1 1 0' '1 0 1 0 1' '0 1 1 100 0'
+    refused 1 "net.msn|${first##*|}" "$network"
+  done
+  for value in nan inf -inf 1e400 x '' 1e13; do
+    broken_line 3 "$value 0 1 0 1" ''
+    broken_line 3 "0 $value 1 0 1" ''
+    broken_line 4 "0 1 $value 100 0" ''
+  done
+  for value in 0 -1 nan inf 1e-50 1e50; do
+    broken_line 3 "1 0 $value 0 1" mass
+  done
+  for value in -1 nan inf 1e31; do
+    broken_line 4 "0 1 1 $value 0" stiffness
+    broken_line 4 "0 1 1 100 $value" damping
+  done
+  broken_line 4 '0 1 0 100 0' 'rest length'
+  broken_line 4 '0 1 -1 100 0' 'rest length'
+  broken_line 4 '1 1 1 100 0' 'itself|particle 1'
+  broken_line 4 '0 2 1 100 0' 'no particle 2'
+  broken_line 4 '77 0 1 100 0' 'no particle 77'
+  broken_line 4 '-1 0 1 100 0' ''
+  broken_line 4 '0.5 1 1 100 0' ''
+  broken_line 4 '0 1 1 100' '4 numbers'
+  broken_line 4 '0 1 1 100 0 0' '6 numbers'
+  broken_line 3 '1 0 1 2 1' ''
+  broken_line 3 '1 0 1 0 x' ''
+  lines '3 3' '0 0 1 1 0' '1 0 1 0 1' '2 0 1 0 0' '0 1 1 100 0' '1 2 1 100 0' '1 0 1 100 0'
+  refused 1 'net.msn:7|particles 1 and 0|line 5' "$network"
+  lines '3 3' '0 0 1 1 0' '1 0 1 0 1' '2 0 1 0 0' '0 1 1 100 0' '1 2 1 100 0' '1 2 1 100 0'
+  refused 1 'net.msn:7|particles 1 and 2|line 6' "$network"
+  lines '2 1' '0 0 1 1 1' '1 0 1 0 1' '0 1 1 100 0'
+  refused 1 'net.msn:3|second probe|line 2' "$network"
+  lines '2 1' '0 0 1 1 0' '1 0 1 0 1' '0 1 1 100 0' '0 1 1 100 0'
+  refused 1 'net.msn:5|more lines' "$network"
+  lines '2 1' '0 0 1 1 0' '1 0 1 0 0' '0 1 1 100 0'
+  refused 1 'no probe' "$network"
+  lines '2 0' '0 0 1 1 0' '1 0 1 0 1'
+  refused 1 'particle 1|not joined' "$network"
+  head -c 5000 /dev/urandom >"$network"
+  refused 1 'net.msn' "$network"
+
+  # What goes wrong later.
+  lines '2 1' '0 0 1 1 0' '0 -1 1 0 1' '0 1 1 1e9 0'
+  refused 1 'unstable|particle 1|substeps' "$network"
+  lines '2 1' '0 0 1 1 0' '0 -1 1 0 1' '0 1 1 100 0'
+  refused 1 'not at rest|--steps' "$network" --steps 3
+  refused 1 'nowhere' "$network" --picture "$scratch/nowhere/x.png"
+  refused 1 'nowhere' "$network" --svg "$scratch/nowhere/x.svg"
+  refused 1 'net.msn' "$network" --out "$network"
+}
+
+# The field of a CSV line.
+field() {
+  echo "$line" | cut -d, -f"$1"
+}
+
+# Two numbers are within so much of each other, relative.
+near() {
+  cases=$((cases + 1))
+  awk -v a="$1" -v b="$2" -v t="$3" 'BEGIN { d = a - b; if (d < 0) d = -d; exit !(d <= t * b) }' ||
+    complain "$1 is not $2 within $3: $4"
+}
+
+same() {
+  cases=$((cases + 1))
+  [ "$1" = "$2" ] || complain "\"$1\" is not \"$2\": $3"
+}
+
+# Run; what comes out is in $line, what is said in err.
+succeed() {
+  cases=$((cases + 1))
+  "$bending" "$@" >"$scratch/out" 2>"$scratch/err" </dev/null || complain "exit status $?: $*"
+  line=$(tail -n 1 "$scratch/out")
+}
+
+results() {
+  # A weight of 2 kg on a spring of 500 N/m: m g / k.
+  lines '# a weight on a spring' '2 1' '0 0 1 1 0' '0 -1 2 0 1' '' '0 1 1 500 0 # the spring'
+  succeed "$network" --csv-header
+  same "$(head -n 1 "$scratch/out")" \
+    'scene,particles,springs,solver,substeps,stiffness,damping,dt,bending_m,settle_s,us_per_step_median,level,finite' header
+  same "$(echo "$line" | tr -dc , | wc -c | tr -d ' ')" 12 "commas in: $line"
+  same "$(field 1),$(field 2),$(field 3),$(field 4),$(field 5)" net,2,1,explicit,30 "$line"
+  near "$(field 6)" 500 1e-6 stiffness
+  near "$(field 8)" 0.015625 1e-9 dt
+  near "$(field 9)" 0.0392 1e-4 'm g / k' # what "at rest" leaves
+  same "$(field 13)" 1 finite
+
+  # Its options reach the network.
+  succeed "$network" --csv --stiffness 1000 --damping 3 --dt 0.01 --substeps 7 --gravity 19.6 --level scalar
+  same "$(field 5),$(field 6),$(field 7),$(field 8),$(field 12)" 7,1000,3,0.01,scalar "$line"
+  near "$(field 9)" 0.0392 1e-4 'twice the weight on twice the stiffness'
+  succeed "$network" --csv --stiffness 0.25 --relative --dt 0.01 --substeps 1
+  near "$(field 6)" 1666.667 1e-4 'a quarter of mu / h^2, mu = 2/3 kg'
+
+  # Pictures are what they are called.
+  succeed "$network" --picture "$scratch/p.png" --svg "$scratch/p.svg"
+  grep -q 'bending' "$scratch/out" || complain 'the table has no bending'
+  succeed "$network" --out "$scratch/pictures"
+  for picture in "$scratch/p.png" "$scratch/pictures/net.png" "$scratch/pictures/net_animation.png"; do
+    same "$(head -c 8 "$picture" | od -An -tx1 | tr -d ' \n')" 89504e470d0a1a0a "$picture"
+    same "$(tail -c 8 "$picture" | head -c 4)" IEND "$picture"
+  done
+  for picture in "$scratch/p.svg" "$scratch/pictures/net.svg"; do
+    same "$(grep -c '<svg' "$picture")" 1 "$picture"
+    same "$(tail -n 1 "$picture")" '</svg>' "$picture"
+  done
+
+  # The article's bar as an image, against the oracle: 20.0586 m in static equilibrium.
+  {
+    echo 'P3 80 5 255'
+    for row in 1 2 3 4 5; do
+      echo '10 10 10'
+      for column in $(seq 2 79); do
+        echo '128 128 144'
+      done
+      if [ $row = 1 ]; then echo '33 108 207'; else echo '128 128 144'; fi
+    done
+  } >"$image"
+  succeed "$image" --csv
+  same "$(field 1),$(field 2),$(field 3)" image,400,1347 "$line"
+  near "$(field 9)" 20.0586 1e-3 'bending of 80 x 5'
+  from_pnm=$(field 9)
+  succeed "$source/examples/data/bar_80x5.png" --csv
+  same "$(field 9)" "$from_pnm" 'PNG and PNM of the same bar'
+}
+
+memory() {
+  # 9 million particles do not fit into 400 MB.
+  printf 'P5 3000 3000 255\n' >"$image"
+  head -c 9000000 /dev/zero | tr '\0' '\012' >>"$image"
+  ulimit -v 400000
+  refused 1 'memory' "$image"
+}
+
+$part
+echo "$cases checked, $wrong wrong"
+[ $wrong -eq 0 ]
