@@ -80,6 +80,23 @@ static mspring_network *graph(mspring_network_def *def) {
     return network_of(scene_random_graph(1000, 8, 3, &options, &made, &error), &made, &error, def);
 }
 
+#if defined(GOLDEN_IMAGES)
+static mspring_network *ship(mspring_network_def *def) {
+    scene made;
+    scene_error error;
+    scene_materials materials = {0};
+    scene_options options = scene_options_from_file(), of_ropes = scene_options_default();
+    of_ropes.damping = 200;
+    bool ok = scene_materials_read(GOLDEN_IMAGES "/ship_materials.csv", &materials, &error) &&
+              scene_image(GOLDEN_IMAGES "/ship.png", &materials, &options, &made, &error) &&
+              scene_add_ropes(&made, 40, 30, 9, &of_ropes, &error);
+    scene_materials_free(&materials);
+    return network_of(ok, &made, &error, def);
+}
+#else
+#define ship NULL // no PNG in this build
+#endif
+
 /// Two lattices with holes and pins, ropes between them, springs across, loose particles; all of it shuffled.
 static recipe everything(void) {
     uint64_t seed = 2026;
@@ -134,6 +151,7 @@ const golden_scene golden_scenes[] = {
     {"bar_standing_damped", bar_standing_damped, NULL, 31, 50, 1.0 / 60},
     {"bar_relative", bar_relative, NULL, 7, 100, 0.017},
     {"bar_with_ropes", bar_with_ropes, NULL, 40, 20, 1.0 / 64},
+    {"ship", ship, NULL, 40, 5, 1.0 / 64},
     {"rope", rope, NULL, 50, 64, 1.0 / 64},
     {"graph", graph, NULL, 40, 40, 1.0 / 64},
     {"everything_damped", everything_damped, push_some, 4, 100, 1.0 / 64},

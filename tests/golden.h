@@ -9,7 +9,7 @@
 
 typedef struct golden_scene {
     const char *name;
-    /// Make the network with these settings, which it may change (not the level).
+    /// Make the network with these settings, which it may change (not the level). NULL if this build cannot.
     mspring_network *(*make)(mspring_network_def *def);
     /// What the host does before each step; NULL: nothing.
     void (*before_step)(mspring_network *network, uint32_t step);

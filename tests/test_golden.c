@@ -38,6 +38,10 @@ static void every_scene_has_its_hash(void **state) {
     uint32_t wrong = 0;
     for (uint32_t i = 0; i < golden_scene_count; i++) {
         const golden_scene *scene = &golden_scenes[i];
+        if (scene->make == NULL) {
+            print_message("%s: skipped, this build reads no PNG (libstb-dev)\n", scene->name);
+            continue;
+        }
         uint64_t expected = 0, hash = golden_run(scene, level);
         bool known = read_hash(scene->name, &expected);
         if (!known || hash != expected) {
@@ -73,6 +77,12 @@ static void every_hash_is_that_of_a_scene(void **state) {
 }
 
 static int write_hashes(void) {
+    for (uint32_t i = 0; i < golden_scene_count; i++) {
+        if (golden_scenes[i].make == NULL) {
+            fprintf(stderr, "this build cannot make %s: it reads no PNG (libstb-dev)\n", golden_scenes[i].name);
+            return 1;
+        }
+    }
     FILE *file = fopen(file_name, "w");
     if (file == NULL) {
         perror(file_name);
