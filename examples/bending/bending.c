@@ -2,12 +2,12 @@
 /// Let a network settle under gravity and measure how far its probe comes down.
 ///
 /// SPDX-License-Identifier: MIT
-#include "bending/film.h"
 #include "bending/options.h"
 #include "bending/report.h"
 #include "bending/settle.h"
 #include "common/output.h"
 #include "common/progress.h"
+#include "draw/film.h"
 #include "draw/network_picture.h"
 
 #include <math.h>

@@ -41,6 +41,19 @@ bool output_path(char path[OUTPUT_PATH_SIZE], const char *folder, const char *na
     return false;
 }
 
+bool output_figure(const figure *drawn, const char *folder, const char *name) {
+    char path[OUTPUT_PATH_SIZE];
+    draw_error error = {""};
+    bool ok = output_path(path, folder, name, ".png");
+    if (ok && (ok = figure_write_png(drawn, path, &error)))
+        printf("written %s\n", path);
+    if (ok && (ok = output_path(path, folder, name, ".svg")) && (ok = figure_write_svg(drawn, path, &error)))
+        printf("written %s\n", path);
+    if (!ok && error.text[0])
+        fprintf(stderr, "%s\n", error.text);
+    return ok;
+}
+
 const char *output_folder_from_arguments(int count, char **arguments, const char *about, int *exit_code) {
     const char *folder = "out";
     if (count == 2 && strcmp(arguments[1], "--help") == 0) {

@@ -4,6 +4,7 @@
 /// SPDX-License-Identifier: MIT
 #include "draw/plot.h"
 #include "draw/colour_scale.h"
+#include "draw/internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -57,7 +58,9 @@ static void format_tick(char *text, size_t size, double value, double step, bool
     // Steps add up to -0 or 1e-17 where 0 is meant.
     if (fabs(value) < 1e-6 * step)
         value = 0;
-    if (power)
+    if (power && fabs(value) > 3)
+        snprintf(text, size, "1e%.0f", value);
+    else if (power)
         snprintf(text, size, "%g", pow(10, value));
     else
         snprintf(text, size, "%.6g", value);
@@ -96,16 +99,14 @@ static void draw_curve(figure *target, const plot *drawn, const plot_curve *curv
 
 // The curves' names, in a row at the top right.
 static void draw_names(figure *target, const plot *drawn, const plot_axis *across, const plot_axis *up) {
+    const double height = 10;
+    const double sample = 24;
     double x = across->end;
     for (size_t c = drawn->curve_count; c-- > 0;) {
-        const double letter = 6.6;
-        size_t letters = 0;
-        while (drawn->curves[c].name[letters])
-            letters++;
-        figure_text(target, x, up->end - 10, 10, FIGURE_RIGHT, ink, drawn->curves[c].name);
-        x -= (double)letters * letter + 10;
-        figure_line(target, x - 22, up->end - 14, x, up->end - 14, 2.5, drawn->curves[c].colour);
-        x -= 44;
+        figure_text(target, x, up->end - 10, height, FIGURE_RIGHT, ink, drawn->curves[c].name);
+        x -= stroke_font_width(height, drawn->curves[c].name) + 10;
+        figure_line(target, x - sample, up->end - 15, x, up->end - 15, 2.5, drawn->curves[c].colour);
+        x -= sample + 20;
     }
 }
 

@@ -44,12 +44,26 @@ static bool fail_decode(const char *name, scene_error *error) {
                       name, reason ? reason : "no reason given");
 }
 
+static uint32_t load_u32(const uint8_t *bytes) {
+    return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
+}
+
+// A PNG file starts with its size. stb_image refuses large ones, too, but without saying that this is why.
+static bool check_png_size(const uint8_t *bytes, size_t length, const char *name, scene_error *error) {
+    enum { WIDTH = 16, HEIGHT = 20, HEADER_END = 24 };
+    if (bytes[0] != 0x89 || length < HEADER_END || memcmp(bytes + WIDTH - 4, "IHDR", 4) != 0)
+        return true;
+    return image_check_size(name, load_u32(bytes + WIDTH), load_u32(bytes + HEIGHT), error);
+}
+
 bool image_decode_stb(const uint8_t *bytes, size_t length, const char *name, pixel_image *out, scene_error *error) {
     int width = 0;
     int height = 0;
     int channels = 0;
     if (length > INT_MAX)
         return scene_fail(error, "%.200s: the file is too large: %zu bytes", name, length);
+    if (!check_png_size(bytes, length, name, error))
+        return false;
     if (!stbi_info_from_memory(bytes, (int)length, &width, &height, &channels))
         return fail_decode(name, error);
     if (width < 0 || height < 0)

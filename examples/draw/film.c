@@ -2,7 +2,7 @@
 /// Frames of a network.
 ///
 /// SPDX-License-Identifier: MIT
-#include "bending/film.h"
+#include "draw/film.h"
 #include "draw/png.h"
 
 #include <stdio.h>
@@ -42,6 +42,14 @@ void film_free(film *unwanted) {
 
 static double *frame_of(const film *source, double *positions, uint32_t frame) {
     return positions + (size_t)frame * source->shape->particle_count;
+}
+
+const double *film_last_x(const film *source) {
+    return frame_of(source, source->x, source->frame_count - 1);
+}
+
+const double *film_last_y(const film *source) {
+    return frame_of(source, source->y, source->frame_count - 1);
 }
 
 static void drop_every_second(film *target) {

@@ -2,8 +2,8 @@
 /// A moving picture of a network, kept while it moves and drawn afterwards.
 ///
 /// SPDX-License-Identifier: MIT
-#ifndef BENDING_FILM_H
-#define BENDING_FILM_H
+#ifndef DRAW_FILM_H
+#define DRAW_FILM_H
 
 #include "draw/network_picture.h"
 
@@ -23,6 +23,10 @@ void film_free(film *unwanted);
 
 /// To be called after each step.
 void film_step(film *target, const mspring_network *network);
+
+/// Positions of the last frame, [particle_count]. There must be one.
+const double *film_last_x(const film *source);
+const double *film_last_y(const film *source);
 
 /// Write the film as a moving PNG.
 bool film_write(const film *source, const char *path, const char *title, draw_error *error);

@@ -1,0 +1,99 @@
+/// @file 05_plan.c
+/// How the library lays networks out: which springs it sweeps without any index, and which are left over.
+///
+/// SPDX-License-Identifier: MIT
+#include "scenes/scene.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void print_header(void) {
+    printf("%-16s %9s %9s | %8s %9s | %6s %8s | %8s | %7s %7s\n", "scene", "particles", "springs", "lattices",
+           "springs", "chains", "springs", "leftover", "damping", "level");
+}
+
+static bool print_plan(const scene *planned) {
+    mspring_network *network = NULL;
+    mspring_plan plan = {.struct_size = sizeof plan};
+    if (mspring_network_create(planned->builder, NULL, &network) != MSPRING_OK) {
+        fprintf(stderr, "%s: %s\n", planned->name, mspring_builder_error(planned->builder));
+        return false;
+    }
+    bool ok = mspring_network_plan(network, &plan) == MSPRING_OK;
+    if (ok)
+        printf("%-16s %9u %9u | %8u %9u | %6u %8u | %8u | %7s %7s\n", planned->name, plan.particle_count,
+               plan.spring_count, plan.lattice_count, plan.lattice_springs, plan.chain_count, plan.chain_springs,
+               plan.leftover_springs, plan.has_damping ? "yes" : "no", mspring_simd_name(plan.simd_level));
+    else
+        fprintf(stderr, "%s: %s\n", planned->name, mspring_network_error(network));
+    mspring_network_destroy(network);
+    return ok;
+}
+
+static bool make_scene(int index, scene *made, scene_error *error) {
+    const scene_options options = scene_options_default();
+    switch (index) {
+    case 0:
+        return scene_bar(80, 5, &options, made, error);
+    case 1:
+        return scene_bar(544, 68, &options, made, error);
+    case 2:
+        return scene_rope(1000, &options, made, error);
+    case 3:
+        return scene_random_graph(10000, 8, 1, &options, made, error);
+    default:
+        // A hull with rigging: ropes are chains, and their ends are what is left over.
+        if (!scene_bar(200, 40, &options, made, error))
+            return false;
+        snprintf(made->name, sizeof made->name, "bar with ropes");
+        if (scene_add_ropes(made, 20, 30, 1, &options, error))
+            return true;
+        scene_free(made);
+        return false;
+    }
+}
+
+static bool has_ending(const char *path, const char *ending) {
+    size_t length = strlen(path);
+    return length >= strlen(ending) && strcmp(path + length - strlen(ending), ending) == 0;
+}
+
+static bool read_scene(const char *path, scene *made, scene_error *error) {
+    const scene_options options = scene_options_from_file();
+    if (has_ending(path, ".msn") || has_ending(path, ".txt"))
+        return scene_network_file(path, &options, made, error);
+    scene_materials materials = {0};
+    bool ok = scene_materials_builtin(&materials, error) && scene_image(path, &materials, &options, made, error);
+    scene_materials_free(&materials);
+    return ok;
+}
+
+static bool print_scene(bool made, scene *planned, const scene_error *error) {
+    if (!made) {
+        fprintf(stderr, "%s\n", error->text);
+        return false;
+    }
+    bool ok = print_plan(planned);
+    scene_free(planned);
+    return ok;
+}
+
+int main(int count, char **arguments) {
+    enum { SCENES = 5 };
+    scene planned;
+    scene_error error = {""};
+    bool ok = true;
+    if (count > 2 || (count == 2 && strcmp(arguments[1], "--help") == 0)) {
+        printf("05_plan: how the library lays networks out.\n\n"
+               "usage: %s [FILE]\n\nFILE is an image in the built-in colours, or a network (.msn, .txt).\n",
+               arguments[0]);
+        return count > 2 ? 2 : EXIT_SUCCESS;
+    }
+    print_header();
+    if (count == 2)
+        ok = print_scene(read_scene(arguments[1], &planned, &error), &planned, &error);
+    for (int i = 0; count == 1 && ok && i < SCENES; i++)
+        ok = print_scene(make_scene(i, &planned, &error), &planned, &error);
+    return ok ? EXIT_SUCCESS : EXIT_FAILURE;
+}
