@@ -1,8 +1,12 @@
 #!/bin/sh
-# The program `bending` given what is wrong in every way: it must say what is wrong and where, with exit status 1 (what
-# it was given) or 2 (how it was called), and never crash. And given what is right: the numbers it must print.
+# The example programs.
 #
-#   examples.sh errors|results|memory BENDING SOURCE
+#   examples.sh errors   BENDING SOURCE   `bending` given what is wrong in every way: it must say what is wrong and
+#                                         where, with exit status 1 (what it was given) or 2 (how it was called), and
+#                                         never crash
+#   examples.sh memory   BENDING SOURCE   the same, with more than fits into memory
+#   examples.sh results  BENDING SOURCE   `bending` given what is right: the numbers that it must print
+#   examples.sh programs BENDING SOURCE   the small programs beside it: what they print and draw
 set -eu
 part=$1 bending=$2 source=$3
 scratch=$(mktemp -d)
@@ -233,6 +237,16 @@ near() {
     complain "$1 is not $2 within $3: $4"
 }
 
+# Whole pictures.
+png() {
+  same "$(head -c 8 "$1" | od -An -tx1 | tr -d ' \n')" 89504e470d0a1a0a "$1"
+  same "$(tail -c 8 "$1" | head -c 4)" IEND "$1"
+}
+svg() {
+  same "$(grep -c '<svg' "$1")" 1 "$1"
+  same "$(tail -n 1 "$1")" '</svg>' "$1"
+}
+
 same() {
   cases=$((cases + 1))
   [ "$1" = "$2" ] || complain "\"$1\" is not \"$2\": $3"
@@ -269,25 +283,20 @@ results() {
   succeed "$network" --picture "$scratch/p.png" --svg "$scratch/p.svg"
   grep -q 'bending' "$scratch/out" || complain 'the table has no bending'
   succeed "$network" --out "$scratch/pictures"
-  for picture in "$scratch/p.png" "$scratch/pictures/net.png" "$scratch/pictures/net_animation.png"; do
-    same "$(head -c 8 "$picture" | od -An -tx1 | tr -d ' \n')" 89504e470d0a1a0a "$picture"
-    same "$(tail -c 8 "$picture" | head -c 4)" IEND "$picture"
+  for picture in "$scratch/p" "$scratch/pictures/net"; do
+    png "$picture.png"
+    svg "$picture.svg"
   done
-  for picture in "$scratch/p.svg" "$scratch/pictures/net.svg"; do
-    same "$(grep -c '<svg' "$picture")" 1 "$picture"
-    same "$(tail -n 1 "$picture")" '</svg>' "$picture"
-  done
+  png "$scratch/pictures/net_animation.png"
 
   # The article's bar as an image, against the oracle: 20.0586 m in static equilibrium.
   {
     echo 'P3 80 5 255'
-    for row in 1 2 3 4 5; do
-      echo '10 10 10'
-      for column in $(seq 2 79); do
-        echo '128 128 144'
-      done
-      if [ $row = 1 ]; then echo '33 108 207'; else echo '128 128 144'; fi
-    done
+    awk 'BEGIN {
+      for (row = 0; row < 5; row++)
+        for (column = 0; column < 80; column++)
+          print column == 0 ? "10 10 10" : row == 0 && column == 79 ? "33 108 207" : "128 128 144"
+    }'
   } >"$image"
   succeed "$image" --csv
   same "$(field 1),$(field 2),$(field 3)" image,400,1347 "$line"
@@ -297,10 +306,41 @@ results() {
   same "$(field 9)" "$from_pnm" 'PNG and PNM of the same bar'
 }
 
+programs() {
+  folder=$(cd "$(dirname "$bending")" && pwd)
+  mkdir "$scratch/work"
+  cd "$scratch/work"
+  for program in 01_spring 02_square 03_bar 04_explosion; do
+    bending=$folder/$program
+    succeed
+    sed -n 's/^written //p' "$scratch/out" >written
+    [ -s "$scratch/out" ] || complain "$program prints nothing"
+    [ -s written ] || complain "$program draws nothing"
+    while read -r file; do
+      case $file in
+      *.png) png "$file" ;;
+      *.svg) svg "$file" ;;
+      *) complain "$program writes $file" ;;
+      esac
+    done <written
+    cp "$scratch/out" "$program.out"
+  done
+  # 139,000 N/m are refused in time, 229,376 N/m in shorter steps are not.
+  [ "$(grep -c 'refused' 04_explosion.out)" -eq 1 ] || complain 'nothing exploded, or the cure failed'
+  grep -q 'stable' 04_explosion.out || complain 'nothing was stable'
+
+  bending=$folder/05_plan
+  succeed "$source/examples/data/truss.msn"
+  same "$(echo "$line" | tr -s ' ' | cut -d' ' -f1-3)" "truss $(head -n 20 "$source/examples/data/truss.msn" |
+    awk '!/^#/ && NF == 2 { print; exit }')" 'scene, particles, springs'
+  refused 1 'nowhere.png' nowhere.png
+}
+
 memory() {
   # 9 million particles do not fit into 400 MB.
   printf 'P5 3000 3000 255\n' >"$image"
   head -c 9000000 /dev/zero | tr '\0' '\012' >>"$image"
+  # shellcheck disable=SC3045 # not in POSIX, but in every shell of the systems where this test runs
   ulimit -v 400000
   refused 1 'memory' "$image"
 }
