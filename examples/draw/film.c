@@ -9,7 +9,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_FRAMES = 80, LEAST_FRAMES = 8, FRAME_WIDTH = 640, FRAME_HEIGHT = 480, FRAME_MILLISECONDS = 60 };
+enum {
+    MOST_FRAMES = 64,
+    LEAST_FRAMES = 8,
+    FRAME_WIDTH = 520,
+    FRAME_HEIGHT = 400,
+    FRAME_MILLISECONDS = 60,
+    FRAME_COLOURS = 64, // fewer make smaller files
+};
 
 // Memory for the frames.
 static const size_t most_bytes = (size_t)1 << 29;
@@ -95,7 +102,7 @@ static bool choose_colours(palette *made, const film *source, const network_view
     bool ok = true;
     for (uint32_t i = 0; ok && i < SAMPLES; i++)
         ok = draw_frame(&samples[i], source, view, (source->frame_count - 1) * i / (SAMPLES - 1), title, error);
-    if (ok && !palette_make(made, samples, SAMPLES)) {
+    if (ok && !palette_make(made, samples, SAMPLES, FRAME_COLOURS)) {
         snprintf(error->text, sizeof error->text, "out of memory for an animation");
         ok = false;
     }

@@ -88,7 +88,7 @@ static void draw_particles(figure *target, const network_shape *shape, const net
             double half = fmax(1.25 * radius, 1);
             figure_rectangle(target, to_x(view, x[i]) - half, to_y(view, y[i]) - half, 2 * half, 2 * half,
                              pin_colour);
-        } else if (radius >= 1) {
+        } else if (radius >= 1.5) {
             figure_disc(target, to_x(view, x[i]), to_y(view, y[i]), radius, ink);
         }
     }

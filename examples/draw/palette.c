@@ -55,13 +55,13 @@ static size_t sorted_place(const palette *colours, draw_colour colour) {
 }
 
 // Lists the colours of a picture. Returns false if they get too many.
-static bool list_colours(palette *made, const canvas *picture) {
+static bool list_colours(palette *made, const canvas *picture, size_t most) {
     for (size_t i = 0; i < (size_t)picture->width * picture->height; i++) {
         draw_colour colour = pixel_colour(picture, i);
         size_t place = sorted_place(made, colour);
         if (place < made->count && made->colours[place] == colour)
             continue;
-        if (made->count == PALETTE_MOST)
+        if (made->count == most)
             return false;
         memmove(made->colours + place + 1, made->colours + place, (made->count - place) * sizeof *made->colours);
         made->colours[place] = colour;
@@ -142,11 +142,11 @@ static draw_colour mean_colour(const colour_bin *bins, const colour_box *box) {
     return mean;
 }
 
-static size_t cut_boxes(const colour_bin *bins, colour_box *boxes) {
+static size_t cut_boxes(const colour_bin *bins, colour_box *boxes, size_t most) {
     size_t count = 1;
     boxes[0] = (colour_box){.high = {SIDE - 1, SIDE - 1, SIDE - 1}};
     measure_box(bins, &boxes[0]);
-    while (count < PALETTE_MOST) {
+    while (count < most) {
         size_t widest = 0;
         for (size_t i = 1; i < count; i++)
             if (boxes[i].spread > boxes[widest].spread)
@@ -174,15 +174,15 @@ static void fill_nearest(palette *made, const colour_bin *bins, const colour_box
     }
 }
 
-static bool cut_colours(palette *made, const canvas *pictures, size_t count) {
+static bool cut_colours(palette *made, const canvas *pictures, size_t count, size_t most) {
     colour_bin *bins = calloc(BINS, sizeof *bins);
-    colour_box *boxes = malloc(PALETTE_MOST * sizeof *boxes);
+    colour_box *boxes = malloc(most * sizeof *boxes);
     made->nearest = malloc(BINS);
     bool ok = bins && boxes && made->nearest;
     if (ok) {
         for (size_t i = 0; i < count; i++)
             count_colours(bins, &pictures[i]);
-        made->count = cut_boxes(bins, boxes);
+        made->count = cut_boxes(bins, boxes, most);
         for (size_t i = 0; i < made->count; i++)
             made->colours[i] = mean_colour(bins, &boxes[i]);
         fill_nearest(made, bins, boxes);
@@ -192,12 +192,12 @@ static bool cut_colours(palette *made, const canvas *pictures, size_t count) {
     return ok;
 }
 
-bool palette_make(palette *made, const canvas *pictures, size_t count) {
+bool palette_make(palette *made, const canvas *pictures, size_t count, size_t most) {
     memset(made, 0, sizeof *made);
     made->exact = true;
     for (size_t i = 0; made->exact && i < count; i++)
-        made->exact = list_colours(made, &pictures[i]);
-    if (made->exact || cut_colours(made, pictures, count))
+        made->exact = list_colours(made, &pictures[i], most);
+    if (made->exact || cut_colours(made, pictures, count, most))
         return true;
     palette_free(made);
     return false;

@@ -113,7 +113,7 @@ static bool write_still(FILE *stream, const canvas *source, const palette *colou
 
 bool png_write(const canvas *source, const char *path, draw_error *error) {
     palette colours;
-    if (!palette_make(&colours, source, 1))
+    if (!palette_make(&colours, source, 1, PALETTE_MOST))
         return draw_fail(error, "cannot write %.200s: out of memory", path);
     FILE *stream = draw_open(path, error);
     bool ok = stream != NULL;
