@@ -306,6 +306,14 @@ static uint32_t widest_row(const assembly *a) {
     return widest > chain ? widest : chain;
 }
 
+static uint32_t count_rows(const assembly *a) {
+    uint32_t rows = 0;
+    for (uint32_t grid = 0; grid < a->grids.count; ++grid)
+        for (uint32_t i = a->first_block[grid]; i < a->first_block[grid + 1]; ++i)
+            rows += i == a->first_block[grid] || row_of(a->blocks[i - 1]) != row_of(a->blocks[i]);
+    return rows;
+}
+
 static bool append_lattice_spans(assembly *a, uint32_t grid, uint32_t carry_half) {
     mspringi_topology *t = a->topology;
     for (uint32_t i = a->first_block[grid]; i < a->first_block[grid + 1]; ++i) {
@@ -326,7 +334,8 @@ static bool append_lattice_spans(assembly *a, uint32_t grid, uint32_t carry_half
             .record_slots = MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH,
         };
         t->up_of_block[i] = span.up_block;
-        t->lattice_rows += starts_row;
+        if (starts_row)
+            t->first_span[t->lattice_rows++] = t->span_count;
         if (!append_span(a, &span))
             return false;
     }
@@ -349,11 +358,13 @@ static mspring_result make_spans(assembly *a) {
     const uint32_t carry_half = widest_row(a);
     t->carry_blocks = 2 * carry_half;
     t->up_of_block = mspringi_alloc(a->memory, t->lattice_blocks, sizeof *t->up_of_block);
-    if (!t->up_of_block)
+    t->first_span = mspringi_alloc(a->memory, (size_t)count_rows(a) + 1, sizeof *t->first_span);
+    if (!t->up_of_block || !t->first_span)
         return out_of_memory(a);
     for (uint32_t grid = 0; grid < a->grids.count; ++grid)
         if (!append_lattice_spans(a, grid, carry_half))
             return out_of_memory(a);
+    t->first_span[t->lattice_rows] = t->span_count;
 
     for (uint32_t block = 0; block < t->chain_blocks; block += LONGEST_CHAIN_SPAN) {
         const uint32_t left = t->chain_blocks - block;
@@ -454,5 +465,6 @@ void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *mem
     mspringi_free(memory, topology->leftover_a);
     mspringi_free(memory, topology->leftover_b);
     mspringi_free(memory, topology->spans);
+    mspringi_free(memory, topology->first_span);
     *topology = (mspringi_topology){0};
 }

@@ -74,8 +74,9 @@ typedef struct mspringi_topology {
     uint32_t *leftover_a, *leftover_b; ///< [leftover_count] slots
     mspringi_web web;
 
-    mspringi_span *spans;
+    mspringi_span *spans; ///< those of lattice rows first
     uint32_t span_count;
+    uint32_t *first_span;  ///< [lattice_rows + 1] of each lattice row
     uint32_t carry_blocks; ///< blocks of the carry row; the first half stays zero
 
     // For the plan.
