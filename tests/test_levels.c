@@ -4,8 +4,12 @@
 ///
 /// SPDX-License-Identifier: MIT
 #include <fenv.h>
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
 
 #include "allocator.h"
 #include "level.h"
@@ -163,40 +167,75 @@ static void extreme_values(void **state) {
     }
 }
 
+/// Build and step a network while the host has set a rounding mode, and find that it is still set.
+static uint64_t hash_in_rounding_mode(const recipe *made, int mode) {
+    mspring_network_def def = support_def(-9.8f, 3);
+    def.simd_level = level;
+    def.global_damping = 0.25f;
+    assert_int_equal(fesetround(mode), 0);
+    mspring_network *network = recipe_network(made, &def);
+    support_steps(network, 10, 1.0 / 64);
+    const int mode_after = fegetround();
+    fesetround(FE_TONEAREST);
+    assert_int_equal(mode_after, mode);
+    uint64_t hash = support_hash(network);
+    mspring_network_destroy(network);
+    return hash;
+}
+
 static void rounding_mode_of_the_host_does_not_matter(void **state) {
     (void)state;
     const int modes[] = {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
     uint64_t seed = 8;
     recipe_stuff stuff = random_stuff(1);
     recipe made = {0};
-    recipe_lattice(&made, 30, 10, 0, 0, 1, &stuff, &seed);
+    recipe_lattice(&made, 30, 10, 0.1, 0.7, 0.3, &stuff,
+                   &seed); // positions and rest lengths that have to be rounded
     recipe_rope(&made, 5, 200, 12, &stuff, &seed);
     recipe_random_springs(&made, 10, &stuff, &seed);
-    recipe_disturb(&made, 0.1, 3, &seed);
-    mspring_network_def def = support_def(-9.8f, 3);
-    def.simd_level = level;
-    def.global_damping = 0.25f;
-    mspring_network *nearest = recipe_network(&made, &def);
-    support_steps(nearest, 10, 1.0 / 64);
+    const uint64_t expected = hash_in_rounding_mode(&made, FE_TONEAREST);
     for (size_t i = 0; i < COUNT_OF(modes); i++) {
-        mspring_network *network = recipe_network(&made, &def);
-        assert_int_equal(fesetround(modes[i]), 0);
-        for (int step = 0; step < 10; step++) {
-            mspring_result result = mspring_network_step(network, 1.0 / 64);
-            int mode = fegetround();
-            if (result != MSPRING_OK || mode != modes[i]) {
-                fesetround(FE_TONEAREST);
-            }
-            check_ok(result);
-            assert_int_equal(mode, modes[i]); // and it is the host's again afterwards
-        }
-        fesetround(FE_TONEAREST);
-        assert_int_equal(support_hash(network), support_hash(nearest));
-        mspring_network_destroy(network);
+        assert_int_equal(hash_in_rounding_mode(&made, modes[i]), expected);
     }
-    mspring_network_destroy(nearest);
     recipe_free(&made);
 }
+
+#if defined(__SSE__)
+#define FLUSH_TO_ZERO 0x8040u // of denormal results and operands
+
+static void set_flushing(int on) {
+    _mm_setcsr(on ? _mm_getcsr() | FLUSH_TO_ZERO : _mm_getcsr() & ~FLUSH_TO_ZERO);
+}
+
+static void flushing_denormals_does_not_matter(void **state) {
+    (void)state;
+    // Speeds that decay into the denormal numbers.
+    uint64_t seed = 9;
+    recipe made = {0};
+    for (int i = 0; i < 40; i++) {
+        recipe_particle(&made, i, 0, 1, 0);
+        made.particles[i].vx = (float)support_random_between(&seed, 1e-38, 1e-37);
+    }
+    mspring_network_def def = support_def(0, 1);
+    def.simd_level = level;
+    def.global_damping = 20;
+    uint64_t hashes[2];
+    for (int on = 0; on < 2; on++) {
+        mspring_network *network = recipe_network(&made, &def);
+        set_flushing(on);
+        support_steps(network, 10, 1.0 / 64);
+        const uint32_t kept = _mm_getcsr() & FLUSH_TO_ZERO;
+        set_flushing(0);
+        assert_int_equal(kept, on ? FLUSH_TO_ZERO : 0);
+        hashes[on] = support_hash(network);
+        double vx = support_velocity(network, 0).x;
+        assert_true(vx > 0 && vx < (double)FLT_MIN); // or there was nothing to flush
+        mspring_network_destroy(network);
+    }
+    assert_int_equal(hashes[0], hashes[1]);
+    recipe_free(&made);
+}
+#endif
 
 int main(int argc, char **argv) {
     level = level_from_arguments(argc, argv);
@@ -207,6 +246,9 @@ int main(int argc, char **argv) {
         cmocka_unit_test(mixtures_of_all),
         cmocka_unit_test(extreme_values),
         cmocka_unit_test(rounding_mode_of_the_host_does_not_matter),
+#if defined(__SSE__)
+        cmocka_unit_test(flushing_denormals_does_not_matter),
+#endif
     };
     return cmocka_run_group_tests_name("levels", tests, NULL, NULL);
 }

@@ -1,0 +1,229 @@
+/// @file test_web_kernels.c
+/// The kernels of the web (springs outside of rows) against the scalar ones, byte for byte, with canaries around
+/// all that they may touch: 0 to 3 groups of the web's own nodes, 0 to 2 of attached ones, 0 to 5 rungs in a group.
+///
+/// SPDX-License-Identifier: MIT
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "kernels/kernels.h"
+#include "level.h"
+#include "support.h"
+
+static const mspringi_kernels *kernels;
+
+enum {
+    W = MSPRINGI_WIDTH,
+    OWN = 3,      // most groups of own nodes,
+    ATTACHED = 2, // of attached ones,
+    GROUPS = OWN + ATTACHED,
+    RUNGS = 5, // and most rungs in a group
+    FIRST = 1, // block where the web's row begins
+    SLOTS = (1 + OWN + 1) * W,
+    GUARD = 4 * W
+};
+
+#define CANARY 0xc5c5c5c5u
+
+/// All memory of a web, what is written between canaries.
+typedef struct arena {
+    uint32_t front[GUARD];
+    float x[SLOTS];
+    uint32_t after_x[GUARD];
+    float y[SLOTS];
+    uint32_t after_y[GUARD];
+    float vx[SLOTS];
+    uint32_t after_vx[GUARD];
+    float vy[SLOTS];
+    uint32_t after_vy[GUARD];
+    float packed[GROUPS * W * 4];
+    uint32_t after_packed[GUARD];
+    float attached_x[ATTACHED * W];
+    uint32_t after_attached_x[GUARD];
+    float attached_y[ATTACHED * W];
+    uint32_t after_attached_y[GUARD];
+    float inverse_mass[SLOTS], force_x[SLOTS], force_y[SLOTS];
+    float records[GROUPS * RUNGS * 3 * W];
+    uint32_t neighbour[GROUPS * RUNGS * W];
+    uint32_t first_rung[GROUPS + 1];
+    mspringi_web web;
+    mspringi_edge edge;
+} arena;
+
+static void check_canaries(const arena *a) {
+    const uint32_t *guards[] = {a->front,    a->after_x,      a->after_y,          a->after_vx,
+                                a->after_vy, a->after_packed, a->after_attached_x, a->after_attached_y};
+    for (size_t i = 0; i < COUNT_OF(guards); i++) {
+        for (size_t j = 0; j < GUARD; j++) {
+            assert_int_equal(guards[i][j], CANARY);
+        }
+    }
+}
+
+typedef struct setup {
+    uint32_t own, attached; ///< groups
+    uint32_t parts;
+    uint64_t seed;
+} setup;
+
+static float random_float(uint64_t *seed, double low, double high) {
+    return (float)support_random_between(seed, low, high);
+}
+
+/// Random rungs; about a quarter of their places is taken by no spring, which is a node's spring to itself.
+static void fill_web(arena *a, const setup *s, uint64_t *seed) {
+    const uint32_t groups = s->own + s->attached, nodes = groups * W;
+    memset(a->records, 0, sizeof a->records);
+    memset(a->neighbour, 0, sizeof a->neighbour);
+    memset(a->first_rung, 0, sizeof a->first_rung);
+    for (uint32_t group = 0; group < groups; group++) {
+        const uint32_t rungs = (uint32_t)(support_random(seed) % (RUNGS + 1));
+        a->first_rung[group + 1] = a->first_rung[group] + rungs;
+        for (uint32_t place = a->first_rung[group] * W; place < a->first_rung[group + 1] * W; place++) {
+            const uint32_t lane = place % W, node = group * W + lane;
+            float *record = a->records + (size_t)(place / W) * s->parts * W + lane;
+            a->neighbour[place] = node;
+            if (support_random(seed) % 4 == 0) {
+                continue;
+            }
+            a->neighbour[place] = (uint32_t)(support_random(seed) % nodes);
+            record[MSPRINGI_REST_LENGTH * W] = random_float(seed, 0.5, 2);
+            record[MSPRINGI_STIFFNESS * W] = random_float(seed, 10, 1000);
+            if (s->parts > MSPRINGI_DAMPING) {
+                record[MSPRINGI_DAMPING * W] = random_float(seed, 0, 30);
+            }
+        }
+    }
+    a->web = (mspringi_web){.own_count = s->own * W,
+                            .attached_count = s->attached * W,
+                            .group_count = groups,
+                            .first_rung = a->first_rung,
+                            .neighbour = a->neighbour};
+}
+
+static arena *arena_new(const setup *s) {
+    arena *a = aligned_alloc(64, (sizeof *a + 63) / 64 * 64);
+    assert_non_null(a);
+    uint64_t seed = s->seed;
+    memset(a, 0, sizeof *a);
+    uint32_t *guards[] = {a->front,    a->after_x,      a->after_y,          a->after_vx,
+                          a->after_vy, a->after_packed, a->after_attached_x, a->after_attached_y};
+    for (size_t i = 0; i < COUNT_OF(guards); i++) {
+        for (size_t j = 0; j < GUARD; j++) {
+            guards[i][j] = CANARY;
+        }
+    }
+    for (uint32_t i = 0; i < SLOTS; i++) {
+        a->x[i] = random_float(&seed, -20, 20);
+        a->y[i] = random_float(&seed, -20, 20);
+        a->vx[i] = random_float(&seed, -5, 5);
+        a->vy[i] = random_float(&seed, -5, 5);
+        a->inverse_mass[i] = support_random(&seed) % 9 == 0 ? 0 : random_float(&seed, 0.1, 3);
+        a->force_x[i] = random_float(&seed, -50, 50);
+        a->force_y[i] = random_float(&seed, -50, 50);
+    }
+    // Own nodes are packed from their slots by the kernel; attached ones lie elsewhere.
+    for (uint32_t i = s->own * W * 4; i < (s->own + s->attached) * W * 4; i++) {
+        a->packed[i] = random_float(&seed, -20, 20);
+    }
+    fill_web(a, s, &seed);
+    return a;
+}
+
+static mspringi_sweep sweep_of(arena *a, const setup *s) {
+    return (mspringi_sweep){
+        .x = a->x,
+        .y = a->y,
+        .vx = a->vx,
+        .vy = a->vy,
+        .inverse_mass = a->inverse_mass,
+        .force_x = a->force_x,
+        .force_y = a->force_y,
+        .web = &a->web,
+        .web_springs = a->records,
+        .packed = a->packed,
+        .parts = s->parts,
+        .h = 0.01f,
+        .decay = 0.99f,
+        .gravity_h_x = 0.015f,
+        .gravity_h_y = -0.098f,
+    };
+}
+
+/// What a substep does: pack, pull at the attached nodes, sweep the own ones.
+static void run(arena *a, const setup *s, const mspringi_kernels *with, bool forced) {
+    const bool damped = s->parts > MSPRINGI_DAMPING;
+    const mspringi_sweep sweep = sweep_of(a, s);
+    const mspringi_span span = {.kind = MSPRINGI_ROW_WEB, .first_block = FIRST, .block_count = s->own};
+    with->pack(&sweep, FIRST, s->own, a->packed);
+    with->attached[damped](&sweep, a->attached_x, a->attached_y);
+    with->web[damped][forced](&sweep, &span, &a->edge);
+}
+
+static void web_kernels(void **state) {
+    (void)state;
+    for (uint32_t variant = 0; variant < 4000; variant++) {
+        const setup s = {.own = variant % (OWN + 1),
+                         .attached = variant / 4 % (ATTACHED + 1),
+                         .parts = 2 + (variant / 12 & 1),
+                         .seed = variant};
+        const bool forced = variant / 24 & 1;
+        arena *mine = arena_new(&s), *reference = arena_new(&s), *before = arena_new(&s);
+        run(mine, &s, kernels, forced);
+        run(reference, &s, &mspringi_kernels_scalar, forced);
+        check_canaries(mine);
+        check_canaries(reference);
+        // The web holds pointers, each run's own; all else is equal.
+        mine->web = reference->web = (mspringi_web){0};
+        if (memcmp(mine, reference, offsetof(arena, edge)) != 0) {
+            print_error("own %u, attached %u, parts %u, forced %d, seed %u\n", s.own, s.attached, s.parts, forced,
+                        variant);
+        }
+        assert_memory_equal(mine, reference, offsetof(arena, edge));
+        // Padding in front and behind has not moved; the row has, if there is one.
+        assert_memory_equal(mine->x, before->x, W * sizeof(float));
+        assert_memory_equal(mine->x + (FIRST + s.own) * W, before->x + (FIRST + s.own) * W,
+                            (OWN + 1 - s.own) * W * sizeof(float));
+        assert_int_equal(memcmp(mine->x, before->x, sizeof mine->x) != 0, s.own > 0);
+        free(mine);
+        free(reference);
+        free(before);
+    }
+}
+
+static void pack_copies_blocks(void **state) {
+    (void)state;
+    for (uint32_t blocks = 0; blocks <= OWN; blocks++) {
+        const setup s = {.own = OWN, .parts = 2, .seed = 5};
+        arena *a = arena_new(&s);
+        const mspringi_sweep sweep = sweep_of(a, &s);
+        for (size_t i = 0; i < COUNT_OF(a->packed); i++) {
+            a->packed[i] = -1;
+        }
+        kernels->pack(&sweep, FIRST, blocks, a->packed);
+        for (uint32_t i = 0; i < OWN * W; i++) {
+            const float *packed = a->packed + (size_t)4 * i;
+            const size_t slot = FIRST * W + i;
+            const float expected[4] = {a->x[slot], a->y[slot], a->vx[slot], a->vy[slot]},
+                        none[4] = {-1, -1, -1, -1};
+            assert_memory_equal(packed, i < blocks * W ? expected : none, sizeof expected);
+        }
+        check_canaries(a);
+        free(a);
+    }
+}
+
+int main(int argc, char **argv) {
+    mspring_simd level = level_from_arguments(argc, argv);
+    kernels = mspringi_kernels_of(level);
+    if (kernels->level != level) {
+        print_error("the kernels of %s were not built\n", mspring_simd_name(level));
+        return 1;
+    }
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(web_kernels),
+        cmocka_unit_test(pack_copies_blocks),
+    };
+    return cmocka_run_group_tests_name("web_kernels", tests, NULL, NULL);
+}
