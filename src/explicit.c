@@ -1,6 +1,4 @@
 /// The explicit solver: symplectic Euler, row by row.
-#include <string.h>
-
 #include "decay.h"
 #include "network.h"
 
@@ -38,33 +36,22 @@ static void pull_attached(const mspring_network *network, const mspringi_sweep *
     }
 }
 
-static void sweep_span(const mspringi_kernels *kernels, const mspringi_sweep *sweep, const mspringi_span *span,
-                       mspringi_edge *edge, bool damped, bool forced) {
-    switch (span->kind) {
+static void sweep_row(const mspring_network *network, const mspringi_sweep *sweep, const mspringi_row *row,
+                      bool all_forced) {
+    const mspringi_kernels *kernels = network->kernels;
+    const mspringi_span *spans = network->topology.spans + row->first_span;
+    const bool damped = network->parts > MSPRINGI_DAMPING, forced = all_forced || row->pulled;
+    switch (row->kind) {
     case MSPRINGI_ROW_LATTICE:
-        kernels->lattice[damped][forced](sweep, span, edge);
-        break;
     case MSPRINGI_ROW_CHAIN:
-        kernels->chain[damped][forced](sweep, span, edge);
+        kernels->lattice[damped][forced](sweep, spans, row->span_count);
         break;
     case MSPRINGI_ROW_WEB:
-        kernels->web[damped][forced](sweep, span, edge);
+        kernels->web[damped][forced](sweep, spans, row->span_count);
         break;
     case MSPRINGI_ROW_LOOSE:
-        kernels->loose[forced](sweep, span, edge);
+        kernels->loose[forced](sweep, spans, row->span_count);
         break;
-    }
-}
-
-static void sweep_spans(const mspring_network *network, const mspringi_sweep *sweep, uint32_t first, uint32_t end,
-                        bool forced) {
-    const bool damped = network->parts > MSPRINGI_DAMPING;
-    mspringi_edge edge;
-    for (uint32_t i = first; i < end; ++i) {
-        const mspringi_span *span = &network->topology.spans[i];
-        if (!span->continues)
-            memset(&edge, 0, sizeof edge);
-        sweep_span(network->kernels, sweep, span, &edge, damped, forced || span->pulled);
     }
 }
 
@@ -88,7 +75,7 @@ static void sweep_lattices(const mspring_network *network, const mspringi_sweep 
         for (uint32_t substep = 0; substep < count && substep <= wave; ++substep) {
             const uint32_t row = wave - substep;
             if (row < t->lattice_rows)
-                sweep_spans(network, &sweeps[substep], t->first_span[row], t->first_span[row + 1], forced);
+                sweep_row(network, &sweeps[substep], &t->rows[row], forced);
         }
     }
 }
@@ -136,7 +123,8 @@ static void take_substeps(mspring_network *network, float h, mspringi_field base
     for (uint32_t substep = 0; substep < count; ++substep) {
         if (t->web.group_count > 0 && !pulled)
             pack_nodes(network, &sweeps[substep]);
-        sweep_spans(network, &sweeps[substep], t->first_span[t->lattice_rows], t->span_count, base.x != NULL);
+        for (uint32_t row = t->lattice_rows; row < t->row_count; ++row)
+            sweep_row(network, &sweeps[substep], &t->rows[row], base.x != NULL);
     }
 }
 
