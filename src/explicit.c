@@ -1,8 +1,13 @@
 /// The explicit solver: symplectic Euler, row by row.
-#include <string.h>
-
 #include "decay.h"
 #include "network.h"
+
+/// Rows that are swept several times in one pass should stay in this much cache: half of a second-level cache of
+/// today.
+#define CACHE_BYTES ((size_t)512 << 10)
+
+/// Most substeps in one pass. More gain nothing: the state then comes from memory so rarely that arithmetic bounds.
+#define DEEPEST 16
 
 // Pack what the web sees of its nodes.
 static void pack_nodes(const mspring_network *network, const mspringi_sweep *sweep) {
@@ -31,59 +36,102 @@ static void pull_attached(const mspring_network *network, const mspringi_sweep *
     }
 }
 
-static void sweep_span(const mspringi_kernels *kernels, const mspringi_sweep *sweep, const mspringi_span *span,
-                       mspringi_edge *edge, bool damped, bool forced) {
-    switch (span->kind) {
+static void sweep_row(const mspring_network *network, const mspringi_sweep *sweep, const mspringi_row *row,
+                      bool all_forced) {
+    const mspringi_kernels *kernels = network->kernels;
+    const mspringi_span *spans = network->topology.spans + row->first_span;
+    const bool damped = network->parts > MSPRINGI_DAMPING, forced = all_forced || row->pulled;
+    switch (row->kind) {
     case MSPRINGI_ROW_LATTICE:
-        kernels->lattice[damped][forced](sweep, span, edge);
-        break;
     case MSPRINGI_ROW_CHAIN:
-        kernels->chain[damped][forced](sweep, span, edge);
+        kernels->lattice[damped][forced](sweep, spans, row->span_count);
         break;
     case MSPRINGI_ROW_WEB:
-        kernels->web[damped][forced](sweep, span, edge);
+        kernels->web[damped][forced](sweep, spans, row->span_count);
         break;
     case MSPRINGI_ROW_LOOSE:
-        kernels->loose[forced](sweep, span, edge);
+        kernels->loose[forced](sweep, spans, row->span_count);
         break;
     }
 }
 
-void mspringi_explicit_substep(mspring_network *network, float h, mspringi_field base) {
-    const mspringi_topology *t = &network->topology;
-    const bool damped = network->parts > MSPRINGI_DAMPING, pulled = t->web.attached_count > 0;
-    const mspringi_field field = pulled ? network->forces.total : base;
-    const mspringi_sweep sweep = {
-        .x = network->state.x,
-        .y = network->state.y,
-        .vx = network->state.vx,
-        .vy = network->state.vy,
-        .inverse_mass = network->inverse_mass,
-        .force_x = field.x,
-        .force_y = field.y,
-        .carry_x = network->carry,
-        .carry_y = network->carry + (size_t)t->carry_blocks * MSPRINGI_WIDTH,
-        .lattice_springs = network->lattice_springs,
-        .chain_springs = network->chain_springs,
-        .web = &t->web,
-        .web_springs = network->web_springs,
-        .packed = network->packed,
-        .parts = network->parts,
-        .h = h,
-        .decay = mspringi_decay(network->global_damping, h),
-        .gravity_h_x = network->gravity_x * h,
-        .gravity_h_y = network->gravity_y * h,
-    };
-    if (t->web.group_count > 0)
-        pack_nodes(network, &sweep);
-    if (pulled)
-        pull_attached(network, &sweep, base);
+uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t parts) {
+    if (topology->web.attached_count > 0 || topology->lattice_rows == 0)
+        return 1;
+    const size_t floats_per_slot = 4 + 1 + (size_t)MSPRINGI_DIRECTIONS * parts; // state, inverse mass, springs
+    const size_t slots_per_row = (size_t)topology->lattice_blocks * MSPRINGI_WIDTH / topology->lattice_rows;
+    const size_t rows = CACHE_BYTES / (floats_per_slot * sizeof(float) * slots_per_row);
+    const size_t depth = rows > 1 ? rows - 1 : 1;
+    return (uint32_t)(depth < DEEPEST ? depth : DEEPEST);
+}
 
-    mspringi_edge edge;
-    for (uint32_t i = 0; i < t->span_count; ++i) {
-        const mspringi_span *span = &t->spans[i];
-        if (!span->continues)
-            memset(&edge, 0, sizeof edge);
-        sweep_span(network->kernels, &sweep, span, &edge, damped, base.x || span->pulled);
+// Take as many substeps as there are sweeps in one pass over the lattice rows: each substep runs one row behind the
+// one before, so a row is in the cache for all of them. A row's substep needs the one before of the row itself and
+// of the row above; both are done by then, and neither is further.
+static void sweep_lattices(const mspring_network *network, const mspringi_sweep *sweeps, uint32_t count,
+                           bool forced) {
+    const mspringi_topology *t = &network->topology;
+    for (uint32_t wave = 0; t->lattice_rows > 0 && wave < t->lattice_rows + count - 1; ++wave) {
+        for (uint32_t substep = 0; substep < count && substep <= wave; ++substep) {
+            const uint32_t row = wave - substep;
+            if (row < t->lattice_rows)
+                sweep_row(network, &sweeps[substep], &t->rows[row], forced);
+        }
+    }
+}
+
+// Take at most network->depth substeps.
+static void take_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+    const mspringi_topology *t = &network->topology;
+    const bool pulled = t->web.attached_count > 0;
+    const mspringi_field field = pulled ? network->forces.total : base;
+    const size_t carry_slots = (size_t)t->carry_blocks * MSPRINGI_WIDTH;
+    mspringi_sweep sweeps[DEEPEST];
+    for (uint32_t substep = 0; substep < count; ++substep) {
+        float *carry = network->carry + 2 * substep * carry_slots;
+        sweeps[substep] = (mspringi_sweep){
+            .x = network->state.x,
+            .y = network->state.y,
+            .vx = network->state.vx,
+            .vy = network->state.vy,
+            .inverse_mass = network->inverse_mass,
+            .force_x = field.x,
+            .force_y = field.y,
+            .carry_x = carry,
+            .carry_y = carry + carry_slots,
+            .lattice_springs = network->lattice_springs,
+            .chain_springs = network->chain_springs,
+            .web = &t->web,
+            .web_springs = network->web_springs,
+            .packed = network->packed,
+            .parts = network->parts,
+            .h = h,
+            .decay = mspringi_decay(network->global_damping, h),
+            // Never -0: a sum of forces may be +0 or -0, depending on what empty slots hold, and what is added to
+            // +0 does not tell.
+            .gravity_h_x = network->gravity_x * h + 0.0f,
+            .gravity_h_y = network->gravity_y * h + 0.0f,
+        };
+    }
+    // With a web that pulls at lattice or chain rows, count is 1; without, the kinds of row know nothing of each
+    // other.
+    if (pulled) {
+        pack_nodes(network, &sweeps[0]);
+        pull_attached(network, &sweeps[0], base);
+    }
+    sweep_lattices(network, sweeps, count, base.x != NULL);
+    for (uint32_t substep = 0; substep < count; ++substep) {
+        if (t->web.group_count > 0 && !pulled)
+            pack_nodes(network, &sweeps[substep]);
+        for (uint32_t row = t->lattice_rows; row < t->row_count; ++row)
+            sweep_row(network, &sweeps[substep], &t->rows[row], base.x != NULL);
+    }
+}
+
+void mspringi_explicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+    while (count > 0) {
+        const uint32_t together = count < network->depth ? count : network->depth;
+        take_substeps(network, h, base, together);
+        count -= together;
     }
 }

@@ -122,24 +122,24 @@ static void flood(finder *f, uint32_t seed, double spacing, uint32_t number) {
 
 /* --------------------------------------------------------------------------------------------- is it worth it */
 
-static uint32_t count_distinct(uint64_t *keys, uint64_t *scratch, uint32_t count) {
-    mspringi_sort_keys(keys, scratch, count);
-    uint32_t distinct = 0;
-    for (uint32_t i = 0; i < count; ++i)
-        distinct += i == 0 || keys[i] != keys[i - 1];
-    return distinct;
-}
-
-// Blocks that a grid takes with its columns along the rows, or the other way round.
-static uint32_t count_blocks(finder *f, const uint32_t *members, uint32_t count, int32_t min_column,
-                             int32_t min_row, bool transposed) {
+// What it costs to sweep a grid with its columns along the rows, or the other way round, in blocks: those it has,
+// and about one for each run of neighbouring ones to start with.
+static uint64_t cost_of_sweep(finder *f, const uint32_t *members, uint32_t count, int32_t min_column,
+                              int32_t min_row, bool transposed, uint32_t *blocks) {
     for (uint32_t m = 0; m < count; ++m) {
         const uint32_t column = (uint32_t)(f->column[members[m]] - min_column);
         const uint32_t row = (uint32_t)(f->row[members[m]] - min_row);
         f->keys[m] = transposed ? (uint64_t)column << 32 | row / MSPRINGI_WIDTH
                                 : (uint64_t)row << 32 | column / MSPRINGI_WIDTH;
     }
-    return count_distinct(f->keys, f->scratch, count);
+    mspringi_sort_keys(f->keys, f->scratch, count);
+    uint32_t runs = 0;
+    *blocks = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        *blocks += i == 0 || f->keys[i] != f->keys[i - 1];
+        runs += i == 0 || f->keys[i] > f->keys[i - 1] + 1;
+    }
+    return (uint64_t)*blocks + runs;
 }
 
 // Count the springs of a grid's particles: those between neighbouring cells, and all.
@@ -171,9 +171,10 @@ static void judge(finder *f, uint32_t begin) {
         min_column = f->column[members[m]] < min_column ? f->column[members[m]] : min_column;
         min_row = f->row[members[m]] < min_row ? f->row[members[m]] : min_row;
     }
-    const uint32_t upright = count_blocks(f, members, count, min_column, min_row, false);
-    const uint32_t transposed = count_blocks(f, members, count, min_column, min_row, true);
-    const uint32_t blocks = transposed < upright ? transposed : upright;
+    uint32_t blocks_upright, blocks_transposed;
+    const bool transposed = cost_of_sweep(f, members, count, min_column, min_row, true, &blocks_transposed) <
+                            cost_of_sweep(f, members, count, min_column, min_row, false, &blocks_upright);
+    const uint32_t blocks = transposed ? blocks_transposed : blocks_upright;
     size_t neighbours = 0, all = 0;
     count_springs(f, members, count, &neighbours, &all);
 
@@ -189,8 +190,8 @@ static void judge(finder *f, uint32_t begin) {
     for (uint32_t m = 0; m < count; ++m) {
         const uint32_t p = members[m];
         const uint32_t column = (uint32_t)(f->column[p] - min_column), row = (uint32_t)(f->row[p] - min_row);
-        grids->column[p] = transposed < upright ? row : column;
-        grids->row[p] = transposed < upright ? column : row;
+        grids->column[p] = transposed ? row : column;
+        grids->row[p] = transposed ? column : row;
         f->kinds[p] = MSPRINGI_ROW_LATTICE;
     }
     grids->first_member[++grids->count] = grids->member_count;

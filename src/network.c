@@ -150,7 +150,9 @@ static mspring_result allocate(mspring_network *network, bool relative) {
     network->packed =
         mspringi_alloc(memory, (size_t)4 * t->web.group_count * MSPRINGI_WIDTH, sizeof *network->packed);
     network->attached = mspringi_alloc(memory, (size_t)2 * t->web.attached_count, sizeof *network->attached);
-    network->carry = mspringi_alloc(memory, (size_t)2 * t->carry_blocks * MSPRINGI_WIDTH, sizeof *network->carry);
+    network->depth = mspringi_explicit_depth(t, network->parts);
+    network->carry = mspringi_alloc(memory, (size_t)2 * network->depth * t->carry_blocks * MSPRINGI_WIDTH,
+                                    sizeof *network->carry);
     if (relative)
         network->relative = mspringi_alloc(memory, t->spring_count, sizeof *network->relative);
     if (!reserve_state(network, &network->state) || !reserve_state(network, &network->backup) ||

@@ -61,7 +61,8 @@ struct mspring_network {
     float *attached;             ///< forces on the attached nodes, all x and then all y
     mspringi_relative *relative; ///< [springs], or NULL if no spring is relative
     float relative_h;            ///< the substep that relative springs were derived for; 0: not yet
-    float *carry;                ///< the carry row, x and then y
+    uint32_t depth;              ///< substeps that may be swept in one pass over the lattice rows
+    float *carry;                ///< a carry row for each of them, x and then y
 
     float gravity_x, gravity_y, global_damping, max_speed;
     uint32_t substeps;
@@ -99,8 +100,11 @@ void mspringi_spring_set(mspring_network *network, mspring_id spring, const mspr
 /// Derive stiffness and damping of the relative springs for a substep.
 void mspringi_derive_relative(mspring_network *network, float h);
 
-/// Take a substep of length h with the forces from outside that are in base (x NULL: none).
-void mspringi_explicit_substep(mspring_network *network, float h, mspringi_field base);
+/// Deepest pass over the lattice rows that is worth it for this topology.
+uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t parts);
+
+/// Take count substeps of length h, all with the forces from outside that are in base (x NULL: none).
+void mspringi_explicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count);
 
 /// Call the hooks of a phase with the given force field (x NULL: none).
 void mspringi_hooks_call(mspring_network *network, mspring_phase phase, uint32_t substep, double dt,

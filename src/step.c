@@ -55,13 +55,17 @@ static void run_substeps(mspring_network *network, double dt, float h) {
     // Where the web pulls, it writes its share over the total field; the rest of that stays as it is set here.
     if (pulled && !hooks_before && (base.x || !network->forces.total_clean))
         reset_total(network, base);
+    if (!hooks_before && !hooks_after) {
+        mspringi_explicit_substeps(network, h, base, network->substeps);
+        return;
+    }
     for (uint32_t substep = 0; substep < network->substeps; ++substep) {
         if (hooks_before) {
             reset_total(network, base);
             mspringi_hooks_call(network, MSPRING_PHASE_BEFORE_SUBSTEP, substep, (double)h, network->forces.total);
             network->forces.total_clean = false;
         }
-        mspringi_explicit_substep(network, h, hooks_before ? network->forces.total : base);
+        mspringi_explicit_substeps(network, h, hooks_before ? network->forces.total : base, 1);
         if (hooks_after)
             mspringi_hooks_call(network, MSPRING_PHASE_AFTER_SUBSTEP, substep, (double)h, none);
     }

@@ -5,9 +5,6 @@
 
 #include "analysis.h"
 
-/// Chain rows are swept in pieces of this many blocks, so that the zero half of the carry row stays short.
-#define LONGEST_CHAIN_SPAN 64
-
 /// A block of a grid on its way to a number: row, then column block.
 typedef uint64_t block_key;
 
@@ -38,7 +35,7 @@ typedef struct assembly {
     size_t block_count, block_capacity;
     size_t grid_begin;     ///< where the blocks of the grid that is being listed begin
     uint32_t *first_block; ///< [grids + 1] in blocks
-    size_t span_capacity;
+    size_t row_capacity, span_capacity;
 } assembly;
 
 static mspring_result out_of_memory(assembly *a) {
@@ -274,16 +271,26 @@ void mspringi_topology_ends(const mspringi_topology *topology, mspringi_place pl
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------- spans */
+/* ---------------------------------------------------------------------------------------------- rows and spans */
 
-// Append a span, or lengthen the last one if this is what it would go on with.
+// Append a row without spans.
+static bool append_row(assembly *a, mspringi_row_kind kind) {
+    mspringi_topology *t = a->topology;
+    void *rows = t->rows;
+    const bool grown = mspringi_grow(a->memory, &rows, &a->row_capacity, (size_t)t->row_count + 1, sizeof *t->rows);
+    t->rows = rows;
+    if (grown)
+        t->rows[t->row_count++] = (mspringi_row){.kind = kind, .first_span = t->span_count};
+    return grown;
+}
+
+// Append a span to the last row, or lengthen its last one if this is what that would go on with.
 static bool append_span(assembly *a, const mspringi_span *span) {
     mspringi_topology *t = a->topology;
-    if (t->span_count > 0 && span->continues) {
+    mspringi_row *row = &t->rows[t->row_count - 1];
+    if (row->span_count > 0 && span->continues) {
         mspringi_span *last = &t->spans[t->span_count - 1];
-        if (last->kind == span->kind && last->up_block + last->block_count == span->up_block &&
-            last->carry_out + last->block_count == span->carry_out &&
-            (last->carry_in == 0) == (span->carry_in == 0)) {
+        if (last->kind == span->kind && last->up_block + last->block_count == span->up_block) {
             last->block_count += span->block_count;
             return true;
         }
@@ -291,96 +298,123 @@ static bool append_span(assembly *a, const mspringi_span *span) {
     void *spans = t->spans;
     const bool grown = mspringi_grow(a->memory, &spans, &a->span_capacity, (size_t)t->span_count + 1, sizeof *span);
     t->spans = spans;
-    if (grown)
+    if (grown) {
         t->spans[t->span_count++] = *span;
+        row->span_count++;
+    }
     return grown;
 }
 
-// The widest row in blocks, from its first column on; the carry row has a zero half and a working half of that.
 static uint32_t widest_row(const assembly *a) {
-    uint32_t widest = 1;
+    uint32_t widest = a->topology->chain_blocks;
     for (size_t i = 0; i < a->block_count; ++i)
         widest = column_block_of(a->blocks[i]) + 1 > widest ? column_block_of(a->blocks[i]) + 1 : widest;
-    const uint32_t chain =
-        a->topology->chain_blocks < LONGEST_CHAIN_SPAN ? a->topology->chain_blocks : LONGEST_CHAIN_SPAN;
-    return widest > chain ? widest : chain;
+    return widest;
 }
 
-static bool append_lattice_spans(assembly *a, uint32_t grid, uint32_t carry_half) {
+static bool append_lattice_rows(assembly *a, uint32_t grid) {
     mspringi_topology *t = a->topology;
     for (uint32_t i = a->first_block[grid]; i < a->first_block[grid + 1]; ++i) {
         const uint32_t row = row_of(a->blocks[i]), column_block = column_block_of(a->blocks[i]);
         const bool starts_row = i == a->first_block[grid] || row_of(a->blocks[i - 1]) != row;
-        const bool continues = !starts_row && a->blocks[i - 1] + 1 == a->blocks[i];
         const uint32_t up = find_block(a, grid, row + 1, column_block);
-        const bool has_down = row > 0 && find_block(a, grid, row - 1, column_block) != MSPRING_NONE;
         const mspringi_span span = {
             .kind = up == MSPRING_NONE ? MSPRINGI_ROW_CHAIN : MSPRINGI_ROW_LATTICE,
-            .continues = continues,
+            .continues = !starts_row && a->blocks[i - 1] + 1 == a->blocks[i],
             .first_block = t->lattice_first + i,
             .block_count = 1,
             .up_block = t->lattice_first + (up == MSPRING_NONE ? i : up),
-            .carry_in = has_down ? carry_half + column_block : 0,
-            .carry_out = carry_half + column_block,
+            .carry = column_block,
             .record = i,
             .record_slots = MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH,
         };
         t->up_of_block[i] = span.up_block;
-        t->lattice_rows += starts_row;
+        if (starts_row) {
+            if (!append_row(a, MSPRINGI_ROW_LATTICE))
+                return false;
+            t->lattice_rows++;
+        }
         if (!append_span(a, &span))
             return false;
     }
     return true;
 }
 
-// Mark the spans at whose slots the web pulls. Both lists are in slot order.
-static void mark_pulled_spans(mspringi_topology *t) {
+// Append a row of one span.
+static bool append_simple_row(assembly *a, mspringi_row_kind kind, uint32_t first_block, uint32_t block_count) {
+    const mspringi_span span = {
+        .kind = kind, .first_block = first_block, .block_count = block_count, .record_slots = MSPRINGI_WIDTH};
+    return block_count == 0 || (append_row(a, kind) && append_span(a, &span));
+}
+
+// Mark the rows at whose slots the web pulls. Both lists are in slot order.
+static void mark_pulled_rows(mspringi_topology *t) {
     uint32_t i = 0;
-    for (uint32_t s = 0; s < t->span_count; ++s) {
-        mspringi_span *span = &t->spans[s];
-        const uint32_t end = (span->first_block + span->block_count) * MSPRINGI_WIDTH;
+    for (uint32_t r = 0; r < t->row_count; ++r) {
+        mspringi_row *row = &t->rows[r];
+        const mspringi_span *last = &t->spans[row->first_span + row->span_count - 1];
+        const uint32_t end = (last->first_block + last->block_count) * MSPRINGI_WIDTH;
         for (; i < t->web.attached_count && t->web.attached_slot[i] < end; ++i)
-            span->pulled = 1;
+            row->pulled = 1;
     }
 }
 
-static mspring_result make_spans(assembly *a) {
+// Set a bit of busy for the quarter of a slot.
+static void mark_busy(uint8_t *busy, uint32_t slot) {
+    busy[slot / MSPRINGI_WIDTH] |= (uint8_t)(1u << slot % MSPRINGI_WIDTH / MSPRINGI_QUARTER);
+}
+
+// Find the quarters at the ends of lattice spans that need not be swept: they hold no particle, own no spring, and
+// no force is handed on through them. The latter two are so if no spring's record, and no slot to the right of a
+// north-east spring, lies in them.
+static bool trim_spans(assembly *a) {
     mspringi_topology *t = a->topology;
-    const uint32_t carry_half = widest_row(a);
-    t->carry_blocks = 2 * carry_half;
+    uint8_t *busy = mspringi_alloc(a->memory, t->block_count, sizeof *busy);
+    if (!busy)
+        return false;
+    for (uint32_t slot = 0; slot < t->block_count * MSPRINGI_WIDTH; ++slot)
+        if (t->particle_of_slot[slot] != MSPRING_NONE)
+            mark_busy(busy, slot);
+    for (uint32_t s = 0; s < t->spring_count; ++s) {
+        const mspringi_place place = t->place_of_spring[s];
+        if (place >= t->lattice_places)
+            continue;
+        const uint32_t block = place / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH);
+        const uint32_t slot = (t->lattice_first + block) * MSPRINGI_WIDTH + place % MSPRINGI_WIDTH;
+        mark_busy(busy, slot);
+        if (place / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS == MSPRINGI_NORTH_EAST)
+            mark_busy(busy, slot + 1);
+    }
+    for (uint32_t s = 0; s < t->span_count; ++s) {
+        mspringi_span *span = &t->spans[s];
+        const uint32_t last = span->first_block + span->block_count - 1;
+        if (span->first_block >= t->chain_first)
+            break;
+        // One quarter is left even of a block that is all idle (and is there for the slot to its right).
+        const uint32_t most = MSPRINGI_WIDTH - MSPRINGI_QUARTER;
+        while (span->idle_front < most && !(busy[span->first_block] >> span->idle_front / MSPRINGI_QUARTER & 1))
+            span->idle_front += MSPRINGI_QUARTER;
+        while (span->idle_back < most && !(busy[last] >> (most - span->idle_back) / MSPRINGI_QUARTER & 1))
+            span->idle_back += MSPRINGI_QUARTER;
+    }
+    mspringi_free(a->memory, busy);
+    return true;
+}
+
+static mspring_result make_rows(assembly *a) {
+    mspringi_topology *t = a->topology;
+    t->carry_blocks = widest_row(a);
     t->up_of_block = mspringi_alloc(a->memory, t->lattice_blocks, sizeof *t->up_of_block);
     if (!t->up_of_block)
         return out_of_memory(a);
     for (uint32_t grid = 0; grid < a->grids.count; ++grid)
-        if (!append_lattice_spans(a, grid, carry_half))
+        if (!append_lattice_rows(a, grid))
             return out_of_memory(a);
-
-    for (uint32_t block = 0; block < t->chain_blocks; block += LONGEST_CHAIN_SPAN) {
-        const uint32_t left = t->chain_blocks - block;
-        const mspringi_span span = {
-            .kind = MSPRINGI_ROW_CHAIN,
-            .continues = block > 0,
-            .first_block = t->chain_first + block,
-            .block_count = left < LONGEST_CHAIN_SPAN ? left : LONGEST_CHAIN_SPAN,
-            .record = block,
-            .record_slots = MSPRINGI_WIDTH,
-        };
-        if (!append_span(a, &span))
-            return out_of_memory(a);
-    }
-    if (t->web_blocks > 0) {
-        const mspringi_span span = {
-            .kind = MSPRINGI_ROW_WEB, .first_block = t->web_first, .block_count = t->web_blocks};
-        if (!append_span(a, &span))
-            return out_of_memory(a);
-    }
-    if (t->loose_blocks > 0) {
-        const mspringi_span span = {
-            .kind = MSPRINGI_ROW_LOOSE, .first_block = t->loose_first, .block_count = t->loose_blocks};
-        if (!append_span(a, &span))
-            return out_of_memory(a);
-    }
-    mark_pulled_spans(t);
+    if (!append_simple_row(a, MSPRINGI_ROW_CHAIN, t->chain_first, t->chain_blocks) ||
+        !append_simple_row(a, MSPRINGI_ROW_WEB, t->web_first, t->web_blocks) ||
+        !append_simple_row(a, MSPRINGI_ROW_LOOSE, t->loose_first, t->loose_blocks) || !trim_spans(a))
+        return out_of_memory(a);
+    mark_pulled_rows(t);
     return MSPRING_OK;
 }
 
@@ -416,7 +450,7 @@ static mspring_result assemble(assembly *a) {
         return result;
     assign_slots(a);
     result = assign_places(a);
-    return result == MSPRING_OK ? make_spans(a) : result;
+    return result == MSPRING_OK ? make_rows(a) : result;
 }
 
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
@@ -454,5 +488,6 @@ void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *mem
     mspringi_free(memory, topology->leftover_a);
     mspringi_free(memory, topology->leftover_b);
     mspringi_free(memory, topology->spans);
+    mspringi_free(memory, topology->rows);
     *topology = (mspringi_topology){0};
 }

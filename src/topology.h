@@ -18,6 +18,9 @@
 #include "builder.h"
 #include "web.h"
 
+/// Lanes of the narrowest vector register.
+#define MSPRINGI_QUARTER 4
+
 /// The springs of a lattice slot in column c of row r. East, north and north-east start at the slot; south-east
 /// starts one row up, at (c, r + 1), so that all of them reach one column to the right at most and every load is
 /// contiguous.
@@ -36,20 +39,25 @@ typedef enum mspringi_row_kind {
     MSPRINGI_ROW_LOOSE    ///< none
 } mspringi_row_kind;
 
-/// Consecutive blocks of one row that are swept in one go. All block numbers count from the first block of the
-/// state.
+/// Consecutive blocks of a row. All block numbers count from the first block of the state.
 typedef struct mspringi_span {
-    mspringi_row_kind kind;
-    uint32_t continues; ///< 1: its first slot is the east neighbour of the last slot of the span before
+    mspringi_row_kind kind; ///< in a lattice row also MSPRINGI_ROW_CHAIN, where there is nothing above
+    uint32_t continues;     ///< 1: its first slot is the east neighbour of the last slot of the span before
     uint32_t first_block, block_count;
-    uint32_t up_block;     ///< the block above first_block (lattice)
-    uint32_t carry_in;     ///< block of the carry row to take forces from (lattice, chain)
-    uint32_t carry_out;    ///< block of the carry row to leave forces for the row above in (lattice)
+    uint32_t idle_front, idle_back; ///< slots at its ends that hold and do nothing, in steps of MSPRINGI_QUARTER
+    uint32_t up_block;              ///< the block above first_block (lattice)
+    uint32_t carry;                 ///< its first block in the carry row (lattice, chain)
     uint32_t record;       ///< number of first_block's record among the records (lattice, chain), or of its
                            ///< group in the web
-    uint32_t pulled;       ///< 1: springs of the web pull at some of its slots (lattice, chain)
     uint32_t record_slots; ///< springs per record: MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH or MSPRINGI_WIDTH
 } mspringi_span;
+
+/// Spans that are swept in one go.
+typedef struct mspringi_row {
+    mspringi_row_kind kind;
+    uint32_t first_span, span_count;
+    uint32_t pulled; ///< 1: springs of the web pull at some of its slots (lattice, chain)
+} mspringi_row;
 
 /// Where a spring lies: below lattice_places a lattice record, (block * MSPRINGI_DIRECTIONS + direction) *
 /// MSPRINGI_WIDTH + lane; below chain_places a chain record, lattice_places + block * MSPRINGI_WIDTH + lane; above
@@ -76,7 +84,9 @@ typedef struct mspringi_topology {
 
     mspringi_span *spans;
     uint32_t span_count;
-    uint32_t carry_blocks; ///< blocks of the carry row; the first half stays zero
+    mspringi_row *rows; ///< lattice rows first
+    uint32_t row_count;
+    uint32_t carry_blocks; ///< blocks of the carry row
 
     // For the plan.
     uint32_t lattice_count, lattice_particles, lattice_springs, lattice_rows;

@@ -30,15 +30,9 @@ typedef struct mspringi_sweep {
     float gravity_h_x, gravity_h_y; ///< gravity times h
 } mspringi_sweep;
 
-/// What a span hands over to the one that continues it: the forces of its last springs on the next slot and on
-/// the slot above that. Only the last lane counts; vectors, so that a kernel can store its last one whole.
-typedef struct mspringi_edge {
-    _Alignas(MSPRINGI_ALIGNMENT) float right_x[MSPRINGI_WIDTH], right_y[MSPRINGI_WIDTH];
-    float diagonal_x[MSPRINGI_WIDTH], diagonal_y[MSPRINGI_WIDTH];
-} mspringi_edge;
-
-/// Compute the forces of one span's springs and move its particles, in place.
-typedef void (*mspringi_sweep_fn)(const mspringi_sweep *sweep, const mspringi_span *span, mspringi_edge *edge);
+/// Compute the forces of one row's springs and move its particles, in place. In lattice rows and chains, forces
+/// from the row below are taken from the carry row, and those on the row above left there (0 where there is none).
+typedef void (*mspringi_row_fn)(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count);
 
 /// Copy position and velocity of block_count blocks of slots behind one another into packed.
 typedef void (*mspringi_pack_fn)(const mspringi_sweep *sweep, size_t first_block, size_t block_count,
@@ -52,10 +46,9 @@ typedef bool (*mspringi_bounded_fn)(const float *values, size_t count, float lim
 
 typedef struct mspringi_kernels {
     mspring_simd level;
-    mspringi_sweep_fn lattice[2][2]; ///< [with damping][with forces]
-    mspringi_sweep_fn chain[2][2];
-    mspringi_sweep_fn web[2][2];
-    mspringi_sweep_fn loose[2]; ///< [with forces]
+    mspringi_row_fn lattice[2][2]; ///< [with damping][with forces]; for lattice rows and chains
+    mspringi_row_fn web[2][2];
+    mspringi_row_fn loose[2]; ///< [with forces]
     mspringi_pack_fn pack;
     mspringi_attached_fn attached[2]; ///< [with damping]
     mspringi_bounded_fn bounded;

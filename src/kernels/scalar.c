@@ -50,62 +50,68 @@ static inline void move(const mspringi_sweep *s, size_t slot, vector force, bool
     s->y[slot] = s->y[slot] + s->vy[slot] * s->h;
 }
 
-static inline void lattice(const mspringi_sweep *s, const mspringi_span *span, mspringi_edge *edge, bool damped,
-                           bool forced) {
-    const size_t part = (size_t)s->parts * MSPRINGI_WIDTH; // values of one direction
-    const size_t last = MSPRINGI_WIDTH - 1;
-    vector left = {edge->right_x[last], edge->right_y[last]};
-    vector below_left = {edge->diagonal_x[last], edge->diagonal_y[last]};
-    for (size_t block = 0; block < span->block_count; ++block) {
-        const float *record = s->lattice_springs + (span->record + block) * MSPRINGI_DIRECTIONS * part;
-        for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane, ++record) {
-            const size_t slot = (span->first_block + block) * MSPRINGI_WIDTH + lane;
-            const size_t up = (span->up_block + block) * MSPRINGI_WIDTH + lane;
-            const size_t in = (span->carry_in + block) * MSPRINGI_WIDTH + lane;
-            const size_t out = (span->carry_out + block) * MSPRINGI_WIDTH + lane;
-            const motion here = at(s, slot), next = at(s, slot + 1), above = at(s, up), above_next = at(s, up + 1);
-            const vector east = spring_force(here, next, record + MSPRINGI_EAST * part, damped);
-            const vector north = spring_force(here, above, record + MSPRINGI_NORTH * part, damped);
-            const vector north_east = spring_force(here, above_next, record + MSPRINGI_NORTH_EAST * part, damped);
-            const vector south_east = spring_force(above, next, record + MSPRINGI_SOUTH_EAST * part, damped);
+/// Forces that a slot's springs exert on the slot to the right and on the slot above that.
+typedef struct handed_on {
+    vector right, diagonal;
+} handed_on;
 
-            const vector force = {(s->carry_x[in] + ((east.x + north.x) + north_east.x)) - left.x,
-                                  (s->carry_y[in] + ((east.y + north.y) + north_east.y)) - left.y};
-            s->carry_x[out] = (south_east.x - north.x) - below_left.x;
-            s->carry_y[out] = (south_east.y - north.y) - below_left.y;
-            left = (vector){east.x + south_east.x, east.y + south_east.y};
-            below_left = north_east;
-            move(s, slot, force, forced);
-        }
+static inline void lattice_span(const mspringi_sweep *s, const mspringi_span *span, handed_on *before, bool damped,
+                                bool forced) {
+    const size_t part = (size_t)s->parts * MSPRINGI_WIDTH; // values of one direction
+    for (size_t i = 0; i < (size_t)span->block_count * MSPRINGI_WIDTH; ++i) {
+        const size_t slot = (size_t)span->first_block * MSPRINGI_WIDTH + i;
+        const size_t up = (size_t)span->up_block * MSPRINGI_WIDTH + i;
+        const size_t carry = (size_t)span->carry * MSPRINGI_WIDTH + i;
+        const float *record = s->lattice_springs +
+                              (span->record + i / MSPRINGI_WIDTH) * MSPRINGI_DIRECTIONS * part + i % MSPRINGI_WIDTH;
+        const motion here = at(s, slot), next = at(s, slot + 1), above = at(s, up), above_next = at(s, up + 1);
+        const vector east = spring_force(here, next, record + MSPRINGI_EAST * part, damped);
+        const vector north = spring_force(here, above, record + MSPRINGI_NORTH * part, damped);
+        const vector north_east = spring_force(here, above_next, record + MSPRINGI_NORTH_EAST * part, damped);
+        const vector south_east = spring_force(above, next, record + MSPRINGI_SOUTH_EAST * part, damped);
+
+        const vector force = {(s->carry_x[carry] + ((east.x + north.x) + north_east.x)) - before->right.x,
+                              (s->carry_y[carry] + ((east.y + north.y) + north_east.y)) - before->right.y};
+        s->carry_x[carry] = (south_east.x - north.x) - before->diagonal.x;
+        s->carry_y[carry] = (south_east.y - north.y) - before->diagonal.y;
+        before->right = (vector){east.x + south_east.x, east.y + south_east.y};
+        before->diagonal = north_east;
+        move(s, slot, force, forced);
     }
-    edge->right_x[last] = left.x;
-    edge->right_y[last] = left.y;
-    edge->diagonal_x[last] = below_left.x;
-    edge->diagonal_y[last] = below_left.y;
 }
 
 // East springs only.
-static inline void chain(const mspringi_sweep *s, const mspringi_span *span, mspringi_edge *edge, bool damped,
-                         bool forced) {
-    const size_t last = MSPRINGI_WIDTH - 1;
+static inline void chain_span(const mspringi_sweep *s, const mspringi_span *span, handed_on *before, bool damped,
+                              bool forced) {
     const size_t stride = (size_t)s->parts * span->record_slots;
     const float *records =
         (span->record_slots == MSPRINGI_WIDTH ? s->chain_springs : s->lattice_springs) + span->record * stride;
-    vector left = {edge->right_x[last], edge->right_y[last]};
-    for (size_t block = 0; block < span->block_count; ++block) {
-        for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
-            const size_t slot = (span->first_block + block) * MSPRINGI_WIDTH + lane;
-            const size_t in = (span->carry_in + block) * MSPRINGI_WIDTH + lane;
-            const vector east = spring_force(at(s, slot), at(s, slot + 1), records + block * stride + lane, damped);
-            const vector force = {(s->carry_x[in] + east.x) - left.x, (s->carry_y[in] + east.y) - left.y};
-            left = east;
-            move(s, slot, force, forced);
-        }
+    for (size_t i = 0; i < (size_t)span->block_count * MSPRINGI_WIDTH; ++i) {
+        const size_t slot = (size_t)span->first_block * MSPRINGI_WIDTH + i;
+        const size_t carry = (size_t)span->carry * MSPRINGI_WIDTH + i;
+        const float *record = records + i / MSPRINGI_WIDTH * stride + i % MSPRINGI_WIDTH;
+        const vector east = spring_force(at(s, slot), at(s, slot + 1), record, damped);
+        const vector force = {(s->carry_x[carry] + east.x) - before->right.x,
+                              (s->carry_y[carry] + east.y) - before->right.y};
+        s->carry_x[carry] = 0.0f;
+        s->carry_y[carry] = 0.0f;
+        before->right = east;
+        before->diagonal = (vector){0.0f, 0.0f};
+        move(s, slot, force, forced);
     }
-    edge->right_x[last] = left.x;
-    edge->right_y[last] = left.y;
-    edge->diagonal_x[last] = 0.0f;
-    edge->diagonal_y[last] = 0.0f;
+}
+
+static inline void lattice(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, bool damped,
+                           bool forced) {
+    handed_on before = {{0.0f, 0.0f}, {0.0f, 0.0f}};
+    for (const mspringi_span *span = spans; span < spans + count; ++span) {
+        if (!span->continues)
+            before = (handed_on){{0.0f, 0.0f}, {0.0f, 0.0f}};
+        if (span->kind == MSPRINGI_ROW_LATTICE)
+            lattice_span(s, span, &before, damped, forced);
+        else
+            chain_span(s, span, &before, damped, forced);
+    }
 }
 
 static inline motion node_at(const mspringi_sweep *s, size_t node) {
@@ -130,12 +136,12 @@ static inline vector web_force(const mspringi_sweep *s, size_t node, bool damped
     return sum;
 }
 
-static inline void web(const mspringi_sweep *s, const mspringi_span *span, mspringi_edge *edge, bool damped,
+static inline void web(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, bool damped,
                        bool forced) {
-    (void)edge;
-    for (size_t i = 0; i < (size_t)span->block_count * MSPRINGI_WIDTH; ++i)
-        move(s, (size_t)span->first_block * MSPRINGI_WIDTH + i,
-             web_force(s, (size_t)span->record * MSPRINGI_WIDTH + i, damped), forced);
+    for (const mspringi_span *span = spans; span < spans + count; ++span)
+        for (size_t i = 0; i < (size_t)span->block_count * MSPRINGI_WIDTH; ++i)
+            move(s, (size_t)span->first_block * MSPRINGI_WIDTH + i,
+                 web_force(s, (size_t)span->record * MSPRINGI_WIDTH + i, damped), forced);
 }
 
 static inline void attached(const mspringi_sweep *s, float *x, float *y, bool damped) {
@@ -156,10 +162,10 @@ static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count
     }
 }
 
-static inline void loose(const mspringi_sweep *s, const mspringi_span *span, bool forced) {
-    const size_t first = (size_t)span->first_block * MSPRINGI_WIDTH;
-    for (size_t slot = first; slot < first + (size_t)span->block_count * MSPRINGI_WIDTH; ++slot)
-        move(s, slot, (vector){0.0f, 0.0f}, forced);
+static inline void loose(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, bool forced) {
+    for (const mspringi_span *span = spans; span < spans + count; ++span)
+        for (size_t i = 0; i < (size_t)span->block_count * MSPRINGI_WIDTH; ++i)
+            move(s, (size_t)span->first_block * MSPRINGI_WIDTH + i, (vector){0.0f, 0.0f}, forced);
 }
 
 static bool bounded(const float *values, size_t count, float limit) {

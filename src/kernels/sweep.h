@@ -72,7 +72,8 @@ MSPRINGI_INLINE vector spring_force(extent e, vec inverse, motion base, motion t
     return result;
 }
 
-MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, vector force, bool forced) {
+MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, motion here, vector force, bool damped,
+                          bool forced) {
     if (forced) {
         force.x = add(force.x, load(s->force_x + slot));
         force.y = add(force.y, load(s->force_y + slot));
@@ -80,32 +81,61 @@ MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, vector force, bo
     const vec h = set(s->h), decay = set(s->decay);
     const vec inverse_mass = load(s->inverse_mass + slot);
     const vec inverse_mass_h = mul(inverse_mass, h);
-    vec vx = load(s->vx + slot), vy = load(s->vy + slot);
+    // Without dampers, velocities have not been read yet.
+    vec vx = damped ? here.vx : load(s->vx + slot), vy = damped ? here.vy : load(s->vy + slot);
     vx = choose_positive(inverse_mass, mul(add(vx, add(mul(force.x, inverse_mass_h), set(s->gravity_h_x))), decay),
                          vx);
     vy = choose_positive(inverse_mass, mul(add(vy, add(mul(force.y, inverse_mass_h), set(s->gravity_h_y))), decay),
                          vy);
     store(s->vx + slot, vx);
     store(s->vy + slot, vy);
-    store(s->x + slot, add(load(s->x + slot), mul(vx, h)));
-    store(s->y + slot, add(load(s->y + slot), mul(vy, h)));
+    store(s->x + slot, add(here.x, mul(vx, h)));
+    store(s->y + slot, add(here.y, mul(vy, h)));
 }
 
-MSPRINGI_INLINE void lattice(const mspringi_sweep *s, const mspringi_span *span, mspringi_edge *edge, bool damped,
-                             bool forced) {
-    const size_t part = (size_t)(damped ? 3 : 2) * MSPRINGI_WIDTH; // values of one direction
-    const size_t last = MSPRINGI_WIDTH - LANES;
-    const float *record = s->lattice_springs + (size_t)span->record * MSPRINGI_DIRECTIONS * part;
-    const float *carry_in_x = s->carry_x + (size_t)span->carry_in * MSPRINGI_WIDTH;
-    const float *carry_in_y = s->carry_y + (size_t)span->carry_in * MSPRINGI_WIDTH;
-    float *carry_out_x = s->carry_x + (size_t)span->carry_out * MSPRINGI_WIDTH;
-    float *carry_out_y = s->carry_y + (size_t)span->carry_out * MSPRINGI_WIDTH;
-    size_t slot = (size_t)span->first_block * MSPRINGI_WIDTH, up = (size_t)span->up_block * MSPRINGI_WIDTH;
-    vector right_before = {load(edge->right_x + last), load(edge->right_y + last)};
-    vector diagonal_before = {load(edge->diagonal_x + last), load(edge->diagonal_y + last)};
+/// Forces that LANES slots' springs exert on the slots to the right and on the slots above those. Of those of the
+/// slots before, only the last lane counts.
+typedef struct handed_on {
+    vector right, diagonal;
+} handed_on;
 
-    for (uint32_t block = 0; block < span->block_count; ++block) {
-        for (size_t lane = 0; lane < MSPRINGI_WIDTH; lane += LANES) {
+// The lanes of a block that are to be swept: all but idle ones at the ends of a span, as far as LANES resolves it.
+MSPRINGI_INLINE size_t first_lane(const mspringi_span *span, uint32_t block) {
+    return LANES < MSPRINGI_WIDTH && block == 0 ? span->idle_front / LANES * LANES : 0;
+}
+
+MSPRINGI_INLINE size_t end_lane(const mspringi_span *span, uint32_t block) {
+    return LANES < MSPRINGI_WIDTH && block + 1 == span->block_count
+               ? MSPRINGI_WIDTH - span->idle_back / LANES * LANES
+               : MSPRINGI_WIDTH;
+}
+
+// Leave no force in the carry row for the idle lanes of a block.
+MSPRINGI_INLINE void clear_idle(float *carry_x, float *carry_y, size_t first, size_t end) {
+    for (size_t lane = 0; lane < first; lane += LANES) {
+        store(carry_x + lane, zero());
+        store(carry_y + lane, zero());
+    }
+    for (size_t lane = end; lane < MSPRINGI_WIDTH; lane += LANES) {
+        store(carry_x + lane, zero());
+        store(carry_y + lane, zero());
+    }
+}
+
+MSPRINGI_INLINE void lattice_span(const mspringi_sweep *s, const mspringi_span *span, handed_on *before,
+                                  bool damped, bool forced) {
+    const size_t part = (size_t)(damped ? 3 : 2) * MSPRINGI_WIDTH; // values of one direction
+    const float *record = s->lattice_springs + (size_t)span->record * MSPRINGI_DIRECTIONS * part;
+    float *carry_x = s->carry_x + (size_t)span->carry * MSPRINGI_WIDTH;
+    float *carry_y = s->carry_y + (size_t)span->carry * MSPRINGI_WIDTH;
+    const size_t first_slot = (size_t)span->first_block * MSPRINGI_WIDTH;
+    const size_t first_up = (size_t)span->up_block * MSPRINGI_WIDTH;
+    const uint32_t block_count = span->block_count;
+    for (uint32_t block = 0; block < block_count; ++block) {
+        const size_t first = first_lane(span, block), end = end_lane(span, block);
+        for (size_t lane = first; lane < end; lane += LANES) {
+            const size_t slot = first_slot + block * MSPRINGI_WIDTH + lane;
+            const size_t up = first_up + block * MSPRINGI_WIDTH + lane;
             const motion here = load_motion(s, slot, damped);
             const motion next = load_motion_unaligned(s, slot + 1, damped);
             const motion above = load_motion(s, up, damped);
@@ -130,63 +160,66 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *s, const mspringi_span *span,
                                                    springs + MSPRINGI_SOUTH_EAST * part, damped);
 
             const vector right = {add(east.x, south_east.x), add(east.y, south_east.y)};
-            const vector force = {sub(add(load(carry_in_x), add(add(east.x, north.x), north_east.x)),
-                                      shift_in(right_before.x, right.x)),
-                                  sub(add(load(carry_in_y), add(add(east.y, north.y), north_east.y)),
-                                      shift_in(right_before.y, right.y))};
-            store(carry_out_x, sub(sub(south_east.x, north.x), shift_in(diagonal_before.x, north_east.x)));
-            store(carry_out_y, sub(sub(south_east.y, north.y), shift_in(diagonal_before.y, north_east.y)));
-            right_before = right;
-            diagonal_before = north_east;
-            move(s, slot, force, forced);
-
-            slot += LANES;
-            up += LANES;
-            carry_in_x += LANES;
-            carry_in_y += LANES;
-            carry_out_x += LANES;
-            carry_out_y += LANES;
+            const vector force = {sub(add(load(carry_x + lane), add(add(east.x, north.x), north_east.x)),
+                                      shift_in(before->right.x, right.x)),
+                                  sub(add(load(carry_y + lane), add(add(east.y, north.y), north_east.y)),
+                                      shift_in(before->right.y, right.y))};
+            store(carry_x + lane, sub(sub(south_east.x, north.x), shift_in(before->diagonal.x, north_east.x)));
+            store(carry_y + lane, sub(sub(south_east.y, north.y), shift_in(before->diagonal.y, north_east.y)));
+            before->right = right;
+            before->diagonal = north_east;
+            move(s, slot, here, force, damped, forced);
         }
+        clear_idle(carry_x, carry_y, first, end);
         record += MSPRINGI_DIRECTIONS * part;
+        carry_x += MSPRINGI_WIDTH;
+        carry_y += MSPRINGI_WIDTH;
     }
-    store(edge->right_x + last, right_before.x);
-    store(edge->right_y + last, right_before.y);
-    store(edge->diagonal_x + last, diagonal_before.x);
-    store(edge->diagonal_y + last, diagonal_before.y);
 }
 
-MSPRINGI_INLINE void chain(const mspringi_sweep *s, const mspringi_span *span, mspringi_edge *edge, bool damped,
-                           bool forced) {
-    const size_t last = MSPRINGI_WIDTH - LANES;
+MSPRINGI_INLINE void chain_span(const mspringi_sweep *s, const mspringi_span *span, handed_on *before, bool damped,
+                                bool forced) {
     const size_t stride = (size_t)(damped ? 3 : 2) * span->record_slots;
     const float *record =
         (span->record_slots == MSPRINGI_WIDTH ? s->chain_springs : s->lattice_springs) + span->record * stride;
-    const float *carry_x = s->carry_x + (size_t)span->carry_in * MSPRINGI_WIDTH;
-    const float *carry_y = s->carry_y + (size_t)span->carry_in * MSPRINGI_WIDTH;
-    size_t slot = (size_t)span->first_block * MSPRINGI_WIDTH;
-    vector before = {load(edge->right_x + last), load(edge->right_y + last)};
-
-    for (uint32_t block = 0; block < span->block_count; ++block) {
-        for (size_t lane = 0; lane < MSPRINGI_WIDTH; lane += LANES) {
+    float *carry_x = s->carry_x + (size_t)span->carry * MSPRINGI_WIDTH;
+    float *carry_y = s->carry_y + (size_t)span->carry * MSPRINGI_WIDTH;
+    const size_t first_slot = (size_t)span->first_block * MSPRINGI_WIDTH;
+    const uint32_t block_count = span->block_count;
+    for (uint32_t block = 0; block < block_count; ++block) {
+        const size_t first = first_lane(span, block), end = end_lane(span, block);
+        for (size_t lane = first; lane < end; lane += LANES) {
+            const size_t slot = first_slot + block * MSPRINGI_WIDTH + lane;
             const motion here = load_motion(s, slot, damped), next = load_motion_unaligned(s, slot + 1, damped);
             const extent to_east = spring_extent(here, next);
             const vector east =
                 spring_force(to_east, inverse_or_zero(to_east.length), here, next, record + lane, damped);
-            const vector force = {sub(add(load(carry_x), east.x), shift_in(before.x, east.x)),
-                                  sub(add(load(carry_y), east.y), shift_in(before.y, east.y))};
-            before = east;
-            move(s, slot, force, forced);
-
-            slot += LANES;
-            carry_x += LANES;
-            carry_y += LANES;
+            const vector force = {sub(add(load(carry_x + lane), east.x), shift_in(before->right.x, east.x)),
+                                  sub(add(load(carry_y + lane), east.y), shift_in(before->right.y, east.y))};
+            before->right = east;
+            move(s, slot, here, force, damped, forced);
         }
+        clear_idle(carry_x, carry_y, MSPRINGI_WIDTH, MSPRINGI_WIDTH);
         record += stride;
+        carry_x += MSPRINGI_WIDTH;
+        carry_y += MSPRINGI_WIDTH;
     }
-    store(edge->right_x + last, before.x);
-    store(edge->right_y + last, before.y);
-    store(edge->diagonal_x + last, zero());
-    store(edge->diagonal_y + last, zero());
+    before->diagonal.x = before->diagonal.y = zero();
+}
+
+MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count, bool damped,
+                             bool forced) {
+    const mspringi_sweep copy = *sweep; // of its own, so that the compiler knows that no store changes it
+    const handed_on nothing = {{zero(), zero()}, {zero(), zero()}};
+    handed_on before = nothing;
+    for (const mspringi_span *span = spans; span < spans + count; ++span) {
+        if (!span->continues)
+            before = nothing;
+        if (span->kind == MSPRINGI_ROW_LATTICE)
+            lattice_span(&copy, span, &before, damped, forced);
+        else
+            chain_span(&copy, span, &before, damped, forced);
+    }
 }
 
 // The force of the web on LANES of its nodes.
@@ -209,13 +242,14 @@ MSPRINGI_INLINE vector web_force(const mspringi_sweep *s, motion here, size_t gr
     return sum;
 }
 
-MSPRINGI_INLINE void web(const mspringi_sweep *s, const mspringi_span *span, mspringi_edge *edge, bool damped,
+MSPRINGI_INLINE void web(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, bool damped,
                          bool forced) {
-    (void)edge;
-    for (size_t block = 0; block < span->block_count; ++block) {
-        for (size_t lane = 0; lane < MSPRINGI_WIDTH; lane += LANES) {
-            const size_t slot = (span->first_block + block) * MSPRINGI_WIDTH + lane;
-            move(s, slot, web_force(s, load_motion(s, slot, damped), span->record + block, lane, damped), forced);
+    for (const mspringi_span *span = spans; span < spans + count; ++span) {
+        for (size_t i = 0; i < (size_t)span->block_count * MSPRINGI_WIDTH; i += LANES) {
+            const size_t slot = (size_t)span->first_block * MSPRINGI_WIDTH + i;
+            const motion here = load_motion(s, slot, damped);
+            const vector force = web_force(s, here, span->record + i / MSPRINGI_WIDTH, i % MSPRINGI_WIDTH, damped);
+            move(s, slot, here, force, damped, forced);
         }
     }
 }
@@ -243,11 +277,13 @@ static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count
     }
 }
 
-MSPRINGI_INLINE void loose(const mspringi_sweep *s, const mspringi_span *span, bool forced) {
-    const size_t first = (size_t)span->first_block * MSPRINGI_WIDTH;
+MSPRINGI_INLINE void loose(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, bool forced) {
     const vector none = {zero(), zero()};
-    for (size_t slot = first; slot < first + (size_t)span->block_count * MSPRINGI_WIDTH; slot += LANES)
-        move(s, slot, none, forced);
+    for (const mspringi_span *span = spans; span < spans + count; ++span) {
+        const size_t first = (size_t)span->first_block * MSPRINGI_WIDTH;
+        for (size_t slot = first; slot < first + (size_t)span->block_count * MSPRINGI_WIDTH; slot += LANES)
+            move(s, slot, load_motion(s, slot, true), none, true, forced);
+    }
 }
 
 #endif

@@ -1,36 +1,29 @@
 /// @file table.h
-/// The variants of an instruction set's lattice(), chain(), loose() and bounded(), and the table of them. Included
-/// at the end of each kernel file, which defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
+/// The variants of an instruction set's lattice(), web(), loose(), attached(), pack() and bounded(), and the table
+/// of them. Included at the end of each kernel file, which defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
 ///
 /// SPDX-License-Identifier: MIT
 
 #define MSPRINGI_VARIANT(kind, name, damped, forced)                                                               \
-    static void kind##_##name(const mspringi_sweep *sweep, const mspringi_span *span, mspringi_edge *edge) {       \
-        kind(sweep, span, edge, damped, forced);                                                                   \
+    static void kind##_##name(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count) {           \
+        kind(sweep, spans, count, damped, forced);                                                                 \
     }
 
 MSPRINGI_VARIANT(lattice, plain, false, false)
 MSPRINGI_VARIANT(lattice, forced, false, true)
 MSPRINGI_VARIANT(lattice, damped, true, false)
 MSPRINGI_VARIANT(lattice, damped_forced, true, true)
-MSPRINGI_VARIANT(chain, plain, false, false)
-MSPRINGI_VARIANT(chain, forced, false, true)
-MSPRINGI_VARIANT(chain, damped, true, false)
-MSPRINGI_VARIANT(chain, damped_forced, true, true)
-
 MSPRINGI_VARIANT(web, plain, false, false)
 MSPRINGI_VARIANT(web, forced, false, true)
 MSPRINGI_VARIANT(web, damped, true, false)
 MSPRINGI_VARIANT(web, damped_forced, true, true)
 
-static void loose_plain(const mspringi_sweep *sweep, const mspringi_span *span, mspringi_edge *edge) {
-    (void)edge;
-    loose(sweep, span, false);
+static void loose_plain(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count) {
+    loose(sweep, spans, count, false);
 }
 
-static void loose_forced(const mspringi_sweep *sweep, const mspringi_span *span, mspringi_edge *edge) {
-    (void)edge;
-    loose(sweep, span, true);
+static void loose_forced(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count) {
+    loose(sweep, spans, count, true);
 }
 
 static void attached_plain(const mspringi_sweep *sweep, float *x, float *y) {
@@ -44,7 +37,6 @@ static void attached_damped(const mspringi_sweep *sweep, float *x, float *y) {
 const mspringi_kernels MSPRINGI_TABLE = {
     .level = MSPRINGI_LEVEL,
     .lattice = {{lattice_plain, lattice_forced}, {lattice_damped, lattice_damped_forced}},
-    .chain = {{chain_plain, chain_forced}, {chain_damped, chain_damped_forced}},
     .loose = {loose_plain, loose_forced},
     .web = {{web_plain, web_forced}, {web_damped, web_damped_forced}},
     .pack = pack,
