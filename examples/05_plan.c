@@ -54,14 +54,9 @@ static bool make_scene(int index, scene *made, scene_error *error) {
     }
 }
 
-static bool has_ending(const char *path, const char *ending) {
-    size_t length = strlen(path);
-    return length >= strlen(ending) && strcmp(path + length - strlen(ending), ending) == 0;
-}
-
 static bool read_scene(const char *path, scene *made, scene_error *error) {
     const scene_options options = scene_options_from_file();
-    if (has_ending(path, ".msn") || has_ending(path, ".txt"))
+    if (!scene_file_is_image(path))
         return scene_network_file(path, &options, made, error);
     scene_materials materials = {0};
     bool ok = scene_materials_builtin(&materials, error) && scene_image(path, &materials, &options, made, error);

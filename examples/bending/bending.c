@@ -35,36 +35,11 @@ static bool fail(const char *message) {
     return false;
 }
 
-static bool has_ending(const char *path, const char *const *endings) {
-    const char *dot = strrchr(path, '.');
-    for (size_t i = 0; dot && endings[i]; i++)
-        if (strcmp(dot, endings[i]) == 0)
-            return true;
-    return false;
-}
-
-// By its name's ending; if that says nothing, by its first bytes.
-static bool is_image(const char *path) {
-    static const char *const images[] = {".png", ".PNG", ".bmp", ".BMP", ".pbm", ".pgm", ".ppm", ".pnm", NULL};
-    static const char *const networks[] = {".msn", ".txt", NULL};
-    if (has_ending(path, images))
-        return true;
-    if (has_ending(path, networks))
-        return false;
-    char start[4] = {0};
-    FILE *stream = fopen(path, "rb");
-    size_t length = stream ? fread(start, 1, sizeof start, stream) : 0;
-    if (stream)
-        fclose(stream);
-    return length == sizeof start && (memcmp(start, "\x89PNG", 4) == 0 || memcmp(start, "BM", 2) == 0 ||
-                                      (start[0] == 'P' && start[1] >= '1' && start[1] <= '6'));
-}
-
 static bool load_scene(bending_run *run) {
     const bending_options *options = run->options;
     scene_error error = {""};
     bool ok = false;
-    if (is_image(options->input)) {
+    if (scene_file_is_image(options->input)) {
         scene_materials materials = {0};
         ok = options->materials ? scene_materials_read(options->materials, &materials, &error)
                                 : scene_materials_builtin(&materials, &error);

@@ -4,6 +4,7 @@
 /// SPDX-License-Identifier: MIT
 #include "draw/colour_scale.h"
 
+#include <float.h>
 #include <math.h>
 
 static const draw_colour stops[] = {0x08306b, 0x2f7fd6, 0xa2a4ac, 0xf08a24, 0x8f1d04};
@@ -33,7 +34,7 @@ int colour_scale_find(double value, double limit) {
 }
 
 double colour_scale_round_up(double value) {
-    if (!(value > 0) || !isfinite(value))
+    if (!(value > 0 && value <= DBL_MAX))
         return 1;
     double power = pow(10, floor(log10(value)));
     const double steps[] = {1, 2, 5};

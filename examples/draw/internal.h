@@ -10,7 +10,9 @@
 
 #include <stdio.h>
 
-#if defined(__GNUC__)
+#if defined(__MINGW32__) && !defined(__clang__)
+#define DRAW_PRINTF(text, first) __attribute__((format(gnu_printf, text, first))) // printf: that of old Windows
+#elif defined(__GNUC__)
 #define DRAW_PRINTF(text, first) __attribute__((format(printf, text, first)))
 #else
 #define DRAW_PRINTF(text, first)

@@ -16,8 +16,8 @@ typedef struct palette {
     uint8_t *nearest; ///< if not exact, [2^15]: the place for each colour of 5 bits a channel
 } palette;
 
-/// Choose at most so many colours for pictures like these: exactly theirs if they are few. Returns false when out of
-/// memory.
+/// Choose at most so many colours for pictures like these: exactly theirs if they are few. Returns false when out
+/// of memory.
 bool palette_make(palette *made, const canvas *pictures, size_t count, size_t most);
 void palette_free(palette *unwanted);
 

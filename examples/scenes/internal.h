@@ -8,7 +8,9 @@
 #include "scenes/number.h"
 #include "scenes/scene.h"
 
-#if defined(__GNUC__)
+#if defined(__MINGW32__) && !defined(__clang__)
+#define SCENES_PRINTF(text, first) __attribute__((format(gnu_printf, text, first))) // printf: that of old Windows
+#elif defined(__GNUC__)
 #define SCENES_PRINTF(text, first) __attribute__((format(printf, text, first)))
 #else
 #define SCENES_PRINTF(text, first)

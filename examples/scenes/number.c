@@ -6,6 +6,7 @@
 /// SPDX-License-Identifier: MIT
 #include "scenes/number.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,7 +26,7 @@ bool number_parse(text_span text, double *value) {
     copy[text.length] = 0;
     char *end = NULL;
     double number = strtod(copy, &end);
-    if (end != copy + text.length || !isfinite(number))
+    if (end != copy + text.length || !(fabs(number) <= DBL_MAX))
         return false;
     *value = number;
     return true;

@@ -72,6 +72,12 @@ bool scene_random_graph(uint32_t particles, uint32_t neighbours, uint64_t seed, 
 bool scene_add_ropes(scene *target, uint32_t count, uint32_t segments, uint64_t seed, const scene_options *options,
                      scene_error *error);
 
+/* file_kind.c */
+
+/// Whether a file is to be read as an image rather than as a text network: by the ending of its name; if that says
+/// nothing, by its first bytes.
+bool scene_file_is_image(const char *path);
+
 /* materials.c */
 
 typedef struct scene_material {
