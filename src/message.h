@@ -11,7 +11,9 @@ typedef struct mspringi_message {
     char text[256];
 } mspringi_message;
 
-#if defined(__GNUC__)
+#if defined(__MINGW32__) && !defined(__clang__)
+#define MSPRINGI_PRINTF(format_index, first_index) __attribute__((format(gnu_printf, format_index, first_index)))
+#elif defined(__GNUC__)
 #define MSPRINGI_PRINTF(format_index, first_index) __attribute__((format(printf, format_index, first_index)))
 #else
 #define MSPRINGI_PRINTF(format_index, first_index)

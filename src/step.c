@@ -93,7 +93,7 @@ static mspring_result explain(mspring_network *network, double dt) {
             fabsf(s->vy[i]) <= fastest)
             continue;
         return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
-                             "a step of %g s in %u substeps would throw particle %u to (%g, %g) m at (%g, %g) m/s: "
+                             "a step of %g s (substeps: %u) would throw particle %u to (%g, %g) m at (%g, %g) m/s: "
                              "take a shorter step, more substeps or less stiffness",
                              dt, (unsigned)network->substeps, (unsigned)p, (double)s->x[i], (double)s->y[i],
                              (double)s->vx[i], (double)s->vy[i]);
@@ -105,9 +105,10 @@ static mspring_result explain(mspring_network *network, double dt) {
 static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt) {
     const float h = (float)(dt / (double)network->substeps);
     if (!(h >= FLT_MIN && h <= FLT_MAX))
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                             "dt is %g s in %u substeps: each must be a finite number of at least 1.2e-38 s", dt,
-                             (unsigned)network->substeps);
+        return mspringi_fail(
+            &network->message, MSPRING_ERROR_ARGUMENT,
+            "dt is %g s (substeps: %u): each substep must be a finite number of at least 1.2e-38 s", dt,
+            (unsigned)network->substeps);
     mspringi_derive_relative(network, h);
     copy_state(network, &network->state, &network->backup);
     run_substeps(network, dt, h);
