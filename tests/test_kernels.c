@@ -112,9 +112,9 @@ static void fill(arena *a, const setup *s) {
         }
     }
     for (uint32_t i = 0; i < CARRY; i++) {
-        bool pulled = s->from_below && i >= s->idle && i < s->idle + s->live;
-        a->carry_x[i] = pulled ? random_float(&seed, -100, 100) : 0;
-        a->carry_y[i] = pulled ? random_float(&seed, -100, 100) : 0;
+        // Also where the row is idle: what lies there must not be handed on.
+        a->carry_x[i] = s->from_below ? random_float(&seed, -100, 100) : 0;
+        a->carry_y[i] = s->from_below ? random_float(&seed, -100, 100) : 0;
     }
     for (uint32_t i = 0; i < RECORDS; i++) {
         a->records[i] = 0;
