@@ -3,6 +3,7 @@
 
 #include "cpu.h"
 #include "network.h"
+#include "origin.h"
 
 static bool is_finite_pair(float x, float y) {
     return isfinite(x) && isfinite(y);
@@ -95,12 +96,6 @@ static mspring_result check_set(mspring_network *network, mspring_id first, uint
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "an array of %u values is NULL",
                              (unsigned)count);
     return mspringi_check_range(network, "particle", first, count, network->topology.particle_count);
-}
-
-void mspringi_set_position(mspring_network *network, mspring_id particle, double x, double y) {
-    const uint32_t slot = network->topology.slot_of_particle[particle];
-    network->state.x[slot] = (float)(x - network->origin_x);
-    network->state.y[slot] = (float)(y - network->origin_y);
 }
 
 static mspring_result check_position(mspring_network *network, mspring_id id, double x, double y,

@@ -1,12 +1,13 @@
 /// The explicit solver: symplectic Euler, row by row.
+#include "explicit.h"
+
 #include "decay.h"
-#include "network.h"
 
 /// Rows that are swept several times in one pass should stay in this much cache: half of a second-level cache of
 /// today.
 #define CACHE_BYTES ((size_t)512 << 10)
 
-/// Most substeps in one pass. More gain nothing: the state then comes from memory so rarely that arithmetic bounds.
+/// Most substeps in one pass: each needs a carry row of its own.
 #define DEEPEST 16
 
 // Pack what the web sees of its nodes.

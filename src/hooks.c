@@ -1,5 +1,5 @@
 /// Host functions that are called in the course of a step.
-#include "network.h"
+#include "hooks.h"
 
 mspring_result mspring_network_add_hook(mspring_network *network, mspring_phase phase, mspring_hook_fn fn,
                                         void *user, uint32_t *hook) {

@@ -1,8 +1,7 @@
 /// Measurements of the state, summed in double precision in id order.
 #include <math.h>
-#include <string.h>
 
-#include "network.h"
+#include "springs.h"
 
 static bool is_pinned(const mspring_network *network, mspring_id particle) {
     return network->inverse_mass[network->topology.slot_of_particle[particle]] == 0.0f;

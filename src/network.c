@@ -1,9 +1,10 @@
 /// Making, describing and destroying a network.
 #include "network.h"
 
-#include <string.h>
-
 #include "cpu.h"
+#include "explicit.h"
+#include "origin.h"
+#include "springs.h"
 
 /* --------------------------------------------------------------------------------------------------- checks */
 
@@ -36,73 +37,6 @@ static mspring_result check_def(const mspring_network_def *def, mspringi_message
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "max_speed is %g m/s, it must be > 0 and at most 1e15", (double)def->max_speed);
     return MSPRING_OK;
-}
-
-/* --------------------------------------------------------------------------------------------- spring records */
-
-// Where a spring's values are, by part: in one record, or in one at each of its ends.
-typedef struct spring_records {
-    float *parts[2];
-    int count;
-} spring_records;
-
-static float *record_in(float *records, size_t index, uint32_t parts) {
-    return records + index / MSPRINGI_WIDTH * MSPRINGI_WIDTH * parts + index % MSPRINGI_WIDTH;
-}
-
-static spring_records find_records(const mspring_network *network, mspring_id spring) {
-    const mspringi_topology *t = &network->topology;
-    const mspringi_place place = t->place_of_spring[spring];
-    const uint32_t parts = network->parts;
-    if (place < t->lattice_places)
-        return (spring_records){{record_in(network->lattice_springs, place, parts), NULL}, 1};
-    if (place < t->chain_places)
-        return (spring_records){{record_in(network->chain_springs, place - t->lattice_places, parts), NULL}, 1};
-    const uint32_t *entry = t->web.entry + 2 * (size_t)(place - t->chain_places);
-    return (spring_records){
-        {record_in(network->web_springs, entry[0], parts), record_in(network->web_springs, entry[1], parts)}, 2};
-}
-
-mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspring_id spring) {
-    const float *record = find_records(network, spring).parts[0];
-    mspringi_spring_values values = {
-        .rest_length = record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
-        .stiffness = record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH],
-        .damping = network->parts > MSPRINGI_DAMPING ? record[MSPRINGI_DAMPING * MSPRINGI_WIDTH] : 0.0f,
-    };
-    mspringi_topology_ends(&network->topology, network->topology.place_of_spring[spring], &values.base,
-                           &values.tip);
-    return values;
-}
-
-void mspringi_spring_set(mspring_network *network, mspring_id spring, const mspringi_spring_values *values) {
-    const spring_records records = find_records(network, spring);
-    for (int i = 0; i < records.count; ++i) {
-        float *record = records.parts[i];
-        record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH] = values->rest_length;
-        record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH] = values->stiffness;
-        if (network->parts > MSPRINGI_DAMPING)
-            record[MSPRINGI_DAMPING * MSPRINGI_WIDTH] = values->damping;
-    }
-}
-
-void mspringi_derive_relative(mspring_network *network, float h) {
-    if (!network->relative || network->relative_h == h)
-        return;
-    const mspringi_topology *t = &network->topology;
-    for (mspring_id s = 0; s < t->spring_count; ++s) {
-        const mspringi_relative *relative = &network->relative[s];
-        if (relative->stiffness < 0.0f)
-            continue;
-        mspringi_spring_values values = mspringi_spring_get(network, s);
-        const double ma = (double)network->mass[t->particle_of_slot[values.base]];
-        const double mb = (double)network->mass[t->particle_of_slot[values.tip]];
-        const double reduced_mass = 1.0 / (1.0 / ma + 1.0 / mb);
-        values.stiffness = (float)((double)relative->stiffness * reduced_mass / ((double)h * (double)h));
-        values.damping = (float)((double)relative->damping * reduced_mass / (double)h);
-        mspringi_spring_set(network, s, &values);
-    }
-    network->relative_h = h;
 }
 
 /* ---------------------------------------------------------------------------------------------------- filling */
@@ -288,100 +222,4 @@ void mspring_network_destroy(mspring_network *network) {
     mspringi_free(&memory, network->forces.total.x);
     mspringi_free(&memory, network->hooks);
     mspringi_free(&memory, network);
-}
-
-/* --------------------------------------------------------------------------------------------------- settings */
-
-mspring_result mspring_network_set_solver(mspring_network *network, const mspring_solver_def *def) {
-    mspring_result result = mspringi_enter(network);
-    if (result != MSPRING_OK)
-        return result;
-    mspringi_message *message = &network->message;
-    if (!def)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "solver definition is NULL");
-    result = mspringi_check_struct(message, "mspring_solver_def", def->struct_size, sizeof *def, sizeof *def);
-    if (result != MSPRING_OK)
-        return result;
-    if (def->solver != MSPRING_SOLVER_EXPLICIT)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "solver is %d, which is none", (int)def->solver);
-    if (def->substeps < 1 || def->substeps > 1000000)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "substeps is %u, it must be 1 to 1000000",
-                             (unsigned)def->substeps);
-    network->substeps = def->substeps;
-    return MSPRING_OK;
-}
-
-mspring_result mspring_network_set_gravity(mspring_network *network, float x, float y) {
-    mspring_result result = mspringi_enter(network);
-    if (result != MSPRING_OK)
-        return result;
-    if (!(x - x == 0.0f && y - y == 0.0f))
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "gravity (%g, %g) m/s^2 is not finite",
-                             (double)x, (double)y);
-    network->gravity_x = x;
-    network->gravity_y = y;
-    return MSPRING_OK;
-}
-
-mspring_result mspring_network_set_global_damping(mspring_network *network, float rate) {
-    mspring_result result = mspringi_enter(network);
-    if (result != MSPRING_OK)
-        return result;
-    if (!(rate >= 0.0f && rate <= 1e6f))
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                             "global damping is %g 1/s, it must be 0 to 1e6", (double)rate);
-    network->global_damping = rate;
-    return MSPRING_OK;
-}
-
-/* ------------------------------------------------------------------------------------------------ description */
-
-const char *mspring_network_error(const mspring_network *network) {
-    return network ? network->message.text : "";
-}
-
-uint32_t mspring_network_particle_count(const mspring_network *network) {
-    return network ? network->topology.particle_count : 0;
-}
-
-uint32_t mspring_network_spring_count(const mspring_network *network) {
-    return network ? network->topology.spring_count : 0;
-}
-
-mspring_simd mspring_network_simd_level(const mspring_network *network) {
-    return network ? network->kernels->level : MSPRING_SIMD_AUTO;
-}
-
-size_t mspring_network_memory_used(const mspring_network *network) {
-    return network ? network->memory.used : 0;
-}
-
-mspring_result mspring_network_plan(const mspring_network *network, mspring_plan *plan) {
-    if (!network || !plan)
-        return MSPRING_ERROR_ARGUMENT;
-    if (plan->struct_size != sizeof *plan)
-        return MSPRING_ERROR_STRUCT;
-    const mspringi_topology *t = &network->topology;
-    *plan = (mspring_plan){
-        .struct_size = sizeof *plan,
-        .particle_count = t->particle_count,
-        .spring_count = t->spring_count,
-        .lattice_count = t->lattice_count,
-        .lattice_particles = t->lattice_particles,
-        .lattice_springs = t->lattice_springs,
-        .lattice_rows = t->lattice_rows,
-        .lattice_blocks = t->lattice_blocks,
-        .chain_count = t->chain_count,
-        .chain_particles = t->chain_particles,
-        .chain_springs = t->chain_springs,
-        .web_particles = t->web_particles,
-        .loose_particles = t->particle_count - t->lattice_particles - t->chain_particles - t->web_particles,
-        .leftover_springs = t->leftover_count,
-        .slot_count = (uint32_t)mspringi_slot_count(network),
-        .block_width = MSPRINGI_WIDTH,
-        .has_damping = network->parts > MSPRINGI_DAMPING,
-        .has_relative = network->relative != NULL,
-        .simd_level = network->kernels->level,
-    };
-    return MSPRING_OK;
 }

@@ -88,40 +88,4 @@ mspring_result mspringi_check_range(mspring_network *network, const char *what, 
 /// Allocate a field of all slots, zeroed; leaves it alone if it is there.
 mspring_result mspringi_field_reserve(mspring_network *network, mspringi_field *field);
 
-/// What a spring is like, and the slots that it joins.
-typedef struct mspringi_spring_values {
-    float rest_length, stiffness, damping;
-    uint32_t base, tip;
-} mspringi_spring_values;
-mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspring_id spring);
-/// Set rest length, stiffness and damping, wherever the spring has records.
-void mspringi_spring_set(mspring_network *network, mspring_id spring, const mspringi_spring_values *values);
-
-/// Derive stiffness and damping of the relative springs for a substep.
-void mspringi_derive_relative(mspring_network *network, float h);
-
-/// Deepest pass over the lattice rows that is worth it for this topology.
-uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t parts);
-
-/// Take count substeps of length h, all with the forces from outside that are in base (x NULL: none).
-void mspringi_explicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count);
-
-/// Call the hooks of a phase with the given force field (x NULL: none).
-void mspringi_hooks_call(mspring_network *network, mspring_phase phase, uint32_t substep, double dt,
-                         mspringi_field field);
-bool mspringi_hooks_any(const mspring_network *network, mspring_phase phase);
-
-typedef struct mspringi_box {
-    double min_x, min_y, max_x, max_y;
-} mspringi_box;
-mspringi_box mspringi_box_empty(void);
-void mspringi_box_include(mspringi_box *box, double x, double y);
-
-/// Put the origin at the middle of the box. The positions are the caller's to set anew.
-void mspringi_origin_choose(mspring_network *network, const mspringi_box *box);
-/// Set a particle's world position.
-void mspringi_set_position(mspring_network *network, mspring_id particle, double x, double y);
-/// Move the origin along if the network has gone far from it. Exact: no particle's world position changes.
-void mspringi_origin_follow(mspring_network *network);
-
 #endif

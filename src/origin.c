@@ -1,8 +1,8 @@
 /// The local origin. Single precision resolves a position the better the closer it is to the origin, and springs
 /// feel the difference of positions, so the origin goes where the network is.
-#include <math.h>
+#include "origin.h"
 
-#include "network.h"
+#include <math.h>
 
 /// Smallest distance from the origin at which it is worth to move it, m.
 #define SMALLEST_RECENTRE_DISTANCE 64.0f
@@ -27,6 +27,12 @@ void mspringi_origin_choose(mspring_network *network, const mspringi_box *box) {
     network->origin_x = middle(box->min_x, box->max_x);
     network->origin_y = middle(box->min_y, box->max_y);
     network->recentre_distance = SMALLEST_RECENTRE_DISTANCE;
+}
+
+void mspringi_set_position(mspring_network *network, mspring_id particle, double x, double y) {
+    const uint32_t slot = network->topology.slot_of_particle[particle];
+    network->state.x[slot] = (float)(x - network->origin_x);
+    network->state.y[slot] = (float)(y - network->origin_y);
 }
 
 // One coordinate's shift: the middle of the network, if all particles are on one side of the origin and the

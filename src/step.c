@@ -4,7 +4,11 @@
 #include <string.h>
 
 #include "cpu.h"
+#include "explicit.h"
+#include "hooks.h"
 #include "network.h"
+#include "origin.h"
+#include "springs.h"
 
 static void copy_state(const mspring_network *network, const mspringi_state *from, const mspringi_state *to) {
     memcpy(to->x, from->x, 4 * mspringi_slot_count(network) * sizeof *to->x);

@@ -1,0 +1,16 @@
+/// @file explicit.h
+/// The explicit solver.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_EXPLICIT_H
+#define MSPRINGI_EXPLICIT_H
+
+#include "network.h"
+
+/// Deepest pass over the lattice rows that is worth it for this topology.
+uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t parts);
+
+/// Take count substeps of length h, all with the forces from outside that are in base (x NULL: none).
+void mspringi_explicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count);
+
+#endif

@@ -1,0 +1,44 @@
+/// Settings that may change between steps: solver, gravity, global damping.
+#include "network.h"
+
+mspring_result mspring_network_set_solver(mspring_network *network, const mspring_solver_def *def) {
+    mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK)
+        return result;
+    mspringi_message *message = &network->message;
+    if (!def)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "solver definition is NULL");
+    result = mspringi_check_struct(message, "mspring_solver_def", def->struct_size, sizeof *def, sizeof *def);
+    if (result != MSPRING_OK)
+        return result;
+    if (def->solver != MSPRING_SOLVER_EXPLICIT)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "solver is %d, which is none", (int)def->solver);
+    if (def->substeps < 1 || def->substeps > 1000000)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "substeps is %u, it must be 1 to 1000000",
+                             (unsigned)def->substeps);
+    network->substeps = def->substeps;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_set_gravity(mspring_network *network, float x, float y) {
+    mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK)
+        return result;
+    if (!(x - x == 0.0f && y - y == 0.0f))
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "gravity (%g, %g) m/s^2 is not finite",
+                             (double)x, (double)y);
+    network->gravity_x = x;
+    network->gravity_y = y;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_set_global_damping(mspring_network *network, float rate) {
+    mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK)
+        return result;
+    if (!(rate >= 0.0f && rate <= 1e6f))
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "global damping is %g 1/s, it must be 0 to 1e6", (double)rate);
+    network->global_damping = rate;
+    return MSPRING_OK;
+}

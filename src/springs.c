@@ -1,0 +1,67 @@
+/// Where springs lie and what they are like.
+#include "springs.h"
+
+// Where a spring's values are, by part: in one record, or in one at each of its ends.
+typedef struct spring_records {
+    float *parts[2];
+    int count;
+} spring_records;
+
+static float *record_in(float *records, size_t index, uint32_t parts) {
+    return records + index / MSPRINGI_WIDTH * MSPRINGI_WIDTH * parts + index % MSPRINGI_WIDTH;
+}
+
+static spring_records find_records(const mspring_network *network, mspring_id spring) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_place place = t->place_of_spring[spring];
+    const uint32_t parts = network->parts;
+    if (place < t->lattice_places)
+        return (spring_records){{record_in(network->lattice_springs, place, parts), NULL}, 1};
+    if (place < t->chain_places)
+        return (spring_records){{record_in(network->chain_springs, place - t->lattice_places, parts), NULL}, 1};
+    const uint32_t *entry = t->web.entry + 2 * (size_t)(place - t->chain_places);
+    return (spring_records){
+        {record_in(network->web_springs, entry[0], parts), record_in(network->web_springs, entry[1], parts)}, 2};
+}
+
+mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspring_id spring) {
+    const float *record = find_records(network, spring).parts[0];
+    mspringi_spring_values values = {
+        .rest_length = record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
+        .stiffness = record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH],
+        .damping = network->parts > MSPRINGI_DAMPING ? record[MSPRINGI_DAMPING * MSPRINGI_WIDTH] : 0.0f,
+    };
+    mspringi_topology_ends(&network->topology, network->topology.place_of_spring[spring], &values.base,
+                           &values.tip);
+    return values;
+}
+
+void mspringi_spring_set(mspring_network *network, mspring_id spring, const mspringi_spring_values *values) {
+    const spring_records records = find_records(network, spring);
+    for (int i = 0; i < records.count; ++i) {
+        float *record = records.parts[i];
+        record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH] = values->rest_length;
+        record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH] = values->stiffness;
+        if (network->parts > MSPRINGI_DAMPING)
+            record[MSPRINGI_DAMPING * MSPRINGI_WIDTH] = values->damping;
+    }
+}
+
+void mspringi_derive_relative(mspring_network *network, float h) {
+    if (!network->relative || network->relative_h == h)
+        return;
+    const mspringi_topology *t = &network->topology;
+    for (mspring_id s = 0; s < t->spring_count; ++s) {
+        const mspringi_relative *relative = &network->relative[s];
+        if (relative->stiffness < 0.0f)
+            continue;
+        mspringi_spring_values values = mspringi_spring_get(network, s);
+        const double ma = (double)network->mass[t->particle_of_slot[values.base]];
+        const double mb = (double)network->mass[t->particle_of_slot[values.tip]];
+        const double reduced_mass = 1.0 / (1.0 / ma + 1.0 / mb);
+        values.stiffness = (float)((double)relative->stiffness * reduced_mass / ((double)h * (double)h));
+        values.damping = (float)((double)relative->damping * reduced_mass / (double)h);
+        mspringi_spring_set(network, s, &values);
+    }
+    network->relative_h = h;
+}
