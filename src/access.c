@@ -183,19 +183,20 @@ mspring_result mspring_network_set_velocities(mspring_network *network, mspring_
 mspring_result mspring_network_apply_forces(mspring_network *network, mspring_id first, uint32_t count,
                                             const float *x, const float *y) {
     mspring_result result = check_set(network, first, count, x, y);
-    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
-        if (!is_finite_pair(x[i], y[i]))
-            result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                                   "particle %u: force (%g, %g) N is not finite", (unsigned)(first + i),
-                                   (double)x[i], (double)y[i]);
     if (result == MSPRING_OK)
         result = mspringi_field_reserve(network, &network->forces.held);
     if (result != MSPRING_OK)
         return result;
+    const mspringi_field held = network->forces.held;
+    const uint32_t *slots = network->topology.slot_of_particle + first;
+    for (uint32_t i = 0; i < count; ++i)
+        if (!is_finite_pair(held.x[slots[i]] + x[i], held.y[slots[i]] + y[i]))
+            return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                                 "particle %u: force (%g, %g) N is not finite, or not with what acts already",
+                                 (unsigned)(first + i), (double)x[i], (double)y[i]);
     for (uint32_t i = 0; i < count; ++i) {
-        const uint32_t slot = network->topology.slot_of_particle[first + i];
-        network->forces.held.x[slot] += x[i];
-        network->forces.held.y[slot] += y[i];
+        held.x[slots[i]] += x[i];
+        held.y[slots[i]] += y[i];
     }
     network->forces.held_any = network->forces.held_any || count > 0;
     return MSPRING_OK;

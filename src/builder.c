@@ -176,7 +176,7 @@ static mspring_result check_spring(mspring_builder *builder, size_t index, const
     }
     if (!(length > 0.0f && length <= LARGEST_LENGTH))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
-                             "spring %zu: rest length is %g m, it must be > 0 and at most 1e12", index,
+                             "spring %zu: rest length is %g m, it must be > 0 and at most 4e12", index,
                              (double)length);
     *rest_length = length;
     return MSPRING_OK;

@@ -31,9 +31,9 @@ bool draw_close(FILE *stream, const char *path, draw_error *error);
 void stroke_font_draw(canvas *target, double x, double y, double height, draw_colour colour, const char *text);
 double stroke_font_width(double height, const char *text);
 
-/* deflate.c */
+/* zlib_stb.c or zlib_stored.c */
 
-/// Compress into the zlib format. Returns bytes that the caller frees, or NULL when out of memory.
-uint8_t *deflate_zlib(const uint8_t *bytes, size_t length, size_t *compressed);
+/// Put into the zlib format. Returns bytes that the caller frees, or NULL when out of memory.
+uint8_t *zlib_pack(const uint8_t *bytes, size_t length, size_t *packed);
 
 #endif

@@ -90,7 +90,7 @@ static uint8_t *compress_part(const uint8_t *places, uint32_t width, region part
         rows[row * stride] = 0;
         memcpy(rows + row * stride + 1, places + (size_t)(part.y + row) * width + part.x, part.width);
     }
-    uint8_t *bytes = deflate_zlib(rows, stride * part.height, compressed);
+    uint8_t *bytes = zlib_pack(rows, stride * part.height, compressed);
     free(rows);
     return bytes;
 }
