@@ -16,6 +16,7 @@ mspring_result mspring_network_view(mspring_network *network, mspring_view *view
         return MSPRING_ERROR_ARGUMENT;
     if (view->struct_size != sizeof *view)
         return MSPRING_ERROR_STRUCT;
+    network->is_open = true;
     *view = (mspring_view){
         .struct_size = sizeof *view,
         .slot_count = (uint32_t)mspringi_slot_count(network),
@@ -180,13 +181,8 @@ mspring_result mspring_network_set_velocities(mspring_network *network, mspring_
 
 /* ------------------------------------------------------------------------------------------------------- forces */
 
-mspring_result mspring_network_apply_forces(mspring_network *network, mspring_id first, uint32_t count,
-                                            const float *x, const float *y) {
-    mspring_result result = check_set(network, first, count, x, y);
-    if (result == MSPRING_OK)
-        result = mspringi_field_reserve(network, &network->forces.held);
-    if (result != MSPRING_OK)
-        return result;
+static MSPRINGI_NOINLINE mspring_result add_held(mspring_network *network, mspring_id first, uint32_t count,
+                                                 const float *x, const float *y) {
     const mspringi_field held = network->forces.held;
     const uint32_t *slots = network->topology.slot_of_particle + first;
     for (uint32_t i = 0; i < count; ++i)
@@ -200,6 +196,19 @@ mspring_result mspring_network_apply_forces(mspring_network *network, mspring_id
     }
     network->forces.held_any = network->forces.held_any || count > 0;
     return MSPRING_OK;
+}
+
+mspring_result mspring_network_apply_forces(mspring_network *network, mspring_id first, uint32_t count,
+                                            const float *x, const float *y) {
+    mspring_result result = check_set(network, first, count, x, y);
+    if (result == MSPRING_OK)
+        result = mspringi_field_reserve(network, &network->forces.held);
+    if (result != MSPRING_OK)
+        return result;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    result = add_held(network, first, count, x, y);
+    mspringi_fp_leave(before);
+    return result;
 }
 
 mspring_result mspring_network_apply_force(mspring_network *network, mspring_id particle, float x, float y) {

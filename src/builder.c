@@ -290,6 +290,11 @@ static mspring_result check_materials(mspring_builder *builder, const mspring_la
     return MSPRING_OK;
 }
 
+// Whether neighbouring cells between two coordinates would round to the same place.
+static bool is_lost(double spacing, size_t cells, double low, double high) {
+    return cells > 1 && (low + spacing == low || high - spacing == high);
+}
+
 // Check a lattice's cells and count what it will add.
 static mspring_result check_lattice(mspring_builder *builder, const mspring_lattice_def *def, size_t *particles,
                                     size_t *springs) {
@@ -315,10 +320,10 @@ static mspring_result check_lattice(mspring_builder *builder, const mspring_latt
     if (!is_coordinate(def->x) || !is_coordinate(def->y) || !is_coordinate(right) || !is_coordinate(top))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "lattice from (%g, %g) to (%g, %g) m is not within 1e12", def->x, def->y, right, top);
-    if (right != def->x && def->x + def->spacing == def->x)
+    if (is_lost(def->spacing, width, def->x, right) || is_lost(def->spacing, height, def->y, top))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
-                             "lattice spacing %g m is lost in its position (%g, %g) m", def->spacing, def->x,
-                             def->y);
+                             "lattice spacing %g m is lost in coordinates from (%g, %g) to (%g, %g) m",
+                             def->spacing, def->x, def->y, right, top);
     result = check_materials(builder, def);
     if (result != MSPRING_OK)
         return result;
@@ -426,7 +431,7 @@ mspring_result mspring_builder_add_lattice(mspring_builder *builder, const mspri
 
 /* ---------------------------------------------------------------------------------------------------- rope */
 
-static mspring_result check_rope(mspring_builder *builder, const mspring_rope_def *def, double *distance) {
+static mspring_result check_rope(mspring_builder *builder, const mspring_rope_def *def, float *segment_length) {
     mspringi_message *message = &builder->message;
     mspring_result result =
         mspringi_check_struct(message, "mspring_rope_def", def->struct_size, sizeof *def, sizeof *def);
@@ -452,22 +457,22 @@ static mspring_result check_rope(mspring_builder *builder, const mspring_rope_de
                              (double)def->slack);
     const mspringi_particle *from = &builder->particles[def->from], *to = &builder->particles[def->to];
     const double dx = to->x - from->x, dy = to->y - from->y;
-    *distance = sqrt(dx * dx + dy * dy);
-    const float segment = (float)(*distance * (double)def->slack / (double)def->segment_count);
+    const float segment = (float)(sqrt(dx * dx + dy * dy) * (double)def->slack / (double)def->segment_count);
     if (!(segment > 0.0f && segment <= LARGEST_LENGTH))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "rope from particle %u to %u: a segment would be %g m long, it must be > 0 and at "
                              "most 4e12",
                              (unsigned)def->from, (unsigned)def->to, (double)segment);
+    *segment_length = segment;
     return MSPRING_OK;
 }
 
 static MSPRINGI_NOINLINE mspring_result add_rope(mspring_builder *builder, const mspring_rope_def *def,
                                                  mspring_id *first_particle, mspring_id *first_spring) {
-    double distance = 0.0;
+    float segment_length = 0.0f;
     if (!def)
         return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "rope definition is NULL");
-    mspring_result result = check_rope(builder, def, &distance);
+    mspring_result result = check_rope(builder, def, &segment_length);
     if (result == MSPRING_OK)
         result = reserve_particles(builder, def->segment_count - 1);
     if (result == MSPRING_OK)
@@ -485,13 +490,12 @@ static MSPRINGI_NOINLINE mspring_result add_rope(mspring_builder *builder, const
             .x = from.x + (to.x - from.x) * t, .y = from.y + (to.y - from.y) * t, .mass = def->mass};
     }
     for (uint32_t i = 0; i < segments; ++i)
-        builder->springs[builder->spring_count++] =
-            (mspringi_spring){.a = i == 0 ? def->from : inner + i - 1,
-                              .b = i + 1 == segments ? def->to : inner + i,
-                              .stiffness = def->stiffness,
-                              .damping = def->damping,
-                              .rest_length = (float)(distance * (double)def->slack / (double)segments),
-                              .flags = def->spring_flags};
+        builder->springs[builder->spring_count++] = (mspringi_spring){.a = i == 0 ? def->from : inner + i - 1,
+                                                                      .b = i + 1 == segments ? def->to : inner + i,
+                                                                      .stiffness = def->stiffness,
+                                                                      .damping = def->damping,
+                                                                      .rest_length = segment_length,
+                                                                      .flags = def->spring_flags};
     if (first_particle)
         *first_particle = segments > 1 ? inner : MSPRING_NONE;
     if (first_spring)

@@ -3,8 +3,8 @@
 
 #include <massspring/massspring.h>
 
-// Copy the defaults into a struct that may be of another version: fields that this library does not know are
-// refused by their size when the struct is used, fields that an older header lacks are not written.
+// Copy the defaults into a struct of the size that its header gives it. This is the first version of every struct,
+// so there is one size.
 static mspring_result fill(void *def, size_t size, const void *defaults, size_t known) {
     if (!def)
         return MSPRING_ERROR_ARGUMENT;

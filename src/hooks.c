@@ -12,7 +12,7 @@ mspring_result mspring_network_add_hook(mspring_network *network, mspring_phase 
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "hook function is NULL");
 
     mspringi_forces *forces = &network->forces;
-    if (phase != MSPRING_PHASE_AFTER_SUBSTEP)
+    if (phase == MSPRING_PHASE_BEFORE_SUBSTEP)
         result = mspringi_field_reserve(network, &forces->total);
     if (result == MSPRING_OK && phase == MSPRING_PHASE_BEFORE_STEP)
         result = mspringi_field_reserve(network, &forces->base);
@@ -26,6 +26,7 @@ mspring_result mspring_network_add_hook(mspring_network *network, mspring_phase 
         return result;
     network->hooks[network->hook_count++] =
         (mspringi_hook){.phase = phase, .fn = fn, .user = user, .number = network->next_hook};
+    network->is_open = true;
     if (hook)
         *hook = network->next_hook;
     network->next_hook++;

@@ -72,6 +72,7 @@ struct mspring_network {
     size_t hook_count, hook_capacity;
     uint32_t next_hook;
     bool in_hook;
+    bool is_open; ///< somebody outside has the state's arrays: there was a view or a hook
 };
 
 static inline size_t mspringi_slot_count(const mspring_network *network) {

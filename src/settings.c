@@ -1,6 +1,8 @@
 /// Settings that may change between steps: solver, gravity, global damping.
 #include "network.h"
 
+#include <math.h>
+
 mspring_result mspring_network_set_solver(mspring_network *network, const mspring_solver_def *def) {
     mspring_result result = mspringi_enter(network);
     if (result != MSPRING_OK)
@@ -24,7 +26,7 @@ mspring_result mspring_network_set_gravity(mspring_network *network, float x, fl
     mspring_result result = mspringi_enter(network);
     if (result != MSPRING_OK)
         return result;
-    if (!(x - x == 0.0f && y - y == 0.0f))
+    if (!isfinite(x) || !isfinite(y))
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "gravity (%g, %g) m/s^2 is not finite",
                              (double)x, (double)y);
     network->gravity_x = x;

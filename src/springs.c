@@ -59,8 +59,9 @@ void mspringi_derive_relative(mspring_network *network, float h) {
         const double ma = (double)network->mass[t->particle_of_slot[values.base]];
         const double mb = (double)network->mass[t->particle_of_slot[values.tip]];
         const double reduced_mass = 1.0 / (1.0 / ma + 1.0 / mb);
-        values.stiffness = (float)((double)relative->stiffness * reduced_mass / ((double)h * (double)h));
-        values.damping = (float)((double)relative->damping * reduced_mass / (double)h);
+        const double rate = h > 0.0f ? 1.0 / (double)h : 0.0;
+        values.stiffness = (float)((double)relative->stiffness * reduced_mass * rate * rate);
+        values.damping = (float)((double)relative->damping * reduced_mass * rate);
         mspringi_spring_set(network, s, &values);
     }
     network->relative_h = h;

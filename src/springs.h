@@ -16,7 +16,7 @@ mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspri
 /// Set rest length, stiffness and damping, wherever the spring has records.
 void mspringi_spring_set(mspring_network *network, mspring_id spring, const mspringi_spring_values *values);
 
-/// Derive stiffness and damping of the relative springs for a substep.
+/// Derive stiffness and damping of the relative springs for a substep; 0: as before the first one, both 0.
 void mspringi_derive_relative(mspring_network *network, float h);
 
 #endif

@@ -87,23 +87,40 @@ static bool is_bounded(const mspring_network *network) {
            network->kernels->bounded(s->vy, slots, network->max_speed);
 }
 
-// Name the first particle that left the bounds.
-static mspring_result explain(mspring_network *network, double dt) {
+static bool is_in_bounds(const mspring_network *network, uint32_t slot) {
     const mspringi_state *s = &network->state;
     const float largest = (float)MSPRING_MAX_COORDINATE, fastest = network->max_speed;
-    for (uint32_t p = 0; p < network->topology.particle_count; ++p) {
-        const uint32_t i = network->topology.slot_of_particle[p];
-        if (fabsf(s->x[i]) <= largest && fabsf(s->y[i]) <= largest && fabsf(s->vx[i]) <= fastest &&
-            fabsf(s->vy[i]) <= fastest)
-            continue;
-        return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
-                             "a step of %g s (substeps: %u) would throw particle %u to (%g, %g) m at (%g, %g) m/s: "
-                             "take a shorter step, more substeps or less stiffness",
-                             dt, (unsigned)network->substeps, (unsigned)p, (double)s->x[i], (double)s->y[i],
-                             (double)s->vx[i], (double)s->vy[i]);
+    return fabsf(s->x[slot]) <= largest && fabsf(s->y[slot]) <= largest && fabsf(s->vx[slot]) <= fastest &&
+           fabsf(s->vy[slot]) <= fastest;
+}
+
+// Name a particle that left the bounds: the first that is still a number, since what is none spreads to others.
+static mspring_result explain(mspring_network *network, double dt) {
+    const mspringi_state *s = &network->state;
+    const mspringi_topology *t = &network->topology;
+    mspring_id named = MSPRING_NONE;
+    for (mspring_id p = t->particle_count; p-- > 0;) {
+        const uint32_t slot = t->slot_of_particle[p];
+        const float sum = s->x[slot] + s->y[slot] + s->vx[slot] + s->vy[slot];
+        if (!is_in_bounds(network, slot) && (sum == sum || named == MSPRING_NONE))
+            named = p;
     }
-    return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
-                         "a hook has written a value out of bounds to a slot without particle");
+    const uint32_t slot = t->slot_of_particle[named];
+    return mspringi_fail(
+        &network->message, MSPRING_ERROR_UNSTABLE,
+        "a step of %g s (substeps: %u) would throw particle %u, perhaps with others, to (%g, %g) m "
+        "at (%g, %g) m/s: take a shorter step, more substeps or less stiffness",
+        dt, (unsigned)network->substeps, (unsigned)named, network->origin_x + (double)s->x[slot],
+        network->origin_y + (double)s->y[slot], (double)s->vx[slot], (double)s->vy[slot]);
+}
+
+// Take back what a hook, or the host through a view, has written to slots without particle.
+static void clear_empty_slots(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    float *const arrays[] = {network->state.x, network->state.y, network->state.vx, network->state.vy};
+    for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
+        for (uint32_t run = 0; run < t->empty_run_count; ++run)
+            memset(arrays[i] + t->empty_runs[run].first_slot, 0, t->empty_runs[run].slot_count * sizeof *arrays[i]);
 }
 
 static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt) {
@@ -113,12 +130,18 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
             &network->message, MSPRING_ERROR_ARGUMENT,
             "dt is %g s (substeps: %u): each substep must be a finite number of at least 1.2e-38 s", dt,
             (unsigned)network->substeps);
+    const float relative_h = network->relative_h;
     mspringi_derive_relative(network, h);
     copy_state(network, &network->state, &network->backup);
     run_substeps(network, dt, h);
+    if (network->is_open)
+        clear_empty_slots(network);
     if (!is_bounded(network)) {
         mspring_result result = explain(network, dt);
         copy_state(network, &network->backup, &network->state);
+        mspringi_derive_relative(network, relative_h);
+        if (network->is_open)
+            clear_empty_slots(network);
         return result;
     }
     mspringi_origin_follow(network);

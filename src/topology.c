@@ -5,6 +5,9 @@
 
 #include "analysis.h"
 
+/// Chains are swept in spans of this many blocks.
+#define LONGEST_CHAIN_SPAN 64
+
 /// A block of a grid on its way to a number: row, then column block.
 typedef uint64_t block_key;
 
@@ -152,6 +155,11 @@ static mspring_result number_blocks(assembly *a) {
     t->loose_first = t->web_first + t->web_blocks;
     t->loose_blocks = (loose + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
     t->block_count = t->loose_first + t->loose_blocks + 1;
+    if ((uint64_t)t->lattice_blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + a->strands.count + MSPRINGI_WIDTH +
+            a->builder->spring_count >=
+        MSPRING_NONE)
+        return mspringi_fail(a->message, MSPRING_ERROR_LIMIT, "%u blocks of lattice are more than can be numbered",
+                             (unsigned)t->lattice_blocks);
     return MSPRING_OK;
 }
 
@@ -306,7 +314,8 @@ static bool append_span(assembly *a, const mspringi_span *span) {
 }
 
 static uint32_t widest_row(const assembly *a) {
-    uint32_t widest = a->topology->chain_blocks;
+    uint32_t widest =
+        a->topology->chain_blocks < LONGEST_CHAIN_SPAN ? a->topology->chain_blocks : LONGEST_CHAIN_SPAN;
     for (size_t i = 0; i < a->block_count; ++i)
         widest = column_block_of(a->blocks[i]) + 1 > widest ? column_block_of(a->blocks[i]) + 1 : widest;
     return widest;
@@ -338,6 +347,23 @@ static bool append_lattice_rows(assembly *a, uint32_t grid) {
             return false;
     }
     return true;
+}
+
+// Append the chains. Their spans are no longer than the carry row, which has no force for them.
+static bool append_chain_row(assembly *a) {
+    mspringi_topology *t = a->topology;
+    bool ok = t->chain_blocks == 0 || append_row(a, MSPRINGI_ROW_CHAIN);
+    for (uint32_t block = 0; ok && block < t->chain_blocks; block += LONGEST_CHAIN_SPAN) {
+        const uint32_t left = t->chain_blocks - block;
+        const mspringi_span span = {.kind = MSPRINGI_ROW_CHAIN,
+                                    .continues = block > 0,
+                                    .first_block = t->chain_first + block,
+                                    .block_count = left < LONGEST_CHAIN_SPAN ? left : LONGEST_CHAIN_SPAN,
+                                    .record = block,
+                                    .record_slots = MSPRINGI_WIDTH};
+        ok = append_span(a, &span);
+    }
+    return ok;
 }
 
 // Append a row of one span.
@@ -410,8 +436,7 @@ static mspring_result make_rows(assembly *a) {
     for (uint32_t grid = 0; grid < a->grids.count; ++grid)
         if (!append_lattice_rows(a, grid))
             return out_of_memory(a);
-    if (!append_simple_row(a, MSPRINGI_ROW_CHAIN, t->chain_first, t->chain_blocks) ||
-        !append_simple_row(a, MSPRINGI_ROW_WEB, t->web_first, t->web_blocks) ||
+    if (!append_chain_row(a) || !append_simple_row(a, MSPRINGI_ROW_WEB, t->web_first, t->web_blocks) ||
         !append_simple_row(a, MSPRINGI_ROW_LOOSE, t->loose_first, t->loose_blocks) || !trim_spans(a))
         return out_of_memory(a);
     mark_pulled_rows(t);
@@ -419,6 +444,31 @@ static mspring_result make_rows(assembly *a) {
 }
 
 /* ---------------------------------------------------------------------------------------------------- the whole */
+
+// List the slots without particle, the padding in front and behind among them.
+static mspring_result list_empty_slots(assembly *a) {
+    mspringi_topology *t = a->topology;
+    const uint32_t end = t->block_count * MSPRINGI_WIDTH;
+    for (int pass = 0; pass < 2; ++pass) { // first count, then fill
+        uint32_t runs = 0;
+        bool in_run = false;
+        for (uint32_t slot = 0; slot < end; ++slot) {
+            const bool empty = t->particle_of_slot[slot] == MSPRING_NONE;
+            if (empty && !in_run && pass == 1)
+                t->empty_runs[runs] = (mspringi_empty_run){.first_slot = slot};
+            runs += empty && !in_run;
+            if (empty && pass == 1)
+                t->empty_runs[runs - 1].slot_count++;
+            in_run = empty;
+        }
+        if (pass == 0)
+            t->empty_runs = mspringi_alloc(a->memory, runs, sizeof *t->empty_runs);
+        if (!t->empty_runs)
+            return out_of_memory(a);
+        t->empty_run_count = runs;
+    }
+    return MSPRING_OK;
+}
 
 static mspring_result allocate_maps(assembly *a) {
     mspringi_topology *t = a->topology;
@@ -449,7 +499,9 @@ static mspring_result assemble(assembly *a) {
     if (result != MSPRING_OK)
         return result;
     assign_slots(a);
-    result = assign_places(a);
+    result = list_empty_slots(a);
+    if (result == MSPRING_OK)
+        result = assign_places(a);
     return result == MSPRING_OK ? make_rows(a) : result;
 }
 
@@ -489,5 +541,6 @@ void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *mem
     mspringi_free(memory, topology->leftover_b);
     mspringi_free(memory, topology->spans);
     mspringi_free(memory, topology->rows);
+    mspringi_free(memory, topology->empty_runs);
     *topology = (mspringi_topology){0};
 }

@@ -2,7 +2,7 @@
 /// From particles and springs to rows: which particles lie on grids, which on strands, and in which slot.
 ///
 /// A slot is a place in the state arrays. Slots come in blocks of MSPRINGI_WIDTH, a block being that many columns
-/// of one row. There are three kinds of row:
+/// of one row. There are four kinds of row:
 ///
 ///   lattice  one row of a grid; each block has a record of four springs per slot (see mspringi_direction)
 ///   chain    strands packed end to end; a record of one spring per slot, to the next slot
@@ -64,6 +64,10 @@ typedef struct mspringi_row {
 /// that, chain_places + number among the leftover springs. Block counts from the first of its kind.
 typedef uint32_t mspringi_place;
 
+typedef struct mspringi_empty_run {
+    uint32_t first_slot, slot_count;
+} mspringi_empty_run;
+
 typedef struct mspringi_topology {
     uint32_t particle_count, spring_count;
     uint32_t block_count; ///< with one of padding in front and one behind, so that lane + 1 can always be read
@@ -76,6 +80,9 @@ typedef struct mspringi_topology {
     uint32_t *particle_of_slot;      ///< [block_count * MSPRINGI_WIDTH], MSPRING_NONE where there is none
     mspringi_place *place_of_spring; ///< [spring_count]
     uint32_t *up_of_block;           ///< [lattice_blocks] block above each lattice block; itself if there is none
+
+    mspringi_empty_run *empty_runs; ///< slots that hold no particle
+    uint32_t empty_run_count;
 
     mspringi_place lattice_places, chain_places;
     uint32_t leftover_count;

@@ -20,8 +20,8 @@ static uint32_t slot_of_node(const mspringi_web *web, uint32_t node, uint32_t fi
     return node < web->own_count ? first_slot + node : web->attached_slot[node - web->own_count];
 }
 
-// Give every group the rungs of its busiest node.
-static void count_rungs(mspringi_web *web, const uint32_t *degree_of_slot, uint32_t first_slot) {
+// Give every group the rungs of its busiest node; false if their entries are more than can be numbered.
+static bool count_rungs(mspringi_web *web, const uint32_t *degree_of_slot, uint32_t first_slot) {
     for (uint32_t group = 0; group < web->group_count; ++group) {
         uint32_t rungs = 0;
         for (uint32_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
@@ -29,8 +29,11 @@ static void count_rungs(mspringi_web *web, const uint32_t *degree_of_slot, uint3
             if (slot != MSPRING_NONE && degree_of_slot[slot] > rungs)
                 rungs = degree_of_slot[slot];
         }
+        if (rungs > UINT32_MAX / MSPRINGI_WIDTH - web->first_rung[group])
+            return false;
         web->first_rung[group + 1] = web->first_rung[group] + rungs;
     }
+    return true;
 }
 
 // The next free entry of a node; used counts those that are taken.
@@ -88,14 +91,17 @@ mspring_result mspringi_web_create(mspringi_web *web, const uint32_t *a, const u
     }
     if (result == MSPRING_OK) {
         number_attached(web, degree, node_of_slot, first_slot, slot_count);
-        count_rungs(web, degree, first_slot);
-        result = fill(web, a, b, count, node_of_slot, memory);
+        result = count_rungs(web, degree, first_slot) ? fill(web, a, b, count, node_of_slot, memory)
+                                                      : MSPRING_ERROR_LIMIT;
     }
     mspringi_free(memory, degree);
     mspringi_free(memory, node_of_slot);
-    return result == MSPRING_OK
-               ? result
-               : mspringi_fail(message, result, "no memory for a web of %u springs", (unsigned)count);
+    if (result == MSPRING_ERROR_LIMIT)
+        return mspringi_fail(message, result,
+                             "some particles have so many springs that the web's entries cannot be numbered");
+    if (result == MSPRING_ERROR_MEMORY)
+        return mspringi_fail(message, result, "no memory for a web of %u springs", (unsigned)count);
+    return result;
 }
 
 void mspringi_web_destroy(mspringi_web *web, mspringi_memory *memory) {

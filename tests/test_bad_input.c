@@ -295,6 +295,12 @@ static void bad_lattice_is_refused(void **state) {
     REFUSED(spacing, -1, MSPRING_ERROR_ARGUMENT, "spacing");
     REFUSED(spacing, 0.9e-9, MSPRING_ERROR_ARGUMENT, "spacing");
     REFUSED(spacing, 1.1e9, MSPRING_ERROR_ARGUMENT, "spacing");
+    // So far out that neighbouring cells would fall together, in either direction: numbers there are 1e-4 apart.
+    good.spacing = 1e-5;
+    REFUSED(x, 9e11, MSPRING_ERROR_ARGUMENT, "spacing");
+    REFUSED(y, 9e11, MSPRING_ERROR_ARGUMENT, "spacing");
+    REFUSED(x, -9e11, MSPRING_ERROR_ARGUMENT, "spacing");
+    good.spacing = 1;
     REFUSED(x, 1e12, MSPRING_ERROR_ARGUMENT, "1e12"); // its right columns would be outside
     REFUSED(y, 1e12, MSPRING_ERROR_ARGUMENT, "1e12"); // its upper rows would
     REFUSED(x, -1.001e12, MSPRING_ERROR_ARGUMENT, "1e12");

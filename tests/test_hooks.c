@@ -327,6 +327,40 @@ static void what_hooks_write_to_empty_slots_is_ignored(void **state) {
     mspring_network_destroy(clean);
 }
 
+// A hook that accelerates whatever slot there is, and one that holds the particles: nothing may gather in slots
+// without particle until it is out of bounds.
+static void accelerate_all_slots(const mspring_hook_args *args, void *user) {
+    (void)user;
+    for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
+        args->vy[slot] -= 40;
+    }
+}
+
+static void hold_particles(const mspring_hook_args *args, void *user) {
+    (void)user;
+    for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
+        if (args->particle_of_slot[slot] != MSPRING_NONE) {
+            args->vx[slot] = args->vy[slot] = 0;
+        }
+    }
+}
+
+static void empty_slots_gather_nothing(void **state) {
+    (void)state;
+    mspring_network *network = mixed_network(2);
+    check_ok(mspring_network_add_hook(network, MSPRING_PHASE_BEFORE_STEP, accelerate_all_slots, NULL, NULL));
+    check_ok(mspring_network_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, hold_particles, NULL, NULL));
+    mspring_view view = {.struct_size = sizeof view};
+    check_ok(mspring_network_view(network, &view));
+    support_steps(network, 30000, 0.01); // 1.2e6 m/s, more than max_speed, if it gathered
+    for (uint32_t slot = 0; slot < view.slot_count; slot++) {
+        if (view.particle_of_slot[slot] == MSPRING_NONE) {
+            assert_true(view.x[slot] == 0 && view.y[slot] == 0 && view.vx[slot] == 0 && view.vy[slot] == 0);
+        }
+    }
+    mspring_network_destroy(network);
+}
+
 /* --------------------------------------------------------------------------------------- calls from inside */
 
 typedef struct caller {
@@ -470,6 +504,7 @@ int main(void) {
         cmocka_unit_test(a_hook_can_be_a_floor),
         cmocka_unit_test(hooks_before_the_step_and_after_the_substep_may_move),
         cmocka_unit_test(what_hooks_write_to_empty_slots_is_ignored),
+        cmocka_unit_test(empty_slots_gather_nothing),
         cmocka_unit_test(exclusive_calls_from_inside_are_refused),
         cmocka_unit_test(removed_hooks_are_not_called),
         cmocka_unit_test(bad_hooks_are_refused),

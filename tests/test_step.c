@@ -231,6 +231,73 @@ static void the_speed_limit_is_one(void **state) {
     mspring_network_destroy(network);
 }
 
+/* ------------------------------------------------------------------------------- what a failed step leaves */
+
+static void forces_whose_sum_is_not_finite_are_refused(void **state) {
+    (void)state;
+    mspring_network *network = particles(3, 1, 1e15f);
+    const float x[] = {1, 3e38f, 1}, y[] = {0, 0, 0};
+    check_ok(mspring_network_apply_forces(network, 0, 3, x, y));
+    check_error(mspring_network_apply_forces(network, 0, 3, x, y), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_network_error(network), "particle 1");
+    // None of the second forces acts, and what acts can be taken back.
+    const float back[] = {0, -3e38f, 0};
+    check_ok(mspring_network_apply_forces(network, 0, 3, back, y));
+    check_ok(mspring_network_step(network, 1));
+    assert_true(support_velocity(network, 0).x == 0.5 && support_velocity(network, 1).x == 0);
+    mspring_network_destroy(network);
+}
+
+static void a_failed_step_leaves_relative_springs(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    mspring_spring_def spring;
+    check_ok(mspring_spring_def_init(&spring, sizeof spring));
+    spring.flags = MSPRING_SPRING_RELATIVE;
+    spring.a = support_particle(builder, 0, 0, 1);
+    spring.b = support_particle(builder, 1, 0, 1);
+    spring.stiffness = 0.5f;
+    spring.damping = 0.01f;
+    spring.rest_length = 0.9f;
+    check_ok(mspring_builder_add_spring(builder, &spring, NULL));
+    mspring_network_def def = support_def(0, 1);
+    mspring_network *network = support_network(builder, &def);
+
+    // At first a relative spring has no stiffness, and a step that fails does not give it any.
+    double elastic = -1;
+    check_error(mspring_network_step(network, 1e-12), MSPRING_ERROR_UNSTABLE);
+    check_ok(mspring_network_energy(network, NULL, &elastic, NULL));
+    assert_true(elastic == 0);
+    check_ok(mspring_network_step(network, 1e-3));
+    check_ok(mspring_network_energy(network, NULL, &elastic, NULL));
+    assert_true(elastic > 0);
+    double after = -1;
+    check_error(mspring_network_step(network, 1e-12), MSPRING_ERROR_UNSTABLE);
+    check_ok(mspring_network_energy(network, NULL, &after, NULL));
+    assert_true(after == elastic);
+    mspring_network_destroy(network);
+}
+
+static void the_error_names_who_flew_first(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    const mspring_id a = support_particle(builder, 0, 5, 1), b = support_particle(builder, 1, 5, 1);
+    const mspring_id c = support_particle(builder, 0, 0, 1), d = support_particle(builder, 1.5, 0, 1);
+    support_spring(builder, a, b, 1, 0);
+    support_spring(builder, c, d, 1e6f, 0);
+    mspring_network_def def = support_def(0, 1);
+    mspring_network *network = support_network(builder, &def);
+    const float x[] = {0, 0, 0, 0.5f}, zero[] = {0, 0, 0, 0};
+    check_ok(mspring_network_set_velocities(network, 0, 4, x, zero));
+    mspring_result result = MSPRING_OK;
+    for (int step = 0; step < 100 && result == MSPRING_OK; step++) {
+        result = mspring_network_step(network, 0.1);
+    }
+    check_error(result, MSPRING_ERROR_UNSTABLE);
+    check_contains(mspring_network_error(network), "particle 2");
+    mspring_network_destroy(network);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bad_dt_is_refused),
@@ -242,6 +309,9 @@ int main(void) {
         cmocka_unit_test(an_explosion_is_taken_back),
         cmocka_unit_test(what_is_not_finite_in_a_view_is_noticed),
         cmocka_unit_test(the_speed_limit_is_one),
+        cmocka_unit_test(forces_whose_sum_is_not_finite_are_refused),
+        cmocka_unit_test(a_failed_step_leaves_relative_springs),
+        cmocka_unit_test(the_error_names_who_flew_first),
     };
     return cmocka_run_group_tests_name("step", tests, NULL, NULL);
 }

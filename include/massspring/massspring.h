@@ -367,7 +367,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_create(mspring_buil
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_API void mspring_network_destroy(mspring_network *network);
 
-/// What was wrong with the last call on this network that failed; as mspring_builder_error().
+/// What was wrong with the last call on this network that failed; as mspring_builder_error(). Functions marked
+/// shared report by their result alone, so that several threads may call them.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API const char *mspring_network_error(const mspring_network *network);
 
@@ -482,9 +483,9 @@ typedef struct mspring_view {
     const uint32_t *slot_of_particle; ///< [particle_count]
 } mspring_view;
 
-/// Fill a view. Set struct_size first.
+/// Fill a view. Set struct_size first. Allowed in hooks.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_view(mspring_network *network, mspring_view *view);
 
 /// Copy out world positions (m) of the particles first ... first + count - 1, in id order.
@@ -611,14 +612,15 @@ typedef struct mspring_plan {
     uint32_t lattice_blocks; ///< blocks of block_width columns in those rows
     uint32_t chain_count;    ///< strands found
     uint32_t chain_particles, chain_springs;
-    uint32_t web_particles;      ///< particles of the web: those with springs, but none in a lattice or chain row
-    uint32_t loose_particles;    ///< particles without a spring
-    uint32_t leftover_springs;   ///< springs of the web
-    uint32_t slot_count;     ///< slots of the state, empty ones among them
-    uint32_t block_width;    ///< slots in a block
-    uint32_t has_damping;    ///< 1: some spring has damping. 0: steps neither read nor compute any.
-    uint32_t has_relative;   ///< 1: some spring is relative, and a change of substep costs a pass over all
-    mspring_simd simd_level; ///< what runs
+    uint32_t web_particles;    ///< particles of the web: those with springs, but none in a lattice or chain row
+    uint32_t loose_particles;  ///< particles without a spring
+    uint32_t leftover_springs; ///< springs of the web; they take least memory where particles that are near each
+                               ///< other have about as many springs
+    uint32_t slot_count;       ///< slots of the state, empty ones among them
+    uint32_t block_width;      ///< slots in a block
+    uint32_t has_damping;      ///< 1: some spring has damping. 0: steps neither read nor compute any.
+    uint32_t has_relative;     ///< 1: some spring is relative, and a change of substep costs a pass over all
+    mspring_simd simd_level;   ///< what runs
 } mspring_plan;
 
 /// Get the plan. Set struct_size first.
