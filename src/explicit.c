@@ -1,6 +1,8 @@
 /// The explicit solver: symplectic Euler, row by row.
 #include "explicit.h"
 
+#include <string.h>
+
 #include "decay.h"
 
 /// Rows that are swept several times in one pass should stay in this much cache: half of a second-level cache of
@@ -37,22 +39,41 @@ static void pull_attached(const mspring_network *network, const mspringi_sweep *
     }
 }
 
-static void sweep_row(const mspring_network *network, const mspringi_sweep *sweep, const mspringi_row *row,
-                      bool all_forced) {
+// Sweep rows that follow each other, all of one kind.
+static void sweep_rows(const mspring_network *network, const mspringi_sweep *sweep, const mspringi_row *rows,
+                       uint32_t row_count, bool forced) {
     const mspringi_kernels *kernels = network->kernels;
-    const mspringi_span *spans = network->topology.spans + row->first_span;
-    const bool damped = network->parts > MSPRINGI_DAMPING, forced = all_forced || row->pulled;
-    switch (row->kind) {
+    const mspringi_span *spans = network->topology.spans + rows->first_span;
+    const mspringi_row *last = &rows[row_count - 1];
+    const uint32_t span_count = last->first_span + last->span_count - rows->first_span;
+    const bool damped = network->parts > MSPRINGI_DAMPING;
+    switch (rows->kind) {
     case MSPRINGI_ROW_LATTICE:
+        kernels->lattice[damped][forced](sweep, spans, span_count);
+        break;
     case MSPRINGI_ROW_CHAIN:
-        kernels->lattice[damped][forced](sweep, spans, row->span_count);
+        kernels->chain[damped][forced](sweep, spans, span_count);
         break;
     case MSPRINGI_ROW_WEB:
-        kernels->web[damped][forced](sweep, spans, row->span_count);
+        kernels->web[damped][forced](sweep, spans, span_count);
         break;
     case MSPRINGI_ROW_LOOSE:
-        kernels->loose[forced](sweep, spans, row->span_count);
+        kernels->loose[forced](sweep, spans, span_count);
         break;
+    }
+}
+
+// Sweep the rows first ... end - 1, as many as can be in one go.
+static void sweep_range(const mspring_network *network, const mspringi_sweep *sweep, uint32_t first, uint32_t end,
+                        bool all_forced) {
+    const mspringi_row *rows = network->topology.rows;
+    while (first < end) {
+        uint32_t count = 1;
+        while (first + count < end && rows[first + count].kind == rows[first].kind &&
+               (all_forced || rows[first + count].pulled == rows[first].pulled))
+            ++count;
+        sweep_rows(network, sweep, &rows[first], count, all_forced || rows[first].pulled);
+        first += count;
     }
 }
 
@@ -72,11 +93,15 @@ uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t par
 static void sweep_lattices(const mspring_network *network, const mspringi_sweep *sweeps, uint32_t count,
                            bool forced) {
     const mspringi_topology *t = &network->topology;
+    if (count == 1) {
+        sweep_range(network, &sweeps[0], 0, t->lattice_rows, forced);
+        return;
+    }
     for (uint32_t wave = 0; t->lattice_rows > 0 && wave < t->lattice_rows + count - 1; ++wave) {
         for (uint32_t substep = 0; substep < count && substep <= wave; ++substep) {
             const uint32_t row = wave - substep;
             if (row < t->lattice_rows)
-                sweep_row(network, &sweeps[substep], &t->rows[row], forced);
+                sweep_rows(network, &sweeps[substep], &t->rows[row], 1, forced || t->rows[row].pulled);
         }
     }
 }
@@ -124,8 +149,7 @@ static void take_substeps(mspring_network *network, float h, mspringi_field base
     for (uint32_t substep = 0; substep < count; ++substep) {
         if (t->web.group_count > 0 && !pulled)
             pack_nodes(network, &sweeps[substep]);
-        for (uint32_t row = t->lattice_rows; row < t->row_count; ++row)
-            sweep_row(network, &sweeps[substep], &t->rows[row], base.x != NULL);
+        sweep_range(network, &sweeps[substep], t->lattice_rows, t->row_count, base.x != NULL);
     }
 }
 
@@ -135,4 +159,10 @@ void mspringi_explicit_substeps(mspring_network *network, float h, mspringi_fiel
         take_substeps(network, h, base, together);
         count -= together;
     }
+}
+
+void mspringi_explicit_reset(mspring_network *network) {
+    // A carry row is zero again after every substep, as there is no row above the last, unless numbers overflowed.
+    memset(network->carry, 0,
+           (size_t)2 * network->depth * network->topology.carry_blocks * MSPRINGI_WIDTH * sizeof *network->carry);
 }

@@ -10,6 +10,9 @@
 /// Deepest pass over the lattice rows that is worth it for this topology.
 uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t parts);
 
+/// Forget what a step has left that went out of bounds.
+void mspringi_explicit_reset(mspring_network *network);
+
 /// Take count substeps of length h, all with the forces from outside that are in base (x NULL: none).
 void mspringi_explicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count);
 

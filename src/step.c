@@ -139,6 +139,7 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
     if (!is_bounded(network)) {
         mspring_result result = explain(network, dt);
         copy_state(network, &network->backup, &network->state);
+        mspringi_explicit_reset(network);
         mspringi_derive_relative(network, relative_h);
         if (network->is_open)
             clear_empty_slots(network);

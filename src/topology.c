@@ -296,21 +296,35 @@ static bool append_row(assembly *a, mspringi_row_kind kind) {
 static bool append_span(assembly *a, const mspringi_span *span) {
     mspringi_topology *t = a->topology;
     mspringi_row *row = &t->rows[t->row_count - 1];
-    if (row->span_count > 0 && span->continues) {
+    if (row->span_count > 0) {
         mspringi_span *last = &t->spans[t->span_count - 1];
-        if (last->kind == span->kind && last->up_block + last->block_count == span->up_block) {
-            last->block_count += span->block_count;
+        if (last->end_slot == span->first_slot && last->up == span->up && last->carry == span->carry) {
+            last->end_slot = span->end_slot;
             return true;
         }
     }
     void *spans = t->spans;
-    const bool grown = mspringi_grow(a->memory, &spans, &a->span_capacity, (size_t)t->span_count + 1, sizeof *span);
+    const bool grown = mspringi_grow(a->memory, &spans, &a->span_capacity, (size_t)t->span_count + 2, sizeof *span);
     t->spans = spans;
     if (grown) {
         t->spans[t->span_count++] = *span;
         row->span_count++;
     }
     return grown;
+}
+
+// A span of whole blocks.
+static mspringi_span span_of_blocks(uint32_t first_block, uint32_t block_count, uint32_t first_record,
+                                    uint32_t record_slots) {
+    return (mspringi_span){.first_slot = first_block * MSPRINGI_WIDTH,
+                           .end_slot = (first_block + block_count) * MSPRINGI_WIDTH,
+                           .first_record = first_record,
+                           .record_slots = record_slots};
+}
+
+// From the slots of one block to those of another.
+static int64_t offset_between(uint32_t from_block, uint32_t to_block) {
+    return ((int64_t)to_block - (int64_t)from_block) * MSPRINGI_WIDTH;
 }
 
 static uint32_t widest_row(const assembly *a) {
@@ -327,22 +341,18 @@ static bool append_lattice_rows(assembly *a, uint32_t grid) {
         const uint32_t row = row_of(a->blocks[i]), column_block = column_block_of(a->blocks[i]);
         const bool starts_row = i == a->first_block[grid] || row_of(a->blocks[i - 1]) != row;
         const uint32_t up = find_block(a, grid, row + 1, column_block);
-        const mspringi_span span = {
-            .kind = up == MSPRING_NONE ? MSPRINGI_ROW_CHAIN : MSPRINGI_ROW_LATTICE,
-            .continues = !starts_row && a->blocks[i - 1] + 1 == a->blocks[i],
-            .first_block = t->lattice_first + i,
-            .block_count = 1,
-            .up_block = t->lattice_first + (up == MSPRING_NONE ? i : up),
-            .carry = column_block,
-            .record = i,
-            .record_slots = MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH,
-        };
-        t->up_of_block[i] = span.up_block;
+        const uint32_t block = t->lattice_first + i, up_block = up == MSPRING_NONE ? block : t->lattice_first + up;
+        mspringi_span span = span_of_blocks(block, 1, i, MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH);
+        span.up = offset_between(block, up_block);
+        span.carry = offset_between(block, column_block);
+        t->up_of_block[i] = up_block;
         if (starts_row) {
-            if (!append_row(a, MSPRINGI_ROW_LATTICE))
+            if (!append_row(a, MSPRINGI_ROW_CHAIN))
                 return false;
             t->lattice_rows++;
         }
+        if (up != MSPRING_NONE)
+            t->rows[t->row_count - 1].kind = MSPRINGI_ROW_LATTICE;
         if (!append_span(a, &span))
             return false;
     }
@@ -353,14 +363,11 @@ static bool append_lattice_rows(assembly *a, uint32_t grid) {
 static bool append_chain_row(assembly *a) {
     mspringi_topology *t = a->topology;
     bool ok = t->chain_blocks == 0 || append_row(a, MSPRINGI_ROW_CHAIN);
-    for (uint32_t block = 0; ok && block < t->chain_blocks; block += LONGEST_CHAIN_SPAN) {
-        const uint32_t left = t->chain_blocks - block;
-        const mspringi_span span = {.kind = MSPRINGI_ROW_CHAIN,
-                                    .continues = block > 0,
-                                    .first_block = t->chain_first + block,
-                                    .block_count = left < LONGEST_CHAIN_SPAN ? left : LONGEST_CHAIN_SPAN,
-                                    .record = block,
-                                    .record_slots = MSPRINGI_WIDTH};
+    for (uint32_t i = 0; ok && i < t->chain_blocks; i += LONGEST_CHAIN_SPAN) {
+        const uint32_t left = t->chain_blocks - i, block = t->chain_first + i;
+        mspringi_span span =
+            span_of_blocks(block, left < LONGEST_CHAIN_SPAN ? left : LONGEST_CHAIN_SPAN, i, MSPRINGI_WIDTH);
+        span.carry = offset_between(block, 0);
         ok = append_span(a, &span);
     }
     return ok;
@@ -368,8 +375,7 @@ static bool append_chain_row(assembly *a) {
 
 // Append a row of one span.
 static bool append_simple_row(assembly *a, mspringi_row_kind kind, uint32_t first_block, uint32_t block_count) {
-    const mspringi_span span = {
-        .kind = kind, .first_block = first_block, .block_count = block_count, .record_slots = MSPRINGI_WIDTH};
+    const mspringi_span span = span_of_blocks(first_block, block_count, 0, MSPRINGI_WIDTH);
     return block_count == 0 || (append_row(a, kind) && append_span(a, &span));
 }
 
@@ -379,8 +385,7 @@ static void mark_pulled_rows(mspringi_topology *t) {
     for (uint32_t r = 0; r < t->row_count; ++r) {
         mspringi_row *row = &t->rows[r];
         const mspringi_span *last = &t->spans[row->first_span + row->span_count - 1];
-        const uint32_t end = (last->first_block + last->block_count) * MSPRINGI_WIDTH;
-        for (; i < t->web.attached_count && t->web.attached_slot[i] < end; ++i)
+        for (; i < t->web.attached_count && t->web.attached_slot[i] < last->end_slot; ++i)
             row->pulled = 1;
     }
 }
@@ -388,6 +393,10 @@ static void mark_pulled_rows(mspringi_topology *t) {
 // Set a bit of busy for the quarter of a slot.
 static void mark_busy(uint8_t *busy, uint32_t slot) {
     busy[slot / MSPRINGI_WIDTH] |= (uint8_t)(1u << slot % MSPRINGI_WIDTH / MSPRINGI_QUARTER);
+}
+
+static bool is_busy(const uint8_t *busy, uint32_t slot) {
+    return busy[slot / MSPRINGI_WIDTH] >> slot % MSPRINGI_WIDTH / MSPRINGI_QUARTER & 1;
 }
 
 // Find the quarters at the ends of lattice spans that need not be swept: they hold no particle, own no spring, and
@@ -411,17 +420,17 @@ static bool trim_spans(assembly *a) {
         if (place / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS == MSPRINGI_NORTH_EAST)
             mark_busy(busy, slot + 1);
     }
-    for (uint32_t s = 0; s < t->span_count; ++s) {
+    const uint32_t lattice_end = t->chain_first * MSPRINGI_WIDTH;
+    for (uint32_t s = 0; s < t->span_count && t->spans[s].first_slot < lattice_end; ++s) {
         mspringi_span *span = &t->spans[s];
-        const uint32_t last = span->first_block + span->block_count - 1;
-        if (span->first_block >= t->chain_first)
-            break;
-        // One quarter is left even of a block that is all idle (and is there for the slot to its right).
-        const uint32_t most = MSPRINGI_WIDTH - MSPRINGI_QUARTER;
-        while (span->idle_front < most && !(busy[span->first_block] >> span->idle_front / MSPRINGI_QUARTER & 1))
-            span->idle_front += MSPRINGI_QUARTER;
-        while (span->idle_back < most && !(busy[last] >> (most - span->idle_back) / MSPRINGI_QUARTER & 1))
-            span->idle_back += MSPRINGI_QUARTER;
+        // Within its first and its last block; one quarter is left of a block that is all idle (and is there for
+        // the slot to its right).
+        while (span->first_slot % MSPRINGI_WIDTH < MSPRINGI_WIDTH - MSPRINGI_QUARTER &&
+               !is_busy(busy, span->first_slot))
+            span->first_slot += MSPRINGI_QUARTER;
+        while (span->end_slot - MSPRINGI_QUARTER > span->first_slot &&
+               (span->end_slot - 1) % MSPRINGI_WIDTH >= MSPRINGI_QUARTER && !is_busy(busy, span->end_slot - 1))
+            span->end_slot -= MSPRINGI_QUARTER;
     }
     mspringi_free(a->memory, busy);
     return true;

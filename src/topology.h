@@ -39,22 +39,18 @@ typedef enum mspringi_row_kind {
     MSPRINGI_ROW_LOOSE    ///< none
 } mspringi_row_kind;
 
-/// Consecutive blocks of a row. All block numbers count from the first block of the state.
+/// Consecutive slots of a row: whole blocks, less quarters at their ends that hold no particle and no spring.
 typedef struct mspringi_span {
-    mspringi_row_kind kind; ///< in a lattice row also MSPRINGI_ROW_CHAIN, where there is nothing above
-    uint32_t continues;     ///< 1: its first slot is the east neighbour of the last slot of the span before
-    uint32_t first_block, block_count;
-    uint32_t idle_front, idle_back; ///< slots at its ends that hold and do nothing, in steps of MSPRINGI_QUARTER
-    uint32_t up_block;              ///< the block above first_block (lattice)
-    uint32_t carry;                 ///< its first block in the carry row (lattice, chain)
-    uint32_t record;       ///< number of first_block's record among the records (lattice, chain), or of its
-                           ///< group in the web
-    uint32_t record_slots; ///< springs per record: MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH or MSPRINGI_WIDTH
+    uint32_t first_slot, end_slot; ///< multiples of MSPRINGI_QUARTER
+    uint32_t first_record;         ///< record of the block of first_slot (lattice, chain), or its group (web)
+    uint32_t record_slots;         ///< springs in a record: MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH or MSPRINGI_WIDTH
+    int64_t up;                    ///< from a slot to the one above it; 0 if nothing is (lattice)
+    int64_t carry;                 ///< from a slot to its place in the carry row (lattice, chain)
 } mspringi_span;
 
 /// Spans that are swept in one go.
 typedef struct mspringi_row {
-    mspringi_row_kind kind;
+    mspringi_row_kind kind; ///< of a grid's row with nothing above any of it MSPRINGI_ROW_CHAIN
     uint32_t first_span, span_count;
     uint32_t pulled; ///< 1: springs of the web pull at some of its slots (lattice, chain)
 } mspringi_row;
@@ -89,7 +85,7 @@ typedef struct mspringi_topology {
     uint32_t *leftover_a, *leftover_b; ///< [leftover_count] slots
     mspringi_web web;
 
-    mspringi_span *spans;
+    mspringi_span *spans; ///< and one more, so that there is one after the last
     uint32_t span_count;
     mspringi_row *rows; ///< lattice rows first
     uint32_t row_count;

@@ -112,9 +112,10 @@ static void fill(arena *a, const setup *s) {
         }
     }
     for (uint32_t i = 0; i < CARRY; i++) {
-        // Also where the row is idle: what lies there must not be handed on.
-        a->carry_x[i] = s->from_below ? random_float(&seed, -100, 100) : 0;
-        a->carry_y[i] = s->from_below ? random_float(&seed, -100, 100) : 0;
+        // Only where there are particles: the row below has no spring to an empty slot.
+        bool pulled = s->from_below && i >= s->idle && i < s->idle + s->live;
+        a->carry_x[i] = pulled ? random_float(&seed, -100, 100) : 0;
+        a->carry_y[i] = pulled ? random_float(&seed, -100, 100) : 0;
     }
     for (uint32_t i = 0; i < RECORDS; i++) {
         a->records[i] = 0;
@@ -133,7 +134,7 @@ static void fill(arena *a, const setup *s) {
     }
 }
 
-static void run(arena *a, const setup *s, mspringi_row_fn kernel, mspringi_row_kind kind) {
+static void run(arena *a, const setup *s, mspringi_row_fn kernel) {
     const mspringi_sweep sweep = {
         .x = a->x,
         .y = a->y,
@@ -154,30 +155,24 @@ static void run(arena *a, const setup *s, mspringi_row_fn kernel, mspringi_row_k
     };
     // The last particle's springs reach one slot further.
     const uint32_t busy_end = s->live > 0 ? s->idle + s->live + 1 : 0, end = s->blocks * W;
-    mspringi_span spans[2] = {{
-        .kind = kind,
-        .first_block = FIRST,
-        .block_count = s->blocks,
-        .up_block = s->has_above ? ABOVE : FIRST,
+    const uint32_t idle_back = s->live > 0 && busy_end < end && end - busy_end < W ? end - busy_end : 0;
+    mspringi_span spans[3] = {{
+        .first_slot = FIRST * W + s->idle / MSPRINGI_QUARTER * MSPRINGI_QUARTER,
+        .end_slot = FIRST * W + end - idle_back / MSPRINGI_QUARTER * MSPRINGI_QUARTER,
+        .first_record = s->idle / W,
         .record_slots = s->record_slots,
-        .idle_front = s->idle / MSPRINGI_QUARTER * MSPRINGI_QUARTER,
+        .up = s->has_above ? (ABOVE - FIRST) * W : 0,
+        .carry = -FIRST * W,
     }};
-    if (s->live > 0 && busy_end < end && end - busy_end < W) {
-        spans[0].idle_back = (end - busy_end) / MSPRINGI_QUARTER * MSPRINGI_QUARTER;
-    }
-    if (s->split > 0) {
+    uint32_t count = s->blocks > 0;
+    const uint32_t seam = (FIRST + s->split) * W;
+    if (s->split > 0 && spans[0].first_slot < seam && spans[0].end_slot > seam) {
         spans[1] = spans[0];
-        spans[0].block_count = s->split;
-        spans[0].idle_back = 0;
-        spans[1].continues = 1;
-        spans[1].first_block += s->split;
-        spans[1].up_block += s->split;
-        spans[1].carry += s->split;
-        spans[1].record += s->split;
-        spans[1].block_count -= s->split;
-        spans[1].idle_front = 0;
+        spans[0].end_slot = spans[1].first_slot = seam;
+        spans[1].first_record = s->split;
+        count = 2;
     }
-    kernel(&sweep, spans, s->blocks == 0 ? 0 : s->split > 0 ? 2 : 1);
+    kernel(&sweep, spans, count);
 }
 
 /// A force of zero may be +0 or -0 where no spring pulls: the step's result is the same.
@@ -192,8 +187,8 @@ static void compare(const setup *s, mspringi_row_fn kernel, mspringi_row_fn scal
     fill(mine, s);
     fill(reference, s);
     fill(before, s);
-    run(mine, s, kernel, kind);
-    run(reference, s, scalar, kind);
+    run(mine, s, kernel);
+    run(reference, s, scalar);
     check_canaries(mine);
     check_canaries(reference);
     drop_signs_of_zero(mine->carry_x, CARRY);
@@ -259,8 +254,8 @@ static void chain_kernels(void **state) {
             // Records of their own, and those of a lattice that has but one row.
             for (uint32_t record_slots = W; record_slots <= MSPRINGI_DIRECTIONS * W;
                  record_slots *= MSPRINGI_DIRECTIONS) {
-                compare_all(MSPRINGI_ROW_CHAIN, damped ? 3 : 2, record_slots, kernels->lattice[damped][forced],
-                            mspringi_kernels_scalar.lattice[damped][forced]);
+                compare_all(MSPRINGI_ROW_CHAIN, damped ? 3 : 2, record_slots, kernels->chain[damped][forced],
+                            mspringi_kernels_scalar.chain[damped][forced]);
             }
         }
     }

@@ -154,7 +154,7 @@ static mspringi_sweep sweep_of(arena *a, const setup *s) {
 static void run(arena *a, const setup *s, const mspringi_kernels *with, bool forced) {
     const bool damped = s->parts > MSPRINGI_DAMPING;
     const mspringi_sweep sweep = sweep_of(a, s);
-    const mspringi_span span = {.kind = MSPRINGI_ROW_WEB, .first_block = FIRST, .block_count = s->own};
+    const mspringi_span span = {.first_slot = FIRST * W, .end_slot = (FIRST + s->own) * W};
     with->pack(&sweep, FIRST, s->own, a->packed);
     with->attached[damped](&sweep, a->attached_x, a->attached_y);
     with->web[damped][forced](&sweep, &span, 1);

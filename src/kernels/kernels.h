@@ -30,8 +30,12 @@ typedef struct mspringi_sweep {
     float gravity_h_x, gravity_h_y; ///< gravity times h
 } mspringi_sweep;
 
-/// Compute the forces of one row's springs and move its particles, in place. In lattice rows and chains, forces
-/// from the row below are taken from the carry row, and those on the row above left there (0 where there is none).
+/// Compute the forces of the springs of one or more rows and move their particles, in place. In lattice rows and
+/// chains, forces from the row below are taken from the carry row, and those on the row above left there (0 where
+/// there is none). There is a span after the last of count that may be read.
+///
+/// What the last spring of a span hands on is handed to the next span, whether or not that lies next to it: where
+/// it does not, there is no such spring, and the force is 0.
 typedef void (*mspringi_row_fn)(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count);
 
 /// Copy position and velocity of block_count blocks of slots behind one another into packed.
@@ -46,7 +50,8 @@ typedef bool (*mspringi_bounded_fn)(const float *values, size_t count, float lim
 
 typedef struct mspringi_kernels {
     mspring_simd level;
-    mspringi_row_fn lattice[2][2]; ///< [with damping][with forces]; for lattice rows and chains
+    mspringi_row_fn lattice[2][2]; ///< [with damping][with forces]
+    mspringi_row_fn chain[2][2];
     mspringi_row_fn web[2][2];
     mspringi_row_fn loose[2]; ///< [with forces]
     mspringi_pack_fn pack;

@@ -55,62 +55,53 @@ typedef struct handed_on {
     vector right, diagonal;
 } handed_on;
 
-static inline void lattice_span(const mspringi_sweep *s, const mspringi_span *span, handed_on *before, bool damped,
-                                bool forced) {
-    const size_t part = (size_t)s->parts * MSPRINGI_WIDTH; // values of one direction
-    for (size_t i = 0; i < (size_t)span->block_count * MSPRINGI_WIDTH; ++i) {
-        const size_t slot = (size_t)span->first_block * MSPRINGI_WIDTH + i;
-        const size_t up = (size_t)span->up_block * MSPRINGI_WIDTH + i;
-        const size_t carry = (size_t)span->carry * MSPRINGI_WIDTH + i;
-        const float *record = s->lattice_springs +
-                              (span->record + i / MSPRINGI_WIDTH) * MSPRINGI_DIRECTIONS * part + i % MSPRINGI_WIDTH;
-        const motion here = at(s, slot), next = at(s, slot + 1), above = at(s, up), above_next = at(s, up + 1);
-        const vector east = spring_force(here, next, record + MSPRINGI_EAST * part, damped);
-        const vector north = spring_force(here, above, record + MSPRINGI_NORTH * part, damped);
-        const vector north_east = spring_force(here, above_next, record + MSPRINGI_NORTH_EAST * part, damped);
-        const vector south_east = spring_force(above, next, record + MSPRINGI_SOUTH_EAST * part, damped);
-
-        const vector force = {(s->carry_x[carry] + ((east.x + north.x) + north_east.x)) - before->right.x,
-                              (s->carry_y[carry] + ((east.y + north.y) + north_east.y)) - before->right.y};
-        s->carry_x[carry] = (south_east.x - north.x) - before->diagonal.x;
-        s->carry_y[carry] = (south_east.y - north.y) - before->diagonal.y;
-        before->right = (vector){east.x + south_east.x, east.y + south_east.y};
-        before->diagonal = north_east;
-        move(s, slot, force, forced);
-    }
-}
-
-// East springs only.
-static inline void chain_span(const mspringi_sweep *s, const mspringi_span *span, handed_on *before, bool damped,
-                              bool forced) {
-    const size_t stride = (size_t)s->parts * span->record_slots;
-    const float *records =
-        (span->record_slots == MSPRINGI_WIDTH ? s->chain_springs : s->lattice_springs) + span->record * stride;
-    for (size_t i = 0; i < (size_t)span->block_count * MSPRINGI_WIDTH; ++i) {
-        const size_t slot = (size_t)span->first_block * MSPRINGI_WIDTH + i;
-        const size_t carry = (size_t)span->carry * MSPRINGI_WIDTH + i;
-        const float *record = records + i / MSPRINGI_WIDTH * stride + i % MSPRINGI_WIDTH;
-        const vector east = spring_force(at(s, slot), at(s, slot + 1), record, damped);
-        const vector force = {(s->carry_x[carry] + east.x) - before->right.x,
-                              (s->carry_y[carry] + east.y) - before->right.y};
-        s->carry_x[carry] = 0.0f;
-        s->carry_y[carry] = 0.0f;
-        before->right = east;
-        before->diagonal = (vector){0.0f, 0.0f};
-        move(s, slot, force, forced);
-    }
+// A slot's value in the first part of its record.
+static inline const float *record_of(const float *records, const mspringi_span *span, size_t slot, uint32_t parts) {
+    const size_t block = slot / MSPRINGI_WIDTH - span->first_slot / MSPRINGI_WIDTH;
+    return records + (span->first_record + block) * span->record_slots * parts + slot % MSPRINGI_WIDTH;
 }
 
 static inline void lattice(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, bool damped,
                            bool forced) {
+    const size_t part = (size_t)s->parts * MSPRINGI_WIDTH; // values of one direction
     handed_on before = {{0.0f, 0.0f}, {0.0f, 0.0f}};
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
-        if (!span->continues)
-            before = (handed_on){{0.0f, 0.0f}, {0.0f, 0.0f}};
-        if (span->kind == MSPRINGI_ROW_LATTICE)
-            lattice_span(s, span, &before, damped, forced);
-        else
-            chain_span(s, span, &before, damped, forced);
+        for (size_t slot = span->first_slot; slot < span->end_slot; ++slot) {
+            const size_t up = (size_t)((int64_t)slot + span->up), carry = (size_t)((int64_t)slot + span->carry);
+            const float *record = record_of(s->lattice_springs, span, slot, s->parts);
+            const motion here = at(s, slot), next = at(s, slot + 1), above = at(s, up), above_next = at(s, up + 1);
+            const vector east = spring_force(here, next, record + MSPRINGI_EAST * part, damped);
+            const vector north = spring_force(here, above, record + MSPRINGI_NORTH * part, damped);
+            const vector north_east = spring_force(here, above_next, record + MSPRINGI_NORTH_EAST * part, damped);
+            const vector south_east = spring_force(above, next, record + MSPRINGI_SOUTH_EAST * part, damped);
+
+            const vector force = {(s->carry_x[carry] + ((east.x + north.x) + north_east.x)) - before.right.x,
+                                  (s->carry_y[carry] + ((east.y + north.y) + north_east.y)) - before.right.y};
+            s->carry_x[carry] = (south_east.x - north.x) - before.diagonal.x;
+            s->carry_y[carry] = (south_east.y - north.y) - before.diagonal.y;
+            before.right = (vector){east.x + south_east.x, east.y + south_east.y};
+            before.diagonal = north_east;
+            move(s, slot, force, forced);
+        }
+    }
+}
+
+// East springs only.
+static inline void chain(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, bool damped,
+                         bool forced) {
+    vector left = {0.0f, 0.0f};
+    for (const mspringi_span *span = spans; span < spans + count; ++span) {
+        const float *records = span->record_slots == MSPRINGI_WIDTH ? s->chain_springs : s->lattice_springs;
+        for (size_t slot = span->first_slot; slot < span->end_slot; ++slot) {
+            const size_t carry = (size_t)((int64_t)slot + span->carry);
+            const float *record = record_of(records, span, slot, s->parts);
+            const vector east = spring_force(at(s, slot), at(s, slot + 1), record, damped);
+            const vector force = {(s->carry_x[carry] + east.x) - left.x, (s->carry_y[carry] + east.y) - left.y};
+            s->carry_x[carry] = 0.0f;
+            s->carry_y[carry] = 0.0f;
+            left = east;
+            move(s, slot, force, forced);
+        }
     }
 }
 
@@ -138,10 +129,11 @@ static inline vector web_force(const mspringi_sweep *s, size_t node, bool damped
 
 static inline void web(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, bool damped,
                        bool forced) {
-    for (const mspringi_span *span = spans; span < spans + count; ++span)
-        for (size_t i = 0; i < (size_t)span->block_count * MSPRINGI_WIDTH; ++i)
-            move(s, (size_t)span->first_block * MSPRINGI_WIDTH + i,
-                 web_force(s, (size_t)span->record * MSPRINGI_WIDTH + i, damped), forced);
+    for (const mspringi_span *span = spans; span < spans + count; ++span) {
+        const size_t first_node = (size_t)span->first_record * MSPRINGI_WIDTH;
+        for (size_t slot = span->first_slot; slot < span->end_slot; ++slot)
+            move(s, slot, web_force(s, first_node + (slot - span->first_slot), damped), forced);
+    }
 }
 
 static inline void attached(const mspringi_sweep *s, float *x, float *y, bool damped) {
@@ -164,8 +156,8 @@ static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count
 
 static inline void loose(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, bool forced) {
     for (const mspringi_span *span = spans; span < spans + count; ++span)
-        for (size_t i = 0; i < (size_t)span->block_count * MSPRINGI_WIDTH; ++i)
-            move(s, (size_t)span->first_block * MSPRINGI_WIDTH + i, (vector){0.0f, 0.0f}, forced);
+        for (size_t slot = span->first_slot; slot < span->end_slot; ++slot)
+            move(s, slot, (vector){0.0f, 0.0f}, forced);
 }
 
 static bool bounded(const float *values, size_t count, float limit) {

@@ -99,126 +99,90 @@ typedef struct handed_on {
     vector right, diagonal;
 } handed_on;
 
-// The lanes of a block that are to be swept: all but idle ones at the ends of a span, as far as LANES resolves it.
-MSPRINGI_INLINE size_t first_lane(const mspringi_span *span, uint32_t block) {
-    return LANES < MSPRINGI_WIDTH && block == 0 ? span->idle_front / LANES * LANES : 0;
+// The first slot of a span and its end, as far as LANES resolves them.
+MSPRINGI_INLINE size_t first_of(const mspringi_span *span) {
+    return span->first_slot / LANES * LANES;
 }
 
-MSPRINGI_INLINE size_t end_lane(const mspringi_span *span, uint32_t block) {
-    return LANES < MSPRINGI_WIDTH && block + 1 == span->block_count
-               ? MSPRINGI_WIDTH - span->idle_back / LANES * LANES
-               : MSPRINGI_WIDTH;
+MSPRINGI_INLINE size_t end_of(const mspringi_span *span) {
+    return (size_t)(span->end_slot + LANES - 1) / LANES * LANES;
 }
 
-// Leave no force in the carry row for the idle lanes of a block.
-MSPRINGI_INLINE void clear_idle(float *carry_x, float *carry_y, size_t first, size_t end) {
-    for (size_t lane = 0; lane < first; lane += LANES) {
-        store(carry_x + lane, zero());
-        store(carry_y + lane, zero());
-    }
-    for (size_t lane = end; lane < MSPRINGI_WIDTH; lane += LANES) {
-        store(carry_x + lane, zero());
-        store(carry_y + lane, zero());
-    }
-}
-
-MSPRINGI_INLINE void lattice_span(const mspringi_sweep *s, const mspringi_span *span, handed_on *before,
-                                  bool damped, bool forced) {
-    const size_t part = (size_t)(damped ? 3 : 2) * MSPRINGI_WIDTH; // values of one direction
-    const float *record = s->lattice_springs + (size_t)span->record * MSPRINGI_DIRECTIONS * part;
-    float *carry_x = s->carry_x + (size_t)span->carry * MSPRINGI_WIDTH;
-    float *carry_y = s->carry_y + (size_t)span->carry * MSPRINGI_WIDTH;
-    const size_t first_slot = (size_t)span->first_block * MSPRINGI_WIDTH;
-    const size_t first_up = (size_t)span->up_block * MSPRINGI_WIDTH;
-    const uint32_t block_count = span->block_count;
-    for (uint32_t block = 0; block < block_count; ++block) {
-        const size_t first = first_lane(span, block), end = end_lane(span, block);
-        for (size_t lane = first; lane < end; lane += LANES) {
-            const size_t slot = first_slot + block * MSPRINGI_WIDTH + lane;
-            const size_t up = first_up + block * MSPRINGI_WIDTH + lane;
-            const motion here = load_motion(s, slot, damped);
-            const motion next = load_motion_unaligned(s, slot + 1, damped);
-            const motion above = load_motion(s, up, damped);
-            const motion above_next = load_motion_unaligned(s, up + 1, damped);
-            // All square roots, then all divisions: in turn, each waits for the other (measured on Zen 5: 2.4 ns
-            // for one of each in turn, 1.9 ns in groups of four).
-            const extent to_east = spring_extent(here, next);
-            const extent to_north = spring_extent(here, above);
-            const extent to_north_east = spring_extent(here, above_next);
-            const extent to_south_east = spring_extent(above, next);
-            const vec per_east = inverse_or_zero(to_east.length);
-            const vec per_north = inverse_or_zero(to_north.length);
-            const vec per_north_east = inverse_or_zero(to_north_east.length);
-            const vec per_south_east = inverse_or_zero(to_south_east.length);
-            const float *springs = record + lane;
-            const vector east = spring_force(to_east, per_east, here, next, springs + MSPRINGI_EAST * part, damped);
-            const vector north =
-                spring_force(to_north, per_north, here, above, springs + MSPRINGI_NORTH * part, damped);
-            const vector north_east = spring_force(to_north_east, per_north_east, here, above_next,
-                                                   springs + MSPRINGI_NORTH_EAST * part, damped);
-            const vector south_east = spring_force(to_south_east, per_south_east, above, next,
-                                                   springs + MSPRINGI_SOUTH_EAST * part, damped);
-
-            const vector right = {add(east.x, south_east.x), add(east.y, south_east.y)};
-            const vector force = {sub(add(load(carry_x + lane), add(add(east.x, north.x), north_east.x)),
-                                      shift_in(before->right.x, right.x)),
-                                  sub(add(load(carry_y + lane), add(add(east.y, north.y), north_east.y)),
-                                      shift_in(before->right.y, right.y))};
-            store(carry_x + lane, sub(sub(south_east.x, north.x), shift_in(before->diagonal.x, north_east.x)));
-            store(carry_y + lane, sub(sub(south_east.y, north.y), shift_in(before->diagonal.y, north_east.y)));
-            before->right = right;
-            before->diagonal = north_east;
-            move(s, slot, here, force, damped, forced);
-        }
-        clear_idle(carry_x, carry_y, first, end);
-        record += MSPRINGI_DIRECTIONS * part;
-        carry_x += MSPRINGI_WIDTH;
-        carry_y += MSPRINGI_WIDTH;
-    }
-}
-
-MSPRINGI_INLINE void chain_span(const mspringi_sweep *s, const mspringi_span *span, handed_on *before, bool damped,
-                                bool forced) {
-    const size_t stride = (size_t)(damped ? 3 : 2) * span->record_slots;
-    const float *record =
-        (span->record_slots == MSPRINGI_WIDTH ? s->chain_springs : s->lattice_springs) + span->record * stride;
-    float *carry_x = s->carry_x + (size_t)span->carry * MSPRINGI_WIDTH;
-    float *carry_y = s->carry_y + (size_t)span->carry * MSPRINGI_WIDTH;
-    const size_t first_slot = (size_t)span->first_block * MSPRINGI_WIDTH;
-    const uint32_t block_count = span->block_count;
-    for (uint32_t block = 0; block < block_count; ++block) {
-        const size_t first = first_lane(span, block), end = end_lane(span, block);
-        for (size_t lane = first; lane < end; lane += LANES) {
-            const size_t slot = first_slot + block * MSPRINGI_WIDTH + lane;
-            const motion here = load_motion(s, slot, damped), next = load_motion_unaligned(s, slot + 1, damped);
-            const extent to_east = spring_extent(here, next);
-            const vector east =
-                spring_force(to_east, inverse_or_zero(to_east.length), here, next, record + lane, damped);
-            const vector force = {sub(add(load(carry_x + lane), east.x), shift_in(before->right.x, east.x)),
-                                  sub(add(load(carry_y + lane), east.y), shift_in(before->right.y, east.y))};
-            before->right = east;
-            move(s, slot, here, force, damped, forced);
-        }
-        clear_idle(carry_x, carry_y, MSPRINGI_WIDTH, MSPRINGI_WIDTH);
-        record += stride;
-        carry_x += MSPRINGI_WIDTH;
-        carry_y += MSPRINGI_WIDTH;
-    }
-    before->diagonal.x = before->diagonal.y = zero();
-}
-
+// Where the spans are many and short, a loop in a loop would stall at the end of each for longer than it takes to
+// sweep a block, as nobody can foresee it. So this is one loop, and going on to the next span is arithmetic.
 MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count, bool damped,
                              bool forced) {
-    const mspringi_sweep copy = *sweep; // of its own, so that the compiler knows that no store changes it
-    const handed_on nothing = {{zero(), zero()}, {zero(), zero()}};
-    handed_on before = nothing;
+    const mspringi_sweep copy = *sweep, *const s = &copy;          // of its own, so that no store can change it
+    const size_t part = (size_t)(damped ? 3 : 2) * MSPRINGI_WIDTH; // values of one direction
+    const mspringi_span *span = spans, *const end = spans + count;
+    handed_on before = {{zero(), zero()}, {zero(), zero()}};
+    size_t slot = first_of(span);
+    while (span != end) {
+        const size_t up = (size_t)((int64_t)slot + span->up), carry = (size_t)((int64_t)slot + span->carry);
+        const size_t block = slot / MSPRINGI_WIDTH - span->first_slot / MSPRINGI_WIDTH + span->first_record;
+        const float *springs = s->lattice_springs + block * MSPRINGI_DIRECTIONS * part + slot % MSPRINGI_WIDTH;
+        const motion here = load_motion(s, slot, damped);
+        const motion next = load_motion_unaligned(s, slot + 1, damped);
+        const motion above = load_motion(s, up, damped);
+        const motion above_next = load_motion_unaligned(s, up + 1, damped);
+        // All square roots, then all divisions: in turn, each waits for the other (measured on Zen 5: 2.4 ns
+        // for one of each in turn, 1.9 ns in groups of four).
+        const extent to_east = spring_extent(here, next);
+        const extent to_north = spring_extent(here, above);
+        const extent to_north_east = spring_extent(here, above_next);
+        const extent to_south_east = spring_extent(above, next);
+        const vec per_east = inverse_or_zero(to_east.length);
+        const vec per_north = inverse_or_zero(to_north.length);
+        const vec per_north_east = inverse_or_zero(to_north_east.length);
+        const vec per_south_east = inverse_or_zero(to_south_east.length);
+        const vector east = spring_force(to_east, per_east, here, next, springs + MSPRINGI_EAST * part, damped);
+        const vector north =
+            spring_force(to_north, per_north, here, above, springs + MSPRINGI_NORTH * part, damped);
+        const vector north_east = spring_force(to_north_east, per_north_east, here, above_next,
+                                               springs + MSPRINGI_NORTH_EAST * part, damped);
+        const vector south_east =
+            spring_force(to_south_east, per_south_east, above, next, springs + MSPRINGI_SOUTH_EAST * part, damped);
+
+        const vector right = {add(east.x, south_east.x), add(east.y, south_east.y)};
+        const vector force = {sub(add(load(s->carry_x + carry), add(add(east.x, north.x), north_east.x)),
+                                  shift_in(before.right.x, right.x)),
+                              sub(add(load(s->carry_y + carry), add(add(east.y, north.y), north_east.y)),
+                                  shift_in(before.right.y, right.y))};
+        store(s->carry_x + carry, sub(sub(south_east.x, north.x), shift_in(before.diagonal.x, north_east.x)));
+        store(s->carry_y + carry, sub(sub(south_east.y, north.y), shift_in(before.diagonal.y, north_east.y)));
+        before.right = right;
+        before.diagonal = north_east;
+        move(s, slot, here, force, damped, forced);
+
+        slot += LANES;
+        const size_t is_last = slot >= end_of(span);
+        span += is_last;
+        slot += (first_of(span) - slot) & (0 - is_last);
+    }
+}
+
+MSPRINGI_INLINE void chain(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count, bool damped,
+                           bool forced) {
+    const mspringi_sweep copy = *sweep, *const s = &copy;
+    vector before = {zero(), zero()};
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
-        if (!span->continues)
-            before = nothing;
-        if (span->kind == MSPRINGI_ROW_LATTICE)
-            lattice_span(&copy, span, &before, damped, forced);
-        else
-            chain_span(&copy, span, &before, damped, forced);
+        const size_t stride = (size_t)(damped ? 3 : 2) * span->record_slots;
+        const float *records = (span->record_slots == MSPRINGI_WIDTH ? s->chain_springs : s->lattice_springs) +
+                               span->first_record * stride;
+        const size_t first_block = span->first_slot / MSPRINGI_WIDTH, end = end_of(span);
+        for (size_t slot = first_of(span); slot < end; slot += LANES) {
+            const size_t carry = (size_t)((int64_t)slot + span->carry);
+            const float *record = records + (slot / MSPRINGI_WIDTH - first_block) * stride + slot % MSPRINGI_WIDTH;
+            const motion here = load_motion(s, slot, damped), next = load_motion_unaligned(s, slot + 1, damped);
+            const extent to_east = spring_extent(here, next);
+            const vector east = spring_force(to_east, inverse_or_zero(to_east.length), here, next, record, damped);
+            const vector force = {sub(add(load(s->carry_x + carry), east.x), shift_in(before.x, east.x)),
+                                  sub(add(load(s->carry_y + carry), east.y), shift_in(before.y, east.y))};
+            store(s->carry_x + carry, zero());
+            store(s->carry_y + carry, zero());
+            before = east;
+            move(s, slot, here, force, damped, forced);
+        }
     }
 }
 
@@ -245,10 +209,10 @@ MSPRINGI_INLINE vector web_force(const mspringi_sweep *s, motion here, size_t gr
 MSPRINGI_INLINE void web(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, bool damped,
                          bool forced) {
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
-        for (size_t i = 0; i < (size_t)span->block_count * MSPRINGI_WIDTH; i += LANES) {
-            const size_t slot = (size_t)span->first_block * MSPRINGI_WIDTH + i;
+        for (size_t slot = span->first_slot; slot < span->end_slot; slot += LANES) {
+            const size_t node = (size_t)span->first_record * MSPRINGI_WIDTH + (slot - span->first_slot);
             const motion here = load_motion(s, slot, damped);
-            const vector force = web_force(s, here, span->record + i / MSPRINGI_WIDTH, i % MSPRINGI_WIDTH, damped);
+            const vector force = web_force(s, here, node / MSPRINGI_WIDTH, node % MSPRINGI_WIDTH, damped);
             move(s, slot, here, force, damped, forced);
         }
     }
@@ -279,11 +243,9 @@ static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count
 
 MSPRINGI_INLINE void loose(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, bool forced) {
     const vector none = {zero(), zero()};
-    for (const mspringi_span *span = spans; span < spans + count; ++span) {
-        const size_t first = (size_t)span->first_block * MSPRINGI_WIDTH;
-        for (size_t slot = first; slot < first + (size_t)span->block_count * MSPRINGI_WIDTH; slot += LANES)
+    for (const mspringi_span *span = spans; span < spans + count; ++span)
+        for (size_t slot = first_of(span); slot < end_of(span); slot += LANES)
             move(s, slot, load_motion(s, slot, true), none, true, forced);
-    }
 }
 
 #endif

@@ -1,6 +1,6 @@
 /// @file table.h
-/// The variants of an instruction set's lattice(), web(), loose(), attached(), pack() and bounded(), and the table
-/// of them. Included at the end of each kernel file, which defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
+/// The variants of an instruction set's lattice(), chain(), web(), loose(), attached(), pack() and bounded(), and
+/// the table of them. Included at the end of each kernel file, which defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
 ///
 /// SPDX-License-Identifier: MIT
 
@@ -13,6 +13,10 @@ MSPRINGI_VARIANT(lattice, plain, false, false)
 MSPRINGI_VARIANT(lattice, forced, false, true)
 MSPRINGI_VARIANT(lattice, damped, true, false)
 MSPRINGI_VARIANT(lattice, damped_forced, true, true)
+MSPRINGI_VARIANT(chain, plain, false, false)
+MSPRINGI_VARIANT(chain, forced, false, true)
+MSPRINGI_VARIANT(chain, damped, true, false)
+MSPRINGI_VARIANT(chain, damped_forced, true, true)
 MSPRINGI_VARIANT(web, plain, false, false)
 MSPRINGI_VARIANT(web, forced, false, true)
 MSPRINGI_VARIANT(web, damped, true, false)
@@ -37,6 +41,7 @@ static void attached_damped(const mspringi_sweep *sweep, float *x, float *y) {
 const mspringi_kernels MSPRINGI_TABLE = {
     .level = MSPRINGI_LEVEL,
     .lattice = {{lattice_plain, lattice_forced}, {lattice_damped, lattice_damped_forced}},
+    .chain = {{chain_plain, chain_forced}, {chain_damped, chain_damped_forced}},
     .loose = {loose_plain, loose_forced},
     .web = {{web_plain, web_forced}, {web_damped, web_damped_forced}},
     .pack = pack,
