@@ -10,9 +10,9 @@
 
 #include "machine.h"
 
-/// A sample lasts at least so long (s): a hundred thousand times what reading the clock costs, and short enough
-/// that both samples of a pair see the same machine.
-#define SAMPLE_SECONDS 0.005
+/// A sample lasts at least so long (s): long enough that what the other side has left in the caches and branch
+/// predictors no longer counts, and short enough that both samples of a pair see the same machine.
+#define SAMPLE_SECONDS 0.025
 
 /// A sample has at most so many steps, which for the smallest scenes bounds the time they simulate.
 #define MAX_STEPS 4096u
