@@ -401,7 +401,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_global_damping(
 ///
 /// A step that would end with a coordinate or speed that is not finite or out of bounds (MSPRING_MAX_COORDINATE,
 /// mspring_network_def.max_speed) is taken back: the state is the one of before the step, bit for bit, forces
-/// given for it are still there, and the error message names the particle. Take a shorter dt, more substeps or
+/// given for it are still there, and the error message names a particle. Take a shorter dt, more substeps or
 /// a lower stiffness.
 /// @param dt  seconds, finite, > 0, and long enough that dt / substeps is a normal float
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_UNSTABLE, MSPRING_ERROR_BUSY.
@@ -411,8 +411,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_step(mspring_networ
 /* --------------------------------------------------------------------------------------- forces and hooks */
 
 /// Add a force (N) to one particle. It acts during the whole of the next step and is gone after it.
-/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT if not finite, MSPRING_ERROR_MEMORY,
-///         MSPRING_ERROR_BUSY (in a hook use its force arrays).
+/// @return MSPRING_OK; MSPRING_ERROR_ID; MSPRING_ERROR_ARGUMENT if it is not finite or not with the forces given
+///         before; MSPRING_ERROR_MEMORY; MSPRING_ERROR_BUSY (in a hook use its force arrays).
 /// @threads exclusive access to network   @allocates at the first force given to a network   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_apply_force(mspring_network *network,
                                                                          mspring_id particle, float x, float y);
