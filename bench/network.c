@@ -38,12 +38,18 @@ static float scatter(uint32_t index) {
     return (float)(int32_t)(bits >> 8) / 8388608.0f - 1.0f;
 }
 
-static bool set_start_velocities(bench_network *network, scene_error *error) {
-    mspring_view view;
-    view.struct_size = sizeof view;
-    mspring_result result = mspring_network_view(network->network, &view);
+static bool open_view(const bench_network *network, mspring_view *view, scene_error *error) {
+    view->struct_size = sizeof *view;
+    mspring_result result = mspring_network_view(network->network, view);
     if (result != MSPRING_OK) {
         bench_library_error(error, "viewing the network", result, "");
+    }
+    return result == MSPRING_OK;
+}
+
+static bool set_start_velocities(bench_network *network, scene_error *error) {
+    mspring_view view;
+    if (!open_view(network, &view, error)) {
         return false;
     }
     for (uint32_t i = 0; i < network->particle_count; i++) {
@@ -164,10 +170,7 @@ static bool is_denormal(float value) {
 
 bool bench_network_check(const bench_network *network, scene_error *error) {
     mspring_view view;
-    view.struct_size = sizeof view;
-    mspring_result result = mspring_network_view(network->network, &view);
-    if (result != MSPRING_OK) {
-        bench_library_error(error, "viewing the network", result, "");
+    if (!open_view(network, &view, error)) {
         return false;
     }
     uint32_t denormal = 0;

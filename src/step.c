@@ -75,8 +75,7 @@ static void run_substeps(mspring_network *network, double dt, float h) {
     }
 }
 
-/* ----------------------------------------------------------------------------------------------------- the guard
- */
+/* ------------------------------------------------------------------------------------------------- the guard */
 
 static bool is_bounded(const mspring_network *network) {
     const mspringi_state *s = &network->state;
