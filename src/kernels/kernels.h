@@ -8,7 +8,7 @@
 #ifndef MSPRINGI_KERNELS_H
 #define MSPRINGI_KERNELS_H
 
-#include "../topology.h"
+#include "topology/topology.h"
 
 /// The parts of a spring record, each one value per slot; damping only if the network has any.
 typedef enum mspringi_part { MSPRINGI_REST_LENGTH = 0, MSPRINGI_STIFFNESS = 1, MSPRINGI_DAMPING = 2 } mspringi_part;

@@ -5,7 +5,7 @@
 #ifndef MSPRINGI_BUILDER_H
 #define MSPRINGI_BUILDER_H
 
-#include "memory.h"
+#include "base/memory.h"
 
 typedef struct mspringi_particle {
     double x, y;

@@ -15,7 +15,7 @@
 #ifndef MSPRINGI_TOPOLOGY_H
 #define MSPRINGI_TOPOLOGY_H
 
-#include "builder.h"
+#include "builder/builder.h"
 #include "web.h"
 
 /// Lanes of the narrowest vector register.

@@ -1,7 +1,7 @@
 /// Reading and writing the state from outside: views, ranges in id order, forces.
 #include <math.h>
 
-#include "cpu.h"
+#include "base/cpu.h"
 #include "network.h"
 #include "origin.h"
 

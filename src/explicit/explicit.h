@@ -5,7 +5,7 @@
 #ifndef MSPRINGI_EXPLICIT_H
 #define MSPRINGI_EXPLICIT_H
 
-#include "network.h"
+#include "network/network.h"
 
 /// Deepest pass over the lattice rows that is worth it for this topology.
 uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t parts);

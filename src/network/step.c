@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "cpu.h"
-#include "explicit.h"
+#include "base/cpu.h"
+#include "explicit/explicit.h"
 #include "hooks.h"
 #include "network.h"
 #include "origin.h"

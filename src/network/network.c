@@ -1,8 +1,8 @@
 /// Making, describing and destroying a network.
 #include "network.h"
 
-#include "cpu.h"
-#include "explicit.h"
+#include "base/cpu.h"
+#include "explicit/explicit.h"
 #include "origin.h"
 #include "springs.h"
 

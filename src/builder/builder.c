@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "cpu.h"
+#include "base/cpu.h"
 
 #define LARGEST_VALUE 1e30f
 #define SMALLEST_MASS 1e-30f

@@ -6,7 +6,7 @@
 #define MSPRINGI_NETWORK_H
 
 #include "kernels/kernels.h"
-#include "topology.h"
+#include "topology/topology.h"
 
 /// Two floats per slot, x and then y, in one block of memory.
 typedef struct mspringi_field {

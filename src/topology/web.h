@@ -11,7 +11,7 @@
 #ifndef MSPRINGI_WEB_H
 #define MSPRINGI_WEB_H
 
-#include "builder.h"
+#include "builder/builder.h"
 
 /// Slots in a block and nodes in a group: the lanes of the widest vector register, so that every instruction set
 /// sees whole ones.
