@@ -148,7 +148,9 @@ enum {
     ///     k = stiffness * mu / h^2,   c = damping * mu / h,   mu = m_a m_b / (m_a + m_b)
     /// with h the substep. They follow the substep, so such a network is as stiff as its step allows. A full
     /// lattice of equal springs and masses is stable below stiffness = 1.
-    MSPRING_SPRING_RELATIVE = 1u << 0
+    MSPRING_SPRING_RELATIVE = 1u << 0,
+    /// The spring is broken. In mspring_spring_info only.
+    MSPRING_SPRING_BROKEN = 1u << 8
 };
 
 /// One particle. Fill with mspring_particle_def_init() first.
@@ -530,6 +532,28 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_masses(const ms
                                                                         mspring_id first, uint32_t count,
                                                                         float *mass);
 
+/* -------------------------------------------------------------------------------------------------- edits */
+
+/// Break springs: from now on they exert nothing, until they are restored. Their ids, rest lengths and nominal
+/// stiffness and damping stay. Costs the same for each spring, however large the network. All of them or, on error,
+/// none; one that is broken already stays so.
+/// @param springs  [count]
+/// @return MSPRING_OK; MSPRING_ERROR_ID (the message names the index), MSPRING_ERROR_ARGUMENT,
+///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates at the first break in a network   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_break_springs(mspring_network *network,
+                                                                           const mspring_id *springs,
+                                                                           uint32_t count);
+
+/// Restore broken springs to their nominal stiffness and damping. All of them or, on error, none; one that is whole
+/// stays so.
+/// @param springs  [count]
+/// @return as mspring_network_break_springs()
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_restore_springs(mspring_network *network,
+                                                                             const mspring_id *springs,
+                                                                             uint32_t count);
+
 /* ------------------------------------------------------------------------------------------- measurements */
 
 /// Energies in J, summed in double precision in a fixed order.
@@ -558,14 +582,16 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_bounds(const msprin
 /// What a spring is and does. Set struct_size first.
 typedef struct mspring_spring_info {
     uint32_t struct_size;
-    uint32_t flags;    ///< as in mspring_spring_def
-    mspring_id a, b;   ///< its particles, the lower id first
-    float stiffness;   ///< N/m in force; of a relative spring that of the last step, 0 before the first
-    float damping;     ///< N s/m, likewise
-    float rest_length; ///< m
-    float length;      ///< m, now
-    float strain;      ///< (length - rest_length) / rest_length
-    float force;       ///< N along the spring: > 0 pulls its ends together; with the damper's share
+    uint32_t flags;  ///< MSPRING_SPRING_RELATIVE, MSPRING_SPRING_BROKEN
+    mspring_id a, b; ///< its particles, the lower id first
+    float stiffness; ///< N/m in force; of a relative spring that of the last step, 0 before the first; 0 if broken
+    float damping;   ///< N s/m, likewise
+    float rest_length;       ///< m
+    float length;            ///< m, now
+    float strain;            ///< (length - rest_length) / rest_length; 0 if broken
+    float force;             ///< N along the spring: > 0 pulls its ends together; with the damper's share
+    float nominal_stiffness; ///< as in mspring_spring_def: N/m or, if relative, a fraction; broken or not
+    float nominal_damping;   ///< likewise
 } mspring_spring_info;
 
 /// Look at one spring.
@@ -575,7 +601,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_spring(const ms
                                                                         mspring_id spring,
                                                                         mspring_spring_info *info);
 
-/// Strain of the springs first ... first + count - 1: (length - rest_length) / rest_length.
+/// Strain of the springs first ... first + count - 1: (length - rest_length) / rest_length, of broken ones 0.
 /// @param strain  [count]
 /// @return MSPRING_OK; MSPRING_ERROR_ID or MSPRING_ERROR_ARGUMENT.
 /// @threads shared   @allocates never   @since 0.1

@@ -138,6 +138,7 @@ static MSPRINGI_NOINLINE mspring_result set_positions(mspring_network *network, 
         mspringi_origin_choose(network, &box);
     for (uint32_t i = 0; i < count; ++i)
         mspringi_set_position(network, first + i, x_of(to, i), y_of(to, i));
+    network->edits.state++;
     return MSPRING_OK;
 }
 
@@ -176,6 +177,8 @@ mspring_result mspring_network_set_velocities(mspring_network *network, mspring_
         network->state.vx[slot] = vx[i];
         network->state.vy[slot] = vy[i];
     }
+    if (result == MSPRING_OK)
+        network->edits.state++;
     return result;
 }
 

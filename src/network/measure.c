@@ -19,7 +19,10 @@ static double spring_length(const mspring_network *network, const mspringi_sprin
     return length;
 }
 
+// A broken spring has none.
 static float spring_strain(const mspring_network *network, mspring_id spring) {
+    if (!mspringi_spring_is_live(network, spring))
+        return 0.0f;
     const mspringi_spring_values r = mspringi_spring_get(network, spring);
     const double rest_length = (double)r.rest_length;
     double rate;
@@ -117,19 +120,23 @@ mspring_result mspring_network_get_spring(const mspring_network *network, msprin
     const mspring_id a = t->particle_of_slot[r.base], b = t->particle_of_slot[r.tip];
     double rate;
     const double length = spring_length(network, &r, &rate), rest_length = (double)r.rest_length;
+    const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring);
     const double stiffness = (double)r.stiffness, damping = (double)r.damping;
     const double force = length > 0.0 ? (length - rest_length) * stiffness + rate * damping : 0.0;
     *info = (mspring_spring_info){
         .struct_size = sizeof *info,
-        .flags = network->relative && network->relative[spring].stiffness >= 0.0f ? MSPRING_SPRING_RELATIVE : 0,
+        .flags = (mspringi_spring_is_relative(network, spring) ? MSPRING_SPRING_RELATIVE : 0u) |
+                 (mspringi_spring_is_live(network, spring) ? 0u : MSPRING_SPRING_BROKEN),
         .a = a < b ? a : b,
         .b = a < b ? b : a,
         .stiffness = r.stiffness,
         .damping = r.damping,
         .rest_length = r.rest_length,
         .length = (float)length,
-        .strain = (float)((length - rest_length) / rest_length),
+        .strain = spring_strain(network, spring),
         .force = (float)force,
+        .nominal_stiffness = nominal.stiffness,
+        .nominal_damping = nominal.damping,
     };
     return MSPRING_OK;
 }

@@ -87,11 +87,12 @@ static mspring_result allocate(mspring_network *network, bool relative) {
     network->depth = mspringi_explicit_depth(t, network->parts);
     network->carry = mspringi_alloc(memory, (size_t)2 * network->depth * t->carry_blocks * MSPRINGI_WIDTH,
                                     sizeof *network->carry);
+    network->live = mspringi_alloc(memory, mspringi_place_words(t), sizeof *network->live);
     if (relative)
         network->relative = mspringi_alloc(memory, t->spring_count, sizeof *network->relative);
     if (!reserve_state(network, &network->state) || !reserve_state(network, &network->backup) ||
         !network->inverse_mass || !network->mass || !network->lattice_springs || !network->chain_springs ||
-        !network->web_springs || !network->packed || !network->attached || !network->carry ||
+        !network->web_springs || !network->packed || !network->attached || !network->carry || !network->live ||
         (relative && !network->relative))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for a network of %u particles and %u springs", (unsigned)t->particle_count,
@@ -121,11 +122,13 @@ static void fill_springs(mspring_network *network, const mspring_builder *builde
     const mspringi_topology *t = &network->topology;
     for (mspring_id s = 0; s < t->spring_count; ++s) {
         const mspringi_spring *spring = &builder->springs[s];
+        const mspringi_place place = t->place_of_spring[s];
         const bool relative = spring->flags & MSPRING_SPRING_RELATIVE;
         const mspringi_spring_values values = {.rest_length = spring->rest_length,
                                                .stiffness = relative ? 0.0f : spring->stiffness,
                                                .damping = relative ? 0.0f : spring->damping};
         mspringi_spring_set(network, s, &values);
+        network->live[place / MSPRINGI_WIDTH] |= (uint16_t)(1u << place % MSPRINGI_WIDTH);
         if (network->relative)
             network->relative[s] = relative ? (mspringi_relative){spring->stiffness, spring->damping}
                                             : (mspringi_relative){-1.0f, 0.0f};
@@ -217,6 +220,9 @@ void mspring_network_destroy(mspring_network *network) {
     mspringi_free(&memory, network->attached);
     mspringi_free(&memory, network->carry);
     mspringi_free(&memory, network->relative);
+    mspringi_free(&memory, network->live);
+    mspringi_free(&memory, network->kept);
+    mspringi_free(&memory, network->edits.link_log);
     mspringi_free(&memory, network->forces.held.x);
     mspringi_free(&memory, network->forces.base.x);
     mspringi_free(&memory, network->forces.total.x);

@@ -40,6 +40,21 @@ typedef struct mspringi_relative {
     float stiffness, damping;
 } mspringi_relative;
 
+/// What has been edited between steps, in counters that only ever grow. Whoever keeps something that follows from
+/// the edited (a solver its history or its tiles, a measurement its components) remembers the counters that it has
+/// seen and looks whether they are still the same: mspringi_edits_have_link() and mspringi_edits_link() then tell
+/// which springs it was. Views may be written to without any counter knowing; what relative springs derive from a
+/// new substep is no edit either.
+typedef struct mspringi_edits {
+    uint64_t state;  ///< calls that set positions or velocities
+    uint64_t masses; ///< calls that changed inverse masses
+    uint64_t values; ///< calls that changed stiffness, damping or rest lengths
+    uint64_t links;  ///< springs that were broken or restored, one by one
+    mspring_id
+        *link_log; ///< the last of these springs: change n, counted from 0, is at n & link_mask; NULL before any
+    uint32_t link_mask;
+} mspringi_edits;
+
 struct mspring_network {
     mspringi_memory memory;
     mspringi_message message;
@@ -61,11 +76,15 @@ struct mspring_network {
     float *attached;             ///< forces on the attached nodes, all x and then all y
     mspringi_relative *relative; ///< [springs], or NULL if no spring is relative
     float relative_h;            ///< the substep that relative springs were derived for; 0: not yet
+    uint16_t *live;              ///< [places / 16] a bit for each place: 1 where a spring is, and is not broken
+    mspringi_relative *kept;     ///< [springs] N/m, N s/m of broken springs that are not relative; NULL before any
     uint32_t depth;              ///< substeps that may be swept in one pass over the lattice rows
     float *carry;                ///< a carry row for each of them, x and then y
 
     float gravity_x, gravity_y, global_damping, max_speed;
     uint32_t substeps;
+
+    mspringi_edits edits;
 
     mspringi_forces forces;
     mspringi_hook *hooks;
@@ -77,6 +96,16 @@ struct mspring_network {
 
 static inline size_t mspringi_slot_count(const mspring_network *network) {
     return (size_t)network->topology.block_count * MSPRINGI_WIDTH;
+}
+
+/// Whether the log still has everything from change number seen on; if not, any spring may have changed.
+static inline bool mspringi_edits_have_link(const mspringi_edits *edits, uint64_t seen) {
+    return edits->links - seen <= (uint64_t)edits->link_mask + 1;
+}
+
+/// The spring that was broken or restored in change number n.
+static inline mspring_id mspringi_edits_link(const mspringi_edits *edits, uint64_t n) {
+    return edits->link_log[n & edits->link_mask];
 }
 
 /// Refuse NULL, and calls from inside a hook.

@@ -47,22 +47,49 @@ void mspringi_spring_set(mspring_network *network, mspring_id spring, const mspr
     }
 }
 
+// Stiffness and damping of a relative spring for the substep that was derived for last.
+static mspringi_relative derive(const mspring_network *network, const mspringi_spring_values *values,
+                                mspringi_relative fractions) {
+    const mspringi_topology *t = &network->topology;
+    const double ma = (double)network->mass[t->particle_of_slot[values->base]];
+    const double mb = (double)network->mass[t->particle_of_slot[values->tip]];
+    const double reduced_mass = 1.0 / (1.0 / ma + 1.0 / mb);
+    const double rate = network->relative_h > 0.0f ? 1.0 / (double)network->relative_h : 0.0;
+    return (mspringi_relative){(float)((double)fractions.stiffness * reduced_mass * rate * rate),
+                               (float)((double)fractions.damping * reduced_mass * rate)};
+}
+
+mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, mspring_id spring) {
+    if (mspringi_spring_is_relative(network, spring))
+        return network->relative[spring];
+    if (!mspringi_spring_is_live(network, spring))
+        return network->kept[spring];
+    const mspringi_spring_values values = mspringi_spring_get(network, spring);
+    return (mspringi_relative){values.stiffness, values.damping};
+}
+
+void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, mspringi_relative nominal) {
+    const bool relative = mspringi_spring_is_relative(network, spring);
+    if (relative)
+        network->relative[spring] = nominal;
+    if (!mspringi_spring_is_live(network, spring)) {
+        if (!relative)
+            network->kept[spring] = nominal;
+        return;
+    }
+    mspringi_spring_values values = mspringi_spring_get(network, spring);
+    if (relative)
+        nominal = derive(network, &values, nominal);
+    values.stiffness = nominal.stiffness;
+    values.damping = nominal.damping;
+    mspringi_spring_set(network, spring, &values);
+}
+
 void mspringi_derive_relative(mspring_network *network, float h) {
     if (!network->relative || network->relative_h == h)
         return;
-    const mspringi_topology *t = &network->topology;
-    for (mspring_id s = 0; s < t->spring_count; ++s) {
-        const mspringi_relative *relative = &network->relative[s];
-        if (relative->stiffness < 0.0f)
-            continue;
-        mspringi_spring_values values = mspringi_spring_get(network, s);
-        const double ma = (double)network->mass[t->particle_of_slot[values.base]];
-        const double mb = (double)network->mass[t->particle_of_slot[values.tip]];
-        const double reduced_mass = 1.0 / (1.0 / ma + 1.0 / mb);
-        const double rate = h > 0.0f ? 1.0 / (double)h : 0.0;
-        values.stiffness = (float)((double)relative->stiffness * reduced_mass * rate * rate);
-        values.damping = (float)((double)relative->damping * reduced_mass * rate);
-        mspringi_spring_set(network, s, &values);
-    }
     network->relative_h = h;
+    for (mspring_id s = 0; s < network->topology.spring_count; ++s)
+        if (mspringi_spring_is_relative(network, s) && mspringi_spring_is_live(network, s))
+            mspringi_spring_set_nominal(network, s, network->relative[s]);
 }

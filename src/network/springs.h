@@ -16,6 +16,20 @@ mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspri
 /// Set rest length, stiffness and damping, wherever the spring has records.
 void mspringi_spring_set(mspring_network *network, mspring_id spring, const mspringi_spring_values *values);
 
+static inline bool mspringi_spring_is_live(const mspring_network *network, mspring_id spring) {
+    const mspringi_place place = network->topology.place_of_spring[spring];
+    return network->live[place / MSPRINGI_WIDTH] >> place % MSPRINGI_WIDTH & 1;
+}
+
+static inline bool mspringi_spring_is_relative(const mspring_network *network, mspring_id spring) {
+    return network->relative && network->relative[spring].stiffness >= 0.0f;
+}
+
+/// Stiffness and damping that a spring has while it is not broken; fractions if it is relative.
+mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, mspring_id spring);
+/// Set these. What a broken spring exerts stays 0.
+void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, mspringi_relative nominal);
+
 /// Derive stiffness and damping of the relative springs for a substep; 0: as before the first one, both 0.
 void mspringi_derive_relative(mspring_network *network, float h);
 

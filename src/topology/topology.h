@@ -97,6 +97,11 @@ typedef struct mspringi_topology {
     uint32_t web_particles;
 } mspringi_topology;
 
+/// Words of MSPRINGI_WIDTH bits that hold a bit for each place.
+static inline size_t mspringi_place_words(const mspringi_topology *topology) {
+    return ((size_t)topology->chain_places + topology->leftover_count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
+}
+
 /// Lay out what the builder holds.
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
                                         mspringi_memory *memory, mspringi_message *message);

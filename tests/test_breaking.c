@@ -1,0 +1,231 @@
+/// @file test_breaking.c
+/// Springs that break and are restored: a broken spring is as good as none, a restored one as if nothing had been,
+/// in lattices, chains and webs, at every level.
+///
+/// SPDX-License-Identifier: MIT
+#include <stdbool.h>
+#include <stdlib.h>
+
+#include "allocator.h"
+#include "recipe.h"
+#include "support.h"
+
+/// A network with springs in rows of every kind, all damped.
+static recipe mixed_recipe(uint32_t spring_flags) {
+    uint64_t seed = 11;
+    const bool relative = spring_flags & MSPRING_SPRING_RELATIVE;
+    const recipe_stuff stuff = {.mass = {1, 2},
+                                .stiffness = {relative ? 0.1 : 500, relative ? 0.2 : 1000},
+                                .damping = {relative ? 0.01 : 1, relative ? 0.05 : 5},
+                                .spring_flags = spring_flags,
+                                .holes = 0.1};
+    recipe made = {0};
+    recipe_lattice(&made, 37, 9, 0, 0, 1, &stuff, &seed);
+    mspring_id end = recipe_particle(&made, 60, 20, 1, MSPRING_PARTICLE_PINNED);
+    recipe_rope(&made, 2, end, 30, &stuff, &seed);
+    recipe_random_springs(&made, 12, &stuff, &seed);
+    recipe_disturb(&made, 0.05, 0.5, &seed);
+    return made;
+}
+
+static mspring_network *network_of(const recipe *made, mspring_simd level) {
+    mspring_network_def def = support_def(-9.8f, 4);
+    def.simd_level = level;
+    return recipe_network(made, &def);
+}
+
+/// Every third spring of a recipe.
+static uint32_t every_third(const recipe *made, mspring_id *ids) {
+    uint32_t count = 0;
+    for (mspring_id s = 0; s < made->spring_count; s += 3) {
+        ids[count++] = s;
+    }
+    return count;
+}
+
+/// The same recipe, made without stiffness and damping in the listed springs.
+static mspring_network *network_without(const recipe *made, const mspring_id *ids, uint32_t count,
+                                        mspring_simd level) {
+    recipe weak = *made;
+    weak.springs = malloc(made->spring_count * sizeof *weak.springs);
+    assert_non_null(weak.springs);
+    for (mspring_id s = 0; s < made->spring_count; s++) {
+        weak.springs[s] = made->springs[s];
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        weak.springs[ids[i]].stiffness = weak.springs[ids[i]].damping = 0;
+    }
+    mspring_network *network = network_of(&weak, level);
+    free(weak.springs);
+    return network;
+}
+
+static void a_broken_spring_is_one_without_stiffness_and_damping(void **state) {
+    (void)state;
+    mspring_simd levels[MSPRING_SIMD_AVX512];
+    const uint32_t level_count = support_levels(levels);
+    for (uint32_t flags = 0; flags <= MSPRING_SPRING_RELATIVE; flags += MSPRING_SPRING_RELATIVE) {
+        recipe made = mixed_recipe(flags);
+        mspring_id *ids = malloc(made.spring_count * sizeof *ids);
+        assert_non_null(ids);
+        const uint32_t count = every_third(&made, ids);
+        uint64_t first_hash = 0;
+        for (uint32_t i = 0; i < level_count; i++) {
+            mspring_network *network = network_of(&made, levels[i]);
+            mspring_network *without = network_without(&made, ids, count, levels[i]);
+            check_ok(mspring_network_break_springs(network, ids, count));
+            // Relative springs must stay broken when they are derived anew for another substep.
+            support_steps(network, 10, 1.0 / 64);
+            support_steps(without, 10, 1.0 / 64);
+            support_steps(network, 10, 1.0 / 128);
+            support_steps(without, 10, 1.0 / 128);
+            assert_int_equal(support_hash(network), support_hash(without));
+            first_hash = i == 0 ? support_hash(network) : first_hash;
+            assert_int_equal(support_hash(network), first_hash);
+            mspring_network_destroy(network);
+            mspring_network_destroy(without);
+        }
+        free(ids);
+        recipe_free(&made);
+    }
+}
+
+static void restoring_undoes_breaking(void **state) {
+    (void)state;
+    for (uint32_t flags = 0; flags <= MSPRING_SPRING_RELATIVE; flags += MSPRING_SPRING_RELATIVE) {
+        recipe made = mixed_recipe(flags);
+        mspring_id *ids = malloc(made.spring_count * sizeof *ids);
+        assert_non_null(ids);
+        const uint32_t count = every_third(&made, ids);
+        mspring_network *network = network_of(&made, MSPRING_SIMD_AUTO);
+        mspring_network *untouched = network_of(&made, MSPRING_SIMD_AUTO);
+        // Before the first step, and between steps; twice, as breaking and restoring again change nothing.
+        for (int round = 0; round < 3; round++) {
+            for (int again = 0; again < 2; again++) {
+                check_ok(mspring_network_break_springs(network, ids, count));
+            }
+            for (int again = 0; again < 2; again++) {
+                check_ok(mspring_network_restore_springs(network, ids, count));
+            }
+            support_steps(network, 5, 1.0 / 64);
+            support_steps(untouched, 5, 1.0 / 64);
+            assert_int_equal(support_hash(network), support_hash(untouched));
+        }
+        mspring_network_destroy(network);
+        mspring_network_destroy(untouched);
+        free(ids);
+        recipe_free(&made);
+    }
+}
+
+static void a_cut_rope_falls_in_two(void **state) {
+    (void)state;
+    // A weight on a rope, at rest; once the rope is cut the weight falls freely: 9.8 t^2 / 2, the sum of which over
+    // n steps of h is 9.8 h^2 n (n + 1) / 2.
+    mspring_builder *builder = support_builder();
+    support_pinned(builder, 0, 0, 1);
+    support_particle(builder, 0, -2, 10);
+    mspring_rope_def rope;
+    check_ok(mspring_rope_def_init(&rope, sizeof rope));
+    rope.from = 0;
+    rope.to = 1;
+    rope.segment_count = 4;
+    rope.mass = 0.1f;
+    rope.stiffness = 1e4f;
+    mspring_id first_spring;
+    check_ok(mspring_builder_add_rope(builder, &rope, NULL, &first_spring));
+    mspring_network_def def = support_def(-9.8f, 1);
+    mspring_network *network = support_network(builder, &def);
+    const mspring_id last = first_spring + 3;
+    check_ok(mspring_network_break_springs(network, &last, 1));
+    support_steps(network, 1000, 0.001);
+    // Rounding of a velocity of up to 9.8 m/s in 1000 steps of 1 ms: 1000 * 5e-7 * 1 s at worst.
+    check_near(support_position(network, 1).y, -2 - 9.8 * 0.001 * 0.001 * 1000 * 1001 / 2, 1e-3);
+    assert_true(support_position(network, 0).y == 0);
+
+    mspring_spring_info info = {.struct_size = sizeof info};
+    check_ok(mspring_network_get_spring(network, last, &info));
+    assert_int_equal(info.flags, MSPRING_SPRING_BROKEN);
+    assert_true(info.stiffness == 0 && info.force == 0 && info.strain == 0 && info.length > 1);
+    assert_true(info.nominal_stiffness == 1e4f && info.rest_length == 0.5f);
+    float strain = 1;
+    check_ok(mspring_network_get_strains(network, last, 1, &strain));
+    assert_true(strain == 0);
+    mspring_id most;
+    check_ok(mspring_network_max_strain(network, &strain, &most));
+    assert_int_not_equal(most, last);
+    check_ok(mspring_network_restore_springs(network, &last, 1));
+    check_ok(mspring_network_get_spring(network, last, &info));
+    assert_int_equal(info.flags, 0);
+    assert_true(info.stiffness == 1e4f && info.strain > 1);
+    mspring_network_destroy(network);
+}
+
+static void bad_lists_are_refused_and_change_nothing(void **state) {
+    (void)state;
+    recipe made = mixed_recipe(0);
+    mspring_network *network = network_of(&made, MSPRING_SIMD_AUTO);
+    const mspring_id bad[] = {0, 1, made.spring_count, 2}, worse[] = {MSPRING_NONE};
+    check_error(mspring_network_break_springs(NULL, bad, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_restore_springs(NULL, bad, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_break_springs(network, NULL, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_restore_springs(network, NULL, 1), MSPRING_ERROR_ARGUMENT);
+    check_ok(mspring_network_break_springs(network, NULL, 0));
+    check_ok(mspring_network_restore_springs(network, NULL, 0));
+    check_error(mspring_network_break_springs(network, bad, 4), MSPRING_ERROR_ID);
+    check_contains(mspring_network_error(network), "index 2");
+    check_error(mspring_network_restore_springs(network, bad, 4), MSPRING_ERROR_ID);
+    check_error(mspring_network_break_springs(network, worse, 1), MSPRING_ERROR_ID);
+    mspring_spring_info info = {.struct_size = sizeof info};
+    check_ok(mspring_network_get_spring(network, 0, &info));
+    assert_int_equal(info.flags, 0);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+static void the_first_break_survives_every_failure(void **state) {
+    (void)state;
+    recipe made = mixed_recipe(0);
+    const mspring_id spring = 17;
+    size_t fail_at = 1;
+    for (bool failed = true; failed; fail_at++) {
+        watched_allocator watched = {0};
+        mspring_allocator allocator = watched_interface(&watched);
+        mspring_network_def def = support_def(-9.8f, 4);
+        def.allocator = &allocator;
+        mspring_network *network = recipe_network(&made, &def);
+        watched.fail_at = watched.calls + fail_at;
+        mspring_result result = mspring_network_break_springs(network, &spring, 1);
+        failed = result != MSPRING_OK;
+        mspring_spring_info info = {.struct_size = sizeof info};
+        if (failed) {
+            check_error(result, MSPRING_ERROR_MEMORY);
+            check_contains(mspring_network_error(network), "memory");
+            check_ok(mspring_network_get_spring(network, spring, &info));
+            assert_int_equal(info.flags, 0);
+            check_ok(mspring_network_break_springs(network, &spring, 1));
+        }
+        check_ok(mspring_network_get_spring(network, spring, &info));
+        assert_int_equal(info.flags, MSPRING_SPRING_BROKEN);
+        const size_t calls = watched.calls;
+        check_ok(mspring_network_restore_springs(network, &spring, 1));
+        check_ok(mspring_network_break_springs(network, &spring, 1));
+        support_steps(network, 1, 0.01);
+        assert_int_equal(watched.calls, calls);
+        mspring_network_destroy(network);
+        check_watched_clean(&watched);
+    }
+    assert_true(fail_at > 3); // the springs' values and the log
+    recipe_free(&made);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_broken_spring_is_one_without_stiffness_and_damping),
+        cmocka_unit_test(restoring_undoes_breaking),
+        cmocka_unit_test(a_cut_rope_falls_in_two),
+        cmocka_unit_test(bad_lists_are_refused_and_change_nothing),
+        cmocka_unit_test(the_first_break_survives_every_failure),
+    };
+    return cmocka_run_group_tests_name("breaking", tests, NULL, NULL);
+}
