@@ -2,7 +2,7 @@
 # What the built libraries are made of, seen from outside.
 #
 #   exports.sh symbols      LIBRARY.so HEADER   it exports what the header declares, and nothing else
-#   exports.sh dependencies LIBRARY.so          it needs libc and libm at most
+#   exports.sh dependencies LIBRARY.so          it needs libc, libm and threads at most
 #   exports.sh instructions LIBRARY.a           no fused multiply-add, no approximate reciprocal; wide registers only
 #                                               in the files that are chosen at run time
 set -eu
@@ -42,8 +42,8 @@ dependencies)
   readelf -d "$library" | sed -n 's/.*(NEEDED).*\[\(.*\)\].*/\1/p' >"$scratch/needed"
   cat "$scratch/needed"
   grep -q . "$scratch/needed"
-  if grep -vE '^(libc|libm|ld-linux[-_a-z0-9]*|ld-musl[-_a-z0-9]*|libc\.musl[-_a-z0-9]*)\.so(\.[0-9]+)*$' "$scratch/needed"; then
-    echo "the library needs more than libc and libm"
+  if grep -vE '^(libc|libm|libpthread|ld-linux[-_a-z0-9]*|ld-musl[-_a-z0-9]*|libc\.musl[-_a-z0-9]*)\.so(\.[0-9]+)*$' "$scratch/needed"; then
+    echo "the library needs more than libc, libm and threads"
     exit 1
   fi
   readelf -d "$library" | grep -E 'RPATH|RUNPATH' && exit 1

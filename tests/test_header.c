@@ -17,10 +17,10 @@ static void version_is_that_of_the_header(void **state) {
 
 static void every_result_has_its_own_name(void **state) {
     (void)state;
-    for (mspring_result a = MSPRING_ERROR_BUSY; a <= MSPRING_OK; a++) {
+    for (mspring_result a = MSPRING_ERROR_THREAD; a <= MSPRING_OK; a++) {
         assert_non_null(mspring_result_string(a));
         assert_true(strlen(mspring_result_string(a)) > 0);
-        for (mspring_result b = MSPRING_ERROR_BUSY; b < a; b++) {
+        for (mspring_result b = MSPRING_ERROR_THREAD; b < a; b++) {
             assert_string_not_equal(mspring_result_string(a), mspring_result_string(b));
         }
     }
@@ -122,6 +122,8 @@ static void network_defaults(void **state) {
     assert_int_equal(def.substeps, 1);
     assert_true(def.gravity_x == 0 && def.gravity_y == -9.8f && def.global_damping == 0 && def.max_speed == 1e6f);
     assert_null(def.allocator);
+    assert_null(def.tasks);
+    assert_int_equal(def.worker_count, 1);
 }
 
 /* ------------------------------------------------------------------------------------------------- sizes */

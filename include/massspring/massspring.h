@@ -32,6 +32,9 @@
 ///
 /// **Threads.** The library has no global state. Calls on one object must not overlap; calls on different
 /// objects may. Where a function says "shared", several threads may call such functions on one object at once.
+/// A network steps on the caller's thread alone, unless its definition asks for workers (worker_count, tasks): then
+/// calls on it still come from one thread at a time, and it divides their work among the workers itself. The number
+/// of workers changes no bit of the result.
 ///
 /// **Memory.** Functions say whether they allocate; a step never does.
 ///
@@ -98,7 +101,8 @@ enum {
     MSPRING_ERROR_STRUCT = -5,    ///< struct_size is not one that any version of this struct had
     MSPRING_ERROR_DUPLICATE = -6, ///< two springs join the same two particles
     MSPRING_ERROR_UNSTABLE = -7,  ///< the step would have left the bounded range; the state is that before it
-    MSPRING_ERROR_BUSY = -8       ///< called from inside a hook, where only shared calls are allowed
+    MSPRING_ERROR_BUSY = -8,      ///< called from inside a hook, where only shared calls are allowed
+    MSPRING_ERROR_THREAD = -9     ///< the system refuses a thread or a lock
 };
 
 /// Short English name of a result code, such as "out of memory". Never NULL; static storage.
@@ -134,6 +138,40 @@ typedef struct mspring_allocator {
     void (*free)(void *memory, size_t size, void *user);
     void *user;
 } mspring_allocator;
+
+/* ------------------------------------------------------------------------------------------------ workers */
+
+/// Most workers of one network.
+#define MSPRING_MAX_WORKERS 256u
+
+/// A piece of work of the library, to be called as fn(argument, index, worker).
+typedef void (*mspring_task_fn)(void *argument, uint32_t index, uint32_t worker);
+
+/// The host's threads, lent to a network. The struct is copied.
+///
+/// run has to call fn(argument, index, worker) once for each index below count, on any threads, the caller's
+/// included, and to return when all these calls have returned. What the caller wrote before is to be visible to
+/// them, and what they wrote to the caller afterwards, as any thread pool sees to. It has to keep these promises:
+///
+///   - worker is below worker_count, and no two calls that run at the same time have the same worker. (It numbers
+///     threads, so that each can have storage of its own; which thread has which number may change from run to
+///     run.)
+///   - If count is at most concurrent_count, all the calls run at the same time: each starts without waiting for
+///     another to return, and goes on running. The library may then have them wait for each other, so a host
+///     that runs fewer at once would hang. If count is larger, the calls are independent of each other and may run
+///     in any order, even one after the other.
+///
+/// A host that cannot promise more sets concurrent_count to 1; the library then divides only what is independent.
+/// run is called only inside calls on the network that are not marked shared, never by two threads at once and
+/// never from inside fn.
+typedef struct mspring_tasks {
+    uint32_t struct_size;      ///< sizeof(mspring_tasks)
+    uint32_t worker_count;     ///< 1 to MSPRING_MAX_WORKERS; 1 means that run is not called
+    uint32_t concurrent_count; ///< 1 to worker_count
+    uint32_t reserved;         ///< 0
+    void (*run)(uint32_t count, mspring_task_fn fn, void *argument, void *user);
+    void *user;
+} mspring_tasks;
 
 /* -------------------------------------------------------------------------------------------- definitions */
 
@@ -253,6 +291,12 @@ typedef struct mspring_network_def {
     mspring_solver solver;   ///< default MSPRING_SOLVER_EXPLICIT
     uint32_t substeps;       ///< as in mspring_solver_def; default 1
     const mspring_allocator *allocator; ///< default NULL: malloc and free
+    const mspring_tasks *tasks; ///< the host's threads; default NULL: threads of the library, if worker_count asks
+    uint32_t worker_count;      ///< threads that step the network, the caller's being one of them, 1 to
+                           ///< MSPRING_MAX_WORKERS; default 1. The others are started with the network, end with
+                           ///< it, take no signals, and sleep between steps. One for each core is the most that
+                           ///< helps. With tasks, whose number counts, this is not looked at.
+    uint32_t reserved; ///< 0
 } mspring_network_def;
 
 /// Fill a definition with its defaults. Pass the size that your header gives it: sizeof *def.
@@ -358,8 +402,8 @@ typedef struct mspring_network mspring_network;
 /// mspring_plan. On failure the builder's error message says why.
 /// @param def  settings; NULL for the defaults
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT if the builder has no particle or a setting is out of range;
-///         MSPRING_ERROR_DUPLICATE if two springs join the same two particles; MSPRING_ERROR_STRUCT,
-///         MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
+///         MSPRING_ERROR_DUPLICATE if two springs join the same two particles; MSPRING_ERROR_THREAD if a worker
+///         cannot be started; MSPRING_ERROR_STRUCT, MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
 /// @threads exclusive access to builder   @allocates yes   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_create(mspring_builder *builder,
                                                                     const mspring_network_def *def,
@@ -658,6 +702,11 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_plan(const mspring_
 /// The instruction set that the network's steps use. NULL gives MSPRING_SIMD_AUTO.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API mspring_simd mspring_network_simd_level(const mspring_network *network);
+
+/// The number of workers that the network has: what its definition asks for, or 1 in a build of the library without
+/// threads. (How many take part in a step depends on the network's size.) NULL gives 0.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API uint32_t mspring_network_worker_count(const mspring_network *network);
 
 /// The best instruction set that this CPU and operating system offer.
 /// @threads any   @allocates never   @since 0.1

@@ -59,6 +59,7 @@ mspring_result mspring_network_def_init(mspring_network_def *def, size_t size) {
                                           .gravity_y = -9.8f,
                                           .max_speed = 1e6f,
                                           .solver = MSPRING_SOLVER_EXPLICIT,
-                                          .substeps = 1};
+                                          .substeps = 1,
+                                          .worker_count = 1};
     return fill(def, size, &defaults, sizeof defaults);
 }

@@ -41,6 +41,8 @@ const char *mspring_result_string(mspring_result result) {
         return "the step is unstable";
     case MSPRING_ERROR_BUSY:
         return "not allowed inside a hook";
+    case MSPRING_ERROR_THREAD:
+        return "no thread to be had";
     default:
         return "unknown result code";
     }

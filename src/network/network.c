@@ -152,7 +152,10 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
         return result;
     network->kernels = mspringi_kernels_of(mspringi_cpu_choose(def->simd_level));
     network->max_speed = def->max_speed;
-    result = mspring_network_set_gravity(network, def->gravity_x, def->gravity_y);
+    result =
+        mspringi_tasks_create(def->worker_count, def->tasks, &network->memory, &network->message, &network->tasks);
+    if (result == MSPRING_OK)
+        result = mspring_network_set_gravity(network, def->gravity_x, def->gravity_y);
     if (result == MSPRING_OK)
         result = mspring_network_set_global_damping(network, def->global_damping);
     if (result == MSPRING_OK) {
@@ -208,6 +211,7 @@ void mspring_network_destroy(mspring_network *network) {
     if (!network)
         return;
     mspringi_memory memory = network->memory;
+    mspringi_tasks_destroy(network->tasks, &memory);
     mspringi_topology_destroy(&network->topology, &memory);
     mspringi_free(&memory, network->state.x);
     mspringi_free(&memory, network->backup.x);

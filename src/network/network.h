@@ -6,6 +6,7 @@
 #define MSPRINGI_NETWORK_H
 
 #include "kernels/kernels.h"
+#include "tasks/tasks.h"
 #include "topology/topology.h"
 
 /// Two floats per slot, x and then y, in one block of memory.
@@ -60,6 +61,7 @@ struct mspring_network {
     mspringi_message message;
     mspringi_topology topology;
     const mspringi_kernels *kernels;
+    mspringi_tasks *tasks; ///< NULL: the caller's thread steps alone
 
     // State.
     mspringi_state state, backup;

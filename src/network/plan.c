@@ -17,6 +17,10 @@ mspring_simd mspring_network_simd_level(const mspring_network *network) {
     return network ? network->kernels->level : MSPRING_SIMD_AUTO;
 }
 
+uint32_t mspring_network_worker_count(const mspring_network *network) {
+    return network ? mspringi_tasks_workers(network->tasks) : 0;
+}
+
 size_t mspring_network_memory_used(const mspring_network *network) {
     return network ? network->memory.used : 0;
 }

@@ -1,0 +1,131 @@
+#include "pool.h"
+
+#if defined(MSPRINGI_THREADS)
+
+#include "progress.h"
+
+typedef struct pool_worker {
+    mspringi_progress called;   ///< runs that this worker is to take part in, so far
+    mspringi_progress finished; ///< those that it has finished
+    uint32_t calls;             ///< what called is at, for the thread that calls
+    uint32_t number;
+    bool has_counters, has_thread;
+    mspringi_pool *pool;
+    mspringi_thread thread;
+    mspringi_thread_start start;
+} pool_worker;
+
+struct mspringi_pool {
+    uint32_t worker_count, count;
+    mspring_task_fn fn; ///< NULL: the worker is to end
+    void *argument;
+    pool_worker *workers; ///< worker 0, the caller, has neither counters nor a thread
+};
+
+static void run_share(const mspringi_pool *pool, uint32_t worker) {
+    for (uint32_t index = worker; index < pool->count; index += pool->worker_count)
+        pool->fn(pool->argument, index, worker);
+}
+
+static void thread_main(void *argument) {
+    pool_worker *self = argument;
+    for (uint32_t call = 1;; ++call) {
+        mspringi_progress_wait(&self->called, call);
+        if (!self->pool->fn)
+            return;
+        run_share(self->pool, self->number);
+        mspringi_progress_advance(&self->finished, call);
+    }
+}
+
+static bool start_worker(pool_worker *worker) {
+    if (!mspringi_progress_init(&worker->called))
+        return false;
+    if (!mspringi_progress_init(&worker->finished)) {
+        mspringi_progress_destroy(&worker->called);
+        return false;
+    }
+    worker->has_counters = true;
+    worker->start = (mspringi_thread_start){thread_main, worker};
+    worker->has_thread = mspringi_thread_create(&worker->thread, &worker->start);
+    return worker->has_thread;
+}
+
+mspring_result mspringi_pool_create(uint32_t worker_count, mspringi_memory *memory, mspringi_message *message,
+                                    mspringi_pool **pool) {
+    mspringi_pool *created = mspringi_alloc(memory, 1, sizeof *created);
+    if (created)
+        created->workers = mspringi_alloc(memory, worker_count, sizeof *created->workers);
+    if (!created || !created->workers) {
+        mspringi_pool_destroy(created, memory);
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for %u workers", (unsigned)worker_count);
+    }
+    created->worker_count = worker_count;
+    for (uint32_t w = 1; w < worker_count; ++w) {
+        pool_worker *worker = &created->workers[w];
+        worker->pool = created;
+        worker->number = w;
+        if (!start_worker(worker)) {
+            mspringi_pool_destroy(created, memory);
+            return mspringi_fail(message, MSPRING_ERROR_THREAD,
+                                 "the system refuses the thread of worker %u (of %u: 0 to %u)", (unsigned)w,
+                                 (unsigned)worker_count, (unsigned)(worker_count - 1));
+        }
+    }
+    *pool = created;
+    return MSPRING_OK;
+}
+
+void mspringi_pool_destroy(mspringi_pool *pool, mspringi_memory *memory) {
+    if (!pool)
+        return;
+    pool->fn = NULL;
+    for (uint32_t w = 1; w < pool->worker_count; ++w)
+        if (pool->workers[w].has_thread)
+            mspringi_progress_advance(&pool->workers[w].called, ++pool->workers[w].calls);
+    for (uint32_t w = 1; w < pool->worker_count; ++w) {
+        pool_worker *worker = &pool->workers[w];
+        if (worker->has_thread)
+            mspringi_thread_join(worker->thread);
+        if (worker->has_counters) {
+            mspringi_progress_destroy(&worker->called);
+            mspringi_progress_destroy(&worker->finished);
+        }
+    }
+    mspringi_free(memory, pool->workers);
+    mspringi_free(memory, pool);
+}
+
+void mspringi_pool_run(mspringi_pool *pool, uint32_t count, mspring_task_fn fn, void *argument) {
+    const uint32_t called = count < pool->worker_count ? count : pool->worker_count;
+    pool->count = count;
+    pool->fn = fn;
+    pool->argument = argument;
+    for (uint32_t w = 1; w < called; ++w)
+        mspringi_progress_advance(&pool->workers[w].called, ++pool->workers[w].calls);
+    run_share(pool, 0);
+    for (uint32_t w = 1; w < called; ++w)
+        mspringi_progress_wait(&pool->workers[w].finished, pool->workers[w].calls);
+}
+
+#else
+
+// mspringi_tasks_create() makes no pool without threads.
+
+mspring_result mspringi_pool_create(uint32_t worker_count, mspringi_memory *memory, mspringi_message *message,
+                                    mspringi_pool **pool) {
+    (void)worker_count, (void)memory, (void)pool;
+    return mspringi_fail(message, MSPRING_ERROR_THREAD, "this build of the library has no threads");
+}
+
+void mspringi_pool_destroy(mspringi_pool *pool, mspringi_memory *memory) {
+    (void)pool, (void)memory;
+}
+
+void mspringi_pool_run(mspringi_pool *pool, uint32_t count, mspring_task_fn fn, void *argument) {
+    (void)pool;
+    for (uint32_t index = 0; index < count; ++index)
+        fn(argument, index, 0);
+}
+
+#endif

@@ -1,0 +1,24 @@
+/// @file pool.h
+/// The library's own threads: as many as there are workers, less the caller's, which is worker 0.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_POOL_H
+#define MSPRINGI_POOL_H
+
+#include "base/memory.h"
+
+typedef struct mspringi_pool mspringi_pool;
+
+/// Start worker_count - 1 threads.
+/// @return MSPRING_OK; MSPRING_ERROR_MEMORY, MSPRING_ERROR_THREAD
+mspring_result mspringi_pool_create(uint32_t worker_count, mspringi_memory *memory, mspringi_message *message,
+                                    mspringi_pool **pool);
+
+/// End the threads. NULL is allowed.
+void mspringi_pool_destroy(mspringi_pool *pool, mspringi_memory *memory);
+
+/// Run fn(argument, index, worker) for all index below count, index i on worker i % worker_count, and return when
+/// all are done. As many as there are workers run at the same time.
+void mspringi_pool_run(mspringi_pool *pool, uint32_t count, mspring_task_fn fn, void *argument);
+
+#endif

@@ -1,0 +1,127 @@
+#include "tasks.h"
+
+#include "base/cpu.h"
+#include "pool.h"
+
+struct mspringi_tasks {
+    mspringi_pool *pool; ///< NULL: the host's threads
+    mspring_tasks host;
+    uint32_t worker_count, concurrency;
+    uint32_t counter_count; ///< counters that have been made
+    mspringi_progress *counters;
+};
+
+/* ------------------------------------------------------------------------------------------------ lifecycle */
+
+static mspring_result check_host(const mspring_tasks *host, mspringi_message *message) {
+    mspring_result result =
+        mspringi_check_struct(message, "mspring_tasks", host->struct_size, sizeof *host, sizeof *host);
+    if (result != MSPRING_OK)
+        return result;
+    if (!host->run)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "mspring_tasks lacks run");
+    if (host->concurrent_count < 1 || host->concurrent_count > host->worker_count)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "mspring_tasks.concurrent_count is %u, it must be 1 to worker_count, which is %u",
+                             (unsigned)host->concurrent_count, (unsigned)host->worker_count);
+    return MSPRING_OK;
+}
+
+static mspring_result make_counters(mspringi_tasks *tasks, mspringi_memory *memory, mspringi_message *message) {
+    tasks->counters = mspringi_alloc(memory, tasks->concurrency, sizeof *tasks->counters);
+    if (!tasks->counters)
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for %u workers",
+                             (unsigned)tasks->worker_count);
+    for (; tasks->counter_count < tasks->concurrency; ++tasks->counter_count)
+        if (!mspringi_progress_init(&tasks->counters[tasks->counter_count]))
+            return mspringi_fail(message, MSPRING_ERROR_THREAD, "the system refuses a lock for worker %u",
+                                 (unsigned)tasks->counter_count);
+    return MSPRING_OK;
+}
+
+mspring_result mspringi_tasks_create(uint32_t worker_count, const mspring_tasks *host, mspringi_memory *memory,
+                                     mspringi_message *message, mspringi_tasks **tasks) {
+    if (host) {
+        mspring_result result = check_host(host, message);
+        if (result != MSPRING_OK)
+            return result;
+        worker_count = host->worker_count;
+    }
+    if (worker_count < 1 || worker_count > MSPRING_MAX_WORKERS)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "worker_count is %u, it must be 1 to %u",
+                             (unsigned)worker_count, (unsigned)MSPRING_MAX_WORKERS);
+#if !defined(MSPRINGI_THREADS)
+    worker_count = 1;
+#endif
+    if (worker_count == 1) {
+        *tasks = NULL;
+        return MSPRING_OK;
+    }
+    mspringi_tasks *created = mspringi_alloc(memory, 1, sizeof *created);
+    if (!created)
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for %u workers", (unsigned)worker_count);
+    if (host)
+        created->host = *host;
+    created->worker_count = worker_count;
+    created->concurrency = host ? host->concurrent_count : worker_count;
+    mspring_result result = make_counters(created, memory, message);
+    if (result == MSPRING_OK && !host)
+        result = mspringi_pool_create(worker_count, memory, message, &created->pool);
+    if (result == MSPRING_OK)
+        *tasks = created;
+    else
+        mspringi_tasks_destroy(created, memory);
+    return result;
+}
+
+void mspringi_tasks_destroy(mspringi_tasks *tasks, mspringi_memory *memory) {
+    if (!tasks)
+        return;
+    mspringi_pool_destroy(tasks->pool, memory);
+    for (uint32_t i = 0; i < tasks->counter_count; ++i)
+        mspringi_progress_destroy(&tasks->counters[i]);
+    mspringi_free(memory, tasks->counters);
+    mspringi_free(memory, tasks);
+}
+
+/* --------------------------------------------------------------------------------------------------- running */
+
+typedef struct job {
+    mspring_task_fn fn;
+    void *argument;
+} job;
+
+// A body on a thread that may have any floating-point environment.
+static void run_body(void *argument, uint32_t index, uint32_t worker) {
+    const job *of = argument;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    of->fn(of->argument, index, worker);
+    mspringi_fp_leave(before);
+}
+
+uint32_t mspringi_tasks_workers(const mspringi_tasks *tasks) {
+    return tasks ? tasks->worker_count : 1;
+}
+
+uint32_t mspringi_tasks_concurrency(const mspringi_tasks *tasks) {
+    return tasks ? tasks->concurrency : 1;
+}
+
+mspringi_progress *mspringi_tasks_progress(mspringi_tasks *tasks) {
+    return tasks ? tasks->counters : NULL;
+}
+
+void mspringi_tasks_run(mspringi_tasks *tasks, uint32_t count, mspring_task_fn fn, void *argument) {
+    job of = {fn, argument};
+    if (!tasks || count <= 1) {
+        for (uint32_t index = 0; index < count; ++index)
+            run_body(&of, index, 0);
+        return;
+    }
+    for (uint32_t i = 0; i < tasks->counter_count; ++i)
+        mspringi_progress_reset(&tasks->counters[i], 0);
+    if (tasks->pool)
+        mspringi_pool_run(tasks->pool, count, run_body, &of);
+    else
+        tasks->host.run(count, run_body, &of, tasks->host.user);
+}

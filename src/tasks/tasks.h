@@ -1,0 +1,46 @@
+/// @file tasks.h
+/// Work that is divided among threads: those that the host lends by callback, or the library's own.
+///
+/// Two kinds of work can be run:
+///
+///   independent bodies      any number of them; they may run in any order, one after the other or at once
+///   bodies that wait        at most mspringi_tasks_concurrency() of them; each runs on a thread of its own from
+///   the
+///                           start, so body i may wait for what body j does (see mspringi_tasks_progress)
+///
+/// Bodies must write the same values whatever order they run in and whichever worker they run on: that makes a
+/// step's bits independent of the number of workers.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_TASKS_H
+#define MSPRINGI_TASKS_H
+
+#include "base/memory.h"
+#include "progress.h"
+
+/// NULL stands for one worker: the caller's thread.
+typedef struct mspringi_tasks mspringi_tasks;
+
+/// Take the host's threads, or start threads for worker_count workers if host is NULL. *tasks becomes NULL if that
+/// makes one worker.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_THREAD
+mspring_result mspringi_tasks_create(uint32_t worker_count, const mspring_tasks *host, mspringi_memory *memory,
+                                     mspringi_message *message, mspringi_tasks **tasks);
+void mspringi_tasks_destroy(mspringi_tasks *tasks, mspringi_memory *memory);
+
+/// Number of workers: what is indexed by worker has so many elements.
+uint32_t mspringi_tasks_workers(const mspringi_tasks *tasks);
+
+/// How many bodies of one run are sure to run at the same time, 1 to the number of workers.
+uint32_t mspringi_tasks_concurrency(const mspringi_tasks *tasks);
+
+/// Run fn(argument, index, worker) for every index below count, in the floating-point environment of a step, and
+/// return when all are done: what they have written is seen by the caller, and what the caller has written before,
+/// by them. Must not be called from a body.
+void mspringi_tasks_run(mspringi_tasks *tasks, uint32_t count, mspring_task_fn fn, void *argument);
+
+/// Counters for bodies that wait for each other: [mspringi_tasks_concurrency()], all 0 when a run begins. NULL if
+/// tasks is.
+mspringi_progress *mspringi_tasks_progress(mspringi_tasks *tasks);
+
+#endif

@@ -1,0 +1,50 @@
+/// @file thread.h
+/// Threads, locks and conditions of the platform: POSIX threads or those of Windows. MSPRINGI_THREADS is not
+/// defined where the build found neither; then there is nothing here.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_THREAD_H
+#define MSPRINGI_THREAD_H
+
+#if defined(MSPRINGI_THREADS)
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#if defined(_WIN32)
+#define WIN32_LEAN_AND_MEAN
+#include <windows.h>
+typedef HANDLE mspringi_thread;
+typedef SRWLOCK mspringi_mutex;
+typedef CONDITION_VARIABLE mspringi_condition;
+#else
+#include <pthread.h>
+typedef pthread_t mspringi_thread;
+typedef pthread_mutex_t mspringi_mutex;
+typedef pthread_cond_t mspringi_condition;
+#endif
+
+/// What a thread runs. Lives until the thread is joined.
+typedef struct mspringi_thread_start {
+    void (*fn)(void *argument);
+    void *argument;
+} mspringi_thread_start;
+
+/// Start a thread that takes no signals: they go to the host's. False if the system refuses.
+bool mspringi_thread_create(mspringi_thread *thread, mspringi_thread_start *start);
+void mspringi_thread_join(mspringi_thread thread);
+
+bool mspringi_mutex_init(mspringi_mutex *mutex);
+void mspringi_mutex_destroy(mspringi_mutex *mutex);
+void mspringi_mutex_lock(mspringi_mutex *mutex);
+void mspringi_mutex_unlock(mspringi_mutex *mutex);
+
+bool mspringi_condition_init(mspringi_condition *condition);
+void mspringi_condition_destroy(mspringi_condition *condition);
+/// Wait, with the mutex given back meanwhile. May return for no reason.
+void mspringi_condition_wait(mspringi_condition *condition, mspringi_mutex *mutex);
+void mspringi_condition_wake_all(mspringi_condition *condition);
+
+#endif
+
+#endif
