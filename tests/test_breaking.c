@@ -3,6 +3,7 @@
 /// in lattices, chains and webs, at every level.
 ///
 /// SPDX-License-Identifier: MIT
+#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
@@ -105,7 +106,7 @@ static void restoring_undoes_breaking(void **state) {
                 check_ok(mspring_network_break_springs(network, ids, count));
             }
             for (int again = 0; again < 2; again++) {
-                check_ok(mspring_network_restore_springs(network, ids, count));
+                check_ok(mspring_network_restore_springs(network, ids, count, 0));
             }
             support_steps(network, 5, 1.0 / 64);
             support_steps(untouched, 5, 1.0 / 64);
@@ -116,6 +117,12 @@ static void restoring_undoes_breaking(void **state) {
         free(ids);
         recipe_free(&made);
     }
+}
+
+static mspring_spring_info info_of(const mspring_network *network, mspring_id spring) {
+    mspring_spring_info info = {.struct_size = sizeof info};
+    check_ok(mspring_network_get_spring(network, spring, &info));
+    return info;
 }
 
 static void a_cut_rope_falls_in_two(void **state) {
@@ -143,8 +150,7 @@ static void a_cut_rope_falls_in_two(void **state) {
     check_near(support_position(network, 1).y, -2 - 9.8 * 0.001 * 0.001 * 1000 * 1001 / 2, 1e-3);
     assert_true(support_position(network, 0).y == 0);
 
-    mspring_spring_info info = {.struct_size = sizeof info};
-    check_ok(mspring_network_get_spring(network, last, &info));
+    mspring_spring_info info = info_of(network, last);
     assert_int_equal(info.flags, MSPRING_SPRING_BROKEN);
     assert_true(info.stiffness == 0 && info.force == 0 && info.strain == 0 && info.length > 1);
     assert_true(info.nominal_stiffness == 1e4f && info.rest_length == 0.5f);
@@ -154,11 +160,135 @@ static void a_cut_rope_falls_in_two(void **state) {
     mspring_id most;
     check_ok(mspring_network_max_strain(network, &strain, &most));
     assert_int_not_equal(most, last);
-    check_ok(mspring_network_restore_springs(network, &last, 1));
-    check_ok(mspring_network_get_spring(network, last, &info));
+    check_ok(mspring_network_restore_springs(network, &last, 1, 0));
+    info = info_of(network, last);
     assert_int_equal(info.flags, 0);
     assert_true(info.stiffness == 1e4f && info.strain > 1);
     mspring_network_destroy(network);
+}
+
+/// Two masses of 1 kg, 3 m apart, on a broken damped spring of 1 m, without gravity.
+static mspring_network *torn_pair(void) {
+    mspring_builder *builder = support_builder();
+    support_particle(builder, 0, 0, 1);
+    support_particle(builder, 1, 0, 1);
+    support_spring(builder, 0, 1, 1000, 10);
+    mspring_network_def def = support_def(0, 20);
+    mspring_network *network = support_network(builder, &def);
+    const mspring_id spring = 0;
+    const double x = 3, y = 0;
+    check_ok(mspring_network_break_springs(network, &spring, 1));
+    check_ok(mspring_network_set_positions(network, 1, 1, &x, &y));
+    return network;
+}
+
+/// The fastest that a particle of the pair gets, in two seconds after its spring is restored.
+static double fastest_after_restoring(double ramp_seconds) {
+    mspring_network *network = torn_pair();
+    const mspring_id spring = 0;
+    check_ok(mspring_network_restore_springs(network, &spring, 1, ramp_seconds));
+    double fastest = 0;
+    for (int step = 0; step < 200; step++) {
+        support_steps(network, 1, 0.01);
+        fastest = fmax(fastest, fabs(support_velocity(network, 1).x));
+    }
+    // It has its own rest length again, and has come to it: the swing decays by exp(-10 t).
+    assert_true(info_of(network, 0).rest_length == 1);
+    check_near(info_of(network, 0).length, 1, 1e-3);
+    mspring_network_destroy(network);
+    return fastest;
+}
+
+static void a_ramp_takes_the_kick_out_of_restoring(void **state) {
+    (void)state;
+    // Undamped, each would get half of 2 m times sqrt(2 k / m) = 44.7 /s; with this damping 0.71 of that.
+    check_near(fastest_after_restoring(0), 32, 2);
+    // With the ramp they follow a rest length that shrinks by 2 m in 1 s: each at 1 m/s, and at most twice that, as
+    // when a spring is pulled at by something that moves steadily.
+    const double fastest = fastest_after_restoring(1);
+    assert_true(fastest > 0.9 && fastest < 2);
+}
+
+static void a_ramp_is_even_and_ends(void **state) {
+    (void)state;
+    mspring_network *network = torn_pair();
+    const mspring_id spring = 0;
+    check_ok(mspring_network_restore_springs(network, &spring, 1, 0.1));
+    assert_true(info_of(network, 0).rest_length == 3 && info_of(network, 0).force == 0);
+    for (int step = 1; step <= 12; step++) {
+        support_steps(network, 1, 0.01);
+        check_near(info_of(network, 0).rest_length, step < 10 ? 3 - 0.2 * step : 1, 1e-6); // of a float
+    }
+    // Broken on its way, it has its own rest length; so it has if that is set, or restored with another ramp.
+    for (int way = 0; way < 3; way++) {
+        const float length = 1.5f;
+        check_ok(mspring_network_break_springs(network, &spring, 1));
+        check_ok(mspring_network_restore_springs(network, &spring, 1, 1));
+        support_steps(network, 3, 0.01);
+        if (way == 0) {
+            check_ok(mspring_network_break_springs(network, &spring, 1));
+        } else if (way == 1) {
+            check_ok(mspring_network_set_rest_lengths(network, 0, 1, &length));
+        } else {
+            support_steps(network, 100, 0.01);
+        }
+        assert_true(info_of(network, 0).rest_length == (way == 0 ? 1 : length));
+        support_steps(network, 2, 0.01);
+        assert_true(info_of(network, 0).rest_length == (way == 0 ? 1 : length));
+    }
+    mspring_network_destroy(network);
+}
+
+static void a_refused_step_does_not_move_a_ramp(void **state) {
+    (void)state;
+    mspring_network *network = torn_pair(), *twin = torn_pair();
+    const mspring_id spring = 0;
+    check_ok(mspring_network_restore_springs(network, &spring, 1, 3));
+    check_ok(mspring_network_restore_springs(twin, &spring, 1, 3));
+    support_steps(network, 2, 0.01);
+    support_steps(twin, 2, 0.01);
+    const float before = info_of(network, 0).rest_length;
+    const double far = 1e11, y = 0, back = support_position(network, 1).x;
+    check_ok(mspring_network_set_positions(network, 1, 1, &far, &y));
+    check_error(mspring_network_step(network, 0.5), MSPRING_ERROR_UNSTABLE);
+    assert_true(info_of(network, 0).rest_length == before);
+    check_ok(mspring_network_set_positions(network, 1, 1, &back, &y));
+    support_steps(network, 10, 0.01);
+    support_steps(twin, 10, 0.01);
+    assert_int_equal(support_hash(network), support_hash(twin));
+    mspring_network_destroy(network);
+    mspring_network_destroy(twin);
+}
+
+static void a_detached_particle_flies_on_alone(void **state) {
+    (void)state;
+    recipe made = mixed_recipe(0);
+    mspring_network *network = network_of(&made, MSPRING_SIMD_AUTO);
+    // One inside the lattice, its corner with the rope, one inside the rope.
+    const mspring_id detached[] = {100, 2, made.particle_count - 5};
+    check_ok(mspring_network_detach_particles(network, detached, 3));
+    uint32_t broken = 0, expected = 0;
+    for (mspring_id s = 0; s < made.spring_count; s++) {
+        bool touches = false;
+        for (int i = 0; i < 3; i++) {
+            touches = touches || made.springs[s].a == detached[i] || made.springs[s].b == detached[i];
+        }
+        assert_int_equal((info_of(network, s).flags & MSPRING_SPRING_BROKEN) != 0, touches);
+        broken += (info_of(network, s).flags & MSPRING_SPRING_BROKEN) != 0;
+        expected += touches;
+    }
+    assert_true(expected >= 10 && broken == expected);
+    support_point v[3];
+    for (int i = 0; i < 3; i++) {
+        v[i] = support_velocity(network, detached[i]);
+    }
+    support_steps(network, 10, 0.01);
+    for (int i = 0; i < 3; i++) {
+        assert_true(support_velocity(network, detached[i]).x == v[i].x);
+        check_near(support_velocity(network, detached[i]).y, v[i].y - 0.98, 1e-5); // 40 roundings of about 1 m/s
+    }
+    mspring_network_destroy(network);
+    recipe_free(&made);
 }
 
 static void bad_lists_are_refused_and_change_nothing(void **state) {
@@ -167,14 +297,14 @@ static void bad_lists_are_refused_and_change_nothing(void **state) {
     mspring_network *network = network_of(&made, MSPRING_SIMD_AUTO);
     const mspring_id bad[] = {0, 1, made.spring_count, 2}, worse[] = {MSPRING_NONE};
     check_error(mspring_network_break_springs(NULL, bad, 1), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_restore_springs(NULL, bad, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_restore_springs(NULL, bad, 1, 0), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_break_springs(network, NULL, 1), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_restore_springs(network, NULL, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_restore_springs(network, NULL, 1, 0), MSPRING_ERROR_ARGUMENT);
     check_ok(mspring_network_break_springs(network, NULL, 0));
-    check_ok(mspring_network_restore_springs(network, NULL, 0));
+    check_ok(mspring_network_restore_springs(network, NULL, 0, 0));
     check_error(mspring_network_break_springs(network, bad, 4), MSPRING_ERROR_ID);
     check_contains(mspring_network_error(network), "index 2");
-    check_error(mspring_network_restore_springs(network, bad, 4), MSPRING_ERROR_ID);
+    check_error(mspring_network_restore_springs(network, bad, 4, 0), MSPRING_ERROR_ID);
     check_error(mspring_network_break_springs(network, worse, 1), MSPRING_ERROR_ID);
     mspring_spring_info info = {.struct_size = sizeof info};
     check_ok(mspring_network_get_spring(network, 0, &info));
@@ -208,7 +338,7 @@ static void the_first_break_survives_every_failure(void **state) {
         check_ok(mspring_network_get_spring(network, spring, &info));
         assert_int_equal(info.flags, MSPRING_SPRING_BROKEN);
         const size_t calls = watched.calls;
-        check_ok(mspring_network_restore_springs(network, &spring, 1));
+        check_ok(mspring_network_restore_springs(network, &spring, 1, 0));
         check_ok(mspring_network_break_springs(network, &spring, 1));
         support_steps(network, 1, 0.01);
         assert_int_equal(watched.calls, calls);
@@ -224,6 +354,10 @@ int main(void) {
         cmocka_unit_test(a_broken_spring_is_one_without_stiffness_and_damping),
         cmocka_unit_test(restoring_undoes_breaking),
         cmocka_unit_test(a_cut_rope_falls_in_two),
+        cmocka_unit_test(a_ramp_takes_the_kick_out_of_restoring),
+        cmocka_unit_test(a_ramp_is_even_and_ends),
+        cmocka_unit_test(a_refused_step_does_not_move_a_ramp),
+        cmocka_unit_test(a_detached_particle_flies_on_alone),
         cmocka_unit_test(bad_lists_are_refused_and_change_nothing),
         cmocka_unit_test(the_first_break_survives_every_failure),
     };

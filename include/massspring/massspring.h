@@ -278,6 +278,11 @@ enum {
     MSPRING_SIMD_AVX512 = 4
 };
 
+/// Flags of networks.
+enum {
+    MSPRING_NETWORK_RESERVE_DAMPING = 1u << 0 ///< springs may be given damping later, though none has any now
+};
+
 /// A network's settings at the start. Fill with mspring_network_def_init() first.
 typedef struct mspring_network_def {
     uint32_t struct_size;
@@ -296,7 +301,7 @@ typedef struct mspring_network_def {
                            ///< MSPRING_MAX_WORKERS; default 1. The others are started with the network, end with
                            ///< it, take no signals, and sleep between steps. One for each core is the most that
                            ///< helps. With tasks, whose number counts, this is not looked at.
-    uint32_t reserved; ///< 0
+    uint32_t flags; ///< MSPRING_NETWORK_RESERVE_DAMPING or 0; default 0
 } mspring_network_def;
 
 /// Fill a definition with its defaults. Pass the size that your header gives it: sizeof *def.
@@ -578,9 +583,108 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_masses(const ms
 
 /* -------------------------------------------------------------------------------------------------- edits */
 
+/// Everything below may be changed between steps, at a cost for each particle or spring that does not depend on the
+/// size of the network. Values come for a range of ids (first ... first + count - 1) or, in the functions that end
+/// in _at, for a list of ids, which may repeat: then the last value counts. A call sets all of them or, on error,
+/// none.
+
+/// Set positions (m, world coordinates) of listed particles; as mspring_network_set_positions().
+/// @param particles, x, y  [count]
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_positions_at(mspring_network *network,
+                                                                              const mspring_id *particles,
+                                                                              uint32_t count, const double *x,
+                                                                              const double *y);
+
+/// Set velocities (m/s, finite) of listed particles; as mspring_network_set_velocities().
+/// @param particles, vx, vy  [count]
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_velocities_at(mspring_network *network,
+                                                                               const mspring_id *particles,
+                                                                               uint32_t count, const float *vx,
+                                                                               const float *vy);
+
+/// Set masses (kg), as when water gets in. Stiffness and damping of springs stay what they are: relative springs go
+/// on with the masses that their particles had before, until mspring_network_renew_relative_springs(). A spring
+/// that is stable with some masses is stable with larger ones.
+/// @param mass  [count], 1e-30 to 1e30
+/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the particle),
+///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates at the first call on a network with relative springs
+/// @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_masses(mspring_network *network, mspring_id first,
+                                                                        uint32_t count, const float *mass);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_masses_at(mspring_network *network,
+                                                                           const mspring_id *particles,
+                                                                           uint32_t count, const float *mass);
+
+/// Derive relative springs from the masses that their particles have now. Takes a pass over all springs.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_renew_relative_springs(mspring_network *network);
+
+/// Set how much particles give in to forces: 1 as their mass has it (the default), 0 not at all (they are pinned),
+/// between as if they were heavier by one over this; gravity accelerates them all the same. It stays as masses
+/// change, and is no part of the mass that energy and momentum count with.
+/// @param scale  [count], 0 or 1e-6 to 1
+/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the particle),
+///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates at the first scale that is neither 0 nor 1   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_inverse_mass_scales(mspring_network *network,
+                                                                                     mspring_id first,
+                                                                                     uint32_t count,
+                                                                                     const float *scale);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_inverse_mass_scales_at(mspring_network *network,
+                                                                                        const mspring_id *particles,
+                                                                                        uint32_t count,
+                                                                                        const float *scale);
+
+/// Copy out scales of inverse masses in id order; 0: pinned.
+/// @param scale  [count]
+/// @return MSPRING_OK; MSPRING_ERROR_ID or MSPRING_ERROR_ARGUMENT.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_inverse_mass_scales(const mspring_network *network,
+                                                                                     mspring_id first,
+                                                                                     uint32_t count, float *scale);
+
+/// Set nominal stiffness: N/m, of relative springs the fraction. A broken spring stays broken and has the new
+/// stiffness when it is restored.
+/// @param stiffness  [count], 0 to 1e30
+/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the spring), MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_stiffnesses(mspring_network *network,
+                                                                             mspring_id first, uint32_t count,
+                                                                             const float *stiffness);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_stiffnesses_at(mspring_network *network,
+                                                                                const mspring_id *springs,
+                                                                                uint32_t count,
+                                                                                const float *stiffness);
+
+/// Set nominal damping: N s/m, of relative springs the fraction; as mspring_network_set_stiffnesses(). A network
+/// whose springs were all made without damping has no room for any (MSPRING_ERROR_ARGUMENT), unless it was created
+/// with MSPRING_NETWORK_RESERVE_DAMPING.
+/// @param damping  [count], 0 to 1e30
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_dampings(mspring_network *network,
+                                                                          mspring_id first, uint32_t count,
+                                                                          const float *damping);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_dampings_at(mspring_network *network,
+                                                                             const mspring_id *springs,
+                                                                             uint32_t count, const float *damping);
+
+/// Set rest lengths (m); as mspring_network_set_stiffnesses(). Ends a ramp of the spring.
+/// @param rest_length  [count], > 0 and at most 4e12
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_rest_lengths(mspring_network *network,
+                                                                              mspring_id first, uint32_t count,
+                                                                              const float *rest_length);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_rest_lengths_at(mspring_network *network,
+                                                                                 const mspring_id *springs,
+                                                                                 uint32_t count,
+                                                                                 const float *rest_length);
+
 /// Break springs: from now on they exert nothing, until they are restored. Their ids, rest lengths and nominal
-/// stiffness and damping stay. Costs the same for each spring, however large the network. All of them or, on error,
-/// none; one that is broken already stays so.
+/// stiffness and damping stay. One that is broken already stays so.
 /// @param springs  [count]
 /// @return MSPRING_OK; MSPRING_ERROR_ID (the message names the index), MSPRING_ERROR_ARGUMENT,
 ///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
@@ -589,14 +693,27 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_break_springs(mspri
                                                                            const mspring_id *springs,
                                                                            uint32_t count);
 
-/// Restore broken springs to their nominal stiffness and damping. All of them or, on error, none; one that is whole
-/// stays so.
-/// @param springs  [count]
+/// Restore broken springs to their nominal stiffness and damping. One that is whole stays so.
+///
+/// With a ramp, a spring's rest length goes from the length that it has now to its own in the course of
+/// ramp_seconds of simulated time, evenly from step to step, so that it pulls its ends together instead of kicking
+/// them.
+/// @param springs       [count]
+/// @param ramp_seconds  0 for no ramp, at most 1e6
 /// @return as mspring_network_break_springs()
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// @threads exclusive access to network   @allocates for more ramps at once than there have been   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_restore_springs(mspring_network *network,
                                                                              const mspring_id *springs,
-                                                                             uint32_t count);
+                                                                             uint32_t count, double ramp_seconds);
+
+/// Break all springs of particles, which fly on as loose ones.
+/// @param particles  [count]
+/// @return as mspring_network_break_springs()
+/// @threads exclusive access to network   @allocates at the first break and first detachment in a network
+/// @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_detach_particles(mspring_network *network,
+                                                                              const mspring_id *particles,
+                                                                              uint32_t count);
 
 /* ------------------------------------------------------------------------------------------- measurements */
 
@@ -688,9 +805,10 @@ typedef struct mspring_plan {
                                ///< other have about as many springs
     uint32_t slot_count;       ///< slots of the state, empty ones among them
     uint32_t block_width;      ///< slots in a block
-    uint32_t has_damping;      ///< 1: some spring has damping. 0: steps neither read nor compute any.
-    uint32_t has_relative;     ///< 1: some spring is relative, and a change of substep costs a pass over all
-    mspring_simd simd_level;   ///< what runs
+    uint32_t has_damping;    ///< 1: some spring has damping, or room for it was reserved. 0: steps neither read nor
+                             ///< compute any.
+    uint32_t has_relative;   ///< 1: some spring is relative, and a change of substep costs a pass over all
+    mspring_simd simd_level; ///< what runs
 } mspring_plan;
 
 /// Get the plan. Set struct_size first.

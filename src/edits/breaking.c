@@ -3,9 +3,13 @@
 
 #include "base/cpu.h"
 #include "network/springs.h"
+#include "ramps.h"
+#include "selection.h"
 
 /// Longest log of broken and restored springs: more than a burst of them in one frame.
 #define LONGEST_LOG 4096
+
+#define LONGEST_RAMP 1e6 // s
 
 mspring_result mspringi_breaking_reserve(mspring_network *network) {
     if (network->edits.link_log)
@@ -38,6 +42,7 @@ static void toggle(mspring_network *network, mspring_id spring) {
 bool mspringi_spring_break(mspring_network *network, mspring_id spring) {
     if (!mspringi_spring_is_live(network, spring))
         return false;
+    mspringi_ramp_drop(network, spring);
     mspringi_spring_values values = mspringi_spring_get(network, spring);
     if (!mspringi_spring_is_relative(network, spring))
         network->kept[spring] = (mspringi_relative){values.stiffness, values.damping};
@@ -56,23 +61,12 @@ bool mspringi_spring_restore(mspring_network *network, mspring_id spring) {
     return true;
 }
 
-static mspring_result check_list(mspring_network *network, const mspring_id *springs, uint32_t count) {
-    mspring_result result = mspringi_enter(network);
-    if (result != MSPRING_OK)
-        return result;
-    if (count > 0 && !springs)
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "a list of %u springs is NULL",
-                             (unsigned)count);
-    for (uint32_t i = 0; i < count; ++i)
-        if (springs[i] >= network->topology.spring_count)
-            return mspringi_fail(&network->message, MSPRING_ERROR_ID,
-                                 "index %u of the list: there is no spring %u, only %u", (unsigned)i,
-                                 (unsigned)springs[i], (unsigned)network->topology.spring_count);
-    return MSPRING_OK;
-}
+/* --------------------------------------------------------------------------------------------------- by lists */
 
 mspring_result mspring_network_break_springs(mspring_network *network, const mspring_id *springs, uint32_t count) {
-    mspring_result result = check_list(network, springs, count);
+    mspringi_selection at;
+    const uint32_t total = mspring_network_spring_count(network);
+    mspring_result result = mspringi_select_list(network, "spring", total, springs, count, springs, springs, &at);
     if (result == MSPRING_OK && count > 0)
         result = mspringi_breaking_reserve(network);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
@@ -80,18 +74,45 @@ mspring_result mspring_network_break_springs(mspring_network *network, const msp
     return result;
 }
 
-static MSPRINGI_NOINLINE void restore_all(mspring_network *network, const mspring_id *springs, uint32_t count) {
+static MSPRINGI_NOINLINE void restore_all(mspring_network *network, const mspring_id *springs, uint32_t count,
+                                          double ramp_seconds) {
     for (uint32_t i = 0; i < count; ++i)
-        (void)mspringi_spring_restore(network, springs[i]);
+        if (mspringi_spring_restore(network, springs[i]) && ramp_seconds > 0.0)
+            mspringi_ramp_begin(network, springs[i], ramp_seconds);
 }
 
-mspring_result mspring_network_restore_springs(mspring_network *network, const mspring_id *springs,
-                                               uint32_t count) {
-    mspring_result result = check_list(network, springs, count);
+mspring_result mspring_network_restore_springs(mspring_network *network, const mspring_id *springs, uint32_t count,
+                                               double ramp_seconds) {
+    mspringi_selection at;
+    const uint32_t total = mspring_network_spring_count(network);
+    mspring_result result = mspringi_select_list(network, "spring", total, springs, count, springs, springs, &at);
+    if (result == MSPRING_OK && !(ramp_seconds >= 0.0 && ramp_seconds <= LONGEST_RAMP))
+        result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                               "the ramp is %g s long, it must be 0 to 1e6", ramp_seconds);
+    if (result == MSPRING_OK && ramp_seconds > 0.0)
+        result = mspringi_ramps_reserve(network, count);
     if (result != MSPRING_OK)
         return result;
     const mspringi_fp_state before = mspringi_fp_enter();
-    restore_all(network, springs, count);
+    restore_all(network, springs, count, ramp_seconds);
     mspringi_fp_leave(before);
     return MSPRING_OK;
+}
+
+mspring_result mspring_network_detach_particles(mspring_network *network, const mspring_id *particles,
+                                                uint32_t count) {
+    mspringi_selection at;
+    const uint32_t total = mspring_network_particle_count(network);
+    mspring_result result =
+        mspringi_select_list(network, "particle", total, particles, count, particles, particles, &at);
+    if (result == MSPRING_OK && count > 0)
+        result = mspringi_breaking_reserve(network);
+    const mspringi_incidence *incidence = &network->incidence;
+    if (result == MSPRING_OK && count > 0 && !incidence->first)
+        result =
+            mspringi_incidence_create(&network->incidence, &network->topology, &network->memory, &network->message);
+    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
+        for (uint32_t j = incidence->first[particles[i]]; j < incidence->first[particles[i] + 1]; ++j)
+            (void)mspringi_spring_break(network, incidence->springs[j]);
+    return result;
 }

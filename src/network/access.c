@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "base/cpu.h"
+#include "edits/selection.h"
 #include "network.h"
 #include "origin.h"
 
@@ -164,22 +165,63 @@ mspring_result mspring_network_set_positions_float(mspring_network *network, msp
     return result == MSPRING_OK ? set_positions_rounding_to_nearest(network, first, count, &to) : result;
 }
 
-mspring_result mspring_network_set_velocities(mspring_network *network, mspring_id first, uint32_t count,
-                                              const float *vx, const float *vy) {
-    mspring_result result = check_set(network, first, count, vx, vy);
-    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
+static mspring_result set_velocities(mspring_network *network, const mspringi_selection *at, const float *vx,
+                                     const float *vy) {
+    for (uint32_t i = 0; i < at->count; ++i)
         if (!is_finite_pair(vx[i], vy[i]))
-            result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                                   "particle %u: velocity (%g, %g) m/s is not finite", (unsigned)(first + i),
-                                   (double)vx[i], (double)vy[i]);
-    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
-        const uint32_t slot = network->topology.slot_of_particle[first + i];
+            return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                                 "particle %u: velocity (%g, %g) m/s is not finite",
+                                 (unsigned)mspringi_selected(at, i), (double)vx[i], (double)vy[i]);
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const uint32_t slot = network->topology.slot_of_particle[mspringi_selected(at, i)];
         network->state.vx[slot] = vx[i];
         network->state.vy[slot] = vy[i];
     }
+    network->edits.state++;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_set_velocities(mspring_network *network, mspring_id first, uint32_t count,
+                                              const float *vx, const float *vy) {
+    mspringi_selection at;
+    const uint32_t total = mspring_network_particle_count(network);
+    mspring_result result = mspringi_select_range(network, "particle", total, first, count, vx, vy, &at);
+    return result == MSPRING_OK ? set_velocities(network, &at, vx, vy) : result;
+}
+
+/* ------------------------------------------------------------------------------------------------- set by lists */
+
+static MSPRINGI_NOINLINE mspring_result set_positions_at(mspring_network *network, const mspring_id *particles,
+                                                         uint32_t count, const double *x, const double *y) {
+    mspring_result result = MSPRING_OK;
+    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
+        result = check_position(network, particles[i], x[i], y[i], true);
+    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
+        mspringi_set_position(network, particles[i], x[i], y[i]);
+    return result;
+}
+
+mspring_result mspring_network_set_positions_at(mspring_network *network, const mspring_id *particles,
+                                                uint32_t count, const double *x, const double *y) {
+    mspringi_selection at;
+    const uint32_t total = mspring_network_particle_count(network);
+    mspring_result result = mspringi_select_list(network, "particle", total, particles, count, x, y, &at);
+    if (result != MSPRING_OK)
+        return result;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    result = set_positions_at(network, particles, count, x, y);
+    mspringi_fp_leave(before);
     if (result == MSPRING_OK)
         network->edits.state++;
     return result;
+}
+
+mspring_result mspring_network_set_velocities_at(mspring_network *network, const mspring_id *particles,
+                                                 uint32_t count, const float *vx, const float *vy) {
+    mspringi_selection at;
+    const uint32_t total = mspring_network_particle_count(network);
+    mspring_result result = mspringi_select_list(network, "particle", total, particles, count, vx, vy, &at);
+    return result == MSPRING_OK ? set_velocities(network, &at, vx, vy) : result;
 }
 
 /* ------------------------------------------------------------------------------------------------------- forces */

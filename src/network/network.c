@@ -33,6 +33,9 @@ static mspring_result check_def(const mspring_network_def *def, mspringi_message
     if (def->simd_level < MSPRING_SIMD_AUTO || def->simd_level > MSPRING_SIMD_AVX512)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "simd_level is %d, which is no level",
                              (int)def->simd_level);
+    if (def->flags & ~(uint32_t)MSPRING_NETWORK_RESERVE_DAMPING)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "network flags %#x are unknown",
+                             (unsigned)def->flags);
     if (!(def->max_speed > 0.0f && def->max_speed <= 1e15f))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "max_speed is %g m/s, it must be > 0 and at most 1e15", (double)def->max_speed);
@@ -146,6 +149,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     if (result != MSPRING_OK)
         return result;
     look_at_springs(builder, &damped, &relative);
+    damped = damped || (def->flags & MSPRING_NETWORK_RESERVE_DAMPING);
     network->parts = damped ? MSPRINGI_DAMPING + 1 : MSPRINGI_STIFFNESS + 1;
     result = allocate(network, relative);
     if (result != MSPRING_OK)
@@ -227,6 +231,10 @@ void mspring_network_destroy(mspring_network *network) {
     mspringi_free(&memory, network->live);
     mspringi_free(&memory, network->kept);
     mspringi_free(&memory, network->edits.link_log);
+    mspringi_free(&memory, network->ramps.list);
+    mspringi_free(&memory, network->inverse_mass_scale);
+    mspringi_free(&memory, network->spring_mass);
+    mspringi_incidence_destroy(&network->incidence, &memory);
     mspringi_free(&memory, network->forces.held.x);
     mspringi_free(&memory, network->forces.base.x);
     mspringi_free(&memory, network->forces.total.x);

@@ -7,6 +7,7 @@
 
 #include "kernels/kernels.h"
 #include "tasks/tasks.h"
+#include "topology/incidence.h"
 #include "topology/topology.h"
 
 /// Two floats per slot, x and then y, in one block of memory.
@@ -56,6 +57,20 @@ typedef struct mspringi_edits {
     uint32_t link_mask;
 } mspringi_edits;
 
+/// A restored spring on its way to its own rest length.
+typedef struct mspringi_ramp {
+    mspring_id spring;
+    float to;       ///< its own rest length, m
+    double from;    ///< rest length when it was restored
+    double seconds; ///< that the way takes
+    double passed;  ///< of these
+} mspringi_ramp;
+
+typedef struct mspringi_ramps {
+    mspringi_ramp *list;
+    size_t count, capacity;
+} mspringi_ramps;
+
 struct mspring_network {
     mspringi_memory memory;
     mspringi_message message;
@@ -69,9 +84,11 @@ struct mspring_network {
     float recentre_distance;   ///< how far the network may be from its origin until that is moved along
 
     // Parameters.
-    float *inverse_mass; ///< [slots] 0 if pinned or empty
-    float *mass;         ///< [particles]
-    uint32_t parts;      ///< values per spring in the records: 2, or 3 with damping
+    float *inverse_mass;       ///< [slots] 0 if pinned or empty
+    float *mass;               ///< [particles]
+    float *inverse_mass_scale; ///< [particles], or NULL as long as all are 0 (where inverse_mass is) or 1
+    float *spring_mass;        ///< [particles] masses that relative springs go by, or NULL if these are mass
+    uint32_t parts;            ///< values per spring in the records: 2, or 3 with damping
     float *lattice_springs, *chain_springs;
     float *web_springs;
     float *packed;               ///< [nodes of the web][4]
@@ -87,6 +104,8 @@ struct mspring_network {
     uint32_t substeps;
 
     mspringi_edits edits;
+    mspringi_ramps ramps;
+    mspringi_incidence incidence; ///< made when it is needed first
 
     mspringi_forces forces;
     mspringi_hook *hooks;

@@ -47,12 +47,19 @@ void mspringi_spring_set(mspring_network *network, mspring_id spring, const mspr
     }
 }
 
+void mspringi_spring_set_rest_length(mspring_network *network, mspring_id spring, float rest_length) {
+    mspringi_spring_values values = mspringi_spring_get(network, spring);
+    values.rest_length = rest_length;
+    mspringi_spring_set(network, spring, &values);
+}
+
 // Stiffness and damping of a relative spring for the substep that was derived for last.
 static mspringi_relative derive(const mspring_network *network, const mspringi_spring_values *values,
                                 mspringi_relative fractions) {
     const mspringi_topology *t = &network->topology;
-    const double ma = (double)network->mass[t->particle_of_slot[values->base]];
-    const double mb = (double)network->mass[t->particle_of_slot[values->tip]];
+    const float *mass = network->spring_mass ? network->spring_mass : network->mass;
+    const double ma = (double)mass[t->particle_of_slot[values->base]];
+    const double mb = (double)mass[t->particle_of_slot[values->tip]];
     const double reduced_mass = 1.0 / (1.0 / ma + 1.0 / mb);
     const double rate = network->relative_h > 0.0f ? 1.0 / (double)network->relative_h : 0.0;
     return (mspringi_relative){(float)((double)fractions.stiffness * reduced_mass * rate * rate),
@@ -85,11 +92,15 @@ void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, ms
     mspringi_spring_set(network, spring, &values);
 }
 
+void mspringi_renew_relative(mspring_network *network) {
+    for (mspring_id s = 0; s < network->topology.spring_count; ++s)
+        if (mspringi_spring_is_relative(network, s) && mspringi_spring_is_live(network, s))
+            mspringi_spring_set_nominal(network, s, network->relative[s]);
+}
+
 void mspringi_derive_relative(mspring_network *network, float h) {
     if (!network->relative || network->relative_h == h)
         return;
     network->relative_h = h;
-    for (mspring_id s = 0; s < network->topology.spring_count; ++s)
-        if (mspringi_spring_is_relative(network, s) && mspringi_spring_is_live(network, s))
-            mspringi_spring_set_nominal(network, s, network->relative[s]);
+    mspringi_renew_relative(network);
 }

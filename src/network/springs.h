@@ -30,7 +30,12 @@ mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, ms
 /// Set these. What a broken spring exerts stays 0.
 void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, mspringi_relative nominal);
 
+/// Set the rest length alone, as it is in force: a ramp of the spring goes on from its own.
+void mspringi_spring_set_rest_length(mspring_network *network, mspring_id spring, float rest_length);
+
 /// Derive stiffness and damping of the relative springs for a substep; 0: as before the first one, both 0.
 void mspringi_derive_relative(mspring_network *network, float h);
+/// Derive them again, with other masses.
+void mspringi_renew_relative(mspring_network *network);
 
 #endif

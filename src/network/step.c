@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/cpu.h"
+#include "edits/ramps.h"
 #include "explicit/explicit.h"
 #include "hooks.h"
 #include "network.h"
@@ -131,6 +132,7 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
             (unsigned)network->substeps);
     const float relative_h = network->relative_h;
     mspringi_derive_relative(network, h);
+    mspringi_ramps_apply(network, dt);
     copy_state(network, &network->state, &network->backup);
     run_substeps(network, dt, h);
     if (network->is_open)
@@ -140,10 +142,12 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
         copy_state(network, &network->backup, &network->state);
         mspringi_explicit_reset(network);
         mspringi_derive_relative(network, relative_h);
+        mspringi_ramps_apply(network, 0.0);
         if (network->is_open)
             clear_empty_slots(network);
         return result;
     }
+    mspringi_ramps_pass(network, dt);
     mspringi_origin_follow(network);
     if (network->forces.held_any)
         clear_field(network, network->forces.held);

@@ -1,0 +1,184 @@
+/// Editing particles between steps: masses, and what scales their inverses.
+#include <string.h>
+
+#include "base/cpu.h"
+#include "network/springs.h"
+#include "selection.h"
+
+#define SMALLEST_MASS 1e-30f
+#define LARGEST_MASS 1e30f
+#define SMALLEST_SCALE 1e-6f
+
+static bool is_scale(float scale) {
+    return scale == 0.0f || (scale >= SMALLEST_SCALE && scale <= 1.0f);
+}
+
+static float scale_of(const mspring_network *network, mspring_id particle) {
+    if (network->inverse_mass_scale)
+        return network->inverse_mass_scale[particle];
+    return network->inverse_mass[network->topology.slot_of_particle[particle]] > 0.0f ? 1.0f : 0.0f;
+}
+
+/* ------------------------------------------------------------------------------------------------------ masses */
+
+static mspring_result check_masses(mspring_network *network, const mspringi_selection *at, const float *mass) {
+    bool all = true;
+    for (uint32_t i = 0; i < at->count; ++i)
+        all = all & (mass[i] >= SMALLEST_MASS) & (mass[i] <= LARGEST_MASS);
+    if (all)
+        return MSPRING_OK;
+    uint32_t i = 0;
+    while (mass[i] >= SMALLEST_MASS && mass[i] <= LARGEST_MASS)
+        ++i;
+    return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                         "particle %u: mass is %g kg, it must be 1e-30 to 1e30", (unsigned)mspringi_selected(at, i),
+                         (double)mass[i]);
+}
+
+// Relative springs go on with the masses that were there before the first edit.
+static mspring_result reserve_spring_mass(mspring_network *network) {
+    if (!network->relative || network->spring_mass)
+        return MSPRING_OK;
+    const size_t count = network->topology.particle_count;
+    network->spring_mass = mspringi_alloc(&network->memory, count, sizeof *network->spring_mass);
+    if (!network->spring_mass)
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                             "no memory for second masses of %zu particles", count);
+    memcpy(network->spring_mass, network->mass, count * sizeof *network->mass);
+    return MSPRING_OK;
+}
+
+static MSPRINGI_NOINLINE void store_masses(mspring_network *network, const mspringi_selection *at,
+                                           const float *mass) {
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const mspring_id particle = mspringi_selected(at, i);
+        float *inverse_mass = &network->inverse_mass[network->topology.slot_of_particle[particle]];
+        network->mass[particle] = mass[i];
+        if (network->inverse_mass_scale)
+            *inverse_mass = network->inverse_mass_scale[particle] / mass[i];
+        else if (*inverse_mass > 0.0f)
+            *inverse_mass = 1.0f / mass[i];
+    }
+}
+
+static mspring_result set_masses(mspring_network *network, const mspringi_selection *at, const float *mass) {
+    mspring_result result = check_masses(network, at, mass);
+    if (result == MSPRING_OK)
+        result = reserve_spring_mass(network);
+    if (result != MSPRING_OK)
+        return result;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    store_masses(network, at, mass);
+    mspringi_fp_leave(before);
+    network->edits.masses++;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_set_masses(mspring_network *network, mspring_id first, uint32_t count,
+                                          const float *mass) {
+    mspringi_selection at;
+    const uint32_t total = mspring_network_particle_count(network);
+    mspring_result result = mspringi_select_range(network, "particle", total, first, count, mass, mass, &at);
+    return result == MSPRING_OK ? set_masses(network, &at, mass) : result;
+}
+
+mspring_result mspring_network_set_masses_at(mspring_network *network, const mspring_id *particles, uint32_t count,
+                                             const float *mass) {
+    mspringi_selection at;
+    const uint32_t total = mspring_network_particle_count(network);
+    mspring_result result = mspringi_select_list(network, "particle", total, particles, count, mass, mass, &at);
+    return result == MSPRING_OK ? set_masses(network, &at, mass) : result;
+}
+
+mspring_result mspring_network_renew_relative_springs(mspring_network *network) {
+    mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK || !network->spring_mass)
+        return result;
+    memcpy(network->spring_mass, network->mass, network->topology.particle_count * sizeof *network->mass);
+    const mspringi_fp_state before = mspringi_fp_enter();
+    mspringi_renew_relative(network);
+    mspringi_fp_leave(before);
+    network->edits.values++;
+    return MSPRING_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------ scales */
+
+static mspring_result check_scales(mspring_network *network, const mspringi_selection *at, const float *scale,
+                                   bool *fractional) {
+    *fractional = false;
+    for (uint32_t i = 0; i < at->count; ++i) {
+        if (!is_scale(scale[i]))
+            return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                                 "particle %u: scale of inverse mass is %g, it must be 0 or 1e-6 to 1",
+                                 (unsigned)mspringi_selected(at, i), (double)scale[i]);
+        *fractional = *fractional || (scale[i] > 0.0f && scale[i] < 1.0f);
+    }
+    return MSPRING_OK;
+}
+
+static mspring_result reserve_scales(mspring_network *network) {
+    if (network->inverse_mass_scale)
+        return MSPRING_OK;
+    const uint32_t count = network->topology.particle_count;
+    float *scales = mspringi_alloc(&network->memory, count, sizeof *scales);
+    if (!scales)
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                             "no memory for scales of inverse mass of %u particles", (unsigned)count);
+    for (mspring_id p = 0; p < count; ++p)
+        scales[p] = scale_of(network, p);
+    network->inverse_mass_scale = scales;
+    return MSPRING_OK;
+}
+
+static MSPRINGI_NOINLINE void store_scales(mspring_network *network, const mspringi_selection *at,
+                                           const float *scale) {
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const mspring_id particle = mspringi_selected(at, i);
+        if (network->inverse_mass_scale)
+            network->inverse_mass_scale[particle] = scale[i];
+        network->inverse_mass[network->topology.slot_of_particle[particle]] = scale[i] / network->mass[particle];
+    }
+}
+
+static mspring_result set_scales(mspring_network *network, const mspringi_selection *at, const float *scale) {
+    bool fractional;
+    mspring_result result = check_scales(network, at, scale, &fractional);
+    if (result == MSPRING_OK && fractional)
+        result = reserve_scales(network);
+    if (result != MSPRING_OK)
+        return result;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    store_scales(network, at, scale);
+    mspringi_fp_leave(before);
+    network->edits.masses++;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_set_inverse_mass_scales(mspring_network *network, mspring_id first, uint32_t count,
+                                                       const float *scale) {
+    mspringi_selection at;
+    const uint32_t total = mspring_network_particle_count(network);
+    mspring_result result = mspringi_select_range(network, "particle", total, first, count, scale, scale, &at);
+    return result == MSPRING_OK ? set_scales(network, &at, scale) : result;
+}
+
+mspring_result mspring_network_set_inverse_mass_scales_at(mspring_network *network, const mspring_id *particles,
+                                                          uint32_t count, const float *scale) {
+    mspringi_selection at;
+    const uint32_t total = mspring_network_particle_count(network);
+    mspring_result result = mspringi_select_list(network, "particle", total, particles, count, scale, scale, &at);
+    return result == MSPRING_OK ? set_scales(network, &at, scale) : result;
+}
+
+mspring_result mspring_network_get_inverse_mass_scales(const mspring_network *network, mspring_id first,
+                                                       uint32_t count, float *scale) {
+    if (!network || (count > 0 && !scale))
+        return MSPRING_ERROR_ARGUMENT;
+    const uint32_t total = network->topology.particle_count;
+    if (first > total || count > total - first)
+        return MSPRING_ERROR_ID;
+    for (uint32_t i = 0; i < count; ++i)
+        scale[i] = scale_of(network, first + i);
+    return MSPRING_OK;
+}

@@ -1,0 +1,24 @@
+/// @file incidence.h
+/// The springs of each particle, for edits that start from particles.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_INCIDENCE_H
+#define MSPRINGI_INCIDENCE_H
+
+#include "topology.h"
+
+/// The springs of particle p are springs[first[p]] ... springs[first[p + 1] - 1], by rising id.
+typedef struct mspringi_incidence {
+    uint32_t *first;   ///< [particles + 1], or NULL: not made yet
+    uint32_t *springs; ///< [2 * springs]
+} mspringi_incidence;
+
+mspring_result mspringi_incidence_create(mspringi_incidence *incidence, const mspringi_topology *topology,
+                                         mspringi_memory *memory, mspringi_message *message);
+void mspringi_incidence_destroy(mspringi_incidence *incidence, mspringi_memory *memory);
+
+/// The spring that has this place, one of its ends being particle.
+mspring_id mspringi_incidence_find(const mspringi_incidence *incidence, const mspringi_topology *topology,
+                                   mspring_id particle, mspringi_place place);
+
+#endif
