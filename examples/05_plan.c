@@ -9,8 +9,9 @@
 #include <string.h>
 
 static void print_header(void) {
-    printf("%-16s %9s %9s | %8s %9s | %6s %8s | %8s | %7s %7s\n", "scene", "particles", "springs", "lattices",
-           "springs", "chains", "springs", "leftover", "damping", "level");
+    printf("%-16s %9s %9s | %8s %9s | %6s %8s | %6s %8s | %5s %4s %5s | %7s %7s\n", "scene", "particles", "springs",
+           "lattices", "springs", "chains", "springs", "web", "springs", "rows", "lag", "depth", "damping",
+           "level");
 }
 
 static bool print_plan(const scene *planned) {
@@ -22,9 +23,10 @@ static bool print_plan(const scene *planned) {
     }
     bool ok = mspring_network_plan(network, &plan) == MSPRING_OK;
     if (ok)
-        printf("%-16s %9u %9u | %8u %9u | %6u %8u | %8u | %7s %7s\n", planned->name, plan.particle_count,
-               plan.spring_count, plan.lattice_count, plan.lattice_springs, plan.chain_count, plan.chain_springs,
-               plan.leftover_springs, plan.has_damping ? "yes" : "no", mspring_simd_name(plan.simd_level));
+        printf("%-16s %9u %9u | %8u %9u | %6u %8u | %6u %8u | %5u %4u %5u | %7s %7s\n", planned->name,
+               plan.particle_count, plan.spring_count, plan.lattice_count, plan.lattice_springs, plan.chain_count,
+               plan.chain_springs, plan.web_particles, plan.leftover_springs, plan.pass_rows, plan.pass_lag,
+               plan.pass_substeps, plan.has_damping ? "yes" : "no", mspring_simd_name(plan.simd_level));
     else
         fprintf(stderr, "%s: %s\n", planned->name, mspring_network_error(network));
     mspring_network_destroy(network);
@@ -43,7 +45,7 @@ static bool make_scene(int index, scene *made, scene_error *error) {
     case 3:
         return scene_random_graph(10000, 8, 1, &options, made, error);
     default:
-        // A hull with rigging: ropes are chains, and their ends are what is left over.
+        // A hull with rigging: its ropes are swept with the strips of rows that they hang on.
         if (!scene_bar(200, 40, &options, made, error))
             return false;
         snprintf(made->name, sizeof made->name, "bar with ropes");

@@ -92,41 +92,43 @@ static void several_lattices_are_found_side_by_side(void **state) {
     recipe_free(&made);
 }
 
-static void a_rope_is_a_chain(void **state) {
-    (void)state;
-    uint64_t seed = 6;
-    recipe made = {0};
-    mspring_id first = recipe_lattice(&made, 20, 10, 0, 0, 1, &solid, &seed);
-    mspring_id weight = recipe_particle(&made, 10.3, -45.7, 5, 0);
-    recipe_rope(&made, first + 10, weight, 50, &solid, &seed);
-    const uint32_t lattice_springs = made.spring_count - 50;
-    mspring_plan plan = shuffled_plan_of(&made);
-    assert_int_equal(plan.lattice_springs, lattice_springs);
-    assert_int_equal(plan.chain_count, 1);
-    // The springs at its two ends may be left over, the others must not.
-    assert_true(plan.chain_springs >= 48);
-    assert_true(plan.leftover_springs <= 2);
-    assert_true(plan.chain_particles >= 49);
-    recipe_free(&made);
-}
-
-static void many_ropes_are_many_chains(void **state) {
+static void ropes_on_a_lattice_are_swept_with_it(void **state) {
     (void)state;
     uint64_t seed = 7;
     recipe made = {0};
     recipe_lattice(&made, 60, 20, 0, 0, 1, &solid, &seed);
     const uint32_t lattice_springs = made.spring_count;
-    for (int i = 0; i < 40; i++) {
+    const mspring_id weight = recipe_particle(&made, 10.3, -45.7, 5, 0);
+    recipe_rope(&made, 10, weight, 50, &solid, &seed);
+    for (int i = 0; i < 10; i++) {
         mspring_id a = (mspring_id)(support_random(&seed) % 1200), b = (mspring_id)(support_random(&seed) % 1200);
         if (a != b) {
             recipe_rope(&made, a, b, 10 + (uint32_t)i, &solid, &seed);
         }
     }
-    const uint32_t rope_springs = made.spring_count - lattice_springs;
     mspring_plan plan = shuffled_plan_of(&made);
     assert_int_equal(plan.lattice_springs, lattice_springs);
-    assert_true(plan.leftover_springs <= 2 * 40);
-    assert_true(plan.chain_springs >= rope_springs - 2 * 40);
+    assert_int_equal(plan.chain_count, 0);
+    assert_int_equal(plan.leftover_springs, made.spring_count - lattice_springs);
+    assert_int_equal(plan.web_particles, made.particle_count - 1200);
+    assert_int_equal(plan.pass_rows, plan.lattice_rows);
+    recipe_free(&made);
+}
+
+static void more_rope_than_lattice_is_chains(void **state) {
+    (void)state;
+    uint64_t seed = 6;
+    recipe made = {0};
+    mspring_id first = recipe_lattice(&made, 20, 10, 0, 0, 1, &solid, &seed);
+    mspring_id weight = recipe_particle(&made, 10.3, -45.7, 5, 0);
+    recipe_rope(&made, first + 10, weight, 500, &solid, &seed);
+    mspring_plan plan = shuffled_plan_of(&made);
+    assert_int_equal(plan.lattice_springs, made.spring_count - 500);
+    assert_int_equal(plan.chain_count, 1);
+    assert_int_equal(plan.chain_springs, 499);
+    assert_int_equal(plan.leftover_springs, 1);
+    assert_int_equal(plan.chain_particles, 500);
+    assert_int_equal(plan.pass_rows, 0);
     recipe_free(&made);
 }
 
@@ -246,8 +248,8 @@ int main(void) {
         cmocka_unit_test(holes_do_not_break_a_lattice_up),
         cmocka_unit_test(a_lattice_need_not_lie_on_whole_numbers),
         cmocka_unit_test(several_lattices_are_found_side_by_side),
-        cmocka_unit_test(a_rope_is_a_chain),
-        cmocka_unit_test(many_ropes_are_many_chains),
+        cmocka_unit_test(ropes_on_a_lattice_are_swept_with_it),
+        cmocka_unit_test(more_rope_than_lattice_is_chains),
         cmocka_unit_test(a_strand_of_its_own_is_a_chain),
         cmocka_unit_test(a_ring_is_a_chain_but_for_one_spring),
         cmocka_unit_test(a_standing_bar_is_as_cheap_as_a_lying_one),

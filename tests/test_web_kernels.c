@@ -156,7 +156,7 @@ static void run(arena *a, const setup *s, const mspringi_kernels *with, bool for
     const mspringi_sweep sweep = sweep_of(a, s);
     const mspringi_span span = {.first_slot = FIRST * W, .end_slot = (FIRST + s->own) * W};
     with->pack(&sweep, FIRST, s->own, a->packed);
-    with->attached[damped](&sweep, a->attached_x, a->attached_y);
+    with->attached[damped](&sweep, 0, a->web.attached_count, a->attached_x, a->attached_y);
     with->web[damped][forced](&sweep, &span, 1);
 }
 

@@ -787,9 +787,14 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_state_hash(const ms
 /* ------------------------------------------------------------------------------------- plan and SIMD level */
 
 /// How the network was laid out. A particle belongs to one of four kinds of row: a lattice row (8 neighbours on a
-/// grid), a chain (ropes and single strands), the web (any other graph) or a loose row (no springs). A spring
-/// between neighbours in lattice and chain rows is swept with them, without any index; the others, leftover
-/// springs, are the web's, and cost more each.
+/// grid), a chain (single strands), the web (any other graph, and ropes that hang on a lattice) or a loose row (no
+/// springs). A spring between neighbours in lattice and chain rows is swept with them, without any index; the
+/// others, leftover springs, are the web's, and cost more each.
+///
+/// Lattice rows are swept in strips of some rows, several substeps in one pass, so that a network larger than the
+/// cache is read once for all of them. What hangs on a lattice is swept with its strips, unless it joins strips
+/// more than 16 apart, or has more strand particles than the lattice has particles: then that lattice takes one
+/// substep at a time.
 typedef struct mspring_plan {
     uint32_t struct_size;
     uint32_t particle_count, spring_count;
@@ -803,6 +808,10 @@ typedef struct mspring_plan {
     uint32_t loose_particles;  ///< particles without a spring
     uint32_t leftover_springs; ///< springs of the web; they take least memory where particles that are near each
                                ///< other have about as many springs
+    uint32_t pass_rows;        ///< lattice rows that are swept for several substeps in one pass
+    uint32_t pass_lag;         ///< strips by which each substep of a pass stays behind the one before: 1, or what
+                               ///< the ropes need that hang on those rows
+    uint32_t pass_substeps;    ///< most substeps in one pass, by cache size, row length and lag
     uint32_t slot_count;       ///< slots of the state, empty ones among them
     uint32_t block_width;      ///< slots in a block
     uint32_t has_damping;    ///< 1: some spring has damping, or room for it was reserved. 0: steps neither read nor

@@ -12,30 +12,50 @@
 /// Most substeps in one pass: each needs a carry row of its own.
 #define DEEPEST 16
 
-// Pack what the web sees of its nodes.
-static void pack_nodes(const mspring_network *network, const mspringi_sweep *sweep) {
-    const mspringi_topology *t = &network->topology;
-    network->kernels->pack(sweep, t->web_first, t->web_blocks, network->packed);
-    float *packed = network->packed + (size_t)4 * t->web.own_count;
-    for (uint32_t i = 0; i < t->web.attached_count && t->web.attached_slot[i] != MSPRING_NONE; ++i, packed += 4) {
-        const uint32_t slot = t->web.attached_slot[i];
-        packed[0] = sweep->x[slot];
-        packed[1] = sweep->y[slot];
-        packed[2] = sweep->vx[slot];
-        packed[3] = sweep->vy[slot];
+/// What one substep of a pass works with.
+typedef struct substep_work {
+    mspringi_sweep sweep;
+    mspringi_field base; ///< forces from outside; x NULL if there are none
+    float *packed;       ///< the web's nodes before the substep
+    float *next_packed;  ///< where they go after it; NULL in the last substep of a pass
+} substep_work;
+
+// Pack what the web sees of the nodes that are slots of a strip.
+static void pack_attached(const mspring_network *network, const mspringi_strip *strip, float *packed) {
+    const mspringi_web *web = &network->topology.web;
+    const mspringi_state *state = &network->state;
+    const uint32_t *slots = web->attached_slot + strip->first_attached;
+    packed += 4 * ((size_t)web->own_count + strip->first_attached);
+    for (uint32_t i = 0; i < strip->attached_count; ++i, packed += 4) {
+        packed[0] = state->x[slots[i]];
+        packed[1] = state->y[slots[i]];
+        packed[2] = state->vx[slots[i]];
+        packed[3] = state->vy[slots[i]];
     }
 }
 
-// Put the web's pull at its attached nodes on top of base into the total field.
-static void pull_attached(const mspring_network *network, const mspringi_sweep *sweep, mspringi_field base) {
+// Pack what the web sees of its own nodes in a span.
+static void pack_span(const mspring_network *network, const mspringi_sweep *sweep, const mspringi_span *span,
+                      float *packed) {
+    const size_t first = span->first_slot / MSPRINGI_WIDTH;
+    const size_t end = (span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
+    network->kernels->pack(sweep, first, end - first, packed + (size_t)4 * span->first_record * MSPRINGI_WIDTH);
+}
+
+// Put the web's pull at the slots of a strip on top of base into the total field.
+static void pull_attached(const mspring_network *network, const substep_work *substep,
+                          const mspringi_strip *strip) {
     const mspringi_web *web = &network->topology.web;
-    const mspringi_field total = network->forces.total;
+    const mspringi_field total = network->forces.total, base = substep->base;
+    const uint32_t *slots = web->attached_slot + strip->first_attached;
     float *pull_x = network->attached, *pull_y = network->attached + web->attached_count;
-    network->kernels->attached[network->parts > MSPRINGI_DAMPING](sweep, pull_x, pull_y);
-    for (uint32_t i = 0; i < web->attached_count && web->attached_slot[i] != MSPRING_NONE; ++i) {
-        const uint32_t slot = web->attached_slot[i];
-        total.x[slot] = base.x ? base.x[slot] + pull_x[i] : pull_x[i];
-        total.y[slot] = base.x ? base.y[slot] + pull_y[i] : pull_y[i];
+    network->kernels->attached[network->parts > MSPRINGI_DAMPING](&substep->sweep, strip->first_attached,
+                                                                  strip->attached_count, pull_x, pull_y);
+    pull_x += strip->first_attached;
+    pull_y += strip->first_attached;
+    for (uint32_t i = 0; i < strip->attached_count; ++i) {
+        total.x[slots[i]] = base.x ? base.x[slots[i]] + pull_x[i] : pull_x[i];
+        total.y[slots[i]] = base.x ? base.y[slots[i]] + pull_y[i] : pull_y[i];
     }
 }
 
@@ -63,93 +83,116 @@ static void sweep_rows(const mspring_network *network, const mspringi_sweep *swe
     }
 }
 
-// Sweep the rows first ... end - 1, as many as can be in one go.
-static void sweep_range(const mspring_network *network, const mspringi_sweep *sweep, uint32_t first, uint32_t end,
-                        bool all_forced) {
-    const mspringi_row *rows = network->topology.rows;
-    while (first < end) {
-        uint32_t count = 1;
-        while (first + count < end && rows[first + count].kind == rows[first].kind &&
-               (all_forced || rows[first + count].pulled == rows[first].pulled))
+// Sweep a strip with everything that hangs on it.
+static void sweep_strip(const mspring_network *network, const substep_work *substep, const mspringi_strip *strip) {
+    const mspringi_row *rows = &network->topology.rows[strip->first_row];
+    const bool based = substep->base.x != NULL;
+    if (strip->attached_count > 0)
+        pull_attached(network, substep, strip);
+    for (uint32_t first = 0, count; first < strip->row_count; first += count) {
+        for (count = 1; first + count < strip->row_count && rows[first + count].kind == rows[first].kind;)
             ++count;
-        sweep_rows(network, sweep, &rows[first], count, all_forced || rows[first].pulled);
-        first += count;
+        sweep_rows(network, &substep->sweep, &rows[first], count, based || strip->attached_count > 0);
     }
+    if (strip->attached_count > 0 && substep->next_packed)
+        pack_attached(network, strip, substep->next_packed);
+    if (strip->home_span == MSPRING_NONE)
+        return;
+    const mspringi_span *span = &network->topology.spans[strip->home_span];
+    network->kernels->web[network->parts > MSPRINGI_DAMPING][based](&substep->sweep, span, 1);
+    if (substep->next_packed)
+        pack_span(network, &substep->sweep, span, substep->next_packed);
 }
 
 uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t parts) {
-    if (topology->web.attached_count > 0 || topology->lattice_rows == 0)
+    if (topology->wave_rows == 0)
         return 1;
     const size_t floats_per_slot = 4 + 1 + (size_t)MSPRINGI_DIRECTIONS * parts; // state, inverse mass, springs
-    const size_t slots_per_row = (size_t)topology->lattice_blocks * MSPRINGI_WIDTH / topology->lattice_rows;
-    const size_t rows = CACHE_BYTES / (floats_per_slot * sizeof(float) * slots_per_row);
-    const size_t depth = rows > 1 ? rows - 1 : 1;
+    const size_t slots = (size_t)topology->lattice_blocks * MSPRINGI_WIDTH;
+    const size_t rows = CACHE_BYTES / (floats_per_slot * sizeof(float)) * topology->lattice_rows / slots;
+    const size_t strips = rows * topology->wave_strips / topology->wave_rows;
+    const size_t depth = strips > topology->lag ? (strips - 1) / topology->lag : 1;
     return (uint32_t)(depth < DEEPEST ? depth : DEEPEST);
 }
 
-// Take as many substeps as there are sweeps in one pass over the lattice rows: each substep runs one row behind the
-// one before, so a row is in the cache for all of them. A row's substep needs the one before of the row itself and
-// of the row above; both are done by then, and neither is further.
-static void sweep_lattices(const mspring_network *network, const mspringi_sweep *sweeps, uint32_t count,
-                           bool forced) {
+// Take several substeps in one pass over the wave's strips: each runs lag strips behind the one before, so a strip
+// is in the cache for all of them. A strip's substep needs the one before of the strip itself, of the row above,
+// and of the other ends of leftover springs: all are done by then, and none is further.
+static void sweep_wave(const mspring_network *network, const substep_work *substeps, uint32_t count) {
     const mspringi_topology *t = &network->topology;
-    if (count == 1) {
-        sweep_range(network, &sweeps[0], 0, t->lattice_rows, forced);
-        return;
-    }
-    for (uint32_t wave = 0; t->lattice_rows > 0 && wave < t->lattice_rows + count - 1; ++wave) {
-        for (uint32_t substep = 0; substep < count && substep <= wave; ++substep) {
-            const uint32_t row = wave - substep;
-            if (row < t->lattice_rows)
-                sweep_rows(network, &sweeps[substep], &t->rows[row], 1, forced || t->rows[row].pulled);
-        }
+    const uint32_t fronts = t->wave_strips > 0 ? t->wave_strips + (count - 1) * t->lag : 0;
+    for (uint32_t front = 0; front < fronts; ++front)
+        for (uint32_t i = 0; i < count && i * t->lag <= front; ++i)
+            if (front - i * t->lag < t->wave_strips)
+                sweep_strip(network, &substeps[i], &t->strips[front - i * t->lag]);
+}
+
+// Pack the web's nodes that the strips first ... end - 1 have.
+static void pack_nodes(const mspring_network *network, const substep_work *substep, uint32_t first, uint32_t end) {
+    const mspringi_topology *t = &network->topology;
+    for (uint32_t s = first; t->web.group_count > 0 && s < end; ++s) {
+        const mspringi_strip *strip = &t->strips[s];
+        pack_attached(network, strip, substep->packed);
+        if (strip->home_span != MSPRING_NONE)
+            pack_span(network, &substep->sweep, &t->spans[strip->home_span], substep->packed);
+        if (t->rows[strip->first_row].kind == MSPRINGI_ROW_WEB)
+            pack_span(network, &substep->sweep, &t->spans[t->rows[strip->first_row].first_span], substep->packed);
     }
 }
 
-// Take at most network->depth substeps.
+// Substep i of a pass of count.
+static substep_work prepare(const mspring_network *network, float h, mspringi_field base, uint32_t i,
+                            uint32_t count) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_field field = t->web.attached_count > 0 ? network->forces.total : base;
+    const size_t carry_slots = (size_t)t->carry_blocks * MSPRINGI_WIDTH;
+    const size_t packed_floats = (size_t)4 * t->web.group_count * MSPRINGI_WIDTH;
+    float *carry = network->carry + 2 * i * carry_slots;
+    return (substep_work){
+        .base = base,
+        .packed = network->packed + i % 2 * packed_floats,
+        .next_packed = i + 1 < count ? network->packed + (i + 1) % 2 * packed_floats : NULL,
+        .sweep =
+            {
+                .x = network->state.x,
+                .y = network->state.y,
+                .vx = network->state.vx,
+                .vy = network->state.vy,
+                .inverse_mass = network->inverse_mass,
+                .force_x = field.x,
+                .force_y = field.y,
+                .carry_x = carry,
+                .carry_y = carry + carry_slots,
+                .lattice_springs = network->lattice_springs,
+                .chain_springs = network->chain_springs,
+                .web = &t->web,
+                .web_springs = network->web_springs,
+                .packed = network->packed + i % 2 * packed_floats,
+                .parts = network->parts,
+                .h = h,
+                .decay = mspringi_decay(network->global_damping, h),
+                // Never -0: a sum of forces may be +0 or -0, depending on what empty slots hold, and what is added
+                // to +0 does not tell.
+                .gravity_h_x = network->gravity_x * h + 0.0f,
+                .gravity_h_y = network->gravity_y * h + 0.0f,
+            },
+    };
+}
+
+// Take at most network->depth substeps. The wave's strips know nothing of the others, nor they of the wave's.
 static void take_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
     const mspringi_topology *t = &network->topology;
-    const bool pulled = t->web.attached_count > 0;
-    const mspringi_field field = pulled ? network->forces.total : base;
-    const size_t carry_slots = (size_t)t->carry_blocks * MSPRINGI_WIDTH;
-    mspringi_sweep sweeps[DEEPEST];
-    for (uint32_t substep = 0; substep < count; ++substep) {
-        float *carry = network->carry + 2 * substep * carry_slots;
-        sweeps[substep] = (mspringi_sweep){
-            .x = network->state.x,
-            .y = network->state.y,
-            .vx = network->state.vx,
-            .vy = network->state.vy,
-            .inverse_mass = network->inverse_mass,
-            .force_x = field.x,
-            .force_y = field.y,
-            .carry_x = carry,
-            .carry_y = carry + carry_slots,
-            .lattice_springs = network->lattice_springs,
-            .chain_springs = network->chain_springs,
-            .web = &t->web,
-            .web_springs = network->web_springs,
-            .packed = network->packed,
-            .parts = network->parts,
-            .h = h,
-            .decay = mspringi_decay(network->global_damping, h),
-            // Never -0: a sum of forces may be +0 or -0, depending on what empty slots hold, and what is added to
-            // +0 does not tell.
-            .gravity_h_x = network->gravity_x * h + 0.0f,
-            .gravity_h_y = network->gravity_y * h + 0.0f,
-        };
-    }
-    // With a web that pulls at lattice or chain rows, count is 1; without, the kinds of row know nothing of each
-    // other.
-    if (pulled) {
-        pack_nodes(network, &sweeps[0]);
-        pull_attached(network, &sweeps[0], base);
-    }
-    sweep_lattices(network, sweeps, count, base.x != NULL);
-    for (uint32_t substep = 0; substep < count; ++substep) {
-        if (t->web.group_count > 0 && !pulled)
-            pack_nodes(network, &sweeps[substep]);
-        sweep_range(network, &sweeps[substep], t->lattice_rows, t->row_count, base.x != NULL);
+    substep_work substeps[DEEPEST];
+    substeps[0] = prepare(network, h, base, 0, count);
+    for (uint32_t i = 1; i < count; ++i)
+        substeps[i] = prepare(network, h, base, i, count);
+    pack_nodes(network, &substeps[0], 0, t->wave_strips);
+    sweep_wave(network, substeps, count);
+    for (uint32_t i = 0; i < count; ++i) {
+        substeps[i].next_packed = NULL; // for these strips, all is packed at the start of each substep
+        pack_nodes(network, &substeps[i], t->wave_strips, t->strip_count);
+        for (uint32_t s = t->wave_strips; s < t->strip_count; ++s)
+            sweep_strip(network, &substeps[i], &t->strips[s]);
     }
 }
 

@@ -23,7 +23,7 @@ typedef struct mspringi_sweep {
     const float *chain_springs;     ///< records: [block][part][lane]
     const mspringi_web *web;
     const float *web_springs;       ///< records: [rung][part][lane]
-    float *packed;                  ///< [node][4] x, y, vx, vy of the web's nodes at the start of the substep
+    const float *packed;            ///< [node][4] x, y, vx, vy of the web's nodes at the start of the substep
     uint32_t parts;                 ///< parts in a record: 2 or, with damping, 3
     float h;                        ///< substep, s
     float decay;                    ///< what global damping leaves of a velocity
@@ -42,8 +42,10 @@ typedef void (*mspringi_row_fn)(const mspringi_sweep *sweep, const mspringi_span
 typedef void (*mspringi_pack_fn)(const mspringi_sweep *sweep, size_t first_block, size_t block_count,
                                  float *packed);
 
-/// Compute the forces of the web on all attached nodes, into x and y by number of the attached node.
-typedef void (*mspringi_attached_fn)(const mspringi_sweep *sweep, float *x, float *y);
+/// Compute the forces of the web on the attached nodes first (a multiple of MSPRINGI_WIDTH) to first + count - 1,
+/// and perhaps on some more of the last one's group, into x and y by number of the attached node.
+typedef void (*mspringi_attached_fn)(const mspringi_sweep *sweep, uint32_t first, uint32_t count, float *x,
+                                     float *y);
 
 /// Whether all of count values (a multiple of MSPRINGI_WIDTH) are at most limit in absolute value; NaN is not.
 typedef bool (*mspringi_bounded_fn)(const float *values, size_t count, float limit);

@@ -136,8 +136,9 @@ static inline void web(const mspringi_sweep *s, const mspringi_span *spans, uint
     }
 }
 
-static inline void attached(const mspringi_sweep *s, float *x, float *y, bool damped) {
-    for (size_t i = 0; i < s->web->attached_count; ++i) {
+static inline void attached(const mspringi_sweep *s, uint32_t first, uint32_t count, float *x, float *y,
+                            bool damped) {
+    for (size_t i = first; i < (size_t)first + count; ++i) {
         const vector force = web_force(s, s->web->own_count + i, damped);
         x[i] = force.x;
         y[i] = force.y;

@@ -209,7 +209,7 @@ MSPRINGI_INLINE vector web_force(const mspringi_sweep *s, motion here, size_t gr
 MSPRINGI_INLINE void web(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, bool damped,
                          bool forced) {
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
-        for (size_t slot = span->first_slot; slot < span->end_slot; slot += LANES) {
+        for (size_t slot = span->first_slot; slot < end_of(span); slot += LANES) {
             const size_t node = (size_t)span->first_record * MSPRINGI_WIDTH + (slot - span->first_slot);
             const motion here = load_motion(s, slot, damped);
             const vector force = web_force(s, here, node / MSPRINGI_WIDTH, node % MSPRINGI_WIDTH, damped);
@@ -218,9 +218,10 @@ MSPRINGI_INLINE void web(const mspringi_sweep *s, const mspringi_span *spans, ui
     }
 }
 
-MSPRINGI_INLINE void attached(const mspringi_sweep *s, float *x, float *y, bool damped) {
+MSPRINGI_INLINE void attached(const mspringi_sweep *s, uint32_t first_attached, uint32_t count, float *x, float *y,
+                              bool damped) {
     const size_t first = s->web->own_count;
-    for (size_t i = 0; i < s->web->attached_count; i += LANES) {
+    for (size_t i = first_attached; i < (size_t)first_attached + count; i += LANES) {
         uint32_t nodes[LANES];
         motion here;
         for (size_t lane = 0; lane < LANES; ++lane)

@@ -30,12 +30,12 @@ static void loose_forced(const mspringi_sweep *sweep, const mspringi_span *spans
     loose(sweep, spans, count, true);
 }
 
-static void attached_plain(const mspringi_sweep *sweep, float *x, float *y) {
-    attached(sweep, x, y, false);
+static void attached_plain(const mspringi_sweep *sweep, uint32_t first, uint32_t count, float *x, float *y) {
+    attached(sweep, first, count, x, y, false);
 }
 
-static void attached_damped(const mspringi_sweep *sweep, float *x, float *y) {
-    attached(sweep, x, y, true);
+static void attached_damped(const mspringi_sweep *sweep, uint32_t first, uint32_t count, float *x, float *y) {
+    attached(sweep, first, count, x, y, true);
 }
 
 const mspringi_kernels MSPRINGI_TABLE = {

@@ -85,7 +85,7 @@ static mspring_result allocate(mspring_network *network, bool relative) {
     const size_t rungs = t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0;
     network->web_springs = mspringi_alloc(memory, parts * rungs * MSPRINGI_WIDTH, sizeof *network->web_springs);
     network->packed =
-        mspringi_alloc(memory, (size_t)4 * t->web.group_count * MSPRINGI_WIDTH, sizeof *network->packed);
+        mspringi_alloc(memory, (size_t)8 * t->web.group_count * MSPRINGI_WIDTH, sizeof *network->packed);
     network->attached = mspringi_alloc(memory, (size_t)2 * t->web.attached_count, sizeof *network->attached);
     network->depth = mspringi_explicit_depth(t, network->parts);
     network->carry = mspringi_alloc(memory, (size_t)2 * network->depth * t->carry_blocks * MSPRINGI_WIDTH,

@@ -91,7 +91,7 @@ struct mspring_network {
     uint32_t parts;            ///< values per spring in the records: 2, or 3 with damping
     float *lattice_springs, *chain_springs;
     float *web_springs;
-    float *packed;               ///< [nodes of the web][4]
+    float *packed;               ///< [2][nodes of the web][4] at the start of every other substep
     float *attached;             ///< forces on the attached nodes, all x and then all y
     mspringi_relative *relative; ///< [springs], or NULL if no spring is relative
     float relative_h;            ///< the substep that relative springs were derived for; 0: not yet

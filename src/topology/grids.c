@@ -255,3 +255,27 @@ void mspringi_grids_destroy(mspringi_grids *grids, mspringi_memory *memory) {
     mspringi_free(memory, grids->members);
     mspringi_free(memory, grids->first_member);
 }
+
+bool mspringi_grids_place(const mspringi_grids *grids, const mspringi_spring *spring,
+                          mspringi_lattice_spring *found) {
+    uint32_t base = spring->a, tip = spring->b;
+    if (grids->grid_of[base] == MSPRING_NONE || grids->grid_of[base] != grids->grid_of[tip])
+        return false;
+    // The base is in the column to the left or, in the same column, in the row below.
+    if (grids->column[base] > grids->column[tip] ||
+        (grids->column[base] == grids->column[tip] && grids->row[base] > grids->row[tip])) {
+        base = spring->b;
+        tip = spring->a;
+    }
+    const uint32_t right = grids->column[tip] - grids->column[base];
+    const int64_t up = (int64_t)grids->row[tip] - (int64_t)grids->row[base];
+    if (right > 1 || up > 1 || up < -1)
+        return false;
+    found->column = grids->column[base];
+    found->row = grids->row[base] - (up < 0);
+    found->direction = up < 0       ? MSPRINGI_SOUTH_EAST
+                       : up == 0    ? MSPRINGI_EAST
+                       : right == 0 ? MSPRINGI_NORTH
+                                    : MSPRINGI_NORTH_EAST;
+    return true;
+}

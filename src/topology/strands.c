@@ -95,6 +95,23 @@ mspring_result mspringi_strands_find(mspringi_strands *strands, const mspringi_g
     return result;
 }
 
+void mspringi_strands_drop(mspringi_strands *strands, const mspringi_homes *homes, uint8_t *kinds) {
+    uint32_t kept = 0;
+    strands->strand_count = strands->spring_count = 0;
+    for (uint32_t i = 0; i < strands->count; ++i) {
+        const uint32_t particle = strands->particles[i], spring = strands->springs[i];
+        if (homes->home[particle] != MSPRING_NONE) {
+            kinds[particle] = MSPRINGI_ROW_LOOSE;
+            continue;
+        }
+        strands->particles[kept] = particle;
+        strands->springs[kept++] = spring;
+        strands->strand_count += spring == MSPRING_NONE;
+        strands->spring_count += spring != MSPRING_NONE;
+    }
+    strands->count = kept;
+}
+
 void mspringi_strands_destroy(mspringi_strands *strands, mspringi_memory *memory) {
     mspringi_free(memory, strands->particles);
     mspringi_free(memory, strands->springs);

@@ -33,11 +33,14 @@ typedef struct assembly {
     mspringi_graph graph;
     mspringi_strands strands;
     mspringi_grids grids;
+    mspringi_homes homes;
     mspringi_web_list web;
-    block_key *blocks; ///< of all grids, grid after grid, each sorted
+    block_key *blocks; ///< of all grids, grid after grid in the order of their rows, each sorted
     size_t block_count, block_capacity;
     size_t grid_begin;     ///< where the blocks of the grid that is being listed begin
-    uint32_t *first_block; ///< [grids + 1] in blocks
+    uint32_t *first_block; ///< [grids] in blocks
+    uint32_t *end_block;   ///< [grids] in blocks
+    uint32_t home_blocks;  ///< blocks of the web that have been given to rows
     size_t row_capacity, span_capacity;
 } assembly;
 
@@ -47,35 +50,6 @@ static mspring_result out_of_memory(assembly *a) {
 }
 
 /* --------------------------------------------------------------------------------------------- lattice blocks */
-
-// How a spring lies on its grid; false if it does not join neighbouring cells of one grid.
-typedef struct lattice_spring {
-    mspringi_direction direction;
-    uint32_t column, row; ///< the slot whose record it is in
-} lattice_spring;
-
-static bool find_direction(const mspringi_grids *grids, const mspringi_spring *spring, lattice_spring *found) {
-    uint32_t base = spring->a, tip = spring->b;
-    if (grids->grid_of[base] == MSPRING_NONE || grids->grid_of[base] != grids->grid_of[tip])
-        return false;
-    // The base is in the column to the left or, in the same column, in the row below.
-    if (grids->column[base] > grids->column[tip] ||
-        (grids->column[base] == grids->column[tip] && grids->row[base] > grids->row[tip])) {
-        base = spring->b;
-        tip = spring->a;
-    }
-    const uint32_t right = grids->column[tip] - grids->column[base];
-    const int64_t up = (int64_t)grids->row[tip] - (int64_t)grids->row[base];
-    if (right > 1 || up > 1 || up < -1)
-        return false;
-    found->column = grids->column[base];
-    found->row = grids->row[base] - (up < 0);
-    found->direction = up < 0       ? MSPRINGI_SOUTH_EAST
-                       : up == 0    ? MSPRINGI_EAST
-                       : right == 0 ? MSPRINGI_NORTH
-                                    : MSPRINGI_NORTH_EAST;
-    return true;
-}
 
 static bool append_block(assembly *a, uint32_t row, uint32_t column_block) {
     if (a->block_count > a->grid_begin && a->blocks[a->block_count - 1] == make_key(row, column_block))
@@ -98,8 +72,8 @@ static bool list_blocks(assembly *a, uint32_t grid) {
         if (!append_block(a, grids->row[p], grids->column[p] / MSPRINGI_WIDTH))
             return false;
         for (uint32_t i = a->graph.first[p]; i < a->graph.first[p + 1]; ++i) {
-            lattice_spring spring;
-            if (!find_direction(grids, &a->builder->springs[a->graph.springs[i]], &spring) ||
+            mspringi_lattice_spring spring;
+            if (!mspringi_grids_place(grids, &a->builder->springs[a->graph.springs[i]], &spring) ||
                 spring.column % MSPRINGI_WIDTH != MSPRINGI_WIDTH - 1)
                 continue;
             const uint32_t column_block = spring.column / MSPRINGI_WIDTH;
@@ -130,18 +104,37 @@ static bool sort_blocks(assembly *a) {
     return true;
 }
 
+// Where the web's particle i goes among its slots: those of each home begin a block, and so do those without.
+static uint32_t web_place(const assembly *a, uint32_t i, uint32_t place_before) {
+    const uint32_t *particles = a->web.particles, *home = a->homes.home;
+    if (i == 0)
+        return 0;
+    const bool goes_on = home[particles[i]] == home[particles[i - 1]];
+    return goes_on ? place_before + 1 : (place_before / MSPRINGI_WIDTH + 1) * MSPRINGI_WIDTH;
+}
+
+// Blocks of the web's first count particles.
+static uint32_t web_blocks(const assembly *a, uint32_t count) {
+    uint32_t place = 0;
+    for (uint32_t i = 0; i < count; ++i)
+        place = web_place(a, i, place);
+    return count > 0 ? place / MSPRINGI_WIDTH + 1 : 0;
+}
+
 static mspring_result number_blocks(assembly *a) {
     mspringi_topology *t = a->topology;
-    a->first_block = mspringi_alloc(a->memory, a->grids.count + 1, sizeof *a->first_block);
-    if (!a->first_block)
+    a->first_block = mspringi_alloc(a->memory, a->grids.count, sizeof *a->first_block);
+    a->end_block = mspringi_alloc(a->memory, a->grids.count, sizeof *a->end_block);
+    if (!a->first_block || !a->end_block)
         return out_of_memory(a);
-    for (uint32_t grid = 0; grid < a->grids.count; ++grid) {
+    for (uint32_t i = 0; i < a->grids.count; ++i) {
+        const uint32_t grid = a->homes.grid_order[i];
         a->first_block[grid] = (uint32_t)a->block_count;
         a->grid_begin = a->block_count;
         if (!list_blocks(a, grid) || !sort_blocks(a))
             return out_of_memory(a);
+        a->end_block[grid] = (uint32_t)a->block_count;
     }
-    a->first_block[a->grids.count] = (uint32_t)a->block_count;
 
     uint32_t loose = 0;
     for (size_t p = 0; p < a->builder->particle_count; ++p)
@@ -151,7 +144,7 @@ static mspring_result number_blocks(assembly *a) {
     t->chain_first = t->lattice_first + t->lattice_blocks;
     t->chain_blocks = (a->strands.count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
     t->web_first = t->chain_first + t->chain_blocks;
-    t->web_blocks = (a->web.count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
+    t->web_blocks = web_blocks(a, a->web.count);
     t->loose_first = t->web_first + t->web_blocks;
     t->loose_blocks = (loose + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
     t->block_count = t->loose_first + t->loose_blocks + 1;
@@ -166,7 +159,7 @@ static mspring_result number_blocks(assembly *a) {
 // The number of a grid's block among all lattice blocks; MSPRING_NONE if it is not stored.
 static uint32_t find_block(const assembly *a, uint32_t grid, uint32_t row, uint32_t column_block) {
     const block_key key = make_key(row, column_block);
-    uint32_t low = a->first_block[grid], high = a->first_block[grid + 1];
+    uint32_t low = a->first_block[grid], high = a->end_block[grid];
     while (low < high) {
         const uint32_t middle = low + (high - low) / 2;
         if (a->blocks[middle] < key)
@@ -174,7 +167,7 @@ static uint32_t find_block(const assembly *a, uint32_t grid, uint32_t row, uint3
         else
             high = middle;
     }
-    return low < a->first_block[grid + 1] && a->blocks[low] == key ? low : MSPRING_NONE;
+    return low < a->end_block[grid] && a->blocks[low] == key ? low : MSPRING_NONE;
 }
 
 /* -------------------------------------------------------------------------------------------- slots and places */
@@ -201,8 +194,10 @@ static void assign_slots(assembly *a) {
     }
     for (uint32_t i = 0; i < a->strands.count; ++i)
         place_particle(t, a->strands.particles[i], t->chain_first * MSPRINGI_WIDTH + i);
-    for (uint32_t i = 0; i < a->web.count; ++i)
-        place_particle(t, a->web.particles[i], t->web_first * MSPRINGI_WIDTH + i);
+    for (uint32_t i = 0, place = 0; i < a->web.count; ++i) {
+        place = web_place(a, i, place);
+        place_particle(t, a->web.particles[i], t->web_first * MSPRINGI_WIDTH + place);
+    }
 }
 
 static mspring_result assign_places(assembly *a) {
@@ -215,10 +210,10 @@ static mspring_result assign_places(assembly *a) {
         if (a->strands.springs[i] != MSPRING_NONE)
             t->place_of_spring[a->strands.springs[i]] = t->lattice_places + i;
     for (uint32_t s = 0; s < t->spring_count; ++s) {
-        lattice_spring found;
+        mspringi_lattice_spring found;
         if (t->place_of_spring[s] != MSPRING_NONE)
             continue;
-        if (!find_direction(&a->grids, &a->builder->springs[s], &found)) {
+        if (!mspringi_grids_place(&a->grids, &a->builder->springs[s], &found)) {
             t->place_of_spring[s] = t->chain_places + t->leftover_count++;
             continue;
         }
@@ -240,9 +235,7 @@ static mspring_result assign_places(assembly *a) {
         t->leftover_a[i] = t->slot_of_particle[a->builder->springs[s].a];
         t->leftover_b[i] = t->slot_of_particle[a->builder->springs[s].b];
     }
-    return mspringi_web_create(&t->web, t->leftover_a, t->leftover_b, t->leftover_count,
-                               t->web_first * MSPRINGI_WIDTH, t->web_blocks * MSPRINGI_WIDTH,
-                               t->block_count * MSPRINGI_WIDTH, a->memory, a->message);
+    return MSPRING_OK;
 }
 
 void mspringi_topology_ends(const mspringi_topology *topology, mspringi_place place, uint32_t *base,
@@ -292,6 +285,16 @@ static bool append_row(assembly *a, mspringi_row_kind kind) {
     return grown;
 }
 
+static bool store_span(assembly *a, const mspringi_span *span) {
+    mspringi_topology *t = a->topology;
+    void *spans = t->spans;
+    const bool grown = mspringi_grow(a->memory, &spans, &a->span_capacity, (size_t)t->span_count + 2, sizeof *span);
+    t->spans = spans;
+    if (grown)
+        t->spans[t->span_count++] = *span;
+    return grown;
+}
+
 // Append a span to the last row, or lengthen its last one if this is what that would go on with.
 static bool append_span(assembly *a, const mspringi_span *span) {
     mspringi_topology *t = a->topology;
@@ -303,14 +306,8 @@ static bool append_span(assembly *a, const mspringi_span *span) {
             return true;
         }
     }
-    void *spans = t->spans;
-    const bool grown = mspringi_grow(a->memory, &spans, &a->span_capacity, (size_t)t->span_count + 2, sizeof *span);
-    t->spans = spans;
-    if (grown) {
-        t->spans[t->span_count++] = *span;
-        row->span_count++;
-    }
-    return grown;
+    row->span_count++;
+    return store_span(a, span);
 }
 
 // A span of whole blocks.
@@ -337,7 +334,7 @@ static uint32_t widest_row(const assembly *a) {
 
 static bool append_lattice_rows(assembly *a, uint32_t grid) {
     mspringi_topology *t = a->topology;
-    for (uint32_t i = a->first_block[grid]; i < a->first_block[grid + 1]; ++i) {
+    for (uint32_t i = a->first_block[grid]; i < a->end_block[grid]; ++i) {
         const uint32_t row = row_of(a->blocks[i]), column_block = column_block_of(a->blocks[i]);
         const bool starts_row = i == a->first_block[grid] || row_of(a->blocks[i - 1]) != row;
         const uint32_t up = find_block(a, grid, row + 1, column_block);
@@ -374,20 +371,84 @@ static bool append_chain_row(assembly *a) {
 }
 
 // Append a row of one span.
-static bool append_simple_row(assembly *a, mspringi_row_kind kind, uint32_t first_block, uint32_t block_count) {
-    const mspringi_span span = span_of_blocks(first_block, block_count, 0, MSPRINGI_WIDTH);
+static bool append_simple_row(assembly *a, mspringi_row_kind kind, uint32_t first_block, uint32_t block_count,
+                              uint32_t first_record) {
+    const mspringi_span span = span_of_blocks(first_block, block_count, first_record, MSPRINGI_WIDTH);
     return block_count == 0 || (append_row(a, kind) && append_span(a, &span));
 }
 
-// Mark the rows at whose slots the web pulls. Both lists are in slot order.
-static void mark_pulled_rows(mspringi_topology *t) {
-    uint32_t i = 0;
-    for (uint32_t r = 0; r < t->row_count; ++r) {
-        mspringi_row *row = &t->rows[r];
-        const mspringi_span *last = &t->spans[row->first_span + row->span_count - 1];
-        for (; i < t->web.attached_count && t->web.attached_slot[i] < last->end_slot; ++i)
-            row->pulled = 1;
+// Append the span of a strip's own particles of the web, of which the last is in last_slot.
+static bool append_home_span(assembly *a, uint32_t strip, uint32_t last_slot) {
+    mspringi_topology *t = a->topology;
+    const uint32_t first_block = t->web_first + a->home_blocks, end_block = last_slot / MSPRINGI_WIDTH + 1;
+    mspringi_span span = span_of_blocks(first_block, end_block - first_block, a->home_blocks, MSPRINGI_WIDTH);
+    span.end_slot = (last_slot / MSPRINGI_QUARTER + 1) * MSPRINGI_QUARTER;
+    a->home_blocks += end_block - first_block;
+    t->strips[strip].home_span = t->span_count;
+    return store_span(a, &span);
+}
+
+static bool append_home_spans(assembly *a) {
+    const mspringi_topology *t = a->topology;
+    const uint32_t *particles = a->web.particles, *home = a->homes.home;
+    for (uint32_t i = 0; i < a->web.homed_count; ++i) {
+        const bool is_last = i + 1 == a->web.count || home[particles[i + 1]] != home[particles[i]];
+        if (is_last && !append_home_span(a, home[particles[i]], t->slot_of_particle[particles[i]]))
+            return false;
     }
+    return true;
+}
+
+// Cut the rows into strips: those of the wave as their homes want it, of the others each on its own.
+static mspring_result make_strips(assembly *a) {
+    mspringi_topology *t = a->topology;
+    const uint32_t rows = a->homes.strip_rows;
+    t->lag = a->homes.lag;
+    t->wave_rows = a->homes.row_count;
+    t->wave_strips = (t->wave_rows + rows - 1) / rows;
+    t->strip_count = t->wave_strips + (t->row_count - t->wave_rows);
+    t->strips = mspringi_alloc(a->memory, t->strip_count, sizeof *t->strips);
+    if (!t->strips)
+        return out_of_memory(a);
+    for (uint32_t s = 0, row = 0; s < t->strip_count; ++s) {
+        const uint32_t left = t->wave_rows - row, count = s >= t->wave_strips ? 1 : left < rows ? left : rows;
+        t->strips[s] = (mspringi_strip){.first_row = row, .row_count = count, .home_span = MSPRING_NONE};
+        row += count;
+    }
+    return append_home_spans(a) ? MSPRING_OK : out_of_memory(a);
+}
+
+// The strip of each lattice and chain block, [block_count].
+static uint32_t *list_strips_of_blocks(const assembly *a) {
+    const mspringi_topology *t = a->topology;
+    uint32_t *strip_of_block = mspringi_alloc(a->memory, t->block_count, sizeof *strip_of_block);
+    for (uint32_t s = 0; strip_of_block && s < t->strip_count; ++s) {
+        const mspringi_row *first = &t->rows[t->strips[s].first_row], *last = first + t->strips[s].row_count - 1;
+        for (uint32_t i = first->first_span; i < last->first_span + last->span_count; ++i)
+            for (uint32_t slot = t->spans[i].first_slot; slot < t->spans[i].end_slot; slot += MSPRINGI_QUARTER)
+                strip_of_block[slot / MSPRINGI_WIDTH] = s;
+    }
+    return strip_of_block;
+}
+
+static mspring_result make_web(assembly *a) {
+    mspringi_topology *t = a->topology;
+    uint32_t *strip_of_block = list_strips_of_blocks(a);
+    if (!strip_of_block)
+        return out_of_memory(a);
+    mspring_result result =
+        mspringi_web_create(&t->web, t->leftover_a, t->leftover_b, t->leftover_count, t->web_first * MSPRINGI_WIDTH,
+                            t->web_blocks * MSPRINGI_WIDTH, t->block_count, strip_of_block, a->memory, a->message);
+    // The attached nodes are in slot order, and each strip's begin a group.
+    for (uint32_t i = 0; result == MSPRING_OK && i < t->web.attached_count; ++i) {
+        if (t->web.attached_slot[i] == MSPRING_NONE)
+            continue;
+        mspringi_strip *strip = &t->strips[strip_of_block[t->web.attached_slot[i] / MSPRINGI_WIDTH]];
+        if (strip->attached_count++ == 0)
+            strip->first_attached = i;
+    }
+    mspringi_free(a->memory, strip_of_block);
+    return result;
 }
 
 // Set a bit of busy for the quarter of a slot.
@@ -442,13 +503,15 @@ static mspring_result make_rows(assembly *a) {
     t->up_of_block = mspringi_alloc(a->memory, t->lattice_blocks, sizeof *t->up_of_block);
     if (!t->up_of_block)
         return out_of_memory(a);
-    for (uint32_t grid = 0; grid < a->grids.count; ++grid)
-        if (!append_lattice_rows(a, grid))
+    for (uint32_t i = 0; i < a->grids.count; ++i)
+        if (!append_lattice_rows(a, a->homes.grid_order[i]))
             return out_of_memory(a);
-    if (!append_chain_row(a) || !append_simple_row(a, MSPRINGI_ROW_WEB, t->web_first, t->web_blocks) ||
-        !append_simple_row(a, MSPRINGI_ROW_LOOSE, t->loose_first, t->loose_blocks) || !trim_spans(a))
+    const uint32_t homed_blocks = web_blocks(a, a->web.homed_count);
+    if (!append_chain_row(a) ||
+        !append_simple_row(a, MSPRINGI_ROW_WEB, t->web_first + homed_blocks, t->web_blocks - homed_blocks,
+                           homed_blocks) ||
+        !append_simple_row(a, MSPRINGI_ROW_LOOSE, t->loose_first, t->loose_blocks, 0) || !trim_spans(a))
         return out_of_memory(a);
-    mark_pulled_rows(t);
     return MSPRING_OK;
 }
 
@@ -500,7 +563,11 @@ static mspring_result assemble(assembly *a) {
     if (result == MSPRING_OK)
         result = mspringi_grids_find(&a->grids, &a->graph, a->kinds, a->memory, a->message);
     if (result == MSPRING_OK)
-        result = mspringi_web_list_find(&a->web, &a->graph, a->kinds, a->memory, a->message);
+        result = mspringi_homes_find(&a->homes, &a->graph, &a->grids, &a->strands, a->memory, a->message);
+    if (result == MSPRING_OK) {
+        mspringi_strands_drop(&a->strands, &a->homes, a->kinds);
+        result = mspringi_web_list_find(&a->web, &a->graph, &a->homes, a->kinds, a->memory, a->message);
+    }
     if (result == MSPRING_OK)
         result = number_blocks(a);
     if (result == MSPRING_OK)
@@ -511,7 +578,11 @@ static mspring_result assemble(assembly *a) {
     result = list_empty_slots(a);
     if (result == MSPRING_OK)
         result = assign_places(a);
-    return result == MSPRING_OK ? make_rows(a) : result;
+    if (result == MSPRING_OK)
+        result = make_rows(a);
+    if (result == MSPRING_OK)
+        result = make_strips(a);
+    return result == MSPRING_OK ? make_web(a) : result;
 }
 
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
@@ -533,9 +604,11 @@ mspring_result mspringi_topology_create(mspringi_topology *topology, const mspri
     mspringi_free(memory, a.kinds);
     mspringi_free(memory, a.blocks);
     mspringi_free(memory, a.first_block);
+    mspringi_free(memory, a.end_block);
     mspringi_graph_destroy(&a.graph, memory);
     mspringi_strands_destroy(&a.strands, memory);
     mspringi_grids_destroy(&a.grids, memory);
+    mspringi_homes_destroy(&a.homes, memory);
     mspringi_web_list_destroy(&a.web, memory);
     return result;
 }
@@ -550,6 +623,7 @@ void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *mem
     mspringi_free(memory, topology->leftover_b);
     mspringi_free(memory, topology->spans);
     mspringi_free(memory, topology->rows);
+    mspringi_free(memory, topology->strips);
     mspringi_free(memory, topology->empty_runs);
     *topology = (mspringi_topology){0};
 }

@@ -9,7 +9,9 @@
 ///   web      particles with other springs; no record, see web.h
 ///   loose    particles without a spring; no record
 ///
-/// A spring that lies in no lattice or chain row is left over: the web has it.
+/// A spring that lies in no lattice or chain row is left over: the web has it. Web particles that hang on a lattice
+/// have a home: the strip of lattice rows that they are swept with, so that several substeps can be taken in one
+/// pass over the strips.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_TOPOLOGY_H
@@ -52,8 +54,14 @@ typedef struct mspringi_span {
 typedef struct mspringi_row {
     mspringi_row_kind kind; ///< of a grid's row with nothing above any of it MSPRINGI_ROW_CHAIN
     uint32_t first_span, span_count;
-    uint32_t pulled; ///< 1: springs of the web pull at some of its slots (lattice, chain)
 } mspringi_row;
+
+/// Rows that follow each other, with what the web has to do with them.
+typedef struct mspringi_strip {
+    uint32_t first_row, row_count;
+    uint32_t first_attached, attached_count; ///< nodes of the web among the slots of its lattice and chain rows
+    uint32_t home_span; ///< span of the web's particles that are swept with it, or MSPRING_NONE
+} mspringi_strip;
 
 /// Where a spring lies: below lattice_places a lattice record, (block * MSPRINGI_DIRECTIONS + direction) *
 /// MSPRINGI_WIDTH + lane; below chain_places a chain record, lattice_places + block * MSPRINGI_WIDTH + lane; above
@@ -89,6 +97,11 @@ typedef struct mspringi_topology {
     uint32_t span_count;
     mspringi_row *rows; ///< lattice rows first
     uint32_t row_count;
+    mspringi_strip *strips; ///< all rows, in order
+    uint32_t strip_count;
+    uint32_t wave_rows;    ///< lattice rows, the first ones, that can be swept for several substeps in one pass
+    uint32_t wave_strips;  ///< the strips that they are in
+    uint32_t lag;          ///< strips by which each substep of such a pass must stay behind the one before
     uint32_t carry_blocks; ///< blocks of the carry row
 
     // For the plan.

@@ -1,19 +1,31 @@
 #include "web.h"
 
-// Number the attached nodes in slot order, and fill up the last group.
-static void number_attached(mspringi_web *web, const uint32_t *degree_of_slot, uint32_t *node_of_slot,
-                            uint32_t first_slot, uint32_t slot_count) {
-    uint32_t attached = 0;
+#include <string.h>
+
+// The slots of other rows than the web's that have springs, in slot order, each strip's filled up to whole groups:
+// count them, and write them to attached_slot if that is there.
+static uint32_t list_attached(const mspringi_web *web, const uint32_t *degree_of_slot, uint32_t first_slot,
+                              uint32_t slot_count, const uint32_t *strip_of_block, uint32_t *attached_slot) {
+    uint32_t attached = 0, strip = MSPRING_NONE;
     for (uint32_t slot = 0; slot < slot_count; ++slot) {
-        if (slot >= first_slot && slot < first_slot + web->own_count) {
-            node_of_slot[slot] = slot - first_slot;
-        } else if (degree_of_slot[slot] > 0) {
-            node_of_slot[slot] = web->own_count + attached;
-            web->attached_slot[attached++] = slot;
-        }
+        if (degree_of_slot[slot] == 0 || (slot >= first_slot && slot < first_slot + web->own_count))
+            continue;
+        if (strip_of_block[slot / MSPRINGI_WIDTH] != strip)
+            attached = (attached + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+        strip = strip_of_block[slot / MSPRINGI_WIDTH];
+        if (attached_slot)
+            attached_slot[attached] = slot;
+        attached++;
     }
-    while (attached < web->attached_count)
-        web->attached_slot[attached++] = MSPRING_NONE;
+    return (attached + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+}
+
+static void number_nodes(const mspringi_web *web, uint32_t first_slot, uint32_t *node_of_slot) {
+    for (uint32_t node = 0; node < web->own_count; ++node)
+        node_of_slot[first_slot + node] = node;
+    for (uint32_t i = 0; i < web->attached_count; ++i)
+        if (web->attached_slot[i] != MSPRING_NONE)
+            node_of_slot[web->attached_slot[i]] = web->own_count + i;
 }
 
 static uint32_t slot_of_node(const mspringi_web *web, uint32_t node, uint32_t first_slot) {
@@ -67,8 +79,10 @@ static mspring_result fill(mspringi_web *web, const uint32_t *a, const uint32_t 
 }
 
 mspring_result mspringi_web_create(mspringi_web *web, const uint32_t *a, const uint32_t *b, uint32_t count,
-                                   uint32_t first_slot, uint32_t own_count, uint32_t slot_count,
-                                   mspringi_memory *memory, mspringi_message *message) {
+                                   uint32_t first_slot, uint32_t own_count, uint32_t block_count,
+                                   const uint32_t *strip_of_block, mspringi_memory *memory,
+                                   mspringi_message *message) {
+    const uint32_t slot_count = block_count * MSPRINGI_WIDTH;
     *web = (mspringi_web){.own_count = own_count};
     if (count == 0 && own_count == 0)
         return MSPRING_OK;
@@ -76,21 +90,20 @@ mspring_result mspringi_web_create(mspringi_web *web, const uint32_t *a, const u
     uint32_t *node_of_slot = mspringi_alloc(memory, slot_count, sizeof *node_of_slot);
     mspring_result result = degree && node_of_slot ? MSPRING_OK : MSPRING_ERROR_MEMORY;
     if (result == MSPRING_OK) {
-        uint32_t attached = 0;
         for (uint32_t s = 0; s < count; ++s) {
-            const uint32_t ends[] = {a[s], b[s]};
-            for (int end = 0; end < 2; ++end)
-                attached +=
-                    degree[ends[end]]++ == 0 && !(ends[end] >= first_slot && ends[end] < first_slot + own_count);
+            degree[a[s]]++;
+            degree[b[s]]++;
         }
-        web->attached_count = (attached + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+        web->attached_count = list_attached(web, degree, first_slot, slot_count, strip_of_block, NULL);
         web->group_count = (own_count + web->attached_count) / MSPRINGI_WIDTH;
         web->attached_slot = mspringi_alloc(memory, web->attached_count, sizeof *web->attached_slot);
         web->first_rung = mspringi_alloc(memory, (size_t)web->group_count + 1, sizeof *web->first_rung);
         result = web->attached_slot && web->first_rung ? MSPRING_OK : MSPRING_ERROR_MEMORY;
     }
     if (result == MSPRING_OK) {
-        number_attached(web, degree, node_of_slot, first_slot, slot_count);
+        memset(web->attached_slot, 0xff, web->attached_count * sizeof *web->attached_slot);
+        (void)list_attached(web, degree, first_slot, slot_count, strip_of_block, web->attached_slot);
+        number_nodes(web, first_slot, node_of_slot);
         result = count_rungs(web, degree, first_slot) ? fill(web, a, b, count, node_of_slot, memory)
                                                       : MSPRING_ERROR_LIMIT;
     }

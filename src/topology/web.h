@@ -19,7 +19,7 @@
 
 typedef struct mspringi_web {
     uint32_t own_count;      ///< nodes that are slots of web rows, in order
-    uint32_t attached_count; ///< nodes after them, that are slots of other rows; filled up to whole groups
+    uint32_t attached_count; ///< nodes after them, that are slots of other rows; each strip's fill whole groups
     uint32_t *attached_slot; ///< [attached_count] MSPRING_NONE for those that fill up
     uint32_t group_count;    ///< (own_count + attached_count) / MSPRINGI_WIDTH
     uint32_t *first_rung;    ///< [group_count + 1]
@@ -28,10 +28,11 @@ typedef struct mspringi_web {
 } mspringi_web;
 
 /// Make the web of count springs between slots a and b. The slots first_slot ... first_slot + own_count - 1 are
-/// those of the web rows.
+/// those of the web rows; in what strip another slot is, its block tells.
 mspring_result mspringi_web_create(mspringi_web *web, const uint32_t *a, const uint32_t *b, uint32_t count,
-                                   uint32_t first_slot, uint32_t own_count, uint32_t slot_count,
-                                   mspringi_memory *memory, mspringi_message *message);
+                                   uint32_t first_slot, uint32_t own_count, uint32_t block_count,
+                                   const uint32_t *strip_of_block, mspringi_memory *memory,
+                                   mspringi_message *message);
 void mspringi_web_destroy(mspringi_web *web, mspringi_memory *memory);
 
 #endif

@@ -48,6 +48,15 @@ static void order_by_place(uint32_t *particles, uint32_t count, const mspring_bu
         particles[i] = (uint32_t)keys[i];
 }
 
+static void order_by_home(uint32_t *particles, uint32_t count, const mspringi_homes *homes, uint64_t *keys,
+                          uint64_t *scratch) {
+    for (uint32_t i = 0; i < count; ++i)
+        keys[i] = (uint64_t)homes->home[particles[i]] << 32 | particles[i];
+    mspringi_sort_keys(keys, scratch, count);
+    for (uint32_t i = 0; i < count; ++i)
+        particles[i] = (uint32_t)keys[i];
+}
+
 static void order_window_by_degree(uint32_t *particles, uint32_t count, const mspringi_graph *graph) {
     uint64_t keys[WINDOW], scratch[WINDOW];
     uint32_t before[WINDOW];
@@ -60,8 +69,21 @@ static void order_window_by_degree(uint32_t *particles, uint32_t count, const ms
         particles[i] = before[(uint32_t)keys[i]];
 }
 
-mspring_result mspringi_web_list_find(mspringi_web_list *list, const mspringi_graph *graph, uint8_t *kinds,
-                                      mspringi_memory *memory, mspringi_message *message) {
+// List the particles with or without home, behind those that are in the list.
+static void append(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes,
+                   uint8_t *kinds, bool with_home) {
+    for (uint32_t p = 0; p < graph->builder->particle_count; ++p) {
+        if (kinds[p] != MSPRINGI_ROW_LOOSE || degree_of(graph, p) == 0 ||
+            (homes->home[p] != MSPRING_NONE) != with_home)
+            continue;
+        kinds[p] = MSPRINGI_ROW_WEB;
+        list->particles[list->count++] = p;
+    }
+}
+
+mspring_result mspringi_web_list_find(mspringi_web_list *list, const mspringi_graph *graph,
+                                      const mspringi_homes *homes, uint8_t *kinds, mspringi_memory *memory,
+                                      mspringi_message *message) {
     const uint32_t particles = (uint32_t)graph->builder->particle_count;
     uint32_t count = 0;
     for (uint32_t p = 0; p < particles; ++p)
@@ -73,15 +95,15 @@ mspring_result mspringi_web_list_find(mspringi_web_list *list, const mspringi_gr
     if (!list->particles || !keys || !scratch) {
         result = mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for a web of %u particles", count);
     } else {
-        for (uint32_t p = 0; p < particles; ++p) {
-            if (kinds[p] != MSPRINGI_ROW_LOOSE || degree_of(graph, p) == 0)
-                continue;
-            kinds[p] = MSPRINGI_ROW_WEB;
-            list->particles[list->count++] = p;
-        }
-        order_by_place(list->particles, count, graph->builder, keys, scratch);
-        for (uint32_t i = 0; i < count; i += WINDOW)
-            order_window_by_degree(list->particles + i, count - i < WINDOW ? count - i : WINDOW, graph);
+        append(list, graph, homes, kinds, true);
+        list->homed_count = list->count;
+        append(list, graph, homes, kinds, false);
+        order_by_home(list->particles, list->homed_count, homes, keys, scratch);
+        uint32_t *free_ones = list->particles + list->homed_count;
+        const uint32_t free_count = count - list->homed_count;
+        order_by_place(free_ones, free_count, graph->builder, keys, scratch);
+        for (uint32_t i = 0; i < free_count; i += WINDOW)
+            order_window_by_degree(free_ones + i, free_count - i < WINDOW ? free_count - i : WINDOW, graph);
     }
     mspringi_free(memory, keys);
     mspringi_free(memory, scratch);

@@ -1,0 +1,128 @@
+/// @file test_passes.c
+/// Substeps that are swept in one pass give the bits of substeps taken one by one, whatever hangs on the lattices;
+/// and ropes do not keep a lattice from being swept so.
+///
+/// SPDX-License-Identifier: MIT
+#include <stdbool.h>
+
+#include "recipe.h"
+#include "support.h"
+
+#define SUBSTEPS 24
+
+static const recipe_stuff stuff = {
+    .mass = {0.5, 2}, .stiffness = {500, 3000}, .damping = {0, 10}, .pinned = 0.03, .holes = 0.1};
+static const recipe_stuff solid = {.mass = {1, 1}, .stiffness = {1000, 1000}};
+
+static mspring_plan plan_of(const recipe *made) {
+    mspring_network *network = recipe_network(made, NULL);
+    mspring_plan plan = {.struct_size = sizeof plan};
+    check_ok(mspring_network_plan(network, &plan));
+    mspring_network_destroy(network);
+    return plan;
+}
+
+static void do_nothing(const mspring_hook_args *args, void *user) {
+    (void)args;
+    (void)user;
+}
+
+/// With a hook after every substep, no two of them can share a pass.
+static uint64_t hash_after_a_step(const recipe *made, bool one_by_one, bool forced) {
+    mspring_network_def def = support_def(-9.8f, SUBSTEPS);
+    def.global_damping = 0.25f;
+    def.max_speed = 1e15f;
+    mspring_network *network = recipe_network(made, &def);
+    if (one_by_one) {
+        check_ok(mspring_network_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, do_nothing, NULL, NULL));
+    }
+    for (mspring_id p = 0; forced && p < made->particle_count; p += 3) {
+        check_ok(mspring_network_apply_force(network, p, 30, -20));
+    }
+    support_steps(network, 2, 1.0 / 64);
+    const uint64_t hash = support_hash(network);
+    mspring_network_destroy(network);
+    return hash;
+}
+
+/// Lattices of any shape with ropes between any of their particles, strands that hang, knots, and odd springs.
+static void add_everything(recipe *made, uint32_t variant, uint64_t *seed) {
+    const uint32_t columns = 4 + (uint32_t)(support_random(seed) % 150);
+    const uint32_t rows = 4 + (uint32_t)(support_random(seed) % 150);
+    recipe_lattice(made, columns, rows, 0, 0, 1, &stuff, seed);
+    if (variant % 3 == 1) {
+        recipe_lattice(made, rows, columns, 300, 0, 0.5, &stuff, seed);
+    }
+    const uint32_t lattice_particles = made->particle_count;
+    for (uint32_t i = 0; i < variant % 8; i++) {
+        const mspring_id a = (mspring_id)(support_random(seed) % lattice_particles);
+        const mspring_id b = (mspring_id)(support_random(seed) % lattice_particles);
+        if (a != b) {
+            recipe_rope(made, a, b, 2 + (uint32_t)(support_random(seed) % 60), &stuff, seed);
+        }
+    }
+    if (variant % 2 == 0) {
+        const mspring_id weight = recipe_particle(made, -5, -5, 3, 0);
+        recipe_rope(made, (mspring_id)(support_random(seed) % lattice_particles), weight, 40, &stuff, seed);
+    }
+    if (variant % 5 == 0) {
+        recipe_random_springs(made, 30, &stuff, seed);
+    }
+    recipe_disturb(made, 0.1, 3, seed);
+    recipe_shuffle(made, seed, NULL);
+}
+
+static void passes_give_the_bits_of_single_substeps(void **state) {
+    (void)state;
+    uint32_t deep = 0, lagging = 0, divided = 0;
+    for (uint32_t variant = 0; variant < 60; variant++) {
+        uint64_t seed = 7000 + variant;
+        recipe made = {0};
+        add_everything(&made, variant, &seed);
+        const mspring_plan plan = plan_of(&made);
+        deep += plan.pass_rows > 0 && plan.pass_substeps > 1;
+        lagging += plan.pass_rows > 0 && plan.pass_lag > 1;
+        divided += plan.pass_rows < plan.lattice_rows;
+        const bool forced = variant % 4 == 3;
+        assert_int_equal(hash_after_a_step(&made, false, forced), hash_after_a_step(&made, true, forced));
+        recipe_free(&made);
+    }
+    // Or the networks do not show what they should.
+    assert_true(deep >= 30 && lagging >= 5 && divided >= 3);
+}
+
+static void ropes_do_not_prevent_passes(void **state) {
+    (void)state;
+    uint64_t seed = 1;
+    recipe made = {0};
+    recipe_lattice(&made, 100, 100, 0, 0, 1, &solid, &seed);
+    recipe_rope(&made, 0, 9999, 20, &solid, &seed); // from corner to corner
+    const mspring_plan plan = plan_of(&made);
+    assert_int_equal(plan.pass_rows, 100);
+    assert_int_equal(plan.web_particles, 19);
+    assert_true(plan.pass_substeps > 1);
+    recipe_free(&made);
+}
+
+static void what_cannot_share_a_pass_does_not_prevent_those_of_others(void **state) {
+    (void)state;
+    uint64_t seed = 1;
+    recipe made = {0};
+    recipe_lattice(&made, 100, 100, 0, 0, 1, &solid, &seed);
+    const mspring_id second = recipe_lattice(&made, 30, 1000, 200, 0, 1, &solid, &seed);
+    recipe_spring(&made, second, second + 29999, 1000, 0, 0); // from its first row to its last
+    const mspring_plan plan = plan_of(&made);
+    assert_int_equal(plan.lattice_rows, 130);
+    assert_int_equal(plan.pass_rows, 100);
+    assert_int_equal(hash_after_a_step(&made, false, false), hash_after_a_step(&made, true, false));
+    recipe_free(&made);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(passes_give_the_bits_of_single_substeps),
+        cmocka_unit_test(ropes_do_not_prevent_passes),
+        cmocka_unit_test(what_cannot_share_a_pass_does_not_prevent_those_of_others),
+    };
+    return cmocka_run_group_tests_name("passes", tests, NULL, NULL);
+}
