@@ -109,6 +109,7 @@ static void solver_defaults(void **state) {
     assert_int_equal(def.struct_size, sizeof def);
     assert_int_equal(def.solver, MSPRING_SOLVER_EXPLICIT);
     assert_int_equal(def.substeps, 1);
+    assert_int_equal(def.max_substeps, 1000);
 }
 
 static void network_defaults(void **state) {
@@ -120,6 +121,7 @@ static void network_defaults(void **state) {
     assert_int_equal(def.simd_level, MSPRING_SIMD_AUTO);
     assert_int_equal(def.solver, MSPRING_SOLVER_EXPLICIT);
     assert_int_equal(def.substeps, 1);
+    assert_int_equal(def.max_substeps, 1000);
     assert_true(def.gravity_x == 0 && def.gravity_y == -9.8f && def.global_damping == 0 && def.max_speed == 1e6f);
     assert_null(def.allocator);
     assert_null(def.tasks);

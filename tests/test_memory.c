@@ -317,12 +317,48 @@ static void no_step_allocates(void **state) {
     recipe_free(&made);
 }
 
+static void stable_dt_survives_every_failure(void **state) {
+    (void)state;
+    input in;
+    make_input(&in);
+    for (uint32_t i = 0; i < in.loose.spring_count; i++) {
+        in.loose.springs[i].flags = 0;
+    }
+    watched_allocator watched = {0};
+    mspring_allocator allocator = watched_interface(&watched);
+    mspring_network_def def = support_def(-9.8f, 2);
+    def.allocator = &allocator;
+    mspring_network *network = recipe_network(&in.loose, &def);
+    double expected = 0, now = -1;
+    check_ok(mspring_network_stable_dt(network, &expected, NULL));
+    const uint64_t hash = support_hash(network);
+    const size_t live = watched.live, first = watched.calls;
+    size_t fail_at = 0;
+    for (mspring_result result = MSPRING_ERROR_MEMORY; result != MSPRING_OK;) {
+        watched.fail_at = first + ++fail_at;
+        watched.calls = first;
+        result = mspring_network_stable_dt(network, &now, NULL);
+        assert_int_equal(watched.live, live);
+        assert_int_equal(support_hash(network), hash);
+        if (result != MSPRING_OK) {
+            check_error(result, MSPRING_ERROR_MEMORY);
+            check_contains(mspring_network_error(network), "memory");
+            assert_true(now == -1);
+        }
+    }
+    assert_true(fail_at > 5 && now == expected);
+    mspring_network_destroy(network);
+    check_watched_clean(&watched);
+    recipe_free(&in.loose);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(builders_survive_every_failure),
         cmocka_unit_test(failed_networks_leave_nothing_behind),
         cmocka_unit_test(adding_hooks_survives_every_failure),
         cmocka_unit_test(first_force_survives_failure),
+        cmocka_unit_test(stable_dt_survives_every_failure),
         cmocka_unit_test(no_step_allocates),
     };
     return cmocka_run_group_tests_name("memory", tests, NULL, NULL);

@@ -121,6 +121,8 @@ static void bad_settings_are_refused(void **state) {
     REFUSED(solver, -1, MSPRING_ERROR_ARGUMENT, "solver");
     REFUSED(substeps, 0, MSPRING_ERROR_ARGUMENT, "substeps");
     REFUSED(substeps, 1000001, MSPRING_ERROR_ARGUMENT, "substeps");
+    REFUSED(max_substeps, 0, MSPRING_ERROR_ARGUMENT, "max_substeps");
+    REFUSED(max_substeps, 1000001, MSPRING_ERROR_ARGUMENT, "max_substeps");
     REFUSED(simd_level, -1, MSPRING_ERROR_ARGUMENT, "simd_level");
     REFUSED(simd_level, MSPRING_SIMD_AVX512 + 1, MSPRING_ERROR_ARGUMENT, "simd_level");
     REFUSED(struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_network_def");
@@ -161,6 +163,8 @@ static void bad_solver_is_refused(void **state) {
     } while (0)
     REFUSED(substeps, 0, MSPRING_ERROR_ARGUMENT, "substeps");
     REFUSED(substeps, 1000001, MSPRING_ERROR_ARGUMENT, "substeps");
+    REFUSED(max_substeps, 0, MSPRING_ERROR_ARGUMENT, "max_substeps");
+    REFUSED(max_substeps, 1000001, MSPRING_ERROR_ARGUMENT, "max_substeps");
     REFUSED(solver, 1, MSPRING_ERROR_ARGUMENT, "solver");
     REFUSED(solver, -7, MSPRING_ERROR_ARGUMENT, "solver");
     REFUSED(struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_solver_def");

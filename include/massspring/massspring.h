@@ -257,15 +257,24 @@ typedef int32_t mspring_solver;
 enum {
     /// Symplectic Euler in substeps of equal length. First order, conserves momentum, cost proportional to the
     /// number of substeps. Stable while omega_max * h < 2: on a full lattice of equal springs and masses,
-    /// stiffness < mass / (2 h^2).
+    /// stiffness < mass / (2 h^2). See mspring_network_stable_dt().
     MSPRING_SOLVER_EXPLICIT = 0
 };
+
+/// Most substeps in one step.
+#define MSPRING_MAX_SUBSTEPS 1000000
+
+/// substeps for "as few as are stable in whatever shape the network may get into" (see
+/// mspring_network_stable_dt()), chosen at every step. mspring_network_substeps() says how many they were.
+#define MSPRING_SUBSTEPS_AUTO UINT32_MAX
 
 /// Solver and its settings. Fill with mspring_solver_def_init() first.
 typedef struct mspring_solver_def {
     uint32_t struct_size;
     mspring_solver solver; ///< default MSPRING_SOLVER_EXPLICIT
-    uint32_t substeps;     ///< substeps in one step, 1 to 1000000; default 1
+    uint32_t substeps;     ///< substeps in one step, 1 to MSPRING_MAX_SUBSTEPS, or MSPRING_SUBSTEPS_AUTO; default 1
+    uint32_t max_substeps; ///< most that MSPRING_SUBSTEPS_AUTO may choose, 1 to MSPRING_MAX_SUBSTEPS: a step that
+                           ///< needs more is refused with MSPRING_ERROR_UNSTABLE; default 1000
 } mspring_solver_def;
 
 /// Instruction sets. All give the same bits.
@@ -301,7 +310,8 @@ typedef struct mspring_network_def {
                            ///< MSPRING_MAX_WORKERS; default 1. The others are started with the network, end with
                            ///< it, take no signals, and sleep between steps. One for each core is the most that
                            ///< helps. With tasks, whose number counts, this is not looked at.
-    uint32_t flags; ///< MSPRING_NETWORK_RESERVE_DAMPING or 0; default 0
+    uint32_t flags;        ///< MSPRING_NETWORK_RESERVE_DAMPING or 0; default 0
+    uint32_t max_substeps; ///< as in mspring_solver_def; default 1000
 } mspring_network_def;
 
 /// Fill a definition with its defaults. Pass the size that your header gives it: sizeof *def.
@@ -458,6 +468,43 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_global_damping(
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_UNSTABLE, MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_step(mspring_network *network, double dt);
+
+/// Number of substeps of the last step, or of the one to come before the first; with MSPRING_SUBSTEPS_AUTO 1 before
+/// the first. NULL gives 0.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API uint32_t mspring_network_substeps(const mspring_network *network);
+
+/* ---------------------------------------------------------------------------------------------- stability */
+
+/// How long (s) an explicit substep of this network may be. Above the limit the fastest oscillation turns round and
+/// grows in each substep.
+///
+/// For small motion about a shape, a substep h is stable just if the largest eigenvalue of
+///     h^2 M^-1 K + 2 h M^-1 C
+/// is at most 2 (1 + exp(global_damping h)), with M the masses, K the tangent stiffness of the shape, C the
+/// dampers, and without pinned particles. (One mode of angular frequency omega and damping ratio zeta: omega h <= 2
+/// (sqrt(1 + zeta^2) - zeta).) The eigenvalue is found by iteration (Lanczos 1950). Relative springs follow h; a
+/// network of relative springs alone is stable at every h (infinite) or at none (0).
+/// @param now        for the shape of now, to about 0.3 % and rather below than above; stretching a network
+/// stiffens
+///                   it across and lowers this. May be NULL.
+/// @param any_shape  for any shape that the network can get into, tangles included: at most now; of a full lattice
+///                   at rest 0.71 of it, or 0.49 with dampers alone. It depends on springs (broken ones count as
+///                   whole), masses and pins only. May be NULL.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for a network NULL, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates yes, and frees it, if now is asked for   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_stable_dt(mspring_network *network, double *now,
+                                                                       double *any_shape);
+
+/// The smallest number of substeps for a step of dt that keeps each below safety times the stable one of now.
+/// @param dt      seconds, finite, > 0
+/// @param safety  > 0, at most 1. A network that keeps its shape does with 0.95; one that will be stretched or
+///                crushed needs less, and 0.7 is enough for anything on a lattice without dampers.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT; MSPRING_ERROR_UNSTABLE if MSPRING_MAX_SUBSTEPS are too few;
+///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates yes, and frees it   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_suggest_substeps(mspring_network *network, double dt,
+                                                                              double safety, uint32_t *substeps);
 
 /* --------------------------------------------------------------------------------------- forces and hooks */
 

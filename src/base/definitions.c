@@ -49,7 +49,7 @@ mspring_result mspring_rope_def_init(mspring_rope_def *def, size_t size) {
 
 mspring_result mspring_solver_def_init(mspring_solver_def *def, size_t size) {
     const mspring_solver_def defaults = {
-        .struct_size = sizeof defaults, .solver = MSPRING_SOLVER_EXPLICIT, .substeps = 1};
+        .struct_size = sizeof defaults, .solver = MSPRING_SOLVER_EXPLICIT, .substeps = 1, .max_substeps = 1000};
     return fill(def, size, &defaults, sizeof defaults);
 }
 
@@ -60,6 +60,7 @@ mspring_result mspring_network_def_init(mspring_network_def *def, size_t size) {
                                           .max_speed = 1e6f,
                                           .solver = MSPRING_SOLVER_EXPLICIT,
                                           .substeps = 1,
-                                          .worker_count = 1};
+                                          .worker_count = 1,
+                                          .max_substeps = 1000};
     return fill(def, size, &defaults, sizeof defaults);
 }

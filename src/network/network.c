@@ -163,8 +163,10 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     if (result == MSPRING_OK)
         result = mspring_network_set_global_damping(network, def->global_damping);
     if (result == MSPRING_OK) {
-        const mspring_solver_def solver = {
-            .struct_size = sizeof solver, .solver = def->solver, .substeps = def->substeps};
+        const mspring_solver_def solver = {.struct_size = sizeof solver,
+                                           .solver = def->solver,
+                                           .substeps = def->substeps,
+                                           .max_substeps = def->max_substeps};
         result = mspring_network_set_solver(network, &solver);
     }
     if (result == MSPRING_OK) {

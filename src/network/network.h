@@ -71,6 +71,14 @@ typedef struct mspringi_ramps {
     size_t count, capacity;
 } mspringi_ramps;
 
+/// What mspringi_stable_in_any_shape() has found, and the edits that it has seen.
+typedef struct mspringi_any_shape {
+    double dt;
+    mspring_id spring;
+    bool is_known;
+    uint64_t masses, values;
+} mspringi_any_shape;
+
 struct mspring_network {
     mspringi_memory memory;
     mspringi_message message;
@@ -101,11 +109,14 @@ struct mspring_network {
     float *carry;                ///< a carry row for each of them, x and then y
 
     float gravity_x, gravity_y, global_damping, max_speed;
-    uint32_t substeps;
+    uint32_t substeps; ///< of the last step or, unless auto_substeps, of the next
+    uint32_t max_substeps;
+    bool auto_substeps;
 
     mspringi_edits edits;
     mspringi_ramps ramps;
     mspringi_incidence incidence; ///< made when it is needed first
+    mspringi_any_shape any_shape;
 
     mspringi_forces forces;
     mspringi_hook *hooks;

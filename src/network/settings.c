@@ -15,10 +15,16 @@ mspring_result mspring_network_set_solver(mspring_network *network, const msprin
         return result;
     if (def->solver != MSPRING_SOLVER_EXPLICIT)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "solver is %d, which is none", (int)def->solver);
-    if (def->substeps < 1 || def->substeps > 1000000)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "substeps is %u, it must be 1 to 1000000",
-                             (unsigned)def->substeps);
-    network->substeps = def->substeps;
+    const bool automatic = def->substeps == MSPRING_SUBSTEPS_AUTO;
+    if (!automatic && (def->substeps < 1 || def->substeps > MSPRING_MAX_SUBSTEPS))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "substeps is %u, it must be 1 to %u",
+                             (unsigned)def->substeps, (unsigned)MSPRING_MAX_SUBSTEPS);
+    if (def->max_substeps < 1 || def->max_substeps > MSPRING_MAX_SUBSTEPS)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "max_substeps is %u, it must be 1 to %u",
+                             (unsigned)def->max_substeps, (unsigned)MSPRING_MAX_SUBSTEPS);
+    network->auto_substeps = automatic;
+    network->substeps = automatic ? 1 : def->substeps;
+    network->max_substeps = def->max_substeps;
     return MSPRING_OK;
 }
 
@@ -43,4 +49,8 @@ mspring_result mspring_network_set_global_damping(mspring_network *network, floa
                              "global damping is %g 1/s, it must be 0 to 1e6", (double)rate);
     network->global_damping = rate;
     return MSPRING_OK;
+}
+
+uint32_t mspring_network_substeps(const mspring_network *network) {
+    return network ? network->substeps : 0;
 }

@@ -10,6 +10,7 @@
 #include "network.h"
 #include "origin.h"
 #include "springs.h"
+#include "stability/stability.h"
 
 static void copy_state(const mspring_network *network, const mspringi_state *from, const mspringi_state *to) {
     memcpy(to->x, from->x, 4 * mspringi_slot_count(network) * sizeof *to->x);
@@ -123,7 +124,30 @@ static void clear_empty_slots(const mspring_network *network) {
             memset(arrays[i] + t->empty_runs[run].first_slot, 0, t->empty_runs[run].slot_count * sizeof *arrays[i]);
 }
 
+// Choose the substeps of a step where that is left to the library.
+static mspring_result choose_substeps(mspring_network *network, double dt) {
+    mspring_id spring;
+    const double limit = mspringi_stable_in_any_shape(network, &spring);
+    const uint32_t substeps = mspringi_substeps_within(dt, limit, network->max_substeps);
+    if (substeps > network->max_substeps)
+        return mspringi_fail(
+            &network->message, MSPRING_ERROR_UNSTABLE,
+            "a step of %g s needs substeps of at most %g s, as spring %u is that stiff or damped for "
+            "its masses: more than max_substeps, which is %u",
+            dt, limit, (unsigned)spring, (unsigned)network->max_substeps);
+    network->substeps = substeps;
+    return MSPRING_OK;
+}
+
 static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt) {
+    if (!(dt > 0.0 && dt <= (double)FLT_MAX * MSPRING_MAX_SUBSTEPS))
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "dt is %g s, it must be finite and > 0",
+                             dt);
+    if (network->auto_substeps) {
+        mspring_result result = choose_substeps(network, dt);
+        if (result != MSPRING_OK)
+            return result;
+    }
     const float h = (float)(dt / (double)network->substeps);
     if (!(h >= FLT_MIN && h <= FLT_MAX))
         return mspringi_fail(

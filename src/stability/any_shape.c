@@ -1,0 +1,92 @@
+/// A bound on the substep that no motion of the network can break.
+///
+/// In any shape a spring's tangent stiffness is at most its stiffness in every direction, and so is its damping: A
+/// + 2 D (see pencil.h) is at most the Laplacian of the graph with the weights w = h^2 k + 2 h c, once for x and
+/// once for y. Its largest eigenvalue is also that of the matrix over springs G^T M^-1 G w (G the incidence
+/// matrix), whose row sums are at most S(a) / m_a + S(b) / m_b, with S the sum of the weights at a particle. (For
+/// graphs without weights: Anderson and Morley 1985.)
+#include "stability.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "network/springs.h"
+#include "pencil.h"
+
+mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring) {
+    const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring);
+    const double stiffness = (double)nominal.stiffness, damping = (double)nominal.damping;
+    if (!mspringi_spring_is_relative(network, spring))
+        return (mspringi_strength){.stiffness = stiffness, .damping = damping};
+    const mspringi_topology *t = &network->topology;
+    uint32_t base, tip;
+    mspringi_topology_ends(t, t->place_of_spring[spring], &base, &tip);
+    const double ma = (double)network->mass[t->particle_of_slot[base]];
+    const double mb = (double)network->mass[t->particle_of_slot[tip]];
+    const double reduced_mass = 1.0 / (1.0 / ma + 1.0 / mb);
+    return (mspringi_strength){.relative_stiffness = stiffness * reduced_mass,
+                               .relative_damping = damping * reduced_mass};
+}
+
+// Sums over the springs at each slot, per mass: stiffness in x, damping in y, the relative springs' in vx of the
+// backup.
+static void sum_up(const mspring_network *network, const mspringi_state *sums) {
+    memset(sums->x, 0, 4 * mspringi_slot_count(network) * sizeof *sums->x);
+    for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
+        const mspringi_strength strength = mspringi_strength_of(network, i);
+        uint32_t ends[2];
+        mspringi_topology_ends(&network->topology, network->topology.place_of_spring[i], &ends[0], &ends[1]);
+        for (int end = 0; end < 2; ++end) {
+            const double inverse_mass = (double)network->inverse_mass[ends[end]];
+            sums->x[ends[end]] += (float)strength.stiffness;
+            sums->y[ends[end]] += (float)strength.damping;
+            sums->vx[ends[end]] +=
+                (float)((strength.relative_stiffness + 2.0 * strength.relative_damping) * inverse_mass);
+        }
+    }
+}
+
+static double find(mspring_network *network, mspring_id *spring) {
+    // Room for the rounding of the sums.
+    const double tight = 1.0 - 1e-5;
+    const mspringi_state *sums = &network->backup;
+    double smallest = INFINITY;
+    sum_up(network, sums);
+    *spring = MSPRING_NONE;
+    for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
+        uint32_t a, b;
+        mspringi_topology_ends(&network->topology, network->topology.place_of_spring[i], &a, &b);
+        const double per_a = (double)network->inverse_mass[a], per_b = (double)network->inverse_mass[b];
+        const mspringi_quotient quotient = {
+            .stiffness = (double)sums->x[a] * per_a + (double)sums->x[b] * per_b,
+            .damping = (double)sums->y[a] * per_a + (double)sums->y[b] * per_b,
+            .relative = ((double)sums->vx[a] + (double)sums->vx[b]) * tight,
+        };
+        const double limit = mspringi_quotient_limit(&quotient, 0.0f);
+        if (limit < smallest) {
+            smallest = limit;
+            *spring = i;
+        }
+    }
+    return smallest * tight;
+}
+
+double mspringi_stable_in_any_shape(mspring_network *network, mspring_id *spring) {
+    mspringi_any_shape *known = &network->any_shape;
+    if (!known->is_known || known->masses != network->edits.masses || known->values != network->edits.values) {
+        known->dt = find(network, &known->spring);
+        known->masses = network->edits.masses;
+        known->values = network->edits.values;
+        known->is_known = true;
+    }
+    *spring = known->spring;
+    return known->dt;
+}
+
+uint32_t mspringi_substeps_within(double dt, double limit, uint32_t most) {
+    const double count = dt / limit;
+    if (!(count <= (double)most))
+        return most + 1;
+    const uint32_t whole = (uint32_t)count;
+    return (double)whole < count || whole == 0 ? whole + 1 : whole;
+}

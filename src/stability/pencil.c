@@ -1,0 +1,108 @@
+#include "pencil.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "explicit/decay.h"
+#include "network/springs.h"
+#include "stability.h"
+
+double mspringi_quotient_limit(const mspringi_quotient *q, float global_damping) {
+    double h = 0.0;
+    // With global damping the bound itself grows with h: from below to the first h that meets it.
+    for (int turn = 0; turn < 100; ++turn) {
+        const double bound = 2.0 + 2.0 / (double)mspringi_decay(global_damping, (float)h),
+                     room = bound - q->relative;
+        if (!(room >= 0.0))
+            return 0.0;
+        if (room == INFINITY)
+            return INFINITY;
+        // The positive root of h^2 stiffness + 2 h damping = room, without cancellation.
+        const double divisor = q->damping + sqrt(q->damping * q->damping + q->stiffness * room);
+        const double before = h;
+        h = divisor > 0.0 ? room / divisor : INFINITY;
+        if (!(global_damping > 0.0f) || !(h - before > 1e-9 * h) || !(h <= 1e30))
+            break;
+    }
+    return h;
+}
+
+/// A spring as the matrices see it.
+typedef struct seen {
+    uint32_t a, b;
+    double nx, ny; ///< direction; (0, 0) if it has none
+    double across; ///< stiffness across its direction, as a part of that along it
+    mspringi_strength strength;
+} seen;
+
+static seen look_at(const mspring_network *network, mspring_id spring) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_state *s = &network->state;
+    const mspringi_spring_values values = mspringi_spring_get(network, spring);
+    const double dx = (double)s->x[values.tip] - (double)s->x[values.base];
+    const double dy = (double)s->y[values.tip] - (double)s->y[values.base];
+    const double length = sqrt(dx * dx + dy * dy), rest_length = (double)values.rest_length;
+    seen look = {.a = t->particle_of_slot[values.base], .b = t->particle_of_slot[values.tip], .across = 1.0};
+    if (mspringi_spring_is_live(network, spring))
+        look.strength = mspringi_strength_of(network, spring);
+    if (length > 0.0) {
+        look.nx = dx / length;
+        look.ny = dy / length;
+        look.across = length > rest_length ? 1.0 - rest_length / length : 0.0;
+    }
+    return look;
+}
+
+void mspringi_pencil_set(mspringi_pencil *pencil, double h) {
+    const mspring_network *network = pencil->network;
+    for (mspring_id p = 0; p < network->topology.particle_count; ++p)
+        pencil->root[p] = sqrt((double)network->inverse_mass[network->topology.slot_of_particle[p]]);
+    for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
+        const seen s = look_at(network, i);
+        const double stiffness = h * h * s.strength.stiffness + s.strength.relative_stiffness;
+        const double damping = 2.0 * (h * s.strength.damping + s.strength.relative_damping);
+        const bool directed = s.nx != 0.0 || s.ny != 0.0;
+        const double all = stiffness * s.across + (directed ? 0.0 : damping);
+        const double along = directed ? stiffness * (1.0 - s.across) + damping : 0.0;
+        pencil->terms[i].a = s.a;
+        pencil->terms[i].b = s.b;
+        pencil->terms[i].xx = all + along * s.nx * s.nx;
+        pencil->terms[i].xy = along * s.nx * s.ny;
+        pencil->terms[i].yy = all + along * s.ny * s.ny;
+    }
+}
+
+void mspringi_pencil_apply(const void *context, const double *in, double *out) {
+    const mspringi_pencil *pencil = context;
+    const mspringi_topology *t = &pencil->network->topology;
+    memset(out, 0, 2 * (size_t)t->particle_count * sizeof *out);
+    for (mspring_id i = 0; i < t->spring_count; ++i) {
+        const struct mspringi_pencil_term *term = &pencil->terms[i];
+        const size_t a = 2 * (size_t)term->a, b = 2 * (size_t)term->b;
+        const double root_a = pencil->root[term->a], root_b = pencil->root[term->b];
+        const double dx = root_b * in[b] - root_a * in[a], dy = root_b * in[b + 1] - root_a * in[a + 1];
+        const double fx = term->xx * dx + term->xy * dy, fy = term->xy * dx + term->yy * dy;
+        out[a] -= root_a * fx;
+        out[a + 1] -= root_a * fy;
+        out[b] += root_b * fx;
+        out[b + 1] += root_b * fy;
+    }
+}
+
+mspringi_quotient mspringi_pencil_quotient(const mspringi_pencil *pencil, const double *vector) {
+    mspringi_quotient sum = {0.0, 0.0, 0.0};
+    for (mspring_id i = 0; i < pencil->network->topology.spring_count; ++i) {
+        const seen s = look_at(pencil->network, i);
+        const double *const at_a = vector + 2 * (size_t)s.a, *const at_b = vector + 2 * (size_t)s.b;
+        const double dx = pencil->root[s.b] * at_b[0] - pencil->root[s.a] * at_a[0];
+        const double dy = pencil->root[s.b] * at_b[1] - pencil->root[s.a] * at_a[1];
+        const double square = dx * dx + dy * dy, rate = s.nx * dx + s.ny * dy;
+        const bool directed = s.nx != 0.0 || s.ny != 0.0;
+        const double stretch = s.across * square + (directed ? (1.0 - s.across) * rate * rate : 0.0);
+        const double speed = directed ? rate * rate : square;
+        sum.stiffness += s.strength.stiffness * stretch;
+        sum.damping += s.strength.damping * speed;
+        sum.relative += s.strength.relative_stiffness * stretch + 2.0 * s.strength.relative_damping * speed;
+    }
+    return sum;
+}

@@ -1,0 +1,26 @@
+/// @file stability.h
+/// How long an explicit substep may be.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_STABILITY_H
+#define MSPRINGI_STABILITY_H
+
+#include "network/network.h"
+
+/// Nominal stiffness (N/m) and damping (N s/m) of a spring; of a relative one, stiffness times h^2 and damping
+/// times h (both in kg).
+typedef struct mspringi_strength {
+    double stiffness, damping;
+    double relative_stiffness, relative_damping;
+} mspringi_strength;
+mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring);
+
+/// The longest substep that is stable in whatever shape the network gets into, and the spring that sets it
+/// (MSPRING_NONE: none does, and it is infinite). Broken springs count as whole, as they may be restored. Kept
+/// until springs or masses are edited. Between steps only: it works in the backup of the state.
+double mspringi_stable_in_any_shape(mspring_network *network, mspring_id *spring);
+
+/// The smallest number of substeps of dt for which each is at most limit. Above most: most + 1.
+uint32_t mspringi_substeps_within(double dt, double limit, uint32_t most);
+
+#endif

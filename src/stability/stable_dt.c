@@ -1,0 +1,137 @@
+/// The stability border as the host asks for it.
+#include <math.h>
+
+#include "base/cpu.h"
+#include "pencil.h"
+#include "stability.h"
+
+/// Residual at which the eigenvalue is good enough, as a part of it. The border is its square root.
+#define TOLERANCE 2e-3
+
+/// Change of the border at which it is found, as a part of it.
+#define SETTLED 5e-4
+
+typedef struct workspace {
+    mspringi_pencil pencil;
+    mspringi_lanczos lanczos;
+} workspace;
+
+static void release(mspring_network *network, workspace *work) {
+    mspringi_free(&network->memory, work->pencil.root);
+    mspringi_free(&network->memory, work->pencil.terms);
+    mspringi_free(&network->memory, work->lanczos.vector);
+    for (int i = 0; i < 3; ++i)
+        mspringi_free(&network->memory, work->lanczos.work[i]);
+}
+
+static mspring_result reserve(mspring_network *network, workspace *work) {
+    const size_t particles = network->topology.particle_count, springs = network->topology.spring_count;
+    *work = (workspace){.pencil.network = network};
+    work->pencil.root = mspringi_alloc(&network->memory, particles, sizeof *work->pencil.root);
+    work->pencil.terms = mspringi_alloc(&network->memory, springs, sizeof *work->pencil.terms);
+    work->lanczos.apply = mspringi_pencil_apply;
+    work->lanczos.size = 2 * particles;
+    work->lanczos.vector = mspringi_alloc(&network->memory, 2 * particles, sizeof *work->lanczos.vector);
+    bool whole = work->pencil.root && work->pencil.terms && work->lanczos.vector;
+    for (int i = 0; i < 3; ++i) {
+        work->lanczos.work[i] = mspringi_alloc(&network->memory, 2 * particles, sizeof *work->lanczos.work[i]);
+        whole = whole && work->lanczos.work[i];
+    }
+    work->lanczos.context = &work->pencil;
+    if (whole)
+        return MSPRING_OK;
+    release(network, work);
+    return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to find the stable dt of %u particles",
+                         (unsigned)particles);
+}
+
+// Add to each component a number that is different for each, -amount to amount: no mode is left out of the start.
+static void shake(double *vector, size_t size, double amount) {
+    for (size_t i = 0; i < size; ++i) {
+        uint64_t bits = (i + 1) * UINT64_C(0x9e3779b97f4a7c15); // the mixer of SplitMix64 (Steele et al. 2014)
+        bits = (bits ^ (bits >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
+        bits = (bits ^ (bits >> 27)) * UINT64_C(0x94d049bb133111eb);
+        vector[i] += amount * ((double)(bits >> 11) * 0x1p-52 - 1.0);
+    }
+}
+
+// Every vector gives an upper bound of the border, and at the border that of the eigenvector is sharp: take the
+// eigenvector at the last bound, its bound, and so on. The bounds fall, and so fast that few turns are enough.
+static double find_border(const mspring_network *network, workspace *work, double start) {
+    const size_t size = work->lanczos.size;
+    double border = start;
+    shake(work->lanczos.vector, size, 1.0);
+    for (int turn = 0; turn < 12; ++turn) {
+        mspringi_pencil_set(&work->pencil, border);
+        const mspringi_ritz ritz = mspringi_lanczos_largest(&work->lanczos, TOLERANCE);
+        if (!(ritz.value > 0.0))
+            return INFINITY;
+        mspringi_quotient quotient = mspringi_pencil_quotient(&work->pencil, work->lanczos.vector);
+        const double margin = 1.0 + ritz.residual / ritz.value;
+        quotient.stiffness *= margin;
+        quotient.damping *= margin;
+        quotient.relative *= margin;
+        const double before = border;
+        border = mspringi_quotient_limit(&quotient, network->global_damping);
+        // Without dampers and relative springs the eigenvector is the same at every h.
+        if ((quotient.damping == 0.0 && quotient.relative == 0.0) || !(border > 0.0 && border < INFINITY) ||
+            fabs(border - before) <= SETTLED * border)
+            break;
+        shake(work->lanczos.vector, size, 0.1 / sqrt((double)size));
+    }
+    return border;
+}
+
+static MSPRINGI_NOINLINE mspring_result find_now(mspring_network *network, double *now) {
+    mspring_id spring;
+    const double any_shape = mspringi_stable_in_any_shape(network, &spring);
+    if (any_shape == INFINITY) {
+        *now = INFINITY;
+        return MSPRING_OK;
+    }
+    workspace work;
+    mspring_result result = reserve(network, &work);
+    if (result != MSPRING_OK)
+        return result;
+    *now = fmax(find_border(network, &work, any_shape), any_shape);
+    release(network, &work);
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_stable_dt(mspring_network *network, double *now, double *any_shape) {
+    mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK)
+        return result;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    if (now)
+        result = find_now(network, now);
+    mspring_id spring;
+    if (result == MSPRING_OK && any_shape)
+        *any_shape = mspringi_stable_in_any_shape(network, &spring);
+    mspringi_fp_leave(before);
+    return result;
+}
+
+mspring_result mspring_network_suggest_substeps(mspring_network *network, double dt, double safety,
+                                                uint32_t *substeps) {
+    mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK)
+        return result;
+    if (!(dt > 0.0 && dt < INFINITY) || !(safety > 0.0 && safety <= 1.0) || !substeps)
+        return mspringi_fail(
+            &network->message, MSPRING_ERROR_ARGUMENT,
+            "substeps of %g s with safety %g: dt must be finite and > 0, safety > 0 and at most 1, and "
+            "the place for the answer not NULL",
+            dt, safety);
+    double now;
+    result = mspring_network_stable_dt(network, &now, NULL);
+    if (result != MSPRING_OK)
+        return result;
+    const uint32_t count = mspringi_substeps_within(dt, safety * now, MSPRING_MAX_SUBSTEPS);
+    if (count > MSPRING_MAX_SUBSTEPS)
+        return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
+                             "%g s in substeps of at most %g s are more than %u substeps", dt, safety * now,
+                             (unsigned)MSPRING_MAX_SUBSTEPS);
+    *substeps = count;
+    return MSPRING_OK;
+}
