@@ -1,0 +1,65 @@
+/// The memory of a factor, and the way to the kernels of its level.
+#include "cholesky.h"
+
+#include "kernels.h"
+
+const mspringi_cholesky_kernels *mspringi_cholesky_kernels_of(mspring_simd level) {
+    const mspringi_cholesky_kernels *best = &mspringi_cholesky_scalar;
+#if defined(MSPRINGI_X86_64)
+    const mspringi_cholesky_kernels *const upward[] = {&mspringi_cholesky_sse2, &mspringi_cholesky_avx2,
+                                                       &mspringi_cholesky_avx512};
+    for (size_t i = 0; i < sizeof upward / sizeof upward[0]; ++i)
+        if (upward[i]->level <= level)
+            best = upward[i];
+#else
+    (void)level;
+#endif
+    return best;
+}
+
+#define MSPRINGI_CHOLESKY_DEFINE(real)                                                                             \
+    mspring_result mspringi_cholesky_##real##_create(mspringi_cholesky_##real *factor,                             \
+                                                     const mspringi_cholesky_plan *plan, mspring_simd level,       \
+                                                     mspringi_memory *memory, mspringi_message *message) {         \
+        const size_t size = plan->size;                                                                            \
+        *factor = (mspringi_cholesky_##real){                                                                      \
+            .plan = plan,                                                                                          \
+            .kernels = mspringi_cholesky_kernels_of(level),                                                        \
+            .panels = mspringi_alloc(memory, plan->panel_reals, sizeof(real)),                                     \
+            .reciprocal = mspringi_alloc(memory, 2 * size, sizeof(real)),                                          \
+            .updates = {mspringi_alloc(memory, plan->update_reals[0], sizeof(real)),                               \
+                        mspringi_alloc(memory, plan->update_reals[1], sizeof(real))},                              \
+            .scaled = mspringi_alloc(memory, plan->scaled_reals, sizeof(real)),                                    \
+            .vector = mspringi_alloc(memory, 2 * size, sizeof(real)),                                              \
+            .part = mspringi_alloc(memory, plan->vector_reals, sizeof(real)),                                      \
+        };                                                                                                         \
+        if (factor->panels && factor->reciprocal && factor->updates[0] && factor->updates[1] && factor->scaled &&  \
+            factor->vector && factor->part)                                                                        \
+            return MSPRING_OK;                                                                                     \
+        mspringi_cholesky_##real##_destroy(factor, memory);                                                        \
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for a factor of %zu numbers",               \
+                             plan->panel_reals);                                                                   \
+    }                                                                                                              \
+                                                                                                                   \
+    void mspringi_cholesky_##real##_destroy(mspringi_cholesky_##real *factor, mspringi_memory *memory) {           \
+        mspringi_free(memory, factor->panels);                                                                     \
+        mspringi_free(memory, factor->reciprocal);                                                                 \
+        mspringi_free(memory, factor->updates[0]);                                                                 \
+        mspringi_free(memory, factor->updates[1]);                                                                 \
+        mspringi_free(memory, factor->scaled);                                                                     \
+        mspringi_free(memory, factor->vector);                                                                     \
+        mspringi_free(memory, factor->part);                                                                       \
+        *factor = (mspringi_cholesky_##real){0};                                                                   \
+    }                                                                                                              \
+                                                                                                                   \
+    uint32_t mspringi_cholesky_##real##_factor(mspringi_cholesky_##real *factor,                                   \
+                                               const mspringi_cholesky_matrix_##real *matrix) {                    \
+        return factor->kernels->factor_##real(factor, matrix);                                                     \
+    }                                                                                                              \
+                                                                                                                   \
+    void mspringi_cholesky_##real##_solve(mspringi_cholesky_##real *factor, real *x, real *y) {                    \
+        factor->kernels->solve_##real(factor, x, y);                                                               \
+    }
+
+MSPRINGI_CHOLESKY_DEFINE(float)
+MSPRINGI_CHOLESKY_DEFINE(double)

@@ -1,0 +1,6 @@
+/// One number at a time: what the other levels compute, they compute in this order.
+#define MSPRINGI_VECTOR_BYTES 0
+#define MSPRINGI_TILE_VECTORS 4
+#define MSPRINGI_TABLE mspringi_cholesky_scalar
+#define MSPRINGI_LEVEL MSPRING_SIMD_SCALAR
+#include "table.h"

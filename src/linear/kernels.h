@@ -1,0 +1,28 @@
+/// @file kernels.h
+/// The numeric part of a factorisation, one table of it per instruction set. All give the same bits.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_LINEAR_KERNELS_H
+#define MSPRINGI_LINEAR_KERNELS_H
+
+#include "cholesky.h"
+
+struct mspringi_cholesky_kernels {
+    mspring_simd level;
+    uint32_t (*factor_float)(mspringi_cholesky_float *factor, const mspringi_cholesky_matrix_float *matrix);
+    void (*solve_float)(mspringi_cholesky_float *factor, float *x, float *y);
+    uint32_t (*factor_double)(mspringi_cholesky_double *factor, const mspringi_cholesky_matrix_double *matrix);
+    void (*solve_double)(mspringi_cholesky_double *factor, double *x, double *y);
+};
+
+extern const mspringi_cholesky_kernels mspringi_cholesky_scalar;
+#if defined(MSPRINGI_X86_64)
+extern const mspringi_cholesky_kernels mspringi_cholesky_sse2;
+extern const mspringi_cholesky_kernels mspringi_cholesky_avx2;
+extern const mspringi_cholesky_kernels mspringi_cholesky_avx512;
+#endif
+
+/// The table of a level; of the next lower one that was built if it is not there.
+const mspringi_cholesky_kernels *mspringi_cholesky_kernels_of(mspring_simd level);
+
+#endif
