@@ -72,7 +72,7 @@ static bool compare(bench_network *network, bench_baseline *baseline, double *mo
 /// Make both networks, with the state and settings that show errors best.
 static bool create(const bench_scene *subject, mspring_simd level, bench_network *network, bench_baseline *baseline,
                    scene_error *error) {
-    if (!bench_network_create(subject->made.builder, level, CHECK_SUBSTEPS, network, error)) {
+    if (!bench_network_create(subject->made.builder, level, 1, CHECK_SUBSTEPS, network, error)) {
         return false;
     }
     for (uint32_t i = 0; i < network->particle_count; i++) {

@@ -15,6 +15,8 @@ typedef struct variant {
     bool held_forces; ///< a force on every particle in every step
     bool hooked;
     mspring_phase hook;
+    uint32_t period;  ///< of the hook; 0: 1
+    uint32_t workers; ///< 0: as the plain scene
 } variant;
 
 static const variant variants[] = {
@@ -24,10 +26,13 @@ static const variant variants[] = {
     {.name = "empty hook before the step", .hooked = true, .hook = MSPRING_PHASE_BEFORE_STEP},
     {.name = "empty hook before substeps", .hooked = true, .hook = MSPRING_PHASE_BEFORE_SUBSTEP},
     {.name = "empty hook after substeps", .hooked = true, .hook = MSPRING_PHASE_AFTER_SUBSTEP},
+    {.name = "empty hook before every 8", .hooked = true, .hook = MSPRING_PHASE_BEFORE_SUBSTEP, .period = 8},
+    {.name = "empty hook after every 8", .hooked = true, .hook = MSPRING_PHASE_AFTER_SUBSTEP, .period = 8},
     {.name = "force on every particle", .held_forces = true},
     {.name = "4 ropes", .ropes = 4},
     {.name = "40 ropes", .ropes = 40},
     {.name = "400 ropes", .ropes = 400},
+    {.name = "2 workers", .workers = 2},
 };
 
 static const char *const default_scenes[] = {"bar_544x68", "ship", NULL};
@@ -50,13 +55,13 @@ static void empty_hook(const mspring_hook_args *args, void *user) {
     (void)user;
 }
 
-static bool create_absolute(const bench_network *plain, mspring_simd level, bench_network *out,
+static bool create_absolute(const bench_network *plain, mspring_simd level, uint32_t workers, bench_network *out,
                             scene_error *error) {
     mspring_builder *builder = NULL;
     if (!bench_copy_absolute(plain, &builder, error)) {
         return false;
     }
-    bool ok = bench_network_create(builder, level, plain->substeps, out, error);
+    bool ok = bench_network_create(builder, level, workers, plain->substeps, out, error);
     mspring_builder_destroy(builder);
     return ok;
 }
@@ -64,9 +69,10 @@ static bool create_absolute(const bench_network *plain, mspring_simd level, benc
 /// Make the network of a variant of the plain scene.
 static bool create_variant(const variant *kind, const bench_scene *subject, const bench_options *options,
                            const bench_network *plain, mspring_simd level, bench_network *out, scene_error *error) {
+    const uint32_t workers = kind->workers > 0 ? kind->workers : options->workers;
     bool ok;
     if (kind->absolute) {
-        ok = create_absolute(plain, level, out, error);
+        ok = create_absolute(plain, level, workers, out, error);
     } else if (kind->undamped || kind->ropes > 0) {
         bench_scene_settings settings = options->settings;
         settings.damping = kind->undamped ? 0.0f : settings.damping;
@@ -75,10 +81,10 @@ static bool create_variant(const variant *kind, const bench_scene *subject, cons
         if (!bench_scene_make(&subject->source, &settings, &other, error)) {
             return false;
         }
-        ok = bench_network_create(other.made.builder, level, plain->substeps, out, error);
+        ok = bench_network_create(other.made.builder, level, workers, plain->substeps, out, error);
         bench_scene_free(&other);
     } else {
-        ok = bench_network_create(subject->made.builder, level, plain->substeps, out, error);
+        ok = bench_network_create(subject->made.builder, level, workers, plain->substeps, out, error);
     }
     if (!ok) {
         return false;
@@ -88,7 +94,14 @@ static bool create_variant(const variant *kind, const bench_scene *subject, cons
         return false;
     }
     if (kind->hooked) {
-        mspring_result result = mspring_network_add_hook(out->network, kind->hook, empty_hook, NULL, NULL);
+        mspring_hook_def def;
+        mspring_result result = mspring_hook_def_init(&def, sizeof def);
+        def.phase = kind->hook;
+        def.period = kind->period > 0 ? kind->period : 1;
+        def.fn = empty_hook;
+        if (result == MSPRING_OK) {
+            result = mspring_network_add_hook(out->network, &def, NULL);
+        }
         if (result != MSPRING_OK) {
             bench_library_error(error, "adding a hook", result, mspring_network_error(out->network));
             bench_network_free(out);
@@ -142,7 +155,7 @@ static bool measure_level(const bench_scene *subject, const bench_options *optio
     uint32_t substeps = options->substeps > 0 ? options->substeps : bench_default_substeps(springs);
     bench_network plain;
     scene_error error;
-    if (!bench_network_create(subject->made.builder, level, substeps, &plain, &error)) {
+    if (!bench_network_create(subject->made.builder, level, options->workers, substeps, &plain, &error)) {
         bench_complain(subject->label, &error);
         return false;
     }

@@ -47,7 +47,7 @@ bool bench_measure(const bench_scene *subject, const bench_options *options, msp
     uint32_t substeps = options->substeps > 0 ? options->substeps : bench_default_substeps(springs);
     uint32_t repeat = options->repeat > 0 ? options->repeat : bench_default_repeat(springs);
     bench_network network;
-    if (!bench_network_create(subject->made.builder, level, substeps, &network, error)) {
+    if (!bench_network_create(subject->made.builder, level, options->workers, substeps, &network, error)) {
         return false;
     }
     bench_baseline baseline;

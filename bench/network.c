@@ -94,8 +94,8 @@ static bool run(void *self, uint32_t steps, scene_error *error) {
     return true;
 }
 
-bool bench_network_create(mspring_builder *builder, mspring_simd level, uint32_t substeps, bench_network *out,
-                          scene_error *error) {
+bool bench_network_create(mspring_builder *builder, mspring_simd level, uint32_t workers, uint32_t substeps,
+                          bench_network *out, scene_error *error) {
     mspring_network_def def;
     mspring_result result = mspring_network_def_init(&def, sizeof def);
     if (result != MSPRING_OK) {
@@ -103,6 +103,7 @@ bool bench_network_create(mspring_builder *builder, mspring_simd level, uint32_t
         return false;
     }
     def.simd_level = level;
+    def.worker_count = workers;
     def.substeps = substeps;
     def.global_damping = BENCH_GLOBAL_DAMPING;
 

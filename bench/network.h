@@ -29,8 +29,8 @@ typedef struct bench_network {
 
 /// Make a network of a builder. Every particle that is not pinned gets a small velocity of its own, so that all of
 /// it moves from the first step. On failure there is nothing to free.
-bool bench_network_create(mspring_builder *builder, mspring_simd level, uint32_t substeps, bench_network *out,
-                          scene_error *error);
+bool bench_network_create(mspring_builder *builder, mspring_simd level, uint32_t workers, uint32_t substeps,
+                          bench_network *out, scene_error *error);
 void bench_network_free(bench_network *network);
 
 /// From now on, give every particle a force before every step.

@@ -30,7 +30,8 @@ typedef struct bench_options {
     const char *network; ///< file, or NULL
     bench_scene_settings settings;
     bool all_levels;
-    mspring_simd level;        ///< MSPRING_SIMD_AUTO: the best
+    mspring_simd level; ///< MSPRING_SIMD_AUTO: the best
+    uint32_t workers;
     uint32_t substeps, repeat; ///< 0: by the scene's size
 } bench_options;
 

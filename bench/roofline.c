@@ -216,7 +216,7 @@ static void print_scene(const bench_options *options, const bench_scene *subject
 /// Whether the scene's springs have dampers, as the library sees it.
 static bool has_damping(const bench_scene *subject, bool *out, scene_error *error) {
     bench_network network;
-    if (!bench_network_create(subject->made.builder, MSPRING_SIMD_AUTO, 1, &network, error)) {
+    if (!bench_network_create(subject->made.builder, MSPRING_SIMD_AUTO, 1, 1, &network, error)) {
         return false;
     }
     mspring_plan plan;

@@ -41,7 +41,7 @@ static bool visit(const bench_scene *subject, const bench_options *options, void
             bench_cell_of("explicit"),
             bench_cell_of("%u", result.substeps),
             bench_cell_of("%s", mspring_simd_name(result.level)),
-            bench_cell_of("1"),
+            bench_cell_of("%u", options->workers),
             bench_cell_of("%.3f", 1e6 * result.turns.first_min),
             bench_cell_of("%.3f", 1e6 * result.turns.first_median),
             bench_cell_of("%.4f", result.ns),

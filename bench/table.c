@@ -89,7 +89,7 @@ void bench_table_preamble(bench_format format) {
     char cpu[128];
     bench_table_note(format, "massspring %s on %s", mspring_version_string(), bench_cpu_name(cpu, sizeof cpu));
     bench_table_note(format, "bench built by %s; baseline compiled with %s", bench_compiler(), BENCH_NAIVE_FLAGS);
-    bench_table_note(format, "a step is %g s; one thread; times are wall time", BENCH_DT);
+    bench_table_note(format, "a step is %g s; times are wall time", BENCH_DT);
     if (format != BENCH_CSV) {
         putchar('\n');
     }

@@ -110,6 +110,16 @@ void support_steps(mspring_network *network, uint32_t count, double dt) {
     }
 }
 
+mspring_result support_add_hook(mspring_network *network, mspring_phase phase, mspring_hook_fn fn, void *user,
+                                uint32_t *hook) {
+    mspring_hook_def def;
+    check_ok(mspring_hook_def_init(&def, sizeof def));
+    def.phase = phase;
+    def.fn = fn;
+    def.user = user;
+    return mspring_network_add_hook(network, &def, hook);
+}
+
 support_point support_position(const mspring_network *network, mspring_id particle) {
     support_point point = {0, 0};
     check_ok(mspring_network_get_positions(network, particle, 1, &point.x, &point.y));

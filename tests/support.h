@@ -65,6 +65,10 @@ mspring_network *support_network(mspring_builder *builder, const mspring_network
 /// Step count times by dt; every step succeeds.
 void support_steps(mspring_network *network, uint32_t count, double dt);
 
+/// Add a hook with defaults for the rest.
+mspring_result support_add_hook(mspring_network *network, mspring_phase phase, mspring_hook_fn fn, void *user,
+                                uint32_t *hook);
+
 /* -------------------------------------------------------------------------------------- reading a network */
 
 typedef struct support_point {

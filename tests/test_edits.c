@@ -415,7 +415,7 @@ static void no_edits_in_the_middle_of_a_step(void **state) {
     (void)state;
     recipe made = mixed_recipe(0, 1);
     mspring_network *network = network_of(&made, MSPRING_SIMD_AUTO);
-    check_ok(mspring_network_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, edit_in_hook, network, NULL));
+    check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, edit_in_hook, network, NULL));
     support_steps(network, 1, 0.01);
     mspring_network_destroy(network);
     recipe_free(&made);

@@ -142,6 +142,23 @@ INIT(rope_def, mspring_rope_def)
 INIT(solver_def, mspring_solver_def)
 INIT(network_def, mspring_network_def)
 
+static void hook_defaults(void **state) {
+    (void)state;
+    mspring_hook_def def;
+    memset(&def, 0xff, sizeof def);
+    check_ok(mspring_hook_def_init(&def, sizeof def));
+    assert_int_equal(def.struct_size, sizeof def);
+    assert_int_equal(def.phase, MSPRING_PHASE_BEFORE_STEP);
+    assert_true(def.fn == NULL);
+    assert_null(def.user);
+    assert_int_equal(def.period, 1);
+    assert_int_equal(def.flags, 0);
+    assert_int_equal(def.range_slots, 0);
+    assert_null(def.storage);
+    assert_int_equal(def.storage_stride, 0);
+}
+INIT(hook_def, mspring_hook_def)
+
 static void init_refuses_null_and_other_sizes(void **state) {
     (void)state;
     const struct {
@@ -152,6 +169,7 @@ static void init_refuses_null_and_other_sizes(void **state) {
         {init_material, sizeof(mspring_material)},         {init_lattice_def, sizeof(mspring_lattice_def)},
         {init_rope_def, sizeof(mspring_rope_def)},         {init_solver_def, sizeof(mspring_solver_def)},
         {init_network_def, sizeof(mspring_network_def)},
+        {init_hook_def, sizeof(mspring_hook_def)},
     };
     for (size_t i = 0; i < COUNT_OF(inits); i++) {
         const size_t bad[] = {0, 4, inits[i].size - 1, inits[i].size + 1, inits[i].size + 8, SIZE_MAX};
@@ -180,6 +198,7 @@ int main(void) {
         cmocka_unit_test(rope_defaults),
         cmocka_unit_test(solver_defaults),
         cmocka_unit_test(network_defaults),
+        cmocka_unit_test(hook_defaults),
         cmocka_unit_test(init_refuses_null_and_other_sizes),
     };
     return cmocka_run_group_tests_name("header", tests, NULL, NULL);

@@ -100,7 +100,7 @@ static void hooks_are_called_in_order_for_every_particle(void **state) {
                                     MSPRING_PHASE_AFTER_SUBSTEP};
     for (uint32_t i = 0; i < HOOKS; i++) {
         hooks[i] = (recorder_hook){.to = &seen, .number = order[i]};
-        check_ok(mspring_network_add_hook(network, phases[order[i] / 2], record, &hooks[i], NULL));
+        check_ok(support_add_hook(network, phases[order[i] / 2], record, &hooks[i], NULL));
     }
     for (int step = 0; step < 3; step++) {
         memset(seen.calls_seen, 0, sizeof seen.calls_seen);
@@ -145,7 +145,7 @@ static void forces_of_hooks_equal_forces_of_the_host(void **state) {
             y[id] = (float)support_random_between(&seed, -20, 20);
         }
         puller forces = {x, y};
-        check_ok(mspring_network_add_hook(hooked, phases[i], pull, &forces, NULL));
+        check_ok(support_add_hook(hooked, phases[i], pull, &forces, NULL));
         for (int step = 0; step < 25; step++) {
             check_ok(mspring_network_apply_forces(hosted, 0, count, x, y));
             check_ok(mspring_network_step(hosted, 0.02));
@@ -190,7 +190,7 @@ static void what_a_hook_spoils_is_taken_back(void **state) {
                 check_ok(mspring_network_apply_force(network, 11, 20, 30));
                 check_ok(mspring_network_apply_force(clean, 11, 20, 30));
             }
-            check_ok(mspring_network_add_hook(network, phase, poison, NULL, &hook));
+            check_ok(support_add_hook(network, phase, poison, NULL, &hook));
             check_error(mspring_network_step(network, 0.01), MSPRING_ERROR_UNSTABLE);
             assert_int_equal(support_hash(network), support_hash(clean));
             check_ok(mspring_network_remove_hook(network, hook));
@@ -233,7 +233,7 @@ static void a_hook_can_be_a_floor(void **state) {
     def.global_damping = 2;
     mspring_network *network = support_network(builder, &def);
     double level = -5;
-    check_ok(mspring_network_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, floor_hook, &level, NULL));
+    check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, floor_hook, &level, NULL));
     double lowest = 0;
     for (int step = 0; step < 640; step++) {
         check_ok(mspring_network_step(network, 1.0 / 64));
@@ -273,11 +273,11 @@ static void hooks_before_the_step_and_after_the_substep_may_move(void **state) {
     mspring_network *network = support_network(builder, &def);
     float by = 0.5f;
     uint32_t hook;
-    check_ok(mspring_network_add_hook(network, MSPRING_PHASE_BEFORE_STEP, shift, &by, &hook));
+    check_ok(support_add_hook(network, MSPRING_PHASE_BEFORE_STEP, shift, &by, &hook));
     check_ok(mspring_network_step(network, 1));
     assert_true(support_position(network, 0).x == 0.5 + 0.5);
     check_ok(mspring_network_remove_hook(network, hook));
-    check_ok(mspring_network_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, shift, &by, NULL));
+    check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, shift, &by, NULL));
     check_ok(mspring_network_step(network, 1));
     assert_true(support_position(network, 0).x == 1 + 0.5 + 4 * 0.5);
     mspring_network_destroy(network);
@@ -317,7 +317,7 @@ static void what_hooks_write_to_empty_slots_is_ignored(void **state) {
         mspring_network *network = mixed_network(2);
         scribble with = {.value = values[i]};
         for (mspring_phase phase = MSPRING_PHASE_BEFORE_STEP; phase <= MSPRING_PHASE_AFTER_SUBSTEP; phase++) {
-            check_ok(mspring_network_add_hook(network, phase, scribble_on_empty_slots, &with, NULL));
+            check_ok(support_add_hook(network, phase, scribble_on_empty_slots, &with, NULL));
         }
         support_steps(network, 20, 0.01);
         assert_true(with.empty_slots > 0);
@@ -348,8 +348,8 @@ static void hold_particles(const mspring_hook_args *args, void *user) {
 static void empty_slots_gather_nothing(void **state) {
     (void)state;
     mspring_network *network = mixed_network(2);
-    check_ok(mspring_network_add_hook(network, MSPRING_PHASE_BEFORE_STEP, accelerate_all_slots, NULL, NULL));
-    check_ok(mspring_network_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, hold_particles, NULL, NULL));
+    check_ok(support_add_hook(network, MSPRING_PHASE_BEFORE_STEP, accelerate_all_slots, NULL, NULL));
+    check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, hold_particles, NULL, NULL));
     mspring_view view = {.struct_size = sizeof view};
     check_ok(mspring_network_view(network, &view));
     support_steps(network, 30000, 0.01); // 1.2e6 m/s, more than max_speed, if it gathered
@@ -385,8 +385,7 @@ static void call_from_inside(const mspring_hook_args *args, void *user) {
     check_error(mspring_network_set_global_damping(network, 1), MSPRING_ERROR_BUSY);
     check_error(mspring_network_apply_force(network, 0, 1, 1), MSPRING_ERROR_BUSY);
     check_error(mspring_network_apply_forces(network, 0, 2, f, f), MSPRING_ERROR_BUSY);
-    check_error(mspring_network_add_hook(network, args->phase, call_from_inside, user, &number),
-                MSPRING_ERROR_BUSY);
+    check_error(support_add_hook(network, args->phase, call_from_inside, user, &number), MSPRING_ERROR_BUSY);
     check_error(mspring_network_remove_hook(network, 0), MSPRING_ERROR_BUSY);
     check_error(mspring_network_set_positions(network, 0, 2, d, d), MSPRING_ERROR_BUSY);
     check_error(mspring_network_set_positions_float(network, 0, 2, f, f), MSPRING_ERROR_BUSY);
@@ -418,7 +417,7 @@ static void exclusive_calls_from_inside_are_refused(void **state) {
     mspring_network *network = mixed_network(2), *clean = mixed_network(2);
     caller inside = {.network = network};
     for (mspring_phase phase = MSPRING_PHASE_BEFORE_STEP; phase <= MSPRING_PHASE_AFTER_SUBSTEP; phase++) {
-        check_ok(mspring_network_add_hook(network, phase, call_from_inside, &inside, NULL));
+        check_ok(support_add_hook(network, phase, call_from_inside, &inside, NULL));
     }
     support_steps(network, 3, 0.01);
     support_steps(clean, 3, 0.01);
@@ -443,7 +442,7 @@ static void removed_hooks_are_not_called(void **state) {
     int calls[3] = {0, 0, 0};
     uint32_t numbers[6];
     for (int i = 0; i < 3; i++) {
-        check_ok(mspring_network_add_hook(network, MSPRING_PHASE_BEFORE_STEP, count_call, &calls[i], &numbers[i]));
+        check_ok(support_add_hook(network, MSPRING_PHASE_BEFORE_STEP, count_call, &calls[i], &numbers[i]));
     }
     check_ok(mspring_network_step(network, 0.01));
     assert_true(calls[0] >= 1 && calls[1] == calls[0] && calls[2] == calls[0]);
@@ -458,7 +457,7 @@ static void removed_hooks_are_not_called(void **state) {
 
     // Numbers are not used again.
     for (int i = 3; i < 6; i++) {
-        check_ok(mspring_network_add_hook(network, MSPRING_PHASE_BEFORE_STEP, count_call, &calls[1], &numbers[i]));
+        check_ok(support_add_hook(network, MSPRING_PHASE_BEFORE_STEP, count_call, &calls[1], &numbers[i]));
         for (int j = 0; j < i; j++) {
             assert_int_not_equal(numbers[i], numbers[j]);
         }
@@ -482,13 +481,12 @@ static void bad_hooks_are_refused(void **state) {
     mspring_network *network = mixed_network(1);
     uint32_t number = 4711;
     int calls = 0;
-    check_error(mspring_network_add_hook(network, MSPRING_PHASE_BEFORE_STEP, NULL, NULL, &number),
-                MSPRING_ERROR_ARGUMENT);
+    check_error(support_add_hook(network, MSPRING_PHASE_BEFORE_STEP, NULL, NULL, &number), MSPRING_ERROR_ARGUMENT);
     check_contains(mspring_network_error(network), "NULL");
-    check_error(mspring_network_add_hook(network, -1, count_call, &calls, &number), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_add_hook(network, 3, count_call, &calls, &number), MSPRING_ERROR_ARGUMENT);
+    check_error(support_add_hook(network, -1, count_call, &calls, &number), MSPRING_ERROR_ARGUMENT);
+    check_error(support_add_hook(network, 3, count_call, &calls, &number), MSPRING_ERROR_ARGUMENT);
     check_contains(mspring_network_error(network), "phase");
-    check_error(mspring_network_add_hook(NULL, MSPRING_PHASE_BEFORE_STEP, count_call, &calls, &number),
+    check_error(support_add_hook(NULL, MSPRING_PHASE_BEFORE_STEP, count_call, &calls, &number),
                 MSPRING_ERROR_ARGUMENT);
     assert_int_equal(number, 4711);
     check_ok(mspring_network_step(network, 0.01));

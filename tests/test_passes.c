@@ -34,7 +34,7 @@ static uint64_t hash_after_a_step(const recipe *made, bool one_by_one, bool forc
     def.max_speed = 1e15f;
     mspring_network *network = recipe_network(made, &def);
     if (one_by_one) {
-        check_ok(mspring_network_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, do_nothing, NULL, NULL));
+        check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, do_nothing, NULL, NULL));
     }
     for (mspring_id p = 0; forced && p < made->particle_count; p += 3) {
         check_ok(mspring_network_apply_force(network, p, 30, -20));

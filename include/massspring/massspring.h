@@ -523,40 +523,79 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_apply_forces(msprin
                                                                           mspring_id first, uint32_t count,
                                                                           const float *x, const float *y);
 
-/// When a hook is called.
+/// When a hook is called. A hook with a period n (see mspring_hook_def) has the substeps of each step taken in
+/// groups of n, of which the last may be smaller, and is called once for each group: before its first substep, or
+/// after its last. Every step begins a new group.
 typedef int32_t mspring_phase;
 enum {
     MSPRING_PHASE_BEFORE_STEP = 0,    ///< once; may change x, y, vx, vy; forces it adds act all through the step
-    MSPRING_PHASE_BEFORE_SUBSTEP = 1, ///< adds forces for this substep; must not change x, y, vx, vy
+    MSPRING_PHASE_BEFORE_SUBSTEP = 1, ///< adds forces for this group of substeps; must not change x, y, vx, vy
     MSPRING_PHASE_AFTER_SUBSTEP = 2   ///< may change x, y, vx, vy: collisions; there are no force arrays
 };
 
-/// What a hook gets: arrays by slot, of which it is to handle first_slot ... first_slot + slot_count - 1. One
-/// phase may come as several calls with different ranges. Some slots hold no particle: there particle_of_slot is
-/// MSPRING_NONE, and what a hook writes is ignored as long as it is within the bounds of a step.
+/// What a hook gets: arrays by slot, of which it is to handle first_slot ... first_slot + slot_count - 1. Some
+/// slots hold no particle: there particle_of_slot is MSPRING_NONE, and what a hook writes is ignored as long as it
+/// is within the bounds of a step.
 typedef struct mspring_hook_args {
     uint32_t struct_size;
     mspring_phase phase;
-    uint32_t substep, substep_count; ///< 0 ... substep_count - 1; before the step 0
-    uint32_t first_slot, slot_count;
-    double dt;                 ///< length of the substep (before the step: of the step), s
+    uint32_t substep, substep_count; ///< 0 ... substep_count - 1: the first of its group or, in the phase after it,
+                                     ///< the last; before the step 0
+    uint32_t first_slot, slot_count; ///< whole blocks, see mspring_plan
+    double dt;                 ///< time that the call stands for: the step's or, of a group of substeps, theirs, s
     double origin_x, origin_y; ///< world position = origin + (x, y)
     float *x, *y, *vx, *vy;    ///< m, relative to the origin; m/s
     float *force_x, *force_y;  ///< N: add to them; NULL after a substep
     const float *inverse_mass; ///< 1/kg; 0 if pinned or no particle
     const uint32_t *particle_of_slot;
+    uint32_t group_count; ///< substeps in the group, 1 ... period; before the step 1
+    uint32_t worker;      ///< who calls: below mspring_network_worker_count(); no two calls at a time have the same
+    void *storage;        ///< this worker's, see mspring_hook_def; else NULL
 } mspring_hook_args;
 
 /// A hook. It must not call functions on the network but those marked shared.
 typedef void (*mspring_hook_fn)(const mspring_hook_args *args, void *user);
 
-/// Have fn called in a phase of every step from now on, after the hooks added before it.
+/// Flags of hooks.
+enum {
+    /// The slots are divided into ranges, and the hook is called for each of them, perhaps for several at the same
+    /// time on different workers, in any order. It must read and write only its range's slots, and what is written
+    /// by
+    /// none. If what it does to a slot depends on nothing but that slot and what is the same for all calls, the
+    /// network's state is the same, bit for bit, for any number of workers and any range.
+    MSPRING_HOOK_CONCURRENT = 1u << 0
+};
+
+/// A hook's definition. Fill with mspring_hook_def_init() first.
+typedef struct mspring_hook_def {
+    uint32_t struct_size;
+    mspring_phase phase;  ///< default MSPRING_PHASE_BEFORE_STEP
+    mspring_hook_fn fn;   ///< must be set
+    void *user;           ///< handed to fn; default NULL
+    uint32_t period;      ///< substeps in a group, at least 1, of a hook before the step 1; default 1. Forces of a
+                          ///< hook before a group act unchanged in all its substeps. Between calls of hooks several
+                          ///< substeps are taken at once, so a step with a long period is faster.
+    uint32_t flags;       ///< MSPRING_HOOK_CONCURRENT or 0; default 0: one call, on the thread that steps
+    uint32_t range_slots; ///< with MSPRING_HOOK_CONCURRENT, slots in a range, rounded up to whole blocks; default
+                          ///< 0: one range for each worker, or fewer if the network is small
+    uint32_t reserved; ///< 0
+    void *storage;     ///< [mspring_network_worker_count()][storage_stride] bytes of the host, for each worker its
+                       ///< own, such as a sum to be added up after the step; default NULL
+    size_t storage_stride; ///< bytes from one worker's to the next's, best a multiple of 64; default 0
+} mspring_hook_def;
+
+/// Fill a definition with its defaults, as mspring_network_def_init().
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL; MSPRING_ERROR_STRUCT for an impossible size.
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API mspring_result mspring_hook_def_init(mspring_hook_def *def, size_t size);
+
+/// Have a hook called in every step from now on, after the hooks of its phase that were added before it.
+/// @param def   copied
 /// @param hook  receives a number for mspring_network_remove_hook(); may be NULL
-/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network   @allocates yes   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_add_hook(mspring_network *network, mspring_phase phase,
-                                                                      mspring_hook_fn fn, void *user,
-                                                                      uint32_t *hook);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_add_hook(mspring_network *network,
+                                                                      const mspring_hook_def *def, uint32_t *hook);
 
 /// Remove a hook. Numbers of removed hooks are not used again.
 /// @return MSPRING_OK; MSPRING_ERROR_ID if there is no such hook; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.

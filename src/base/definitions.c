@@ -47,6 +47,12 @@ mspring_result mspring_rope_def_init(mspring_rope_def *def, size_t size) {
     return fill(def, size, &defaults, sizeof defaults);
 }
 
+mspring_result mspring_hook_def_init(mspring_hook_def *def, size_t size) {
+    const mspring_hook_def defaults = {
+        .struct_size = sizeof defaults, .phase = MSPRING_PHASE_BEFORE_STEP, .period = 1};
+    return fill(def, size, &defaults, sizeof defaults);
+}
+
 mspring_result mspring_solver_def_init(mspring_solver_def *def, size_t size) {
     const mspring_solver_def defaults = {
         .struct_size = sizeof defaults, .solver = MSPRING_SOLVER_EXPLICIT, .substeps = 1, .max_substeps = 1000};

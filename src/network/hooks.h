@@ -7,9 +7,22 @@
 
 #include "network.h"
 
-/// Call the hooks of a phase with the given force field (x NULL: none).
-void mspringi_hooks_call(mspring_network *network, mspring_phase phase, uint32_t substep, double dt,
-                         mspringi_field field);
 bool mspringi_hooks_any(const mspring_network *network, mspring_phase phase);
+
+/// Substeps, from this one on, that can be taken until a hook is due again.
+uint32_t mspringi_hooks_free_substeps(const mspring_network *network, uint32_t substep);
+
+/// Call the hooks before a step of dt, which add to the field.
+void mspringi_hooks_before_step(mspring_network *network, double dt, mspringi_field field);
+
+/// Call the hooks that are due before this substep of length h, and give forces.driven anew: base (x NULL: none)
+/// and the forces of all hooks.
+/// @return whether any was due; if not, the field stays as it was
+bool mspringi_hooks_before_substep(mspring_network *network, uint32_t substep, double h, mspringi_field base);
+
+/// Call the hooks that are due after this substep of length h.
+void mspringi_hooks_after_substep(mspring_network *network, uint32_t substep, double h);
+
+void mspringi_hooks_destroy(mspring_network *network, mspringi_memory *memory);
 
 #endif

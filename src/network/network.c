@@ -3,6 +3,7 @@
 
 #include "base/cpu.h"
 #include "explicit/explicit.h"
+#include "hooks.h"
 #include "origin.h"
 #include "springs.h"
 
@@ -11,7 +12,9 @@
 mspring_result mspringi_enter(mspring_network *network) {
     if (!network)
         return MSPRING_ERROR_ARGUMENT;
-    if (network->in_hook)
+    if (network->in_hook == MSPRINGI_IN_HOOKS)
+        return MSPRING_ERROR_BUSY; // without a message, which other threads might be writing, too
+    if (network->in_hook == MSPRINGI_IN_HOOK)
         return mspringi_fail(&network->message, MSPRING_ERROR_BUSY,
                              "called from inside a hook, where only functions marked as shared are allowed");
     return MSPRING_OK;
@@ -240,6 +243,7 @@ void mspring_network_destroy(mspring_network *network) {
     mspringi_free(&memory, network->forces.held.x);
     mspringi_free(&memory, network->forces.base.x);
     mspringi_free(&memory, network->forces.total.x);
-    mspringi_free(&memory, network->hooks);
+    mspringi_free(&memory, network->forces.driven.x);
+    mspringi_hooks_destroy(network, &memory);
     mspringi_free(&memory, network);
 }

@@ -23,19 +23,25 @@ typedef struct mspringi_state {
 
 /// Forces from outside, in N by slot. Fields that a network does not need are NULL.
 typedef struct mspringi_forces {
-    mspringi_field held;  ///< given by the host for the next step
-    mspringi_field base;  ///< held and what hooks before the step added: where each substep starts from
-    mspringi_field total; ///< base, hooks before the substep, and leftover springs
-    bool held_any;        ///< held is not all zero
-    bool total_clean;     ///< total is zero but for the slots of attached nodes
+    mspringi_field held;   ///< given by the host for the next step
+    mspringi_field base;   ///< held and what hooks before the step added: where each substep starts from
+    mspringi_field driven; ///< base, and what hooks before the substep added
+    mspringi_field total;  ///< driven or base, and leftover springs
+    bool held_any;         ///< held is not all zero
+    bool total_clean;      ///< total is zero but for the slots of attached nodes
 } mspringi_forces;
 
 typedef struct mspringi_hook {
-    mspring_phase phase;
-    mspring_hook_fn fn;
-    void *user;
+    mspring_hook_def def;
     uint32_t number;
+    mspringi_field held; ///< forces of a hook that is not called before every substep; else none
 } mspringi_hook;
+
+typedef enum mspringi_in_hook {
+    MSPRINGI_IN_NO_HOOK,
+    MSPRINGI_IN_HOOK, ///< in one at a time
+    MSPRINGI_IN_HOOKS ///< in several, perhaps, on different threads
+} mspringi_in_hook;
 
 /// Stiffness and damping as fractions; stiffness < 0 for a spring that is not relative.
 typedef struct mspringi_relative {
@@ -122,7 +128,7 @@ struct mspring_network {
     mspringi_hook *hooks;
     size_t hook_count, hook_capacity;
     uint32_t next_hook;
-    bool in_hook;
+    mspringi_in_hook in_hook;
     bool is_open; ///< somebody outside has the state's arrays: there was a view or a hook
 };
 

@@ -37,7 +37,7 @@ static mspringi_field prepare_base(mspring_network *network, double dt) {
         copy_field(network, forces->held, forces->base);
     else
         clear_field(network, forces->base);
-    mspringi_hooks_call(network, MSPRING_PHASE_BEFORE_STEP, 0, dt, forces->base);
+    mspringi_hooks_before_step(network, dt, forces->base);
     return forces->base;
 }
 
@@ -56,24 +56,19 @@ static void run_substeps(mspring_network *network, double dt, float h) {
     const bool hooks_before = mspringi_hooks_any(network, MSPRING_PHASE_BEFORE_SUBSTEP);
     const bool hooks_after = mspringi_hooks_any(network, MSPRING_PHASE_AFTER_SUBSTEP);
     const bool pulled = network->topology.web.attached_count > 0;
-    const mspringi_field base = prepare_base(network, dt), none = {NULL, NULL};
+    const mspringi_field base = prepare_base(network, dt);
+    const mspringi_field field = hooks_before ? network->forces.driven : base;
 
     // Where the web pulls, it writes its share over the total field; the rest of that stays as it is set here.
     if (pulled && !hooks_before && (base.x || !network->forces.total_clean))
         reset_total(network, base);
-    if (!hooks_before && !hooks_after) {
-        mspringi_explicit_substeps(network, h, base, network->substeps);
-        return;
-    }
-    for (uint32_t substep = 0; substep < network->substeps; ++substep) {
-        if (hooks_before) {
-            reset_total(network, base);
-            mspringi_hooks_call(network, MSPRING_PHASE_BEFORE_SUBSTEP, substep, (double)h, network->forces.total);
-            network->forces.total_clean = false;
-        }
-        mspringi_explicit_substeps(network, h, hooks_before ? network->forces.total : base, 1);
+    for (uint32_t substep = 0, count; substep < network->substeps; substep += count) {
+        count = mspringi_hooks_free_substeps(network, substep);
+        if (hooks_before && mspringi_hooks_before_substep(network, substep, (double)h, base) && pulled)
+            reset_total(network, field);
+        mspringi_explicit_substeps(network, h, field, count);
         if (hooks_after)
-            mspringi_hooks_call(network, MSPRING_PHASE_AFTER_SUBSTEP, substep, (double)h, none);
+            mspringi_hooks_after_substep(network, substep + count - 1, (double)h);
     }
 }
 
