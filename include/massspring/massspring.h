@@ -188,7 +188,9 @@ enum {
     /// lattice of equal springs and masses is stable below stiffness = 1.
     MSPRING_SPRING_RELATIVE = 1u << 0,
     /// The spring is broken. In mspring_spring_info only.
-    MSPRING_SPRING_BROKEN = 1u << 8
+    MSPRING_SPRING_BROKEN = 1u << 8,
+    /// The spring is stressed (mspring_network_set_stress_strains()). In mspring_spring_info only.
+    MSPRING_SPRING_STRESSED = 1u << 9
 };
 
 /// One particle. Fill with mspring_particle_def_init() first.
@@ -801,6 +803,83 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_detach_particles(ms
                                                                               const mspring_id *particles,
                                                                               uint32_t count);
 
+/* ------------------------------------------------------------------------------------- strain and events */
+
+/// Have springs break by themselves: one whose absolute strain, |length - rest_length| / rest_length, is over its
+/// break strain at the end of a step is broken then. It is the strain that decides, whatever the stiffness, the
+/// substeps or the solver; and nothing breaks, and nobody is called, in the middle of a step.
+/// @param strain  [count], > 0; INFINITY, the default, for never
+/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the spring),
+///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates at the first threshold of break or stress in a network
+/// @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_break_strains(mspring_network *network,
+                                                                               mspring_id first, uint32_t count,
+                                                                               const float *strain);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_break_strains_at(mspring_network *network,
+                                                                                  const mspring_id *springs,
+                                                                                  uint32_t count,
+                                                                                  const float *strain);
+
+/// Have springs watched: one whose absolute strain is over its stress strain at the end of a step is stressed from
+/// then on, until at the end of some step the strain is below the relax fraction of that. See
+/// MSPRING_EVENT_STRESSED.
+/// @param strain  [count], > 0; INFINITY, the default, for never
+/// @return as mspring_network_set_break_strains()
+/// @threads exclusive access to network   @allocates at the first threshold of stress in a network   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_stress_strains(mspring_network *network,
+                                                                                mspring_id first, uint32_t count,
+                                                                                const float *strain);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_stress_strains_at(mspring_network *network,
+                                                                                   const mspring_id *springs,
+                                                                                   uint32_t count,
+                                                                                   const float *strain);
+
+/// Set the relax fraction of all springs: 0.8 at first. The lower, the longer a spring stays stressed.
+/// @param fraction  0 (once stressed, always) to 1
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_relax_fraction(mspring_network *network,
+                                                                                float fraction);
+
+/// What an event tells.
+typedef int32_t mspring_event_kind;
+enum {
+    MSPRING_EVENT_BROKEN = 0, ///< spring id broke: at the end of a step, by its strain; or in an edit, with strain
+                              ///< 0 and, if that was a detachment, the particle detached in other
+    MSPRING_EVENT_STRESSED = 1, ///< the strain of spring id rose over its stress strain
+    MSPRING_EVENT_RELAXED = 2,  ///< and fell below the relax fraction of it
+    MSPRING_EVENT_RESTORED = 3, ///< spring id was restored
+    MSPRING_EVENT_DETACHED = 4  ///< particle id was detached; after the events of its springs
+};
+
+/// Something that happened in a step or in an edit. These 16 bytes are all that there will be.
+typedef struct mspring_event {
+    mspring_event_kind kind;
+    mspring_id id;    ///< of a spring or a particle, as the kind has it
+    mspring_id other; ///< as the kind has it; else MSPRING_NONE
+    float strain;     ///< of the spring when it happened, signed; 0 where the kind has none
+} mspring_event;
+
+/// Make room for events, which are not recorded without. Those not read yet are dropped.
+/// @param capacity  events that may wait to be read, at most MSPRING_MAX_SPRINGS; 0 to record none any more
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_reserve_events(mspring_network *network,
+                                                                            uint32_t capacity);
+
+/// Take the oldest events out of the queue, in the order in which they happened; what happened at the end of one
+/// step comes in an order that depends on the network alone, the same on every machine.
+/// @param events    [capacity]
+/// @param capacity  how many to take at most
+/// @param count     receives how many there were
+/// @param lost      receives how many found the queue full, since room was made for it; may be NULL
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_read_events(mspring_network *network,
+                                                                         mspring_event *events, uint32_t capacity,
+                                                                         uint32_t *count, uint64_t *lost);
+
 /* ------------------------------------------------------------------------------------------- measurements */
 
 /// Energies in J, summed in double precision in a fixed order.
@@ -829,7 +908,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_bounds(const msprin
 /// What a spring is and does. Set struct_size first.
 typedef struct mspring_spring_info {
     uint32_t struct_size;
-    uint32_t flags;  ///< MSPRING_SPRING_RELATIVE, MSPRING_SPRING_BROKEN
+    uint32_t flags;  ///< MSPRING_SPRING_RELATIVE, MSPRING_SPRING_BROKEN, MSPRING_SPRING_STRESSED
     mspring_id a, b; ///< its particles, the lower id first
     float stiffness; ///< N/m in force; of a relative spring that of the last step, 0 before the first; 0 if broken
     float damping;   ///< N s/m, likewise

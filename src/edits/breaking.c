@@ -2,6 +2,7 @@
 #include "breaking.h"
 
 #include "base/cpu.h"
+#include "events.h"
 #include "network/springs.h"
 #include "ramps.h"
 #include "selection.h"
@@ -49,6 +50,10 @@ bool mspringi_spring_break(mspring_network *network, mspring_id spring) {
     values.stiffness = values.damping = 0.0f;
     mspringi_spring_set(network, spring, &values);
     toggle(network, spring);
+    if (network->strain.stressed) {
+        const mspringi_place place = network->topology.place_of_spring[spring];
+        network->strain.stressed[place / MSPRINGI_WIDTH] &= (uint16_t) ~(1u << place % MSPRINGI_WIDTH);
+    }
     return true;
 }
 
@@ -63,6 +68,10 @@ bool mspringi_spring_restore(mspring_network *network, mspring_id spring) {
 
 /* --------------------------------------------------------------------------------------------------- by lists */
 
+static void push_event(mspring_network *network, mspring_event_kind kind, mspring_id id, mspring_id other) {
+    mspringi_events_push(network, (mspring_event){.kind = kind, .id = id, .other = other});
+}
+
 mspring_result mspring_network_break_springs(mspring_network *network, const mspring_id *springs, uint32_t count) {
     mspringi_selection at;
     const uint32_t total = mspring_network_spring_count(network);
@@ -70,15 +79,20 @@ mspring_result mspring_network_break_springs(mspring_network *network, const msp
     if (result == MSPRING_OK && count > 0)
         result = mspringi_breaking_reserve(network);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
-        (void)mspringi_spring_break(network, springs[i]);
+        if (mspringi_spring_break(network, springs[i]))
+            push_event(network, MSPRING_EVENT_BROKEN, springs[i], MSPRING_NONE);
     return result;
 }
 
 static MSPRINGI_NOINLINE void restore_all(mspring_network *network, const mspring_id *springs, uint32_t count,
                                           double ramp_seconds) {
-    for (uint32_t i = 0; i < count; ++i)
-        if (mspringi_spring_restore(network, springs[i]) && ramp_seconds > 0.0)
+    for (uint32_t i = 0; i < count; ++i) {
+        if (!mspringi_spring_restore(network, springs[i]))
+            continue;
+        if (ramp_seconds > 0.0)
             mspringi_ramp_begin(network, springs[i], ramp_seconds);
+        push_event(network, MSPRING_EVENT_RESTORED, springs[i], MSPRING_NONE);
+    }
 }
 
 mspring_result mspring_network_restore_springs(mspring_network *network, const mspring_id *springs, uint32_t count,
@@ -111,8 +125,11 @@ mspring_result mspring_network_detach_particles(mspring_network *network, const 
     if (result == MSPRING_OK && count > 0 && !incidence->first)
         result =
             mspringi_incidence_create(&network->incidence, &network->topology, &network->memory, &network->message);
-    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
+    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
         for (uint32_t j = incidence->first[particles[i]]; j < incidence->first[particles[i] + 1]; ++j)
-            (void)mspringi_spring_break(network, incidence->springs[j]);
+            if (mspringi_spring_break(network, incidence->springs[j]))
+                push_event(network, MSPRING_EVENT_BROKEN, incidence->springs[j], particles[i]);
+        push_event(network, MSPRING_EVENT_DETACHED, particles[i], MSPRING_NONE);
+    }
     return result;
 }

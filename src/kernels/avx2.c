@@ -42,6 +42,10 @@ static inline vec inverse_or_zero(vec length) {
 static inline vec choose_positive(vec selector, vec a, vec b) {
     return _mm256_blendv_ps(b, a, _mm256_cmp_ps(selector, _mm256_setzero_ps(), _CMP_GT_OQ));
 }
+// A bit for each lane: 1 where a > b.
+static inline uint32_t bits_greater(vec a, vec b) {
+    return (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_GT_OQ));
+}
 // The last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {
     const __m256i seam =
@@ -89,6 +93,8 @@ static bool bounded(const float *values, size_t count, float limit) {
 }
 
 #include "sweep.h"
+
+#include "strain.h"
 
 #define MSPRINGI_TABLE mspringi_kernels_avx2
 #define MSPRINGI_LEVEL MSPRING_SIMD_AVX2

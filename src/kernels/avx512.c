@@ -42,6 +42,10 @@ static inline vec inverse_or_zero(vec length) {
 static inline vec choose_positive(vec selector, vec a, vec b) {
     return _mm512_mask_blend_ps(_mm512_cmp_ps_mask(selector, _mm512_setzero_ps(), _CMP_GT_OQ), b, a);
 }
+// A bit for each lane: 1 where a > b.
+static inline uint32_t bits_greater(vec a, vec b) {
+    return _mm512_cmp_ps_mask(a, b, _CMP_GT_OQ);
+}
 // The last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {
     return _mm512_castsi512_ps(_mm512_alignr_epi32(_mm512_castps_si512(a), _mm512_castps_si512(before), 15));
@@ -91,6 +95,8 @@ static bool bounded(const float *values, size_t count, float limit) {
 }
 
 #include "sweep.h"
+
+#include "strain.h"
 
 #define MSPRINGI_TABLE mspringi_kernels_avx512
 #define MSPRINGI_LEVEL MSPRING_SIMD_AVX512

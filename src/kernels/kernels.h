@@ -50,6 +50,32 @@ typedef void (*mspringi_attached_fn)(const mspringi_sweep *sweep, uint32_t first
 /// Whether all of count values (a multiple of MSPRINGI_WIDTH) are at most limit in absolute value; NaN is not.
 typedef bool (*mspringi_bounded_fn)(const float *values, size_t count, float limit);
 
+/// What a strain pass works on: arrays by slot and, by place, the thresholds and bits.
+typedef struct mspringi_strain_sweep {
+    const float *x, *y;
+    const float *lattice_springs, *chain_springs; ///< as in mspringi_sweep
+    uint32_t parts;
+    const uint32_t *up_of_block;         ///< [lattice blocks] block above each
+    uint32_t lattice_first, chain_first; ///< first block of lattice and of chain rows
+    uint32_t chain_word;                 ///< word of the first chain block's bits
+    const float *break_strain;           ///< [places]
+    const float *stress_strain;          ///< [places], or NULL: no spring is to be stressed
+    const uint16_t *live, *stressed;     ///< [places / MSPRINGI_WIDTH] bits
+    float relax; ///< a stressed spring relaxes below this fraction of the strain that stressed it
+} mspringi_strain_sweep;
+
+/// What happens to the MSPRINGI_WIDTH springs of one word of bits.
+typedef struct mspringi_strain_hit {
+    uint32_t word;
+    uint16_t broken, stressed, relaxed;
+} mspringi_strain_hit;
+
+/// Compare the strain of the live springs of the blocks first ... end - 1 (counted from the first of their kind)
+/// with their thresholds, and list what happens to which in hits, which has room for all words of these blocks.
+/// @return the number of hits
+typedef uint32_t (*mspringi_strain_fn)(const mspringi_strain_sweep *sweep, uint32_t first, uint32_t end,
+                                       mspringi_strain_hit *hits);
+
 typedef struct mspringi_kernels {
     mspring_simd level;
     mspringi_row_fn lattice[2][2]; ///< [with damping][with forces]
@@ -59,6 +85,7 @@ typedef struct mspringi_kernels {
     mspringi_pack_fn pack;
     mspringi_attached_fn attached[2]; ///< [with damping]
     mspringi_bounded_fn bounded;
+    mspringi_strain_fn lattice_strain, chain_strain;
 } mspringi_kernels;
 
 extern const mspringi_kernels mspringi_kernels_scalar;

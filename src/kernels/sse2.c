@@ -42,6 +42,10 @@ static inline vec choose_positive(vec selector, vec a, vec b) {
     const vec mask = _mm_cmpgt_ps(selector, _mm_setzero_ps());
     return _mm_or_ps(_mm_and_ps(mask, a), _mm_andnot_ps(mask, b));
 }
+// A bit for each lane: 1 where a > b.
+static inline uint32_t bits_greater(vec a, vec b) {
+    return (uint32_t)_mm_movemask_ps(_mm_cmpgt_ps(a, b));
+}
 // The last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {
     const vec seam = _mm_shuffle_ps(before, a, _MM_SHUFFLE(0, 0, 3, 3));
@@ -73,6 +77,8 @@ static bool bounded(const float *values, size_t count, float limit) {
 }
 
 #include "sweep.h"
+
+#include "strain.h"
 
 #define MSPRINGI_TABLE mspringi_kernels_sse2
 #define MSPRINGI_LEVEL MSPRING_SIMD_SSE2

@@ -1,6 +1,7 @@
 /// @file table.h
-/// The variants of an instruction set's lattice(), chain(), web(), loose(), attached(), pack() and bounded(), and
-/// the table of them. Included at the end of each kernel file, which defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
+/// The variants of an instruction set's lattice(), chain(), web(), loose(), attached(), pack(), bounded(),
+/// lattice_strain() and chain_strain(), and the table of them. Included at the end of each kernel file, which
+/// defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
 ///
 /// SPDX-License-Identifier: MIT
 
@@ -47,4 +48,6 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .pack = pack,
     .attached = {attached_plain, attached_damped},
     .bounded = bounded,
+    .lattice_strain = lattice_strain,
+    .chain_strain = chain_strain,
 };

@@ -19,8 +19,7 @@ static double spring_length(const mspring_network *network, const mspringi_sprin
     return length;
 }
 
-// A broken spring has none.
-static float spring_strain(const mspring_network *network, mspring_id spring) {
+float mspringi_spring_strain(const mspring_network *network, mspring_id spring) {
     if (!mspringi_spring_is_live(network, spring))
         return 0.0f;
     const mspringi_spring_values r = mspringi_spring_get(network, spring);
@@ -126,14 +125,15 @@ mspring_result mspring_network_get_spring(const mspring_network *network, msprin
     *info = (mspring_spring_info){
         .struct_size = sizeof *info,
         .flags = (mspringi_spring_is_relative(network, spring) ? MSPRING_SPRING_RELATIVE : 0u) |
-                 (mspringi_spring_is_live(network, spring) ? 0u : MSPRING_SPRING_BROKEN),
+                 (mspringi_spring_is_live(network, spring) ? 0u : MSPRING_SPRING_BROKEN) |
+                 (mspringi_spring_is_stressed(network, spring) ? MSPRING_SPRING_STRESSED : 0u),
         .a = a < b ? a : b,
         .b = a < b ? b : a,
         .stiffness = r.stiffness,
         .damping = r.damping,
         .rest_length = r.rest_length,
         .length = (float)length,
-        .strain = spring_strain(network, spring),
+        .strain = mspringi_spring_strain(network, spring),
         .force = (float)force,
         .nominal_stiffness = nominal.stiffness,
         .nominal_damping = nominal.damping,
@@ -149,7 +149,7 @@ mspring_result mspring_network_get_strains(const mspring_network *network, mspri
     if (first > total || count > total - first)
         return MSPRING_ERROR_ID;
     for (uint32_t i = 0; i < count; ++i)
-        strain[i] = spring_strain(network, first + i);
+        strain[i] = mspringi_spring_strain(network, first + i);
     return MSPRING_OK;
 }
 
@@ -159,7 +159,7 @@ mspring_result mspring_network_max_strain(const mspring_network *network, float 
     float largest = 0.0f;
     mspring_id where = MSPRING_NONE;
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
-        const float size = fabsf(spring_strain(network, i));
+        const float size = fabsf(mspringi_spring_strain(network, i));
         if (where == MSPRING_NONE || size > largest) {
             largest = size;
             where = i;

@@ -159,6 +159,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
         return result;
     network->kernels = mspringi_kernels_of(mspringi_cpu_choose(def->simd_level));
     network->max_speed = def->max_speed;
+    network->strain.relax = MSPRINGI_USUAL_RELAX;
     result =
         mspringi_tasks_create(def->worker_count, def->tasks, &network->memory, &network->message, &network->tasks);
     if (result == MSPRING_OK)
@@ -237,6 +238,11 @@ void mspring_network_destroy(mspring_network *network) {
     mspringi_free(&memory, network->kept);
     mspringi_free(&memory, network->edits.link_log);
     mspringi_free(&memory, network->ramps.list);
+    mspringi_free(&memory, network->strain.break_strain);
+    mspringi_free(&memory, network->strain.stress_strain);
+    mspringi_free(&memory, network->strain.stressed);
+    mspringi_free(&memory, network->strain.hits);
+    mspringi_free(&memory, network->events.ring);
     mspringi_free(&memory, network->inverse_mass_scale);
     mspringi_free(&memory, network->spring_mass);
     mspringi_incidence_destroy(&network->incidence, &memory);

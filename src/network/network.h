@@ -85,6 +85,24 @@ typedef struct mspringi_any_shape {
     uint64_t masses, values;
 } mspringi_any_shape;
 
+/// The events that the host has not read yet: a ring, empty if the host has not asked for one.
+typedef struct mspringi_events {
+    mspring_event *ring; ///< [capacity]
+    uint32_t first, count, capacity;
+    uint64_t lost;
+} mspringi_events;
+
+/// What springs break and are stressed at, by place; NULL as long as none does.
+typedef struct mspringi_strain {
+    float *break_strain, *stress_strain;
+    uint16_t *stressed;        ///< [places / MSPRINGI_WIDTH] a bit for each place
+    mspringi_strain_hit *hits; ///< [places / MSPRINGI_WIDTH] for the pass to write to
+    float relax;               ///< fraction of its stress strain below which a stressed spring relaxes
+} mspringi_strain;
+
+/// Fraction below which springs relax, until the host sets another.
+#define MSPRINGI_USUAL_RELAX 0.8f
+
 struct mspring_network {
     mspringi_memory memory;
     mspringi_message message;
@@ -121,6 +139,8 @@ struct mspring_network {
 
     mspringi_edits edits;
     mspringi_ramps ramps;
+    mspringi_strain strain;
+    mspringi_events events;
     mspringi_incidence incidence; ///< made when it is needed first
     mspringi_any_shape any_shape;
 

@@ -11,9 +11,8 @@ static float *record_in(float *records, size_t index, uint32_t parts) {
     return records + index / MSPRINGI_WIDTH * MSPRINGI_WIDTH * parts + index % MSPRINGI_WIDTH;
 }
 
-static spring_records find_records(const mspring_network *network, mspring_id spring) {
+static spring_records find_records(const mspring_network *network, mspringi_place place) {
     const mspringi_topology *t = &network->topology;
-    const mspringi_place place = t->place_of_spring[spring];
     const uint32_t parts = network->parts;
     if (place < t->lattice_places)
         return (spring_records){{record_in(network->lattice_springs, place, parts), NULL}, 1};
@@ -24,20 +23,23 @@ static spring_records find_records(const mspring_network *network, mspring_id sp
         {record_in(network->web_springs, entry[0], parts), record_in(network->web_springs, entry[1], parts)}, 2};
 }
 
-mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspring_id spring) {
-    const float *record = find_records(network, spring).parts[0];
+mspringi_spring_values mspringi_place_get(const mspring_network *network, mspringi_place place) {
+    const float *record = find_records(network, place).parts[0];
     mspringi_spring_values values = {
         .rest_length = record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
         .stiffness = record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH],
         .damping = network->parts > MSPRINGI_DAMPING ? record[MSPRINGI_DAMPING * MSPRINGI_WIDTH] : 0.0f,
     };
-    mspringi_topology_ends(&network->topology, network->topology.place_of_spring[spring], &values.base,
-                           &values.tip);
+    mspringi_topology_ends(&network->topology, place, &values.base, &values.tip);
     return values;
 }
 
+mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspring_id spring) {
+    return mspringi_place_get(network, network->topology.place_of_spring[spring]);
+}
+
 void mspringi_spring_set(mspring_network *network, mspring_id spring, const mspringi_spring_values *values) {
-    const spring_records records = find_records(network, spring);
+    const spring_records records = find_records(network, network->topology.place_of_spring[spring]);
     for (int i = 0; i < records.count; ++i) {
         float *record = records.parts[i];
         record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH] = values->rest_length;

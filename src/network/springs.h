@@ -12,13 +12,23 @@ typedef struct mspringi_spring_values {
     float rest_length, stiffness, damping;
     uint32_t base, tip;
 } mspringi_spring_values;
+mspringi_spring_values mspringi_place_get(const mspring_network *network, mspringi_place place);
 mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspring_id spring);
 /// Set rest length, stiffness and damping, wherever the spring has records.
 void mspringi_spring_set(mspring_network *network, mspring_id spring, const mspringi_spring_values *values);
 
+/// (length - rest_length) / rest_length, now; of a broken spring 0.
+float mspringi_spring_strain(const mspring_network *network, mspring_id spring);
+
 static inline bool mspringi_spring_is_live(const mspring_network *network, mspring_id spring) {
     const mspringi_place place = network->topology.place_of_spring[spring];
     return network->live[place / MSPRINGI_WIDTH] >> place % MSPRINGI_WIDTH & 1;
+}
+
+static inline bool mspringi_spring_is_stressed(const mspring_network *network, mspring_id spring) {
+    const mspringi_place place = network->topology.place_of_spring[spring];
+    const uint16_t *stressed = network->strain.stressed;
+    return stressed && stressed[place / MSPRINGI_WIDTH] >> place % MSPRINGI_WIDTH & 1;
 }
 
 static inline bool mspringi_spring_is_relative(const mspring_network *network, mspring_id spring) {

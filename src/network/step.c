@@ -5,6 +5,7 @@
 
 #include "base/cpu.h"
 #include "edits/ramps.h"
+#include "edits/strain.h"
 #include "explicit/explicit.h"
 #include "hooks.h"
 #include "network.h"
@@ -167,6 +168,7 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
         return result;
     }
     mspringi_ramps_pass(network, dt);
+    mspringi_strain_pass(network);
     mspringi_origin_follow(network);
     if (network->forces.held_any)
         clear_field(network, network->forces.held);

@@ -1,0 +1,514 @@
+/// @file test_strain.c
+/// The strain pass: springs break and are stressed by the strain they have at the end of a step, no other does, and
+/// the events say so; the same ones in the same order at every level.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "allocator.h"
+#include "recipe.h"
+#include "support.h"
+
+enum { CAPACITY = 4096, WEB_SPRINGS = 20 };
+
+/// A network with springs in rows of every kind, moving about.
+static recipe lively_recipe(void) {
+    uint64_t seed = 31;
+    const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {500, 1000}, .damping = {0, 2}, .holes = 0.1};
+    recipe made = {0};
+    recipe_lattice(&made, 37, 9, 0, 0, 1, &stuff, &seed);
+    mspring_id end = recipe_particle(&made, 60, 20, 1, MSPRING_PARTICLE_PINNED);
+    recipe_rope(&made, 2, end, 30, &stuff, &seed);
+    recipe_random_springs(&made, WEB_SPRINGS, &stuff, &seed);
+    recipe_disturb(&made, 0.05, 6, &seed);
+    return made;
+}
+
+static mspring_network *network_of(const recipe *made, mspring_simd level) {
+    mspring_network_def def = support_def(-9.8f, 4);
+    def.simd_level = level;
+    mspring_network *network = recipe_network(made, &def);
+    check_ok(mspring_network_reserve_events(network, CAPACITY));
+    return network;
+}
+
+/// Thresholds for every spring, some of them never.
+typedef struct thresholds {
+    float *break_strain, *stress_strain;
+} thresholds;
+
+static thresholds random_thresholds(uint32_t count) {
+    uint64_t seed = 32;
+    thresholds made = {malloc(count * sizeof(float)), malloc(count * sizeof(float))};
+    assert_true(made.break_strain && made.stress_strain);
+    for (uint32_t s = 0; s < count; s++) {
+        // The springs of the web, at the end, are long, and strained the less.
+        const double scale = s + WEB_SPRINGS < count ? 1 : 0.1;
+        made.break_strain[s] =
+            s % 5 == 0 ? INFINITY : (float)support_random_between(&seed, 0.05 * scale, 0.6 * scale);
+        made.stress_strain[s] = s % 3 == 0 ? INFINITY : (float)support_random_between(&seed, 0.03, 0.3);
+    }
+    return made;
+}
+
+static void free_thresholds(thresholds *unwanted) {
+    free(unwanted->break_strain);
+    free(unwanted->stress_strain);
+}
+
+static uint32_t read_all(mspring_network *network, mspring_event *events) {
+    uint32_t count;
+    uint64_t lost;
+    check_ok(mspring_network_read_events(network, events, CAPACITY, &count, &lost));
+    assert_int_equal(lost, 0);
+    return count;
+}
+
+static double strain_of(const mspring_network *network, const mspring_spring_def *spring) {
+    const support_point a = support_position(network, spring->a), b = support_position(network, spring->b);
+    return (hypot(b.x - a.x, b.y - a.y) - (double)spring->rest_length) / (double)spring->rest_length;
+}
+
+/// What a spring is, by the rules.
+typedef enum condition { WHOLE, STRESSED, BROKEN } condition;
+
+/// Follow the rules for one spring and one step; the pass may round otherwise within this much of a threshold.
+static const double close = 1e-5;
+
+static condition next_condition(condition now, double strain, double break_strain, double stress_strain,
+                                double relax, bool *too_close) {
+    const double size = fabs(strain);
+    *too_close = fabs(size - break_strain) < close || fabs(size - stress_strain) < close ||
+                 fabs(size - relax * stress_strain) < close;
+    if (now == BROKEN || size > break_strain) {
+        return BROKEN;
+    }
+    if (now == STRESSED) {
+        return size < relax * stress_strain ? WHOLE : STRESSED;
+    }
+    return size > stress_strain ? STRESSED : WHOLE;
+}
+
+static void springs_break_and_are_stressed_by_the_rules(void **state) {
+    (void)state;
+    mspring_simd levels[MSPRING_SIMD_AVX512];
+    const uint32_t level_count = support_levels(levels);
+    for (uint32_t i = 0; i < level_count; i++) {
+        recipe made = lively_recipe();
+        thresholds at = random_thresholds(made.spring_count);
+        mspring_network *network = network_of(&made, levels[i]);
+        check_ok(mspring_network_set_break_strains(network, 0, made.spring_count, at.break_strain));
+        check_ok(mspring_network_set_stress_strains(network, 0, made.spring_count, at.stress_strain));
+        check_ok(mspring_network_set_relax_fraction(network, 0.6f));
+        condition *conditions = calloc(made.spring_count, sizeof *conditions);
+        mspring_event *events = malloc(CAPACITY * sizeof *events);
+        assert_true(conditions && events);
+        uint32_t totals[3] = {0, 0, 0};
+        for (int step = 0; step < 60; step++) {
+            support_steps(network, 1, 1.0 / 64);
+            const uint32_t count = read_all(network, events);
+            for (mspring_id s = 0; s < made.spring_count; s++) {
+                const double strain = strain_of(network, &made.springs[s]);
+                bool too_close;
+                condition next = next_condition(conditions[s], strain, (double)at.break_strain[s],
+                                                (double)at.stress_strain[s], 0.6, &too_close);
+                mspring_spring_info info = {.struct_size = sizeof info};
+                check_ok(mspring_network_get_spring(network, s, &info));
+                const condition is = info.flags & MSPRING_SPRING_BROKEN     ? BROKEN
+                                     : info.flags & MSPRING_SPRING_STRESSED ? STRESSED
+                                                                            : WHOLE;
+                assert_true(too_close || is == next);
+                // There is an event if, and only if, the condition has changed.
+                uint32_t found = 0;
+                for (uint32_t e = 0; e < count; e++) {
+                    if (events[e].id != s) {
+                        continue;
+                    }
+                    found++;
+                    assert_int_equal(events[e].kind, is == BROKEN     ? MSPRING_EVENT_BROKEN
+                                                     : is == STRESSED ? MSPRING_EVENT_STRESSED
+                                                                      : MSPRING_EVENT_RELAXED);
+                    assert_int_equal(events[e].other, MSPRING_NONE);
+                    check_near((double)events[e].strain, strain, close);
+                    totals[events[e].kind]++;
+                }
+                assert_int_equal(found, is != conditions[s]);
+                conditions[s] = is;
+            }
+        }
+        // All of it happens, in rows of every kind.
+        assert_true(totals[MSPRING_EVENT_BROKEN] > 100 && totals[MSPRING_EVENT_STRESSED] > 200 &&
+                    totals[MSPRING_EVENT_RELAXED] > 100);
+        uint32_t broken_in_web = 0;
+        for (mspring_id s = made.spring_count - WEB_SPRINGS; s < made.spring_count; s++) {
+            broken_in_web += conditions[s] == BROKEN;
+        }
+        assert_true(broken_in_web > 3);
+        free(conditions);
+        free(events);
+        mspring_network_destroy(network);
+        free_thresholds(&at);
+        recipe_free(&made);
+    }
+}
+
+static void every_level_has_the_same_events(void **state) {
+    (void)state;
+    mspring_simd levels[MSPRING_SIMD_AVX512];
+    const uint32_t level_count = support_levels(levels);
+    recipe made = lively_recipe();
+    thresholds at = random_thresholds(made.spring_count);
+    mspring_event *first = malloc(CAPACITY * sizeof *first), *events = malloc(CAPACITY * sizeof *events);
+    assert_true(first && events);
+    uint32_t first_count = 0;
+    uint64_t first_hash = 0;
+    for (uint32_t i = 0; i < level_count; i++) {
+        mspring_network *network = network_of(&made, levels[i]);
+        check_ok(mspring_network_set_break_strains(network, 0, made.spring_count, at.break_strain));
+        check_ok(mspring_network_set_stress_strains(network, 0, made.spring_count, at.stress_strain));
+        support_steps(network, 40, 1.0 / 64);
+        mspring_event *into = i == 0 ? first : events;
+        const uint32_t count = read_all(network, into);
+        first_count = i == 0 ? count : first_count;
+        first_hash = i == 0 ? support_hash(network) : first_hash;
+        assert_int_equal(count, first_count);
+        assert_memory_equal(into, first, count * sizeof *first);
+        assert_int_equal(support_hash(network), first_hash);
+        mspring_network_destroy(network);
+    }
+    assert_true(first_count > 300);
+    free(first);
+    free(events);
+    free_thresholds(&at);
+    recipe_free(&made);
+}
+
+static void thresholds_out_of_reach_change_nothing(void **state) {
+    (void)state;
+    recipe made = lively_recipe();
+    thresholds at = random_thresholds(made.spring_count);
+    for (uint32_t s = 0; s < made.spring_count; s++) {
+        at.break_strain[s] = s % 2 == 0 ? 1e30f : INFINITY;
+    }
+    mspring_network *watched = network_of(&made, MSPRING_SIMD_AUTO), *plain = network_of(&made, MSPRING_SIMD_AUTO);
+    check_ok(mspring_network_set_break_strains(watched, 0, made.spring_count, at.break_strain));
+    check_ok(mspring_network_set_stress_strains(watched, 0, made.spring_count, at.stress_strain));
+    support_steps(watched, 30, 1.0 / 64);
+    support_steps(plain, 30, 1.0 / 64);
+    assert_int_equal(support_hash(watched), support_hash(plain));
+    mspring_network_destroy(watched);
+    mspring_network_destroy(plain);
+    free_thresholds(&at);
+    recipe_free(&made);
+}
+
+/* --------------------------------------------------------------------------------------- a weight on a spring */
+
+/// 1 kg on a spring of 1 m and 100 N/m, let go at rest length: it swings down by 2 m g / k = 0.196 m and back with
+/// a period of 2 pi sqrt(m / k) = 0.628 s.
+static mspring_network *swinging_weight(void) {
+    mspring_builder *builder = support_builder();
+    support_pinned(builder, 0, 0, 1);
+    support_particle(builder, 0, -1, 1);
+    support_spring(builder, 0, 1, 100, 0);
+    mspring_network_def def = support_def(-9.8f, 20);
+    mspring_network *network = support_network(builder, &def);
+    check_ok(mspring_network_reserve_events(network, CAPACITY));
+    return network;
+}
+
+static void a_swinging_weight_stresses_once_a_period(void **state) {
+    (void)state;
+    mspring_network *network = swinging_weight();
+    const float stress = 0.15f;
+    check_ok(mspring_network_set_stress_strains(network, 0, 1, &stress));
+    check_ok(mspring_network_set_relax_fraction(network, 0.5f));
+    mspring_event events[CAPACITY];
+    support_steps(network, 314, 0.01); // five periods
+    const uint32_t count = read_all(network, events);
+    assert_int_equal(count, 10);
+    for (uint32_t e = 0; e < count; e++) {
+        assert_int_equal(events[e].kind, e % 2 == 0 ? MSPRING_EVENT_STRESSED : MSPRING_EVENT_RELAXED);
+        // The first step past the threshold: at most 0.98 m/s * 0.01 s further.
+        check_near((double)events[e].strain, e % 2 == 0 ? 0.155 : 0.07, 0.006);
+    }
+    // Never to be stressed any more: it relaxes.
+    support_steps(network, 30, 0.01);
+    const float never = INFINITY;
+    check_ok(mspring_network_set_stress_strains(network, 0, 1, &never));
+    support_steps(network, 1, 0.01);
+    mspring_spring_info info = {.struct_size = sizeof info};
+    check_ok(mspring_network_get_spring(network, 0, &info));
+    assert_int_equal(info.flags, 0);
+    mspring_network_destroy(network);
+}
+
+static void a_weight_too_heavy_breaks_its_spring_and_falls(void **state) {
+    (void)state;
+    mspring_network *network = swinging_weight();
+    const float limit = 0.19f, higher = 0.2f;
+    const mspring_id spring = 0;
+    mspring_event events[CAPACITY];
+    check_ok(mspring_network_set_break_strains_at(network, &spring, 1, &higher));
+    support_steps(network, 200, 0.01);
+    assert_int_equal(read_all(network, events), 0);
+    check_ok(mspring_network_set_break_strains_at(network, &spring, 1, &limit));
+    support_steps(network, 200, 0.01);
+    assert_int_equal(read_all(network, events), 1);
+    assert_int_equal(events[0].kind, MSPRING_EVENT_BROKEN);
+    assert_int_equal(events[0].id, 0);
+    check_near((double)events[0].strain, 0.193, 0.003);
+    assert_true(support_position(network, 1).y < -5);
+    // Restored as it is, it breaks again; with a ramp it holds as long as it is let down slowly enough.
+    check_ok(mspring_network_restore_springs(network, &spring, 1, 0));
+    support_steps(network, 1, 0.01);
+    assert_int_equal(read_all(network, events), 2);
+    assert_int_equal(events[0].kind, MSPRING_EVENT_RESTORED);
+    assert_int_equal(events[1].kind, MSPRING_EVENT_BROKEN);
+    mspring_network_destroy(network);
+}
+
+/* ----------------------------------------------------------------------------------------- whatever the substeps
+ */
+
+/// Hit a bar of 1 kg particles, k = 10,000 N/m, that hangs from its left end, and see what breaks within a second.
+static uint32_t broken_by_a_blow(uint32_t substeps, bool *is_broken, uint32_t *spring_count) {
+    uint64_t seed = 9;
+    const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {10000, 10000}, .damping = {20, 20}};
+    recipe made = {0};
+    recipe_lattice(&made, 40, 10, 0, 0, 1, &stuff, &seed);
+    for (uint32_t row = 0; row < 10; row++) {
+        made.particles[40 * row].flags = MSPRING_PARTICLE_PINNED;
+    }
+    // The blow: 60 m/s upwards, for the particles within 3 m of one on the lower edge.
+    for (mspring_id p = 0; p < made.particle_count; p++) {
+        const double distance = hypot(made.particles[p].x - 22, made.particles[p].y);
+        made.particles[p].vy = distance < 3 ? 60.0f : 0.0f;
+    }
+    mspring_network_def def = support_def(-9.8f, substeps);
+    mspring_network *network = recipe_network(&made, &def);
+    float *limits = malloc(made.spring_count * sizeof *limits);
+    assert_non_null(limits);
+    for (mspring_id s = 0; s < made.spring_count; s++) {
+        limits[s] = 0.1f;
+    }
+    check_ok(mspring_network_set_break_strains(network, 0, made.spring_count, limits));
+    support_steps(network, 64, 1.0 / 64);
+    uint32_t broken = 0;
+    for (mspring_id s = 0; s < made.spring_count; s++) {
+        mspring_spring_info info = {.struct_size = sizeof info};
+        check_ok(mspring_network_get_spring(network, s, &info));
+        is_broken[s] = info.flags & MSPRING_SPRING_BROKEN;
+        broken += is_broken[s];
+    }
+    *spring_count = made.spring_count;
+    mspring_network_destroy(network);
+    free(limits);
+    recipe_free(&made);
+    return broken;
+}
+
+static void the_same_blow_breaks_the_same_springs_at_any_substeps(void **state) {
+    (void)state;
+    static bool at_40[2000], at_other[2000];
+    uint32_t springs;
+    const uint32_t broken = broken_by_a_blow(40, at_40, &springs);
+    assert_true(springs <= COUNT_OF(at_40) && broken > 40 && broken < springs / 2);
+    const uint32_t others[] = {20, 120};
+    for (size_t i = 0; i < COUNT_OF(others); i++) {
+        const uint32_t other = broken_by_a_blow(others[i], at_other, &springs);
+        uint32_t different = 0;
+        for (uint32_t s = 0; s < springs; s++) {
+            different += at_40[s] != at_other[s];
+        }
+        // Measured: 75 and 71 instead of 73, 4 and 12 of them others; a crack that goes one way or the other
+        // decides.
+        assert_true(10 * abs((int)other - (int)broken) <= (int)broken);
+        assert_true(5 * different <= broken);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------- the queue */
+
+static void a_full_queue_counts_what_it_loses(void **state) {
+    (void)state;
+    recipe made = lively_recipe();
+    mspring_network *network = network_of(&made, MSPRING_SIMD_AUTO);
+    check_ok(mspring_network_reserve_events(network, 10));
+    mspring_event events[20];
+    uint32_t count = 77;
+    uint64_t lost = 77;
+    check_ok(mspring_network_read_events(network, NULL, 0, &count, &lost));
+    assert_true(count == 0 && lost == 0);
+    // Written and read in portions that do not divide its size, so that it goes around.
+    mspring_id next_in = 0, next_out = 0;
+    for (int round = 0; round < 20; round++) {
+        for (int i = 0; i < 7; i++) {
+            const mspring_id id = next_in++;
+            check_ok(mspring_network_break_springs(network, &id, 1));
+        }
+        check_ok(mspring_network_read_events(network, events, 3, &count, &lost));
+        assert_int_equal(count, 3);
+        for (uint32_t e = 0; e < count; e++) {
+            assert_int_equal(events[e].id, next_out++);
+            assert_int_equal(events[e].kind, MSPRING_EVENT_BROKEN);
+            assert_true(events[e].strain == 0 && events[e].other == MSPRING_NONE);
+        }
+        check_ok(mspring_network_read_events(network, events, 20, &count, &lost));
+        assert_int_equal(count, 4);
+        for (uint32_t e = 0; e < count; e++) {
+            assert_int_equal(events[e].id, next_out++);
+        }
+        assert_int_equal(lost, 0);
+    }
+    // The oldest stay, the newest are lost.
+    mspring_id ids[25];
+    for (uint32_t i = 0; i < 25; i++) {
+        ids[i] = next_in + i;
+    }
+    check_ok(mspring_network_break_springs(network, ids, 25));
+    check_ok(mspring_network_read_events(network, events, 20, &count, &lost));
+    assert_true(count == 10 && lost == 15 && events[0].id == ids[0] && events[9].id == ids[9]);
+    // No queue, no events, and none lost.
+    check_ok(mspring_network_reserve_events(network, 0));
+    check_ok(mspring_network_restore_springs(network, ids, 25, 0));
+    check_ok(mspring_network_read_events(network, events, 20, &count, &lost));
+    assert_true(count == 0 && lost == 0);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+static void detachment_is_told_spring_by_spring(void **state) {
+    (void)state;
+    recipe made = lively_recipe();
+    mspring_network *network = network_of(&made, MSPRING_SIMD_AUTO);
+    const mspring_id particle = 100;
+    uint32_t expected = 0;
+    for (mspring_id s = 0; s < made.spring_count; s++) {
+        expected += made.springs[s].a == particle || made.springs[s].b == particle;
+    }
+    check_ok(mspring_network_detach_particles(network, &particle, 1));
+    check_ok(mspring_network_detach_particles(network, &particle, 1)); // it has no spring left to break
+    mspring_event events[CAPACITY];
+    const uint32_t count = read_all(network, events);
+    assert_true(expected >= 6);
+    assert_int_equal(count, expected + 2);
+    for (uint32_t e = 0; e < expected; e++) {
+        assert_int_equal(events[e].kind, MSPRING_EVENT_BROKEN);
+        assert_int_equal(events[e].other, particle);
+        assert_true(e == 0 || events[e].id > events[e - 1].id);
+    }
+    for (uint32_t e = expected; e < count; e++) {
+        assert_int_equal(events[e].kind, MSPRING_EVENT_DETACHED);
+        assert_int_equal(events[e].id, particle);
+    }
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+/* ------------------------------------------------------------------------------------------------------ refusals
+ */
+
+static void bad_thresholds_are_refused(void **state) {
+    (void)state;
+    recipe made = lively_recipe();
+    mspring_network *network = network_of(&made, MSPRING_SIMD_AUTO);
+    const mspring_id list[] = {1, 2, 3}, beyond[] = {1, made.spring_count, 3};
+    const float bad[] = {0, -1, NAN, -INFINITY}, good[] = {1, 1, 1};
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        const float strain[] = {0.001f, bad[i], 0.001f};
+        check_error(mspring_network_set_break_strains(network, 5, 3, strain), MSPRING_ERROR_ARGUMENT);
+        check_contains(mspring_network_error(network), "spring 6");
+        check_error(mspring_network_set_break_strains_at(network, list, 3, strain), MSPRING_ERROR_ARGUMENT);
+        check_contains(mspring_network_error(network), "spring 2: break");
+        check_error(mspring_network_set_stress_strains(network, 5, 3, strain), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_set_stress_strains_at(network, list, 3, strain), MSPRING_ERROR_ARGUMENT);
+        check_contains(mspring_network_error(network), "spring 2: stress");
+    }
+    check_error(mspring_network_set_break_strains(network, made.spring_count, 1, good), MSPRING_ERROR_ID);
+    check_error(mspring_network_set_break_strains_at(network, beyond, 3, good), MSPRING_ERROR_ID);
+    check_error(mspring_network_set_stress_strains(network, 0, 1, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_stress_strains_at(network, NULL, 1, good), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_break_strains(NULL, 0, 1, good), MSPRING_ERROR_ARGUMENT);
+    const float fractions[] = {-0.1f, 1.1f, NAN};
+    for (size_t i = 0; i < COUNT_OF(fractions); i++) {
+        check_error(mspring_network_set_relax_fraction(network, fractions[i]), MSPRING_ERROR_ARGUMENT);
+    }
+    check_error(mspring_network_set_relax_fraction(NULL, 0.5f), MSPRING_ERROR_ARGUMENT);
+    mspring_event event;
+    uint32_t count = 7;
+    check_error(mspring_network_read_events(NULL, &event, 1, &count, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_read_events(network, NULL, 1, &count, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_read_events(network, &event, 1, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    assert_int_equal(count, 7);
+    check_error(mspring_network_reserve_events(network, MSPRING_MAX_SPRINGS + 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_reserve_events(NULL, 1), MSPRING_ERROR_ARGUMENT);
+    // Nothing is watched.
+    support_steps(network, 10, 1.0 / 64);
+    check_ok(mspring_network_read_events(network, &event, 1, &count, NULL));
+    assert_int_equal(count, 0);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+static void watching_survives_every_failure_and_steps_allocate_nothing(void **state) {
+    (void)state;
+    recipe made = lively_recipe();
+    thresholds at = random_thresholds(made.spring_count);
+    uint64_t expected = 0;
+    size_t fail_at = 0;
+    for (bool failed = true; failed; fail_at++) { // the first time round nothing fails
+        watched_allocator watched = {0};
+        mspring_allocator allocator = watched_interface(&watched);
+        mspring_network_def def = support_def(-9.8f, 4);
+        def.allocator = &allocator;
+        mspring_network *network = recipe_network(&made, &def);
+        watched.fail_at = fail_at > 0 ? watched.calls + fail_at : 0;
+        failed = fail_at == 0;
+        for (int call = 0; call < 3; call++) {
+            for (int again = 0; again < 2; again++) {
+                mspring_result result =
+                    call == 0 ? mspring_network_reserve_events(network, CAPACITY)
+                    : call == 1
+                        ? mspring_network_set_break_strains(network, 0, made.spring_count, at.break_strain)
+                        : mspring_network_set_stress_strains(network, 0, made.spring_count, at.stress_strain);
+                if (result == MSPRING_OK) {
+                    break;
+                }
+                check_error(result, MSPRING_ERROR_MEMORY);
+                check_contains(mspring_network_error(network), "memory");
+                assert_int_equal(again, 0);
+                failed = true;
+            }
+        }
+        const size_t calls = watched.calls;
+        support_steps(network, 20, 1.0 / 64);
+        assert_int_equal(watched.calls, calls);
+        expected = fail_at == 0 ? support_hash(network) : expected;
+        assert_int_equal(support_hash(network), expected);
+        mspring_network_destroy(network);
+        check_watched_clean(&watched);
+    }
+    assert_true(fail_at > 8);
+    free_thresholds(&at);
+    recipe_free(&made);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(springs_break_and_are_stressed_by_the_rules),
+        cmocka_unit_test(every_level_has_the_same_events),
+        cmocka_unit_test(thresholds_out_of_reach_change_nothing),
+        cmocka_unit_test(a_swinging_weight_stresses_once_a_period),
+        cmocka_unit_test(a_weight_too_heavy_breaks_its_spring_and_falls),
+        cmocka_unit_test(the_same_blow_breaks_the_same_springs_at_any_substeps),
+        cmocka_unit_test(a_full_queue_counts_what_it_loses),
+        cmocka_unit_test(detachment_is_told_spring_by_spring),
+        cmocka_unit_test(bad_thresholds_are_refused),
+        cmocka_unit_test(watching_survives_every_failure_and_steps_allocate_nothing),
+    };
+    return cmocka_run_group_tests_name("strain", tests, NULL, NULL);
+}
