@@ -91,7 +91,8 @@ static mspring_result allocate(mspring_network *network, bool relative) {
         mspringi_alloc(memory, (size_t)8 * t->web.group_count * MSPRINGI_WIDTH, sizeof *network->packed);
     network->attached = mspringi_alloc(memory, (size_t)2 * t->web.attached_count, sizeof *network->attached);
     network->depth = mspringi_explicit_depth(t, network->parts);
-    network->carry = mspringi_alloc(memory, (size_t)2 * network->depth * t->carry_blocks * MSPRINGI_WIDTH,
+    network->carry_rows = network->depth * mspringi_tasks_concurrency(network->tasks);
+    network->carry = mspringi_alloc(memory, (size_t)2 * network->carry_rows * t->carry_blocks * MSPRINGI_WIDTH,
                                     sizeof *network->carry);
     network->live = mspringi_alloc(memory, mspringi_place_words(t), sizeof *network->live);
     if (relative)
@@ -154,16 +155,16 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     look_at_springs(builder, &damped, &relative);
     damped = damped || (def->flags & MSPRING_NETWORK_RESERVE_DAMPING);
     network->parts = damped ? MSPRINGI_DAMPING + 1 : MSPRINGI_STIFFNESS + 1;
-    result = allocate(network, relative);
+    result =
+        mspringi_tasks_create(def->worker_count, def->tasks, &network->memory, &network->message, &network->tasks);
+    if (result == MSPRING_OK)
+        result = allocate(network, relative);
     if (result != MSPRING_OK)
         return result;
     network->kernels = mspringi_kernels_of(mspringi_cpu_choose(def->simd_level));
     network->max_speed = def->max_speed;
     network->strain.relax = MSPRINGI_USUAL_RELAX;
-    result =
-        mspringi_tasks_create(def->worker_count, def->tasks, &network->memory, &network->message, &network->tasks);
-    if (result == MSPRING_OK)
-        result = mspring_network_set_gravity(network, def->gravity_x, def->gravity_y);
+    result = mspring_network_set_gravity(network, def->gravity_x, def->gravity_y);
     if (result == MSPRING_OK)
         result = mspring_network_set_global_damping(network, def->global_damping);
     if (result == MSPRING_OK) {

@@ -130,7 +130,8 @@ struct mspring_network {
     uint16_t *live;              ///< [places / 16] a bit for each place: 1 where a spring is, and is not broken
     mspringi_relative *kept;     ///< [springs] N/m, N s/m of broken springs that are not relative; NULL before any
     uint32_t depth;              ///< substeps that may be swept in one pass over the lattice rows
-    float *carry;                ///< a carry row for each of them, x and then y
+    uint32_t carry_rows;         ///< depth, for each worker
+    float *carry;                ///< [carry_rows] forces on the row above, all x and then all y of each
 
     float gravity_x, gravity_y, global_damping, max_speed;
     uint32_t substeps; ///< of the last step or, unless auto_substeps, of the next

@@ -143,7 +143,8 @@ static mspring_result number_blocks(assembly *a) {
     t->lattice_blocks = (uint32_t)a->block_count;
     t->chain_first = t->lattice_first + t->lattice_blocks;
     t->chain_blocks = (a->strands.count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
-    t->web_first = t->chain_first + t->chain_blocks;
+    // One of padding: vectors at the end of the rows before reach into it, while other threads move the web.
+    t->web_first = t->chain_first + t->chain_blocks + 1;
     t->web_blocks = web_blocks(a, a->web.count);
     t->loose_first = t->web_first + t->web_blocks;
     t->loose_blocks = (loose + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;

@@ -74,7 +74,7 @@ typedef struct mspringi_empty_run {
 
 typedef struct mspringi_topology {
     uint32_t particle_count, spring_count;
-    uint32_t block_count; ///< with one of padding in front and one behind, so that lane + 1 can always be read
+    uint32_t block_count; ///< with one of padding in front, one before the web and one behind: lane + 1 can be read
     uint32_t lattice_first, lattice_blocks; ///< blocks: first, number
     uint32_t chain_first, chain_blocks;
     uint32_t web_first, web_blocks;

@@ -1,0 +1,145 @@
+/// Sweeping a strip of rows, and what hangs on it.
+#include "strip.h"
+
+#include "decay.h"
+
+mspringi_substep mspringi_substep_prepare(const mspring_network *network, float h, mspringi_field base, uint32_t i,
+                                          uint32_t count, uint32_t carry_number) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_field field = t->web.attached_count > 0 ? network->forces.total : base;
+    const size_t carry_slots = (size_t)t->carry_blocks * MSPRINGI_WIDTH;
+    const size_t packed_floats = (size_t)4 * t->web.group_count * MSPRINGI_WIDTH;
+    float *carry = network->carry + 2 * carry_number * carry_slots;
+    return (mspringi_substep){
+        .base = base,
+        .packed = network->packed + i % 2 * packed_floats,
+        .next_packed = i + 1 < count ? network->packed + (i + 1) % 2 * packed_floats : NULL,
+        .sweep =
+            {
+                .x = network->state.x,
+                .y = network->state.y,
+                .vx = network->state.vx,
+                .vy = network->state.vy,
+                .inverse_mass = network->inverse_mass,
+                .force_x = field.x,
+                .force_y = field.y,
+                .carry_x = carry,
+                .carry_y = carry + carry_slots,
+                .lattice_springs = network->lattice_springs,
+                .chain_springs = network->chain_springs,
+                .web = &t->web,
+                .web_springs = network->web_springs,
+                .packed = network->packed + i % 2 * packed_floats,
+                .parts = network->parts,
+                .h = h,
+                .decay = mspringi_decay(network->global_damping, h),
+                // Never -0: a sum of forces may be +0 or -0, depending on what empty slots hold, and what is added
+                // to +0 does not tell.
+                .gravity_h_x = network->gravity_x * h + 0.0f,
+                .gravity_h_y = network->gravity_y * h + 0.0f,
+            },
+    };
+}
+
+// Pack what the web sees of the nodes that are slots of a strip.
+static void pack_attached(const mspring_network *network, const mspringi_strip *strip, float *packed) {
+    const mspringi_web *web = &network->topology.web;
+    const mspringi_state *state = &network->state;
+    const uint32_t *slots = web->attached_slot + strip->first_attached;
+    packed += 4 * ((size_t)web->own_count + strip->first_attached);
+    for (uint32_t i = 0; i < strip->attached_count; ++i, packed += 4) {
+        packed[0] = state->x[slots[i]];
+        packed[1] = state->y[slots[i]];
+        packed[2] = state->vx[slots[i]];
+        packed[3] = state->vy[slots[i]];
+    }
+}
+
+// Pack what the web sees of its own nodes in a span.
+static void pack_span(const mspring_network *network, const mspringi_sweep *sweep, const mspringi_span *span,
+                      float *packed) {
+    const size_t first = span->first_slot / MSPRINGI_WIDTH;
+    const size_t end = (span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
+    network->kernels->pack(sweep, first, end - first, packed + (size_t)4 * span->first_record * MSPRINGI_WIDTH);
+}
+
+// Put the web's pull at the slots of a strip on top of base into the total field.
+static void pull_attached(const mspring_network *network, const mspringi_substep *substep,
+                          const mspringi_strip *strip) {
+    const mspringi_web *web = &network->topology.web;
+    const mspringi_field total = network->forces.total, base = substep->base;
+    const uint32_t *slots = web->attached_slot + strip->first_attached;
+    float *pull_x = network->attached, *pull_y = network->attached + web->attached_count;
+    network->kernels->attached[network->parts > MSPRINGI_DAMPING](&substep->sweep, strip->first_attached,
+                                                                  strip->attached_count, pull_x, pull_y);
+    pull_x += strip->first_attached;
+    pull_y += strip->first_attached;
+    for (uint32_t i = 0; i < strip->attached_count; ++i) {
+        total.x[slots[i]] = base.x ? base.x[slots[i]] + pull_x[i] : pull_x[i];
+        total.y[slots[i]] = base.x ? base.y[slots[i]] + pull_y[i] : pull_y[i];
+    }
+}
+
+// Sweep rows that follow each other, all of one kind.
+static void sweep_rows(const mspring_network *network, const mspringi_sweep *sweep, const mspringi_row *rows,
+                       uint32_t row_count, bool forced) {
+    const mspringi_kernels *kernels = network->kernels;
+    const mspringi_span *spans = network->topology.spans + rows->first_span;
+    const mspringi_row *last = &rows[row_count - 1];
+    const uint32_t span_count = last->first_span + last->span_count - rows->first_span;
+    const bool damped = network->parts > MSPRINGI_DAMPING;
+    switch (rows->kind) {
+    case MSPRINGI_ROW_LATTICE:
+        kernels->lattice[damped][forced](sweep, spans, span_count);
+        break;
+    case MSPRINGI_ROW_CHAIN:
+        kernels->chain[damped][forced](sweep, spans, span_count);
+        break;
+    case MSPRINGI_ROW_WEB:
+        kernels->web[damped][forced](sweep, spans, span_count);
+        break;
+    case MSPRINGI_ROW_LOOSE:
+        kernels->loose[forced](sweep, spans, span_count);
+        break;
+    }
+}
+
+void mspringi_web_pack(const mspring_network *network, const mspringi_substep *substep, const mspringi_span *span) {
+    pack_span(network, &substep->sweep, span, substep->packed);
+}
+
+void mspringi_web_sweep(const mspring_network *network, const mspringi_substep *substep,
+                        const mspringi_span *span) {
+    network->kernels->web[network->parts > MSPRINGI_DAMPING][substep->base.x != NULL](&substep->sweep, span, 1);
+}
+
+void mspringi_strip_pack(const mspring_network *network, const mspringi_substep *substep,
+                         const mspringi_strip *strip) {
+    const mspringi_topology *t = &network->topology;
+    if (t->web.group_count == 0)
+        return;
+    pack_attached(network, strip, substep->packed);
+    if (strip->home_span != MSPRING_NONE)
+        mspringi_web_pack(network, substep, &t->spans[strip->home_span]);
+}
+
+void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep *substep,
+                          const mspringi_strip *strip) {
+    const mspringi_row *rows = &network->topology.rows[strip->first_row];
+    const bool based = substep->base.x != NULL;
+    if (strip->attached_count > 0)
+        pull_attached(network, substep, strip);
+    for (uint32_t first = 0, count; first < strip->row_count; first += count) {
+        for (count = 1; first + count < strip->row_count && rows[first + count].kind == rows[first].kind;)
+            ++count;
+        sweep_rows(network, &substep->sweep, &rows[first], count, based || strip->attached_count > 0);
+    }
+    if (strip->attached_count > 0 && substep->next_packed)
+        pack_attached(network, strip, substep->next_packed);
+    if (strip->home_span == MSPRING_NONE)
+        return;
+    const mspringi_span *span = &network->topology.spans[strip->home_span];
+    mspringi_web_sweep(network, substep, span);
+    if (substep->next_packed)
+        pack_span(network, &substep->sweep, span, substep->next_packed);
+}
