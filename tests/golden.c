@@ -145,6 +145,35 @@ static mspring_network *everything_flying(mspring_network_def *def) {
     return network;
 }
 
+static mspring_network *implicit_bar(mspring_network_def *def) {
+    def->solver = MSPRING_SOLVER_IMPLICIT;
+    return bar_80x5(def);
+}
+
+static mspring_network *implicit_ropes(mspring_network_def *def) {
+    def->solver = MSPRING_SOLVER_IMPLICIT;
+    return bar_with_ropes(def);
+}
+
+static mspring_network *implicit_graph(mspring_network_def *def) {
+    def->solver = MSPRING_SOLVER_IMPLICIT;
+    return graph(def);
+}
+
+/// Everything, with all integrators in turn.
+static void push_and_change_solver(mspring_network *network, uint32_t step) {
+    push_some(network, step);
+    if (step % 10 != 0) {
+        return;
+    }
+    mspring_solver_def solver;
+    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    solver.solver = step / 10 % 4 == 3 ? MSPRING_SOLVER_EXPLICIT : MSPRING_SOLVER_IMPLICIT;
+    solver.substeps = step / 10 % 4 == 3 ? 4 : 1;
+    solver.integrator = (mspring_integrator)(step / 10 % 4 % 3);
+    check_ok(mspring_network_set_solver(network, &solver));
+}
+
 const golden_scene golden_scenes[] = {
     {"bar_80x5", bar_80x5, NULL, 30, 64, 1.0 / 64},
     {"bar_544x68", bar_544x68, NULL, 30, 3, 1.0 / 64},
@@ -156,6 +185,10 @@ const golden_scene golden_scenes[] = {
     {"graph", graph, NULL, 40, 40, 1.0 / 64},
     {"everything_damped", everything_damped, push_some, 4, 100, 1.0 / 64},
     {"everything_flying", everything_flying, NULL, 5, 100, 1.0 / 50},
+    {"implicit_bar", implicit_bar, NULL, 1, 64, 1.0 / 64},
+    {"implicit_ropes", implicit_ropes, NULL, 2, 20, 1.0 / 64},
+    {"implicit_graph", implicit_graph, NULL, 1, 20, 1.0 / 64},
+    {"implicit_everything", everything_damped, push_and_change_solver, 1, 80, 1.0 / 64},
 };
 const uint32_t golden_scene_count = COUNT_OF(golden_scenes);
 

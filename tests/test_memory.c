@@ -276,6 +276,43 @@ static void first_force_survives_failure(void **state) {
     recipe_free(&made);
 }
 
+static void changing_the_solver_survives_every_failure(void **state) {
+    (void)state;
+    recipe made = small_recipe();
+    size_t fail_at = 0;
+    for (mspring_result result = MSPRING_ERROR_MEMORY; result != MSPRING_OK;) {
+        watched_allocator watched = {0}, unwatched = {0};
+        mspring_network *network = watched_network(&made, &watched, 0);
+        mspring_network *twin = watched_network(&made, &unwatched, 0);
+        mspring_solver_def solver;
+        check_ok(mspring_solver_def_init(&solver, sizeof solver));
+        solver.solver = MSPRING_SOLVER_IMPLICIT;
+        check_ok(mspring_network_set_solver(network, &solver));
+        check_ok(mspring_network_set_solver(twin, &solver));
+        support_steps(network, 3, 0.01);
+        support_steps(twin, 3, 0.01);
+        const size_t used = mspring_network_memory_used(network);
+        solver.integrator = MSPRING_INTEGRATOR_BDF2;
+        watched.fail_at = watched.calls + ++fail_at;
+        result = mspring_network_set_solver(network, &solver);
+        watched.fail_at = 0;
+        if (result != MSPRING_OK) {
+            check_error(result, MSPRING_ERROR_MEMORY);
+            check_contains(mspring_network_error(network), "memory");
+            assert_int_equal(mspring_network_memory_used(network), used);
+            support_steps(network, 5, 0.01);
+            support_steps(twin, 5, 0.01);
+            assert_int_equal(support_hash(network), support_hash(twin));
+        }
+        mspring_network_destroy(network);
+        mspring_network_destroy(twin);
+        check_watched_clean(&watched);
+        check_watched_clean(&unwatched);
+    }
+    assert_true(fail_at > 20);
+    recipe_free(&made);
+}
+
 static void no_step_allocates(void **state) {
     (void)state;
     recipe made = small_recipe();
@@ -311,6 +348,15 @@ static void no_step_allocates(void **state) {
     }
     assert_int_equal(watched.calls, calls_now);
     assert_true(hook_calls > 0);
+    solver.solver = MSPRING_SOLVER_IMPLICIT;
+    check_ok(mspring_network_set_solver(network, &solver));
+    const size_t calls_implicit = watched.calls;
+    for (uint32_t step = 0; step < 10; step++) {
+        solver.iterations = step;
+        check_ok(mspring_network_set_solver(network, &solver));
+        support_steps(network, 1, 0.01);
+    }
+    assert_int_equal(watched.calls, calls_implicit);
     mspring_network_destroy(network);
     check_watched_clean(&watched);
     recipe_free(&made);
@@ -358,6 +404,7 @@ int main(void) {
         cmocka_unit_test(adding_hooks_survives_every_failure),
         cmocka_unit_test(first_force_survives_failure),
         cmocka_unit_test(stable_dt_survives_every_failure),
+        cmocka_unit_test(changing_the_solver_survives_every_failure),
         cmocka_unit_test(no_step_allocates),
     };
     return cmocka_run_group_tests_name("memory", tests, NULL, NULL);

@@ -260,23 +260,48 @@ enum {
     /// Symplectic Euler in substeps of equal length. First order, conserves momentum, cost proportional to the
     /// number of substeps. Stable while omega_max * h < 2: on a full lattice of equal springs and masses,
     /// stiffness < mass / (2 h^2). See mspring_network_stable_dt().
-    MSPRING_SOLVER_EXPLICIT = 0
+    MSPRING_SOLVER_EXPLICIT = 0,
+    /// One linear system in each substep, whatever the stiffness: stable for any dt and any springs, at a cost that
+    /// does not depend on them. Springs and dampers are linearised at x + h v (their stiffness across their
+    /// direction clamped to 0 where they are compressed, so that the matrix is positive definite) and the system is
+    /// solved by a fixed number of conjugate gradient iterations with a two-level preconditioner: the blocks of the
+    /// single particles, and tiles of neighbouring particles that move as rigid bodies. A substep costs 30 to 60
+    /// explicit ones. It damps what oscillates with less than about ten substeps a period.
+    MSPRING_SOLVER_IMPLICIT = 1
+};
+
+/// How the implicit solver goes from t to t + h. All are stable for any h and damp the fastest oscillations out in a
+/// few steps. The two of second order remember the substep before; the first substep after a change of the solver,
+/// and after the positions of all particles were set, is one of implicit Euler.
+typedef int32_t mspring_integrator;
+enum {
+    MSPRING_INTEGRATOR_GA0 = 0,  ///< generalised-alpha with rho_inf = 0 (Chung and Hulbert, 1993): second order
+    MSPRING_INTEGRATOR_BDF2 = 1, ///< backward differences of second order
+    MSPRING_INTEGRATOR_EULER = 2 ///< implicit Euler: first order, and takes most energy out of oscillations
 };
 
 /// Most substeps in one step.
 #define MSPRING_MAX_SUBSTEPS 1000000
 
 /// substeps for "as few as are stable in whatever shape the network may get into" (see
-/// mspring_network_stable_dt()), chosen at every step. mspring_network_substeps() says how many they were.
+/// mspring_network_stable_dt()), chosen at every step. mspring_network_substeps() says how many they were. For the implicit solver 1.
 #define MSPRING_SUBSTEPS_AUTO UINT32_MAX
 
-/// Solver and its settings. Fill with mspring_solver_def_init() first.
+/// Solver and its settings. Fill with mspring_solver_def_init() first. What a solver does not use is not looked at.
 typedef struct mspring_solver_def {
     uint32_t struct_size;
     mspring_solver solver; ///< default MSPRING_SOLVER_EXPLICIT
     uint32_t substeps;     ///< substeps in one step, 1 to MSPRING_MAX_SUBSTEPS, or MSPRING_SUBSTEPS_AUTO; default 1
     uint32_t max_substeps; ///< most that MSPRING_SUBSTEPS_AUTO may choose, 1 to MSPRING_MAX_SUBSTEPS: a step that
                            ///< needs more is refused with MSPRING_ERROR_UNSTABLE; default 1000
+    mspring_integrator integrator; ///< of the implicit solver; default MSPRING_INTEGRATOR_GA0
+    uint32_t iterations;           ///< of conjugate gradients in a substep, at most 10000; 0, the default: 8
+    uint32_t tile_size;     ///< rows and columns of the cells that a lattice is cut into for its tiles: 4, 8, 16, 32,
+                            ///< 64, 128 or 256; 0, the default: by plan, 8 unless the network is so large that
+                            ///< thousands of tiles would cost more than they help
+    uint32_t coarse_period; ///< substeps from one factorisation of the tiles' matrix to the next, at most 10000: more
+                            ///< are cheaper, and good as long as the network does not turn far in them; 0, the
+                            ///< default: 1
 } mspring_solver_def;
 
 /// Instruction sets. All give the same bits.
@@ -304,7 +329,8 @@ typedef struct mspring_network_def {
     float global_damping;    ///< 1/s, 0 to 1e6; velocities decay by exp(-global_damping t); default 0
     float max_speed;         ///< m/s, > 0 and at most 1e15: a step that ends with a particle faster than this in
                              ///< x or y is refused with MSPRING_ERROR_UNSTABLE; default 1e6
-    mspring_solver solver;   ///< default MSPRING_SOLVER_EXPLICIT
+    mspring_solver solver;   ///< default MSPRING_SOLVER_EXPLICIT; its other settings are those of
+                             ///< mspring_solver_def_init()
     uint32_t substeps;       ///< as in mspring_solver_def; default 1
     const mspring_allocator *allocator; ///< default NULL: malloc and free
     const mspring_tasks *tasks; ///< the host's threads; default NULL: threads of the library, if worker_count asks
@@ -440,9 +466,11 @@ MSPRING_API const char *mspring_network_error(const mspring_network *network);
 MSPRING_API uint32_t mspring_network_particle_count(const mspring_network *network);
 MSPRING_API uint32_t mspring_network_spring_count(const mspring_network *network);
 
-/// Choose how the following steps are made.
-/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT or MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// Choose how the following steps are made. The state goes on from where it is.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY or MSPRING_ERROR_BUSY. On
+///         error the solver is the one of before.
+/// @threads exclusive access to network   @allocates for an implicit solver, unless only substeps, iterations or
+///         coarse_period differ from the one of before   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_solver(mspring_network *network,
                                                                         const mspring_solver_def *def);
 
@@ -983,6 +1011,13 @@ typedef struct mspring_plan {
                              ///< compute any.
     uint32_t has_relative;   ///< 1: some spring is relative, and a change of substep costs a pass over all
     mspring_simd simd_level; ///< what runs
+    mspring_solver solver;
+    mspring_integrator integrator; ///< this and what follows: of the implicit solver, else 0
+    uint32_t iterations;
+    uint32_t tile_size;     ///< rows and columns of the cells of wide lattices
+    uint32_t tile_count;    ///< tiles, each of three unknowns in the coarse matrix
+    uint32_t coarse_values; ///< numbers in that matrix's factor
+    uint32_t coarse_period;
 } mspring_plan;
 
 /// Get the plan. Set struct_size first.

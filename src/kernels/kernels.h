@@ -8,6 +8,7 @@
 #ifndef MSPRINGI_KERNELS_H
 #define MSPRINGI_KERNELS_H
 
+#include "system.h"
 #include "topology/topology.h"
 
 /// The parts of a spring record, each one value per slot; damping only if the network has any.
@@ -86,6 +87,7 @@ typedef struct mspringi_kernels {
     mspringi_attached_fn attached[2]; ///< [with damping]
     mspringi_bounded_fn bounded;
     mspringi_strain_fn lattice_strain, chain_strain;
+    mspringi_system_kernels system;
 } mspringi_kernels;
 
 extern const mspringi_kernels mspringi_kernels_scalar;

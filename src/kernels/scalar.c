@@ -230,6 +230,8 @@ static uint32_t chain_strain(const mspringi_strain_sweep *s, uint32_t first, uin
     return count;
 }
 
+#include "scalar_lane.h"
+
 #define MSPRINGI_TABLE mspringi_kernels_scalar
 #define MSPRINGI_LEVEL MSPRING_SIMD_SCALAR
 #include "table.h"

@@ -5,6 +5,9 @@
 ///
 /// SPDX-License-Identifier: MIT
 
+#include "system_assemble.h"
+#include "system_multiply.h"
+
 #define MSPRINGI_VARIANT(kind, name, damped, forced)                                                               \
     static void kind##_##name(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count) {           \
         kind(sweep, spans, count, damped, forced);                                                                 \
@@ -50,4 +53,8 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .bounded = bounded,
     .lattice_strain = lattice_strain,
     .chain_strain = chain_strain,
+    .system = {.assemble_lattice = {assemble_lattice_plain, assemble_lattice_damped},
+               .assemble_chain = {assemble_chain_plain, assemble_chain_damped},
+               .multiply_lattice = multiply_lattice,
+               .multiply_chain = multiply_chain},
 };

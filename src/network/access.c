@@ -140,6 +140,7 @@ static MSPRINGI_NOINLINE mspring_result set_positions(mspring_network *network, 
     for (uint32_t i = 0; i < count; ++i)
         mspringi_set_position(network, first + i, x_of(to, i), y_of(to, i));
     network->edits.state++;
+    network->edits.motion += all;
     return MSPRING_OK;
 }
 

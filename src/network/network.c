@@ -4,6 +4,7 @@
 #include "base/cpu.h"
 #include "explicit/explicit.h"
 #include "hooks.h"
+#include "implicit/implicit.h"
 #include "origin.h"
 #include "springs.h"
 
@@ -167,18 +168,16 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     result = mspring_network_set_gravity(network, def->gravity_x, def->gravity_y);
     if (result == MSPRING_OK)
         result = mspring_network_set_global_damping(network, def->global_damping);
-    if (result == MSPRING_OK) {
-        const mspring_solver_def solver = {.struct_size = sizeof solver,
-                                           .solver = def->solver,
-                                           .substeps = def->substeps,
-                                           .max_substeps = def->max_substeps};
-        result = mspring_network_set_solver(network, &solver);
-    }
-    if (result == MSPRING_OK) {
-        fill_particles(network, builder);
-        fill_springs(network, builder);
-    }
-    return result;
+    if (result != MSPRING_OK)
+        return result;
+    fill_particles(network, builder);
+    fill_springs(network, builder);
+    mspring_solver_def solver;
+    (void)mspring_solver_def_init(&solver, sizeof solver);
+    solver.solver = def->solver;
+    solver.substeps = def->substeps;
+    solver.max_substeps = def->max_substeps;
+    return mspring_network_set_solver(network, &solver);
 }
 
 mspring_result mspring_network_create(mspring_builder *builder, const mspring_network_def *def,
@@ -223,6 +222,7 @@ void mspring_network_destroy(mspring_network *network) {
         return;
     mspringi_memory memory = network->memory;
     mspringi_tasks_destroy(network->tasks, &memory);
+    mspringi_implicit_destroy(network->implicit, &memory);
     mspringi_topology_destroy(&network->topology, &memory);
     mspringi_free(&memory, network->state.x);
     mspringi_free(&memory, network->backup.x);

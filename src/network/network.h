@@ -55,6 +55,7 @@ typedef struct mspringi_relative {
 /// new substep is no edit either.
 typedef struct mspringi_edits {
     uint64_t state;  ///< calls that set positions or velocities
+    uint64_t motion; ///< calls that set the positions of all particles at once: a new motion begins
     uint64_t masses; ///< calls that changed inverse masses
     uint64_t values; ///< calls that changed stiffness, damping or rest lengths
     uint64_t links;  ///< springs that were broken or restored, one by one
@@ -137,6 +138,7 @@ struct mspring_network {
     uint32_t substeps; ///< of the last step or, unless auto_substeps, of the next
     uint32_t max_substeps;
     bool auto_substeps;
+    struct mspringi_implicit *implicit; ///< NULL: the explicit solver
 
     mspringi_edits edits;
     mspringi_ramps ramps;

@@ -1,4 +1,5 @@
 /// What a network says of itself: its sizes, its error, and how it was laid out.
+#include "implicit/implicit.h"
 #include "network.h"
 
 const char *mspring_network_error(const mspring_network *network) {
@@ -55,5 +56,6 @@ mspring_result mspring_network_plan(const mspring_network *network, mspring_plan
         .has_relative = network->relative != NULL,
         .simd_level = network->kernels->level,
     };
+    mspringi_implicit_describe(network->implicit, plan);
     return MSPRING_OK;
 }

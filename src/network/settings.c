@@ -1,19 +1,39 @@
 /// Settings that may change between steps: solver, gravity, global damping.
-#include "network.h"
-
 #include <math.h>
 
-mspring_result mspring_network_set_solver(mspring_network *network, const mspring_solver_def *def) {
-    mspring_result result = mspringi_enter(network);
-    if (result != MSPRING_OK)
-        return result;
-    mspringi_message *message = &network->message;
+#include "base/cpu.h"
+#include "implicit/implicit.h"
+#include "network.h"
+
+/// Most iterations, and most substeps with one coarse matrix.
+#define MOST_ITERATIONS 10000
+
+static mspring_result check_implicit(const mspring_solver_def *def, mspringi_message *message) {
+    if (def->integrator < MSPRING_INTEGRATOR_GA0 || def->integrator > MSPRING_INTEGRATOR_EULER)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "integrator is %d, which is none",
+                             (int)def->integrator);
+    if (def->iterations > MOST_ITERATIONS)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "iterations is %u, it must be at most %d",
+                             (unsigned)def->iterations, MOST_ITERATIONS);
+    if (def->coarse_period > MOST_ITERATIONS)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "coarse_period is %u, it must be at most %d",
+                             (unsigned)def->coarse_period, MOST_ITERATIONS);
+    const bool is_power_of_two = (def->tile_size & (def->tile_size - 1)) == 0;
+    if (def->tile_size != 0 && (def->tile_size < 4 || def->tile_size > 256 || !is_power_of_two))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "tile_size is %u, it must be 0 or a power of two from 4 to 256",
+                             (unsigned)def->tile_size);
+    return MSPRING_OK;
+}
+
+static mspring_result check_solver(const mspring_solver_def *def, mspringi_message *message) {
     if (!def)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "solver definition is NULL");
-    result = mspringi_check_struct(message, "mspring_solver_def", def->struct_size, sizeof *def, sizeof *def);
+    mspring_result result =
+        mspringi_check_struct(message, "mspring_solver_def", def->struct_size, sizeof *def, sizeof *def);
     if (result != MSPRING_OK)
         return result;
-    if (def->solver != MSPRING_SOLVER_EXPLICIT)
+    if (def->solver < MSPRING_SOLVER_EXPLICIT || def->solver > MSPRING_SOLVER_IMPLICIT)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "solver is %d, which is none", (int)def->solver);
     const bool automatic = def->substeps == MSPRING_SUBSTEPS_AUTO;
     if (!automatic && (def->substeps < 1 || def->substeps > MSPRING_MAX_SUBSTEPS))
@@ -22,7 +42,38 @@ mspring_result mspring_network_set_solver(mspring_network *network, const msprin
     if (def->max_substeps < 1 || def->max_substeps > MSPRING_MAX_SUBSTEPS)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "max_substeps is %u, it must be 1 to %u",
                              (unsigned)def->max_substeps, (unsigned)MSPRING_MAX_SUBSTEPS);
-    network->auto_substeps = automatic;
+    return def->solver == MSPRING_SOLVER_IMPLICIT ? check_implicit(def, message) : MSPRING_OK;
+}
+
+// Exchange the implicit solver, or the lack of it, for that of the definition.
+static mspring_result change_implicit(mspring_network *network, const mspring_solver_def *def) {
+    mspringi_implicit *made = NULL;
+    if (def->solver == MSPRING_SOLVER_IMPLICIT) {
+        if (mspringi_implicit_fits(network->implicit, def)) {
+            mspringi_implicit_adjust(network->implicit, def);
+            return MSPRING_OK;
+        }
+        const mspringi_fp_state before = mspringi_fp_enter();
+        mspring_result result = mspringi_implicit_create(network, def, &made);
+        mspringi_fp_leave(before);
+        if (result != MSPRING_OK)
+            return result;
+    }
+    mspringi_implicit_destroy(network->implicit, &network->memory);
+    network->implicit = made;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_set_solver(mspring_network *network, const mspring_solver_def *def) {
+    mspring_result result = mspringi_enter(network);
+    if (result == MSPRING_OK)
+        result = check_solver(def, &network->message);
+    if (result == MSPRING_OK)
+        result = change_implicit(network, def);
+    if (result != MSPRING_OK)
+        return result;
+    const bool automatic = def->substeps == MSPRING_SUBSTEPS_AUTO;
+    network->auto_substeps = automatic && !network->implicit;
     network->substeps = automatic ? 1 : def->substeps;
     network->max_substeps = def->max_substeps;
     return MSPRING_OK;

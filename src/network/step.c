@@ -8,6 +8,7 @@
 #include "edits/strain.h"
 #include "explicit/explicit.h"
 #include "hooks.h"
+#include "implicit/implicit.h"
 #include "network.h"
 #include "origin.h"
 #include "springs.h"
@@ -53,6 +54,13 @@ static void reset_total(mspring_network *network, mspringi_field base) {
 
 /* -------------------------------------------------------------------------------------------------- substeps */
 
+static void take_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+    if (network->implicit)
+        mspringi_implicit_substeps(network, h, base, count);
+    else
+        mspringi_explicit_substeps(network, h, base, count);
+}
+
 static void run_substeps(mspring_network *network, double dt, float h) {
     const bool hooks_before = mspringi_hooks_any(network, MSPRING_PHASE_BEFORE_SUBSTEP);
     const bool hooks_after = mspringi_hooks_any(network, MSPRING_PHASE_AFTER_SUBSTEP);
@@ -67,7 +75,7 @@ static void run_substeps(mspring_network *network, double dt, float h) {
         count = mspringi_hooks_free_substeps(network, substep);
         if (hooks_before && mspringi_hooks_before_substep(network, substep, (double)h, base) && pulled)
             reset_total(network, field);
-        mspringi_explicit_substeps(network, h, field, count);
+        take_substeps(network, h, field, count);
         if (hooks_after)
             mspringi_hooks_after_substep(network, substep + count - 1, (double)h);
     }
@@ -154,6 +162,7 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
     mspringi_derive_relative(network, h);
     mspringi_ramps_apply(network, dt);
     copy_state(network, &network->state, &network->backup);
+    mspringi_implicit_keep(network);
     run_substeps(network, dt, h);
     if (network->is_open)
         clear_empty_slots(network);
@@ -161,6 +170,7 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
         mspring_result result = explain(network, dt);
         copy_state(network, &network->backup, &network->state);
         mspringi_explicit_reset(network);
+        mspringi_implicit_restore(network);
         mspringi_derive_relative(network, relative_h);
         mspringi_ramps_apply(network, 0.0);
         if (network->is_open)

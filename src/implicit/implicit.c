@@ -1,0 +1,215 @@
+/// Making an implicit solver, and its substep.
+#include "implicit.h"
+
+#include <math.h>
+#include <string.h>
+
+#define DEFAULT_ITERATIONS 8
+#define DEFAULT_TILE_SIZE 8
+#define LARGEST_TILE_SIZE 256
+
+/// Most multiply-adds that factoring the coarse matrix may take, for each slot: as long as a few products with A.
+#define COARSE_COST_PER_SLOT 100.0
+
+/* ----------------------------------------------------------------------------------------------------- creation */
+
+static bool reserve_field(mspringi_memory *memory, mspringi_field *field, size_t slots) {
+    field->x = mspringi_alloc(memory, 2 * slots, sizeof *field->x);
+    if (field->x)
+        field->y = field->x + slots;
+    return field->x != NULL;
+}
+
+// A history is one block of memory: low, first and, with BDF2, second.
+static bool reserve_history(mspringi_memory *memory, mspringi_history *history, size_t slots, bool two) {
+    float *values = mspringi_alloc(memory, (two ? 6 : 4) * slots, sizeof *values);
+    if (!values)
+        return false;
+    history->restarts = true;
+    history->low = (mspringi_field){values, values + slots};
+    history->first = (mspringi_field){values + 2 * slots, values + 3 * slots};
+    if (two)
+        history->second = (mspringi_field){values + 4 * slots, values + 5 * slots};
+    return true;
+}
+
+// Brings the mean of the masses near 1, without rounding any.
+static double choose_scale(const mspring_network *network) {
+    double sum = 0.0;
+    int exponent;
+    for (uint32_t p = 0; p < network->topology.particle_count; ++p)
+        sum += (double)network->mass[p];
+    (void)frexp(sum / (double)network->topology.particle_count, &exponent);
+    return ldexp(1.0, -exponent);
+}
+
+static mspring_result allocate(mspringi_implicit *n, mspring_network *network) {
+    mspringi_memory *memory = &network->memory;
+    const mspringi_topology *t = &network->topology;
+    const size_t slots = mspringi_slot_count(network), carry = (size_t)t->carry_blocks * MSPRINGI_WIDTH;
+    const size_t leftover = ((size_t)t->leftover_count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+    const bool two = n->integrator == MSPRING_INTEGRATOR_BDF2;
+    n->history_size = (two ? 6 : 4) * slots;
+    n->factors = mspringi_alloc(memory, (t->chain_places + leftover) * MSPRINGI_FACTORS, sizeof *n->factors);
+    n->x = mspringi_alloc(memory, 2 * slots, sizeof *n->x);
+    n->mass = mspringi_alloc(memory, slots, sizeof *n->mass);
+    n->diagonal = mspringi_alloc(memory, 3 * slots, sizeof *n->diagonal);
+    n->force_carry = mspringi_alloc(memory, 2 * carry, sizeof *n->force_carry);
+    n->carry = mspringi_alloc(memory, 3 * carry, sizeof *n->carry);
+    n->restricted = mspringi_alloc(memory, (size_t)MSPRINGI_RIGID * n->tiles.count, sizeof *n->restricted);
+    if (!reserve_history(memory, &n->history, slots, two) || !reserve_history(memory, &n->backup, slots, two) ||
+        !reserve_field(memory, &n->velocity, slots) || !reserve_field(memory, &n->residual, slots) ||
+        !reserve_field(memory, &n->displacement, slots) || !reserve_field(memory, &n->direction, slots) ||
+        !reserve_field(memory, &n->product, slots) || !reserve_field(memory, &n->arm, slots) || !n->factors ||
+        !n->x || !n->mass || !n->diagonal || !n->force_carry || !n->carry || !n->restricted)
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                             "no memory for an implicit solver of %u particles", (unsigned)t->particle_count);
+    n->y = n->x + slots;
+    n->leftover_factors = n->factors + (size_t)t->chain_places * MSPRINGI_FACTORS;
+    n->system = (mspringi_system){
+        .x = n->x,
+        .y = n->y,
+        .vx = n->velocity.x,
+        .vy = n->velocity.y,
+        .mass = n->mass,
+        .lattice_springs = network->lattice_springs,
+        .chain_springs = network->chain_springs,
+        .lattice_factors = n->factors,
+        .chain_factors = n->factors + (size_t)t->lattice_places * MSPRINGI_FACTORS,
+        .force_x = n->residual.x,
+        .force_y = n->residual.y,
+        .xx = n->diagonal,
+        .xy = n->diagonal + slots,
+        .yy = n->diagonal + 2 * slots,
+        .force_carry_x = n->force_carry,
+        .force_carry_y = n->force_carry + carry,
+        .carry_xx = n->carry,
+        .carry_xy = n->carry + carry,
+        .carry_yy = n->carry + 2 * carry,
+    };
+    return MSPRING_OK;
+}
+
+// Cut into tiles of the size asked for or else, beginning at the default, of the first whose coarse matrix is cheap
+// to factor.
+static mspring_result cut_tiles(mspringi_implicit *n, mspring_network *network, uint32_t asked) {
+    const double most = COARSE_COST_PER_SLOT * (double)mspringi_slot_count(network);
+    uint32_t size = asked > 0 ? asked : DEFAULT_TILE_SIZE;
+    for (;;) {
+        mspring_result result =
+            mspringi_tiles_create(&n->tiles, network, size, &network->memory, &network->message);
+        if (result != MSPRING_OK || asked > 0 || size >= LARGEST_TILE_SIZE ||
+            mspringi_coarse_cost(&n->tiles) <= most)
+            return result;
+        mspringi_tiles_destroy(&n->tiles, &network->memory);
+        size *= 2;
+    }
+}
+
+mspring_result mspringi_implicit_create(mspring_network *network, const mspring_solver_def *def,
+                                        mspringi_implicit **implicit) {
+    mspringi_implicit *n = mspringi_alloc(&network->memory, 1, sizeof *n);
+    if (!n)
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for an implicit solver");
+    n->tile_size = def->tile_size;
+    n->integrator = def->integrator;
+    n->scale = choose_scale(network);
+    n->seen = network->edits;
+    mspringi_implicit_adjust(n, def);
+    mspring_result result = cut_tiles(n, network, def->tile_size);
+    if (result == MSPRING_OK)
+        result = mspringi_coarse_create(&n->coarse, &n->tiles, &network->memory, &network->message);
+    if (result == MSPRING_OK)
+        result = allocate(n, network);
+    if (result == MSPRING_OK)
+        *implicit = n;
+    else
+        mspringi_implicit_destroy(n, &network->memory);
+    return result;
+}
+
+bool mspringi_implicit_fits(const mspringi_implicit *n, const mspring_solver_def *def) {
+    return n && n->tile_size == def->tile_size && n->integrator == def->integrator;
+}
+
+void mspringi_implicit_adjust(mspringi_implicit *n, const mspring_solver_def *def) {
+    n->iterations = def->iterations > 0 ? def->iterations : DEFAULT_ITERATIONS;
+    n->coarse_period = def->coarse_period > 0 ? def->coarse_period : 1;
+    n->age = 0;
+}
+
+void mspringi_implicit_destroy(mspringi_implicit *n, mspringi_memory *memory) {
+    if (!n)
+        return;
+    mspringi_tiles_destroy(&n->tiles, memory);
+    mspringi_coarse_destroy(&n->coarse, memory);
+    void *const blocks[] = {n->history.low.x,  n->backup.low.x, n->x,           n->velocity.x, n->residual.x,
+                            n->displacement.x, n->direction.x,  n->product.x,   n->arm.x,      n->mass,
+                            n->diagonal,       n->factors,      n->force_carry, n->carry,      n->restricted};
+    for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; ++i)
+        mspringi_free(memory, blocks[i]);
+    mspringi_free(memory, n);
+}
+
+/* ------------------------------------------------------------------------------------------------------ history */
+
+static void copy_history(const mspringi_implicit *n, const mspringi_history *from, mspringi_history *to) {
+    memcpy(to->low.x, from->low.x, n->history_size * sizeof *to->low.x);
+    to->h = from->h;
+    to->restarts = from->restarts;
+}
+
+void mspringi_implicit_keep(mspring_network *network) {
+    mspringi_implicit *n = network->implicit;
+    if (!n)
+        return;
+    copy_history(n, &n->history, &n->backup);
+}
+
+void mspringi_implicit_restore(mspring_network *network) {
+    mspringi_implicit *n = network->implicit;
+    if (!n)
+        return;
+    copy_history(n, &n->backup, &n->history);
+    // The factor is one of the failed step's. The carry rows are zero between steps unless numbers overflowed.
+    n->age = 0;
+    const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH;
+    memset(n->force_carry, 0, 2 * carry * sizeof *n->force_carry);
+    memset(n->carry, 0, 3 * carry * sizeof *n->carry);
+}
+
+// Forget the history if the host has begun a new motion.
+static void follow_edits(mspring_network *network) {
+    mspringi_implicit *n = network->implicit;
+    if (n->seen.motion != network->edits.motion) {
+        memset(n->history.low.x, 0, n->history_size * sizeof *n->history.low.x);
+        n->history.restarts = true;
+    }
+    n->seen = network->edits;
+}
+
+/* --------------------------------------------------------------------------------------------------------- plan */
+
+void mspringi_implicit_describe(const mspringi_implicit *n, mspring_plan *plan) {
+    if (!n)
+        return;
+    plan->solver = MSPRING_SOLVER_IMPLICIT;
+    plan->integrator = n->integrator;
+    plan->iterations = n->iterations;
+    plan->tile_size = n->tiles.size;
+    plan->tile_count = n->tiles.count;
+    plan->coarse_values = (uint32_t)(n->coarse.value_count < UINT32_MAX ? n->coarse.value_count : UINT32_MAX);
+    plan->coarse_period = n->coarse_period;
+}
+
+/* ----------------------------------------------------------------------------------------------------- substeps */
+
+void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+    follow_edits(network);
+    for (; count > 0; --count) {
+        mspringi_predict(network, h);
+        mspringi_assemble(network, h, base);
+        mspringi_solve(network);
+        mspringi_finish(network, h);
+    }
+}

@@ -1,0 +1,38 @@
+/// @file scalar_lane.h
+/// A vector of one lane, for the loops that have no scalar form of their own.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_SCALAR_LANE_H
+#define MSPRINGI_SCALAR_LANE_H
+
+#define LANES 1
+typedef float vec;
+
+static inline vec zero(void) {
+    return 0.0f;
+}
+static inline vec load(const float *from) {
+    return *from;
+}
+static inline vec load_unaligned(const float *from) {
+    return *from;
+}
+static inline void store(float *to, vec a) {
+    *to = a;
+}
+static inline vec add(vec a, vec b) {
+    return a + b;
+}
+static inline vec sub(vec a, vec b) {
+    return a - b;
+}
+static inline vec mul(vec a, vec b) {
+    return a * b;
+}
+// The last lane of before, then all lanes of a but its last.
+static inline vec shift_in(vec before, vec a) {
+    (void)a;
+    return before;
+}
+
+#endif

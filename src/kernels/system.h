@@ -1,0 +1,57 @@
+/// @file system.h
+/// The linear system of an implicit substep, on the rows of a topology.
+///
+/// The matrix is A = M + sum over springs of S, where a spring's share of its two ends' displacement d is
+///
+///     S (d_tip - d_base) = swing (d_tip - d_base) + pull (pull . (d_tip - d_base))
+///
+/// on the base, and the opposite on the tip: pull points along the spring, swing is what tension adds in every
+/// direction. Kept as these three numbers, and not as the entries of the 2 x 2 matrix they make, a spring stays
+/// positive semidefinite whatever the rounding: with k h^2 / m beyond 10^7, rounded entries would outweigh the
+/// mass.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_SYSTEM_H
+#define MSPRINGI_SYSTEM_H
+
+#include "topology/topology.h"
+
+/// The factors of a spring, each one value per slot of a record, as in mspringi_part.
+typedef enum mspringi_factor {
+    MSPRINGI_PULL_X = 0,
+    MSPRINGI_PULL_Y = 1,
+    MSPRINGI_SWING = 2,
+    MSPRINGI_FACTORS = 3
+} mspringi_factor;
+
+/// Where and how the springs are linearised, and what comes of it. Arrays by slot.
+typedef struct mspringi_system {
+    const double *x, *y;  ///< positions
+    const float *vx, *vy; ///< velocities that the dampers feel
+    double force_scale;   ///< what springs' stiffness and damping are multiplied with
+    double damping_rate;  ///< 1/s, what a damper counts in the matrix beside a spring
+    uint32_t parts;       ///< in a spring's record
+    const float *lattice_springs, *chain_springs;
+    const float *mass;        ///< scaled; 0 where there is no particle
+    float *lattice_factors;   ///< [block][direction][factor][lane]
+    float *chain_factors;     ///< [block][factor][lane]
+    float *force_x, *force_y; ///< of the springs, scaled
+    float *xx, *xy, *yy;      ///< the 2 x 2 blocks on the diagonal of A, without the mass
+    double *force_carry_x;    ///< what the row below hands on, by column; all of them 0 between rows' ends
+    double *force_carry_y;
+    float *carry_xx, *carry_xy, *carry_yy; ///< likewise; xx and xy serve the product as well
+} mspringi_system;
+
+/// Fill factors, force and diagonal of one or more rows, all of one kind.
+typedef void (*mspringi_assemble_fn)(const mspringi_system *system, const mspringi_span *spans, uint32_t count);
+
+/// Compute to = A from for one or more rows, all of one kind: x and y are (from_x, from_y).
+typedef void (*mspringi_multiply_fn)(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
+                                     const float *from_x, const float *from_y, float *to_x, float *to_y);
+
+typedef struct mspringi_system_kernels {
+    mspringi_assemble_fn assemble_lattice[2], assemble_chain[2]; ///< [with damping]
+    mspringi_multiply_fn multiply_lattice, multiply_chain;
+} mspringi_system_kernels;
+
+#endif

@@ -1,0 +1,99 @@
+/// @file system_multiply.h
+/// The product with the matrix of an implicit substep, for vectors of LANES slots: the innermost loop of the
+/// implicit solver. The shape is that of sweep.h: a spring's share is computed once, at the row that owns it, and
+/// handed on to the right and to the row above.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_SYSTEM_MULTIPLY_H
+#define MSPRINGI_SYSTEM_MULTIPLY_H
+
+#if defined(_MSC_VER)
+#define MSPRINGI_PRODUCT static __forceinline
+#else
+#define MSPRINGI_PRODUCT static inline __attribute__((always_inline))
+#endif
+
+/// A displacement, or a product, of LANES particles.
+typedef struct displacement {
+    vec x, y;
+} displacement;
+
+MSPRINGI_PRODUCT displacement spring_product(displacement base, displacement tip, const float *factors) {
+    const vec pull_x = load(factors + MSPRINGI_PULL_X * MSPRINGI_WIDTH);
+    const vec pull_y = load(factors + MSPRINGI_PULL_Y * MSPRINGI_WIDTH);
+    const vec swing = load(factors + MSPRINGI_SWING * MSPRINGI_WIDTH);
+    const vec dx = sub(tip.x, base.x), dy = sub(tip.y, base.y);
+    const vec along = add(mul(pull_x, dx), mul(pull_y, dy));
+    const displacement result = {add(mul(swing, dx), mul(pull_x, along)), add(mul(swing, dy), mul(pull_y, along))};
+    return result;
+}
+
+static void multiply_lattice(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
+                             const float *from_x, const float *from_y, float *to_x, float *to_y) {
+    const float *const mass = system->mass;
+    float *const carry_x = system->carry_xx, *const carry_y = system->carry_xy;
+    const size_t factor = (size_t)MSPRINGI_FACTORS * MSPRINGI_WIDTH;
+    displacement before_right = {zero(), zero()}, before_diagonal = {zero(), zero()};
+    for (const mspringi_span *span = spans; span < spans + count; ++span) {
+        const size_t first = span->first_slot / LANES * LANES;
+        const size_t end = (size_t)(span->end_slot + LANES - 1) / LANES * LANES;
+        for (size_t slot = first; slot < end; slot += LANES) {
+            const size_t up = (size_t)((int64_t)slot + span->up), carry = (size_t)((int64_t)slot + span->carry);
+            const size_t block = slot / MSPRINGI_WIDTH - span->first_slot / MSPRINGI_WIDTH + span->first_record;
+            const float *factors =
+                system->lattice_factors + block * MSPRINGI_DIRECTIONS * factor + slot % MSPRINGI_WIDTH;
+            const displacement here = {load(from_x + slot), load(from_y + slot)};
+            const displacement next = {load_unaligned(from_x + slot + 1), load_unaligned(from_y + slot + 1)};
+            const displacement above = {load(from_x + up), load(from_y + up)};
+            const displacement above_next = {load_unaligned(from_x + up + 1), load_unaligned(from_y + up + 1)};
+            const displacement east = spring_product(here, next, factors + MSPRINGI_EAST * factor);
+            const displacement north = spring_product(here, above, factors + MSPRINGI_NORTH * factor);
+            const displacement north_east =
+                spring_product(here, above_next, factors + MSPRINGI_NORTH_EAST * factor);
+            const displacement south_east = spring_product(above, next, factors + MSPRINGI_SOUTH_EAST * factor);
+
+            const displacement right = {add(east.x, south_east.x), add(east.y, south_east.y)};
+            const vec force_x = sub(add(load(carry_x + carry), add(add(east.x, north.x), north_east.x)),
+                                    shift_in(before_right.x, right.x));
+            const vec force_y = sub(add(load(carry_y + carry), add(add(east.y, north.y), north_east.y)),
+                                    shift_in(before_right.y, right.y));
+            store(carry_x + carry, sub(sub(south_east.x, north.x), shift_in(before_diagonal.x, north_east.x)));
+            store(carry_y + carry, sub(sub(south_east.y, north.y), shift_in(before_diagonal.y, north_east.y)));
+            before_right = right;
+            before_diagonal = north_east;
+            store(to_x + slot, sub(mul(load(mass + slot), here.x), force_x));
+            store(to_y + slot, sub(mul(load(mass + slot), here.y), force_y));
+        }
+    }
+}
+
+// East springs only.
+static void multiply_chain(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
+                           const float *from_x, const float *from_y, float *to_x, float *to_y) {
+    const float *const mass = system->mass;
+    float *const carry_x = system->carry_xx, *const carry_y = system->carry_xy;
+    displacement before = {zero(), zero()};
+    for (const mspringi_span *span = spans; span < spans + count; ++span) {
+        const size_t stride = (size_t)MSPRINGI_FACTORS * span->record_slots;
+        const float *records =
+            span->record_slots == MSPRINGI_WIDTH ? system->chain_factors : system->lattice_factors;
+        const size_t first = span->first_slot / LANES * LANES;
+        const size_t end = (size_t)(span->end_slot + LANES - 1) / LANES * LANES;
+        for (size_t slot = first; slot < end; slot += LANES) {
+            const size_t carry = (size_t)((int64_t)slot + span->carry);
+            const size_t block = slot / MSPRINGI_WIDTH - span->first_slot / MSPRINGI_WIDTH + span->first_record;
+            const displacement here = {load(from_x + slot), load(from_y + slot)};
+            const displacement next = {load_unaligned(from_x + slot + 1), load_unaligned(from_y + slot + 1)};
+            const displacement east = spring_product(here, next, records + block * stride + slot % MSPRINGI_WIDTH);
+            const vec force_x = sub(add(load(carry_x + carry), east.x), shift_in(before.x, east.x));
+            const vec force_y = sub(add(load(carry_y + carry), east.y), shift_in(before.y, east.y));
+            store(carry_x + carry, zero());
+            store(carry_y + carry, zero());
+            before = east;
+            store(to_x + slot, sub(mul(load(mass + slot), here.x), force_x));
+            store(to_y + slot, sub(mul(load(mass + slot), here.y), force_y));
+        }
+    }
+}
+
+#endif
