@@ -6,7 +6,6 @@
 mspringi_substep mspringi_substep_prepare(const mspring_network *network, float h, mspringi_field base, uint32_t i,
                                           uint32_t count, uint32_t carry_number) {
     const mspringi_topology *t = &network->topology;
-    const mspringi_field field = t->web.attached_count > 0 ? network->forces.total : base;
     const size_t carry_slots = (size_t)t->carry_blocks * MSPRINGI_WIDTH;
     const size_t packed_floats = (size_t)4 * t->web.group_count * MSPRINGI_WIDTH;
     float *carry = network->carry + 2 * carry_number * carry_slots;
@@ -21,8 +20,8 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
                 .vx = network->state.vx,
                 .vy = network->state.vy,
                 .inverse_mass = network->inverse_mass,
-                .force_x = field.x,
-                .force_y = field.y,
+                .force_x = base.x,
+                .force_y = base.y,
                 .carry_x = carry,
                 .carry_y = carry + carry_slots,
                 .lattice_springs = network->lattice_springs,
@@ -63,31 +62,40 @@ static void pack_span(const mspring_network *network, const mspringi_sweep *swee
     network->kernels->pack(sweep, first, end - first, packed + (size_t)4 * span->first_record * MSPRINGI_WIDTH);
 }
 
-// Put the web's pull at the slots of a strip on top of base into the total field.
+// Add what the web's pull at the slots of a strip does in the substep that they have just been swept for. It could
+// be among the forces that they are swept with, but then whole strips would read them for the sake of some slots.
 static void pull_attached(const mspring_network *network, const mspringi_substep *substep,
                           const mspringi_strip *strip) {
     const mspringi_web *web = &network->topology.web;
-    const mspringi_field total = network->forces.total, base = substep->base;
+    const mspringi_sweep *sweep = &substep->sweep;
     const uint32_t *slots = web->attached_slot + strip->first_attached;
     float *pull_x = network->attached, *pull_y = network->attached + web->attached_count;
-    network->kernels->attached[network->parts > MSPRINGI_DAMPING](&substep->sweep, strip->first_attached,
+    network->kernels->attached[network->parts > MSPRINGI_DAMPING](sweep, strip->first_attached,
                                                                   strip->attached_count, pull_x, pull_y);
     pull_x += strip->first_attached;
     pull_y += strip->first_attached;
     for (uint32_t i = 0; i < strip->attached_count; ++i) {
-        total.x[slots[i]] = base.x ? base.x[slots[i]] + pull_x[i] : pull_x[i];
-        total.y[slots[i]] = base.x ? base.y[slots[i]] + pull_y[i] : pull_y[i];
+        const uint32_t slot = slots[i];
+        if (!(sweep->inverse_mass[slot] > 0.0f))
+            continue;
+        const float change = sweep->inverse_mass[slot] * sweep->h * sweep->decay; // of velocity, per newton
+        const float dvx = pull_x[i] * change, dvy = pull_y[i] * change;
+        sweep->vx[slot] = sweep->vx[slot] + dvx;
+        sweep->vy[slot] = sweep->vy[slot] + dvy;
+        sweep->x[slot] = sweep->x[slot] + dvx * sweep->h;
+        sweep->y[slot] = sweep->y[slot] + dvy * sweep->h;
     }
 }
 
 // Sweep rows that follow each other, all of one kind.
-static void sweep_rows(const mspring_network *network, const mspringi_sweep *sweep, const mspringi_row *rows,
-                       uint32_t row_count, bool forced) {
+static void sweep_rows(const mspring_network *network, const mspringi_substep *substep, const mspringi_row *rows,
+                       uint32_t row_count) {
     const mspringi_kernels *kernels = network->kernels;
     const mspringi_span *spans = network->topology.spans + rows->first_span;
     const mspringi_row *last = &rows[row_count - 1];
     const uint32_t span_count = last->first_span + last->span_count - rows->first_span;
-    const bool damped = network->parts > MSPRINGI_DAMPING;
+    const mspringi_sweep *sweep = &substep->sweep;
+    const bool damped = network->parts > MSPRINGI_DAMPING, forced = substep->base.x != NULL;
     switch (rows->kind) {
     case MSPRINGI_ROW_LATTICE:
         kernels->lattice[damped][forced](sweep, spans, span_count);
@@ -126,14 +134,13 @@ void mspringi_strip_pack(const mspring_network *network, const mspringi_substep 
 void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep *substep,
                           const mspringi_strip *strip) {
     const mspringi_row *rows = &network->topology.rows[strip->first_row];
-    const bool based = substep->base.x != NULL;
-    if (strip->attached_count > 0)
-        pull_attached(network, substep, strip);
     for (uint32_t first = 0, count; first < strip->row_count; first += count) {
         for (count = 1; first + count < strip->row_count && rows[first + count].kind == rows[first].kind;)
             ++count;
-        sweep_rows(network, &substep->sweep, &rows[first], count, based || strip->attached_count > 0);
+        sweep_rows(network, substep, &rows[first], count);
     }
+    if (strip->attached_count > 0)
+        pull_attached(network, substep, strip);
     if (strip->attached_count > 0 && substep->next_packed)
         pack_attached(network, strip, substep->next_packed);
     if (strip->home_span == MSPRING_NONE)

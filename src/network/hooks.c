@@ -189,14 +189,14 @@ static void add(const mspring_network *network, mspringi_field from, mspringi_fi
         to.x[i] += from.x[i];
 }
 
-bool mspringi_hooks_before_substep(mspring_network *network, uint32_t substep, double h, mspringi_field base) {
+void mspringi_hooks_before_substep(mspring_network *network, uint32_t substep, double h, mspringi_field base) {
     bool any = false;
     for (size_t i = 0; i < network->hook_count && !any; ++i) {
         const mspring_hook_def *def = &network->hooks[i].def;
         any = def->phase == MSPRING_PHASE_BEFORE_SUBSTEP && substep % def->period == 0;
     }
     if (!any)
-        return false;
+        return;
     const mspringi_field driven = network->forces.driven;
     if (base.x)
         memcpy(driven.x, base.x, 2 * mspringi_slot_count(network) * sizeof *driven.x);
@@ -219,7 +219,6 @@ bool mspringi_hooks_before_substep(mspring_network *network, uint32_t substep, d
         }
         add(network, hook->held, driven);
     }
-    return true;
 }
 
 void mspringi_hooks_after_substep(mspring_network *network, uint32_t substep, double h) {

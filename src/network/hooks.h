@@ -16,9 +16,8 @@ uint32_t mspringi_hooks_free_substeps(const mspring_network *network, uint32_t s
 void mspringi_hooks_before_step(mspring_network *network, double dt, mspringi_field field);
 
 /// Call the hooks that are due before this substep of length h, and give forces.driven anew: base (x NULL: none)
-/// and the forces of all hooks.
-/// @return whether any was due; if not, the field stays as it was
-bool mspringi_hooks_before_substep(mspring_network *network, uint32_t substep, double h, mspringi_field base);
+/// and the forces of all hooks. If none is due, the field stays as it was.
+void mspringi_hooks_before_substep(mspring_network *network, uint32_t substep, double h, mspringi_field base);
 
 /// Call the hooks that are due after this substep of length h.
 void mspringi_hooks_after_substep(mspring_network *network, uint32_t substep, double h);

@@ -105,8 +105,7 @@ static mspring_result allocate(mspring_network *network, bool relative) {
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for a network of %u particles and %u springs", (unsigned)t->particle_count,
                              (unsigned)t->spring_count);
-    network->forces.total_clean = true;
-    return t->web.attached_count > 0 ? mspringi_field_reserve(network, &network->forces.total) : MSPRING_OK;
+    return MSPRING_OK;
 }
 
 static void fill_particles(mspring_network *network, const mspring_builder *builder) {
@@ -249,7 +248,6 @@ void mspring_network_destroy(mspring_network *network) {
     mspringi_incidence_destroy(&network->incidence, &memory);
     mspringi_free(&memory, network->forces.held.x);
     mspringi_free(&memory, network->forces.base.x);
-    mspringi_free(&memory, network->forces.total.x);
     mspringi_free(&memory, network->forces.driven.x);
     mspringi_hooks_destroy(network, &memory);
     mspringi_free(&memory, network);

@@ -26,9 +26,7 @@ typedef struct mspringi_forces {
     mspringi_field held;   ///< given by the host for the next step
     mspringi_field base;   ///< held and what hooks before the step added: where each substep starts from
     mspringi_field driven; ///< base, and what hooks before the substep added
-    mspringi_field total;  ///< driven or base, and leftover springs
     bool held_any;         ///< held is not all zero
-    bool total_clean;      ///< total is zero but for the slots of attached nodes
 } mspringi_forces;
 
 typedef struct mspringi_hook {

@@ -43,15 +43,6 @@ static mspringi_field prepare_base(mspring_network *network, double dt) {
     return forces->base;
 }
 
-// Fill the total field with base, or with nothing.
-static void reset_total(mspring_network *network, mspringi_field base) {
-    if (base.x)
-        copy_field(network, base, network->forces.total);
-    else
-        clear_field(network, network->forces.total);
-    network->forces.total_clean = !base.x;
-}
-
 /* -------------------------------------------------------------------------------------------------- substeps */
 
 static void take_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
@@ -64,17 +55,13 @@ static void take_substeps(mspring_network *network, float h, mspringi_field base
 static void run_substeps(mspring_network *network, double dt, float h) {
     const bool hooks_before = mspringi_hooks_any(network, MSPRING_PHASE_BEFORE_SUBSTEP);
     const bool hooks_after = mspringi_hooks_any(network, MSPRING_PHASE_AFTER_SUBSTEP);
-    const bool pulled = network->topology.web.attached_count > 0;
     const mspringi_field base = prepare_base(network, dt);
     const mspringi_field field = hooks_before ? network->forces.driven : base;
 
-    // Where the web pulls, it writes its share over the total field; the rest of that stays as it is set here.
-    if (pulled && !hooks_before && (base.x || !network->forces.total_clean))
-        reset_total(network, base);
     for (uint32_t substep = 0, count; substep < network->substeps; substep += count) {
         count = mspringi_hooks_free_substeps(network, substep);
-        if (hooks_before && mspringi_hooks_before_substep(network, substep, (double)h, base) && pulled)
-            reset_total(network, field);
+        if (hooks_before)
+            mspringi_hooks_before_substep(network, substep, (double)h, base);
         take_substeps(network, h, field, count);
         if (hooks_after)
             mspringi_hooks_after_substep(network, substep + count - 1, (double)h);
