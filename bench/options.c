@@ -18,6 +18,7 @@ void bench_options_help(void) {
          "\n"
          "What to measure (default: scenes against the naive step)\n"
          "  --features           what dampers, hooks, forces and ropes cost\n"
+         "  --session            what a game's edits, events and measurements cost, next to its step\n"
          "  --roofline           the bounds of this machine, and how near to them each scene comes\n"
          "  --check              compare positions with those of the naive step; measures nothing\n"
          "  --list               show the scenes\n"
@@ -97,8 +98,13 @@ static bool is_switch(const char *option, bench_options *out) {
     static const struct {
         const char *name;
         bench_mode mode;
-    } modes[] = {{"--features", BENCH_FEATURES}, {"--roofline", BENCH_ROOFLINE}, {"--check", BENCH_CHECK},
-                 {"--list", BENCH_LIST},         {"--help", BENCH_HELP},         {"-h", BENCH_HELP}};
+    } modes[] = {{"--features", BENCH_FEATURES},
+                 {"--session", BENCH_SESSION},
+                 {"--roofline", BENCH_ROOFLINE},
+                 {"--check", BENCH_CHECK},
+                 {"--list", BENCH_LIST},
+                 {"--help", BENCH_HELP},
+                 {"-h", BENCH_HELP}};
     for (size_t i = 0; i < sizeof modes / sizeof *modes; i++) {
         if (strcmp(option, modes[i].name) == 0) {
             out->mode = modes[i].mode;

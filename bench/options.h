@@ -14,6 +14,7 @@
 typedef enum bench_mode {
     BENCH_SCENES,
     BENCH_FEATURES,
+    BENCH_SESSION,
     BENCH_ROOFLINE,
     BENCH_CHECK,
     BENCH_LIST,

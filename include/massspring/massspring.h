@@ -608,9 +608,9 @@ typedef struct mspring_hook_def {
     uint32_t flags;       ///< MSPRING_HOOK_CONCURRENT or 0; default 0: one call, on the thread that steps
     uint32_t range_slots; ///< with MSPRING_HOOK_CONCURRENT, slots in a range, rounded up to whole blocks; default
                           ///< 0: one range for each worker, or fewer if the network is small
-    uint32_t reserved; ///< 0
-    void *storage;     ///< [mspring_network_worker_count()][storage_stride] bytes of the host, for each worker its
-                       ///< own, such as a sum to be added up after the step; default NULL
+    uint32_t reserved;    ///< 0
+    void *storage; ///< [mspring_network_worker_count()][storage_stride] bytes of the host, for each worker its
+                   ///< own, such as a sum to be added up after the step; default NULL
     size_t storage_stride; ///< bytes from one worker's to the next's, best a multiple of 64; default 0
 } mspring_hook_def;
 
@@ -878,7 +878,10 @@ enum {
     MSPRING_EVENT_STRESSED = 1, ///< the strain of spring id rose over its stress strain
     MSPRING_EVENT_RELAXED = 2,  ///< and fell below the relax fraction of it
     MSPRING_EVENT_RESTORED = 3, ///< spring id was restored
-    MSPRING_EVENT_DETACHED = 4  ///< particle id was detached; after the events of its springs
+    MSPRING_EVENT_DETACHED = 4, ///< particle id was detached; after the events of its springs
+    MSPRING_EVENT_SPLIT =
+        5, ///< a component with the lowest particle id has split off the one whose lowest is other
+    MSPRING_EVENT_JOINED = 6 ///< the component whose lowest particle was id is now part of the one of other
 };
 
 /// Something that happened in a step or in an edit. These 16 bytes are all that there will be.
@@ -907,6 +910,52 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_reserve_events(mspr
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_read_events(mspring_network *network,
                                                                          mspring_event *events, uint32_t capacity,
                                                                          uint32_t *count, uint64_t *lost);
+
+/* --------------------------------------------------------------------------------------------- components */
+
+/// Bring the components up to date. A component is what hangs together by springs that are not broken: a ship, a
+/// piece of its wreck, a loose particle. It is named by its lowest particle, which stays when other parts split
+/// off, and numbered from 0 in the order of these.
+///
+/// Costs next to nothing if no spring was broken or restored since the last time, little if a few were that are
+/// bridged beside them, and else a pass over the network. What has changed is told by MSPRING_EVENT_SPLIT and
+/// MSPRING_EVENT_JOINED, of the first time nothing.
+/// @param count    receives the number of components; may be NULL
+/// @param changed  receives 1 if some particle's component has another number than the last time, else 0; may be
+///                 NULL
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates the first time   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_update_components(mspring_network *network,
+                                                                               uint32_t *count, uint32_t *changed);
+
+/// Copy out the numbers of the components of the particles first ... first + count - 1, as of the last update.
+/// @param component  [count]
+/// @return MSPRING_OK; MSPRING_ERROR_ID; MSPRING_ERROR_ARGUMENT for NULL or if there was no update yet.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_component_numbers(const mspring_network *network,
+                                                                                   mspring_id first, uint32_t count,
+                                                                                   uint32_t *component);
+
+/// What a component is and does. Set struct_size first.
+typedef struct mspring_component {
+    uint32_t struct_size;
+    mspring_id head; ///< its lowest particle
+    uint32_t particle_count;
+    uint32_t reserved; ///< 0
+    double mass;       ///< kg
+    double x, y;       ///< centre of mass, m, world coordinates
+    double px, py;     ///< momentum, kg m/s, of its particles that are not pinned
+} mspring_component;
+
+/// Look at the components number first ... first + count - 1 as of the last update, with the state as it is now.
+/// Takes a pass over all particles.
+/// @param components  [count], struct_size set in each
+/// @return MSPRING_OK; MSPRING_ERROR_ID if there are not so many; MSPRING_ERROR_STRUCT; MSPRING_ERROR_ARGUMENT for
+///         NULL or if there was no update yet.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_components(const mspring_network *network,
+                                                                            uint32_t first, uint32_t count,
+                                                                            mspring_component *components);
 
 /* ------------------------------------------------------------------------------------------- measurements */
 

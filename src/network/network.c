@@ -246,6 +246,7 @@ void mspring_network_destroy(mspring_network *network) {
     mspringi_free(&memory, network->inverse_mass_scale);
     mspringi_free(&memory, network->spring_mass);
     mspringi_incidence_destroy(&network->incidence, &memory);
+    mspringi_components_destroy(&network->components, &memory);
     mspringi_free(&memory, network->forces.held.x);
     mspringi_free(&memory, network->forces.base.x);
     mspringi_free(&memory, network->forces.driven.x);

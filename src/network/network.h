@@ -5,6 +5,7 @@
 #ifndef MSPRINGI_NETWORK_H
 #define MSPRINGI_NETWORK_H
 
+#include "components/components.h"
 #include "kernels/kernels.h"
 #include "tasks/tasks.h"
 #include "topology/incidence.h"
@@ -142,6 +143,7 @@ struct mspring_network {
     mspringi_ramps ramps;
     mspringi_strain strain;
     mspringi_events events;
+    mspringi_components components;
     mspringi_incidence incidence; ///< made when it is needed first
     mspringi_any_shape any_shape;
 

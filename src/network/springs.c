@@ -59,7 +59,7 @@ void mspringi_spring_set_rest_length(mspring_network *network, mspring_id spring
 static mspringi_relative derive(const mspring_network *network, const mspringi_spring_values *values,
                                 mspringi_relative fractions) {
     const mspringi_topology *t = &network->topology;
-    const float *mass = network->spring_mass ? network->spring_mass : network->mass;
+    const float *mass = mspringi_spring_masses(network);
     const double ma = (double)mass[t->particle_of_slot[values->base]];
     const double mb = (double)mass[t->particle_of_slot[values->tip]];
     const double reduced_mass = 1.0 / (1.0 / ma + 1.0 / mb);

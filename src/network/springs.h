@@ -35,6 +35,11 @@ static inline bool mspringi_spring_is_relative(const mspring_network *network, m
     return network->relative && network->relative[spring].stiffness >= 0.0f;
 }
 
+/// By particle, the masses that relative springs go by.
+static inline const float *mspringi_spring_masses(const mspring_network *network) {
+    return network->spring_mass ? network->spring_mass : network->mass;
+}
+
 /// Stiffness and damping that a spring has while it is not broken; fractions if it is relative.
 mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, mspring_id spring);
 /// Set these. What a broken spring exerts stays 0.

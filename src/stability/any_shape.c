@@ -21,8 +21,9 @@ mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_i
     const mspringi_topology *t = &network->topology;
     uint32_t base, tip;
     mspringi_topology_ends(t, t->place_of_spring[spring], &base, &tip);
-    const double ma = (double)network->mass[t->particle_of_slot[base]];
-    const double mb = (double)network->mass[t->particle_of_slot[tip]];
+    const float *mass = mspringi_spring_masses(network);
+    const double ma = (double)mass[t->particle_of_slot[base]];
+    const double mb = (double)mass[t->particle_of_slot[tip]];
     const double reduced_mass = 1.0 / (1.0 / ma + 1.0 / mb);
     return (mspringi_strength){.relative_stiffness = stiffness * reduced_mass,
                                .relative_damping = damping * reduced_mass};

@@ -1,0 +1,341 @@
+/// @file session.c
+/// What a game does to its network from step to step, and what that costs: each call next to a step, in turn.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "machine.h"
+#include "modes.h"
+
+/// Springs broken or restored at once: those of a blast.
+#define BURST 1000u
+
+/// Springs broken at once where the rest of a structure holds.
+#define FEW 20u
+
+/// Thresholds that no strain of the bench reaches: the pass looks at every spring, and nothing breaks.
+#define OUT_OF_REACH 1e6f
+
+/// A network and what the calls need.
+typedef struct session {
+    bench_network *step; ///< the network
+    float *values;       ///< [particles or springs, whichever are more]
+    float *more_values;
+    double *x, *y;    ///< [particles]
+    mspring_id *list; ///< [BURST] springs, scattered
+    uint32_t burst;   ///< of them: BURST, or all springs if there are fewer
+    uint32_t calls;   ///< so far
+} session;
+
+typedef mspring_result (*session_fn)(session *with);
+
+static void no_preparation(session *with) {
+    (void)with;
+}
+
+/* ----------------------------------------------------------------------------------------------------- calls */
+
+static void prepare_masses(session *with) {
+    with->calls++;
+    for (uint32_t i = 0; i < with->step->particle_count; i++) {
+        with->values[i] = 70.0f + (float)((i + with->calls) % 16);
+    }
+}
+
+static mspring_result set_masses(session *with) {
+    return mspring_network_set_masses(with->step->network, 0, with->step->particle_count, with->values);
+}
+
+static void prepare_scales(session *with) {
+    with->calls++;
+    for (uint32_t i = 0; i < with->step->particle_count; i++) {
+        with->values[i] = (i + with->calls) % 16 == 0 ? 0.5f : 1.0f;
+    }
+}
+
+static mspring_result set_scales(session *with) {
+    return mspring_network_set_inverse_mass_scales(with->step->network, 0, with->step->particle_count,
+                                                   with->values);
+}
+
+static mspring_result get_positions(session *with) {
+    return mspring_network_get_positions(with->step->network, 0, with->step->particle_count, with->x, with->y);
+}
+
+static mspring_result set_positions(session *with) {
+    return mspring_network_set_positions(with->step->network, 0, with->step->particle_count, with->x, with->y);
+}
+
+static void prepare_positions(session *with) {
+    if (get_positions(with) != MSPRING_OK) {
+        abort(); // not in a range that is all particles
+    }
+}
+
+static mspring_result get_velocities(session *with) {
+    return mspring_network_get_velocities(with->step->network, 0, with->step->particle_count, with->values,
+                                          with->more_values);
+}
+
+static mspring_result apply_forces(session *with) {
+    return mspring_network_apply_forces(with->step->network, 0, with->step->particle_count, with->values,
+                                        with->more_values);
+}
+
+static void prepare_forces(session *with) {
+    for (uint32_t i = 0; i < with->step->particle_count; i++) {
+        with->values[i] = with->more_values[i] = 0.5f;
+    }
+}
+
+static mspring_result restore(session *with) {
+    return mspring_network_restore_springs(with->step->network, with->list, with->burst, 0.0);
+}
+
+static mspring_result restore_ramped(session *with) {
+    return mspring_network_restore_springs(with->step->network, with->list, with->burst, 1.0);
+}
+
+static mspring_result break_burst(session *with) {
+    return mspring_network_break_springs(with->step->network, with->list, with->burst);
+}
+
+static void prepare_whole(session *with) {
+    (void)!restore(with);
+}
+
+static void prepare_broken(session *with) {
+    (void)!break_burst(with);
+}
+
+static mspring_result set_stiffnesses(session *with) {
+    return mspring_network_set_stiffnesses_at(with->step->network, with->list, with->burst, with->values);
+}
+
+static void prepare_stiffnesses(session *with) {
+    for (uint32_t i = 0; i < with->burst; i++) {
+        with->values[i] = 0.5f;
+    }
+}
+
+static mspring_result update_components(session *with) {
+    return mspring_network_update_components(with->step->network, NULL, NULL);
+}
+
+static void prepare_burst(session *with) {
+    (void)!restore(with);
+    (void)!update_components(with);
+    (void)!break_burst(with);
+}
+
+static void prepare_few(session *with) {
+    prepare_burst(with);
+    (void)!update_components(with);
+    (void)!mspring_network_restore_springs(with->step->network, with->list, with->burst < 20 ? with->burst : 20,
+                                           0.0);
+}
+
+static mspring_result measure_components(session *with) {
+    mspring_component component = {.struct_size = sizeof component};
+    return mspring_network_get_components(with->step->network, 0, 1, &component);
+}
+
+static mspring_result hash(session *with) {
+    uint64_t sum;
+    return mspring_network_state_hash(with->step->network, &sum);
+}
+
+/// A call, and what has to be so before it.
+typedef struct session_call {
+    const char *name;
+    void (*prepare)(session *with);
+    session_fn call;
+} session_call;
+
+static const session_call calls[] = {
+    {"read all positions", no_preparation, get_positions},
+    {"write all positions", prepare_positions, set_positions},
+    {"read all velocities", no_preparation, get_velocities},
+    {"a force on every particle", prepare_forces, apply_forces},
+    {"all masses", prepare_masses, set_masses},
+    {"all scales of inverse mass", prepare_scales, set_scales},
+    {"stiffness of 1,000 springs", prepare_stiffnesses, set_stiffnesses},
+    {"break 1,000 springs", prepare_whole, break_burst},
+    {"restore 1,000 springs", prepare_broken, restore},
+    {"restore 1,000 with a ramp", prepare_broken, restore_ramped},
+    {"components after that", prepare_burst, update_components},
+    {"components after 20 springs", prepare_few, update_components},
+    {"mass, centre of a component", no_preparation, measure_components},
+    {"hash of the state", no_preparation, hash},
+};
+
+#define CALL_COUNT (sizeof calls / sizeof *calls)
+
+/* --------------------------------------------------------------------------------------------------- measuring */
+
+static const bench_column columns[] = {
+    {"scene", "scene", -12},
+    {"call", "call", -28},
+    {"springs", "springs", 8},
+    {"substeps", "substeps", 8},
+    {"level", "level", -6},
+    {"us_median", "us median", 10},
+    {"us_per_step_median", "us/step median", 14},
+    {"share_of_step_median", "% of step", 9},
+};
+
+#define COLUMN_COUNT ((int)(sizeof columns / sizeof *columns))
+
+static void print_row(const bench_options *options, const bench_scene *subject, const bench_network *network,
+                      const char *name, double seconds, double step, double share) {
+    const bench_cell cells[COLUMN_COUNT] = {
+        bench_cell_of("%s", subject->label),
+        bench_cell_of("%s", name),
+        bench_cell_of("%u", network->spring_count),
+        bench_cell_of("%u", network->substeps),
+        bench_cell_of("%s", mspring_simd_name(mspring_network_simd_level(network->network))),
+        bench_cell_of("%.1f", 1e6 * seconds),
+        bench_cell_of("%.1f", 1e6 * step),
+        bench_cell_of("%.2f", 100.0 * share),
+    };
+    bench_table_row(options->format, columns, COLUMN_COUNT, cells);
+}
+
+/// Time a step and a call, repeat times, and print their medians.
+static bool measure_call(const session_call *call, session *with, const bench_options *options,
+                         const bench_scene *subject, uint32_t repeat, double *times, scene_error *error) {
+    bench_runner runner = bench_network_runner(with->step);
+    double *steps = times, *seconds = times + repeat, *shares = times + 2 * (size_t)repeat;
+    if (!runner.reset(runner.self, error) || !runner.run(runner.self, 1, error)) {
+        return false;
+    }
+    for (uint32_t i = 0; i < repeat; i++) {
+        call->prepare(with);
+        double start = bench_seconds();
+        mspring_result result = call->call(with);
+        seconds[i] = bench_seconds() - start;
+        if (result != MSPRING_OK) {
+            bench_library_error(error, call->name, result, mspring_network_error(with->step->network));
+            return false;
+        }
+        start = bench_seconds();
+        if (!runner.run(runner.self, 1, error)) {
+            return false;
+        }
+        steps[i] = bench_seconds() - start;
+        shares[i] = seconds[i] / steps[i];
+    }
+    print_row(options, subject, with->step, call->name, bench_median(seconds, repeat), bench_median(steps, repeat),
+              bench_median(shares, repeat));
+    return restore(with) == MSPRING_OK;
+}
+
+/// Time steps with a strain pass after them against steps without.
+static bool measure_strain(session *with, const bench_options *options, const bench_scene *subject,
+                           mspring_simd level, bool stress, uint32_t repeat, scene_error *error) {
+    bench_network watched;
+    if (!bench_network_create(subject->made.builder, level, 1, with->step->substeps, &watched, error)) {
+        return false;
+    }
+    for (uint32_t i = 0; i < watched.spring_count; i++) {
+        with->values[i] = OUT_OF_REACH;
+    }
+    mspring_result result = mspring_network_reserve_events(watched.network, BURST);
+    if (result == MSPRING_OK) {
+        result = mspring_network_set_break_strains(watched.network, 0, watched.spring_count, with->values);
+    }
+    if (result == MSPRING_OK && stress) {
+        result = mspring_network_set_stress_strains(watched.network, 0, watched.spring_count, with->values);
+    }
+    bool ok = result == MSPRING_OK;
+    if (!ok) {
+        bench_library_error(error, "watching strain", result, mspring_network_error(watched.network));
+    }
+    bench_runner plain = bench_network_runner(with->step), runner = bench_network_runner(&watched);
+    bench_turns turns;
+    ok = ok && bench_turns_measure(&plain, &runner, repeat, &turns, error);
+    if (ok) {
+        const double share = turns.ratio_median - 1.0;
+        print_row(options, subject, &watched, stress ? "strain pass, break and stress" : "strain pass, break only",
+                  share * turns.first_median, turns.first_median, share);
+    }
+    bench_network_free(&watched);
+    return ok;
+}
+
+static bool make_session(bench_network *network, session *out, scene_error *error) {
+    const uint32_t particles = network->particle_count, springs = network->spring_count;
+    const uint32_t most = particles > springs ? particles : springs;
+    out->step = network;
+    out->burst = springs < BURST ? springs : BURST;
+    out->values = bench_allocate(most, sizeof *out->values, error);
+    out->more_values = bench_allocate(particles, sizeof *out->more_values, error);
+    out->x = bench_allocate(particles, sizeof *out->x, error);
+    out->y = bench_allocate(particles, sizeof *out->y, error);
+    out->list = bench_allocate(BURST, sizeof *out->list, error);
+    if (!out->values || !out->more_values || !out->x || !out->y || !out->list) {
+        return false;
+    }
+    for (uint32_t i = 0; i < out->burst; i++) {
+        out->list[i] = (mspring_id)((uint64_t)i * springs / out->burst);
+    }
+    return true;
+}
+
+static void free_session(session *unwanted) {
+    free(unwanted->values);
+    free(unwanted->more_values);
+    free(unwanted->x);
+    free(unwanted->y);
+    free(unwanted->list);
+}
+
+static bool measure_level(const bench_scene *subject, const bench_options *options, mspring_simd level) {
+    const uint32_t springs = mspring_builder_spring_count(subject->made.builder);
+    const uint32_t substeps = options->substeps > 0 ? options->substeps : bench_default_substeps(springs);
+    const uint32_t repeat = options->repeat > 0 ? options->repeat : bench_default_repeat(springs);
+    bench_network network;
+    session with = {0};
+    scene_error error;
+    if (!bench_network_create(subject->made.builder, level, 1, substeps, &network, &error)) {
+        bench_complain(subject->label, &error);
+        return false;
+    }
+    double *times = bench_allocate(3 * (size_t)repeat, sizeof *times, &error);
+    bool ok = make_session(&network, &with, &error) && times != NULL;
+    // Before the calls: a network that has been edited is not the plain one any more.
+    for (int stress = 0; ok && stress < 2; stress++) {
+        ok = measure_strain(&with, options, subject, level, stress == 1, repeat, &error);
+    }
+    for (size_t i = 0; ok && i < CALL_COUNT; i++) {
+        ok = measure_call(&calls[i], &with, options, subject, repeat, times, &error);
+    }
+    if (!ok) {
+        bench_complain(subject->label, &error);
+    }
+    free(times);
+    free_session(&with);
+    bench_network_free(&network);
+    return ok;
+}
+
+static bool visit(const bench_scene *subject, const bench_options *options, void *user) {
+    (void)user;
+    mspring_simd levels[4];
+    scene_error error;
+    const int count = bench_options_levels(options, levels, &error);
+    bool ok = true;
+    for (int i = 0; i < count; i++) {
+        ok = measure_level(subject, options, levels[i]) && ok;
+    }
+    return ok;
+}
+
+bool bench_run_session(const bench_options *options) {
+    static const char *const default_scenes[] = {"ship", NULL};
+    bench_table_preamble(options->format);
+    bench_table_head(options->format, columns, COLUMN_COUNT);
+    return bench_for_each_scene(options, default_scenes, visit, NULL);
+}
