@@ -94,15 +94,16 @@ typedef int32_t mspring_result;
 
 enum {
     MSPRING_OK = 0,
-    MSPRING_ERROR_ARGUMENT = -1,  ///< NULL, NaN, infinite, or outside the range that the function states
-    MSPRING_ERROR_ID = -2,        ///< no such particle or spring
-    MSPRING_ERROR_MEMORY = -3,    ///< the allocator returned NULL
-    MSPRING_ERROR_LIMIT = -4,     ///< more particles, springs or cells than the library can index
-    MSPRING_ERROR_STRUCT = -5,    ///< struct_size is not one that any version of this struct had
-    MSPRING_ERROR_DUPLICATE = -6, ///< two springs join the same two particles
-    MSPRING_ERROR_UNSTABLE = -7,  ///< the step would have left the bounded range; the state is that before it
-    MSPRING_ERROR_BUSY = -8,      ///< called from inside a hook, where only shared calls are allowed
-    MSPRING_ERROR_THREAD = -9     ///< the system refuses a thread or a lock
+    MSPRING_ERROR_ARGUMENT = -1,    ///< NULL, NaN, infinite, or outside the range that the function states
+    MSPRING_ERROR_ID = -2,          ///< no such particle or spring
+    MSPRING_ERROR_MEMORY = -3,      ///< the allocator returned NULL
+    MSPRING_ERROR_LIMIT = -4,       ///< more particles, springs or cells than the library can index
+    MSPRING_ERROR_STRUCT = -5,      ///< struct_size is not one that any version of this struct had
+    MSPRING_ERROR_DUPLICATE = -6,   ///< two springs join the same two particles
+    MSPRING_ERROR_UNSTABLE = -7,    ///< the step would have left the bounded range; the state is that before it
+    MSPRING_ERROR_BUSY = -8,        ///< called from inside a hook, where only shared calls are allowed
+    MSPRING_ERROR_THREAD = -9,      ///< the system refuses a thread or a lock
+    MSPRING_ERROR_EQUILIBRIUM = -10 ///< the forces have no equilibrium, or none was found
 };
 
 /// Short English name of a result code, such as "out of memory". Never NULL; static storage.
@@ -535,6 +536,65 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_stable_dt(mspring_n
 /// @threads exclusive access to network   @allocates yes, and frees it   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_suggest_substeps(mspring_network *network, double dt,
                                                                               double safety, uint32_t *substeps);
+
+/* ---------------------------------------------------------------------------------------- static equilibrium */
+
+/// Flags of mspring_settle_def.
+enum {
+    MSPRING_SETTLE_LEAVE_FLOATING = 1u << 0 ///< leave parts that have no equilibrium alone, instead of failing
+};
+
+/// How an equilibrium is sought. Fill with mspring_settle_def_init() first.
+typedef struct mspring_settle_def {
+    uint32_t struct_size;
+    uint32_t flags;          ///< MSPRING_SETTLE_LEAVE_FLOATING or 0; default 0
+    uint32_t max_iterations; ///< 1 to 1000000; default 1000
+    uint32_t reserved;       ///< 0
+    double tolerance; ///< force (N) that may be left on a particle, as a part of the largest that any spring or
+                      ///< anything outside exerts; 1e-15 to 1; default 1e-9
+    double relative_substep; ///< substep (s) that the stiffness of relative springs follows; default 0: the one of
+                             ///< the last step, before which they have none
+} mspring_settle_def;
+
+/// What was found. Set struct_size first.
+typedef struct mspring_settle_result {
+    uint32_t struct_size;
+    uint32_t iterations;  ///< steps of Newton's method
+    double residual;      ///< N, largest force in x or y left on a particle, before positions are rounded to float;
+                          ///< that leaves about stiffness times the last place of a coordinate
+    double largest_force; ///< N, largest force that a spring or, in x or y, anything outside exerts
+    double displacement;  ///< m, farthest that a particle was moved
+    uint32_t is_stable;   ///< 1: every small push would be answered by a force back, or by none
+    uint32_t left_alone;  ///< particles of floating parts that were left where they are
+} mspring_settle_result;
+
+/// Fill a definition with its defaults, as mspring_network_def_init().
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API mspring_result mspring_settle_def_init(mspring_settle_def *def, size_t size);
+
+/// Move the particles to where they rest: static equilibrium under gravity, springs and the forces given for the
+/// next step. Pinned particles stay where they are, hooks are not called, dampers do not matter.
+///
+/// The energy is minimised in double precision by Newton's method with a sparse direct solver (cholesky), from
+/// where the particles are now. Every iteration goes downhill, also from starts that are crushed, folded or all in
+/// one place. There may be several equilibria, tangled ones among them; the one found depends on the start. One
+/// that is not stable, such as a pendulum upside down, is left by a small push. Memory and time grow with the size
+/// as those of a factorisation do: for n particles of a lattice about n log n numbers and n^1.5 operations an
+/// iteration.
+///
+/// Then velocities are zero (those of pinned particles stay), and forces given for the next step are still there.
+/// Parts without pinned particle have an equilibrium only if the forces on them cancel, as without gravity; others
+/// are an error, unless MSPRING_SETTLE_LEAVE_FLOATING leaves them as they are.
+/// @param def     NULL for the defaults
+/// @param result  may be NULL
+/// @return MSPRING_OK; MSPRING_ERROR_EQUILIBRIUM if there is none, it is out of bounds, or max_iterations do not
+///         lead to it (the message names a particle, and the force on it); MSPRING_ERROR_LIMIT if the factor would
+///         have over 2^31 numbers; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY,
+///         MSPRING_ERROR_BUSY. On error nothing has moved.
+/// @threads exclusive access to network   @allocates yes, and frees it   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_settle(mspring_network *network,
+                                                                    const mspring_settle_def *def,
+                                                                    mspring_settle_result *result);
 
 /* --------------------------------------------------------------------------------------- forces and hooks */
 

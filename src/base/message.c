@@ -43,6 +43,8 @@ const char *mspring_result_string(mspring_result result) {
         return "not allowed inside a hook";
     case MSPRING_ERROR_THREAD:
         return "no thread to be had";
+    case MSPRING_ERROR_EQUILIBRIUM:
+        return "no equilibrium found";
     default:
         return "unknown result code";
     }
