@@ -35,7 +35,7 @@ void bench_options_help(void) {
          "Running\n"
          "  --solver explicit    the solver\n"
          "  --substeps N         substeps per step (default 40; from 2 million springs on 16)\n"
-         "  --level LEVEL        scalar, sse2, avx2, avx512, or all (default: the best)\n"
+         "  --level LEVEL        scalar, sse2, avx2, avx512, neon, or all (default: the best)\n"
          "  --threads N          workers of the library's network (default 1); the naive step has one\n"
          "  --repeat N           pairs of samples (default 21; from 2 million springs on 5)\n"
          "\n"
@@ -73,13 +73,14 @@ static bool read_level(const char *text, bench_options *out, scene_error *error)
     if (out->all_levels) {
         return true;
     }
-    for (mspring_simd level = MSPRING_SIMD_SCALAR; level <= MSPRING_SIMD_AVX512; level++) {
+    for (mspring_simd level = MSPRING_SIMD_SCALAR; level <= MSPRING_SIMD_NEON; level++) {
         if (strcmp(text, mspring_simd_name(level)) == 0) {
             out->level = level;
             return true;
         }
     }
-    snprintf(error->text, sizeof error->text, "--level takes scalar, sse2, avx2, avx512 or all, not '%.80s'", text);
+    snprintf(error->text, sizeof error->text, "--level takes scalar, sse2, avx2, avx512, neon or all, not '%.80s'",
+             text);
     return false;
 }
 
@@ -213,7 +214,7 @@ static mspring_simd best_level(void) {
     mspring_simd best = mspring_simd_supported();
     const char *wish = getenv("MSPRING_SIMD");
     for (mspring_simd level = MSPRING_SIMD_SCALAR; wish != NULL && level < best; level++) {
-        if (strcmp(wish, mspring_simd_name(level)) == 0) {
+        if (mspring_simd_available(level) && strcmp(wish, mspring_simd_name(level)) == 0) {
             return level;
         }
     }
@@ -224,7 +225,7 @@ int bench_options_levels(const bench_options *options, mspring_simd levels[4], s
     mspring_simd best = best_level();
     if (!options->all_levels) {
         levels[0] = options->level != MSPRING_SIMD_AUTO ? options->level : best;
-        if (levels[0] > best) {
+        if (!mspring_simd_available(levels[0]) || levels[0] > best) {
             snprintf(error->text, sizeof error->text,
                      "%s is not to be had here: the best level of this machine (and of MSPRING_SIMD, if set) is %s",
                      mspring_simd_name(levels[0]), mspring_simd_name(best));
@@ -234,7 +235,9 @@ int bench_options_levels(const bench_options *options, mspring_simd levels[4], s
     }
     int count = 0;
     for (mspring_simd level = MSPRING_SIMD_SCALAR; level <= best; level++) {
-        levels[count++] = level;
+        if (mspring_simd_available(level)) {
+            levels[count++] = level;
+        }
     }
     return count;
 }

@@ -55,6 +55,10 @@ static const roofline_kernels *kernels_of(mspring_simd level) {
     default:
         break;
     }
+#elif defined(BENCH_AARCH64)
+    if (level == MSPRING_SIMD_NEON) {
+        return &bench_roofline_neon;
+    }
 #endif
     (void)level;
     return &bench_roofline_scalar;

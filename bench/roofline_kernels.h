@@ -31,6 +31,8 @@ typedef struct roofline_kernels {
 extern const roofline_kernels bench_roofline_scalar;
 #ifdef BENCH_X86
 extern const roofline_kernels bench_roofline_sse2, bench_roofline_avx2, bench_roofline_avx512;
+#elif defined(BENCH_AARCH64)
+extern const roofline_kernels bench_roofline_neon;
 #endif
 
 #endif

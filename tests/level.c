@@ -12,18 +12,18 @@
 #include "support.h"
 
 mspring_simd level_from_arguments(int argc, char **argv) {
-    for (mspring_simd level = MSPRING_SIMD_SCALAR; argc > 1 && level <= MSPRING_SIMD_AVX512; level++) {
+    for (mspring_simd level = MSPRING_SIMD_SCALAR; argc > 1 && level <= MSPRING_SIMD_NEON; level++) {
         if (strcmp(argv[1], mspring_simd_name(level)) != 0) {
             continue;
         }
-        if (level > mspring_simd_supported()) {
+        if (!mspring_simd_available(level)) {
             printf("skipped: this machine lacks %s\n", argv[1]);
             exit(LEVEL_SKIPPED);
         }
         unsetenv("MSPRING_SIMD");
         return level;
     }
-    fprintf(stderr, "usage: %s scalar|sse2|avx2|avx512 ...\n", argv[0]);
+    fprintf(stderr, "usage: %s scalar|sse2|avx2|avx512|neon ...\n", argv[0]);
     exit(2);
 }
 

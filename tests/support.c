@@ -140,9 +140,10 @@ uint64_t support_hash(const mspring_network *network) {
 
 uint32_t support_levels(mspring_simd levels[MSPRING_SIMD_AVX512]) {
     uint32_t count = 0;
-    mspring_simd best = mspring_simd_supported();
-    for (mspring_simd level = MSPRING_SIMD_SCALAR; level <= best; level++) {
-        levels[count++] = level;
+    for (mspring_simd level = MSPRING_SIMD_SCALAR; level <= MSPRING_SIMD_NEON; level++) {
+        if (mspring_simd_available(level)) {
+            levels[count++] = level;
+        }
     }
     return count;
 }

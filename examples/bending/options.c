@@ -28,7 +28,7 @@ static const char help[] =
     "  --substeps N       substeps in a step (default 30)\n"
     "  --steps N          give up after so many steps (default 2000000)\n"
     "  --gravity G        m/s^2, downwards (default 9.8)\n"
-    "  --level L          scalar, sse2, avx2 or avx512 (default: the best that the CPU has)\n"
+    "  --level L          scalar, sse2, avx2, avx512 or neon (default: the best that the CPU has)\n"
     "\n"
     "  --out FOLDER       write FOLDER/<scene>.png, .svg and _animation.png\n"
     "  --picture FILE     write a PNG picture: springs coloured by strain, the rest shape behind\n"
@@ -72,16 +72,16 @@ static bool read_count(const char *option, const char *value, uint64_t least, ui
 }
 
 static bool read_level(const char *value, mspring_simd *level) {
-    for (mspring_simd i = MSPRING_SIMD_SCALAR; i <= MSPRING_SIMD_AVX512; i++) {
+    for (mspring_simd i = MSPRING_SIMD_SCALAR; i <= MSPRING_SIMD_NEON; i++) {
         if (strcmp(value, mspring_simd_name(i)) != 0)
             continue;
-        if (i > mspring_simd_supported())
-            return wrong("--level %s: this CPU offers %s at most", value,
+        if (!mspring_simd_available(i))
+            return wrong("--level %s: this CPU lacks it; its best is %s", value,
                          mspring_simd_name(mspring_simd_supported()));
         *level = i;
         return true;
     }
-    return wrong("--level %s: give scalar, sse2, avx2 or avx512", value);
+    return wrong("--level %s: give scalar, sse2, avx2, avx512 or neon", value);
 }
 
 // Options without a value. Returns false if it is none of them.

@@ -3,18 +3,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-#if defined(MSPRINGI_X86_64)
+#include "target.h"
+
+#if defined(MSPRINGI_X86)
 #include <immintrin.h>
-#if defined(_MSC_VER)
+#if defined(_MSC_VER) && !defined(__clang__)
 #include <intrin.h>
 #else
 #include <cpuid.h>
 #endif
+#else
+#include <fenv.h>
 #endif
 
 /* ------------------------------------------------------------------------------------------------ levels */
 
-#if defined(MSPRINGI_X86_64)
+#if defined(MSPRINGI_X86)
 
 typedef struct cpuid_words {
     uint32_t a, b, c, d;
@@ -22,7 +26,7 @@ typedef struct cpuid_words {
 
 static cpuid_words cpuid(uint32_t leaf) {
     cpuid_words words = {0, 0, 0, 0};
-#if defined(_MSC_VER)
+#if defined(_MSC_VER) && !defined(__clang__)
     int out[4];
     __cpuid(out, 0);
     if ((uint32_t)out[0] >= leaf) {
@@ -38,7 +42,7 @@ static cpuid_words cpuid(uint32_t leaf) {
 
 // Which registers the operating system saves: bits 1 and 2 for the 256-bit ones, 5 to 7 for the 512-bit ones.
 static uint64_t saved_registers(void) {
-#if defined(_MSC_VER)
+#if defined(_MSC_VER) && !defined(__clang__)
     return _xgetbv(0);
 #else
     uint32_t low, high;
@@ -59,33 +63,47 @@ mspring_simd mspring_simd_supported(void) {
     return MSPRING_SIMD_AVX512;
 }
 
+uint32_t mspring_simd_available(mspring_simd level) {
+    return level >= MSPRING_SIMD_AUTO && level <= mspring_simd_supported();
+}
+
 #else
 
+// NEON is part of every 64-bit ARM CPU; what there is on 32-bit ones flushes denormals, so it cannot give the same
+// bits.
 mspring_simd mspring_simd_supported(void) {
+#if defined(MSPRINGI_AARCH64)
+    return MSPRING_SIMD_NEON;
+#else
     return MSPRING_SIMD_SCALAR;
+#endif
+}
+
+uint32_t mspring_simd_available(mspring_simd level) {
+    return level == MSPRING_SIMD_AUTO || level == MSPRING_SIMD_SCALAR || level == mspring_simd_supported();
 }
 
 #endif
 
 const char *mspring_simd_name(mspring_simd level) {
-    static const char *const names[] = {"auto", "scalar", "sse2", "avx2", "avx512"};
-    return level >= MSPRING_SIMD_AUTO && level <= MSPRING_SIMD_AVX512 ? names[level] : "unknown";
+    static const char *const names[] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon"};
+    return level >= MSPRING_SIMD_AUTO && level <= MSPRING_SIMD_NEON ? names[level] : "unknown";
 }
 
 mspring_simd mspringi_cpu_choose(mspring_simd wanted) {
     mspring_simd level = mspring_simd_supported();
-    if (wanted != MSPRING_SIMD_AUTO && wanted < level)
+    if (wanted != MSPRING_SIMD_AUTO && mspring_simd_available(wanted))
         level = wanted;
     const char *name = getenv("MSPRING_SIMD");
     for (mspring_simd l = MSPRING_SIMD_SCALAR; name && l < level; ++l)
-        if (strcmp(name, mspring_simd_name(l)) == 0)
+        if (mspring_simd_available(l) && strcmp(name, mspring_simd_name(l)) == 0)
             level = l;
     return level;
 }
 
 /* -------------------------------------------------------------------------------- floating-point environment */
 
-#if defined(MSPRINGI_X86_64)
+#if defined(MSPRINGI_X86)
 
 mspringi_fp_state mspringi_fp_enter(void) {
     const mspringi_fp_state before = _mm_getcsr();
@@ -110,14 +128,30 @@ void mspringi_fp_leave(mspringi_fp_state before) {
     __asm__ volatile("msr fpcr, %0" : : "r"(before));
 }
 
-#else
+#elif defined(__arm__) && defined(__ARM_FP) && defined(__GNUC__)
 
 mspringi_fp_state mspringi_fp_enter(void) {
-    return 0;
+    uint32_t before;
+    __asm__ volatile("vmrs %0, fpscr" : "=r"(before));
+    __asm__ volatile("vmsr fpscr, %0" : : "r"(0u));
+    return before;
 }
 
 void mspringi_fp_leave(mspringi_fp_state before) {
-    (void)before;
+    __asm__ volatile("vmsr fpscr, %0" : : "r"((uint32_t)before));
+}
+
+#else
+
+// What the C library can do; modes that flush denormals are beyond it.
+mspringi_fp_state mspringi_fp_enter(void) {
+    const int before = fegetround();
+    fesetround(FE_TONEAREST);
+    return (mspringi_fp_state)before;
+}
+
+void mspringi_fp_leave(mspringi_fp_state before) {
+    fesetround((int)before);
 }
 
 #endif

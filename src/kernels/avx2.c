@@ -1,6 +1,8 @@
 /// AVX2: eight lanes.
 #include "kernels.h"
 
+#if defined(MSPRINGI_X86)
+
 #include <immintrin.h>
 
 #define LANES 8
@@ -99,3 +101,5 @@ static bool bounded(const float *values, size_t count, float limit) {
 #define MSPRINGI_TABLE mspringi_kernels_avx2
 #define MSPRINGI_LEVEL MSPRING_SIMD_AVX2
 #include "table.h"
+
+#endif

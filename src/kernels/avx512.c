@@ -1,6 +1,8 @@
 /// AVX-512 (F only): sixteen lanes.
 #include "kernels.h"
 
+#if defined(MSPRINGI_X86)
+
 #include <immintrin.h>
 
 #define LANES 16
@@ -101,3 +103,5 @@ static bool bounded(const float *values, size_t count, float limit) {
 #define MSPRINGI_TABLE mspringi_kernels_avx512
 #define MSPRINGI_LEVEL MSPRING_SIMD_AVX512
 #include "table.h"
+
+#endif

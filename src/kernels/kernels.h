@@ -8,6 +8,7 @@
 #ifndef MSPRINGI_KERNELS_H
 #define MSPRINGI_KERNELS_H
 
+#include "base/target.h"
 #include "system.h"
 #include "topology/topology.h"
 
@@ -91,13 +92,15 @@ typedef struct mspringi_kernels {
 } mspringi_kernels;
 
 extern const mspringi_kernels mspringi_kernels_scalar;
-#if defined(MSPRINGI_X86_64)
+#if defined(MSPRINGI_X86)
 extern const mspringi_kernels mspringi_kernels_sse2;
 extern const mspringi_kernels mspringi_kernels_avx2;
 extern const mspringi_kernels mspringi_kernels_avx512;
+#elif defined(MSPRINGI_AARCH64)
+extern const mspringi_kernels mspringi_kernels_neon;
 #endif
 
-/// The table of a level; of the next lower one that was built if it is not there.
+/// The table of a level that mspringi_cpu_choose() has given.
 const mspringi_kernels *mspringi_kernels_of(mspring_simd level);
 
 #endif

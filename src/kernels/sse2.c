@@ -1,5 +1,7 @@
-/// SSE2: four lanes. Part of every x86-64 CPU.
+/// SSE2: four lanes. Part of every x86-64 CPU, and of what i386 is built for.
 #include "kernels.h"
+
+#if defined(MSPRINGI_X86)
 
 #include <emmintrin.h>
 
@@ -83,3 +85,5 @@ static bool bounded(const float *values, size_t count, float limit) {
 #define MSPRINGI_TABLE mspringi_kernels_sse2
 #define MSPRINGI_LEVEL MSPRING_SIMD_SSE2
 #include "table.h"
+
+#endif

@@ -4,17 +4,21 @@
 #include "kernels.h"
 
 const mspringi_cholesky_kernels *mspringi_cholesky_kernels_of(mspring_simd level) {
-    const mspringi_cholesky_kernels *best = &mspringi_cholesky_scalar;
-#if defined(MSPRINGI_X86_64)
-    const mspringi_cholesky_kernels *const upward[] = {&mspringi_cholesky_sse2, &mspringi_cholesky_avx2,
-                                                       &mspringi_cholesky_avx512};
-    for (size_t i = 0; i < sizeof upward / sizeof upward[0]; ++i)
-        if (upward[i]->level <= level)
-            best = upward[i];
-#else
-    (void)level;
+    switch (level) {
+#if defined(MSPRINGI_X86)
+    case MSPRING_SIMD_SSE2:
+        return &mspringi_cholesky_sse2;
+    case MSPRING_SIMD_AVX2:
+        return &mspringi_cholesky_avx2;
+    case MSPRING_SIMD_AVX512:
+        return &mspringi_cholesky_avx512;
+#elif defined(MSPRINGI_AARCH64)
+    case MSPRING_SIMD_NEON:
+        return &mspringi_cholesky_neon;
 #endif
-    return best;
+    default:
+        return &mspringi_cholesky_scalar;
+    }
 }
 
 #define MSPRINGI_CHOLESKY_DEFINE(real)                                                                             \

@@ -5,6 +5,7 @@
 #ifndef MSPRINGI_LINEAR_KERNELS_H
 #define MSPRINGI_LINEAR_KERNELS_H
 
+#include "base/target.h"
 #include "cholesky.h"
 
 struct mspringi_cholesky_kernels {
@@ -16,13 +17,15 @@ struct mspringi_cholesky_kernels {
 };
 
 extern const mspringi_cholesky_kernels mspringi_cholesky_scalar;
-#if defined(MSPRINGI_X86_64)
+#if defined(MSPRINGI_X86)
 extern const mspringi_cholesky_kernels mspringi_cholesky_sse2;
 extern const mspringi_cholesky_kernels mspringi_cholesky_avx2;
 extern const mspringi_cholesky_kernels mspringi_cholesky_avx512;
+#elif defined(MSPRINGI_AARCH64)
+extern const mspringi_cholesky_kernels mspringi_cholesky_neon;
 #endif
 
-/// The table of a level; of the next lower one that was built if it is not there.
+/// The table of a level that mspringi_cpu_choose() has given.
 const mspringi_cholesky_kernels *mspringi_cholesky_kernels_of(mspring_simd level);
 
 #endif

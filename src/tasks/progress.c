@@ -1,8 +1,10 @@
 #include "progress.h"
 
+#include "base/target.h"
+
 #if defined(MSPRINGI_THREADS)
 
-#if defined(MSPRINGI_X86_64)
+#if defined(MSPRINGI_X86)
 #include <immintrin.h>
 #endif
 
@@ -17,7 +19,7 @@
 
 // Tell the processor that this is a loop that waits.
 static inline void pause_thread(void) {
-#if defined(MSPRINGI_X86_64)
+#if defined(MSPRINGI_X86)
     _mm_pause();
 #elif defined(__aarch64__) && defined(__GNUC__)
     __asm__ volatile("isb" : : : "memory"); // unlike yield it does take time

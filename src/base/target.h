@@ -1,0 +1,22 @@
+/// @file target.h
+/// What the compiler makes code for: which kernels there can be. By the compiler's own macros, so that one build
+/// can be for several CPUs (macOS), and so that the sources need no build system.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_TARGET_H
+#define MSPRINGI_TARGET_H
+
+#include <float.h>
+
+// The same bits on every machine take arithmetic in the types as written.
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#error "this target computes in wider types than the source has: on i386 use -msse2 -mfpmath=sse"
+#endif
+
+#if defined(__x86_64__) || (defined(_M_X64) && !defined(_M_ARM64EC)) || defined(__i386__) || defined(_M_IX86)
+#define MSPRINGI_X86 1
+#elif defined(__aarch64__) || defined(_M_ARM64)
+#define MSPRINGI_AARCH64 1
+#endif
+
+#endif

@@ -1,0 +1,95 @@
+/// NEON: four lanes. Part of every 64-bit ARM CPU.
+#include "kernels.h"
+
+#if defined(MSPRINGI_AARCH64)
+
+#include <arm_neon.h>
+
+#define LANES 4
+typedef float32x4_t vec;
+
+static inline vec zero(void) {
+    return vdupq_n_f32(0.0f);
+}
+static inline vec set(float value) {
+    return vdupq_n_f32(value);
+}
+static inline vec load(const float *from) {
+    return vld1q_f32(from);
+}
+static inline vec load_unaligned(const float *from) {
+    return vld1q_f32(from);
+}
+static inline void store(float *to, vec a) {
+    vst1q_f32(to, a);
+}
+static inline vec add(vec a, vec b) {
+    return vaddq_f32(a, b);
+}
+static inline vec sub(vec a, vec b) {
+    return vsubq_f32(a, b);
+}
+static inline vec mul(vec a, vec b) {
+    return vmulq_f32(a, b);
+}
+static inline vec square_root(vec a) {
+    return vsqrtq_f32(a);
+}
+// 1 / length, or 0 where length is 0.
+static inline vec inverse_or_zero(vec length) {
+    const uint32x4_t inverse = vreinterpretq_u32_f32(vdivq_f32(vdupq_n_f32(1.0f), length));
+    return vreinterpretq_f32_u32(vandq_u32(inverse, vcgtzq_f32(length)));
+}
+// a where selector > 0, b elsewhere.
+static inline vec choose_positive(vec selector, vec a, vec b) {
+    return vbslq_f32(vcgtzq_f32(selector), a, b);
+}
+// A bit for each lane: 1 where a > b.
+static inline uint32_t bits_greater(vec a, vec b) {
+    static const uint32_t bits[LANES] = {1, 2, 4, 8};
+    return vaddvq_u32(vandq_u32(vcgtq_f32(a, b), vld1q_u32(bits)));
+}
+// The last lane of before, then all lanes of a but its last.
+static inline vec shift_in(vec before, vec a) {
+    return vextq_f32(before, a, 3);
+}
+
+static inline vec first_halves(vec a, vec b) {
+    return vcombine_f32(vget_low_f32(a), vget_low_f32(b));
+}
+static inline vec second_halves(vec a, vec b) {
+    return vcombine_f32(vget_high_f32(a), vget_high_f32(b));
+}
+// Four values of each of LANES nodes, from [node][4].
+static inline void load_packed(const float *packed, const uint32_t *nodes, vec *x, vec *y, vec *vx, vec *vy) {
+    const vec a = vld1q_f32(packed + 4 * (size_t)nodes[0]), b = vld1q_f32(packed + 4 * (size_t)nodes[1]);
+    const vec c = vld1q_f32(packed + 4 * (size_t)nodes[2]), d = vld1q_f32(packed + 4 * (size_t)nodes[3]);
+    const vec ab_even = vtrn1q_f32(a, b), ab_odd = vtrn2q_f32(a, b);
+    const vec cd_even = vtrn1q_f32(c, d), cd_odd = vtrn2q_f32(c, d);
+    *x = first_halves(ab_even, cd_even);
+    *y = first_halves(ab_odd, cd_odd);
+    *vx = second_halves(ab_even, cd_even);
+    *vy = second_halves(ab_odd, cd_odd);
+}
+static inline void store_packed(float *packed, vec x, vec y, vec vx, vec vy) {
+    const float32x4x4_t nodes = {{x, y, vx, vy}};
+    vst4q_f32(packed, nodes);
+}
+
+static bool bounded(const float *values, size_t count, float limit) {
+    const vec limits = vdupq_n_f32(limit);
+    uint32x4_t all = vceqq_f32(limits, limits);
+    for (size_t i = 0; i < count; i += LANES)
+        all = vandq_u32(all, vcaleq_f32(vld1q_f32(values + i), limits));
+    return vminvq_u32(all) == UINT32_MAX;
+}
+
+#include "sweep.h"
+
+#include "strain.h"
+
+#define MSPRINGI_TABLE mspringi_kernels_neon
+#define MSPRINGI_LEVEL MSPRING_SIMD_NEON
+#include "table.h"
+
+#endif
