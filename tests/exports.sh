@@ -5,6 +5,8 @@
 #   exports.sh dependencies LIBRARY.so          it needs libc, libm and threads at most
 #   exports.sh instructions LIBRARY.a           no fused multiply-add, no approximate reciprocal; wide registers only
 #                                               in the files that are chosen at run time
+#
+# NM, OBJDUMP and READELF come from the environment if they are not the system's.
 set -eu
 check=$1 library=$2
 
@@ -12,10 +14,11 @@ skip() {
   echo "skipped: $1"
   exit 77
 }
-for tool in nm objdump readelf; do
-  command -v $tool >/dev/null || skip "no $tool here (Debian, Ubuntu: binutils)"
+NM=${NM:-nm} OBJDUMP=${OBJDUMP:-objdump} READELF=${READELF:-readelf}
+for tool in "$NM" "$OBJDUMP" "$READELF"; do
+  command -v "$tool" >/dev/null || skip "no $tool here (Debian, Ubuntu: binutils)"
 done
-readelf -h "$library" >/dev/null 2>&1 || skip "$library is no ELF file"
+"$READELF" -h "$library" >/dev/null 2>&1 || skip "$library is no ELF file"
 
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -23,7 +26,7 @@ trap 'rm -rf "$scratch"' EXIT
 case $check in
 symbols)
   # Version nodes (type A) are names of versions, not of symbols.
-  nm -D --defined-only "$library" | awk '$2 != "A" { sub(/@.*/, "", $3); print $3 }' | sort >"$scratch/exported"
+  "$NM" -D --defined-only "$library" | awk '$2 != "A" { sub(/@.*/, "", $3); print $3 }' | sort >"$scratch/exported"
   # Declarations: names before a parenthesis, outside of comments.
   sed -e 's|///.*||' -e 's|//.*||' "$3" | grep -o 'mspring_[a-z0-9_]* *(' | tr -d ' (' | sort -u >"$scratch/declared"
   count=$(wc -l <"$scratch/declared")
@@ -39,24 +42,24 @@ symbols)
   fi
   ;;
 dependencies)
-  readelf -d "$library" | sed -n 's/.*(NEEDED).*\[\(.*\)\].*/\1/p' >"$scratch/needed"
+  "$READELF" -d "$library" | sed -n 's/.*(NEEDED).*\[\(.*\)\].*/\1/p' >"$scratch/needed"
   cat "$scratch/needed"
   grep -q . "$scratch/needed"
   if grep -vE '^(libc|libm|libpthread|ld-linux[-_a-z0-9]*|ld-musl[-_a-z0-9]*|libc\.musl[-_a-z0-9]*)\.so(\.[0-9]+)*$' "$scratch/needed"; then
     echo "the library needs more than libc, libm and threads"
     exit 1
   fi
-  readelf -d "$library" | grep -E 'RPATH|RUNPATH' && exit 1
-  readelf -d "$library" | grep -E 'SONAME.*\[libmassspring\.so\.[0-9]+\]'
+  "$READELF" -d "$library" | grep -E 'RPATH|RUNPATH' && exit 1
+  "$READELF" -d "$library" | grep -E 'SONAME.*\[libmassspring\.so\.[0-9]+\]'
   ;;
 instructions)
-  objdump -d --no-show-raw-insn "$library" >"$scratch/code"
+  "$OBJDUMP" -d --no-show-raw-insn "$library" >"$scratch/code"
   # The disassembly is one: there are square roots in it.
-  grep -q 'sqrt' "$scratch/code"
+  grep -qE 'sqrt|sqebr' "$scratch/code"
   awk '
     /file format/ { member = $1; sub(/:$/, "", member) }
-    $2 ~ /^(vfn?m(add|sub)|fn?m(add|sub)$|fml[as]$)/ { bad("fused multiply-add", $0) }
-    $2 ~ /^(v?rsqrt|v?rcp|frsqrt|frecp)/ { bad("approximate reciprocal", $0) }
+    $2 ~ /^(vfn?m[as]|fn?m(add|sub)$|fml[as]$|m[as][de]br?$)/ { bad("fused multiply-add", $0) }
+    $2 ~ /^(v?rsqrt|v?rcp|vrecp|frsqrt|frecp)/ { bad("approximate reciprocal", $0) }
     /%[yz]mm/ && member !~ /avx/ { bad("wide register outside of the files for it", $0) }
     /%zmm/ && member !~ /avx512/ { bad("512-bit register outside of the file for it", $0) }
     function bad(what, line) { if (++count <= 10) print member ": " what ": " line }
