@@ -174,7 +174,7 @@ static void bad_solver_is_refused(void **state) {
     REFUSED(integrator, MSPRING_INTEGRATOR_EULER + 1, MSPRING_ERROR_ARGUMENT, "integrator");
     REFUSED(iterations, 10001, MSPRING_ERROR_ARGUMENT, "iterations");
     REFUSED(coarse_period, 10001, MSPRING_ERROR_ARGUMENT, "coarse_period");
-    REFUSED(tile_size, 2, MSPRING_ERROR_ARGUMENT, "tile_size");
+    REFUSED(tile_size, 4, MSPRING_ERROR_ARGUMENT, "tile_size");
     REFUSED(tile_size, 12, MSPRING_ERROR_ARGUMENT, "tile_size");
     REFUSED(tile_size, 512, MSPRING_ERROR_ARGUMENT, "tile_size");
     REFUSED(substeps, 0, MSPRING_ERROR_ARGUMENT, "substeps");

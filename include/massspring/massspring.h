@@ -297,9 +297,9 @@ typedef struct mspring_solver_def {
                            ///< needs more is refused with MSPRING_ERROR_UNSTABLE; default 1000
     mspring_integrator integrator; ///< of the implicit solver; default MSPRING_INTEGRATOR_GA0
     uint32_t iterations;           ///< of conjugate gradients in a substep, at most 10000; 0, the default: 8
-    uint32_t tile_size;     ///< rows and columns of the cells that a lattice is cut into for its tiles: 4, 8, 16, 32,
-                            ///< 64, 128 or 256; 0, the default: by plan, 8 unless the network is so large that
-                            ///< thousands of tiles would cost more than they help
+    uint32_t tile_size;            ///< rows and columns of the cells that a lattice is cut into for its tiles: 8, 16,
+                                   ///< 32, 64, 128 or 256; 0, the default: by plan, the smallest whose matrix is
+                                   ///< cheap beside the rest
     uint32_t coarse_period; ///< substeps from one factorisation of the tiles' matrix to the next, at most 10000: more
                             ///< are cheaper, and good as long as the network does not turn far in them; 0, the
                             ///< default: 1

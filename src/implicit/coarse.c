@@ -134,7 +134,7 @@ static void add_masses(mspringi_coarse *coarse, const mspringi_tiles *tiles, con
     for (uint32_t t = 0; t < tiles->count; ++t) {
         double sum = 0.0, inertia = 0.0;
         for (uint32_t p = tiles->first_part[t]; p < tiles->first_part[t + 1]; ++p) {
-            for (uint32_t lane = 0; lane < MSPRINGI_QUARTER; ++lane) {
+            for (uint32_t lane = 0; lane < MSPRINGI_PART; ++lane) {
                 const uint32_t slot = tiles->parts[p].first_slot + lane;
                 if (!(tiles->parts[p].lanes >> lane & 1))
                     continue;

@@ -8,8 +8,9 @@
 #define DEFAULT_TILE_SIZE 8
 #define LARGEST_TILE_SIZE 256
 
-/// Most multiply-adds that factoring the coarse matrix may take, for each slot: as long as a few products with A.
-#define COARSE_COST_PER_SLOT 100.0
+/// Most multiply-adds that factoring the coarse matrix may take, for each slot: about as long as one product with A
+/// takes.
+#define COARSE_COST_PER_SLOT 20.0
 
 /* ----------------------------------------------------------------------------------------------------- creation */
 
@@ -60,8 +61,9 @@ static mspring_result allocate(mspringi_implicit *n, mspring_network *network) {
     if (!reserve_history(memory, &n->history, slots, two) || !reserve_history(memory, &n->backup, slots, two) ||
         !reserve_field(memory, &n->velocity, slots) || !reserve_field(memory, &n->residual, slots) ||
         !reserve_field(memory, &n->displacement, slots) || !reserve_field(memory, &n->direction, slots) ||
-        !reserve_field(memory, &n->product, slots) || !reserve_field(memory, &n->arm, slots) || !n->factors ||
-        !n->x || !n->mass || !n->diagonal || !n->force_carry || !n->carry || !n->restricted)
+        !reserve_field(memory, &n->product, slots) || !reserve_field(memory, &n->scaled, slots) ||
+        !reserve_field(memory, &n->arm, slots) || !n->factors || !n->x || !n->mass || !n->diagonal ||
+        !n->force_carry || !n->carry || !n->restricted)
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for an implicit solver of %u particles", (unsigned)t->particle_count);
     n->y = n->x + slots;
@@ -86,6 +88,21 @@ static mspring_result allocate(mspringi_implicit *n, mspring_network *network) {
         .carry_xx = n->carry,
         .carry_xy = n->carry + carry,
         .carry_yy = n->carry + 2 * carry,
+    };
+    n->iterate = (mspringi_iterate){
+        .slots = slots,
+        .solution_x = n->displacement.x,
+        .solution_y = n->displacement.y,
+        .residual_x = n->residual.x,
+        .residual_y = n->residual.y,
+        .scaled_x = n->scaled.x,
+        .scaled_y = n->scaled.y,
+        .direction_x = n->direction.x,
+        .direction_y = n->direction.y,
+        .product_x = n->product.x,
+        .product_y = n->product.y,
+        .arm_x = n->arm.x,
+        .arm_y = n->arm.y,
     };
     return MSPRING_OK;
 }
@@ -143,9 +160,10 @@ void mspringi_implicit_destroy(mspringi_implicit *n, mspringi_memory *memory) {
         return;
     mspringi_tiles_destroy(&n->tiles, memory);
     mspringi_coarse_destroy(&n->coarse, memory);
-    void *const blocks[] = {n->history.low.x,  n->backup.low.x, n->x,           n->velocity.x, n->residual.x,
-                            n->displacement.x, n->direction.x,  n->product.x,   n->arm.x,      n->mass,
-                            n->diagonal,       n->factors,      n->force_carry, n->carry,      n->restricted};
+    void *const blocks[] = {n->history.low.x, n->backup.low.x,   n->x,           n->velocity.x,
+                            n->residual.x,    n->displacement.x, n->direction.x, n->product.x,
+                            n->scaled.x,      n->arm.x,          n->mass,        n->diagonal,
+                            n->factors,       n->force_carry,    n->carry,       n->restricted};
     for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; ++i)
         mspringi_free(memory, blocks[i]);
     mspringi_free(memory, n);

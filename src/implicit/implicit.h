@@ -36,7 +36,7 @@ typedef struct mspringi_implicit {
 
     double *x, *y;           ///< [slots] predicted positions, in one block
     mspringi_field velocity; ///< after the substep, if d were 0
-    mspringi_field residual, displacement, direction, product;
+    mspringi_field residual, displacement, direction, product, scaled;
     mspringi_field arm;      ///< from the mass centre of its tile to each particle, m
     float *mass;             ///< [slots] scaled; 0 if pinned or empty
     float *diagonal;         ///< [slots] xx, then xy, then yy of A's blocks, then of their inverses
@@ -46,6 +46,7 @@ typedef struct mspringi_implicit {
     float *carry;
     double *restricted; ///< the coarse right-hand side
     mspringi_system system;
+    mspringi_iterate iterate;
     mspringi_edits seen; ///< the edits that it has followed
 
     mspringi_tiles tiles;

@@ -4,7 +4,7 @@
 #include "network/springs.h"
 #include "tile_order.h"
 
-/// Grids of at most this many rows are cut across only, into cells half as wide.
+/// Grids of at most this many rows are cut across only.
 #define SLENDER_ROWS 10
 
 /// A cell, or MSPRING_NONE for slots that are in none.
@@ -71,9 +71,8 @@ static void cut_grids(tiling *g, uint32_t size) {
         const uint32_t rows = end - row;
         const bool slender = rows <= SLENDER_ROWS && size <= SLENDER_ROWS;
         const uint32_t height = slender ? rows : size;
-        const uint32_t width = slender && size > MSPRINGI_QUARTER ? size / 2 : size;
         for (; row < end; row += height)
-            g->cell_count = cut_rows(g, row, height < end - row ? height : end - row, width, g->cell_count);
+            g->cell_count = cut_rows(g, row, height < end - row ? height : end - row, size, g->cell_count);
         row = end;
     }
 }
@@ -255,7 +254,7 @@ static bool list_joints(mspringi_tiles *tiles, const mspring_network *network, m
 
 /* ------------------------------------------------------------------------------------------------------- parts */
 
-// List the particles of each tile, four slots at a time.
+// List the particles of each tile, some slots at a time.
 static bool list_parts(mspringi_tiles *tiles, const mspring_network *network, mspringi_memory *memory) {
     const uint32_t slots = (uint32_t)mspringi_slot_count(network);
     tiles->first_part = mspringi_alloc(memory, (size_t)tiles->count + 2, sizeof *tiles->first_part);
@@ -263,18 +262,18 @@ static bool list_parts(mspringi_tiles *tiles, const mspring_network *network, ms
         return false;
     uint32_t *first = tiles->first_part;
     for (int pass = 0; pass < 2; ++pass) { // first count, then fill
-        for (uint32_t quarter = 0; quarter < slots; quarter += MSPRINGI_QUARTER) {
-            for (uint32_t lane = 0; lane < MSPRINGI_QUARTER; ++lane) {
-                const uint32_t tile = tiles->tile_of_slot[quarter + lane];
+        for (uint32_t begin = 0; begin < slots; begin += MSPRINGI_PART) {
+            for (uint32_t lane = 0; lane < MSPRINGI_PART; ++lane) {
+                const uint32_t tile = tiles->tile_of_slot[begin + lane];
                 uint32_t lanes = 0;
-                for (uint32_t i = 0; i < MSPRINGI_QUARTER; ++i)
-                    lanes |= (uint32_t)(tiles->tile_of_slot[quarter + i] == tile) << i;
+                for (uint32_t i = 0; i < MSPRINGI_PART; ++i)
+                    lanes |= (uint32_t)(tiles->tile_of_slot[begin + i] == tile) << i;
                 if (tile == MSPRING_NONE || lanes & ((1u << lane) - 1u))
                     continue; // none, or listed at an earlier lane
                 if (pass == 0)
                     first[tile + 2]++;
                 else
-                    tiles->parts[first[tile + 1]++] = (mspringi_part_of_tile){quarter, lanes};
+                    tiles->parts[first[tile + 1]++] = (mspringi_tile_part){begin, lanes};
             }
         }
         if (pass == 0) {

@@ -12,12 +12,6 @@
 
 #include "network/network.h"
 
-/// Particles of one tile among four neighbouring slots.
-typedef struct mspringi_part_of_tile {
-    uint32_t first_slot; ///< a multiple of MSPRINGI_QUARTER
-    uint32_t lanes;      ///< bit i: slot first_slot + i
-} mspringi_part_of_tile;
-
 /// A spring between two tiles, or between a tile and a pinned particle.
 typedef struct mspringi_joint {
     uint32_t tile, other;      ///< tile > other, or other MSPRING_NONE
@@ -27,10 +21,10 @@ typedef struct mspringi_joint {
 
 typedef struct mspringi_tiles {
     uint32_t count;
-    uint32_t *first_part;         ///< [count + 1]
-    mspringi_part_of_tile *parts; ///< tile after tile
-    uint32_t *tile_of_slot;       ///< [slots] MSPRING_NONE: none
-    mspringi_joint *joints;       ///< sorted by tile
+    uint32_t *first_part;      ///< [count + 1]
+    mspringi_tile_part *parts; ///< tile after tile
+    uint32_t *tile_of_slot;    ///< [slots] MSPRING_NONE: none
+    mspringi_joint *joints;    ///< sorted by tile
     uint32_t joint_count;
     uint32_t size;      ///< rows and columns of a cell in wide grids
     float turn_inertia; ///< m^2; what is added to a tile's moment of inertia for each kg

@@ -100,6 +100,29 @@ static bool bounded(const float *values, size_t count, float limit) {
 
 #include "strain.h"
 
+// Eight lanes, for parts of tiles.
+#define PART_LANES 8
+typedef __m256 part_vec;
+
+static inline part_vec part_set(float value) {
+    return _mm256_set1_ps(value);
+}
+static inline part_vec part_load(const float *from) {
+    return _mm256_load_ps(from);
+}
+static inline void part_store(float *to, part_vec a) {
+    _mm256_store_ps(to, a);
+}
+static inline part_vec part_add(part_vec a, part_vec b) {
+    return _mm256_add_ps(a, b);
+}
+static inline part_vec part_sub(part_vec a, part_vec b) {
+    return _mm256_sub_ps(a, b);
+}
+static inline part_vec part_mul(part_vec a, part_vec b) {
+    return _mm256_mul_ps(a, b);
+}
+
 #define MSPRINGI_TABLE mspringi_kernels_avx512
 #define MSPRINGI_LEVEL MSPRING_SIMD_AVX512
 #include "table.h"

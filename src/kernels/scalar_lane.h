@@ -11,6 +11,9 @@ typedef float vec;
 static inline vec zero(void) {
     return 0.0f;
 }
+static inline vec set(float value) {
+    return value;
+}
 static inline vec load(const float *from) {
     return *from;
 }

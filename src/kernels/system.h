@@ -49,9 +49,47 @@ typedef void (*mspringi_assemble_fn)(const mspringi_system *system, const msprin
 typedef void (*mspringi_multiply_fn)(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
                                      const float *from_x, const float *from_y, float *to_x, float *to_y);
 
+/// Slots of a part of a tile.
+#define MSPRINGI_PART 8
+
+/// Particles of one tile (see implicit/tiles.h) among neighbouring slots.
+typedef struct mspringi_tile_part {
+    uint32_t first_slot; ///< a multiple of MSPRINGI_PART
+    uint32_t lanes;      ///< bit i: slot first_slot + i
+} mspringi_tile_part;
+
+/// The vectors of conjugate gradients, arrays by slot. The direction is 0 where d is.
+typedef struct mspringi_iterate {
+    size_t slots;
+    float *solution_x, *solution_y; ///< d
+    float *residual_x, *residual_y; ///< r = b - A d
+    float *scaled_x, *scaled_y;     ///< D^-1 r
+    float *direction_x, *direction_y;
+    float *product_x, *product_y; ///< A direction
+    const float *arm_x, *arm_y;   ///< from the mass centre of its tile to each particle
+} mspringi_iterate;
+
+/// Go on by alpha along the direction, and scale the new residual. Returns r . D^-1 r.
+typedef float (*mspringi_advance_fn)(const mspringi_system *system, const mspringi_iterate *iterate, float alpha);
+
+/// Returns direction . product.
+typedef float (*mspringi_curvature_fn)(const mspringi_iterate *iterate);
+
+/// Sum r over the parts of a tile: in x, in y, and its moment about the mass centre.
+typedef void (*mspringi_restrict_fn)(const mspringi_iterate *iterate, const mspringi_tile_part *parts, size_t count,
+                                     double *to);
+
+/// On the parts of a tile, direction = D^-1 r + the motion of a rigid body + beta direction.
+typedef void (*mspringi_turn_fn)(const mspringi_iterate *iterate, const mspringi_tile_part *parts, size_t count,
+                                 const double *body, float beta);
+
 typedef struct mspringi_system_kernels {
     mspringi_assemble_fn assemble_lattice[2], assemble_chain[2]; ///< [with damping]
     mspringi_multiply_fn multiply_lattice, multiply_chain;
+    mspringi_advance_fn advance;
+    mspringi_curvature_fn curvature;
+    mspringi_restrict_fn restrict_to_tile;
+    mspringi_turn_fn turn_tile;
 } mspringi_system_kernels;
 
 #endif

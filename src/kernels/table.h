@@ -6,6 +6,7 @@
 /// SPDX-License-Identifier: MIT
 
 #include "system_assemble.h"
+#include "system_iterate.h"
 #include "system_multiply.h"
 
 #define MSPRINGI_VARIANT(kind, name, damped, forced)                                                               \
@@ -56,5 +57,9 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .system = {.assemble_lattice = {assemble_lattice_plain, assemble_lattice_damped},
                .assemble_chain = {assemble_chain_plain, assemble_chain_damped},
                .multiply_lattice = multiply_lattice,
-               .multiply_chain = multiply_chain},
+               .multiply_chain = multiply_chain,
+               .advance = advance,
+               .curvature = curvature,
+               .restrict_to_tile = restrict_to_tile,
+               .turn_tile = turn_tile},
 };

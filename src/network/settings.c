@@ -19,9 +19,9 @@ static mspring_result check_implicit(const mspring_solver_def *def, mspringi_mes
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "coarse_period is %u, it must be at most %d",
                              (unsigned)def->coarse_period, MOST_ITERATIONS);
     const bool is_power_of_two = (def->tile_size & (def->tile_size - 1)) == 0;
-    if (def->tile_size != 0 && (def->tile_size < 4 || def->tile_size > 256 || !is_power_of_two))
+    if (def->tile_size != 0 && (def->tile_size < 8 || def->tile_size > 256 || !is_power_of_two))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
-                             "tile_size is %u, it must be 0 or a power of two from 4 to 256",
+                             "tile_size is %u, it must be 0 or a power of two from 8 to 256",
                              (unsigned)def->tile_size);
     return MSPRING_OK;
 }

@@ -1,0 +1,171 @@
+/// @file system_iterate.h
+/// What an iteration of conjugate gradients does beside the product: plain C in blocks of MSPRINGI_WIDTH slots, or
+/// of the MSPRINGI_QUARTER slots of a part of a tile, as system_assemble.h is. Every sum is one of lanes, added up
+/// pairwise at the end, so its order is the same for every instruction set.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_SYSTEM_ITERATE_H
+#define MSPRINGI_SYSTEM_ITERATE_H
+
+// Vectors within a part of a tile: those of the instruction set, or half of them where they are longer than a part.
+#ifndef PART_LANES
+#define PART_LANES LANES
+typedef vec part_vec;
+
+static inline part_vec part_set(float value) {
+    return set(value);
+}
+static inline part_vec part_load(const float *from) {
+    return load(from);
+}
+static inline void part_store(float *to, part_vec a) {
+    store(to, a);
+}
+static inline part_vec part_add(part_vec a, part_vec b) {
+    return add(a, b);
+}
+static inline part_vec part_sub(part_vec a, part_vec b) {
+    return sub(a, b);
+}
+static inline part_vec part_mul(part_vec a, part_vec b) {
+    return mul(a, b);
+}
+#endif
+
+#if defined(_MSC_VER)
+#define MSPRINGI_PART_INLINE static __forceinline
+#else
+#define MSPRINGI_PART_INLINE static inline __attribute__((always_inline))
+#endif
+
+static inline float sum_block_lanes(float *lanes) {
+    for (size_t half = MSPRINGI_WIDTH / 2; half > 0; half /= 2)
+        for (size_t i = 0; i < half; ++i)
+            lanes[i] = lanes[i] + lanes[i + half];
+    return lanes[0];
+}
+
+// The parameters are what compilers know to be apart from each other.
+static float advance_coordinates(size_t slots, float alpha, const float *restrict px, const float *restrict py,
+                                 const float *restrict qx, const float *restrict qy, const float *restrict xx,
+                                 const float *restrict xy, const float *restrict yy, float *restrict dx,
+                                 float *restrict dy, float *restrict rx, float *restrict ry, float *restrict zx,
+                                 float *restrict zy) {
+    float sums[MSPRINGI_WIDTH] = {0.0f};
+    for (size_t slot = 0; slot < slots; slot += MSPRINGI_WIDTH) {
+        for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
+            const size_t at = slot + i;
+            dx[at] = dx[at] + alpha * px[at];
+            dy[at] = dy[at] + alpha * py[at];
+            const float x = rx[at] - alpha * qx[at], y = ry[at] - alpha * qy[at];
+            const float scaled_x = xx[at] * x + xy[at] * y, scaled_y = xy[at] * x + yy[at] * y;
+            rx[at] = x;
+            ry[at] = y;
+            zx[at] = scaled_x;
+            zy[at] = scaled_y;
+            sums[i] = sums[i] + (x * scaled_x + y * scaled_y);
+        }
+    }
+    return sum_block_lanes(sums);
+}
+
+static float advance(const mspringi_system *s, const mspringi_iterate *n, float alpha) {
+    return advance_coordinates(n->slots, alpha, n->direction_x, n->direction_y, n->product_x, n->product_y, s->xx,
+                               s->xy, s->yy, n->solution_x, n->solution_y, n->residual_x, n->residual_y,
+                               n->scaled_x, n->scaled_y);
+}
+
+static float dot_coordinates(size_t slots, const float *restrict ax, const float *restrict ay,
+                             const float *restrict bx, const float *restrict by) {
+    float sums[MSPRINGI_WIDTH] = {0.0f};
+    for (size_t slot = 0; slot < slots; slot += MSPRINGI_WIDTH)
+        for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
+            sums[i] = sums[i] + (ax[slot + i] * bx[slot + i] + ay[slot + i] * by[slot + i]);
+    return sum_block_lanes(sums);
+}
+
+static float curvature(const mspringi_iterate *n) {
+    return dot_coordinates(n->slots, n->direction_x, n->direction_y, n->product_x, n->product_y);
+}
+
+/// All lanes of a part.
+#define ALL_LANES ((1u << MSPRINGI_PART) - 1u)
+
+/// Vectors in a part.
+#define PART_VECTORS (MSPRINGI_PART / PART_LANES)
+
+/// Sums by lane of a tile's residual, and of its moment.
+typedef struct tile_sums {
+    part_vec x[PART_VECTORS], y[PART_VECTORS], turn[PART_VECTORS];
+} tile_sums;
+
+MSPRINGI_PART_INLINE void add_part(tile_sums *to, const float *rx, const float *ry, const float *arm_x,
+                                   const float *arm_y) {
+    for (size_t v = 0; v < PART_VECTORS; ++v) {
+        const part_vec x = part_load(rx + v * PART_LANES), y = part_load(ry + v * PART_LANES);
+        to->x[v] = part_add(to->x[v], x);
+        to->y[v] = part_add(to->y[v], y);
+        to->turn[v] = part_add(to->turn[v], part_sub(part_mul(part_load(arm_x + v * PART_LANES), y),
+                                                     part_mul(part_load(arm_y + v * PART_LANES), x)));
+    }
+}
+
+static double sum_part(const part_vec *sums) {
+    _Alignas(64) float lanes[MSPRINGI_PART];
+    for (size_t v = 0; v < PART_VECTORS; ++v)
+        part_store(lanes + v * PART_LANES, sums[v]);
+    return (double)(((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) +
+                    ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7])));
+}
+
+static void restrict_to_tile(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count, double *to) {
+    tile_sums sums;
+    for (size_t v = 0; v < PART_VECTORS; ++v)
+        sums.x[v] = sums.y[v] = sums.turn[v] = part_set(0.0f);
+    for (size_t p = 0; p < count; ++p) {
+        const size_t slot = parts[p].first_slot;
+        if (parts[p].lanes == ALL_LANES) {
+            add_part(&sums, n->residual_x + slot, n->residual_y + slot, n->arm_x + slot, n->arm_y + slot);
+            continue;
+        }
+        _Alignas(64) float x[MSPRINGI_PART], y[MSPRINGI_PART];
+        for (size_t i = 0; i < MSPRINGI_PART; ++i) {
+            const bool counts = parts[p].lanes >> i & 1;
+            x[i] = counts ? n->residual_x[slot + i] : 0.0f;
+            y[i] = counts ? n->residual_y[slot + i] : 0.0f;
+        }
+        add_part(&sums, x, y, n->arm_x + slot, n->arm_y + slot);
+    }
+    to[0] = sum_part(sums.x);
+    to[1] = sum_part(sums.y);
+    to[2] = sum_part(sums.turn);
+}
+
+static void turn_tile(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count, const double *body,
+                      float beta) {
+    const part_vec shift_x = part_set((float)body[0]), shift_y = part_set((float)body[1]);
+    const part_vec angle = part_set((float)body[2]), betas = part_set(beta);
+    for (size_t p = 0; p < count; ++p) {
+        const size_t slot = parts[p].first_slot;
+        const bool all = parts[p].lanes == ALL_LANES;
+        _Alignas(64) float some_x[MSPRINGI_PART], some_y[MSPRINGI_PART];
+        float *const px = n->direction_x + slot, *const py = n->direction_y + slot;
+        float *const to_x = all ? px : some_x, *const to_y = all ? py : some_y;
+        for (size_t i = 0; i < MSPRINGI_PART; i += PART_LANES) {
+            const part_vec body_x = part_sub(shift_x, part_mul(part_load(n->arm_y + slot + i), angle));
+            const part_vec body_y = part_add(shift_y, part_mul(part_load(n->arm_x + slot + i), angle));
+            part_store(to_x + i, part_add(part_add(part_load(n->scaled_x + slot + i), body_x),
+                                          part_mul(betas, part_load(px + i))));
+            part_store(to_y + i, part_add(part_add(part_load(n->scaled_y + slot + i), body_y),
+                                          part_mul(betas, part_load(py + i))));
+        }
+        for (size_t i = 0; !all && i < MSPRINGI_PART; ++i) {
+            px[i] = parts[p].lanes >> i & 1 ? some_x[i] : px[i];
+            py[i] = parts[p].lanes >> i & 1 ? some_y[i] : py[i];
+        }
+    }
+}
+
+#undef ALL_LANES
+
+#endif
