@@ -5,9 +5,11 @@
 
 #include "strip.h"
 
-/// Strips that are swept several times in one pass should stay in this much cache: half of a second-level cache of
-/// today.
-#define CACHE_BYTES ((size_t)512 << 10)
+/// Strips that are swept several times in one pass should stay in this much cache: of the third level, a share that
+/// most CPUs have for one thread. (Where rows are short, 16 substeps fit the second level anyway. Where they are
+/// long, more substeps in the third beat fewer in the second: 10 million springs, AVX-512, ratio to naive 9.3
+/// instead of 6.7 with 512 KiB.)
+#define CACHE_BYTES ((size_t)4 << 20)
 
 /// Most substeps in one pass: each needs a carry row of its own.
 #define DEEPEST 16
