@@ -17,6 +17,9 @@
 /// Substeps times springs from which more than one worker is worth it.
 #define SMALLEST_SHARED_WORK 400000u
 
+/// Strips that a worker may lag behind the one before, besides those that it must, before others have to wait.
+#define SLACK 4
+
 /// What the workers have in common.
 typedef struct job {
     const mspring_network *network;
@@ -50,11 +53,11 @@ static job plan_wave(const mspring_network *network, float h, mspringi_field bas
     job made = {.network = network, .base = base, .h = h, .count = count};
     const bool shared = (uint64_t)t->spring_count * count >= SMALLEST_SHARED_WORK;
     made.workers = shared ? mspringi_tasks_concurrency(network->tasks) : 1;
-    while (made.workers > 1 && made.workers * (t->lag + 2) > t->wave_strips)
+    while (made.workers > 1 && made.workers * (t->lag + 2 + SLACK) > t->wave_strips)
         made.workers--;
     uint32_t group = network->depth;
-    if (made.workers > 1 && group > (t->wave_strips / made.workers - 2) / t->lag)
-        group = (t->wave_strips / made.workers - 2) / t->lag;
+    if (made.workers > 1 && group > (t->wave_strips / made.workers - 2 - SLACK) / t->lag)
+        group = (t->wave_strips / made.workers - 2 - SLACK) / t->lag;
     // Equal passes, and as many for each worker.
     const uint32_t at_once = group * made.workers, rounds = (count + at_once - 1) / at_once;
     made.group = (count + rounds * made.workers - 1) / (rounds * made.workers);

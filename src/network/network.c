@@ -149,16 +149,16 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
                                              const mspring_network_def *def) {
     bool damped, relative;
     mspring_result result =
-        mspringi_topology_create(&network->topology, builder, &network->memory, &network->message);
+        mspringi_tasks_create(def->worker_count, def->tasks, &network->memory, &network->message, &network->tasks);
+    if (result == MSPRING_OK)
+        result = mspringi_topology_create(&network->topology, builder, mspringi_tasks_concurrency(network->tasks),
+                                          &network->memory, &network->message);
     if (result != MSPRING_OK)
         return result;
     look_at_springs(builder, &damped, &relative);
     damped = damped || (def->flags & MSPRING_NETWORK_RESERVE_DAMPING);
     network->parts = damped ? MSPRINGI_DAMPING + 1 : MSPRINGI_STIFFNESS + 1;
-    result =
-        mspringi_tasks_create(def->worker_count, def->tasks, &network->memory, &network->message, &network->tasks);
-    if (result == MSPRING_OK)
-        result = allocate(network, relative);
+    result = allocate(network, relative);
     if (result != MSPRING_OK)
         return result;
     network->kernels = mspringi_kernels_of(mspringi_cpu_choose(def->simd_level));

@@ -76,7 +76,7 @@ typedef struct mspringi_homes {
 } mspringi_homes;
 
 mspring_result mspringi_homes_find(mspringi_homes *homes, const mspringi_graph *graph, const mspringi_grids *grids,
-                                   const mspringi_strands *strands, mspringi_memory *memory,
+                                   const mspringi_strands *strands, uint32_t workers, mspringi_memory *memory,
                                    mspringi_message *message);
 void mspringi_homes_destroy(mspringi_homes *homes, mspringi_memory *memory);
 

@@ -12,6 +12,9 @@
 /// Particles in the rows of a strip, about: few strips cost fewer calls, small ones fit the cache more often.
 #define STRIP_PARTICLES 512
 
+/// Strips that each of several workers should find, so that it need not wait for those before and behind it.
+#define STRIPS_PER_WORKER 24
+
 /// Whether the rows of a component can be swept together.
 enum { FIT, UNFIT_FOR_LAG, UNFIT };
 
@@ -21,9 +24,10 @@ typedef struct finder {
     const mspringi_strands *strands;
     mspringi_homes *homes;
     mspringi_memory *memory;
-    uint32_t *component; ///< [particles] parent in a forest; its roots name the components
-    uint8_t *fitness;    ///< [particles] of roots
-    uint32_t *attached;  ///< [attached_count] lattice particles with leftover springs
+    uint32_t strip_particles; ///< in a strip, about
+    uint32_t *component;      ///< [particles] parent in a forest; its roots name the components
+    uint8_t *fitness;         ///< [particles] of roots
+    uint32_t *attached;       ///< [attached_count] lattice particles with leftover springs
     uint32_t attached_count;
     uint32_t *low;   ///< [particles] lowest strip that each may have
     uint32_t *queue; ///< [strips] first particle of each strip, MSPRING_NONE at the end
@@ -106,8 +110,8 @@ static void number_rows(finder *f) {
         if (!unfit)
             homes->row_count = row;
     }
-    const uint32_t particles_per_row = row > 0 ? grids->member_count / row : 0;
-    homes->strip_rows = particles_per_row < STRIP_PARTICLES ? STRIP_PARTICLES / (particles_per_row + 1) : 1;
+    const uint32_t per_row = row > 0 ? grids->member_count / row : 0;
+    homes->strip_rows = per_row < f->strip_particles ? f->strip_particles / (per_row + 1) : 1;
 }
 
 static uint32_t strip_count(const mspringi_homes *homes) {
@@ -172,17 +176,34 @@ static bool find_for_lag(finder *f, uint32_t lag) {
     return true;
 }
 
-static void find_smallest_lag(finder *f) {
+// Find the smallest lag; components that need more than the longest are left out.
+static void find_smallest_lag(finder *f, uint32_t longest) {
+    f->homes->lag = 1;
     while (!find_for_lag(f, f->homes->lag)) {
-        if (f->homes->lag == MSPRINGI_LONGEST_LAG)
-            continue; // without those that have become unfit
+        const bool is_longest = f->homes->lag == longest;
         for (size_t p = 0; p < f->graph->builder->particle_count; ++p)
-            f->fitness[p] = f->fitness[p] == UNFIT_FOR_LAG ? FIT : f->fitness[p];
-        f->homes->lag++;
+            if (f->fitness[p] == UNFIT_FOR_LAG)
+                f->fitness[p] = is_longest ? UNFIT : FIT;
+        f->homes->lag += !is_longest;
     }
 }
 
-static bool find(finder *f) {
+// Find homes in strips of the usual size; then, if these are too few for the workers, in smaller ones. Which
+// components are left out, and so every bit of a step, does not depend on the workers.
+static void find_homes(finder *f, uint32_t workers) {
+    const uint32_t wanted = f->grids->member_count / workers / STRIPS_PER_WORKER;
+    const bool is_small = workers > 1 && wanted < f->strip_particles;
+    if (f->attached_count > 0)
+        find_smallest_lag(f, MSPRINGI_LONGEST_LAG);
+    if (is_small)
+        f->strip_particles = wanted;
+    if (is_small && f->attached_count > 0)
+        find_smallest_lag(f, UINT32_MAX);
+    if (f->attached_count == 0)
+        number_rows(f);
+}
+
+static bool find(finder *f, uint32_t workers) {
     const size_t particles = f->graph->builder->particle_count;
     mspringi_homes *homes = f->homes;
     homes->lag = 1;
@@ -197,7 +218,7 @@ static bool find(finder *f) {
         if (has_leftover_spring(f, f->grids->members[m]))
             f->attached[f->attached_count++] = f->grids->members[m];
     if (f->attached_count == 0) {
-        number_rows(f);
+        find_homes(f, workers);
         return true;
     }
     f->component = mspringi_alloc(f->memory, particles, sizeof *f->component);
@@ -210,15 +231,20 @@ static bool find(finder *f) {
     find_components(f);
     if (!find_ropy(f))
         return false;
-    find_smallest_lag(f);
+    find_homes(f, workers);
     return true;
 }
 
 mspring_result mspringi_homes_find(mspringi_homes *homes, const mspringi_graph *graph, const mspringi_grids *grids,
-                                   const mspringi_strands *strands, mspringi_memory *memory,
+                                   const mspringi_strands *strands, uint32_t workers, mspringi_memory *memory,
                                    mspringi_message *message) {
-    finder f = {.graph = graph, .grids = grids, .strands = strands, .homes = homes, .memory = memory};
-    const bool found = find(&f);
+    finder f = {.graph = graph,
+                .grids = grids,
+                .strands = strands,
+                .homes = homes,
+                .memory = memory,
+                .strip_particles = STRIP_PARTICLES};
+    const bool found = find(&f, workers);
     mspringi_free(memory, f.component);
     mspringi_free(memory, f.fitness);
     mspringi_free(memory, f.attached);

@@ -29,6 +29,7 @@ typedef struct assembly {
     mspringi_memory *memory;
     mspringi_message *message;
     const mspring_builder *builder;
+    uint32_t workers;
     uint8_t *kinds;
     mspringi_graph graph;
     mspringi_strands strands;
@@ -564,7 +565,8 @@ static mspring_result assemble(assembly *a) {
     if (result == MSPRING_OK)
         result = mspringi_grids_find(&a->grids, &a->graph, a->kinds, a->memory, a->message);
     if (result == MSPRING_OK)
-        result = mspringi_homes_find(&a->homes, &a->graph, &a->grids, &a->strands, a->memory, a->message);
+        result =
+            mspringi_homes_find(&a->homes, &a->graph, &a->grids, &a->strands, a->workers, a->memory, a->message);
     if (result == MSPRING_OK) {
         mspringi_strands_drop(&a->strands, &a->homes, a->kinds);
         result = mspringi_web_list_find(&a->web, &a->graph, &a->homes, a->kinds, a->memory, a->message);
@@ -587,10 +589,11 @@ static mspring_result assemble(assembly *a) {
 }
 
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
-                                        mspringi_memory *memory, mspringi_message *message) {
+                                        uint32_t workers, mspringi_memory *memory, mspringi_message *message) {
     *topology = (mspringi_topology){.particle_count = (uint32_t)builder->particle_count,
                                     .spring_count = (uint32_t)builder->spring_count};
-    assembly a = {.topology = topology, .memory = memory, .message = message, .builder = builder};
+    assembly a = {
+        .topology = topology, .memory = memory, .message = message, .builder = builder, .workers = workers};
     mspring_result result = assemble(&a);
     if (result == MSPRING_OK) {
         topology->lattice_count = a.grids.count;

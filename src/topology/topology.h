@@ -115,9 +115,9 @@ static inline size_t mspringi_place_words(const mspringi_topology *topology) {
     return ((size_t)topology->chain_places + topology->leftover_count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
 }
 
-/// Lay out what the builder holds.
+/// Lay out what the builder holds, for steps that so many workers share.
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
-                                        mspringi_memory *memory, mspringi_message *message);
+                                        uint32_t workers, mspringi_memory *memory, mspringi_message *message);
 void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *memory);
 
 /// The two slots that a spring joins; where the place has a direction, base and tip in its sense.
