@@ -98,7 +98,11 @@ static bool run(const experiment *tried, observation *seen, const char *folder) 
     }
     mspring_network *network = NULL;
     network_shape shape = {0};
-    bool ok = mspring_network_create(bar.builder, NULL, &network) == MSPRING_OK;
+    mspring_network_def settings;
+    // The guard would refuse the first step that is too long, and there would be nothing to see.
+    bool ok = mspring_network_def_init(&settings, sizeof settings) == MSPRING_OK;
+    settings.guard = MSPRING_GUARD_BOUNDS;
+    ok = ok && mspring_network_create(bar.builder, &settings, &network) == MSPRING_OK;
     if (!ok)
         fprintf(stderr, "cannot make the bar: %s\n", mspring_builder_error(bar.builder));
     if (ok && !(ok = network_shape_make(&shape, network, MSPRING_NONE, &drawing_error)))

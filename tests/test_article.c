@@ -28,6 +28,7 @@ static mspring_network *bar(double stiffness, double damping, double dt) {
     }
     mspring_network_def def = support_def((float)(-9.8 / retention), 1);
     def.global_damping = (float)(-log(retention) / dt);
+    def.guard = MSPRING_GUARD_BOUNDS; // to see what it does
     mspring_network *network = recipe_network(&made, &def);
     recipe_free(&made);
     return network;

@@ -139,6 +139,7 @@ static void network_defaults(void **state) {
     assert_int_equal(def.substeps, 1);
     assert_int_equal(def.max_substeps, 1000);
     assert_true(def.gravity_x == 0 && def.gravity_y == -9.8f && def.global_damping == 0 && def.max_speed == 1e6f);
+    assert_int_equal(def.guard, MSPRING_GUARD_GROWTH);
     assert_null(def.allocator);
     assert_null(def.tasks);
     assert_int_equal(def.worker_count, 1);

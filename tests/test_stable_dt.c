@@ -121,18 +121,20 @@ enum { SUBSTEPS = 3000 };
 static bool grows(const recipe *made, double h, uint32_t substeps, float global_damping) {
     mspring_network_def def = support_def(0, 1);
     def.global_damping = global_damping;
+    def.guard = MSPRING_GUARD_BOUNDS;
     mspring_network *network = recipe_network(made, &def);
     bool grew = false;
-    double last = 0;
+    double first = 0;
     for (uint32_t i = 0; i < substeps && !grew; i++) {
         mspring_result result = mspring_network_step(network, h);
         double kinetic = 0, elastic = 0;
         check_ok(mspring_network_energy(network, &kinetic, &elastic, NULL));
-        // What it starts with; near the border that swings by some hundred.
+        // Near the border a mode's energy swings by a factor of a hundred; springs that go mad alone, in a corner,
+        // make it a few thousand times what it was.
         if (i == 0) {
-            last = kinetic + elastic;
+            first = kinetic + elastic;
         }
-        grew = result != MSPRING_OK || kinetic + elastic > 1e5 * last;
+        grew = result != MSPRING_OK || kinetic + elastic > 1e3 * first;
     }
     mspring_network_destroy(network);
     return grew;
@@ -239,7 +241,8 @@ static void substeps_are_as_few_as_the_limit_allows(void **state) {
     const struct {
         double dt, safety;
         uint32_t substeps;
-    } cases[] = {{0.0019, 1, 1}, {0.0021, 1, 2}, {0.0019, 0.5, 2}, {0.1001, 1, 51}, {0.1001, 0.1, 501}, {1e-9, 1e-3, 1}};
+    } cases[] = {{0.0019, 1, 1},  {0.0021, 1, 2},     {0.0019, 0.5, 2},
+                 {0.1001, 1, 51}, {0.1001, 0.1, 501}, {1e-9, 1e-3, 1}};
     for (size_t i = 0; i < COUNT_OF(cases); i++) {
         uint32_t substeps = 0;
         check_ok(mspring_network_suggest_substeps(network, cases[i].dt, cases[i].safety, &substeps));

@@ -271,9 +271,9 @@ enum {
     MSPRING_SOLVER_IMPLICIT = 1
 };
 
-/// How the implicit solver goes from t to t + h. All are stable for any h and damp the fastest oscillations out in a
-/// few steps. The two of second order remember the substep before; the first substep after a change of the solver,
-/// and after the positions of all particles were set, is one of implicit Euler.
+/// How the implicit solver goes from t to t + h. All are stable for any h and damp the fastest oscillations out in
+/// a few steps. The two of second order remember the substep before; the first substep after a change of the
+/// solver, and after the positions of all particles were set, is one of implicit Euler.
 typedef int32_t mspring_integrator;
 enum {
     MSPRING_INTEGRATOR_GA0 = 0,  ///< generalised-alpha with rho_inf = 0 (Chung and Hulbert, 1993): second order
@@ -285,7 +285,8 @@ enum {
 #define MSPRING_MAX_SUBSTEPS 1000000
 
 /// substeps for "as few as are stable in whatever shape the network may get into" (see
-/// mspring_network_stable_dt()), chosen at every step. mspring_network_substeps() says how many they were. For the implicit solver 1.
+/// mspring_network_stable_dt()), chosen at every step. mspring_network_substeps() says how many they were. For the
+/// implicit solver 1.
 #define MSPRING_SUBSTEPS_AUTO UINT32_MAX
 
 /// Solver and its settings. Fill with mspring_solver_def_init() first. What a solver does not use is not looked at.
@@ -293,15 +294,16 @@ typedef struct mspring_solver_def {
     uint32_t struct_size;
     mspring_solver solver; ///< default MSPRING_SOLVER_EXPLICIT
     uint32_t substeps;     ///< substeps in one step, 1 to MSPRING_MAX_SUBSTEPS, or MSPRING_SUBSTEPS_AUTO; default 1
-    uint32_t max_substeps; ///< most that MSPRING_SUBSTEPS_AUTO may choose, 1 to MSPRING_MAX_SUBSTEPS: a step that
-                           ///< needs more is refused with MSPRING_ERROR_UNSTABLE; default 1000
+    uint32_t max_substeps; ///< most that MSPRING_SUBSTEPS_AUTO or MSPRING_GUARD_RETRY may choose, 1 to
+                           ///< MSPRING_MAX_SUBSTEPS: a step that needs more is refused with
+                           ///< MSPRING_ERROR_UNSTABLE; default 1000
     mspring_integrator integrator; ///< of the implicit solver; default MSPRING_INTEGRATOR_GA0
     uint32_t iterations;           ///< of conjugate gradients in a substep, at most 10000; 0, the default: 8
-    uint32_t tile_size;            ///< rows and columns of the cells that a lattice is cut into for its tiles: 8, 16,
-                                   ///< 32, 64, 128 or 256; 0, the default: by plan, the smallest whose matrix is
-                                   ///< cheap beside the rest
-    uint32_t coarse_period; ///< substeps from one factorisation of the tiles' matrix to the next, at most 10000: more
-                            ///< are cheaper, and good as long as the network does not turn far in them; 0, the
+    uint32_t tile_size;     ///< rows and columns of the cells that a lattice is cut into for its tiles: 8, 16,
+                            ///< 32, 64, 128 or 256; 0, the default: by plan, the smallest whose matrix is
+                            ///< cheap beside the rest
+    uint32_t coarse_period; ///< substeps from one factorisation of the tiles' matrix to the next, at most 10000:
+                            ///< more are cheaper, and good as long as the network does not turn far in them; 0, the
                             ///< default: 1
 } mspring_solver_def;
 
@@ -321,6 +323,24 @@ enum {
 /// Flags of networks.
 enum {
     MSPRING_NETWORK_RESERVE_DAMPING = 1u << 0 ///< springs may be given damping later, though none has any now
+};
+
+/// What a step does beside refusing to end with a coordinate or speed that is not finite or out of bounds.
+typedef int32_t mspring_guard;
+enum {
+    /// Refuse a step whose substeps are above the border of mspring_network_stable_dt(): motion would turn round
+    /// and
+    /// grow in each. The border is looked at when the substep changes, and when a step changes a velocity twice as
+    /// much as one did at the last look; not at all where substeps are stable in any shape. Steps below the border
+    /// are never refused.
+    MSPRING_GUARD_GROWTH = 0,
+    /// The same, but take a step that would be refused again with twice as many substeps, four times as many, and
+    /// so
+    /// on up to max_substeps. Later steps keep the number that was needed, until mspring_network_set_solver().
+    /// Hooks
+    /// are called again. Relative springs follow the substep, so more of them are no help there.
+    MSPRING_GUARD_RETRY = 1,
+    MSPRING_GUARD_BOUNDS = 2 ///< look at nothing else
 };
 
 /// A network's settings at the start. Fill with mspring_network_def_init() first.
@@ -346,6 +366,7 @@ typedef struct mspring_network_def {
                            ///< helps. With tasks, whose number counts, this is not looked at.
     uint32_t flags;        ///< MSPRING_NETWORK_RESERVE_DAMPING or 0; default 0
     uint32_t max_substeps; ///< as in mspring_solver_def; default 1000
+    mspring_guard guard;   ///< default MSPRING_GUARD_GROWTH
 } mspring_network_def;
 
 /// Fill a definition with its defaults. Pass the size that your header gives it: sizeof *def.
@@ -497,9 +518,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_global_damping(
 /// Evolve the network by dt.
 ///
 /// A step that would end with a coordinate or speed that is not finite or out of bounds (MSPRING_MAX_COORDINATE,
-/// mspring_network_def.max_speed) is taken back: the state is the one of before the step, bit for bit, forces
-/// given for it are still there, and the error message names a particle. Take a shorter dt, more substeps or
-/// a lower stiffness.
+/// mspring_network_def.max_speed), or in which the scheme itself makes motion grow (mspring_guard), is taken back:
+/// the state is the one of before the step, bit for bit, forces given for it are still there, and the error message
+/// names a particle. Take a shorter dt, more substeps or a lower stiffness.
 /// @param dt  seconds, finite, > 0, and long enough that dt / substeps is a normal float
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_UNSTABLE, MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network   @allocates never   @since 0.1

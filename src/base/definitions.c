@@ -67,7 +67,8 @@ mspring_result mspring_network_def_init(mspring_network_def *def, size_t size) {
                                           .solver = MSPRING_SOLVER_EXPLICIT,
                                           .substeps = 1,
                                           .worker_count = 1,
-                                          .max_substeps = 1000};
+                                          .max_substeps = 1000,
+                                          .guard = MSPRING_GUARD_GROWTH};
     return fill(def, size, &defaults, sizeof defaults);
 }
 

@@ -1,6 +1,8 @@
 /// Making, describing and destroying a network.
 #include "network.h"
 
+#include <math.h>
+
 #include "base/cpu.h"
 #include "explicit/explicit.h"
 #include "hooks.h"
@@ -40,6 +42,8 @@ static mspring_result check_def(const mspring_network_def *def, mspringi_message
     if (def->flags & ~(uint32_t)MSPRING_NETWORK_RESERVE_DAMPING)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "network flags %#x are unknown",
                              (unsigned)def->flags);
+    if (def->guard < MSPRING_GUARD_GROWTH || def->guard > MSPRING_GUARD_BOUNDS)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "guard is %d, which is none", (int)def->guard);
     if (!(def->max_speed > 0.0f && def->max_speed <= 1e15f))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "max_speed is %g m/s, it must be > 0 and at most 1e15", (double)def->max_speed);
@@ -127,8 +131,10 @@ static void fill_particles(mspring_network *network, const mspring_builder *buil
 
 static void fill_springs(mspring_network *network, const mspring_builder *builder) {
     const mspringi_topology *t = &network->topology;
+    network->shortest = INFINITY;
     for (mspring_id s = 0; s < t->spring_count; ++s) {
         const mspringi_spring *spring = &builder->springs[s];
+        network->shortest = fmin(network->shortest, (double)spring->rest_length);
         const mspringi_place place = t->place_of_spring[s];
         const bool relative = spring->flags & MSPRING_SPRING_RELATIVE;
         const mspringi_spring_values values = {.rest_length = spring->rest_length,
@@ -163,6 +169,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
         return result;
     network->kernels = mspringi_kernels_of(mspringi_cpu_choose(def->simd_level));
     network->max_speed = def->max_speed;
+    network->guard_policy = def->guard;
     network->strain.relax = MSPRINGI_USUAL_RELAX;
     result = mspring_network_set_gravity(network, def->gravity_x, def->gravity_y);
     if (result == MSPRING_OK)

@@ -103,6 +103,14 @@ typedef struct mspringi_strain {
 /// Fraction below which springs relax, until the host sets another.
 #define MSPRINGI_USUAL_RELAX 0.8f
 
+/// What the guard knows from step to step.
+typedef struct mspringi_guard {
+    float h, global_damping; ///< the border was looked at for these; h is 0 at first
+    bool watches;            ///< this step's substeps are longer than what is stable in any shape
+    bool suspicious;         ///< the last step changed a velocity more than usual
+    float peak;              ///< largest change when the border was looked at last, fading, m/s
+} mspringi_guard;
+
 struct mspring_network {
     mspringi_memory memory;
     mspringi_message message;
@@ -138,6 +146,9 @@ struct mspring_network {
     uint32_t max_substeps;
     bool auto_substeps;
     struct mspringi_implicit *implicit; ///< NULL: the explicit solver
+    mspring_guard guard_policy;
+    mspringi_guard guard;
+    double shortest; ///< smallest rest length at first, m
 
     mspringi_edits edits;
     mspringi_ramps ramps;

@@ -1,6 +1,5 @@
 /// One step: substeps with the forces that act in them, and the way back if it goes wrong.
 #include <float.h>
-#include <math.h>
 #include <string.h>
 
 #include "base/cpu.h"
@@ -12,6 +11,7 @@
 #include "network.h"
 #include "origin.h"
 #include "springs.h"
+#include "stability/guard.h"
 #include "stability/stability.h"
 
 static void copy_state(const mspring_network *network, const mspringi_state *from, const mspringi_state *to) {
@@ -68,43 +68,7 @@ static void run_substeps(mspring_network *network, double dt, float h) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- the guard */
-
-static bool is_bounded(const mspring_network *network) {
-    const mspringi_state *s = &network->state;
-    const size_t slots = mspringi_slot_count(network);
-    const float largest = (float)MSPRING_MAX_COORDINATE;
-    return network->kernels->bounded(s->x, slots, largest) && network->kernels->bounded(s->y, slots, largest) &&
-           network->kernels->bounded(s->vx, slots, network->max_speed) &&
-           network->kernels->bounded(s->vy, slots, network->max_speed);
-}
-
-static bool is_in_bounds(const mspring_network *network, uint32_t slot) {
-    const mspringi_state *s = &network->state;
-    const float largest = (float)MSPRING_MAX_COORDINATE, fastest = network->max_speed;
-    return fabsf(s->x[slot]) <= largest && fabsf(s->y[slot]) <= largest && fabsf(s->vx[slot]) <= fastest &&
-           fabsf(s->vy[slot]) <= fastest;
-}
-
-// Name a particle that left the bounds: the first that is still a number, since what is none spreads to others.
-static mspring_result explain(mspring_network *network, double dt) {
-    const mspringi_state *s = &network->state;
-    const mspringi_topology *t = &network->topology;
-    mspring_id named = MSPRING_NONE;
-    for (mspring_id p = t->particle_count; p-- > 0;) {
-        const uint32_t slot = t->slot_of_particle[p];
-        const float sum = s->x[slot] + s->y[slot] + s->vx[slot] + s->vy[slot];
-        if (!is_in_bounds(network, slot) && (sum == sum || named == MSPRING_NONE))
-            named = p;
-    }
-    const uint32_t slot = t->slot_of_particle[named];
-    return mspringi_fail(
-        &network->message, MSPRING_ERROR_UNSTABLE,
-        "a step of %g s (substeps: %u) would throw particle %u, perhaps with others, to (%g, %g) m "
-        "at (%g, %g) m/s: take a shorter step, more substeps or less stiffness",
-        dt, (unsigned)network->substeps, (unsigned)named, network->origin_x + (double)s->x[slot],
-        network->origin_y + (double)s->y[slot], (double)s->vx[slot], (double)s->vy[slot]);
-}
+/* ------------------------------------------------------------------------------------------------- the step */
 
 // Take back what a hook, or the host through a view, has written to slots without particle.
 static void clear_empty_slots(const mspring_network *network) {
@@ -130,15 +94,8 @@ static mspring_result choose_substeps(mspring_network *network, double dt) {
     return MSPRING_OK;
 }
 
-static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt) {
-    if (!(dt > 0.0 && dt <= (double)FLT_MAX * MSPRING_MAX_SUBSTEPS))
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "dt is %g s, it must be finite and > 0",
-                             dt);
-    if (network->auto_substeps) {
-        mspring_result result = choose_substeps(network, dt);
-        if (result != MSPRING_OK)
-            return result;
-    }
+// Take the step in network->substeps substeps, or leave everything as it is.
+static mspring_result attempt(mspring_network *network, double dt) {
     const float h = (float)(dt / (double)network->substeps);
     if (!(h >= FLT_MIN && h <= FLT_MAX))
         return mspringi_fail(
@@ -148,13 +105,16 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
     const float relative_h = network->relative_h;
     mspringi_derive_relative(network, h);
     mspringi_ramps_apply(network, dt);
+    mspring_result result = mspringi_guard_begin(network, dt, h);
     copy_state(network, &network->state, &network->backup);
     mspringi_implicit_keep(network);
-    run_substeps(network, dt, h);
-    if (network->is_open)
-        clear_empty_slots(network);
-    if (!is_bounded(network)) {
-        mspring_result result = explain(network, dt);
+    if (result == MSPRING_OK) {
+        run_substeps(network, dt, h);
+        if (network->is_open)
+            clear_empty_slots(network);
+        result = mspringi_guard_end(network, dt, h);
+    }
+    if (result != MSPRING_OK) {
         copy_state(network, &network->backup, &network->state);
         mspringi_explicit_reset(network);
         mspringi_implicit_restore(network);
@@ -162,6 +122,26 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
         mspringi_ramps_apply(network, 0.0);
         if (network->is_open)
             clear_empty_slots(network);
+    }
+    return result;
+}
+
+static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt) {
+    if (!(dt > 0.0 && dt <= (double)FLT_MAX * MSPRING_MAX_SUBSTEPS))
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "dt is %g s, it must be finite and > 0",
+                             dt);
+    const uint32_t substeps = network->substeps;
+    mspring_result result = network->auto_substeps ? choose_substeps(network, dt) : MSPRING_OK;
+    if (result == MSPRING_OK)
+        result = attempt(network, dt);
+    while (result == MSPRING_ERROR_UNSTABLE && network->guard_policy == MSPRING_GUARD_RETRY &&
+           network->substeps < network->max_substeps) {
+        const uint32_t twice = 2 * network->substeps;
+        network->substeps = twice < network->max_substeps ? twice : network->max_substeps;
+        result = attempt(network, dt);
+    }
+    if (result != MSPRING_OK) {
+        network->substeps = substeps;
         return result;
     }
     mspringi_ramps_pass(network, dt);

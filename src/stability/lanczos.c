@@ -6,65 +6,23 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <string.h>
 
-/// Largest dimension of the space. The lattices and graphs of the tests take 20 to 120.
-#define MOST 300
+#include "tridiagonal.h"
 
 /// Iterations between two looks at the tridiagonal matrix.
 #define LOOK 4
 
-typedef struct tridiagonal {
-    int size;
-    double diagonal[MOST];
-    double beside[MOST]; ///< beside[i] couples i and i + 1
-} tridiagonal;
+/// Iterations before an eigenvalue is believed to be the largest: a start near an eigenvector hides the others for
+/// a while.
+#define LEAST 16
 
 static double dot(const double *a, const double *b, size_t size) {
     double sum = 0.0;
     for (size_t i = 0; i < size; ++i)
         sum += a[i] * b[i];
     return sum;
-}
-
-// Pivots of x - T. All are positive just if x is above all eigenvalues.
-static bool is_above(const tridiagonal *t, double x, double *pivots) {
-    double pivot = 1.0;
-    for (int i = 0; i < t->size; ++i) {
-        pivot = x - t->diagonal[i] - (i > 0 ? t->beside[i - 1] * t->beside[i - 1] / pivot : 0.0);
-        if (!(pivot > 0.0))
-            return false;
-        pivots[i] = pivot;
-    }
-    return true;
-}
-
-// The largest eigenvalue, from above, and its eigenvector.
-static double top_of(const tridiagonal *t, double *vector) {
-    double low = t->diagonal[0], high = t->diagonal[0], pivots[MOST];
-    for (int i = 0; i < t->size; ++i) {
-        const double reach = (i > 0 ? t->beside[i - 1] : 0.0) + (i + 1 < t->size ? t->beside[i] : 0.0);
-        low = fmax(low, t->diagonal[i]);
-        high = fmax(high, t->diagonal[i] + reach);
-    }
-    high += 1e-15 * fabs(high); // above, not at it
-    for (int halving = 0; halving < 60 && high - low > 1e-15 * fabs(high); ++halving) {
-        const double middle = 0.5 * (low + high);
-        if (is_above(t, middle, pivots))
-            high = middle;
-        else
-            low = middle;
-    }
-    vector[0] = 1.0;
-    double square = 1.0;
-    const bool above = is_above(t, high, pivots);
-    for (int i = 1; i < t->size; ++i) {
-        vector[i] = above && t->beside[i - 1] > 0.0 ? pivots[i - 1] * vector[i - 1] / t->beside[i - 1] : 0.0;
-        square += vector[i] * vector[i];
-    }
-    for (int i = 0; i < t->size; ++i)
-        vector[i] /= sqrt(square);
-    return high;
 }
 
 // next = S here, less its parts along here and before. What the run before has found is what diagonal and beside
@@ -83,7 +41,7 @@ static void divide(double *vector, double by, size_t size) {
 }
 
 // Run along the vectors that T was made of, and sum them up.
-static void sum_up(const mspringi_lanczos *p, const tridiagonal *t, const double *weights) {
+static void sum_up(const mspringi_lanczos *p, const mspringi_tridiagonal *t, const double *weights) {
     double *before = p->work[0], *here = p->work[1], *next = p->work[2], diagonal;
     memcpy(here, p->vector, p->size * sizeof *here);
     for (size_t i = 0; i < p->size; ++i)
@@ -98,12 +56,15 @@ static void sum_up(const mspringi_lanczos *p, const tridiagonal *t, const double
         here = next;
         next = free_again;
     }
+    // Where vectors have lost their orthogonality, the sum is not of length 1.
+    divide(p->vector, sqrt(dot(p->vector, p->vector, p->size)), p->size);
 }
 
 mspringi_ritz mspringi_lanczos_largest(const mspringi_lanczos *p, double tolerance) {
-    tridiagonal t = {.size = 0};
-    double weights[MOST];
+    mspringi_tridiagonal t = {.size = 0};
+    double weights[MSPRINGI_LANCZOS_MOST];
     mspringi_ritz ritz = {0.0, 0.0};
+    double scale = 0.0;
     double *before = p->work[0], *here = p->work[1], *next = p->work[2];
     const double length = sqrt(dot(p->vector, p->vector, p->size));
     if (!(length > 0.0))
@@ -116,12 +77,13 @@ mspringi_ritz mspringi_lanczos_largest(const mspringi_lanczos *p, double toleran
         advance(p, before, here, next, j > 0 ? t.beside[j - 1] : 0.0, NULL, &t.diagonal[j]);
         t.beside[j] = sqrt(dot(next, next, p->size));
         // Nothing left but rounding: the space is closed under S.
-        const bool closed = t.beside[j] <= 1e-13 * (fabs(t.diagonal[j]) + (j > 0 ? t.beside[j - 1] : 0.0));
-        const bool full = closed || t.size == MOST;
+        scale = fmax(scale, fmax(fabs(t.diagonal[j]), t.beside[j]));
+        const bool closed = t.beside[j] <= 1e-12 * scale;
+        const bool full = closed || t.size == MSPRINGI_LANCZOS_MOST;
         if (full || t.size % LOOK == 0) {
-            ritz.value = top_of(&t, weights);
+            ritz.value = mspringi_tridiagonal_top(&t, weights);
             ritz.residual = closed ? 0.0 : t.beside[j] * fabs(weights[j]);
-            done = full || ritz.residual <= tolerance * ritz.value;
+            done = full || (t.size >= LEAST && ritz.residual <= tolerance * ritz.value);
         }
         if (!done) {
             divide(next, t.beside[j], p->size);
@@ -133,4 +95,12 @@ mspringi_ritz mspringi_lanczos_largest(const mspringi_lanczos *p, double toleran
     }
     sum_up(p, &t, weights);
     return ritz;
+}
+
+double mspringi_noise(size_t n) {
+    uint64_t bits =
+        ((uint64_t)n + 1) * UINT64_C(0x9e3779b97f4a7c15); // the mixer of SplitMix64 (Steele et al. 2014)
+    bits = (bits ^ (bits >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
+    bits = (bits ^ (bits >> 27)) * UINT64_C(0x94d049bb133111eb);
+    return (double)(bits >> 11) * 0x1p-52 - 1.0;
 }

@@ -26,4 +26,7 @@ typedef struct mspringi_ritz {
 /// Iterate until the residual is at most tolerance * value.
 mspringi_ritz mspringi_lanczos_largest(const mspringi_lanczos *problem, double tolerance);
 
+/// A number from -1 to 1 for each n, as if at random.
+double mspringi_noise(size_t n);
+
 #endif

@@ -27,30 +27,41 @@ double mspringi_quotient_limit(const mspringi_quotient *q, float global_damping)
     return h;
 }
 
-/// A spring as the matrices see it.
-typedef struct seen {
-    uint32_t a, b;
-    double nx, ny; ///< direction; (0, 0) if it has none
-    double across; ///< stiffness across its direction, as a part of that along it
-    mspringi_strength strength;
-} seen;
-
-static seen look_at(const mspring_network *network, mspring_id spring) {
+mspringi_seen mspringi_see_spring(const mspring_network *network, mspring_id spring) {
     const mspringi_topology *t = &network->topology;
     const mspringi_state *s = &network->state;
     const mspringi_spring_values values = mspringi_spring_get(network, spring);
     const double dx = (double)s->x[values.tip] - (double)s->x[values.base];
     const double dy = (double)s->y[values.tip] - (double)s->y[values.base];
-    const double length = sqrt(dx * dx + dy * dy), rest_length = (double)values.rest_length;
-    seen look = {.a = t->particle_of_slot[values.base], .b = t->particle_of_slot[values.tip], .across = 1.0};
+    const double length = sqrt(dx * dx + dy * dy);
+    mspringi_seen seen = {
+        .a = t->particle_of_slot[values.base], .b = t->particle_of_slot[values.tip], .directed = length > 0.0};
     if (mspringi_spring_is_live(network, spring))
-        look.strength = mspringi_strength_of(network, spring);
-    if (length > 0.0) {
-        look.nx = dx / length;
-        look.ny = dy / length;
-        look.across = length > rest_length ? 1.0 - rest_length / length : 0.0;
+        seen.strength = mspringi_strength_of(network, spring);
+    if (seen.directed) {
+        seen.nx = dx / length;
+        seen.ny = dy / length;
+        seen.across = 1.0 - (double)values.rest_length / length;
     }
-    return look;
+    return seen;
+}
+
+void mspringi_quotient_add(mspringi_quotient *quotient, const mspringi_seen *s, double dx, double dy) {
+    const double along = s->nx * dx + s->ny * dy, across = s->ny * dx - s->nx * dy;
+    const double stretch = along * along + s->across * across * across, speed = along * along;
+    quotient->stiffness += s->strength.stiffness * stretch;
+    quotient->damping += s->strength.damping * speed;
+    quotient->relative += s->strength.relative_stiffness * stretch + 2.0 * s->strength.relative_damping * speed;
+}
+
+// The spring as the border takes it, on the safe side: see mspringi_pencil_set().
+static mspringi_seen see_safely(const mspring_network *network, mspring_id spring) {
+    mspringi_seen seen = mspringi_see_spring(network, spring);
+    if (!seen.directed)
+        seen.across = 1.0;
+    else if (!(seen.across > 0.0))
+        seen.across = 0.0;
+    return seen;
 }
 
 void mspringi_pencil_set(mspringi_pencil *pencil, double h) {
@@ -58,12 +69,11 @@ void mspringi_pencil_set(mspringi_pencil *pencil, double h) {
     for (mspring_id p = 0; p < network->topology.particle_count; ++p)
         pencil->root[p] = sqrt((double)network->inverse_mass[network->topology.slot_of_particle[p]]);
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
-        const seen s = look_at(network, i);
+        const mspringi_seen s = see_safely(network, i);
         const double stiffness = h * h * s.strength.stiffness + s.strength.relative_stiffness;
         const double damping = 2.0 * (h * s.strength.damping + s.strength.relative_damping);
-        const bool directed = s.nx != 0.0 || s.ny != 0.0;
-        const double all = stiffness * s.across + (directed ? 0.0 : damping);
-        const double along = directed ? stiffness * (1.0 - s.across) + damping : 0.0;
+        const double all = s.directed ? stiffness * s.across : stiffness + damping;
+        const double along = s.directed ? stiffness * (1.0 - s.across) + damping : 0.0;
         pencil->terms[i].a = s.a;
         pencil->terms[i].b = s.b;
         pencil->terms[i].xx = all + along * s.nx * s.nx;
@@ -92,17 +102,16 @@ void mspringi_pencil_apply(const void *context, const double *in, double *out) {
 mspringi_quotient mspringi_pencil_quotient(const mspringi_pencil *pencil, const double *vector) {
     mspringi_quotient sum = {0.0, 0.0, 0.0};
     for (mspring_id i = 0; i < pencil->network->topology.spring_count; ++i) {
-        const seen s = look_at(pencil->network, i);
+        mspringi_seen s = see_safely(pencil->network, i);
         const double *const at_a = vector + 2 * (size_t)s.a, *const at_b = vector + 2 * (size_t)s.b;
         const double dx = pencil->root[s.b] * at_b[0] - pencil->root[s.a] * at_a[0];
         const double dy = pencil->root[s.b] * at_b[1] - pencil->root[s.a] * at_a[1];
-        const double square = dx * dx + dy * dy, rate = s.nx * dx + s.ny * dy;
-        const bool directed = s.nx != 0.0 || s.ny != 0.0;
-        const double stretch = s.across * square + (directed ? (1.0 - s.across) * rate * rate : 0.0);
-        const double speed = directed ? rate * rate : square;
-        sum.stiffness += s.strength.stiffness * stretch;
-        sum.damping += s.strength.damping * speed;
-        sum.relative += s.strength.relative_stiffness * stretch + 2.0 * s.strength.relative_damping * speed;
+        if (!s.directed) { // then along the displacement, whatever that is
+            const double length = sqrt(dx * dx + dy * dy);
+            s.nx = length > 0.0 ? dx / length : 0.0;
+            s.ny = length > 0.0 ? dy / length : 0.0;
+        }
+        mspringi_quotient_add(&sum, &s, dx, dy);
     }
     return sum;
 }

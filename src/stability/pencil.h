@@ -22,6 +22,7 @@
 
 #include "lanczos.h"
 #include "network/network.h"
+#include "stability.h"
 
 /// x* (A + 2 D) x of a vector, as a function of h: h^2 stiffness + 2 h damping + relative.
 typedef struct mspringi_quotient {
@@ -30,6 +31,19 @@ typedef struct mspringi_quotient {
 
 /// The smallest h above 0 at which the quotient is too large: 0 if it always is, infinite if it never is.
 double mspringi_quotient_limit(const mspringi_quotient *quotient, float global_damping);
+
+/// A live spring as the matrices see it.
+typedef struct mspringi_seen {
+    uint32_t a, b; ///< particles
+    bool directed; ///< its length is not 0
+    double nx, ny; ///< direction
+    double across; ///< tangent stiffness across its direction, as a part of that along it; below 0 if it is short
+    mspringi_strength strength;
+} mspringi_seen;
+mspringi_seen mspringi_see_spring(const mspring_network *network, mspring_id spring);
+
+/// Add a spring's share for a displacement of b against a.
+void mspringi_quotient_add(mspringi_quotient *quotient, const mspringi_seen *seen, double dx, double dy);
 
 /// The springs' share in the matrices.
 typedef struct mspringi_pencil {

@@ -45,14 +45,10 @@ static mspring_result reserve(mspring_network *network, workspace *work) {
                          (unsigned)particles);
 }
 
-// Add to each component a number that is different for each, -amount to amount: no mode is left out of the start.
+// Add to each component a number that is different for each: no mode is left out of the start.
 static void shake(double *vector, size_t size, double amount) {
-    for (size_t i = 0; i < size; ++i) {
-        uint64_t bits = (i + 1) * UINT64_C(0x9e3779b97f4a7c15); // the mixer of SplitMix64 (Steele et al. 2014)
-        bits = (bits ^ (bits >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
-        bits = (bits ^ (bits >> 27)) * UINT64_C(0x94d049bb133111eb);
-        vector[i] += amount * ((double)(bits >> 11) * 0x1p-52 - 1.0);
-    }
+    for (size_t i = 0; i < size; ++i)
+        vector[i] += amount * mspringi_noise(i);
 }
 
 // Every vector gives an upper bound of the border, and at the border that of the eigenvector is sharp: take the
@@ -77,7 +73,7 @@ static double find_border(const mspring_network *network, workspace *work, doubl
         if ((quotient.damping == 0.0 && quotient.relative == 0.0) || !(border > 0.0 && border < INFINITY) ||
             fabs(border - before) <= SETTLED * border)
             break;
-        shake(work->lanczos.vector, size, 0.1 / sqrt((double)size));
+        shake(work->lanczos.vector, size, 1.0 / sqrt((double)size));
     }
     return border;
 }

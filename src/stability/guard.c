@@ -1,0 +1,269 @@
+/// What goes wrong, before it is to be seen: substeps above the border (see pencil.h), and numbers out of bounds.
+///
+/// Up to the substep that is stable in any shape nothing needs to be looked at. Above it, the border of the shape
+/// that the network has is: when the substep is another one, and when a step has changed a particle's velocity
+/// twice as much as one had at the last look. The Lanczos iteration tells with certainty: what it finds is never
+/// above the largest eigenvalue, so a network that is below the border is never refused. After such a change it
+/// starts from the motion itself, velocities less their mean over the substeps before: of what moves smoothly next
+/// to nothing is left of that, of what turns round in each substep everything, and a few iterations are enough.
+#include "guard.h"
+
+#include <math.h>
+
+#include "explicit/decay.h"
+#include "pencil.h"
+#include "stability.h"
+#include "tridiagonal.h"
+
+/// Growth of the largest change of a velocity, from look to look at the border.
+#define SUSPICIOUS 2.0f
+
+/// What is left of that in each step without a look: half in 2839 steps, so that looks are rare where nothing
+/// grows.
+#define FADING (4095.0f / 4096.0f)
+
+/// Change that nobody looks at, in shortest rest lengths per substep.
+#define HARMLESS 1e-3
+
+/// Iterations from no particular vector, and from the motion.
+#define ITERATIONS 100
+#define ITERATIONS_FROM_MOTION 12
+
+/// Residual, as a part of the eigenvalue, at which that is good enough.
+#define TOLERANCE 2e-3
+
+/* --------------------------------------------------------------------------------------------------- bounds */
+
+static bool is_bounded(const mspring_network *network) {
+    const mspringi_state *s = &network->state;
+    const size_t slots = mspringi_slot_count(network);
+    const float largest = (float)MSPRING_MAX_COORDINATE;
+    return network->kernels->bounded(s->x, slots, largest) && network->kernels->bounded(s->y, slots, largest) &&
+           network->kernels->bounded(s->vx, slots, network->max_speed) &&
+           network->kernels->bounded(s->vy, slots, network->max_speed);
+}
+
+static bool is_in_bounds(const mspring_network *network, uint32_t slot) {
+    const mspringi_state *s = &network->state;
+    const float largest = (float)MSPRING_MAX_COORDINATE, fastest = network->max_speed;
+    return fabsf(s->x[slot]) <= largest && fabsf(s->y[slot]) <= largest && fabsf(s->vx[slot]) <= fastest &&
+           fabsf(s->vy[slot]) <= fastest;
+}
+
+// Name a particle that left the bounds: the first that is still a number, since what is none spreads to others.
+static mspring_result explain_bounds(mspring_network *network, double dt) {
+    const mspringi_state *s = &network->state;
+    const mspringi_topology *t = &network->topology;
+    mspring_id named = MSPRING_NONE;
+    for (mspring_id p = t->particle_count; p-- > 0;) {
+        const uint32_t slot = t->slot_of_particle[p];
+        const float sum = s->x[slot] + s->y[slot] + s->vx[slot] + s->vy[slot];
+        if (!is_in_bounds(network, slot) && (sum == sum || named == MSPRING_NONE))
+            named = p;
+    }
+    const uint32_t slot = t->slot_of_particle[named];
+    return mspringi_fail(
+        &network->message, MSPRING_ERROR_UNSTABLE,
+        "a step of %g s (substeps: %u) would throw particle %u, perhaps with others, to (%g, %g) m "
+        "at (%g, %g) m/s: take a shorter step, more substeps or less stiffness",
+        dt, (unsigned)network->substeps, (unsigned)named, network->origin_x + (double)s->x[slot],
+        network->origin_y + (double)s->y[slot], (double)s->vx[slot], (double)s->vy[slot]);
+}
+
+/* --------------------------------------------------------------------------------------------------- the border */
+
+/// A displacement, x and y by slot, divided by the root of the inverse mass.
+typedef struct displacement {
+    float *x, *y;
+} displacement;
+
+// The velocity of a slot less the mean of those before it in the last step. All of them are in the distance it
+// went.
+static float turning(const mspring_network *network, float v, float v_before, float x, float x_before) {
+    if (network->substeps == 1)
+        return v - v_before;
+    const float h = network->guard.h;
+    return v - (x - x_before - h * v) / (h * (float)(network->substeps - 1));
+}
+
+// The last step's motion into the backup of the state before it.
+static displacement start_from_motion(const mspring_network *network) {
+    const mspringi_state *s = &network->state, *b = &network->backup;
+    for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
+        const float inverse_mass = network->inverse_mass[slot];
+        const float root = inverse_mass > 0.0f ? 1.0f / sqrtf(inverse_mass) : 0.0f;
+        b->x[slot] = root * turning(network, s->vx[slot], b->vx[slot], s->x[slot], b->x[slot]);
+        b->y[slot] = root * turning(network, s->vy[slot], b->vy[slot], s->y[slot], b->y[slot]);
+    }
+    return (displacement){b->x, b->y};
+}
+
+static displacement start_from_noise(const mspring_network *network) {
+    const mspringi_state *b = &network->backup;
+    for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
+        const bool moves = network->inverse_mass[slot] > 0.0f;
+        b->x[slot] = moves ? (float)mspringi_noise(2 * slot) : 0.0f;
+        b->y[slot] = moves ? (float)mspringi_noise(2 * slot + 1) : 0.0f;
+    }
+    return (displacement){b->x, b->y};
+}
+
+static double dot(const mspring_network *network, displacement a, displacement b) {
+    double sum = 0.0;
+    for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot)
+        sum += (double)a.x[slot] * (double)b.x[slot] + (double)a.y[slot] * (double)b.y[slot];
+    return sum;
+}
+
+// a = factor a + other_factor other
+static void combine(const mspring_network *network, displacement a, double factor, double other_factor,
+                    displacement other) {
+    for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
+        a.x[slot] = (float)(factor * (double)a.x[slot] + other_factor * (double)other.x[slot]);
+        a.y[slot] = (float)(factor * (double)a.y[slot] + other_factor * (double)other.y[slot]);
+    }
+}
+
+// out += (A + 2 D) in
+static void add_image(const mspring_network *network, double h, displacement in, displacement out) {
+    const mspringi_topology *t = &network->topology;
+    for (mspring_id i = 0; i < t->spring_count; ++i) {
+        const mspringi_seen s = mspringi_see_spring(network, i);
+        const uint32_t a = t->slot_of_particle[s.a], b = t->slot_of_particle[s.b];
+        const double root_a = sqrt((double)network->inverse_mass[a]);
+        const double root_b = sqrt((double)network->inverse_mass[b]);
+        const double dx = root_b * (double)in.x[b] - root_a * (double)in.x[a];
+        const double dy = root_b * (double)in.y[b] - root_a * (double)in.y[a];
+        const double stiffness = h * h * s.strength.stiffness + s.strength.relative_stiffness;
+        const double damping = 2.0 * (h * s.strength.damping + s.strength.relative_damping);
+        const double along = (stiffness + damping) * (s.nx * dx + s.ny * dy);
+        const double across = stiffness * s.across * (s.ny * dx - s.nx * dy);
+        const double fx = along * s.nx + across * s.ny, fy = along * s.ny - across * s.nx;
+        out.x[a] -= (float)(root_a * fx);
+        out.y[a] -= (float)(root_a * fy);
+        out.x[b] += (float)(root_b * fx);
+        out.y[b] += (float)(root_b * fy);
+    }
+}
+
+// A lower bound of the largest eigenvalue, from the start in the first half of the backup on; the second half is
+// the other vector that the iteration needs. Ends when it is above the bound or will not be.
+static double largest_eigenvalue(const mspring_network *network, double h, displacement here, double bound,
+                                 int iterations) {
+    displacement next = {network->backup.vx, network->backup.vy};
+    mspringi_tridiagonal t = {.size = 0};
+    double weights[MSPRINGI_LANCZOS_MOST], value = 0.0, beside = sqrt(dot(network, here, here));
+    if (!(beside > 0.0 && beside < INFINITY))
+        return 0.0;
+    combine(network, here, 1.0 / beside, 0.0, here);
+    combine(network, next, 0.0, 0.0, here);
+    for (;;) {
+        const int j = t.size++;
+        add_image(network, h, here, next);
+        t.diagonal[j] = dot(network, here, next);
+        combine(network, next, 1.0, -t.diagonal[j], here);
+        beside = t.beside[j] = sqrt(dot(network, next, next));
+        value = mspringi_tridiagonal_top(&t, weights);
+        const double residual = beside * fabs(weights[j]);
+        const bool stays_below = t.size >= ITERATIONS_FROM_MOTION && value + residual < bound;
+        if (value > bound || stays_below || residual <= TOLERANCE * value || t.size == iterations ||
+            !(beside > 1e-6 * value))
+            return value;
+        // The one before is not needed any more but for its share in what comes next.
+        combine(network, next, 1.0 / beside, 0.0, next);
+        combine(network, here, -beside, 0.0, here);
+        const displacement swapped = here;
+        here = next;
+        next = swapped;
+    }
+}
+
+// Name the spring that is tightest in any shape, and the end of it that is more easily moved.
+static mspring_result explain_border(mspring_network *network, double dt, float h) {
+    const mspringi_topology *t = &network->topology;
+    const mspring_id spring = network->any_shape.spring;
+    uint32_t base, tip;
+    mspringi_topology_ends(t, t->place_of_spring[spring], &base, &tip);
+    const float at_base = network->inverse_mass[base], at_tip = network->inverse_mass[tip];
+    const mspring_id a = t->particle_of_slot[base], b = t->particle_of_slot[tip];
+    const mspring_id moved = at_base > at_tip || (at_base == at_tip && a < b) ? a : b;
+    return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
+                         "a step of %g s (substeps: %u): motion would turn round and grow in each, as %g s are too "
+                         "long for springs and "
+                         "masses in this shape, as for spring %u at particle %u: take a shorter step, more "
+                         "substeps or less stiffness",
+                         dt, (unsigned)network->substeps, (double)h, (unsigned)spring, (unsigned)moved);
+}
+
+static mspring_result look_at_border(mspring_network *network, double dt, float h, bool from_motion) {
+    const double decay = (double)mspringi_decay(network->global_damping, h);
+    // Vectors are floats: room for their rounding.
+    const double bound = 2.0 * (1.0 + 1.0 / decay) * (1.0 + 1e-4);
+    const displacement start = from_motion ? start_from_motion(network) : start_from_noise(network);
+    const double largest =
+        largest_eigenvalue(network, (double)h, start, bound, from_motion ? ITERATIONS_FROM_MOTION : ITERATIONS);
+    if (!(largest > bound))
+        return MSPRING_OK;
+    return explain_border(network, dt, h);
+}
+
+/* --------------------------------------------------------------------------------------------------- the steps */
+
+mspring_result mspringi_guard_begin(mspring_network *network, double dt, float h) {
+    mspringi_guard *guard = &network->guard;
+    const bool same = guard->h == h && guard->global_damping == network->global_damping;
+    const bool suspicious = guard->suspicious;
+    guard->watches = guard->suspicious = false;
+    if (network->guard_policy == MSPRING_GUARD_BOUNDS || network->implicit)
+        return MSPRING_OK;
+    const mspringi_any_shape *any_shape = &network->any_shape;
+    if (same && !suspicious &&
+        (any_shape->masses != network->edits.masses || any_shape->values != network->edits.values)) {
+        guard->watches = true; // edits cost nothing here; what they do to the border is seen in the velocities
+        return MSPRING_OK;
+    }
+    mspring_result result = MSPRING_OK;
+    if (same && suspicious)
+        result = look_at_border(network, dt, h, true);
+    mspring_id spring;
+    guard->watches = (double)h > mspringi_stable_in_any_shape(network, &spring);
+    if (guard->watches && !same)
+        result = look_at_border(network, dt, h, false);
+    if (result != MSPRING_OK) {
+        guard->h = 0.0f; // next time from noise: the motion that was is gone
+        return result;
+    }
+    guard->h = h;
+    guard->global_damping = network->global_damping;
+    return MSPRING_OK;
+}
+
+// The largest change of a velocity.
+static float largest_change(const float *now, const float *before, size_t count) {
+    float high[MSPRINGI_WIDTH] = {0.0f}, all = 0.0f;
+    for (size_t i = 0; i < count; i += MSPRINGI_WIDTH)
+        for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
+            const float change = fabsf(now[i + lane] - before[i + lane]);
+            high[lane] = change > high[lane] ? change : high[lane];
+        }
+    for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
+        all = high[lane] > all ? high[lane] : all;
+    return all;
+}
+
+mspring_result mspringi_guard_end(mspring_network *network, double dt, float h) {
+    mspringi_guard *guard = &network->guard;
+    if (!is_bounded(network))
+        return explain_bounds(network, dt);
+    if (guard->watches) {
+        const size_t slots = mspringi_slot_count(network);
+        const float change_x = largest_change(network->state.vx, network->backup.vx, slots);
+        const float change_y = largest_change(network->state.vy, network->backup.vy, slots);
+        const float change = change_x > change_y ? change_x : change_y;
+        const double harmless = HARMLESS * network->shortest / (double)h;
+        const float calm = harmless < 1e15 ? (float)harmless : 1e15f;
+        guard->suspicious = change > SUSPICIOUS * fmaxf(guard->peak, calm);
+        guard->peak = guard->suspicious ? change : guard->peak * FADING;
+    }
+    return MSPRING_OK;
+}

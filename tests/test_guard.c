@@ -1,0 +1,245 @@
+/// @file test_guard.c
+/// The guard: what explodes is refused as soon as it is more than motion, the state is that of before, and nothing
+/// that does not explode is ever refused.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "recipe.h"
+#include "support.h"
+
+typedef struct shape {
+    const char *name;
+    uint32_t width, height;      ///< of a lattice; 0: none
+    uint32_t particles, springs; ///< of a random graph
+    uint32_t rope;               ///< segments
+    double damping;
+    bool hangs;
+} shape;
+
+static const shape shapes[] = {
+    {"bar", .width = 60, .height = 5, .hangs = true},
+    {"damped bar", .width = 60, .height = 5, .damping = 30, .hangs = true},
+    {"ship", .width = 30, .height = 20, .rope = 20},
+    {"rope", .rope = 200, .hangs = true},
+    {"graph", .particles = 200, .springs = 600},
+    {"pair", .rope = 2},
+};
+
+static recipe shape_recipe(const shape *s, double mass_ratio) {
+    uint64_t seed = 21;
+    const recipe_stuff stuff = {.mass = {1, mass_ratio},
+                                .stiffness = {1e4, 1e4},
+                                .damping = {s->damping, s->damping},
+                                .holes = s->rope > 0 ? 0.1 : 0};
+    recipe made = {0};
+    if (s->width > 0) {
+        recipe_lattice(&made, s->width, s->height, 0, 0, 1, &stuff, &seed);
+        for (uint32_t row = 0; s->hangs && row < s->height; row++) {
+            made.particles[row * s->width].flags = MSPRING_PARTICLE_PINNED;
+        }
+    }
+    for (uint32_t i = 0; i < s->particles; i++) {
+        recipe_particle(&made, support_random_between(&seed, 0, 30), support_random_between(&seed, -40, -10),
+                        exp(support_random_between(&seed, 0, log(mass_ratio))), 0);
+    }
+    recipe_random_springs(&made, s->springs, &stuff, &seed);
+    if (s->rope > 0) {
+        mspring_id start = s->width > 0 ? 0 : recipe_particle(&made, -70, 50, 2, MSPRING_PARTICLE_PINNED);
+        mspring_id end = recipe_particle(&made, 3, 50, 2, s->hangs ? MSPRING_PARTICLE_PINNED : 0);
+        recipe_rope(&made, start, end, s->rope, &stuff, &seed);
+    }
+    recipe_disturb(&made, 1e-3, 0.01, &seed);
+    return made;
+}
+
+static double energy_of(const mspring_network *network) {
+    double kinetic = 0, elastic = 0;
+    check_ok(mspring_network_energy(network, &kinetic, &elastic, NULL));
+    return kinetic + elastic;
+}
+
+/// Energy that the network can have come by: what it had, and all that gravity may have given it so far.
+static double energy_allowed(double first, double mass, double seconds) {
+    const double root = sqrt(first) + 9.8 * seconds * sqrt(mass / 2);
+    return root * root;
+}
+
+static void what_explodes_is_refused_in_time(void **state) {
+    (void)state;
+    const double beyond[] = {1.02, 1.1, 1.5, 3, 30, 1e3}, ratios[] = {1, 1e3};
+    const uint32_t substeps[] = {1, 2, 3, 8, 31};
+    uint32_t cases = 0;
+    double worst = 0;
+    for (size_t i = 0; i < COUNT_OF(shapes) * COUNT_OF(beyond) * COUNT_OF(substeps) * COUNT_OF(ratios); i++) {
+        const shape *s = &shapes[i % COUNT_OF(shapes)];
+        size_t rest = i / COUNT_OF(shapes);
+        const double over = beyond[rest % COUNT_OF(beyond)];
+        rest /= COUNT_OF(beyond);
+        const uint32_t count = substeps[rest % COUNT_OF(substeps)];
+        recipe made = shape_recipe(s, ratios[rest / COUNT_OF(substeps)]);
+        mspring_network_def def = support_def(-9.8f, count);
+        mspring_network *network = recipe_network(&made, &def);
+        double now = 0, mass = 0;
+        check_ok(mspring_network_stable_dt(network, &now, NULL));
+        for (uint32_t p = 0; p < made.particle_count; p++) {
+            mass += (double)made.particles[p].mass;
+        }
+        const double dt = over * now * count, first = energy_of(network);
+        mspring_result result = MSPRING_OK;
+        uint32_t step = 0;
+        uint64_t before = 0;
+        for (; step < 3000 && result == MSPRING_OK; step++) {
+            before = support_hash(network);
+            result = mspring_network_step(network, dt);
+        }
+        check_error(result, MSPRING_ERROR_UNSTABLE);
+        check_contains(mspring_network_error(network), "spring");
+        assert_int_equal(support_hash(network), before);
+        worst = fmax(worst, energy_of(network) / energy_allowed(first, mass, step * dt));
+        mspring_network_destroy(network);
+        recipe_free(&made);
+        cases++;
+    }
+    print_message("%u cases, energy at the refusal at most %.3f of what is allowed\n", cases, worst);
+    assert_true(worst < 1);
+}
+
+/// The article's bar: stable at rest, it explodes as it falls and stretches.
+static mspring_network *falling_bar(double stiffness, mspring_guard guard, double *mass) {
+    uint64_t seed = 8;
+    const recipe_stuff stuff = {
+        .mass = {73.3975, 73.3975}, .stiffness = {stiffness, stiffness}, .damping = {55.05, 55.05}};
+    recipe made = {0};
+    recipe_lattice(&made, 80, 5, 0, 0, 1, &stuff, &seed);
+    for (uint32_t row = 0; row < 5; row++) {
+        made.particles[row * 80].flags = MSPRING_PARTICLE_PINNED;
+    }
+    *mass = 73.3975 * 395;
+    mspring_network_def def = support_def(-9.8f, 1);
+    def.guard = guard;
+    mspring_network *network = recipe_network(&made, &def);
+    recipe_free(&made);
+    return network;
+}
+
+static void a_shape_that_crosses_its_border_is_refused(void **state) {
+    (void)state;
+    const double dt = 1.0 / 64;
+    double mass = 0;
+    mspring_network *network = falling_bar(139000, MSPRING_GUARD_GROWTH, &mass);
+    mspring_result result = MSPRING_OK;
+    uint32_t step = 0;
+    uint64_t before = 0;
+    for (; step < 3840 && result == MSPRING_OK; step++) {
+        before = support_hash(network);
+        result = mspring_network_step(network, dt);
+    }
+    check_error(result, MSPRING_ERROR_UNSTABLE);
+    assert_int_equal(support_hash(network), before);
+    const double energy = energy_of(network), allowed = energy_allowed(0, mass, step * dt);
+    double now = 0;
+    check_ok(mspring_network_stable_dt(network, &now, NULL));
+    print_message("refused after %.3f s: energy %.3g J of at most %.3g, border %.4f of the step\n", step * dt,
+                  energy, allowed, now / dt);
+    assert_true(energy < allowed);
+    assert_true(now < dt);
+    // It stays refused, but for shorter steps.
+    check_error(mspring_network_step(network, dt), MSPRING_ERROR_UNSTABLE);
+    check_ok(mspring_network_step(network, dt / 2));
+    mspring_network_destroy(network);
+    // Without the guard it really explodes.
+    network = falling_bar(139000, MSPRING_GUARD_BOUNDS, &mass);
+    result = MSPRING_OK;
+    double most = 0;
+    for (step = 0; step < 3840 && result == MSPRING_OK; step++) {
+        result = mspring_network_step(network, dt);
+        most = fmax(most, energy_of(network));
+    }
+    check_error(result, MSPRING_ERROR_UNSTABLE);
+    check_contains(mspring_network_error(network), "would throw particle");
+    assert_true(most > 1e3 * energy_allowed(0, mass, step * dt));
+    mspring_network_destroy(network);
+}
+
+static void more_substeps_are_tried_where_that_is_wanted(void **state) {
+    (void)state;
+    const double dt = 1.0 / 64;
+    double mass = 0, now = 0;
+    mspring_network *network = falling_bar(139000, MSPRING_GUARD_RETRY, &mass);
+    for (uint32_t step = 1; step <= 3840; step++) {
+        check_ok(mspring_network_step(network, dt));
+        // Near the border the energy of a mode swings.
+        assert_true(energy_of(network) < 2 * energy_allowed(0, mass, step * dt));
+    }
+    assert_int_equal(mspring_network_substeps(network), 2);
+    mspring_network_destroy(network);
+
+    // 17 times the border: 32 substeps, if they are allowed.
+    network = falling_bar(290 * 150e3, MSPRING_GUARD_RETRY, &mass);
+    check_ok(mspring_network_stable_dt(network, &now, NULL));
+    mspring_solver_def solver;
+    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    solver.max_substeps = 15;
+    check_ok(mspring_network_set_solver(network, &solver));
+    const uint64_t before = support_hash(network);
+    check_error(mspring_network_step(network, dt), MSPRING_ERROR_UNSTABLE);
+    assert_int_equal(mspring_network_substeps(network), 1);
+    assert_int_equal(support_hash(network), before);
+    solver.max_substeps = 100;
+    check_ok(mspring_network_set_solver(network, &solver));
+    check_ok(mspring_network_step(network, dt));
+    assert_int_equal(mspring_network_substeps(network), 32);
+    support_steps(network, 10, dt);
+    assert_int_equal(mspring_network_substeps(network), 32);
+    mspring_network_destroy(network);
+}
+
+static void what_is_stable_is_never_refused(void **state) {
+    (void)state;
+    // A tenth below the border, half a metre out of shape where springs are a metre long, and kicked again and
+    // again: not one refusal. The energy tells that nothing exploded.
+    uint32_t steps = 0;
+    for (size_t i = 0; i < 2 * COUNT_OF(shapes); i++) {
+        const shape *s = &shapes[i % COUNT_OF(shapes)];
+        recipe made = shape_recipe(s, i < COUNT_OF(shapes) ? 1 : 100);
+        mspring_network_def def = support_def(0, 1 + (uint32_t)i % 3);
+        def.global_damping = 0.5f;
+        mspring_network *network = recipe_network(&made, &def);
+        double now = 0, mass = 0;
+        check_ok(mspring_network_stable_dt(network, &now, NULL));
+        for (uint32_t p = 0; p < made.particle_count; p++) {
+            mass += (double)made.particles[p].mass;
+        }
+        const double speed = 0.02 / now; // to stretch a spring by percents
+        uint64_t seed = 5;
+        for (uint32_t step = 0; step < 2000; step++, steps++) {
+            if (step % 100 == 0) {
+                const uint32_t one = (uint32_t)(support_random(&seed) % made.particle_count);
+                const float v = (float)support_random_between(&seed, -speed, speed);
+                check_ok(mspring_network_set_velocities(network, one, 1, &v, &v));
+            }
+            mspring_result result = mspring_network_step(network, 0.9 * now * def.substeps);
+            if (result != MSPRING_OK) {
+                print_error("%s, step %u: %s\n", s->name, step, mspring_network_error(network));
+            }
+            check_ok(result);
+        }
+        assert_true(energy_of(network) < mass * speed * speed);
+        mspring_network_destroy(network);
+        recipe_free(&made);
+    }
+    print_message("%u steps, none refused\n", steps);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_explodes_is_refused_in_time),
+        cmocka_unit_test(a_shape_that_crosses_its_border_is_refused),
+        cmocka_unit_test(more_substeps_are_tried_where_that_is_wanted),
+        cmocka_unit_test(what_is_stable_is_never_refused),
+    };
+    return cmocka_run_group_tests_name("guard", tests, NULL, NULL);
+}
