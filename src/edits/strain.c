@@ -2,6 +2,7 @@
 #include "strain.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "breaking.h"
 #include "events.h"
@@ -10,56 +11,60 @@
 
 /* ---------------------------------------------------------------------------------------------------- the pass */
 
+static float stretch_of(const mspring_network *network, const mspringi_spring_values *values) {
+    const mspringi_state *s = &network->state;
+    const float dx = s->x[values->tip] - s->x[values->base], dy = s->y[values->tip] - s->y[values->base];
+    return fabsf(sqrtf(dx * dx + dy * dy) - values->rest_length);
+}
+
+static bool has_bit(const uint16_t *words, mspringi_place place) {
+    return words[place / MSPRINGI_WIDTH] >> place % MSPRINGI_WIDTH & 1;
+}
+
 // The springs of the web, as the kernels do those of rows.
 static uint32_t leftover_strain(const mspring_network *network, mspringi_strain_hit *hits) {
     const mspringi_topology *t = &network->topology;
     const mspringi_strain *strain = &network->strain;
-    const mspringi_state *state = &network->state;
     uint32_t count = 0;
     for (uint32_t first = 0; first < t->leftover_count; first += MSPRINGI_WIDTH) {
         const uint32_t word = (t->chain_places + first) / MSPRINGI_WIDTH;
-        mspringi_strain_hit hit = {.word = word};
+        uint32_t bits = strain->stressed[word];
         for (uint32_t i = first; i < first + MSPRINGI_WIDTH && i < t->leftover_count; ++i) {
             const mspringi_place place = t->chain_places + i;
-            const uint16_t bit = (uint16_t)(1u << place % MSPRINGI_WIDTH);
-            if (!(network->live[word] & bit))
-                continue;
             const mspringi_spring_values values = mspringi_place_get(network, place);
-            const float dx = state->x[values.tip] - state->x[values.base];
-            const float dy = state->y[values.tip] - state->y[values.base];
-            const float stretch = fabsf(sqrtf(dx * dx + dy * dy) - values.rest_length);
-            const float stress_at =
-                strain->stress_strain ? strain->stress_strain[place] * values.rest_length : INFINITY;
-            const bool stressed = strain->stressed[word] & bit;
-            if (stretch > strain->break_strain[place] * values.rest_length)
-                hit.broken |= bit;
-            else if (!stressed && stretch > stress_at)
-                hit.stressed |= bit;
-            else if (stressed && stress_at * strain->relax > stretch)
-                hit.relaxed |= bit;
+            if (has_bit(network->live, place) &&
+                stretch_of(network, &values) > strain->least[place] * values.rest_length)
+                bits |= 1u << (i - first);
         }
-        if (hit.broken | hit.stressed | hit.relaxed)
-            hits[count++] = hit;
+        if (bits)
+            hits[count++] = (mspringi_strain_hit){word, bits};
     }
     return count;
 }
 
-static void act_on(mspring_network *network, mspringi_place place, const mspringi_strain_hit *hit) {
+// Break, stress or relax the spring in this place, if it is time for that.
+static void look_at(mspring_network *network, mspringi_place place) {
     const mspringi_topology *t = &network->topology;
-    const uint16_t bit = (uint16_t)(1u << place % MSPRINGI_WIDTH);
-    uint32_t base, tip;
-    mspringi_topology_ends(t, place, &base, &tip);
-    const mspring_id spring = mspringi_incidence_find(&network->incidence, t, t->particle_of_slot[base], place);
-    mspring_event event = {.kind = hit->broken & bit     ? MSPRING_EVENT_BROKEN
-                                   : hit->stressed & bit ? MSPRING_EVENT_STRESSED
-                                                         : MSPRING_EVENT_RELAXED,
-                           .id = spring,
-                           .other = MSPRING_NONE,
-                           .strain = mspringi_spring_strain(network, spring)};
-    if (event.kind == MSPRING_EVENT_BROKEN)
-        (void)mspringi_spring_break(network, spring);
+    mspringi_strain *strain = &network->strain;
+    const mspringi_spring_values values = mspringi_place_get(network, place);
+    const float stretch = stretch_of(network, &values);
+    const float stress_at = strain->stress_strain ? strain->stress_strain[place] * values.rest_length : INFINITY;
+    const bool is_stressed = has_bit(strain->stressed, place);
+    mspring_event event = {.other = MSPRING_NONE};
+    if (stretch > strain->break_strain[place] * values.rest_length)
+        event.kind = MSPRING_EVENT_BROKEN;
+    else if (!is_stressed && stretch > stress_at)
+        event.kind = MSPRING_EVENT_STRESSED;
+    else if (is_stressed && stress_at * strain->relax > stretch)
+        event.kind = MSPRING_EVENT_RELAXED;
     else
-        network->strain.stressed[hit->word] ^= bit;
+        return;
+    event.id = mspringi_incidence_find(&network->incidence, t, t->particle_of_slot[values.base], place);
+    event.strain = mspringi_spring_strain(network, event.id);
+    if (event.kind == MSPRING_EVENT_BROKEN)
+        (void)mspringi_spring_break(network, event.id);
+    else
+        strain->stressed[place / MSPRINGI_WIDTH] ^= (uint16_t)(1u << place % MSPRINGI_WIDTH);
     mspringi_events_push(network, event);
 }
 
@@ -78,11 +83,9 @@ void mspringi_strain_pass(mspring_network *network) {
         .lattice_first = t->lattice_first,
         .chain_first = t->chain_first,
         .chain_word = t->lattice_places / MSPRINGI_WIDTH,
-        .break_strain = strain->break_strain,
-        .stress_strain = strain->stress_strain,
+        .least = strain->least,
         .live = network->live,
         .stressed = strain->stressed,
-        .relax = strain->relax,
     };
     mspringi_strain_hit *hits = strain->hits;
     uint32_t count = network->kernels->lattice_strain(&sweep, 0, t->lattice_blocks, hits);
@@ -90,8 +93,8 @@ void mspringi_strain_pass(mspring_network *network) {
     count += leftover_strain(network, hits + count);
     for (const mspringi_strain_hit *hit = hits; hit < hits + count; ++hit)
         for (uint32_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
-            if ((hit->broken | hit->stressed | hit->relaxed) >> lane & 1)
-                act_on(network, hit->word * MSPRINGI_WIDTH + lane, hit);
+            if (hit->bits >> lane & 1)
+                look_at(network, hit->word * MSPRINGI_WIDTH + lane);
 }
 
 /* -------------------------------------------------------------------------------------------------- thresholds */
@@ -104,7 +107,8 @@ static float *allocate_thresholds(mspring_network *network) {
     return thresholds;
 }
 
-// All that the pass needs; break_strain is there when all of it is.
+// All that the pass needs; break_strain is there when all of it is. Until a spring is to be stressed, the least
+// strain that anything happens at is the one that it breaks at.
 static mspring_result reserve(mspring_network *network) {
     mspringi_strain *strain = &network->strain;
     if (strain->break_strain)
@@ -121,7 +125,7 @@ static mspring_result reserve(mspring_network *network) {
     if (!strain->hits)
         strain->hits = mspringi_alloc(&network->memory, words, sizeof *strain->hits);
     if (strain->stressed && strain->hits)
-        strain->break_strain = allocate_thresholds(network);
+        strain->least = strain->break_strain = allocate_thresholds(network);
     return strain->break_strain ? MSPRING_OK
                                 : mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                                                 "no memory to watch the strain of %u springs",
@@ -130,12 +134,30 @@ static mspring_result reserve(mspring_network *network) {
 
 static mspring_result reserve_stress(mspring_network *network) {
     mspringi_strain *strain = &network->strain;
-    if (!strain->stress_strain)
-        strain->stress_strain = allocate_thresholds(network);
-    return strain->stress_strain ? MSPRING_OK
-                                 : mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
-                                                 "no memory for the stress strains of %u springs",
-                                                 (unsigned)network->topology.spring_count);
+    if (strain->stress_strain)
+        return MSPRING_OK;
+    const size_t count = mspringi_place_words(&network->topology) * MSPRINGI_WIDTH;
+    float *stress_strain = allocate_thresholds(network), *least = allocate_thresholds(network);
+    if (!stress_strain || !least) {
+        mspringi_free(&network->memory, stress_strain);
+        mspringi_free(&network->memory, least);
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                             "no memory for the stress strains of %u springs",
+                             (unsigned)network->topology.spring_count);
+    }
+    memcpy(least, strain->break_strain, count * sizeof *least);
+    strain->stress_strain = stress_strain;
+    strain->least = least;
+    return MSPRING_OK;
+}
+
+static void store_threshold(mspringi_strain *strain, mspringi_place place, bool stress, float value) {
+    if (stress)
+        strain->stress_strain[place] = value;
+    else
+        strain->break_strain[place] = value;
+    if (strain->stress_strain)
+        strain->least[place] = fminf(strain->break_strain[place], strain->stress_strain[place]);
 }
 
 static mspring_result set_thresholds(mspring_network *network, bool stress, const mspringi_selection *at,
@@ -148,9 +170,9 @@ static mspring_result set_thresholds(mspring_network *network, bool stress, cons
     mspring_result result = at->count > 0 ? reserve(network) : MSPRING_OK;
     if (result == MSPRING_OK && stress && at->count > 0)
         result = reserve_stress(network);
-    float *thresholds = stress ? network->strain.stress_strain : network->strain.break_strain;
     for (uint32_t i = 0; result == MSPRING_OK && i < at->count; ++i)
-        thresholds[network->topology.place_of_spring[mspringi_selected(at, i)]] = strain[i];
+        store_threshold(&network->strain, network->topology.place_of_spring[mspringi_selected(at, i)], stress,
+                        strain[i]);
     return result;
 }
 

@@ -96,8 +96,6 @@ static bool bounded(const float *values, size_t count, float limit) {
 
 #include "sweep.h"
 
-#include "strain.h"
-
 #define MSPRINGI_TABLE mspringi_kernels_avx2
 #define MSPRINGI_LEVEL MSPRING_SIMD_AVX2
 #include "table.h"

@@ -98,8 +98,6 @@ static bool bounded(const float *values, size_t count, float limit) {
 
 #include "sweep.h"
 
-#include "strain.h"
-
 // Eight lanes, for parts of tiles.
 #define PART_LANES 8
 typedef __m256 part_vec;

@@ -52,7 +52,7 @@ typedef void (*mspringi_attached_fn)(const mspringi_sweep *sweep, uint32_t first
 /// Whether all of count values (a multiple of MSPRINGI_WIDTH) are at most limit in absolute value; NaN is not.
 typedef bool (*mspringi_bounded_fn)(const float *values, size_t count, float limit);
 
-/// What a strain pass works on: arrays by slot and, by place, the thresholds and bits.
+/// What a strain pass works on: arrays by slot and, by place, the least strain that anything happens at.
 typedef struct mspringi_strain_sweep {
     const float *x, *y;
     const float *lattice_springs, *chain_springs; ///< as in mspringi_sweep
@@ -60,20 +60,18 @@ typedef struct mspringi_strain_sweep {
     const uint32_t *up_of_block;         ///< [lattice blocks] block above each
     uint32_t lattice_first, chain_first; ///< first block of lattice and of chain rows
     uint32_t chain_word;                 ///< word of the first chain block's bits
-    const float *break_strain;           ///< [places]
-    const float *stress_strain;          ///< [places], or NULL: no spring is to be stressed
+    const float *least;                  ///< [places]
     const uint16_t *live, *stressed;     ///< [places / MSPRINGI_WIDTH] bits
-    float relax; ///< a stressed spring relaxes below this fraction of the strain that stressed it
 } mspringi_strain_sweep;
 
-/// What happens to the MSPRINGI_WIDTH springs of one word of bits.
+/// Springs of one word of bits that have to be looked at.
 typedef struct mspringi_strain_hit {
-    uint32_t word;
-    uint16_t broken, stressed, relaxed;
+    uint32_t word, bits;
 } mspringi_strain_hit;
 
-/// Compare the strain of the live springs of the blocks first ... end - 1 (counted from the first of their kind)
-/// with their thresholds, and list what happens to which in hits, which has room for all words of these blocks.
+/// List, of the blocks first ... end - 1 (counted from the first of their kind), the live springs whose stretch,
+/// |length - rest_length|, is over their least strain times rest_length, and those that are stressed. hits has room
+/// for all words of these blocks.
 /// @return the number of hits
 typedef uint32_t (*mspringi_strain_fn)(const mspringi_strain_sweep *sweep, uint32_t first, uint32_t end,
                                        mspringi_strain_hit *hits);

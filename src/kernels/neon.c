@@ -86,8 +86,6 @@ static bool bounded(const float *values, size_t count, float limit) {
 
 #include "sweep.h"
 
-#include "strain.h"
-
 #define MSPRINGI_TABLE mspringi_kernels_neon
 #define MSPRINGI_LEVEL MSPRING_SIMD_NEON
 #include "table.h"

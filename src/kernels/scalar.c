@@ -168,68 +168,6 @@ static bool bounded(const float *values, size_t count, float limit) {
     return all;
 }
 
-// What happens to a live spring with this extent; place counts its thresholds, bit is its own in the hit.
-static inline void compare(const mspringi_strain_sweep *s, float dx, float dy, float rest_length, size_t place,
-                           mspringi_strain_hit *hit) {
-    const uint16_t bit = (uint16_t)(1u << place % MSPRINGI_WIDTH);
-    if (!(s->live[place / MSPRINGI_WIDTH] & bit))
-        return;
-    const float stretch = fabsf(sqrtf(dx * dx + dy * dy) - rest_length);
-    if (stretch > s->break_strain[place] * rest_length) {
-        hit->broken |= bit;
-    } else if (s->stress_strain) {
-        const float threshold = s->stress_strain[place] * rest_length;
-        if (!(s->stressed[place / MSPRINGI_WIDTH] & bit))
-            hit->stressed |= stretch > threshold ? bit : 0;
-        else
-            hit->relaxed |= threshold * s->relax > stretch ? bit : 0;
-    }
-}
-
-// Append a hit, if it is one.
-static inline uint32_t append_hit(const mspringi_strain_hit *hit, mspringi_strain_hit *hits, uint32_t count) {
-    if (hit->broken | hit->stressed | hit->relaxed)
-        hits[count++] = *hit;
-    return count;
-}
-
-static uint32_t lattice_strain(const mspringi_strain_sweep *s, uint32_t first, uint32_t end,
-                               mspringi_strain_hit *hits) {
-    uint32_t count = 0;
-    for (size_t block = first; block < end; ++block) {
-        const size_t here = (s->lattice_first + block) * MSPRINGI_WIDTH;
-        const size_t up = (size_t)s->up_of_block[block] * MSPRINGI_WIDTH;
-        const size_t bases[] = {here, here, here, up}, tips[] = {here + 1, up, up + 1, here + 1};
-        for (size_t direction = 0; direction < MSPRINGI_DIRECTIONS; ++direction) {
-            const size_t word = block * MSPRINGI_DIRECTIONS + direction;
-            const float *rest_length = s->lattice_springs + word * s->parts * MSPRINGI_WIDTH;
-            mspringi_strain_hit hit = {.word = (uint32_t)word};
-            for (size_t lane = 0; s->live[word] && lane < MSPRINGI_WIDTH; ++lane) {
-                const size_t base = bases[direction] + lane, tip = tips[direction] + lane;
-                compare(s, s->x[tip] - s->x[base], s->y[tip] - s->y[base], rest_length[lane],
-                        word * MSPRINGI_WIDTH + lane, &hit);
-            }
-            count = append_hit(&hit, hits, count);
-        }
-    }
-    return count;
-}
-
-static uint32_t chain_strain(const mspringi_strain_sweep *s, uint32_t first, uint32_t end,
-                             mspringi_strain_hit *hits) {
-    uint32_t count = 0;
-    for (size_t block = first; block < end; ++block) {
-        const size_t base = (s->chain_first + block) * MSPRINGI_WIDTH, word = s->chain_word + block;
-        const float *rest_length = s->chain_springs + block * s->parts * MSPRINGI_WIDTH;
-        mspringi_strain_hit hit = {.word = (uint32_t)word};
-        for (size_t lane = 0; s->live[word] && lane < MSPRINGI_WIDTH; ++lane)
-            compare(s, s->x[base + lane + 1] - s->x[base + lane], s->y[base + lane + 1] - s->y[base + lane],
-                    rest_length[lane], word * MSPRINGI_WIDTH + lane, &hit);
-        count = append_hit(&hit, hits, count);
-    }
-    return count;
-}
-
 #include "scalar_lane.h"
 
 #define MSPRINGI_TABLE mspringi_kernels_scalar

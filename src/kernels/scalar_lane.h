@@ -5,6 +5,8 @@
 #ifndef MSPRINGI_SCALAR_LANE_H
 #define MSPRINGI_SCALAR_LANE_H
 
+#include <math.h>
+
 #define LANES 1
 typedef float vec;
 
@@ -31,6 +33,13 @@ static inline vec sub(vec a, vec b) {
 }
 static inline vec mul(vec a, vec b) {
     return a * b;
+}
+static inline vec square_root(vec a) {
+    return sqrtf(a);
+}
+// A bit for each lane: 1 where a > b.
+static inline uint32_t bits_greater(vec a, vec b) {
+    return a > b;
 }
 // The last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {

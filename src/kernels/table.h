@@ -5,6 +5,7 @@
 ///
 /// SPDX-License-Identifier: MIT
 
+#include "strain.h"
 #include "system_assemble.h"
 #include "system_iterate.h"
 #include "system_multiply.h"

@@ -95,6 +95,7 @@ typedef struct mspringi_events {
 /// What springs break and are stressed at, by place; NULL as long as none does.
 typedef struct mspringi_strain {
     float *break_strain, *stress_strain;
+    float *least;              ///< the smaller of the two; break_strain itself as long as that is alone
     uint16_t *stressed;        ///< [places / MSPRINGI_WIDTH] a bit for each place
     mspringi_strain_hit *hits; ///< [places / MSPRINGI_WIDTH] for the pass to write to
     float relax;               ///< fraction of its stress strain below which a stressed spring relaxes
