@@ -310,7 +310,7 @@ programs() {
   folder=$(cd "$(dirname "$bending")" && pwd)
   mkdir "$scratch/work"
   cd "$scratch/work"
-  for program in 01_spring 02_square 03_bar 04_explosion; do
+  for program in 01_spring 02_square 03_bar 04_explosion 06_game; do
     bending=$folder/$program
     succeed
     sed -n 's/^written //p' "$scratch/out" >written
@@ -328,6 +328,14 @@ programs() {
   # 139,000 N/m are refused in time, 229,376 N/m in shorter steps are not.
   [ "$(grep -c 'refused' 04_explosion.out)" -eq 1 ] || complain 'nothing exploded, or the cure failed'
   grep -q 'stable' 04_explosion.out || complain 'nothing was stable'
+
+  # The ship ends in the same place, bit for bit, at whatever level; and it is down.
+  same "$(grep -c '^state after 3841 steps' 06_game.out)" 1 'the game came to its end'
+  for level in scalar sse2; do
+    state=$(MSPRING_SIMD=$level "$folder/06_game" --out "$scratch/work" | grep '^state')
+    same "$state" "$(grep '^state' 06_game.out)" "state of the game at $level"
+  done
+  awk '$1 == 60 && $2 == "s" { sunk = $8 < -25 } END { exit !sunk }' 06_game.out || complain 'the ship is still afloat'
 
   bending=$folder/05_plan
   succeed "$source/examples/data/truss.msn"

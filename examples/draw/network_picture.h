@@ -9,7 +9,8 @@
 
 #include <massspring/massspring.h>
 
-/// What a picture needs to know of a network beside the positions: its springs, and how it looked at first.
+/// What a picture needs to know of a network beside the positions: its springs that are not broken, and how
+/// it looked at first.
 typedef struct network_shape {
     uint32_t particle_count, spring_count;
     mspring_id *a, *b;  ///< [spring_count]

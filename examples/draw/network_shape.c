@@ -29,14 +29,18 @@ static mspring_result read_network(network_shape *made, mspring_network *network
         return result;
     for (uint32_t i = 0; i < made->particle_count; i++)
         made->pinned[i] = view.inverse_mass[view.slot_of_particle[i]] == 0;
-    for (uint32_t i = 0; i < made->spring_count; i++) {
+    const uint32_t spring_count = made->spring_count;
+    made->spring_count = 0;
+    for (uint32_t i = 0; i < spring_count; i++) {
         mspring_spring_info info = {.struct_size = sizeof info};
         result = mspring_network_get_spring(network, i, &info);
         if (result != MSPRING_OK)
             return result;
-        made->a[i] = info.a;
-        made->b[i] = info.b;
-        made->rest_length[i] = info.rest_length;
+        if (info.flags & MSPRING_SPRING_BROKEN)
+            continue;
+        made->a[made->spring_count] = info.a;
+        made->b[made->spring_count] = info.b;
+        made->rest_length[made->spring_count++] = info.rest_length;
     }
     return mspring_network_get_positions(network, 0, made->particle_count, made->x, made->y);
 }
