@@ -178,8 +178,19 @@ static void fill_right_side(const problem *p, solution *s) {
     }
 }
 
-/// Solve in both precisions. Returns the products that a factorisation takes.
-static double solve_sparse(const problem *p, mspring_simd level, solution *s) {
+/// Factor and solve at once, which is the same but for rounding.
+static void solve_at_once(const problem *p, mspringi_cholesky_float *single, mspringi_cholesky_double *twice,
+                          solution *s) {
+    const mspringi_cholesky_matrix_float matrix_float = float_matrix(p);
+    const mspringi_cholesky_matrix_double matrix_double = double_matrix(p);
+    assert_int_equal(mspringi_cholesky_float_factor_solve(single, &matrix_float, s->x_float, s->y_float),
+                     MSPRING_NONE);
+    assert_int_equal(mspringi_cholesky_double_factor_solve(twice, &matrix_double, s->x, s->y), MSPRING_NONE);
+}
+
+/// Solve in both precisions: factor and solve one after the other and, into at_once unless that is NULL, at once.
+/// Returns the products that a factorisation takes.
+static double solve_sparse(const problem *p, mspring_simd level, solution *s, solution *at_once) {
     mspringi_memory memory;
     mspringi_message message;
     mspringi_cholesky_plan plan = {0};
@@ -196,6 +207,9 @@ static double solve_sparse(const problem *p, mspring_simd level, solution *s) {
     assert_int_equal(mspringi_cholesky_double_factor(&twice, &matrix_double), MSPRING_NONE);
     mspringi_cholesky_float_solve(&single, s->x_float, s->y_float);
     mspringi_cholesky_double_solve(&twice, s->x, s->y);
+    if (at_once) {
+        solve_at_once(p, &single, &twice, at_once);
+    }
     const double products = plan.multiply_adds;
     mspringi_cholesky_float_destroy(&single, &memory);
     mspringi_cholesky_double_destroy(&twice, &memory);
@@ -218,24 +232,27 @@ static double largest_error(const problem *p, const solution *s, const double *d
 
 /// Solve a problem sparse and dense and at both levels.
 static void check_problem(const problem *p) {
-    solution *level = malloc(sizeof *level), *scalar = malloc(sizeof *scalar);
+    enum { LEVEL, LEVEL_AT_ONCE, SCALAR, SCALAR_AT_ONCE, WAYS };
+    solution *s = malloc(WAYS * sizeof *s);
     double *dense = malloc(2 * (size_t)p->nodes * sizeof *dense + 1);
-    assert_true(level && scalar && dense);
-    fill_right_side(p, level);
-    *scalar = *level;
+    assert_true(s && dense);
+    for (int way = 0; way < WAYS; way++) {
+        fill_right_side(p, &s[way]);
+    }
     for (uint32_t i = 0; i < p->nodes; i++) {
-        dense[2 * i] = level->x[i];
-        dense[2 * i + 1] = level->y[i];
+        dense[2 * i] = s->x[i];
+        dense[2 * i + 1] = s->y[i];
     }
     solve_dense(p, dense);
-    solve_sparse(p, tested_level, level);
-    solve_sparse(p, MSPRING_SIMD_SCALAR, scalar);
-    assert_memory_equal(level, scalar, sizeof *level);
+    solve_sparse(p, tested_level, &s[LEVEL], &s[LEVEL_AT_ONCE]);
+    solve_sparse(p, MSPRING_SIMD_SCALAR, &s[SCALAR], &s[SCALAR_AT_ONCE]);
+    assert_memory_equal(&s[LEVEL], &s[SCALAR], 2 * sizeof *s);
     // Conditions of these matrices are below 1,000; rounding is 1.1e-16 and 6e-8, and adds up over some products.
-    check_near(largest_error(p, level, dense, false), 0, 1e-12);
-    check_near(largest_error(p, level, dense, true), 0, 5e-4);
-    free(level);
-    free(scalar);
+    for (int way = LEVEL; way <= LEVEL_AT_ONCE; way++) {
+        check_near(largest_error(p, &s[way], dense, false), 0, 1e-12);
+        check_near(largest_error(p, &s[way], dense, true), 0, 5e-4);
+    }
+    free(s);
     free(dense);
 }
 
@@ -367,7 +384,7 @@ static void nothing_there(void **state) {
     assert_true(s && before);
     fill_right_side(p, s);
     *before = *s;
-    solve_sparse(p, tested_level, s);
+    solve_sparse(p, tested_level, s, NULL);
     assert_memory_equal(s, before, sizeof *s);
     free(s);
     free(before);
@@ -383,13 +400,13 @@ static void order_is_good(void **state) {
     problem *bar = new_problem();
     add_grid(bar, 120, 5, 0);
     fill_matrix(bar, 1, &seed);
-    assert_true(solve_sparse(bar, tested_level, s) < 3 * 1200 * 13 * 13 / 2.0);
+    assert_true(solve_sparse(bar, tested_level, s, NULL) < 3 * 1200 * 13 * 13 / 2.0);
     free(bar);
     // A square of n x n: nested dissection has 829 / 84 n^3 products (George 1973), for blocks 8 times that.
     problem *square = new_problem();
     add_grid(square, 26, 26, 0);
     fill_matrix(square, 1, &seed);
-    assert_true(solve_sparse(square, tested_level, s) < 8 * 829 / 84.0 * 26 * 26 * 26);
+    assert_true(solve_sparse(square, tested_level, s, NULL) < 8 * 829 / 84.0 * 26 * 26 * 26);
     free(square);
     // A rope, whatever the numbers of its nodes: no fill but what merging adds.
     problem *rope = new_problem();
@@ -400,7 +417,7 @@ static void order_is_good(void **state) {
         add_edge(rope, i * 19 % 700, (i + 1) * 19 % 700);
     }
     fill_matrix(rope, 1, &seed);
-    assert_true(solve_sparse(rope, tested_level, s) < 700 * 2 * 20 * 20);
+    assert_true(solve_sparse(rope, tested_level, s, NULL) < 700 * 2 * 20 * 20);
     free(rope);
     free(s);
 }
@@ -467,6 +484,9 @@ static void bad_pivots_are_named(void **state) {
             p->node_float[0][node] = (float)xx;
             p->node[2][node] = -yy;
             assert_int_equal(mspringi_cholesky_double_factor(&made.twice, &matrix_double), node);
+            double x[MOST_NODES] = {7}, y[MOST_NODES] = {0, 8};
+            assert_int_equal(mspringi_cholesky_double_factor_solve(&made.twice, &matrix_double, x, y), node);
+            assert_true(x[0] == 7 && x[1] == 0 && y[0] == 0 && y[1] == 8); // b is still there
             p->node[2][node] = yy;
         }
     }

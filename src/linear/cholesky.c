@@ -2,6 +2,7 @@
 #include "cholesky.h"
 
 #include "kernels.h"
+#include "plan.h"
 
 const mspringi_cholesky_kernels *mspringi_cholesky_kernels_of(mspring_simd level) {
     switch (level) {
@@ -29,10 +30,10 @@ const mspringi_cholesky_kernels *mspringi_cholesky_kernels_of(mspring_simd level
         *factor = (mspringi_cholesky_##real){                                                                      \
             .plan = plan,                                                                                          \
             .kernels = mspringi_cholesky_kernels_of(level),                                                        \
-            .panels = mspringi_alloc(memory, plan->panel_reals, sizeof(real)),                                     \
+            .panels = mspringi_alloc(memory, plan->panel_reals + MSPRINGI_PAD, sizeof(real)),                      \
             .reciprocal = mspringi_alloc(memory, 2 * size, sizeof(real)),                                          \
-            .updates = {mspringi_alloc(memory, plan->update_reals[0], sizeof(real)),                               \
-                        mspringi_alloc(memory, plan->update_reals[1], sizeof(real))},                              \
+            .updates = {mspringi_alloc(memory, plan->update_reals[0] + MSPRINGI_PAD, sizeof(real)),                \
+                        mspringi_alloc(memory, plan->update_reals[1] + MSPRINGI_PAD, sizeof(real))},               \
             .scaled = mspringi_alloc(memory, plan->scaled_reals, sizeof(real)),                                    \
             .vector = mspringi_alloc(memory, 2 * size, sizeof(real)),                                              \
             .part = mspringi_alloc(memory, plan->vector_reals, sizeof(real)),                                      \
@@ -63,6 +64,11 @@ const mspringi_cholesky_kernels *mspringi_cholesky_kernels_of(mspring_simd level
                                                                                                                    \
     void mspringi_cholesky_##real##_solve(mspringi_cholesky_##real *factor, real *x, real *y) {                    \
         factor->kernels->solve_##real(factor, x, y);                                                               \
+    }                                                                                                              \
+                                                                                                                   \
+    uint32_t mspringi_cholesky_##real##_factor_solve(                                                              \
+        mspringi_cholesky_##real *factor, const mspringi_cholesky_matrix_##real *matrix, real *x, real *y) {       \
+        return factor->kernels->factor_solve_##real(factor, matrix, x, y);                                         \
     }
 
 MSPRINGI_CHOLESKY_DEFINE(float)

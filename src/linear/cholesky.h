@@ -18,8 +18,7 @@
 ///     mspringi_cholesky_plan_create(&plan, &graph, memory, message);
 ///     mspringi_cholesky_float_create(&factor, &plan, level, memory, message);
 ///     for each step:
-///         node = mspringi_cholesky_float_factor(&factor, &matrix);   MSPRING_NONE: it went well
-///         mspringi_cholesky_float_solve(&factor, x, y);
+///         node = mspringi_cholesky_float_factor_solve(&factor, &matrix, x, y);   MSPRING_NONE: it went well
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_CHOLESKY_H
@@ -99,7 +98,12 @@ typedef struct mspringi_cholesky_kernels mspringi_cholesky_kernels;
                                                const mspringi_cholesky_matrix_##real *matrix);                     \
                                                                                                                    \
     /** Solve A (x, y) = b. x and y [node_count] hold b and receive the solution; those of absent nodes stay. */   \
-    void mspringi_cholesky_##real##_solve(mspringi_cholesky_##real *factor, real *x, real *y);
+    void mspringi_cholesky_##real##_solve(mspringi_cholesky_##real *factor, real *x, real *y);                     \
+                                                                                                                   \
+    /** Factor A and solve A (x, y) = b, for less than one after the other. Returns as factor(); if a pivot is */  \
+    /** not positive, x and y keep b. The factor may be used again. */                                             \
+    uint32_t mspringi_cholesky_##real##_factor_solve(                                                              \
+        mspringi_cholesky_##real *factor, const mspringi_cholesky_matrix_##real *matrix, real *x, real *y);
 
 MSPRINGI_CHOLESKY_DECLARE(float)
 MSPRINGI_CHOLESKY_DECLARE(double)

@@ -12,8 +12,12 @@ struct mspringi_cholesky_kernels {
     mspring_simd level;
     uint32_t (*factor_float)(mspringi_cholesky_float *factor, const mspringi_cholesky_matrix_float *matrix);
     void (*solve_float)(mspringi_cholesky_float *factor, float *x, float *y);
+    uint32_t (*factor_solve_float)(mspringi_cholesky_float *factor, const mspringi_cholesky_matrix_float *matrix,
+                                   float *x, float *y);
     uint32_t (*factor_double)(mspringi_cholesky_double *factor, const mspringi_cholesky_matrix_double *matrix);
     void (*solve_double)(mspringi_cholesky_double *factor, double *x, double *y);
+    uint32_t (*factor_solve_double)(mspringi_cholesky_double *factor, const mspringi_cholesky_matrix_double *matrix,
+                                    double *x, double *y);
 };
 
 extern const mspringi_cholesky_kernels mspringi_cholesky_scalar;

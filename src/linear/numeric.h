@@ -31,6 +31,20 @@ MSPRINGI_INLINE VECTOR NAME(load)(const REAL *from) {
 MSPRINGI_INLINE void NAME(store)(REAL *to, VECTOR a) {
     *(VECTOR *)(void *)to = a;
 }
+MSPRINGI_INLINE VECTOR NAME(load_anywhere)(const REAL *from) {
+    return *(const VECTOR_ANYWHERE *)(const void *)from;
+}
+MSPRINGI_INLINE void NAME(store_anywhere)(REAL *to, VECTOR a) {
+    *(VECTOR_ANYWHERE *)(void *)to = a;
+}
+/// a where the mask has ones, 0 elsewhere.
+MSPRINGI_INLINE VECTOR NAME(keep)(VECTOR a, MASK mask) {
+    MASK bits;
+    memcpy(&bits, &a, sizeof bits);
+    bits &= mask;
+    memcpy(&a, &bits, sizeof a);
+    return a;
+}
 MSPRINGI_INLINE VECTOR NAME(set)(REAL value) {
     return value - (VECTOR){0};
 }
@@ -64,20 +78,23 @@ typedef struct NAME(corner) {
 MSPRINGI_INLINE void NAME(subtract)(VECTOR sum[GROUP][MSPRINGI_TILE_VECTORS], const NAME(tile) * t, size_t columns,
                                     size_t vectors) {
     const REAL *scaled = t->scaled, *lower = t->lower;
-    for (size_t p = 0; p < t->before; ++p) {
-        VECTOR w[MSPRINGI_TILE_VECTORS];
+    for (size_t p = 0; p < t->before; p += 2) { // columns come in pairs
         MSPRINGI_UNROLL
-        for (size_t v = 0; v < vectors; ++v)
-            w[v] = NAME(load)(scaled + v * LANES);
-        MSPRINGI_UNROLL
-        for (size_t c = 0; c < columns; ++c) {
-            const VECTOR factor = NAME(set)(lower[c]);
+        for (size_t q = 0; q < 2; ++q) {
+            VECTOR w[MSPRINGI_TILE_VECTORS];
             MSPRINGI_UNROLL
             for (size_t v = 0; v < vectors; ++v)
-                sum[c][v] = sum[c][v] - w[v] * factor;
+                w[v] = NAME(load)(scaled + v * LANES);
+            MSPRINGI_UNROLL
+            for (size_t c = 0; c < columns; ++c) {
+                const VECTOR factor = NAME(set)(lower[c]);
+                MSPRINGI_UNROLL
+                for (size_t v = 0; v < vectors; ++v)
+                    sum[c][v] = sum[c][v] - w[v] * factor;
+            }
+            scaled += vectors * LANES;
+            lower += t->lower_rows;
         }
-        scaled += vectors * LANES;
-        lower += t->lower_rows;
     }
 }
 
@@ -168,18 +185,22 @@ static void NAME(eliminate)(const NAME(tile) * t, const NAME(corner) * corner, b
 
 /// Eliminate a group's own rows, which the columns before have been subtracted from. Returns the column whose pivot
 /// is not positive, or columns.
-static size_t NAME(eliminate_corner)(NAME(corner) * corner, const REAL *values, size_t rows, size_t columns) {
+MSPRINGI_INLINE size_t NAME(eliminate_corner)(NAME(corner) * corner, const REAL *values, size_t rows,
+                                              size_t columns) {
     REAL scaled[GROUP][GROUP];
+    MSPRINGI_UNROLL
     for (size_t c = 0; c < columns; ++c) {
+        MSPRINGI_UNROLL
         for (size_t i = c; i < columns; ++i) {
-            REAL value = values[c * rows + i];
+            scaled[c][i] = values[c * rows + i];
+            MSPRINGI_UNROLL
             for (size_t p = 0; p < c; ++p)
-                value = value - scaled[p][i] * corner->lower[p][c];
-            scaled[c][i] = value;
+                scaled[c][i] = scaled[c][i] - scaled[p][i] * corner->lower[p][c];
         }
         if (!(scaled[c][c] >= SMALLEST && scaled[c][c] <= LARGEST))
             return c;
         corner->reciprocal[c] = (REAL)1 / scaled[c][c];
+        MSPRINGI_UNROLL
         for (size_t i = c + 1; i < columns; ++i)
             corner->lower[c][i] = scaled[c][i] * corner->reciprocal[c];
     }
@@ -202,10 +223,12 @@ MSPRINGI_INLINE size_t NAME(eliminate_group)(const NAME(columns) * f, size_t fir
     if (first > 0)
         NAME(update)(&t, columns, rows / LANES);
     NAME(corner) corner;
-    const size_t done = NAME(eliminate_corner)(&corner, values + first, f->pivot_rows, columns);
+    const size_t done = columns == GROUP ? NAME(eliminate_corner)(&corner, values + first, f->pivot_rows, GROUP)
+                                         : NAME(eliminate_corner)(&corner, values + first, f->pivot_rows, 2);
     if (done < columns)
         return first + done;
-    memcpy(f->reciprocal + first, corner.reciprocal, columns * sizeof *f->reciprocal);
+    for (size_t c = 0; c < columns; c += 2)
+        memcpy(f->reciprocal + first + c, corner.reciprocal + c, 2 * sizeof *f->reciprocal);
     NAME(eliminate)(&t, &corner, true, columns, rows / LANES);
     for (row += rows; row < f->pivot_rows; row += rows) {
         rows = NAME(tile_rows)(f->pivot_rows - row);
@@ -241,48 +264,71 @@ MSPRINGI_INLINE void NAME(update_border)(const NAME(columns) * f, REAL *update, 
 
 /* --------------------------------------------------------------------------------------------------- assembly */
 
-MSPRINGI_INLINE void NAME(add_block)(REAL *to, size_t rows, REAL xx, REAL xy, REAL yy) {
-    to[0] += xx;
-    to[1] += xy;
-    to[rows] += xy;
-    to[rows + 1] += yy;
+MSPRINGI_INLINE void NAME(add_edges)(REAL *columns, size_t rows, const mspringi_cholesky_entry *entry,
+                                     const mspringi_cholesky_entry *end, const MATRIX *matrix) {
+    for (; entry < end; ++entry) {
+        const REAL xy = matrix->edge_xy[entry->edge];
+        REAL *to = columns + entry->to;
+        to[0] += matrix->edge_xx[entry->edge];
+        to[1] += xy;
+        to[rows] += xy;
+        to[rows + 1] += matrix->edge_yy[entry->edge];
+    }
 }
 
+/// Put a front's part of A into its columns, which are zero. 0 + makes 0 of -0, see add_columns().
 MSPRINGI_INLINE void NAME(assemble)(const NAME(columns) * f, const mspringi_cholesky_plan *plan,
                                     const mspringi_front *front, const MATRIX *matrix) {
-    for (uint32_t p = 0; p < front->pivot_count; ++p) {
+    const mspringi_cholesky_entry *entries = plan->entries;
+    REAL *to = f->pivots;
+    for (uint32_t p = 0; p < front->pivot_count; ++p, to += 2 * (f->pivot_rows + 1)) {
         const uint32_t node = plan->order[front->first_pivot + p];
-        REAL *to = f->pivots + 2 * (size_t)p * (f->pivot_rows + 1);
-        NAME(add_block)(to, f->pivot_rows, matrix->node_xx[node], matrix->node_xy[node], matrix->node_yy[node]);
+        to[0] = 0 + matrix->node_xx[node];
+        to[1] = 0 + matrix->node_xy[node];
+        to[f->pivot_rows + 1] = 0 + matrix->node_yy[node];
     }
-    for (uint32_t e = front->first_entry; e < front->end_entry; ++e) {
-        const mspringi_cholesky_entry *entry = &plan->entries[e];
-        const bool is_pivot = e < front->border_entry;
-        NAME(add_block)
-        ((is_pivot ? f->pivots : f->border) + entry->to, is_pivot ? f->pivot_rows : f->border_rows,
-         matrix->edge_xx[entry->edge], matrix->edge_xy[entry->edge], matrix->edge_yy[entry->edge]);
+    NAME(add_edges)(f->pivots, f->pivot_rows, entries + front->first_entry, entries + front->border_entry, matrix);
+    NAME(add_edges)(f->border, f->border_rows, entries + front->border_entry, entries + front->end_entry, matrix);
+}
+
+/// Add columns of one array to columns of another, the first rows rows of each. A vector may reach beyond them,
+/// where it adds 0: nothing there is -0, so nothing changes.
+MSPRINGI_INLINE void NAME(add_columns)(REAL *to, size_t to_rows, const REAL *from, size_t from_rows, size_t columns,
+                                       size_t rows) {
+    const size_t whole = (rows - 1) / LANES * LANES;
+    const MASK mask = *(const MASK_ANYWHERE *)(const void *)(NAME(masks) + MSPRINGI_PAD - (rows - whole));
+    for (size_t c = 0; c < columns; ++c, to += to_rows, from += from_rows) {
+        for (size_t i = 0; i < whole; i += LANES)
+            NAME(store_anywhere)(to + i, NAME(load_anywhere)(to + i) + NAME(load_anywhere)(from + i));
+        const VECTOR last = NAME(keep)(NAME(load_anywhere)(from + whole), mask);
+        NAME(store_anywhere)(to + whole, NAME(load_anywhere)(to + whole) + last);
     }
 }
 
 /// Add the update matrix of a child to a front's columns and its own update matrix.
-MSPRINGI_INLINE void NAME(add_child)(const NAME(columns) * f, REAL *update, const mspringi_front_run *runs,
-                                     uint32_t run_count, const REAL *child, size_t child_rows) {
+MSPRINGI_INLINE void NAME(add_child)(const NAME(columns) * f, REAL *update, size_t update_columns,
+                                     const mspringi_front_run *runs, uint32_t run_count, const REAL *child,
+                                     size_t child_rows, size_t child_columns) {
     for (uint32_t a = 0; a < run_count; ++a) {
         const size_t columns = 2 * (size_t)runs[a].count;
         for (uint32_t b = a; b < run_count; ++b) {
-            const REAL *from = child + 2 * (runs[a].first * child_rows + runs[b].first);
-            const size_t rows = 2 * (size_t)runs[b].count;
             const size_t to_rows = runs[b].is_pivot ? f->pivot_rows : f->border_rows;
             REAL *to = !runs[a].is_pivot ? update : runs[b].is_pivot ? f->pivots : f->border;
-            to += 2 * (runs[a].to * to_rows + runs[b].to);
-            for (size_t c = 0; c < columns; ++c, to += to_rows, from += child_rows)
-                for (size_t i = a == b ? c : 0; i < rows; ++i)
-                    to[i] += from[i];
+            NAME(add_columns)
+            (to + 2 * (runs[a].to * to_rows + runs[b].to), to_rows,
+             child + 2 * (runs[a].first * child_rows + runs[b].first), child_rows, columns,
+             2 * (size_t)runs[b].count);
         }
+        const REAL *from = child + 2 * runs[a].first * child_rows + child_columns;
+        REAL *to = (runs[a].is_pivot ? f->border : update) + 2 * runs[a].to * f->border_rows + update_columns;
+        for (size_t c = 0; c < columns; ++c, to += f->border_rows, from += child_rows)
+            *to += *from;
     }
 }
 
-static uint32_t NAME(factor)(FACTOR *factor, const MATRIX *matrix) {
+/// Factor A. The last row of each border is that of a right side b, whose part for the columns of a front is in
+/// vector in the order of elimination; it leaves as D^-1 L^-1 b.
+static uint32_t NAME(eliminate_all)(FACTOR *factor, const MATRIX *matrix, REAL *vector) {
     const mspringi_cholesky_plan *plan = factor->plan;
     for (uint32_t n = 0; n < plan->front_count; ++n) {
         const mspringi_front *front = &plan->fronts[n];
@@ -297,14 +343,18 @@ static uint32_t NAME(factor)(FACTOR *factor, const MATRIX *matrix) {
         f.reciprocal = factor->reciprocal + 2 * (size_t)front->first_pivot;
         REAL *update = factor->updates[front->stack] + front->update;
         const size_t update_columns = 2 * (size_t)front->border_count;
+        REAL *const right_side = vector + 2 * (size_t)front->first_pivot, *const row = f.border + update_columns;
         memset(f.pivots, 0, f.count * (f.pivot_rows + f.border_rows) * sizeof *f.pivots);
         memset(update, 0, update_columns * f.border_rows * sizeof *update);
         NAME(assemble)(&f, plan, front, matrix);
+        for (size_t c = 0; c < f.count; ++c)
+            row[c * f.border_rows] = 0 + right_side[c];
         for (uint32_t c = 0; c < front->child_count; ++c) {
             const mspringi_front *child = &plan->fronts[plan->children[front->first_child + c]];
             NAME(add_child)
-            (&f, update, plan->runs + child->first_run, child->run_count,
-             factor->updates[child->stack] + child->update, mspringi_border_rows(child));
+            (&f, update, update_columns, plan->runs + child->first_run, child->run_count,
+             factor->updates[child->stack] + child->update, mspringi_border_rows(child),
+             2 * (size_t)child->border_count);
         }
         for (size_t first = 0; first < f.count; first += GROUP) {
             const size_t bad = NAME(eliminate_group)(&f, first, first + GROUP <= f.count ? GROUP : 2);
@@ -312,6 +362,8 @@ static uint32_t NAME(factor)(FACTOR *factor, const MATRIX *matrix) {
                 return plan->order[front->first_pivot + bad / 2];
         }
         NAME(update_border)(&f, update, update_columns);
+        for (size_t c = 0; c < f.count; ++c)
+            right_side[c] = row[c * f.border_rows];
     }
     return MSPRING_NONE;
 }
@@ -321,26 +373,27 @@ static uint32_t NAME(factor)(FACTOR *factor, const MATRIX *matrix) {
 /// Sum of products in MSPRINGI_PAD partial sums, whatever the width of vectors, that are then added in pairs.
 MSPRINGI_INLINE REAL NAME(dot)(const REAL *a, const REAL *b, size_t count) {
     VECTOR sum[MSPRINGI_PAD / LANES];
-    REAL part[MSPRINGI_PAD];
+    REAL part[MSPRINGI_PAD], four[4];
     MSPRINGI_UNROLL
     for (size_t v = 0; v < MSPRINGI_PAD / LANES; ++v)
-        sum[v] = NAME(set)(0);
-    for (size_t i = 0; i < count; i += MSPRINGI_PAD) {
+        sum[v] = NAME(load)(a + v * LANES) * NAME(load)(b + v * LANES);
+    for (size_t i = MSPRINGI_PAD; i < count; i += MSPRINGI_PAD) {
         MSPRINGI_UNROLL
         for (size_t v = 0; v < MSPRINGI_PAD / LANES; ++v)
             sum[v] = sum[v] + NAME(load)(a + i + v * LANES) * NAME(load)(b + i + v * LANES);
     }
     memcpy(part, sum, sizeof part);
-    for (size_t half = MSPRINGI_PAD / 2; half > 0; half /= 2)
-        for (size_t i = 0; i < half; ++i)
-            part[i] += part[i + half];
-    return part[0];
+    for (int i = 0; i < 4; ++i)
+        four[i] = (part[i] + part[i + 8]) + (part[i + 4] + part[i + 12]);
+    return (four[0] + four[2]) + (four[1] + four[3]);
 }
 
+/// y = D^-1 L^-1 b for the pivots of a front, and the rest of b.
 MSPRINGI_INLINE void NAME(solve_forward)(const FACTOR *factor, const mspringi_front *front, REAL *y) {
     const size_t columns = 2 * (size_t)front->pivot_count;
     const size_t pivot_rows = mspringi_pivot_rows(front), border_rows = mspringi_border_rows(front);
     const REAL *pivots = factor->panels + front->panel, *border = pivots + columns * pivot_rows;
+    const REAL *reciprocal = factor->reciprocal + 2 * (size_t)front->first_pivot;
     const uint32_t *places = factor->plan->border + front->first_border;
     for (size_t p = 0; p < columns; ++p)
         for (size_t i = p + 1; i < columns; ++i)
@@ -356,42 +409,100 @@ MSPRINGI_INLINE void NAME(solve_forward)(const FACTOR *factor, const mspringi_fr
         to[0] -= factor->part[2 * i];
         to[1] -= factor->part[2 * i + 1];
     }
-}
-
-MSPRINGI_INLINE void NAME(solve_backward)(const FACTOR *factor, const mspringi_front *front, REAL *y) {
-    const size_t columns = 2 * (size_t)front->pivot_count;
-    const size_t pivot_rows = mspringi_pivot_rows(front), border_rows = mspringi_border_rows(front);
-    const REAL *pivots = factor->panels + front->panel, *border = pivots + columns * pivot_rows;
-    const REAL *reciprocal = factor->reciprocal + 2 * (size_t)front->first_pivot;
-    const uint32_t *places = factor->plan->border + front->first_border;
-    for (size_t i = 0; i < front->border_count; ++i) {
-        factor->part[2 * i] = factor->vector[2 * (size_t)places[i]];
-        factor->part[2 * i + 1] = factor->vector[2 * (size_t)places[i] + 1];
-    }
-    for (size_t i = 2 * (size_t)front->border_count; i < border_rows; ++i)
-        factor->part[i] = 0;
     for (size_t p = 0; p < columns; ++p)
-        y[p] = y[p] * reciprocal[p] - NAME(dot)(border + p * border_rows, factor->part, border_rows);
-    for (size_t p = columns; p-- > 1;)
-        for (size_t i = 0; i < p; ++i)
-            y[i] -= pivots[i * pivot_rows + p] * y[p];
+        y[p] = y[p] * reciprocal[p];
 }
 
-static void NAME(solve)(FACTOR *factor, REAL *x, REAL *y) {
+/// Two unknowns.
+typedef struct NAME(pair) {
+    REAL first, second;
+} NAME(pair);
+
+/// Two unknowns without what they have in common with two later ones, which are rows of lower.
+MSPRINGI_INLINE NAME(pair) NAME(without)(const REAL *lower, size_t rows, const REAL *y, NAME(pair) later) {
+    return (NAME(pair)){(y[0] - lower[1] * later.second) - lower[0] * later.first,
+                        (y[1] - lower[rows + 1] * later.second) - lower[rows] * later.first};
+}
+
+/// y = L^-T y in the pivot rows. The next two unknowns, which the ones after them wait for, do not go through
+/// memory.
+MSPRINGI_INLINE void NAME(solve_pivots)(const REAL *lower, size_t rows, size_t columns, REAL *restrict y) {
+    NAME(pair) now = {y[columns - 2], y[columns - 1]};
+    for (size_t at = columns - 2;; at -= 2) {
+        now.first -= lower[at * rows + at + 1] * now.second;
+        y[at] = now.first;
+        y[at + 1] = now.second;
+        if (at == 0)
+            return;
+        const NAME(pair) next = NAME(without)(lower + (at - 2) * rows + at, rows, y + at - 2, now);
+        for (size_t i = 0; i < at - 2; i += 2) {
+            const NAME(pair) other = NAME(without)(lower + i * rows + at, rows, y + i, now);
+            y[i] = other.first;
+            y[i + 1] = other.second;
+        }
+        now = next;
+    }
+}
+
+/// x = L^-T y for the pivots of a front.
+MSPRINGI_INLINE void NAME(solve_backward)(const FACTOR *factor, const mspringi_front *front, REAL *restrict y) {
+    const size_t columns = 2 * (size_t)front->pivot_count, border = 2 * (size_t)front->border_count;
+    const size_t pivot_rows = mspringi_pivot_rows(front), border_rows = mspringi_border_rows(front);
+    const REAL *pivots = factor->panels + front->panel, *lower = pivots + columns * pivot_rows;
+    const uint32_t *places = factor->plan->border + front->first_border;
+    REAL *restrict part = factor->part;
+    if (border > 0) {
+        for (size_t i = 0; i < border; i += 2) {
+            part[i] = factor->vector[2 * (size_t)places[i / 2]];
+            part[i + 1] = factor->vector[2 * (size_t)places[i / 2] + 1];
+        }
+        for (size_t i = border; i < border_rows; ++i)
+            part[i] = 0; // the row of the right side among them
+        for (size_t p = 0; p < columns; ++p)
+            y[p] -= NAME(dot)(lower + p * border_rows, part, border_rows);
+    }
+    NAME(solve_pivots)(pivots, pivot_rows, columns, y);
+}
+
+MSPRINGI_INLINE void NAME(permute)(const FACTOR *factor, const REAL *x, const REAL *y) {
+    for (uint32_t i = 0; i < factor->plan->size; ++i) {
+        factor->vector[2 * (size_t)i] = x[factor->plan->order[i]];
+        factor->vector[2 * (size_t)i + 1] = y[factor->plan->order[i]];
+    }
+}
+
+static void NAME(solve_all_backward)(const FACTOR *factor, REAL *x, REAL *y) {
     const mspringi_cholesky_plan *plan = factor->plan;
     REAL *vector = factor->vector;
-    for (uint32_t i = 0; i < plan->size; ++i) {
-        vector[2 * (size_t)i] = x[plan->order[i]];
-        vector[2 * (size_t)i + 1] = y[plan->order[i]];
-    }
-    for (uint32_t n = 0; n < plan->front_count; ++n)
-        NAME(solve_forward)(factor, &plan->fronts[n], vector + 2 * (size_t)plan->fronts[n].first_pivot);
     for (uint32_t n = plan->front_count; n-- > 0;)
         NAME(solve_backward)(factor, &plan->fronts[n], vector + 2 * (size_t)plan->fronts[n].first_pivot);
     for (uint32_t i = 0; i < plan->size; ++i) {
         x[plan->order[i]] = vector[2 * (size_t)i];
         y[plan->order[i]] = vector[2 * (size_t)i + 1];
     }
+}
+
+/* ------------------------------------------------------------------------------------------------ the table's */
+
+static uint32_t NAME(factor)(FACTOR *factor, const MATRIX *matrix) {
+    memset(factor->vector, 0, 2 * (size_t)factor->plan->size * sizeof *factor->vector);
+    return NAME(eliminate_all)(factor, matrix, factor->vector);
+}
+
+static uint32_t NAME(factor_solve)(FACTOR *factor, const MATRIX *matrix, REAL *x, REAL *y) {
+    NAME(permute)(factor, x, y);
+    const uint32_t bad = NAME(eliminate_all)(factor, matrix, factor->vector);
+    if (bad == MSPRING_NONE)
+        NAME(solve_all_backward)(factor, x, y);
+    return bad;
+}
+
+static void NAME(solve)(FACTOR *factor, REAL *x, REAL *y) {
+    const mspringi_cholesky_plan *plan = factor->plan;
+    NAME(permute)(factor, x, y);
+    for (uint32_t n = 0; n < plan->front_count; ++n)
+        NAME(solve_forward)(factor, &plan->fronts[n], factor->vector + 2 * (size_t)plan->fronts[n].first_pivot);
+    NAME(solve_all_backward)(factor, x, y);
 }
 
 #undef GROUP

@@ -46,7 +46,7 @@ static inline size_t mspringi_pivot_rows(const mspringi_front *front) {
     return mspringi_pad(2 * (size_t)front->pivot_count);
 }
 static inline size_t mspringi_border_rows(const mspringi_front *front) {
-    return mspringi_pad(2 * (size_t)front->border_count);
+    return mspringi_pad(2 * (size_t)front->border_count + 1); // the last row is that of the right side
 }
 
 /// The nodes that are there, numbered 0 ... size - 1, and their neighbours.

@@ -26,16 +26,34 @@
 
 // Vectors of a compiler that has them as types; of others, one number.
 #if defined(__GNUC__) && MSPRINGI_VECTOR_BYTES > 0
-typedef float vector_float __attribute__((vector_size(MSPRINGI_VECTOR_BYTES), may_alias));
-typedef double vector_double __attribute__((vector_size(MSPRINGI_VECTOR_BYTES), may_alias));
+#define VECTORS_OF(type) __attribute__((vector_size(MSPRINGI_VECTOR_BYTES), may_alias)) type
+#define VECTORS_ANYWHERE_OF(type)                                                                                  \
+    __attribute__((vector_size(MSPRINGI_VECTOR_BYTES), may_alias, aligned(sizeof(type)))) type
 #else
-typedef float vector_float;
-typedef double vector_double;
+#define VECTORS_OF(type) type
+#define VECTORS_ANYWHERE_OF(type) type
 #endif
+typedef VECTORS_OF(float) vector_float;
+typedef VECTORS_OF(double) vector_double;
+typedef VECTORS_OF(uint32_t) mask_float;
+typedef VECTORS_OF(uint64_t) mask_double;
+typedef VECTORS_ANYWHERE_OF(float) vector_anywhere_float;
+typedef VECTORS_ANYWHERE_OF(double) vector_anywhere_double;
+typedef VECTORS_ANYWHERE_OF(uint32_t) mask_anywhere_float;
+typedef VECTORS_ANYWHERE_OF(uint64_t) mask_anywhere_double;
+
+// Read from n before the middle on: ones in n lanes.
+#define FOUR(value) value, value, value, value
+#define SIXTEEN(value) FOUR(value), FOUR(value), FOUR(value), FOUR(value)
+static const uint32_t masks_float[2 * MSPRINGI_PAD] = {SIXTEEN(UINT32_MAX)};
+static const uint64_t masks_double[2 * MSPRINGI_PAD] = {SIXTEEN(UINT64_MAX)};
 
 #define NAME(name) name##_float
 #define REAL float
 #define VECTOR vector_float
+#define VECTOR_ANYWHERE vector_anywhere_float
+#define MASK mask_float
+#define MASK_ANYWHERE mask_anywhere_float
 #define SMALLEST FLT_MIN
 #define LARGEST FLT_MAX
 #define FACTOR mspringi_cholesky_float
@@ -44,6 +62,9 @@ typedef double vector_double;
 #undef NAME
 #undef REAL
 #undef VECTOR
+#undef VECTOR_ANYWHERE
+#undef MASK
+#undef MASK_ANYWHERE
 #undef SMALLEST
 #undef LARGEST
 #undef FACTOR
@@ -52,6 +73,9 @@ typedef double vector_double;
 #define NAME(name) name##_double
 #define REAL double
 #define VECTOR vector_double
+#define VECTOR_ANYWHERE vector_anywhere_double
+#define MASK mask_double
+#define MASK_ANYWHERE mask_anywhere_double
 #define SMALLEST DBL_MIN
 #define LARGEST DBL_MAX
 #define FACTOR mspringi_cholesky_double
@@ -62,6 +86,8 @@ const mspringi_cholesky_kernels MSPRINGI_TABLE = {
     .level = MSPRINGI_LEVEL,
     .factor_float = factor_float,
     .solve_float = solve_float,
+    .factor_solve_float = factor_solve_float,
     .factor_double = factor_double,
     .solve_double = solve_double,
+    .factor_solve_double = factor_solve_double,
 };

@@ -99,7 +99,7 @@ static void link_children(mspringi_tree *tree, uint32_t first, uint32_t end) {
 static double front_cycles(double pivot_nodes, double border_nodes) {
     const double columns = 2.0 * pivot_nodes, border = 2.0 * border_nodes;
     const double pivot_vectors = (double)mspringi_pad((size_t)columns) / MSPRINGI_PAD;
-    const double border_vectors = (double)mspringi_pad((size_t)border) / MSPRINGI_PAD;
+    const double border_vectors = (double)mspringi_pad((size_t)border + 1) / MSPRINGI_PAD;
     const double products = columns * columns * (pivot_vectors / 3.0 + border_vectors / 2.0 + 0.5) +
                             columns * border * (border_vectors + 1.0) / 2.0;
     return FRONT_CYCLES + COLUMN_CYCLES * columns + PRODUCT_CYCLES * products + UPDATE_CYCLES * border;
