@@ -1,0 +1,295 @@
+/// @file fuzz_calls.c
+/// A network of any kind, and any calls on it: at two instruction sets and two numbers of workers at once, which
+/// all have to answer the same and to hold the same bits, whatever they are asked. Nothing that is not finite may
+/// come out, and a refused call may change nothing. Networks whose numbers are mild are compared with the plain
+/// reference in double precision as well.
+///
+/// SPDX-License-Identifier: MIT
+#include "fuzz.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "recipe.h"
+#include "reference.h"
+#include "support.h"
+
+enum { TWINS = 3, MOST_CALLS = 48, MOST_PARTICLES = 600 };
+
+/// The same network several times.
+typedef struct twins {
+    mspring_network *of[TWINS];
+    uint32_t particles, springs;
+    uint64_t hash;
+    bool workers; ///< the last one has two
+} twins;
+
+/* ---------------------------------------------------------------------------------------------------- numbers */
+
+static float any_number(fuzz_bytes *bytes) {
+    static const float extremes[] = {0,     -0.0f, 1e-45f, 1e-38f, 1e-30f, 1e-9f,  1e-6f,    1e6f,      1e9f,
+                                     1e12f, 1e15f, 1e30f,  3e38f,  -1,     -1e30f, INFINITY, -INFINITY, NAN};
+    const uint8_t kind = fuzz_byte(bytes);
+    if (kind < 40)
+        return extremes[kind % COUNT_OF(extremes)];
+    const float mild = (float)(fuzz_byte(bytes) + 1) / 16.0f;
+    return kind < 100 ? mild : kind < 150 ? mild * 100.0f : kind < 200 ? mild * 1e5f : mild - 8.0f;
+}
+
+static double step_length(fuzz_bytes *bytes) {
+    static const double lengths[] = {1.0 / 64, 1.0 / 64, 1e-3, 1e-3, 1e-6, 0.25,    1.0,
+                                     1e-40,    1e30,     0,    -1,   NAN,  INFINITY};
+    return lengths[fuzz_byte(bytes) % COUNT_OF(lengths)];
+}
+
+static uint32_t below(fuzz_bytes *bytes, uint32_t bound) {
+    const uint32_t drawn = fuzz_byte(bytes) * 256u + fuzz_byte(bytes);
+    return bound > 0 ? drawn % bound : 0;
+}
+
+/* ---------------------------------------------------------------------------------------------------- networks */
+
+static recipe make_recipe(fuzz_bytes *bytes, bool mild) {
+    recipe made = {0};
+    uint64_t seed = 1 + fuzz_byte(bytes) * 256u + fuzz_byte(bytes);
+    const uint8_t kinds = fuzz_byte(bytes);
+    const double stiffness = exp(fuzz_byte(bytes) / 20.0);
+    const recipe_stuff stuff = {.mass = {1, 1 + (kinds & 3)},
+                                .stiffness = {stiffness, stiffness * (1 + (kinds >> 2 & 3))},
+                                .damping = {0, kinds & 16 ? sqrt(stiffness) : 0},
+                                .spring_flags = !mild && kinds & 32 ? MSPRING_SPRING_RELATIVE : 0,
+                                .pinned = kinds & 64 ? 0.05 : 0,
+                                .holes = kinds & 128 ? 0.3 : 0};
+    for (int piece = 1 + fuzz_byte(bytes) % 3; piece > 0; piece--) {
+        const uint32_t before = made.particle_count;
+        switch (fuzz_byte(bytes) % 3) {
+        case 0:
+            recipe_lattice(&made, 1 + below(bytes, 20), 1 + below(bytes, 8), 30.0 * piece, 0, 1, &stuff, &seed);
+            break;
+        case 1:
+            for (uint32_t i = 2 + below(bytes, 40); i > 0; i--)
+                recipe_particle(&made, support_random_between(&seed, -20, -1),
+                                support_random_between(&seed, -20, 20), 1 + (double)(i % 3), 0);
+            if (made.particle_count - before > 12)
+                recipe_random_springs(&made, 3 + below(bytes, 60), &stuff, &seed);
+            break;
+        default:
+            recipe_particle(&made, -3 * piece, -30, 1, MSPRING_PARTICLE_PINNED);
+            recipe_particle(&made, 20 + piece, -33, 1, 0);
+            recipe_rope(&made, before, before + 1, 1 + below(bytes, 40), &stuff, &seed);
+        }
+    }
+    if (made.particle_count == 0)
+        recipe_particle(&made, 0, 0, 1, 0);
+    recipe_disturb(&made, mild ? 0.01 : 0.1, 0.1, &seed);
+    if (fuzz_byte(bytes) & 1)
+        recipe_shuffle(&made, &seed, NULL);
+    for (int changes = mild ? 0 : fuzz_byte(bytes) % 8; changes > 0; changes--) {
+        mspring_particle_def *particle = &made.particles[below(bytes, made.particle_count)];
+        float *const fields[] = {&particle->mass, &particle->vx, &particle->vy};
+        const uint8_t which = fuzz_byte(bytes);
+        if (which % 8 < 3)
+            *fields[which % 8] = any_number(bytes);
+        else if (which % 8 == 3)
+            particle->x = (double)any_number(bytes);
+        else if (made.spring_count > 0) {
+            mspring_spring_def *spring = &made.springs[below(bytes, made.spring_count)];
+            float *const values[] = {&spring->stiffness, &spring->damping, &spring->rest_length,
+                                     &spring->stiffness};
+            *values[which % 8 - 4] = any_number(bytes);
+        }
+    }
+    return made;
+}
+
+static bool make_twins(twins *made, const recipe *from, fuzz_bytes *bytes) {
+    mspring_builder *builder = NULL;
+    FUZZ_CHECK(mspring_builder_create(NULL, &builder) == MSPRING_OK);
+    mspring_network_def def;
+    FUZZ_CHECK(mspring_network_def_init(&def, sizeof def) == MSPRING_OK);
+    const uint8_t settings = fuzz_byte(bytes);
+    def.substeps = settings % 8 == 7 ? MSPRING_SUBSTEPS_AUTO : 1 + settings % 8 * 3u;
+    def.max_substeps = 64;
+    def.guard = settings / 8 % 3;
+    def.global_damping = settings & 32 ? 0.5f : 0;
+    def.gravity_y = settings & 64 ? any_number(bytes) : -9.8f;
+    const bool workers = settings & 128;
+    bool whole =
+        mspring_builder_add_particles(builder, from->particles, from->particle_count, NULL) == MSPRING_OK &&
+        mspring_builder_add_springs(builder, from->springs, from->spring_count, NULL) == MSPRING_OK;
+    *made = (twins){.particles = from->particle_count, .springs = from->spring_count, .workers = workers};
+    for (int i = 0; i < TWINS && whole; i++) {
+        def.simd_level = i == 0 ? MSPRING_SIMD_SCALAR : MSPRING_SIMD_AUTO;
+        def.worker_count = i == 2 && workers ? 2 : 1;
+        whole = mspring_network_create(builder, &def, &made->of[i]) == MSPRING_OK;
+        FUZZ_CHECK(whole || i == 0); // one as the other
+    }
+    if (!whole)
+        FUZZ_CHECK(strlen(mspring_builder_error(builder)) > 0);
+    mspring_builder_destroy(builder);
+    return whole;
+}
+
+/* ---------------------------------------------------------------------------------------------------- checks */
+
+static uint64_t hash_of(const mspring_network *network) {
+    uint64_t hash = 0;
+    FUZZ_CHECK(mspring_network_state_hash(network, &hash) == MSPRING_OK);
+    return hash;
+}
+
+static void check_finite(const mspring_network *network, uint32_t count) {
+    double x[MOST_PARTICLES], y[MOST_PARTICLES];
+    float vx[MOST_PARTICLES], vy[MOST_PARTICLES];
+    count = count < MOST_PARTICLES ? count : MOST_PARTICLES;
+    FUZZ_CHECK(mspring_network_get_positions(network, 0, count, x, y) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_get_velocities(network, 0, count, vx, vy) == MSPRING_OK);
+    for (uint32_t i = 0; i < count; i++)
+        FUZZ_CHECK(isfinite(x[i]) && isfinite(y[i]) && isfinite(vx[i]) && isfinite(vy[i]));
+}
+
+// The same answer from all, and the same bits; from a refusal nothing but a message.
+static void check_answers(twins *all, const mspring_result results[TWINS]) {
+    for (int i = 0; i < TWINS; i++) {
+        FUZZ_CHECK(results[i] == results[0]);
+        FUZZ_CHECK(hash_of(all->of[i]) == hash_of(all->of[0]));
+        FUZZ_CHECK(mspring_network_substeps(all->of[i]) == mspring_network_substeps(all->of[0]));
+    }
+    if (results[0] != MSPRING_OK) {
+        FUZZ_CHECK(hash_of(all->of[0]) == all->hash);
+        FUZZ_CHECK(strlen(mspring_network_error(all->of[0])) > 0);
+    }
+    all->hash = hash_of(all->of[0]);
+    check_finite(all->of[0], all->particles);
+}
+
+/* ---------------------------------------------------------------------------------------------------- calls */
+
+typedef struct call {
+    uint8_t kind;
+    mspring_id particle, spring, first;
+    uint32_t count;
+    float a, b;
+    double dt;
+    bool implicit;
+} call;
+
+static mspring_result make_call(mspring_network *network, const call *c) {
+    const float pair[2] = {c->a, c->b}, other[2] = {c->b, c->a};
+    const double place[2] = {(double)c->a, (double)c->b}, turned[2] = {(double)c->b, (double)c->a};
+    double now = 0, any_shape = 0;
+    mspring_solver_def solver;
+    uint32_t number = 0;
+    switch (c->kind % 20) {
+    case 0:
+        return mspring_network_apply_force(network, c->particle, c->a, c->b);
+    case 1:
+        return mspring_network_apply_forces(network, c->particle, c->count, pair, other);
+    case 2:
+        return mspring_network_set_velocities(network, c->particle, c->count, pair, other);
+    case 3:
+        return mspring_network_set_positions(network, c->particle, c->count, place, turned);
+    case 4:
+        return mspring_network_break_springs(network, &c->spring, 1);
+    case 5:
+        return mspring_network_restore_springs(network, &c->spring, 1, c->a > 0 ? 0.01 : 0.0);
+    case 6:
+        return mspring_network_set_masses(network, c->particle, c->count, pair);
+    case 7:
+        return mspring_network_set_inverse_mass_scales(network, c->particle, c->count, pair);
+    case 8:
+        return mspring_network_set_stiffnesses(network, c->spring, c->count, pair);
+    case 9:
+        return mspring_network_set_dampings(network, c->spring, c->count, pair);
+    case 10:
+        return mspring_network_set_rest_lengths(network, c->spring, c->count, pair);
+    case 11:
+        return mspring_network_set_gravity(network, c->a, c->b);
+    case 12:
+        return mspring_network_set_global_damping(network, c->a);
+    case 13: {
+        mspring_result result = mspring_network_stable_dt(network, &now, &any_shape);
+        FUZZ_CHECK(result != MSPRING_OK || (now >= any_shape && any_shape >= 0));
+        return result;
+    }
+    case 14:
+        FUZZ_CHECK(mspring_solver_def_init(&solver, sizeof solver) == MSPRING_OK);
+        solver.substeps = c->count == 0 ? MSPRING_SUBSTEPS_AUTO : 1 + c->particle % 33;
+        solver.max_substeps = 64;
+        solver.solver = c->implicit ? MSPRING_SOLVER_IMPLICIT : MSPRING_SOLVER_EXPLICIT;
+        return mspring_network_set_solver(network, &solver);
+    case 15:
+        return mspring_network_set_break_strains(network, c->spring, c->count, pair);
+    case 16:
+        return mspring_network_update_components(network, &number, NULL);
+    case 17:
+        return mspring_network_renew_relative_springs(network);
+    default:
+        return mspring_network_step(network, c->dt);
+    }
+}
+
+static void make_calls(twins *all, fuzz_bytes *bytes) {
+    for (int i = 0; i < MOST_CALLS && bytes->at < bytes->size; i++) {
+        // Now and then one that is not there.
+        const call c = {.kind = fuzz_byte(bytes),
+                        .particle = below(bytes, all->particles + 1),
+                        .spring = below(bytes, all->springs + 1),
+                        .count = fuzz_byte(bytes) % 3,
+                        .a = any_number(bytes),
+                        .b = any_number(bytes),
+                        .dt = step_length(bytes),
+                        .implicit = !all->workers && fuzz_byte(bytes) % 4 == 0};
+        mspring_result results[TWINS];
+        for (int twin = 0; twin < TWINS; twin++)
+            results[twin] = make_call(all->of[twin], &c);
+        check_answers(all, results);
+    }
+}
+
+// Some steps well below the border, by the reference as well.
+static void compare_with_reference(twins *all, const recipe *made) {
+    mspring_solver_def solver;
+    double now = 0;
+    FUZZ_CHECK(mspring_solver_def_init(&solver, sizeof solver) == MSPRING_OK);
+    solver.substeps = 3;
+    FUZZ_CHECK(mspring_network_set_solver(all->of[0], &solver) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_set_gravity(all->of[0], 1, -9.8f) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_set_global_damping(all->of[0], 0.25f) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_stable_dt(all->of[0], &now, NULL) == MSPRING_OK);
+    const float h = (float)fmin(0.3 * now, 0.01);
+    reference net = reference_of(made, 1, (double)-9.8f, 0.25);
+    for (int step = 0; step < 5; step++) {
+        FUZZ_CHECK(mspring_network_step(all->of[0], 3 * (double)h) == MSPRING_OK);
+        for (int substep = 0; substep < 3; substep++)
+            reference_substep(&net, (double)h);
+    }
+    for (mspring_id id = 0; id < all->particles; id++) {
+        double x, y;
+        FUZZ_CHECK(mspring_network_get_positions(all->of[0], id, 1, &x, &y) == MSPRING_OK);
+        // 15 substeps below a third of the border, springs out of shape by a percent: rounding of a coordinate
+        // below 128 m, 4e-6 m, grows a hundredfold at most.
+        FUZZ_CHECK(fabs(x - net.particles[id].x) < 1e-3 && fabs(y - net.particles[id].y) < 1e-3);
+    }
+    reference_free(&net);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    fuzz_bytes bytes = {data, size, 0};
+    const bool mild = fuzz_byte(&bytes) % 4 == 0;
+    recipe made = make_recipe(&bytes, mild);
+    twins all;
+    if (make_twins(&all, &made, &bytes)) {
+        all.hash = hash_of(all.of[0]);
+        check_finite(all.of[0], all.particles);
+        if (mild)
+            compare_with_reference(&all, &made);
+        else
+            make_calls(&all, &bytes);
+    }
+    for (int i = 0; i < TWINS; i++)
+        mspring_network_destroy(all.of[i]);
+    recipe_free(&made);
+    return 0;
+}
