@@ -27,6 +27,9 @@ int main(int count, char **arguments) {
     case BENCH_SESSION:
         ok = bench_run_session(&options);
         break;
+    case BENCH_LINEAR:
+        ok = bench_run_linear(&options);
+        break;
     case BENCH_ROOFLINE:
         ok = bench_run_roofline(&options);
         break;

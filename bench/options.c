@@ -19,6 +19,7 @@ void bench_options_help(void) {
          "What to measure (default: scenes against the naive step)\n"
          "  --features           what dampers, hooks, forces and ropes cost\n"
          "  --session            what a game's edits, events and measurements cost, next to its step\n"
+         "  --linear             what the sparse direct solver costs, in explicit substeps\n"
          "  --roofline           the bounds of this machine, and how near to them each scene comes\n"
          "  --check              compare positions with those of the naive step; measures nothing\n"
          "  --list               show the scenes\n"
@@ -101,6 +102,7 @@ static bool is_switch(const char *option, bench_options *out) {
         bench_mode mode;
     } modes[] = {{"--features", BENCH_FEATURES},
                  {"--session", BENCH_SESSION},
+                 {"--linear", BENCH_LINEAR},
                  {"--roofline", BENCH_ROOFLINE},
                  {"--check", BENCH_CHECK},
                  {"--list", BENCH_LIST},

@@ -15,6 +15,7 @@ typedef enum bench_mode {
     BENCH_SCENES,
     BENCH_FEATURES,
     BENCH_SESSION,
+    BENCH_LINEAR,
     BENCH_ROOFLINE,
     BENCH_CHECK,
     BENCH_LIST,
