@@ -278,6 +278,11 @@ results() {
   near "$(field 9)" 0.0392 1e-4 'twice the weight on twice the stiffness'
   succeed "$network" --csv --stiffness 0.25 --relative --dt 0.01 --substeps 1
   near "$(field 6)" 1666.667 1e-4 'a quarter of mu / h^2, mu = 2/3 kg'
+  near_bending=$(field 9)
+  succeed "$network" --csv --stiffness 0.25 --relative --dt 0.01 --substeps 1 --at-once
+  near "$(field 9)" "$near_bending" 1e-4 'relative springs at once'
+  succeed "$network" --at-once
+  grep -q 'static equilibrium' "$scratch/out" || complain 'the table does not say how the equilibrium was found'
 
   # Pictures are what they are called.
   succeed "$network" --picture "$scratch/p.png" --svg "$scratch/p.svg"
@@ -302,6 +307,10 @@ results() {
   same "$(field 1),$(field 2),$(field 3)" image,400,1347 "$line"
   near "$(field 9)" 20.0586 1e-3 'bending of 80 x 5'
   from_pnm=$(field 9)
+  succeed "$image" --csv --at-once --out "$scratch/at_once"
+  same "$(field 4)" static "$line"
+  near "$(field 9)" 20.0586 1e-4 'bending of 80 x 5 at once'
+  png "$scratch/at_once/image.png"
   succeed "$source/examples/data/bar_80x5.png" --csv
   same "$(field 9)" "$from_pnm" 'PNG and PNM of the same bar'
 }

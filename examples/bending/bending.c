@@ -104,6 +104,8 @@ static bool choose_files(bending_run *run) {
             return fail("the path of a picture is too long: choose a shorter one");
         strcpy(chosen[i], given[i]);
     }
+    if (options->at_once) // there is no way down to be shown
+        run->animation[0] = '\0';
     draw_error error;
     if ((run->picture[0] || run->svg[0] || run->animation[0]) &&
         !network_shape_make(&run->shape, run->network, run->scene.probe, &error))
@@ -149,15 +151,19 @@ static bool settle(bending_run *run) {
         .user = run,
     };
     progress_start(&run->line);
-    run->settled = settle_network(run->network, &request);
+    const double substep = run->options->dt / run->options->substeps;
+    run->settled = run->options->at_once ? settle_at_once(run->network, &request, substep)
+                                         : settle_network(run->network, &request);
     progress_clear(&run->line);
-    if (!report_measure(run->network, &run->scene, run->options->dt / run->options->substeps, &run->measures))
+    if (!report_measure(run->network, &run->scene, substep, &run->measures))
         return fail("out of memory: take a smaller network");
     switch (run->settled.end) {
     case SETTLE_AT_REST:
         return true;
     case SETTLE_UNSTABLE:
         return fail_unstable(run);
+    case SETTLE_NOT_FOUND:
+        return fail(mspring_network_error(run->network));
     case SETTLE_OUT_OF_STEPS:
         fprintf(stderr,
                 "bending: not at rest after %llu steps (the probe is %.6g m down): allow more with --steps\n",

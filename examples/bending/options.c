@@ -27,6 +27,7 @@ static const char help[] =
     "  --dt S             length of a step, s (default 1/64)\n"
     "  --substeps N       substeps in a step (default 30)\n"
     "  --steps N          give up after so many steps (default 2000000)\n"
+    "  --at-once          find where it rests without stepping there, by mspring_network_settle()\n"
     "  --gravity G        m/s^2, downwards (default 9.8)\n"
     "  --level L          scalar, sse2, avx2, avx512 or neon (default: the best that the CPU has)\n"
     "\n"
@@ -88,6 +89,8 @@ static bool read_level(const char *value, mspring_simd *level) {
 static bool read_flag(const char *option, bending_options *options) {
     if (strcmp(option, "--relative") == 0)
         options->scene.relative = true;
+    else if (strcmp(option, "--at-once") == 0)
+        options->at_once = true;
     else if (strcmp(option, "--csv") == 0)
         options->csv = true;
     else if (strcmp(option, "--csv-header") == 0)

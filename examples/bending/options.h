@@ -16,6 +16,7 @@ typedef struct bending_options {
     uint64_t steps; ///< most steps
     float gravity;  ///< m/s^2 downwards
     mspring_simd level;
+    bool at_once; ///< find the equilibrium without stepping
     bool csv, csv_header;
     const char *picture, *svg, *animation; ///< files to write, or NULL
     const char *folder;                    ///< for all three of them, or NULL

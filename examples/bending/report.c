@@ -96,14 +96,23 @@ void report_print_table(mspring_network *network, const scene *measured, const b
     printf("  network       %u particles, %u springs\n", mspring_network_particle_count(network),
            mspring_network_spring_count(network));
     print_layout(network);
-    printf("  solver        explicit, %u substeps in a step of %.6g s, level %s\n", options->substeps, options->dt,
-           mspring_simd_name(mspring_network_simd_level(network)));
+    const char *level = mspring_simd_name(mspring_network_simd_level(network));
+    if (options->at_once)
+        printf("  solver        static equilibrium, %llu iterations, level %s\n",
+               (unsigned long long)settled->steps, level);
+    else
+        printf("  solver        explicit, %u substeps in a step of %.6g s, level %s\n", options->substeps,
+               options->dt, level);
     print_stiffness(measures);
     printf("  damping       %.6g N s/m\n", measures->most_damping);
-    printf("  speed         %.4g us a step (median of %llu)\n", settled->median_step_s * 1e6,
-           (unsigned long long)settled->steps);
+    if (options->at_once)
+        printf("  speed         %.4g us an iteration\n", settled->median_step_s * 1e6);
+    else
+        printf("  speed         %.4g us a step (median of %llu)\n", settled->median_step_s * 1e6,
+               (unsigned long long)settled->steps);
     print_strain(measures);
-    printf("  settled       after %.4g s of simulated time\n", settled->time);
+    if (!options->at_once)
+        printf("  settled       after %.4g s of simulated time\n", settled->time);
     printf("  bending       %.6g m\n", settled->drop);
 }
 
@@ -114,9 +123,9 @@ void report_print_csv_header(void) {
 
 void report_print_csv(mspring_network *network, const scene *measured, const bending_options *options,
                       const settle_result *settled, const spring_measures *measures) {
-    printf("%s,%u,%u,explicit,%u,%.9g,%.9g,%.9g,", measured->name, mspring_network_particle_count(network),
-           mspring_network_spring_count(network), options->substeps, measures->most_stiffness,
-           measures->most_damping, options->dt);
+    printf("%s,%u,%u,%s,%u,%.9g,%.9g,%.9g,", measured->name, mspring_network_particle_count(network),
+           mspring_network_spring_count(network), options->at_once ? "static" : "explicit", options->substeps,
+           measures->most_stiffness, measures->most_damping, options->dt);
     // Not printf's nan, whose spelling differs from system to system.
     if (settled->end == SETTLE_AT_REST)
         printf("%.9g,%.9g,", settled->drop, settled->time);

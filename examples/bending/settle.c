@@ -255,3 +255,24 @@ settle_result settle_network(mspring_network *network, const settle_request *req
     free(state.durations);
     return result;
 }
+
+settle_result settle_at_once(mspring_network *network, const settle_request *request, double substep) {
+    settle_result result = {.end = SETTLE_NOT_FOUND};
+    mspring_settle_def def;
+    mspring_settle_result found = {.struct_size = sizeof found};
+    double x = 0;
+    double before = 0;
+    double after = 0;
+    mspring_settle_def_init(&def, sizeof def);
+    def.relative_substep = substep;
+    double start = clock_seconds();
+    if (mspring_network_get_positions(network, request->probe, 1, &x, &before) == MSPRING_OK &&
+        mspring_network_settle(network, &def, &found) == MSPRING_OK &&
+        mspring_network_get_positions(network, request->probe, 1, &x, &after) == MSPRING_OK) {
+        result.end = SETTLE_AT_REST;
+        result.steps = found.iterations;
+        result.drop = before - after;
+        result.median_step_s = (clock_seconds() - start) / fmax(1, found.iterations);
+    }
+    return result;
+}

@@ -31,7 +31,8 @@ typedef struct settle_request {
 typedef enum settle_end {
     SETTLE_AT_REST,
     SETTLE_OUT_OF_STEPS,
-    SETTLE_UNSTABLE, ///< the network says why
+    SETTLE_UNSTABLE,  ///< the network says why
+    SETTLE_NOT_FOUND, ///< likewise
     SETTLE_NO_MEMORY
 } settle_end;
 
@@ -46,6 +47,10 @@ typedef struct settle_result {
 /// Step the network until it rests: until what the probe still has to move is too little to matter. Sets the
 /// network's global damping.
 settle_result settle_network(mspring_network *network, const settle_request *request);
+
+/// Put the network where it rests, without stepping there. Relative springs are as stiff as in a substep of that
+/// length. Its iterations count as steps.
+settle_result settle_at_once(mspring_network *network, const settle_request *request, double substep);
 
 /// The first particle from which no springs lead to a pinned one, so that it would fall for ever; MSPRING_NONE if
 /// there is none. Returns false when out of memory.
