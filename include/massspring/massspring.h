@@ -40,7 +40,10 @@
 ///
 /// **ABI.** Handles are opaque, ids are integers, no struct is passed by value. Every public struct starts with
 /// struct_size; its init function fills in defaults. Structs may grow at the end in later versions, and a
-/// program built against an older header goes on working.
+/// program built against an older header goes on working. A program built against a newer one is refused: by
+/// MSPRING_ERROR_STRUCT, or, where it calls what is not there, by the loader. Nothing that was released is taken
+/// away: what has something better stays, and its description says what to use instead, until the ABI is broken as
+/// a whole, which is counted by the shared library's own number and not by the release.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MASSSPRING_MASSSPRING_H
