@@ -1,8 +1,6 @@
 /// @file level.c
 ///
 /// SPDX-License-Identifier: MIT
-#define _POSIX_C_SOURCE 200112L // unsetenv
-
 #include "level.h"
 
 #include <stdio.h>
@@ -20,7 +18,7 @@ mspring_simd level_from_arguments(int argc, char **argv) {
             printf("skipped: this machine lacks %s\n", argv[1]);
             exit(LEVEL_SKIPPED);
         }
-        unsetenv("MSPRING_SIMD");
+        support_set_variable("MSPRING_SIMD", NULL);
         return level;
     }
     fprintf(stderr, "usage: %s scalar|sse2|avx2|avx512|neon ...\n", argv[0]);

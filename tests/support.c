@@ -1,10 +1,44 @@
 /// @file support.c
 ///
 /// SPDX-License-Identifier: MIT
+#if !defined(_WIN32)
+#define _POSIX_C_SOURCE 200112L // setenv
+#endif
+
 #include "support.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+#if defined(_WIN32)
+#include <malloc.h>
+#endif
+
+void support_set_variable(const char *name, const char *value) {
+#if defined(_WIN32)
+    assert_int_equal(_putenv_s(name, value != NULL ? value : ""), 0);
+#else
+    assert_int_equal(value != NULL ? setenv(name, value, 1) : unsetenv(name), 0);
+#endif
+}
+
+void *support_aligned_alloc(size_t size) {
+#if defined(_WIN32)
+    void *memory = _aligned_malloc(size, 64);
+#else
+    void *memory = aligned_alloc(64, (size + 63) / 64 * 64);
+#endif
+    assert_non_null(memory);
+    return memory;
+}
+
+void support_aligned_free(void *memory) {
+#if defined(_WIN32)
+    _aligned_free(memory);
+#else
+    free(memory);
+#endif
+}
 
 void support_check_result(mspring_result actual, mspring_result expected, const char *call, const char *file,
                           int line) {

@@ -45,6 +45,15 @@ uint64_t support_random(uint64_t *seed);
 /// A random number, low <= number < high.
 double support_random_between(uint64_t *seed, double low, double high);
 
+/* -------------------------------------------------------------------------------------------- environment */
+
+/// Set a variable of the environment; NULL removes it.
+void support_set_variable(const char *name, const char *value);
+
+/// Memory aligned to 64 bytes, as the library's; fails the test if there is none.
+void *support_aligned_alloc(size_t size);
+void support_aligned_free(void *memory);
+
 /* --------------------------------------------------------------------------------------- making a network */
 
 mspring_builder *support_builder(void);

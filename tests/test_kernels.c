@@ -55,8 +55,7 @@ typedef struct arena {
 } arena;
 
 static arena *arena_new(void) {
-    arena *made = aligned_alloc(64, (sizeof *made + 63) / 64 * 64);
-    assert_non_null(made);
+    arena *made = support_aligned_alloc(sizeof *made);
     assert_int_equal(offsetof(arena, x) % 64, 0);
     assert_int_equal(offsetof(arena, records) % 64, 0);
     for (size_t i = 0; i < sizeof *made / sizeof(uint32_t); i++) {
@@ -209,9 +208,9 @@ static void compare(const setup *s, mspringi_row_fn kernel, mspringi_row_fn scal
     }
     // And the sweep has moved something, if there is anything.
     assert_int_equal(memcmp(mine->x, before->x, sizeof mine->x) != 0, s->blocks > 0 && s->live > 0);
-    free(mine);
-    free(reference);
-    free(before);
+    support_aligned_free(mine);
+    support_aligned_free(reference);
+    support_aligned_free(before);
 }
 
 /// All setups for one kernel.

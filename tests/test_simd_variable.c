@@ -2,19 +2,10 @@
 /// The environment variable MSPRING_SIMD and the setting simd_level: each lowers the level, neither raises it.
 ///
 /// SPDX-License-Identifier: MIT
-#define _POSIX_C_SOURCE 200112L // setenv
-
-#include <stdlib.h>
-#include <string.h>
-
 #include "support.h"
 
 static mspring_simd level_with(const char *variable, mspring_simd setting) {
-    if (variable == NULL) {
-        unsetenv("MSPRING_SIMD");
-    } else {
-        assert_int_equal(setenv("MSPRING_SIMD", variable, 1), 0);
-    }
+    support_set_variable("MSPRING_SIMD", variable);
     mspring_builder *builder = support_builder();
     support_particle(builder, 0, 0, 1);
     mspring_network_def def = support_def(0, 1);
@@ -56,11 +47,11 @@ static void other_values_change_nothing(void **state) {
 
 static void the_variable_is_read_when_a_network_is_made(void **state) {
     (void)state;
-    unsetenv("MSPRING_SIMD");
+    support_set_variable("MSPRING_SIMD", NULL);
     mspring_builder *builder = support_builder();
     support_particle(builder, 0, 0, 1);
     mspring_network *network = support_network(builder, NULL);
-    setenv("MSPRING_SIMD", "scalar", 1);
+    support_set_variable("MSPRING_SIMD", "scalar");
     check_ok(mspring_network_step(network, 0.01));
     assert_int_equal(mspring_network_simd_level(network), mspring_simd_supported());
     mspring_network_destroy(network);

@@ -102,8 +102,7 @@ static void fill_web(arena *a, const setup *s, uint64_t *seed) {
 }
 
 static arena *arena_new(const setup *s) {
-    arena *a = aligned_alloc(64, (sizeof *a + 63) / 64 * 64);
-    assert_non_null(a);
+    arena *a = support_aligned_alloc(sizeof *a);
     uint64_t seed = s->seed;
     memset(a, 0, sizeof *a);
     uint32_t *guards[] = {a->front,    a->after_x,      a->after_y,          a->after_vx,
@@ -185,9 +184,9 @@ static void web_kernels(void **state) {
         assert_memory_equal(mine->x + (FIRST + s.own) * W, before->x + (FIRST + s.own) * W,
                             (OWN + 1 - s.own) * W * sizeof(float));
         assert_int_equal(memcmp(mine->x, before->x, sizeof mine->x) != 0, s.own > 0);
-        free(mine);
-        free(reference);
-        free(before);
+        support_aligned_free(mine);
+        support_aligned_free(reference);
+        support_aligned_free(before);
     }
 }
 
@@ -209,7 +208,7 @@ static void pack_copies_blocks(void **state) {
             assert_memory_equal(packed, i < blocks * W ? expected : none, sizeof expected);
         }
         check_canaries(a);
-        free(a);
+        support_aligned_free(a);
     }
 }
 
