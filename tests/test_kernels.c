@@ -51,6 +51,8 @@ typedef struct arena {
     uint32_t after_carry_y[GUARD];
     float records[RECORDS];
     uint32_t after_records[GUARD];
+    float rest_lengths[ROW * MSPRINGI_DIRECTIONS * W];
+    uint32_t rests_of_block[ROW];
     uint32_t back[GUARD];
 } arena;
 
@@ -58,6 +60,7 @@ static arena *arena_new(void) {
     arena *made = support_aligned_alloc(sizeof *made);
     assert_int_equal(offsetof(arena, x) % 64, 0);
     assert_int_equal(offsetof(arena, records) % 64, 0);
+    assert_int_equal(offsetof(arena, rest_lengths) % 64, 0);
     for (size_t i = 0; i < sizeof *made / sizeof(uint32_t); i++) {
         ((uint32_t *)(void *)made)[i] = CANARY;
     }
@@ -121,14 +124,20 @@ static void fill(arena *a, const setup *s) {
     }
     for (uint32_t i = 0; i < ROW * s->record_slots; i++) {
         uint32_t record = i / s->record_slots, direction = i % s->record_slots / W, lane = i % W;
-        float *first = a->records + ((size_t)record * s->record_slots + direction * W) * s->parts + lane;
+        const bool lattice = s->record_slots > W;
+        float *first =
+            a->records + ((size_t)record * s->record_slots + direction * W) * (s->parts - lattice) + lane;
+        a->rests_of_block[record] = ROW - 1 - record;
+        float *rest_length =
+            lattice ? a->rest_lengths + ((ROW - 1 - record) * MSPRINGI_DIRECTIONS + direction) * W + lane : first;
+        float *stiffness = lattice ? first : first + W;
         uint32_t column = record * W + lane;
         bool spring = column >= s->idle && column < s->idle + s->live && support_random(&seed) % 5 != 0 &&
                       (s->has_above || direction == MSPRINGI_EAST);
-        first[MSPRINGI_REST_LENGTH * W] = spring ? random_float(&seed, 0.9, 1.5) : 0;
-        first[MSPRINGI_STIFFNESS * W] = spring ? random_float(&seed, 10, 1000) : 0;
+        *rest_length = spring ? random_float(&seed, 0.9, 1.5) : 0;
+        *stiffness = spring ? random_float(&seed, 10, 1000) : 0;
         if (s->parts > MSPRINGI_DAMPING) {
-            first[MSPRINGI_DAMPING * W] = spring ? random_float(&seed, 0, 30) : 0;
+            stiffness[W] = spring ? random_float(&seed, 0, 30) : 0;
         }
     }
 }
@@ -145,6 +154,8 @@ static void run(arena *a, const setup *s, mspringi_row_fn kernel) {
         .carry_x = a->carry_x,
         .carry_y = a->carry_y,
         .lattice_springs = a->records,
+        .rest_lengths = a->rest_lengths,
+        .rests_of_block = a->rests_of_block,
         .chain_springs = a->records,
         .parts = s->parts,
         .h = 0.01f,

@@ -44,11 +44,10 @@ bool mspringi_spring_break(mspring_network *network, mspring_id spring) {
     if (!mspringi_spring_is_live(network, spring))
         return false;
     mspringi_ramp_drop(network, spring);
-    mspringi_spring_values values = mspringi_spring_get(network, spring);
+    const mspringi_spring_values values = mspringi_spring_get(network, spring);
     if (!mspringi_spring_is_relative(network, spring))
         network->kept[spring] = (mspringi_relative){values.stiffness, values.damping};
-    values.stiffness = values.damping = 0.0f;
-    mspringi_spring_set(network, spring, &values);
+    mspringi_spring_set(network, spring, 0.0f, 0.0f);
     toggle(network, spring);
     if (network->strain.stressed) {
         const mspringi_place place = network->topology.place_of_spring[spring];

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "network/rests.h"
 #include "network/springs.h"
 
 /// Shortest rest length that a ramp starts from, as a fraction of the spring's own: strain divides by it.
@@ -10,6 +11,9 @@
 
 mspring_result mspringi_ramps_reserve(mspring_network *network, size_t count) {
     mspringi_ramps *ramps = &network->ramps;
+    mspring_result result = mspringi_rests_separate(network);
+    if (result != MSPRING_OK)
+        return result;
     void *list = ramps->list;
     const bool grown =
         mspringi_grow(&network->memory, &list, &ramps->capacity, ramps->count + count, sizeof *ramps->list);

@@ -76,7 +76,8 @@ void mspringi_strain_pass(mspring_network *network) {
     const mspringi_strain_sweep sweep = {
         .x = network->state.x,
         .y = network->state.y,
-        .lattice_springs = network->lattice_springs,
+        .rest_lengths = network->rests.lengths,
+        .rests_of_block = network->rests.of_block,
         .chain_springs = network->chain_springs,
         .parts = network->parts,
         .up_of_block = t->up_of_block,

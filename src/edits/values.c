@@ -1,5 +1,6 @@
 /// Editing springs between steps: stiffness, damping, rest length.
 #include "base/cpu.h"
+#include "network/rests.h"
 #include "network/springs.h"
 #include "ramps.h"
 #include "selection.h"
@@ -52,6 +53,8 @@ static MSPRINGI_NOINLINE void store_values(mspring_network *network, mspringi_pa
 static mspring_result set_values(mspring_network *network, mspringi_part part, const mspringi_selection *at,
                                  const float *values) {
     mspring_result result = check_values(network, part, at, values);
+    if (result == MSPRING_OK && part == MSPRINGI_REST_LENGTH)
+        result = mspringi_rests_separate(network);
     if (result != MSPRING_OK)
         return result;
     const mspringi_fp_state before = mspringi_fp_enter();

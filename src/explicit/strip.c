@@ -25,6 +25,8 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
                 .carry_x = carry,
                 .carry_y = carry + carry_slots,
                 .lattice_springs = network->lattice_springs,
+                .rest_lengths = network->rests.lengths,
+                .rests_of_block = network->rests.of_block,
                 .chain_springs = network->chain_springs,
                 .web = &t->web,
                 .web_springs = network->web_springs,

@@ -186,6 +186,8 @@ void mspringi_assemble(mspring_network *network, float h, mspringi_field base) {
     n->system.force_scale = n->scale * c;
     n->system.damping_rate = scheme.velocity_share / (double)h;
     n->system.parts = network->parts;
+    n->system.rest_lengths = network->rests.lengths;
+    n->system.rests_of_block = network->rests.of_block;
     const double heavier = 1.0 + c * n->system.damping_rate * (double)network->global_damping;
     fill_masses(network, heavier);
 

@@ -21,7 +21,9 @@ typedef struct mspringi_sweep {
     const float *inverse_mass;
     const float *force_x, *force_y; ///< forces from outside; read by the kernels with forces only
     float *carry_x, *carry_y;       ///< forces that the row below exerts, by column
-    const float *lattice_springs;   ///< records: [block][direction][part][lane]
+    const float *lattice_springs;   ///< records: [block][direction][part after the rest length][lane]
+    const float *rest_lengths;      ///< of lattice springs: [block of rest lengths][direction][lane]
+    const uint32_t *rests_of_block; ///< [block] which of these it has
     const float *chain_springs;     ///< records: [block][part][lane]
     const mspringi_web *web;
     const float *web_springs;       ///< records: [rung][part][lane]
@@ -55,7 +57,8 @@ typedef bool (*mspringi_bounded_fn)(const float *values, size_t count, float lim
 /// What a strain pass works on: arrays by slot and, by place, the least strain that anything happens at.
 typedef struct mspringi_strain_sweep {
     const float *x, *y;
-    const float *lattice_springs, *chain_springs; ///< as in mspringi_sweep
+    const float *rest_lengths, *chain_springs; ///< as in mspringi_sweep
+    const uint32_t *rests_of_block;            ///< as in mspringi_sweep
     uint32_t parts;
     const uint32_t *up_of_block;         ///< [lattice blocks] block above each
     uint32_t lattice_first, chain_first; ///< first block of lattice and of chain rows

@@ -17,18 +17,17 @@ static inline motion at(const mspringi_sweep *s, size_t slot) {
     return (motion){s->x[slot], s->y[slot], s->vx[slot], s->vy[slot]};
 }
 
-// The force of one spring on its base, towards its tip; the force on the tip is the opposite. record is the slot's
-// first value in a spring record.
-static inline vector spring_force(motion base, motion tip, const float *record, bool damped) {
+// The force of one spring on its base, towards its tip; the force on the tip is the opposite. record is where its
+// stiffness is, with its damping behind.
+static inline vector spring_force(motion base, motion tip, float rest_length, const float *record, bool damped) {
     const float dx = tip.x - base.x, dy = tip.y - base.y;
     const float length = sqrtf(dx * dx + dy * dy);
     const float inverse = length > 0.0f ? 1.0f / length : 0.0f; // a spring of length 0 has no direction
-    float force =
-        (length - record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH]) * record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH];
+    float force = (length - rest_length) * record[0];
     if (damped) {
         const float dvx = tip.vx - base.vx, dvy = tip.vy - base.vy;
         const float rate = (dvx * dx + dvy * dy) * inverse; // of lengthening, m/s
-        force = force + rate * record[MSPRINGI_DAMPING * MSPRINGI_WIDTH];
+        force = force + rate * record[MSPRINGI_WIDTH];
     }
     force = force * inverse;
     return (vector){force * dx, force * dy};
@@ -55,25 +54,38 @@ typedef struct handed_on {
     vector right, diagonal;
 } handed_on;
 
-// A slot's value in the first part of its record.
-static inline const float *record_of(const float *records, const mspringi_span *span, size_t slot, uint32_t parts) {
-    const size_t block = slot / MSPRINGI_WIDTH - span->first_slot / MSPRINGI_WIDTH;
-    return records + (span->first_record + block) * span->record_slots * parts + slot % MSPRINGI_WIDTH;
+// Where the springs of a slot are in lattice records.
+typedef struct lattice_springs {
+    const float *rest_lengths; ///< [direction][lane], from the slot's lane on
+    const float *records;      ///< [direction][part after the rest length][lane]
+} lattice_springs;
+
+static inline lattice_springs springs_of(const mspringi_sweep *s, const mspringi_span *span, size_t slot) {
+    const size_t block = span->first_record + (slot / MSPRINGI_WIDTH - span->first_slot / MSPRINGI_WIDTH);
+    const size_t places = (size_t)MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH, lane = slot % MSPRINGI_WIDTH;
+    return (lattice_springs){s->rest_lengths + s->rests_of_block[block] * places + lane,
+                             s->lattice_springs + block * places * (s->parts - 1) + lane};
+}
+
+static inline vector lattice_force(motion base, motion tip, lattice_springs springs, mspringi_direction direction,
+                                   bool damped) {
+    const size_t parts = damped ? 2 : 1;
+    return spring_force(base, tip, springs.rest_lengths[direction * MSPRINGI_WIDTH],
+                        springs.records + direction * parts * MSPRINGI_WIDTH, damped);
 }
 
 static inline void lattice(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, bool damped,
                            bool forced) {
-    const size_t part = (size_t)s->parts * MSPRINGI_WIDTH; // values of one direction
     handed_on before = {{0.0f, 0.0f}, {0.0f, 0.0f}};
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
         for (size_t slot = span->first_slot; slot < span->end_slot; ++slot) {
             const size_t up = (size_t)((int64_t)slot + span->up), carry = (size_t)((int64_t)slot + span->carry);
-            const float *record = record_of(s->lattice_springs, span, slot, s->parts);
+            const lattice_springs springs = springs_of(s, span, slot);
             const motion here = at(s, slot), next = at(s, slot + 1), above = at(s, up), above_next = at(s, up + 1);
-            const vector east = spring_force(here, next, record + MSPRINGI_EAST * part, damped);
-            const vector north = spring_force(here, above, record + MSPRINGI_NORTH * part, damped);
-            const vector north_east = spring_force(here, above_next, record + MSPRINGI_NORTH_EAST * part, damped);
-            const vector south_east = spring_force(above, next, record + MSPRINGI_SOUTH_EAST * part, damped);
+            const vector east = lattice_force(here, next, springs, MSPRINGI_EAST, damped);
+            const vector north = lattice_force(here, above, springs, MSPRINGI_NORTH, damped);
+            const vector north_east = lattice_force(here, above_next, springs, MSPRINGI_NORTH_EAST, damped);
+            const vector south_east = lattice_force(above, next, springs, MSPRINGI_SOUTH_EAST, damped);
 
             const vector force = {(s->carry_x[carry] + ((east.x + north.x) + north_east.x)) - before.right.x,
                                   (s->carry_y[carry] + ((east.y + north.y) + north_east.y)) - before.right.y};
@@ -86,16 +98,25 @@ static inline void lattice(const mspringi_sweep *s, const mspringi_span *spans, 
     }
 }
 
+// The east spring of a slot of a chain, or of a lattice row with nothing above.
+static inline vector chain_force(const mspringi_sweep *s, const mspringi_span *span, size_t slot, bool damped) {
+    const motion here = at(s, slot), next = at(s, slot + 1);
+    if (span->record_slots != MSPRINGI_WIDTH)
+        return lattice_force(here, next, springs_of(s, span, slot), MSPRINGI_EAST, damped);
+    const size_t block = span->first_record + (slot / MSPRINGI_WIDTH - span->first_slot / MSPRINGI_WIDTH);
+    const float *record = s->chain_springs + block * s->parts * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH;
+    return spring_force(here, next, record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
+                        record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, damped);
+}
+
 // East springs only.
 static inline void chain(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, bool damped,
                          bool forced) {
     vector left = {0.0f, 0.0f};
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
-        const float *records = span->record_slots == MSPRINGI_WIDTH ? s->chain_springs : s->lattice_springs;
         for (size_t slot = span->first_slot; slot < span->end_slot; ++slot) {
             const size_t carry = (size_t)((int64_t)slot + span->carry);
-            const float *record = record_of(records, span, slot, s->parts);
-            const vector east = spring_force(at(s, slot), at(s, slot + 1), record, damped);
+            const vector east = chain_force(s, span, slot, damped);
             const vector force = {(s->carry_x[carry] + east.x) - left.x, (s->carry_y[carry] + east.y) - left.y};
             s->carry_x[carry] = 0.0f;
             s->carry_y[carry] = 0.0f;
@@ -119,8 +140,9 @@ static inline vector web_force(const mspringi_sweep *s, size_t node, bool damped
     for (size_t rung = web->first_rung[node / MSPRINGI_WIDTH]; rung < web->first_rung[node / MSPRINGI_WIDTH + 1];
          ++rung) {
         const motion there = node_at(s, web->neighbour[rung * MSPRINGI_WIDTH + lane]);
-        const vector force =
-            spring_force(here, there, s->web_springs + rung * s->parts * MSPRINGI_WIDTH + lane, damped);
+        const float *record = s->web_springs + rung * s->parts * MSPRINGI_WIDTH + lane;
+        const vector force = spring_force(here, there, record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
+                                          record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, damped);
         sum.x = sum.x + force.x;
         sum.y = sum.y + force.y;
     }

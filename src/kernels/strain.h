@@ -36,7 +36,6 @@ MSPRINGI_STRETCH uint32_t append_hit(const mspringi_strain_sweep *s, size_t word
 static uint32_t lattice_strain(const mspringi_strain_sweep *sweep, uint32_t first, uint32_t end,
                                mspringi_strain_hit *hits) {
     const mspringi_strain_sweep copy = *sweep, *const s = &copy;
-    const size_t part = (size_t)s->parts * MSPRINGI_WIDTH; // values of one direction
     uint32_t count = 0;
     for (size_t block = first; block < end; ++block) {
         const size_t word = block * MSPRINGI_DIRECTIONS;
@@ -44,22 +43,23 @@ static uint32_t lattice_strain(const mspringi_strain_sweep *sweep, uint32_t firs
         for (size_t lane = 0; lane < MSPRINGI_WIDTH; lane += LANES) {
             const size_t here = (s->lattice_first + block) * MSPRINGI_WIDTH + lane;
             const size_t up = (size_t)s->up_of_block[block] * MSPRINGI_WIDTH + lane;
-            const float *rest_lengths = s->lattice_springs + block * MSPRINGI_DIRECTIONS * part + lane;
+            const float *rest_lengths =
+                s->rest_lengths + (size_t)s->rests_of_block[block] * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + lane;
             const float *least = s->least + word * MSPRINGI_WIDTH + lane;
             const vec x = load(s->x + here), y = load(s->y + here);
             const vec next_x = load_unaligned(s->x + here + 1), next_y = load_unaligned(s->y + here + 1);
             const vec up_x = load(s->x + up), up_y = load(s->y + up);
             const vec up_next_x = load_unaligned(s->x + up + 1), up_next_y = load_unaligned(s->y + up + 1);
             over[MSPRINGI_EAST] |= over_least(x, y, next_x, next_y, rest_lengths, least) << lane;
-            over[MSPRINGI_NORTH] |= over_least(x, y, up_x, up_y, rest_lengths + MSPRINGI_NORTH * part,
+            over[MSPRINGI_NORTH] |= over_least(x, y, up_x, up_y, rest_lengths + MSPRINGI_NORTH * MSPRINGI_WIDTH,
                                                least + MSPRINGI_NORTH * MSPRINGI_WIDTH)
                                     << lane;
             over[MSPRINGI_NORTH_EAST] |=
-                over_least(x, y, up_next_x, up_next_y, rest_lengths + MSPRINGI_NORTH_EAST * part,
+                over_least(x, y, up_next_x, up_next_y, rest_lengths + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH,
                            least + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH)
                 << lane;
             over[MSPRINGI_SOUTH_EAST] |=
-                over_least(up_x, up_y, next_x, next_y, rest_lengths + MSPRINGI_SOUTH_EAST * part,
+                over_least(up_x, up_y, next_x, next_y, rest_lengths + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH,
                            least + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH)
                 << lane;
         }

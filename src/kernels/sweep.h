@@ -58,14 +58,14 @@ MSPRINGI_INLINE extent spring_extent(motion base, motion tip) {
     return e;
 }
 
-MSPRINGI_INLINE vector spring_force(extent e, vec inverse, motion base, motion tip, const float *record,
-                                    bool damped) {
-    vec force = mul(sub(e.length, load(record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH)),
-                    load(record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH));
+// record is where the springs' stiffness is, with their damping behind.
+MSPRINGI_INLINE vector spring_force(extent e, vec inverse, motion base, motion tip, const float *rest_lengths,
+                                    const float *record, bool damped) {
+    vec force = mul(sub(e.length, load(rest_lengths)), load(record));
     if (damped) {
         const vec dvx = sub(tip.vx, base.vx), dvy = sub(tip.vy, base.vy);
         const vec rate = mul(add(mul(dvx, e.dx), mul(dvy, e.dy)), inverse);
-        force = add(force, mul(rate, load(record + MSPRINGI_DAMPING * MSPRINGI_WIDTH)));
+        force = add(force, mul(rate, load(record + MSPRINGI_WIDTH)));
     }
     force = mul(force, inverse);
     const vector result = {mul(force, e.dx), mul(force, e.dy)};
@@ -113,7 +113,7 @@ MSPRINGI_INLINE size_t end_of(const mspringi_span *span) {
 MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count, bool damped,
                              bool forced) {
     const mspringi_sweep copy = *sweep, *const s = &copy;          // of its own, so that no store can change it
-    const size_t part = (size_t)(damped ? 3 : 2) * MSPRINGI_WIDTH; // values of one direction
+    const size_t part = (size_t)(damped ? 2 : 1) * MSPRINGI_WIDTH; // values of one direction
     const mspringi_span *span = spans, *const end = spans + count;
     handed_on before = {{zero(), zero()}, {zero(), zero()}};
     size_t slot = first_of(span);
@@ -121,6 +121,9 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *s
         const size_t up = (size_t)((int64_t)slot + span->up), carry = (size_t)((int64_t)slot + span->carry);
         const size_t block = slot / MSPRINGI_WIDTH - span->first_slot / MSPRINGI_WIDTH + span->first_record;
         const float *springs = s->lattice_springs + block * MSPRINGI_DIRECTIONS * part + slot % MSPRINGI_WIDTH;
+        const float *rests = s->rest_lengths +
+                             (size_t)s->rests_of_block[block] * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH +
+                             slot % MSPRINGI_WIDTH;
         const motion here = load_motion(s, slot, damped);
         const motion next = load_motion_unaligned(s, slot + 1, damped);
         const motion above = load_motion(s, up, damped);
@@ -135,13 +138,16 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *s
         const vec per_north = inverse_or_zero(to_north.length);
         const vec per_north_east = inverse_or_zero(to_north_east.length);
         const vec per_south_east = inverse_or_zero(to_south_east.length);
-        const vector east = spring_force(to_east, per_east, here, next, springs + MSPRINGI_EAST * part, damped);
-        const vector north =
-            spring_force(to_north, per_north, here, above, springs + MSPRINGI_NORTH * part, damped);
+        const vector east = spring_force(to_east, per_east, here, next, rests + MSPRINGI_EAST * MSPRINGI_WIDTH,
+                                         springs + MSPRINGI_EAST * part, damped);
+        const vector north = spring_force(to_north, per_north, here, above, rests + MSPRINGI_NORTH * MSPRINGI_WIDTH,
+                                          springs + MSPRINGI_NORTH * part, damped);
         const vector north_east = spring_force(to_north_east, per_north_east, here, above_next,
+                                               rests + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH,
                                                springs + MSPRINGI_NORTH_EAST * part, damped);
         const vector south_east =
-            spring_force(to_south_east, per_south_east, above, next, springs + MSPRINGI_SOUTH_EAST * part, damped);
+            spring_force(to_south_east, per_south_east, above, next, rests + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH,
+                         springs + MSPRINGI_SOUTH_EAST * part, damped);
 
         const vector right = {add(east.x, south_east.x), add(east.y, south_east.y)};
         const vector force = {sub(add(load(s->carry_x + carry), add(add(east.x, north.x), north_east.x)),
@@ -166,16 +172,24 @@ MSPRINGI_INLINE void chain(const mspringi_sweep *sweep, const mspringi_span *spa
     const mspringi_sweep copy = *sweep, *const s = &copy;
     vector before = {zero(), zero()};
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
-        const size_t stride = (size_t)(damped ? 3 : 2) * span->record_slots;
-        const float *records = (span->record_slots == MSPRINGI_WIDTH ? s->chain_springs : s->lattice_springs) +
-                               span->first_record * stride;
+        const bool is_chain = span->record_slots == MSPRINGI_WIDTH;
         const size_t first_block = span->first_slot / MSPRINGI_WIDTH, end = end_of(span);
         for (size_t slot = first_of(span); slot < end; slot += LANES) {
-            const size_t carry = (size_t)((int64_t)slot + span->carry);
-            const float *record = records + (slot / MSPRINGI_WIDTH - first_block) * stride + slot % MSPRINGI_WIDTH;
+            const size_t carry = (size_t)((int64_t)slot + span->carry), lane = slot % MSPRINGI_WIDTH;
+            const size_t block = slot / MSPRINGI_WIDTH - first_block + span->first_record;
+            const float *chain_record = s->chain_springs + block * (damped ? 3 : 2) * MSPRINGI_WIDTH + lane;
+            const float *rests =
+                is_chain ? chain_record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH
+                         : s->rest_lengths +
+                               (size_t)s->rests_of_block[block] * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + lane;
+            const float *record =
+                is_chain
+                    ? chain_record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH
+                    : s->lattice_springs + block * MSPRINGI_DIRECTIONS * (damped ? 2 : 1) * MSPRINGI_WIDTH + lane;
             const motion here = load_motion(s, slot, damped), next = load_motion_unaligned(s, slot + 1, damped);
             const extent to_east = spring_extent(here, next);
-            const vector east = spring_force(to_east, inverse_or_zero(to_east.length), here, next, record, damped);
+            const vector east =
+                spring_force(to_east, inverse_or_zero(to_east.length), here, next, rests, record, damped);
             const vector force = {sub(add(load(s->carry_x + carry), east.x), shift_in(before.x, east.x)),
                                   sub(add(load(s->carry_y + carry), east.y), shift_in(before.y, east.y))};
             store(s->carry_x + carry, zero());
@@ -197,7 +211,9 @@ MSPRINGI_INLINE vector web_force(const mspringi_sweep *s, motion here, size_t gr
         motion there;
         load_packed(s->packed, neighbour, &there.x, &there.y, &there.vx, &there.vy);
         const extent to = spring_extent(here, there);
-        const vector force = spring_force(to, inverse_or_zero(to.length), here, there, record, damped);
+        const vector force = spring_force(to, inverse_or_zero(to.length), here, there,
+                                          record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH,
+                                          record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, damped);
         sum.x = add(sum.x, force.x);
         sum.y = add(sum.y, force.y);
         neighbour += MSPRINGI_WIDTH;

@@ -31,16 +31,22 @@ typedef struct mspringi_system {
     double force_scale;   ///< what springs' stiffness and damping are multiplied with
     double damping_rate;  ///< 1/s, what a damper counts in the matrix beside a spring
     uint32_t parts;       ///< in a spring's record
-    const float *lattice_springs, *chain_springs;
-    const float *mass;        ///< scaled; 0 where there is no particle
-    float *lattice_factors;   ///< [block][direction][factor][lane]
-    float *chain_factors;     ///< [block][factor][lane]
-    float *force_x, *force_y; ///< of the springs, scaled
-    float *xx, *xy, *yy;      ///< the 2 x 2 blocks on the diagonal of A, without the mass
-    double *force_carry_x;    ///< what the row below hands on, by column; all of them 0 between rows' ends
+    const float *lattice_springs, *rest_lengths, *chain_springs; ///< as in mspringi_sweep
+    const uint32_t *rests_of_block;                              ///< as in mspringi_sweep
+    const float *mass;                                           ///< scaled; 0 where there is no particle
+    float *lattice_factors;                                      ///< [block][direction][factor][lane]
+    float *chain_factors;                                        ///< [block][factor][lane]
+    float *force_x, *force_y;                                    ///< of the springs, scaled
+    float *xx, *xy, *yy;   ///< the 2 x 2 blocks on the diagonal of A, without the mass
+    double *force_carry_x; ///< what the row below hands on, by column; all of them 0 between rows' ends
     double *force_carry_y;
     float *carry_xx, *carry_xy, *carry_yy; ///< likewise; xx and xy serve the product as well
 } mspringi_system;
+
+/// Rest lengths of a lattice block, [direction][lane].
+static inline const float *mspringi_system_rests(const mspringi_system *system, size_t block) {
+    return system->rest_lengths + (size_t)system->rests_of_block[block] * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
+}
 
 /// Fill factors, force and diagonal of one or more rows, all of one kind.
 typedef void (*mspringi_assemble_fn)(const mspringi_system *system, const mspringi_span *spans, uint32_t count);

@@ -31,13 +31,13 @@ typedef struct handed {
     handed_block block;
 } handed;
 
-// Force, factors and block of the springs from the slots base ... to the slots tip ...
-static inline void assemble_springs(const mspringi_system *s, size_t base, size_t tip, const float *record,
-                                    float *restrict factors, assembled *restrict to, bool damped) {
+// Force, factors and block of the springs from the slots base ... to the slots tip ...; their dampings are behind
+// their stiffnesses.
+static inline void assemble_springs(const mspringi_system *s, size_t base, size_t tip, const float *rest_lengths,
+                                    const float *stiffnesses, float *restrict factors, assembled *restrict to,
+                                    bool damped) {
     const double *const x = s->x, *const y = s->y;
-    const float *const rest_lengths = record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH;
-    const float *const stiffnesses = record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH;
-    const float *const dampings = record + MSPRINGI_DAMPING * MSPRINGI_WIDTH;
+    const float *const dampings = stiffnesses + MSPRINGI_WIDTH;
     const double scale = s->force_scale, damping_rate = s->damping_rate;
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const double dx = x[tip + i] - x[base + i], dy = y[tip + i] - y[base + i];
@@ -113,7 +113,7 @@ static inline void sum_block(const mspringi_system *s, size_t slot, size_t carry
 static inline void assemble_lattice(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
                                     bool damped) {
     const mspringi_system copy = *system, *const s = &copy;
-    const size_t part = (size_t)(damped ? 3 : 2) * MSPRINGI_WIDTH;
+    const size_t part = (size_t)(damped ? 2 : 1) * MSPRINGI_WIDTH;
     const size_t factor = (size_t)MSPRINGI_FACTORS * MSPRINGI_WIDTH;
     assembled east, north, north_east, south_east;
     handed right = {{{0.0}, {0.0}}, {{0.0f}, {0.0f}, {0.0f}}}, diagonal = right;
@@ -124,15 +124,18 @@ static inline void assemble_lattice(const mspringi_system *system, const mspring
             const size_t slot = block * MSPRINGI_WIDTH, index = span->first_record + (block - first);
             const size_t up = (size_t)((int64_t)slot + span->up), carry = (size_t)((int64_t)slot + span->carry);
             const float *record = s->lattice_springs + index * MSPRINGI_DIRECTIONS * part;
+            const float *rests = mspringi_system_rests(s, index);
             float *factors = s->lattice_factors + index * MSPRINGI_DIRECTIONS * factor;
-            assemble_springs(s, slot, slot + 1, record + MSPRINGI_EAST * part, factors + MSPRINGI_EAST * factor,
-                             &east, damped);
-            assemble_springs(s, slot, up, record + MSPRINGI_NORTH * part, factors + MSPRINGI_NORTH * factor, &north,
-                             damped);
-            assemble_springs(s, slot, up + 1, record + MSPRINGI_NORTH_EAST * part,
-                             factors + MSPRINGI_NORTH_EAST * factor, &north_east, damped);
-            assemble_springs(s, up, slot + 1, record + MSPRINGI_SOUTH_EAST * part,
-                             factors + MSPRINGI_SOUTH_EAST * factor, &south_east, damped);
+            assemble_springs(s, slot, slot + 1, rests + MSPRINGI_EAST * MSPRINGI_WIDTH,
+                             record + MSPRINGI_EAST * part, factors + MSPRINGI_EAST * factor, &east, damped);
+            assemble_springs(s, slot, up, rests + MSPRINGI_NORTH * MSPRINGI_WIDTH, record + MSPRINGI_NORTH * part,
+                             factors + MSPRINGI_NORTH * factor, &north, damped);
+            assemble_springs(s, slot, up + 1, rests + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH,
+                             record + MSPRINGI_NORTH_EAST * part, factors + MSPRINGI_NORTH_EAST * factor,
+                             &north_east, damped);
+            assemble_springs(s, up, slot + 1, rests + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH,
+                             record + MSPRINGI_SOUTH_EAST * part, factors + MSPRINGI_SOUTH_EAST * factor,
+                             &south_east, damped);
             sum_block(s, slot, carry, &east, &north, &north_east, &south_east, &right, &diagonal);
         }
     }
@@ -147,14 +150,19 @@ static inline void assemble_chain(const mspringi_system *system, const mspringi_
     handed right = {{{0.0}, {0.0}}, {{0.0f}, {0.0f}, {0.0f}}}, diagonal = right;
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
         const bool is_chain = span->record_slots == MSPRINGI_WIDTH;
-        const size_t stride = (size_t)(damped ? 3 : 2) * span->record_slots;
+        // A chain's records have the rest lengths in front.
+        const size_t parts = damped ? 2 : 1, stride = (parts + is_chain) * span->record_slots;
         const size_t factor_stride = (size_t)MSPRINGI_FACTORS * span->record_slots;
         const float *record = (is_chain ? s->chain_springs : s->lattice_springs) + span->first_record * stride;
         float *factors = (is_chain ? s->chain_factors : s->lattice_factors) + span->first_record * factor_stride;
         const size_t end = (span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
         for (size_t block = span->first_slot / MSPRINGI_WIDTH; block < end; ++block) {
             const size_t slot = block * MSPRINGI_WIDTH, carry = (size_t)((int64_t)slot + span->carry);
-            assemble_springs(s, slot, slot + 1, record, factors, &east, damped);
+            const float *rests =
+                is_chain
+                    ? record
+                    : mspringi_system_rests(s, span->first_record + (block - span->first_slot / MSPRINGI_WIDTH));
+            assemble_springs(s, slot, slot + 1, rests, record + is_chain * MSPRINGI_WIDTH, factors, &east, damped);
             sum_block(s, slot, carry, &east, &none, &none, &none, &right, &diagonal);
             record += stride;
             factors += factor_stride;

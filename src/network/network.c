@@ -8,6 +8,7 @@
 #include "hooks.h"
 #include "implicit/implicit.h"
 #include "origin.h"
+#include "rests.h"
 #include "springs.h"
 
 /* --------------------------------------------------------------------------------------------------- checks */
@@ -87,7 +88,8 @@ static mspring_result allocate(mspring_network *network, bool relative) {
     const size_t parts = network->parts;
     network->inverse_mass = mspringi_alloc(memory, mspringi_slot_count(network), sizeof *network->inverse_mass);
     network->mass = mspringi_alloc(memory, t->particle_count, sizeof *network->mass);
-    network->lattice_springs = mspringi_alloc(memory, parts * t->lattice_places, sizeof *network->lattice_springs);
+    network->lattice_springs =
+        mspringi_alloc(memory, (parts - 1) * t->lattice_places, sizeof *network->lattice_springs);
     network->chain_springs =
         mspringi_alloc(memory, parts * (t->chain_places - t->lattice_places), sizeof *network->chain_springs);
     const size_t rungs = t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0;
@@ -137,10 +139,8 @@ static void fill_springs(mspring_network *network, const mspring_builder *builde
         network->shortest = fmin(network->shortest, (double)spring->rest_length);
         const mspringi_place place = t->place_of_spring[s];
         const bool relative = spring->flags & MSPRING_SPRING_RELATIVE;
-        const mspringi_spring_values values = {.rest_length = spring->rest_length,
-                                               .stiffness = relative ? 0.0f : spring->stiffness,
-                                               .damping = relative ? 0.0f : spring->damping};
-        mspringi_spring_set(network, s, &values);
+        mspringi_spring_set_rest_length(network, s, spring->rest_length);
+        mspringi_spring_set(network, s, relative ? 0.0f : spring->stiffness, relative ? 0.0f : spring->damping);
         network->live[place / MSPRINGI_WIDTH] |= (uint16_t)(1u << place % MSPRINGI_WIDTH);
         if (network->relative)
             network->relative[s] = relative ? (mspringi_relative){spring->stiffness, spring->damping}
@@ -165,6 +165,9 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     damped = damped || (def->flags & MSPRING_NETWORK_RESERVE_DAMPING);
     network->parts = damped ? MSPRINGI_DAMPING + 1 : MSPRINGI_STIFFNESS + 1;
     result = allocate(network, relative);
+    if (result == MSPRING_OK)
+        result = mspringi_rests_create(&network->rests, &network->topology, builder, &network->memory,
+                                       &network->message);
     if (result != MSPRING_OK)
         return result;
     network->kernels = mspringi_kernels_of(mspringi_cpu_choose(def->simd_level));
@@ -234,6 +237,7 @@ void mspring_network_destroy(mspring_network *network) {
     mspringi_free(&memory, network->backup.x);
     mspringi_free(&memory, network->inverse_mass);
     mspringi_free(&memory, network->mass);
+    mspringi_rests_destroy(&network->rests, &memory);
     mspringi_free(&memory, network->lattice_springs);
     mspringi_free(&memory, network->chain_springs);
     mspringi_free(&memory, network->web_springs);

@@ -112,6 +112,13 @@ typedef struct mspringi_guard {
     float peak;              ///< largest change when the border was looked at last, fading, m/s
 } mspringi_guard;
 
+/// Rest lengths of the lattices' springs, in blocks of [direction][lane].
+typedef struct mspringi_rests {
+    float *lengths;     ///< [count] blocks: those that several lattice blocks share, then those of one each
+    uint32_t *of_block; ///< [lattice blocks] which of them is whose
+    uint32_t count, shared_count;
+} mspringi_rests;
+
 struct mspring_network {
     mspringi_memory memory;
     mspringi_message message;
@@ -130,6 +137,7 @@ struct mspring_network {
     float *inverse_mass_scale; ///< [particles], or NULL as long as all are 0 (where inverse_mass is) or 1
     float *spring_mass;        ///< [particles] masses that relative springs go by, or NULL if these are mass
     uint32_t parts;            ///< values per spring in the records: 2, or 3 with damping
+    mspringi_rests rests;      ///< of lattice_springs, whose records have stiffness and damping only
     float *lattice_springs, *chain_springs;
     float *web_springs;
     float *packed;               ///< [2][nodes of the web][4] at the start of every other substep

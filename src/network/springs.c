@@ -1,34 +1,54 @@
 /// Where springs lie and what they are like.
 #include "springs.h"
 
-// Where a spring's values are, by part: in one record, or in one at each of its ends.
+#include "rests.h"
+
+// Where a spring's values are: in one record, or in one at each of its ends.
+typedef struct spring_record {
+    float *rest_length, *stiffness;
+    float *damping; ///< NULL if the network has none
+} spring_record;
+
 typedef struct spring_records {
-    float *parts[2];
+    spring_record ends[2];
     int count;
 } spring_records;
 
-static float *record_in(float *records, size_t index, uint32_t parts) {
-    return records + index / MSPRINGI_WIDTH * MSPRINGI_WIDTH * parts + index % MSPRINGI_WIDTH;
+// Those of an index into records of all parts.
+static spring_record record_in(float *records, size_t index, uint32_t parts) {
+    float *first = records + index / MSPRINGI_WIDTH * MSPRINGI_WIDTH * parts + index % MSPRINGI_WIDTH;
+    return (spring_record){first + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH,
+                           first + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH,
+                           parts > MSPRINGI_DAMPING ? first + MSPRINGI_DAMPING * MSPRINGI_WIDTH : NULL};
+}
+
+static spring_record lattice_record(const mspring_network *network, mspringi_place place) {
+    const uint32_t parts = network->parts - 1;
+    float *first = network->lattice_springs + (size_t)(place / MSPRINGI_WIDTH) * MSPRINGI_WIDTH * parts +
+                   place % MSPRINGI_WIDTH;
+    return (spring_record){mspringi_rests_at(&network->rests, place), first,
+                           network->parts > MSPRINGI_DAMPING ? first + MSPRINGI_WIDTH : NULL};
 }
 
 static spring_records find_records(const mspring_network *network, mspringi_place place) {
     const mspringi_topology *t = &network->topology;
     const uint32_t parts = network->parts;
     if (place < t->lattice_places)
-        return (spring_records){{record_in(network->lattice_springs, place, parts), NULL}, 1};
+        return (spring_records){{lattice_record(network, place), {NULL, NULL, NULL}}, 1};
     if (place < t->chain_places)
-        return (spring_records){{record_in(network->chain_springs, place - t->lattice_places, parts), NULL}, 1};
+        return (spring_records){
+            {record_in(network->chain_springs, place - t->lattice_places, parts), {NULL, NULL, NULL}}, 1};
     const uint32_t *entry = t->web.entry + 2 * (size_t)(place - t->chain_places);
     return (spring_records){
         {record_in(network->web_springs, entry[0], parts), record_in(network->web_springs, entry[1], parts)}, 2};
 }
 
 mspringi_spring_values mspringi_place_get(const mspring_network *network, mspringi_place place) {
-    const float *record = find_records(network, place).parts[0];
+    const spring_record record = find_records(network, place).ends[0];
     mspringi_spring_values values = {
-        .rest_length = record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
-        .stiffness = record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH],
-        .damping = network->parts > MSPRINGI_DAMPING ? record[MSPRINGI_DAMPING * MSPRINGI_WIDTH] : 0.0f,
+        .rest_length = *record.rest_length,
+        .stiffness = *record.stiffness,
+        .damping = record.damping ? *record.damping : 0.0f,
     };
     mspringi_topology_ends(&network->topology, place, &values.base, &values.tip);
     return values;
@@ -38,21 +58,19 @@ mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspri
     return mspringi_place_get(network, network->topology.place_of_spring[spring]);
 }
 
-void mspringi_spring_set(mspring_network *network, mspring_id spring, const mspringi_spring_values *values) {
+void mspringi_spring_set(mspring_network *network, mspring_id spring, float stiffness, float damping) {
     const spring_records records = find_records(network, network->topology.place_of_spring[spring]);
     for (int i = 0; i < records.count; ++i) {
-        float *record = records.parts[i];
-        record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH] = values->rest_length;
-        record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH] = values->stiffness;
-        if (network->parts > MSPRINGI_DAMPING)
-            record[MSPRINGI_DAMPING * MSPRINGI_WIDTH] = values->damping;
+        *records.ends[i].stiffness = stiffness;
+        if (records.ends[i].damping)
+            *records.ends[i].damping = damping;
     }
 }
 
 void mspringi_spring_set_rest_length(mspring_network *network, mspring_id spring, float rest_length) {
-    mspringi_spring_values values = mspringi_spring_get(network, spring);
-    values.rest_length = rest_length;
-    mspringi_spring_set(network, spring, &values);
+    const spring_records records = find_records(network, network->topology.place_of_spring[spring]);
+    for (int i = 0; i < records.count; ++i)
+        *records.ends[i].rest_length = rest_length;
 }
 
 // Stiffness and damping of a relative spring for the substep that was derived for last.
@@ -86,12 +104,10 @@ void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, ms
             network->kept[spring] = nominal;
         return;
     }
-    mspringi_spring_values values = mspringi_spring_get(network, spring);
+    const mspringi_spring_values values = mspringi_spring_get(network, spring);
     if (relative)
         nominal = derive(network, &values, nominal);
-    values.stiffness = nominal.stiffness;
-    values.damping = nominal.damping;
-    mspringi_spring_set(network, spring, &values);
+    mspringi_spring_set(network, spring, nominal.stiffness, nominal.damping);
 }
 
 void mspringi_renew_relative(mspring_network *network) {

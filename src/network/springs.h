@@ -14,8 +14,8 @@ typedef struct mspringi_spring_values {
 } mspringi_spring_values;
 mspringi_spring_values mspringi_place_get(const mspring_network *network, mspringi_place place);
 mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspring_id spring);
-/// Set rest length, stiffness and damping, wherever the spring has records.
-void mspringi_spring_set(mspring_network *network, mspring_id spring, const mspringi_spring_values *values);
+/// Set stiffness and damping in force, wherever the spring has records.
+void mspringi_spring_set(mspring_network *network, mspring_id spring, float stiffness, float damping);
 
 /// (length - rest_length) / rest_length, now; of a broken spring 0.
 float mspringi_spring_strain(const mspring_network *network, mspring_id spring);
@@ -45,7 +45,8 @@ mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, ms
 /// Set these. What a broken spring exerts stays 0.
 void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, mspringi_relative nominal);
 
-/// Set the rest length alone, as it is in force: a ramp of the spring goes on from its own.
+/// Set the rest length in force: a ramp of the spring goes on from its own. After mspringi_rests_separate() only,
+/// unless it is what the spring has.
 void mspringi_spring_set_rest_length(mspring_network *network, mspring_id spring, float rest_length);
 
 /// Derive stiffness and damping of the relative springs for a substep; 0: as before the first one, both 0.
