@@ -14,8 +14,19 @@
 #include "stability/guard.h"
 #include "stability/stability.h"
 
+typedef struct copying {
+    const float *from;
+    float *to;
+} copying;
+
+static void copy_range(void *argument, size_t first, size_t end) {
+    const copying *all = argument;
+    memcpy(all->to + first, all->from + first, (end - first) * sizeof *all->to);
+}
+
 static void copy_state(const mspring_network *network, const mspringi_state *from, const mspringi_state *to) {
-    memcpy(to->x, from->x, 4 * mspringi_slot_count(network) * sizeof *to->x);
+    copying all = {from->x, to->x};
+    mspringi_tasks_run_ranges(network->tasks, 4 * mspringi_slot_count(network), MSPRINGI_WIDTH, copy_range, &all);
 }
 
 static void copy_field(const mspring_network *network, mspringi_field from, mspringi_field to) {

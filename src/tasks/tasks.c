@@ -125,3 +125,31 @@ void mspringi_tasks_run(mspringi_tasks *tasks, uint32_t count, mspring_task_fn f
     else
         tasks->host.run(count, run_body, &of, tasks->host.user);
 }
+
+/// Shortest range that is worth a worker's while.
+#define SHORTEST_RANGE 16384
+
+typedef struct ranges {
+    size_t count, length;
+    mspringi_range_fn fn;
+    void *argument;
+} ranges;
+
+static void run_range(void *argument, uint32_t index, uint32_t worker) {
+    const ranges *all = argument;
+    (void)worker;
+    const size_t first = index * all->length, left = all->count - first;
+    all->fn(all->argument, first, first + (left < all->length ? left : all->length));
+}
+
+void mspringi_tasks_run_ranges(mspringi_tasks *tasks, size_t count, size_t grain, mspringi_range_fn fn,
+                               void *argument) {
+    const size_t workers = mspringi_tasks_workers(tasks);
+    if (workers == 1 || count < 2 * SHORTEST_RANGE) {
+        fn(argument, 0, count);
+        return;
+    }
+    const size_t equal = (count + workers - 1) / workers, length = equal > SHORTEST_RANGE ? equal : SHORTEST_RANGE;
+    ranges all = {.count = count, .length = (length + grain - 1) / grain * grain, .fn = fn, .argument = argument};
+    mspringi_tasks_run(tasks, (uint32_t)((count + all.length - 1) / all.length), run_range, &all);
+}

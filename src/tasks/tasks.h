@@ -39,6 +39,12 @@ uint32_t mspringi_tasks_concurrency(const mspringi_tasks *tasks);
 /// by them. Must not be called from a body.
 void mspringi_tasks_run(mspringi_tasks *tasks, uint32_t count, mspring_task_fn fn, void *argument);
 
+/// Run fn(argument, first, end) for ranges that make up 0 ... count - 1, a multiple of grain each but the last; in
+/// one go if there is but one worker or count is small.
+typedef void (*mspringi_range_fn)(void *argument, size_t first, size_t end);
+void mspringi_tasks_run_ranges(mspringi_tasks *tasks, size_t count, size_t grain, mspringi_range_fn fn,
+                               void *argument);
+
 /// Counters for bodies that wait for each other: [mspringi_tasks_concurrency()], all 0 when a run begins. NULL if
 /// tasks is.
 mspringi_progress *mspringi_tasks_progress(mspringi_tasks *tasks);

@@ -177,10 +177,10 @@ static bool find_for_lag(finder *f, uint32_t lag) {
 }
 
 // Find the smallest lag; components that need more than the longest are left out.
-static void find_smallest_lag(finder *f, uint32_t longest) {
+static void find_smallest_lag(finder *f) {
     f->homes->lag = 1;
     while (!find_for_lag(f, f->homes->lag)) {
-        const bool is_longest = f->homes->lag == longest;
+        const bool is_longest = f->homes->lag == MSPRINGI_LONGEST_LAG;
         for (size_t p = 0; p < f->graph->builder->particle_count; ++p)
             if (f->fitness[p] == UNFIT_FOR_LAG)
                 f->fitness[p] = is_longest ? UNFIT : FIT;
@@ -188,19 +188,13 @@ static void find_smallest_lag(finder *f, uint32_t longest) {
     }
 }
 
-// Find homes in strips of the usual size; then, if these are too few for the workers, in smaller ones. Which
-// components are left out, and so every bit of a step, does not depend on the workers.
-static void find_homes(finder *f, uint32_t workers) {
+// Where nothing hangs on the lattices, strips are as small as the workers want them: no slot depends on it. Homes
+// must not depend on the workers, since the order of slots is that of sums.
+static void number_rows_for(finder *f, uint32_t workers) {
     const uint32_t wanted = f->grids->member_count / workers / STRIPS_PER_WORKER;
-    const bool is_small = workers > 1 && wanted < f->strip_particles;
-    if (f->attached_count > 0)
-        find_smallest_lag(f, MSPRINGI_LONGEST_LAG);
-    if (is_small)
+    if (workers > 1 && wanted < f->strip_particles)
         f->strip_particles = wanted;
-    if (is_small && f->attached_count > 0)
-        find_smallest_lag(f, UINT32_MAX);
-    if (f->attached_count == 0)
-        number_rows(f);
+    number_rows(f);
 }
 
 static bool find(finder *f, uint32_t workers) {
@@ -218,7 +212,7 @@ static bool find(finder *f, uint32_t workers) {
         if (has_leftover_spring(f, f->grids->members[m]))
             f->attached[f->attached_count++] = f->grids->members[m];
     if (f->attached_count == 0) {
-        find_homes(f, workers);
+        number_rows_for(f, workers);
         return true;
     }
     f->component = mspringi_alloc(f->memory, particles, sizeof *f->component);
@@ -231,7 +225,7 @@ static bool find(finder *f, uint32_t workers) {
     find_components(f);
     if (!find_ropy(f))
         return false;
-    find_homes(f, workers);
+    find_smallest_lag(f);
     return true;
 }
 
