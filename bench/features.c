@@ -13,6 +13,7 @@ typedef struct variant {
     uint32_t ropes;   ///< more of them
     bool absolute;    ///< the same springs in N/m and N s/m
     bool held_forces; ///< a force on every particle in every step
+    bool snapshots;   ///< one of a frame before every step
     bool hooked;
     mspring_phase hook;
     uint32_t period;  ///< of the hook; 0: 1
@@ -29,6 +30,7 @@ static const variant variants[] = {
     {.name = "empty hook before every 8", .hooked = true, .hook = MSPRING_PHASE_BEFORE_SUBSTEP, .period = 8},
     {.name = "empty hook after every 8", .hooked = true, .hook = MSPRING_PHASE_AFTER_SUBSTEP, .period = 8},
     {.name = "force on every particle", .held_forces = true},
+    {.name = "snapshot of every step", .snapshots = true},
     {.name = "4 ropes", .ropes = 4},
     {.name = "40 ropes", .ropes = 40},
     {.name = "400 ropes", .ropes = 400},
@@ -90,6 +92,10 @@ static bool create_variant(const variant *kind, const bench_scene *subject, cons
         return false;
     }
     if (kind->held_forces && !bench_network_hold_forces(out, error)) {
+        bench_network_free(out);
+        return false;
+    }
+    if (kind->snapshots && !bench_network_save_frames(out, error)) {
         bench_network_free(out);
         return false;
     }

@@ -83,6 +83,10 @@ static bool run(void *self, uint32_t steps, scene_error *error) {
             result = mspring_network_apply_forces(network->network, 0, network->particle_count, network->held_x,
                                                   network->held_y);
         }
+        if (result == MSPRING_OK && network->snapshot != NULL) {
+            result = mspring_network_save(network->network, MSPRING_SNAPSHOT_FRAME, network->snapshot,
+                                          network->snapshot_size, NULL);
+        }
         if (result == MSPRING_OK) {
             result = mspring_network_step(network->network, BENCH_DT);
         }
@@ -145,6 +149,7 @@ void bench_network_free(bench_network *network) {
     free(network->start_vy);
     free(network->held_x);
     free(network->held_y);
+    free(network->snapshot);
     memset(network, 0, sizeof *network);
 }
 
@@ -159,6 +164,17 @@ bool bench_network_hold_forces(bench_network *network, scene_error *error) {
         network->held_y[i] = HELD_FORCE * scatter(2 * i);
     }
     return true;
+}
+
+bool bench_network_save_frames(bench_network *network, scene_error *error) {
+    mspring_result result =
+        mspring_network_snapshot_size(network->network, MSPRING_SNAPSHOT_FRAME, &network->snapshot_size);
+    if (result != MSPRING_OK) {
+        bench_library_error(error, "asking for the size of a snapshot", result, "");
+        return false;
+    }
+    network->snapshot = bench_allocate(network->snapshot_size, 1, error);
+    return network->snapshot != NULL;
 }
 
 bench_runner bench_network_runner(bench_network *network) {

@@ -17,10 +17,10 @@ static void version_is_that_of_the_header(void **state) {
 
 static void every_result_has_its_own_name(void **state) {
     (void)state;
-    for (mspring_result a = MSPRING_ERROR_EQUILIBRIUM; a <= MSPRING_OK; a++) {
+    for (mspring_result a = MSPRING_ERROR_SNAPSHOT; a <= MSPRING_OK; a++) {
         assert_non_null(mspring_result_string(a));
         assert_true(strlen(mspring_result_string(a)) > 0);
-        for (mspring_result b = MSPRING_ERROR_EQUILIBRIUM; b < a; b++) {
+        for (mspring_result b = MSPRING_ERROR_SNAPSHOT; b < a; b++) {
             assert_string_not_equal(mspring_result_string(a), mspring_result_string(b));
         }
     }

@@ -97,16 +97,17 @@ typedef int32_t mspring_result;
 
 enum {
     MSPRING_OK = 0,
-    MSPRING_ERROR_ARGUMENT = -1,    ///< NULL, NaN, infinite, or outside the range that the function states
-    MSPRING_ERROR_ID = -2,          ///< no such particle or spring
-    MSPRING_ERROR_MEMORY = -3,      ///< the allocator returned NULL
-    MSPRING_ERROR_LIMIT = -4,       ///< more particles, springs or cells than the library can index
-    MSPRING_ERROR_STRUCT = -5,      ///< struct_size is not one that any version of this struct had
-    MSPRING_ERROR_DUPLICATE = -6,   ///< two springs join the same two particles
-    MSPRING_ERROR_UNSTABLE = -7,    ///< the step would have left the bounded range; the state is that before it
-    MSPRING_ERROR_BUSY = -8,        ///< called from inside a hook, where only shared calls are allowed
-    MSPRING_ERROR_THREAD = -9,      ///< the system refuses a thread or a lock
-    MSPRING_ERROR_EQUILIBRIUM = -10 ///< the forces have no equilibrium, or none was found
+    MSPRING_ERROR_ARGUMENT = -1,     ///< NULL, NaN, infinite, or outside the range that the function states
+    MSPRING_ERROR_ID = -2,           ///< no such particle or spring
+    MSPRING_ERROR_MEMORY = -3,       ///< the allocator returned NULL
+    MSPRING_ERROR_LIMIT = -4,        ///< more particles, springs or cells than the library can index
+    MSPRING_ERROR_STRUCT = -5,       ///< struct_size is not one that any version of this struct had
+    MSPRING_ERROR_DUPLICATE = -6,    ///< two springs join the same two particles
+    MSPRING_ERROR_UNSTABLE = -7,     ///< the step would have left the bounded range; the state is that before it
+    MSPRING_ERROR_BUSY = -8,         ///< called from inside a hook, where only shared calls are allowed
+    MSPRING_ERROR_THREAD = -9,       ///< the system refuses a thread or a lock
+    MSPRING_ERROR_EQUILIBRIUM = -10, ///< the forces have no equilibrium, or none was found
+    MSPRING_ERROR_SNAPSHOT = -11     ///< this is no snapshot of this network, or a damaged one
 };
 
 /// Short English name of a result code, such as "out of memory". Never NULL; static storage.
@@ -1114,6 +1115,53 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_max_strain(const ms
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_state_hash(const mspring_network *network,
                                                                         uint64_t *hash);
+
+/* -------------------------------------------------------------------------------------------------- snapshots */
+
+/// What a snapshot holds.
+typedef int32_t mspring_snapshot_contents;
+enum {
+    /// Everything that the following steps depend on: positions, velocities, origin, settings, masses, forces given
+    /// for the next step, broken and stressed springs, ramps, and what each spring is like.
+    MSPRING_SNAPSHOT_ALL = 0,
+    /// All but the springs' stiffness, damping, rest length, break and stress strain, which only edits change: a
+    /// third of the size, and saved at nearly the speed of a copy, for rollback. It can be loaded only where these
+    /// are what they were: into the same network as long as they have not been edited since, or into another that
+    /// was made alike and edited alike, in the same order.
+    MSPRING_SNAPSHOT_FRAME = 1
+};
+
+/// The size of a snapshot that is saved now, in bytes. It changes with what there is to save: forces, ramps, edits.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL or unknown contents; MSPRING_ERROR_BUSY in a hook.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_snapshot_size(const mspring_network *network,
+                                                                           mspring_snapshot_contents contents,
+                                                                           size_t *size);
+
+/// Save a snapshot into the caller's memory. It is the same on every machine, for any SIMD level and number of
+/// workers, but only of use to networks made of the same particles and springs by a library that lays them out
+/// alike (another refuses it): meant for rollback, replay and network play, not for archives. Of the implicit
+/// solver it holds settings and history, but it can be loaded only where that solver is, with the same integrator
+/// and tiles. Hooks and unread events are not in it.
+/// @param snapshot  [capacity] bytes, of any alignment
+/// @param capacity  at least mspring_network_snapshot_size()
+/// @param size      receives the bytes written; may be NULL
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL, unknown contents or too little room; MSPRING_ERROR_BUSY in
+/// a
+///         hook.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_save(const mspring_network *network,
+                                                                  mspring_snapshot_contents contents,
+                                                                  void *snapshot, size_t capacity, size_t *size);
+
+/// Go back, or forth, to what a snapshot holds: the following steps are the same, bit for bit, as those after it
+/// was saved. Events that have not been read are dropped. The snapshot may come from anywhere: one that is damaged,
+/// cut off, of another network or with values that a network cannot have is refused, and changes nothing.
+/// @return MSPRING_OK; MSPRING_ERROR_SNAPSHOT (the message says what is wrong), MSPRING_ERROR_ARGUMENT for NULL,
+///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates yes, what the network did not need so far   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_load(mspring_network *network, const void *snapshot,
+                                                                  size_t size);
 
 /* ------------------------------------------------------------------------------------- plan and SIMD level */
 

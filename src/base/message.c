@@ -45,6 +45,8 @@ const char *mspring_result_string(mspring_result result) {
         return "no thread to be had";
     case MSPRING_ERROR_EQUILIBRIUM:
         return "no equilibrium found";
+    case MSPRING_ERROR_SNAPSHOT:
+        return "no snapshot of this network";
     default:
         return "unknown result code";
     }

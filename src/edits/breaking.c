@@ -10,8 +10,6 @@
 /// Longest log of broken and restored springs: more than a burst of them in one frame.
 #define LONGEST_LOG 4096
 
-#define LONGEST_RAMP 1e6 // s
-
 mspring_result mspringi_breaking_reserve(mspring_network *network) {
     if (network->edits.link_log)
         return MSPRING_OK;
@@ -99,7 +97,7 @@ mspring_result mspring_network_restore_springs(mspring_network *network, const m
     mspringi_selection at;
     const uint32_t total = mspring_network_spring_count(network);
     mspring_result result = mspringi_select_list(network, "spring", total, springs, count, springs, springs, &at);
-    if (result == MSPRING_OK && !(ramp_seconds >= 0.0 && ramp_seconds <= LONGEST_RAMP))
+    if (result == MSPRING_OK && !(ramp_seconds >= 0.0 && ramp_seconds <= MSPRINGI_LONGEST_RAMP))
         result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                                "the ramp is %g s long, it must be 0 to 1e6", ramp_seconds);
     if (result == MSPRING_OK && ramp_seconds > 0.0)

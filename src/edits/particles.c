@@ -1,4 +1,6 @@
 /// Editing particles between steps: masses, and what scales their inverses.
+#include "particles.h"
+
 #include <string.h>
 
 #include "base/cpu.h"
@@ -9,7 +11,11 @@
 #define LARGEST_MASS 1e30f
 #define SMALLEST_SCALE 1e-6f
 
-static bool is_scale(float scale) {
+bool mspringi_is_mass(float mass) {
+    return mass >= SMALLEST_MASS && mass <= LARGEST_MASS;
+}
+
+bool mspringi_is_inverse_mass_scale(float scale) {
     return scale == 0.0f || (scale >= SMALLEST_SCALE && scale <= 1.0f);
 }
 
@@ -28,15 +34,14 @@ static mspring_result check_masses(mspring_network *network, const mspringi_sele
     if (all)
         return MSPRING_OK;
     uint32_t i = 0;
-    while (mass[i] >= SMALLEST_MASS && mass[i] <= LARGEST_MASS)
+    while (mspringi_is_mass(mass[i]))
         ++i;
     return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                          "particle %u: mass is %g kg, it must be 1e-30 to 1e30", (unsigned)mspringi_selected(at, i),
                          (double)mass[i]);
 }
 
-// Relative springs go on with the masses that were there before the first edit.
-static mspring_result reserve_spring_mass(mspring_network *network) {
+mspring_result mspringi_reserve_spring_masses(mspring_network *network) {
     if (!network->relative || network->spring_mass)
         return MSPRING_OK;
     const size_t count = network->topology.particle_count;
@@ -64,7 +69,7 @@ static MSPRINGI_NOINLINE void store_masses(mspring_network *network, const mspri
 static mspring_result set_masses(mspring_network *network, const mspringi_selection *at, const float *mass) {
     mspring_result result = check_masses(network, at, mass);
     if (result == MSPRING_OK)
-        result = reserve_spring_mass(network);
+        result = mspringi_reserve_spring_masses(network);
     if (result != MSPRING_OK)
         return result;
     const mspringi_fp_state before = mspringi_fp_enter();
@@ -108,7 +113,7 @@ static mspring_result check_scales(mspring_network *network, const mspringi_sele
                                    bool *fractional) {
     *fractional = false;
     for (uint32_t i = 0; i < at->count; ++i) {
-        if (!is_scale(scale[i]))
+        if (!mspringi_is_inverse_mass_scale(scale[i]))
             return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                                  "particle %u: scale of inverse mass is %g, it must be 0 or 1e-6 to 1",
                                  (unsigned)mspringi_selected(at, i), (double)scale[i]);
@@ -117,7 +122,7 @@ static mspring_result check_scales(mspring_network *network, const mspringi_sele
     return MSPRING_OK;
 }
 
-static mspring_result reserve_scales(mspring_network *network) {
+mspring_result mspringi_reserve_inverse_mass_scales(mspring_network *network) {
     if (network->inverse_mass_scale)
         return MSPRING_OK;
     const uint32_t count = network->topology.particle_count;
@@ -145,7 +150,7 @@ static mspring_result set_scales(mspring_network *network, const mspringi_select
     bool fractional;
     mspring_result result = check_scales(network, at, scale, &fractional);
     if (result == MSPRING_OK && fractional)
-        result = reserve_scales(network);
+        result = mspringi_reserve_inverse_mass_scales(network);
     if (result != MSPRING_OK)
         return result;
     const mspringi_fp_state before = mspringi_fp_enter();

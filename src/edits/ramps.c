@@ -48,6 +48,13 @@ void mspringi_ramp_drop(mspring_network *network, mspring_id spring) {
     }
 }
 
+void mspringi_ramps_clear(mspring_network *network) {
+    mspringi_ramps *ramps = &network->ramps;
+    for (size_t i = 0; i < ramps->count; ++i)
+        mspringi_spring_set_rest_length(network, ramps->list[i].spring, ramps->list[i].to);
+    ramps->count = 0;
+}
+
 void mspringi_ramps_apply(mspring_network *network, double dt) {
     for (size_t i = 0; i < network->ramps.count; ++i) {
         const mspringi_ramp *ramp = &network->ramps.list[i];

@@ -11,6 +11,8 @@
 
 #include "network/network.h"
 
+#define MSPRINGI_LONGEST_RAMP 1e6 // s
+
 /// Make room for count ramps more.
 mspring_result mspringi_ramps_reserve(mspring_network *network, size_t count);
 
@@ -19,6 +21,9 @@ void mspringi_ramp_begin(mspring_network *network, mspring_id spring, double sec
 
 /// End a spring's ramp, if it has one, at its own rest length.
 void mspringi_ramp_drop(mspring_network *network, mspring_id spring);
+
+/// End all ramps in this way.
+void mspringi_ramps_clear(mspring_network *network);
 
 /// Set the rest lengths of all ramps to those of dt seconds from now.
 void mspringi_ramps_apply(mspring_network *network, double dt);

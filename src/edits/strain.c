@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/mix.h"
 #include "breaking.h"
 #include "events.h"
 #include "network/springs.h"
@@ -108,9 +109,8 @@ static float *allocate_thresholds(mspring_network *network) {
     return thresholds;
 }
 
-// All that the pass needs; break_strain is there when all of it is. Until a spring is to be stressed, the least
-// strain that anything happens at is the one that it breaks at.
-static mspring_result reserve(mspring_network *network) {
+// Until a spring is to be stressed, the least strain that anything happens at is the one that it breaks at.
+mspring_result mspringi_strain_reserve(mspring_network *network) {
     mspringi_strain *strain = &network->strain;
     if (strain->break_strain)
         return MSPRING_OK;
@@ -133,7 +133,7 @@ static mspring_result reserve(mspring_network *network) {
                                                 (unsigned)network->topology.spring_count);
 }
 
-static mspring_result reserve_stress(mspring_network *network) {
+mspring_result mspringi_strain_reserve_stress(mspring_network *network) {
     mspringi_strain *strain = &network->strain;
     if (strain->stress_strain)
         return MSPRING_OK;
@@ -152,7 +152,9 @@ static mspring_result reserve_stress(mspring_network *network) {
     return MSPRING_OK;
 }
 
-static void store_threshold(mspringi_strain *strain, mspringi_place place, bool stress, float value) {
+void mspringi_strain_store(mspring_network *network, mspring_id spring, bool stress, float value) {
+    mspringi_strain *strain = &network->strain;
+    const mspringi_place place = network->topology.place_of_spring[spring];
     if (stress)
         strain->stress_strain[place] = value;
     else
@@ -168,12 +170,16 @@ static mspring_result set_thresholds(mspring_network *network, bool stress, cons
             return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                                  "spring %u: %s strain is %g, it must be > 0", (unsigned)mspringi_selected(at, i),
                                  stress ? "stress" : "break", (double)strain[i]);
-    mspring_result result = at->count > 0 ? reserve(network) : MSPRING_OK;
+    mspring_result result = at->count > 0 ? mspringi_strain_reserve(network) : MSPRING_OK;
     if (result == MSPRING_OK && stress && at->count > 0)
-        result = reserve_stress(network);
-    for (uint32_t i = 0; result == MSPRING_OK && i < at->count; ++i)
-        store_threshold(&network->strain, network->topology.place_of_spring[mspringi_selected(at, i)], stress,
-                        strain[i]);
+        result = mspringi_strain_reserve_stress(network);
+    for (uint32_t i = 0; result == MSPRING_OK && i < at->count; ++i) {
+        const mspring_id spring = mspringi_selected(at, i);
+        network->parameter_print =
+            mspringi_mix(network->parameter_print, (uint64_t)(stress ? 9 : 8) << 32 | spring);
+        network->parameter_print = mspringi_mix_floats(network->parameter_print, strain[i], 0.0f);
+        mspringi_strain_store(network, spring, stress, strain[i]);
+    }
     return result;
 }
 

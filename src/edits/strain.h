@@ -10,4 +10,11 @@
 /// Break, stress and relax springs by the strain that they have now, if any has thresholds.
 void mspringi_strain_pass(mspring_network *network);
 
+/// Allocate what thresholds and the pass need, if it is not there yet; break_strain is there when all of it is.
+mspring_result mspringi_strain_reserve(mspring_network *network);
+mspring_result mspringi_strain_reserve_stress(mspring_network *network);
+
+/// Set what a spring breaks or is stressed at; after these.
+void mspringi_strain_store(mspring_network *network, mspring_id spring, bool stress, float value);
+
 #endif

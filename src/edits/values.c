@@ -1,5 +1,8 @@
 /// Editing springs between steps: stiffness, damping, rest length.
+#include "values.h"
+
 #include "base/cpu.h"
+#include "base/mix.h"
 #include "network/rests.h"
 #include "network/springs.h"
 #include "ramps.h"
@@ -9,7 +12,7 @@
 #define LARGEST_LENGTH 4e12f
 
 // NaN is none of these.
-static bool is_value(mspringi_part part, float value) {
+bool mspringi_is_spring_value(mspringi_part part, float value) {
     return part == MSPRINGI_REST_LENGTH ? value > 0.0f && value <= LARGEST_LENGTH
                                         : value >= 0.0f && value <= LARGEST_VALUE;
 }
@@ -20,7 +23,7 @@ static mspring_result check_values(mspring_network *network, mspringi_part part,
     static const char *const ranges[] = {"> 0 and at most 4e12", "0 to 1e30", "0 to 1e30"};
     for (uint32_t i = 0; i < at->count; ++i) {
         const unsigned spring = (unsigned)mspringi_selected(at, i);
-        if (!is_value(part, values[i]))
+        if (!mspringi_is_spring_value(part, values[i]))
             return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "spring %u: %s is %g, it must be %s",
                                  spring, names[part], (double)values[i], ranges[part]);
         if (part == MSPRINGI_DAMPING && values[i] > 0.0f && network->parts <= MSPRINGI_DAMPING)
@@ -36,6 +39,8 @@ static MSPRINGI_NOINLINE void store_values(mspring_network *network, mspringi_pa
                                            const mspringi_selection *at, const float *values) {
     for (uint32_t i = 0; i < at->count; ++i) {
         const mspring_id spring = mspringi_selected(at, i);
+        network->parameter_print = mspringi_mix(network->parameter_print, (uint64_t)part << 32 | spring);
+        network->parameter_print = mspringi_mix_floats(network->parameter_print, values[i], 0.0f);
         if (part == MSPRINGI_REST_LENGTH) {
             mspringi_ramp_drop(network, spring);
             mspringi_spring_set_rest_length(network, spring, values[i]);

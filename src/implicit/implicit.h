@@ -15,6 +15,9 @@
 #include "coarse.h"
 #include "tiles.h"
 
+/// Most iterations, and most substeps with one coarse matrix.
+#define MSPRINGI_MOST_ITERATIONS 10000
+
 /// What is the integrator's, apart from the state: kept from substep to substep, restored with the state.
 typedef struct mspringi_history {
     mspringi_field low;    ///< what positions have beyond single precision, m

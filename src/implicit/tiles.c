@@ -1,6 +1,7 @@
 /// Cutting a network into tiles.
 #include "tiles.h"
 
+#include "base/mix.h"
 #include "network/springs.h"
 #include "tile_order.h"
 
@@ -321,6 +322,12 @@ static mspring_result cut(mspringi_tiles *tiles, tiling *g, uint32_t size) {
     return MSPRING_OK;
 }
 
+static void take_print(mspringi_tiles *tiles, size_t slots) {
+    tiles->print = mspringi_mix_floats(MSPRINGI_MIX_START, tiles->turn_inertia, 0.0f);
+    for (size_t slot = 0; slot < slots; ++slot)
+        tiles->print = mspringi_mix(tiles->print, tiles->tile_of_slot[slot]);
+}
+
 mspring_result mspringi_tiles_create(mspringi_tiles *tiles, const mspring_network *network, uint32_t size,
                                      mspringi_memory *memory, mspringi_message *message) {
     *tiles = (mspringi_tiles){.size = size};
@@ -328,8 +335,10 @@ mspring_result mspringi_tiles_create(mspringi_tiles *tiles, const mspring_networ
     mspring_result result = cut(tiles, &g, size);
     mspringi_free(memory, g.cell_of_slot);
     mspringi_free(memory, g.parent);
-    if (result == MSPRING_OK)
+    if (result == MSPRING_OK) {
+        take_print(tiles, mspringi_slot_count(network));
         return result;
+    }
     mspringi_tiles_destroy(tiles, memory);
     return mspringi_fail(message, result, "no memory to cut %u particles into tiles",
                          (unsigned)network->topology.particle_count);

@@ -28,6 +28,7 @@ typedef struct mspringi_tiles {
     uint32_t joint_count;
     uint32_t size;      ///< rows and columns of a cell in wide grids
     float turn_inertia; ///< m^2; what is added to a tile's moment of inertia for each kg
+    uint64_t print;     ///< hash of all this
 } mspringi_tiles;
 
 /// Cut a network into tiles with cells of size x size particles. Numbered so that neighbours have near numbers.

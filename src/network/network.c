@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "base/cpu.h"
+#include "base/mix.h"
 #include "explicit/explicit.h"
 #include "hooks.h"
 #include "implicit/implicit.h"
@@ -131,9 +132,23 @@ static void fill_particles(mspring_network *network, const mspring_builder *buil
     }
 }
 
+// What tells this network's snapshots from those of others.
+static void take_prints(mspring_network *network, const mspringi_spring *spring, mspring_id s) {
+    const mspringi_topology *t = &network->topology;
+    uint64_t print = network->topology_print;
+    print = mspringi_mix(print, (uint64_t)spring->a << 32 | spring->b);
+    print = mspringi_mix(print, (uint64_t)t->place_of_spring[s] << 32 | spring->flags);
+    network->topology_print = print;
+    print = mspringi_mix_floats(network->parameter_print, spring->stiffness, spring->damping);
+    network->parameter_print = mspringi_mix_floats(print, spring->rest_length, 0.0f);
+}
+
 static void fill_springs(mspring_network *network, const mspring_builder *builder) {
     const mspringi_topology *t = &network->topology;
     network->shortest = INFINITY;
+    network->topology_print = network->parameter_print = MSPRINGI_MIX_START;
+    for (mspring_id p = 0; p < t->particle_count; ++p)
+        network->topology_print = mspringi_mix(network->topology_print, t->slot_of_particle[p]);
     for (mspring_id s = 0; s < t->spring_count; ++s) {
         const mspringi_spring *spring = &builder->springs[s];
         network->shortest = fmin(network->shortest, (double)spring->rest_length);
@@ -141,6 +156,7 @@ static void fill_springs(mspring_network *network, const mspring_builder *builde
         const bool relative = spring->flags & MSPRING_SPRING_RELATIVE;
         mspringi_spring_set_rest_length(network, s, spring->rest_length);
         mspringi_spring_set(network, s, relative ? 0.0f : spring->stiffness, relative ? 0.0f : spring->damping);
+        take_prints(network, spring, s);
         network->live[place / MSPRINGI_WIDTH] |= (uint16_t)(1u << place % MSPRINGI_WIDTH);
         if (network->relative)
             network->relative[s] = relative ? (mspringi_relative){spring->stiffness, spring->damping}

@@ -123,6 +123,8 @@ struct mspring_network {
     mspringi_memory memory;
     mspringi_message message;
     mspringi_topology topology;
+    uint64_t topology_print;  ///< hash of which particles the springs join, and of where they lie
+    uint64_t parameter_print; ///< hash of what the springs are like, and of all edits of that
     const mspringi_kernels *kernels;
     mspringi_tasks *tasks; ///< NULL: the caller's thread steps alone
 
@@ -195,6 +197,9 @@ mspring_result mspringi_enter(mspring_network *network);
 /// Refuse ranges of ids that leave the network.
 mspring_result mspringi_check_range(mspring_network *network, const char *what, mspring_id first, uint32_t count,
                                     uint32_t total);
+
+/// Take back what a hook, or the host through a view, has written to slots without particle.
+void mspringi_clear_empty_slots(const mspring_network *network);
 
 /// Allocate a field of all slots, zeroed; leaves it alone if it is there.
 mspring_result mspringi_field_reserve(mspring_network *network, mspringi_field *field);

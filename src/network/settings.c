@@ -5,19 +5,16 @@
 #include "implicit/implicit.h"
 #include "network.h"
 
-/// Most iterations, and most substeps with one coarse matrix.
-#define MOST_ITERATIONS 10000
-
 static mspring_result check_implicit(const mspring_solver_def *def, mspringi_message *message) {
     if (def->integrator < MSPRING_INTEGRATOR_GA0 || def->integrator > MSPRING_INTEGRATOR_EULER)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "integrator is %d, which is none",
                              (int)def->integrator);
-    if (def->iterations > MOST_ITERATIONS)
+    if (def->iterations > MSPRINGI_MOST_ITERATIONS)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "iterations is %u, it must be at most %d",
-                             (unsigned)def->iterations, MOST_ITERATIONS);
-    if (def->coarse_period > MOST_ITERATIONS)
+                             (unsigned)def->iterations, MSPRINGI_MOST_ITERATIONS);
+    if (def->coarse_period > MSPRINGI_MOST_ITERATIONS)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "coarse_period is %u, it must be at most %d",
-                             (unsigned)def->coarse_period, MOST_ITERATIONS);
+                             (unsigned)def->coarse_period, MSPRINGI_MOST_ITERATIONS);
     const bool is_power_of_two = (def->tile_size & (def->tile_size - 1)) == 0;
     if (def->tile_size != 0 && (def->tile_size < 8 || def->tile_size > 256 || !is_power_of_two))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,

@@ -81,8 +81,7 @@ static void run_substeps(mspring_network *network, double dt, float h) {
 
 /* ------------------------------------------------------------------------------------------------- the step */
 
-// Take back what a hook, or the host through a view, has written to slots without particle.
-static void clear_empty_slots(const mspring_network *network) {
+void mspringi_clear_empty_slots(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     float *const arrays[] = {network->state.x, network->state.y, network->state.vx, network->state.vy};
     for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
@@ -122,7 +121,7 @@ static mspring_result attempt(mspring_network *network, double dt) {
     if (result == MSPRING_OK) {
         run_substeps(network, dt, h);
         if (network->is_open)
-            clear_empty_slots(network);
+            mspringi_clear_empty_slots(network);
         result = mspringi_guard_end(network, dt, h);
     }
     if (result != MSPRING_OK) {
@@ -132,7 +131,7 @@ static mspring_result attempt(mspring_network *network, double dt) {
         mspringi_derive_relative(network, relative_h);
         mspringi_ramps_apply(network, 0.0);
         if (network->is_open)
-            clear_empty_slots(network);
+            mspringi_clear_empty_slots(network);
     }
     return result;
 }

@@ -1,0 +1,18 @@
+/// @file particles.h
+/// Masses, and what scales their inverses.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_PARTICLES_H
+#define MSPRINGI_PARTICLES_H
+
+#include "network/network.h"
+
+/// Whether these are values that a particle may have.
+bool mspringi_is_mass(float mass);
+bool mspringi_is_inverse_mass_scale(float scale);
+
+/// Have relative springs go on with the masses that are there before the first edit; nothing if there are none.
+mspring_result mspringi_reserve_spring_masses(mspring_network *network);
+mspring_result mspringi_reserve_inverse_mass_scales(mspring_network *network);
+
+#endif

@@ -1,0 +1,67 @@
+/// @file format.h
+/// How a snapshot lies in memory: little-endian on every machine.
+///
+///   header    56 bytes: magic, version, number of sections, size, contents, prints, counts
+///   sections  each: tag (4 bytes), 0 (4), size (8), that many bytes, and 0 up to a multiple of 8
+///   0 up to a multiple of MSPRINGI_CHECKSUM_UNIT
+///   checksum  8 bytes, of all before
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_SNAPSHOT_FORMAT_H
+#define MSPRINGI_SNAPSHOT_FORMAT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define MSPRINGI_SNAPSHOT_VERSION 1u
+#define MSPRINGI_SNAPSHOT_CHECKSUM_BYTES 8
+
+typedef struct mspringi_snapshot_header {
+    uint32_t version, section_count;
+    uint64_t size; ///< of all, with the checksum
+    uint32_t contents;
+    uint32_t particle_count, spring_count;
+    uint64_t topology_print, parameter_print;
+} mspringi_snapshot_header;
+#define MSPRINGI_SNAPSHOT_HEADER_BYTES ((size_t)56)
+
+#define MSPRINGI_SECTION_HEADER_BYTES ((size_t)16)
+
+static inline size_t mspringi_round_up(size_t size, size_t unit) {
+    return (size + unit - 1) / unit * unit;
+}
+
+/// A checksum of what has been looked at so far, in whole units.
+#define MSPRINGI_CHECKSUM_UNIT 64
+#define MSPRINGI_CHECKSUM_LANES 8
+typedef struct mspringi_checksum {
+    uint64_t sums[MSPRINGI_CHECKSUM_LANES], sums_of_sums[MSPRINGI_CHECKSUM_LANES];
+} mspringi_checksum;
+void mspringi_checksum_add(mspringi_checksum *checksum, const uint8_t *bytes, size_t units);
+uint64_t mspringi_checksum_value(const mspringi_checksum *checksum);
+
+/// Where the next byte goes. The checksum is taken on the way, as long as the bytes are in the nearest cache.
+typedef struct mspringi_writer {
+    uint8_t *at;
+    const uint8_t *unsummed;
+    mspringi_checksum checksum;
+} mspringi_writer;
+
+mspringi_writer mspringi_writer_begin(uint8_t *snapshot);
+
+/// Write count values of width bytes (1, 2, 4 or 8).
+void mspringi_put(mspringi_writer *to, const void *values, size_t count, size_t width);
+
+/// Write zeros.
+void mspringi_put_zeros(mspringi_writer *to, size_t count);
+
+/// Read values.
+/// @return what follows
+const uint8_t *mspringi_get(const uint8_t *from, void *values, size_t count, size_t width);
+
+void mspringi_put_header(mspringi_writer *to, const mspringi_snapshot_header *header);
+/// @return false if this does not begin as snapshots do; at least MSPRINGI_SNAPSHOT_HEADER_BYTES must be there
+bool mspringi_get_header(const uint8_t *from, mspringi_snapshot_header *header);
+
+#endif

@@ -1,0 +1,95 @@
+/// What the guard of the stability border knows from step to step, in a snapshot.
+#include <float.h>
+#include <math.h>
+
+#include "sections.h"
+
+typedef struct guard_head {
+    double dt; ///< what is stable in any shape, s, and for which spring
+    float h, global_damping, peak;
+    uint32_t policy, suspicious, spring, state;
+} guard_head;
+#define HEAD_BYTES ((size_t)36)
+
+/// Whether dt is known, and whether that was before the last edit.
+enum { UNKNOWN, OUTDATED, KNOWN };
+
+static size_t motion_floats(const mspring_network *network) {
+    return 4 * mspringi_slot_count(network);
+}
+
+// A guard that has become suspicious compares with the state before the last step.
+static size_t guard_size(const mspring_network *network) {
+    return HEAD_BYTES + (network->guard.suspicious ? motion_floats(network) * sizeof(float) : 0);
+}
+
+static void guard_save(const mspring_network *network, mspringi_writer *to) {
+    const mspringi_guard *guard = &network->guard;
+    const mspringi_any_shape *any_shape = &network->any_shape;
+    const bool outdated = any_shape->masses != network->edits.masses || any_shape->values != network->edits.values;
+    const float floats[] = {guard->h, guard->global_damping, guard->peak};
+    const uint32_t words[] = {(uint32_t)network->guard_policy, guard->suspicious, any_shape->spring,
+                              !any_shape->is_known ? UNKNOWN
+                              : outdated           ? OUTDATED
+                                                   : KNOWN};
+    mspringi_put(to, &any_shape->dt, 1, sizeof any_shape->dt);
+    mspringi_put(to, floats, sizeof floats / sizeof floats[0], sizeof floats[0]);
+    mspringi_put(to, words, sizeof words / sizeof words[0], sizeof words[0]);
+    if (guard->suspicious)
+        mspringi_put(to, network->backup.x, motion_floats(network), sizeof(float));
+}
+
+static const uint8_t *read_head(const uint8_t *from, guard_head *head) {
+    from = mspringi_get(from, &head->dt, 1, sizeof head->dt);
+    from = mspringi_get(from, &head->h, 1, sizeof head->h);
+    from = mspringi_get(from, &head->global_damping, 1, sizeof head->global_damping);
+    from = mspringi_get(from, &head->peak, 1, sizeof head->peak);
+    from = mspringi_get(from, &head->policy, 1, sizeof head->policy);
+    from = mspringi_get(from, &head->suspicious, 1, sizeof head->suspicious);
+    from = mspringi_get(from, &head->spring, 1, sizeof head->spring);
+    return mspringi_get(from, &head->state, 1, sizeof head->state);
+}
+
+static mspring_result guard_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_section *section = &mspringi_section_guard;
+    guard_head head = {0};
+    if (size < HEAD_BYTES)
+        return mspringi_section_check_size(network, section, size, HEAD_BYTES);
+    from = read_head(from, &head);
+    const size_t floats = head.suspicious ? motion_floats(network) : 0;
+    mspring_result result =
+        mspringi_section_check_size(network, section, size, HEAD_BYTES + floats * sizeof(float));
+    if (result != MSPRING_OK)
+        return result;
+    if (!(head.h >= 0.0f && head.h <= FLT_MAX && head.global_damping >= 0.0f && head.global_damping <= 1e6f &&
+          head.peak >= 0.0f && head.peak <= FLT_MAX && head.dt >= 0.0) ||
+        head.policy > MSPRING_GUARD_BOUNDS || head.suspicious > 1 || head.state > KNOWN)
+        return mspringi_section_fail(network, section, "for substeps of %g s, with a peak of %g m/s and policy %u",
+                                     (double)head.h, (double)head.peak, (unsigned)head.policy);
+    for (size_t i = 0; i < floats; ++i)
+        if (!isfinite(mspringi_float_at(from, i)))
+            return mspringi_section_fail(network, section, "the state before the last step is not finite");
+    return MSPRING_OK;
+}
+
+static void guard_load(mspring_network *network, const uint8_t *from, size_t size) {
+    guard_head head;
+    from = read_head(from, &head);
+    network->guard_policy = (mspring_guard)head.policy;
+    network->guard = (mspringi_guard){
+        .h = head.h, .global_damping = head.global_damping, .peak = head.peak, .suspicious = head.suspicious};
+    if (size > HEAD_BYTES)
+        mspringi_get(from, network->backup.x, motion_floats(network), sizeof(float));
+    // Edits of before and after are counted differently.
+    mspringi_any_shape *any_shape = &network->any_shape;
+    *any_shape = (mspringi_any_shape){.masses = network->edits.masses, .values = network->edits.values - 1};
+    if (head.state == UNKNOWN || head.spring >= network->topology.spring_count)
+        return;
+    any_shape->is_known = true;
+    any_shape->dt = head.dt;
+    any_shape->spring = head.spring;
+    any_shape->values += head.state == KNOWN;
+}
+
+const mspringi_section mspringi_section_guard = {
+    "guar", "guard of the stability border", false, guard_size, guard_save, guard_check, guard_load};

@@ -1,0 +1,240 @@
+/// Saving and loading snapshots.
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/cpu.h"
+#include "edits/ramps.h"
+#include "sections.h"
+
+/// In the order in which they are loaded: ramps go by the springs' values, stressed springs by what is broken, and
+/// a solver by what has been edited.
+static const mspringi_section *const sections[] = {
+    &mspringi_section_settings,      &mspringi_section_motion,         &mspringi_section_masses,
+    &mspringi_section_forces,        &mspringi_section_broken,         &mspringi_section_values,
+    &mspringi_section_break_strains, &mspringi_section_stress_strains, &mspringi_section_stressed,
+    &mspringi_section_ramps,         &mspringi_section_implicit,       &mspringi_section_guard};
+enum { SECTIONS = sizeof sections / sizeof sections[0] };
+
+/* --------------------------------------------------------------------------------------------------- messages */
+
+mspring_result mspringi_section_fail(mspring_network *network, const mspringi_section *section, const char *format,
+                                     ...) {
+    char what[160];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(what, sizeof what, format, arguments);
+    va_end(arguments);
+    return mspringi_fail(&network->message, MSPRING_ERROR_SNAPSHOT, "the snapshot's %s: %s", section->name, what);
+}
+
+mspring_result mspringi_section_check_size(mspring_network *network, const mspringi_section *section, size_t size,
+                                           size_t expected) {
+    return size == expected
+               ? MSPRING_OK
+               : mspringi_section_fail(network, section, "they take %zu bytes instead of %zu", size, expected);
+}
+
+static mspring_result fail(mspring_network *network, const char *what) {
+    return mspringi_fail(&network->message, MSPRING_ERROR_SNAPSHOT, "the snapshot %s", what);
+}
+
+/* ------------------------------------------------------------------------------------------------------ saving */
+
+static size_t section_size(const mspring_network *network, const mspringi_section *section,
+                           mspring_snapshot_contents contents) {
+    return section->parameters && contents == MSPRING_SNAPSHOT_FRAME ? 0 : section->size(network);
+}
+
+static size_t total_size(const mspring_network *network, mspring_snapshot_contents contents, uint32_t *count) {
+    size_t size = MSPRINGI_SNAPSHOT_HEADER_BYTES;
+    *count = 0;
+    for (int i = 0; i < SECTIONS; ++i) {
+        const size_t of_section = section_size(network, sections[i], contents);
+        if (of_section == 0)
+            continue;
+        size += MSPRINGI_SECTION_HEADER_BYTES + mspringi_round_up(of_section, 8);
+        ++*count;
+    }
+    return mspringi_round_up(size, MSPRINGI_CHECKSUM_UNIT) + MSPRINGI_SNAPSHOT_CHECKSUM_BYTES;
+}
+
+static mspring_result check_contents(const mspring_network *network, mspring_snapshot_contents contents) {
+    if (!network || (contents != MSPRING_SNAPSHOT_ALL && contents != MSPRING_SNAPSHOT_FRAME))
+        return MSPRING_ERROR_ARGUMENT;
+    return network->in_hook == MSPRINGI_IN_NO_HOOK ? MSPRING_OK : MSPRING_ERROR_BUSY;
+}
+
+mspring_result mspring_network_snapshot_size(const mspring_network *network, mspring_snapshot_contents contents,
+                                             size_t *size) {
+    uint32_t count;
+    mspring_result result = size ? check_contents(network, contents) : MSPRING_ERROR_ARGUMENT;
+    if (result == MSPRING_OK)
+        *size = total_size(network, contents, &count);
+    return result;
+}
+
+// Write a section with what goes before and behind it.
+static void put_section(const mspring_network *network, const mspringi_section *section, uint64_t size,
+                        mspringi_writer *to) {
+    mspringi_put(to, section->tag, 4, 1);
+    mspringi_put_zeros(to, 4);
+    mspringi_put(to, &size, 1, sizeof size);
+    section->save(network, to);
+    mspringi_put_zeros(to, mspringi_round_up((size_t)size, 8) - (size_t)size);
+}
+
+mspring_result mspring_network_save(const mspring_network *network, mspring_snapshot_contents contents,
+                                    void *snapshot, size_t capacity, size_t *size) {
+    mspring_result result = snapshot ? check_contents(network, contents) : MSPRING_ERROR_ARGUMENT;
+    if (result != MSPRING_OK)
+        return result;
+    mspringi_snapshot_header header = {
+        .version = MSPRINGI_SNAPSHOT_VERSION,
+        .contents = (uint32_t)contents,
+        .particle_count = network->topology.particle_count,
+        .spring_count = network->topology.spring_count,
+        .topology_print = network->topology_print,
+        .parameter_print = network->parameter_print,
+    };
+    const size_t total = total_size(network, contents, &header.section_count);
+    if (capacity < total)
+        return MSPRING_ERROR_ARGUMENT;
+    header.size = total;
+    mspringi_writer to = mspringi_writer_begin(snapshot);
+    mspringi_put_header(&to, &header);
+    for (int i = 0; i < SECTIONS; ++i) {
+        const size_t of_section = section_size(network, sections[i], contents);
+        if (of_section > 0)
+            put_section(network, sections[i], of_section, &to);
+    }
+    const size_t written = (size_t)(to.at - (uint8_t *)snapshot);
+    mspringi_put_zeros(&to, total - MSPRINGI_SNAPSHOT_CHECKSUM_BYTES - written);
+    const uint64_t checksum = mspringi_checksum_value(&to.checksum);
+    mspringi_put(&to, &checksum, 1, sizeof checksum);
+    if (size)
+        *size = total;
+    return MSPRING_OK;
+}
+
+/* ----------------------------------------------------------------------------------------------------- loading */
+
+/// Where each section is in a snapshot; size 0 if it is not.
+typedef struct found {
+    const uint8_t *from[SECTIONS];
+    size_t size[SECTIONS];
+} found;
+
+static mspring_result check_frame(mspring_network *network, const uint8_t *snapshot, size_t size,
+                                  mspringi_snapshot_header *header) {
+    if (size < MSPRINGI_SNAPSHOT_HEADER_BYTES)
+        return fail(network, "is too short to be one");
+    if (!mspringi_get_header(snapshot, header))
+        return fail(network, "does not begin as one: it is something else, or damaged");
+    if (header->version != MSPRINGI_SNAPSHOT_VERSION)
+        return mspringi_fail(&network->message, MSPRING_ERROR_SNAPSHOT,
+                             "the snapshot has version %u, this library knows version %u",
+                             (unsigned)header->version, (unsigned)MSPRINGI_SNAPSHOT_VERSION);
+    if (header->size != size)
+        return mspringi_fail(&network->message, MSPRING_ERROR_SNAPSHOT,
+                             "the snapshot has %zu bytes, but was saved with %llu: it is cut off, or damaged", size,
+                             (unsigned long long)header->size);
+    const size_t summed = size - MSPRINGI_SNAPSHOT_CHECKSUM_BYTES;
+    if (summed % MSPRINGI_CHECKSUM_UNIT != 0)
+        return fail(network, "is damaged: it has no size that snapshots have");
+    uint64_t expected;
+    mspringi_checksum checksum = {{0}, {0}};
+    mspringi_get(snapshot + summed, &expected, 1, sizeof expected);
+    mspringi_checksum_add(&checksum, snapshot, summed / MSPRINGI_CHECKSUM_UNIT);
+    if (mspringi_checksum_value(&checksum) != expected)
+        return fail(network, "is damaged: its checksum does not fit");
+    return MSPRING_OK;
+}
+
+static mspring_result check_kin(mspring_network *network, const mspringi_snapshot_header *header) {
+    const mspringi_topology *t = &network->topology;
+    if (header->particle_count != t->particle_count || header->spring_count != t->spring_count)
+        return mspringi_fail(&network->message, MSPRING_ERROR_SNAPSHOT,
+                             "the snapshot is of %u particles and %u springs, the network has %u and %u",
+                             (unsigned)header->particle_count, (unsigned)header->spring_count,
+                             (unsigned)t->particle_count, (unsigned)t->spring_count);
+    if (header->topology_print != network->topology_print)
+        return fail(network, "is of another network: its springs join other particles, or are laid out otherwise");
+    if (header->contents == MSPRING_SNAPSHOT_FRAME && header->parameter_print != network->parameter_print)
+        return fail(network,
+                    "leaves out stiffness, damping, rest lengths and strains (MSPRING_SNAPSHOT_FRAME), and "
+                    "the network's are others than when it was saved");
+    return header->contents == MSPRING_SNAPSHOT_FRAME || header->contents == MSPRING_SNAPSHOT_ALL
+               ? MSPRING_OK
+               : fail(network, "has contents that this library does not know");
+}
+
+static int number_of(const uint8_t *tag) {
+    for (int i = 0; i < SECTIONS; ++i)
+        if (memcmp(tag, sections[i]->tag, 4) == 0)
+            return i;
+    return -1;
+}
+
+static mspring_result find_sections(mspring_network *network, const mspringi_snapshot_header *header,
+                                    const uint8_t *snapshot, found *out) {
+    const uint8_t *at = snapshot + MSPRINGI_SNAPSHOT_HEADER_BYTES;
+    size_t left = (size_t)header->size - MSPRINGI_SNAPSHOT_HEADER_BYTES - MSPRINGI_SNAPSHOT_CHECKSUM_BYTES;
+    *out = (found){.size = {0}};
+    for (uint32_t i = 0; i < header->section_count; ++i) {
+        uint64_t size = 0;
+        const int number = left >= MSPRINGI_SECTION_HEADER_BYTES ? number_of(at) : -1;
+        if (number < 0)
+            return fail(network, "has a section that this library does not know");
+        mspringi_get(at + 8, &size, 1, sizeof size);
+        left -= MSPRINGI_SECTION_HEADER_BYTES;
+        at += MSPRINGI_SECTION_HEADER_BYTES;
+        if (size == 0 || size > left || left - size < mspringi_round_up((size_t)size, 8) - size ||
+            out->size[number] > 0)
+            return mspringi_section_fail(network, sections[number], "they do not fit in, or come twice");
+        out->from[number] = at;
+        out->size[number] = (size_t)size;
+        left -= mspringi_round_up((size_t)size, 8);
+        at += mspringi_round_up((size_t)size, 8);
+    }
+    return MSPRING_OK;
+}
+
+// Parameters that a frame leaves out stay as they are.
+static bool concerns(const mspringi_section *section, const mspringi_snapshot_header *header) {
+    return !section->parameters || header->contents == MSPRING_SNAPSHOT_ALL;
+}
+
+static MSPRINGI_NOINLINE mspring_result load(mspring_network *network, const uint8_t *snapshot, size_t size) {
+    mspringi_snapshot_header header;
+    found in;
+    mspring_result result = check_frame(network, snapshot, size, &header);
+    if (result == MSPRING_OK)
+        result = check_kin(network, &header);
+    if (result == MSPRING_OK)
+        result = find_sections(network, &header, snapshot, &in);
+    for (int i = 0; result == MSPRING_OK && i < SECTIONS; ++i)
+        if (concerns(sections[i], &header))
+            result = sections[i]->check(network, in.from[i], in.size[i]);
+    if (result != MSPRING_OK)
+        return result;
+    mspringi_ramps_clear(network);
+    for (int i = 0; i < SECTIONS; ++i)
+        if (concerns(sections[i], &header))
+            sections[i]->load(network, in.from[i], in.size[i]);
+    network->parameter_print = header.parameter_print;
+    network->events.count = 0;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_load(mspring_network *network, const void *snapshot, size_t size) {
+    mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK)
+        return result;
+    if (!snapshot)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the snapshot is NULL");
+    const mspringi_fp_state before = mspringi_fp_enter();
+    result = load(network, snapshot, size);
+    mspringi_fp_leave(before);
+    return result;
+}

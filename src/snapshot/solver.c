@@ -1,0 +1,130 @@
+/// What a solver carries from step to step, in a snapshot: of the implicit one its history and, unless it is to be
+/// factored anew, its coarse matrix. The explicit one carries nothing.
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "implicit/implicit.h"
+#include "sections.h"
+
+typedef struct implicit_head {
+    uint64_t tiles_print;
+    double scale;
+    float h;
+    uint32_t restarts, integrator, iterations, coarse_period, age;
+} implicit_head;
+#define HEAD_BYTES ((size_t)40)
+
+static size_t implicit_size_of(const mspringi_implicit *n, uint32_t age) {
+    return HEAD_BYTES + n->history_size * sizeof(float) + (age > 0 ? n->coarse.value_count * sizeof(double) : 0);
+}
+
+static size_t implicit_size(const mspring_network *network) {
+    return network->implicit ? implicit_size_of(network->implicit, network->implicit->age) : 0;
+}
+
+static void implicit_save(const mspring_network *network, mspringi_writer *to) {
+    const mspringi_implicit *n = network->implicit;
+    // A history of a motion that has ended is as good as none.
+    const bool ended = n->seen.motion != network->edits.motion;
+    const uint32_t words[] = {n->history.restarts || ended, (uint32_t)n->integrator, n->iterations,
+                              n->coarse_period, n->age};
+    mspringi_put(to, &n->tiles.print, 1, sizeof n->tiles.print);
+    mspringi_put(to, &n->scale, 1, sizeof n->scale);
+    mspringi_put(to, &n->history.h, 1, sizeof n->history.h);
+    mspringi_put(to, words, sizeof words / sizeof words[0], sizeof words[0]);
+    if (ended)
+        mspringi_put_zeros(to, n->history_size * sizeof(float));
+    else
+        mspringi_put(to, n->history.low.x, n->history_size, sizeof(float));
+    if (n->age > 0)
+        mspringi_put(to, n->coarse.values, n->coarse.value_count, sizeof(double));
+}
+
+static const uint8_t *read_head(const uint8_t *from, implicit_head *head) {
+    from = mspringi_get(from, &head->tiles_print, 1, sizeof head->tiles_print);
+    from = mspringi_get(from, &head->scale, 1, sizeof head->scale);
+    from = mspringi_get(from, &head->h, 1, sizeof head->h);
+    from = mspringi_get(from, &head->restarts, 1, sizeof head->restarts);
+    from = mspringi_get(from, &head->integrator, 1, sizeof head->integrator);
+    from = mspringi_get(from, &head->iterations, 1, sizeof head->iterations);
+    from = mspringi_get(from, &head->coarse_period, 1, sizeof head->coarse_period);
+    return mspringi_get(from, &head->age, 1, sizeof head->age);
+}
+
+static mspring_result check_head(mspring_network *network, const implicit_head *head) {
+    const mspringi_section *section = &mspringi_section_implicit;
+    const mspringi_implicit *n = network->implicit;
+    if (head->integrator != (uint32_t)n->integrator || head->tiles_print != n->tiles.print)
+        return mspringi_section_fail(network, section, "the network's has another integrator, or other tiles");
+    if (!(head->scale >= DBL_MIN && head->scale <= DBL_MAX && head->h >= 0.0f && head->h <= FLT_MAX) ||
+        head->restarts > 1)
+        return mspringi_section_fail(network, section, "its scale is %g, its substep %g s", head->scale,
+                                     (double)head->h);
+    if (head->iterations < 1 || head->iterations > MSPRINGI_MOST_ITERATIONS || head->coarse_period < 1 ||
+        head->coarse_period > MSPRINGI_MOST_ITERATIONS || head->age >= head->coarse_period)
+        return mspringi_section_fail(
+            network, section, "it has %u iterations, and a coarse matrix %u substeps old of %u",
+            (unsigned)head->iterations, (unsigned)head->age, (unsigned)head->coarse_period);
+    return MSPRING_OK;
+}
+
+static mspring_result implicit_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_section *section = &mspringi_section_implicit;
+    const mspringi_implicit *n = network->implicit;
+    implicit_head head = {0};
+    if (!n && size == 0)
+        return MSPRING_OK;
+    if (!n || size == 0)
+        return mspringi_section_fail(network, section, "it was saved %s one, the network has %s",
+                                     size > 0 ? "with" : "without", n ? "one" : "none");
+    if (size < HEAD_BYTES)
+        return mspringi_section_check_size(network, section, size, HEAD_BYTES);
+    from = read_head(from, &head);
+    mspring_result result = check_head(network, &head);
+    if (result == MSPRING_OK)
+        result = mspringi_section_check_size(network, section, size, implicit_size_of(n, head.age));
+    for (size_t i = 0; result == MSPRING_OK && i < n->history_size; ++i)
+        if (!isfinite(mspringi_float_at(from, i)))
+            result = mspringi_section_fail(network, section, "its history is not finite");
+    from += n->history_size * sizeof(float);
+    for (size_t i = 0; result == MSPRING_OK && head.age > 0 && i < n->coarse.value_count; ++i) {
+        double value;
+        from = mspringi_get(from, &value, 1, sizeof value);
+        if (!isfinite(value))
+            result = mspringi_section_fail(network, section, "its coarse matrix is not finite");
+    }
+    return result;
+}
+
+// Slots without particle stay where they are.
+static void clear_history(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    float *const history = network->implicit->history.low.x;
+    for (size_t first = 0; first < network->implicit->history_size; first += mspringi_slot_count(network))
+        for (uint32_t run = 0; run < t->empty_run_count; ++run)
+            memset(history + first + t->empty_runs[run].first_slot, 0,
+                   t->empty_runs[run].slot_count * sizeof *history);
+}
+
+static void implicit_load(mspring_network *network, const uint8_t *from, size_t size) {
+    mspringi_implicit *n = network->implicit;
+    implicit_head head;
+    if (size == 0)
+        return;
+    from = read_head(from, &head);
+    n->scale = head.scale;
+    n->history.h = head.h;
+    n->history.restarts = head.restarts;
+    n->iterations = head.iterations;
+    n->coarse_period = head.coarse_period;
+    n->age = head.age;
+    from = mspringi_get(from, n->history.low.x, n->history_size, sizeof(float));
+    clear_history(network);
+    if (head.age > 0)
+        mspringi_get(from, n->coarse.values, n->coarse.value_count, sizeof(double));
+    n->seen = network->edits;
+}
+
+const mspringi_section mspringi_section_implicit = {"impl",        "implicit solver", false,        implicit_size,
+                                                    implicit_save, implicit_check,    implicit_load};

@@ -1,0 +1,300 @@
+/// What edits and strain have made of the springs, in a snapshot.
+#include <math.h>
+#include <string.h>
+
+#include "edits/breaking.h"
+#include "edits/ramps.h"
+#include "edits/strain.h"
+#include "edits/values.h"
+#include "network/rests.h"
+#include "network/springs.h"
+#include "sections.h"
+
+/* ------------------------------------------------------------------------------------------------ bits by place */
+
+static size_t words_size(const mspring_network *network) {
+    return mspringi_place_words(&network->topology) * sizeof(uint16_t);
+}
+
+static bool bit_at(const uint8_t *from, mspringi_place place) {
+    uint16_t word;
+    mspringi_get(from + place / MSPRINGI_WIDTH * sizeof word, &word, 1, sizeof word);
+    return word >> place % MSPRINGI_WIDTH & 1;
+}
+
+/* ----------------------------------------------------------------------------------------------------- broken */
+
+// Nothing is broken before there is a log of it.
+static size_t broken_size(const mspring_network *network) {
+    return network->edits.link_log ? words_size(network) : 0;
+}
+
+static void broken_save(const mspring_network *network, mspringi_writer *to) {
+    mspringi_put(to, network->live, mspringi_place_words(&network->topology), sizeof *network->live);
+}
+
+static mspring_result broken_check(mspring_network *network, const uint8_t *from, size_t size) {
+    (void)from;
+    if (size == 0)
+        return MSPRING_OK;
+    mspring_result result =
+        mspringi_section_check_size(network, &mspringi_section_broken, size, words_size(network));
+    return result == MSPRING_OK ? mspringi_breaking_reserve(network) : result;
+}
+
+static void broken_load(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_topology *t = &network->topology;
+    if (size == 0 && !network->edits.link_log)
+        return;
+    for (mspring_id s = 0; s < t->spring_count; ++s) {
+        const bool live = size == 0 || bit_at(from, t->place_of_spring[s]);
+        if (live == mspringi_spring_is_live(network, s))
+            continue;
+        if (live)
+            (void)mspringi_spring_restore(network, s);
+        else
+            (void)mspringi_spring_break(network, s);
+    }
+}
+
+const mspringi_section mspringi_section_broken = {"brok",      "broken springs", false,      broken_size,
+                                                  broken_save, broken_check,     broken_load};
+
+/* ----------------------------------------------------------------------------------------------------- values */
+
+// Of each spring its stiffness and damping, as if it were not broken, and its rest length. Of one on a ramp the
+// latter is on its way; the ramp has its own.
+enum { VALUES = 3 };
+
+static size_t values_size(const mspring_network *network) {
+    return (size_t)network->topology.spring_count * VALUES * sizeof(float);
+}
+
+typedef struct spring_values {
+    float stiffness, damping, rest_length;
+} spring_values;
+
+static spring_values values_of(const mspring_network *network, mspring_id spring) {
+    const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring);
+    return (spring_values){nominal.stiffness, nominal.damping, mspringi_spring_get(network, spring).rest_length};
+}
+
+static void values_save(const mspring_network *network, mspringi_writer *to) {
+    enum { TOGETHER = 64 };
+    spring_values values[TOGETHER];
+    const uint32_t springs = network->topology.spring_count;
+    for (mspring_id first = 0; first < springs; first += TOGETHER) {
+        const uint32_t count = springs - first < TOGETHER ? springs - first : TOGETHER;
+        for (uint32_t i = 0; i < count; ++i)
+            values[i] = values_of(network, first + i);
+        mspringi_put(to, values, (size_t)count * VALUES, sizeof(float));
+    }
+}
+
+static mspring_result values_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_section *section = &mspringi_section_values;
+    mspring_result result = mspringi_section_check_size(network, section, size, values_size(network));
+    bool other_rest_lengths = false;
+    for (mspring_id s = 0; result == MSPRING_OK && s < network->topology.spring_count; ++s) {
+        spring_values values;
+        from = mspringi_get(from, &values, VALUES, sizeof(float));
+        if (!mspringi_is_spring_value(MSPRINGI_STIFFNESS, values.stiffness) ||
+            !mspringi_is_spring_value(MSPRINGI_DAMPING, values.damping) ||
+            !mspringi_is_spring_value(MSPRINGI_REST_LENGTH, values.rest_length) ||
+            (values.damping > 0.0f && network->parts <= MSPRINGI_DAMPING))
+            result = mspringi_section_fail(
+                network, section, "spring %u has stiffness %g, damping %g, rest length %g m", (unsigned)s,
+                (double)values.stiffness, (double)values.damping, (double)values.rest_length);
+        other_rest_lengths =
+            other_rest_lengths || values.rest_length != mspringi_spring_get(network, s).rest_length;
+    }
+    return result == MSPRING_OK && other_rest_lengths ? mspringi_rests_separate(network) : result;
+}
+
+static void values_load(mspring_network *network, const uint8_t *from, size_t size) {
+    if (size == 0)
+        return;
+    for (mspring_id s = 0; s < network->topology.spring_count; ++s) {
+        spring_values values;
+        const spring_values present = values_of(network, s);
+        from = mspringi_get(from, &values, VALUES, sizeof(float));
+        if (values.rest_length != present.rest_length)
+            mspringi_spring_set_rest_length(network, s, values.rest_length);
+        if (values.stiffness != present.stiffness || values.damping != present.damping)
+            mspringi_spring_set_nominal(network, s, (mspringi_relative){values.stiffness, values.damping});
+    }
+    network->edits.values++;
+}
+
+const mspringi_section mspringi_section_values = {
+    "valu", "stiffness, damping and rest lengths", true, values_size, values_save, values_check, values_load};
+
+/* ------------------------------------------------------------------------------------------------ strains */
+
+static size_t thresholds_size(const mspring_network *network, const float *thresholds) {
+    return thresholds ? network->topology.spring_count * sizeof *thresholds : 0;
+}
+
+static void thresholds_save(const mspring_network *network, const float *thresholds, mspringi_writer *to) {
+    for (mspring_id s = 0; s < network->topology.spring_count; ++s)
+        mspringi_put(to, &thresholds[network->topology.place_of_spring[s]], 1, sizeof *thresholds);
+}
+
+static mspring_result thresholds_check(mspring_network *network, const mspringi_section *section,
+                                       const uint8_t *from, size_t size) {
+    const uint32_t springs = network->topology.spring_count;
+    mspring_result result = mspringi_section_check_size(network, section, size, springs * sizeof(float));
+    for (mspring_id s = 0; result == MSPRING_OK && s < springs; ++s)
+        if (!(mspringi_float_at(from, s) > 0.0f))
+            result = mspringi_section_fail(network, section, "spring %u has %g", (unsigned)s,
+                                           (double)mspringi_float_at(from, s));
+    return result;
+}
+
+static void thresholds_load(mspring_network *network, bool stress, const uint8_t *from, size_t size) {
+    for (mspring_id s = 0; s < network->topology.spring_count; ++s)
+        mspringi_strain_store(network, s, stress, size > 0 ? mspringi_float_at(from, s) : INFINITY);
+}
+
+static size_t break_strains_size(const mspring_network *network) {
+    return thresholds_size(network, network->strain.break_strain);
+}
+
+static void break_strains_save(const mspring_network *network, mspringi_writer *to) {
+    thresholds_save(network, network->strain.break_strain, to);
+}
+
+static mspring_result break_strains_check(mspring_network *network, const uint8_t *from, size_t size) {
+    mspring_result result =
+        size > 0 ? thresholds_check(network, &mspringi_section_break_strains, from, size) : MSPRING_OK;
+    return result == MSPRING_OK && size > 0 ? mspringi_strain_reserve(network) : result;
+}
+
+static void break_strains_load(mspring_network *network, const uint8_t *from, size_t size) {
+    if (network->strain.break_strain)
+        thresholds_load(network, false, from, size);
+}
+
+const mspringi_section mspringi_section_break_strains = {
+    "brks", "break strains", true, break_strains_size, break_strains_save, break_strains_check, break_strains_load};
+
+static size_t stress_strains_size(const mspring_network *network) {
+    return thresholds_size(network, network->strain.stress_strain);
+}
+
+static void stress_strains_save(const mspring_network *network, mspringi_writer *to) {
+    thresholds_save(network, network->strain.stress_strain, to);
+}
+
+static mspring_result stress_strains_check(mspring_network *network, const uint8_t *from, size_t size) {
+    mspring_result result =
+        size > 0 ? thresholds_check(network, &mspringi_section_stress_strains, from, size) : MSPRING_OK;
+    if (result == MSPRING_OK && size > 0)
+        result = mspringi_strain_reserve(network);
+    return result == MSPRING_OK && size > 0 ? mspringi_strain_reserve_stress(network) : result;
+}
+
+static void stress_strains_load(mspring_network *network, const uint8_t *from, size_t size) {
+    if (network->strain.stress_strain)
+        thresholds_load(network, true, from, size);
+}
+
+const mspringi_section mspringi_section_stress_strains = {"strs",
+                                                          "stress strains",
+                                                          true,
+                                                          stress_strains_size,
+                                                          stress_strains_save,
+                                                          stress_strains_check,
+                                                          stress_strains_load};
+
+/* --------------------------------------------------------------------------------------------------- stressed */
+
+static size_t stressed_size(const mspring_network *network) {
+    return network->strain.break_strain ? words_size(network) : 0;
+}
+
+static void stressed_save(const mspring_network *network, mspringi_writer *to) {
+    mspringi_put(to, network->strain.stressed, mspringi_place_words(&network->topology), sizeof(uint16_t));
+}
+
+static mspring_result stressed_check(mspring_network *network, const uint8_t *from, size_t size) {
+    (void)from;
+    if (size == 0)
+        return MSPRING_OK;
+    mspring_result result =
+        mspringi_section_check_size(network, &mspringi_section_stressed, size, words_size(network));
+    return result == MSPRING_OK ? mspringi_strain_reserve(network) : result;
+}
+
+// Only springs that are whole are stressed.
+static void stressed_load(mspring_network *network, const uint8_t *from, size_t size) {
+    const size_t words = mspringi_place_words(&network->topology);
+    uint16_t *stressed = network->strain.stressed;
+    if (!stressed)
+        return;
+    if (size == 0)
+        memset(stressed, 0, words * sizeof *stressed);
+    else
+        mspringi_get(from, stressed, words, sizeof *stressed);
+    for (size_t i = 0; i < words; ++i)
+        stressed[i] &= network->live[i];
+}
+
+const mspringi_section mspringi_section_stressed = {"stsd",        "stressed springs", false,        stressed_size,
+                                                    stressed_save, stressed_check,     stressed_load};
+
+/* ------------------------------------------------------------------------------------------------------ ramps */
+
+#define RAMP_BYTES ((size_t)32)
+#define LONGEST_SPRING 1e13 // m, between the corners of where particles may be
+
+static size_t ramps_size(const mspring_network *network) {
+    return network->ramps.count * RAMP_BYTES;
+}
+
+static void ramps_save(const mspring_network *network, mspringi_writer *to) {
+    for (size_t i = 0; i < network->ramps.count; ++i) {
+        const mspringi_ramp *ramp = &network->ramps.list[i];
+        mspringi_put(to, &ramp->spring, 1, sizeof ramp->spring);
+        mspringi_put(to, &ramp->to, 1, sizeof ramp->to);
+        mspringi_put(to, &ramp->from, 1, sizeof ramp->from);
+        mspringi_put(to, &ramp->seconds, 1, sizeof ramp->seconds);
+        mspringi_put(to, &ramp->passed, 1, sizeof ramp->passed);
+    }
+}
+
+static const uint8_t *read_ramp(const uint8_t *from, mspringi_ramp *ramp) {
+    from = mspringi_get(from, &ramp->spring, 1, sizeof ramp->spring);
+    from = mspringi_get(from, &ramp->to, 1, sizeof ramp->to);
+    from = mspringi_get(from, &ramp->from, 1, sizeof ramp->from);
+    from = mspringi_get(from, &ramp->seconds, 1, sizeof ramp->seconds);
+    return mspringi_get(from, &ramp->passed, 1, sizeof ramp->passed);
+}
+
+static mspring_result ramps_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_section *section = &mspringi_section_ramps;
+    const size_t count = size / RAMP_BYTES;
+    if (size % RAMP_BYTES != 0 || count > network->topology.spring_count)
+        return mspringi_section_fail(network, section, "they take %zu bytes", size);
+    for (size_t i = 0; i < count; ++i) {
+        mspringi_ramp ramp;
+        from = read_ramp(from, &ramp);
+        if (!(ramp.spring < network->topology.spring_count && ramp.from > 0.0 && ramp.from <= LONGEST_SPRING &&
+              mspringi_is_spring_value(MSPRINGI_REST_LENGTH, ramp.to) && ramp.seconds > 0.0 &&
+              ramp.seconds <= MSPRINGI_LONGEST_RAMP && ramp.passed >= 0.0 && ramp.passed < ramp.seconds))
+            return mspringi_section_fail(network, section, "spring %u goes from %g to %g m, for %g of %g s",
+                                         (unsigned)ramp.spring, ramp.from, (double)ramp.to, ramp.passed,
+                                         ramp.seconds);
+    }
+    return count > 0 ? mspringi_ramps_reserve(network, (uint32_t)count) : MSPRING_OK;
+}
+
+static void ramps_load(mspring_network *network, const uint8_t *from, size_t size) {
+    network->ramps.count = size / RAMP_BYTES;
+    for (size_t i = 0; i < network->ramps.count; ++i)
+        from = read_ramp(from, &network->ramps.list[i]);
+    mspringi_ramps_apply(network, 0.0);
+}
+
+const mspringi_section mspringi_section_ramps = {
+    "ramp", "springs on the way to their rest lengths", false, ramps_size, ramps_save, ramps_check, ramps_load};

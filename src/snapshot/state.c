@@ -1,0 +1,278 @@
+/// Settings, motion, masses and forces in a snapshot.
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "edits/particles.h"
+#include "network/springs.h"
+#include "sections.h"
+
+/* --------------------------------------------------------------------------------------------------- settings */
+
+typedef struct settings {
+    double origin_x, origin_y;
+    float recentre_distance, relative_h, gravity_x, gravity_y, global_damping, max_speed, relax;
+    uint32_t substeps, max_substeps, auto_substeps;
+} settings;
+#define SETTINGS_BYTES ((size_t)56)
+
+static size_t settings_size(const mspring_network *network) {
+    (void)network;
+    return SETTINGS_BYTES;
+}
+
+static void settings_save(const mspring_network *network, mspringi_writer *to) {
+    const double origin[] = {network->origin_x, network->origin_y};
+    const float values[] = {network->recentre_distance, network->relative_h,     network->gravity_x,
+                            network->gravity_y,         network->global_damping, network->max_speed,
+                            network->strain.relax};
+    const uint32_t counts[] = {network->substeps, network->max_substeps, network->auto_substeps};
+    mspringi_put(to, origin, 2, sizeof origin[0]);
+    mspringi_put(to, values, 7, sizeof values[0]);
+    mspringi_put(to, counts, 3, sizeof counts[0]);
+}
+
+static settings read_settings(const uint8_t *from) {
+    settings s;
+    from = mspringi_get(from, &s.origin_x, 1, sizeof s.origin_x);
+    from = mspringi_get(from, &s.origin_y, 1, sizeof s.origin_y);
+    from = mspringi_get(from, &s.recentre_distance, 1, sizeof s.recentre_distance);
+    from = mspringi_get(from, &s.relative_h, 1, sizeof s.relative_h);
+    from = mspringi_get(from, &s.gravity_x, 1, sizeof s.gravity_x);
+    from = mspringi_get(from, &s.gravity_y, 1, sizeof s.gravity_y);
+    from = mspringi_get(from, &s.global_damping, 1, sizeof s.global_damping);
+    from = mspringi_get(from, &s.max_speed, 1, sizeof s.max_speed);
+    from = mspringi_get(from, &s.relax, 1, sizeof s.relax);
+    from = mspringi_get(from, &s.substeps, 1, sizeof s.substeps);
+    from = mspringi_get(from, &s.max_substeps, 1, sizeof s.max_substeps);
+    mspringi_get(from, &s.auto_substeps, 1, sizeof s.auto_substeps);
+    return s;
+}
+
+static mspring_result settings_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_section *section = &mspringi_section_settings;
+    mspring_result result = mspringi_section_check_size(network, section, size, SETTINGS_BYTES);
+    if (result != MSPRING_OK)
+        return result;
+    const settings s = read_settings(from);
+    // A network may have walked: its origin is no further than a particle may be from where it was put.
+    const double largest = 2.0 * MSPRING_MAX_COORDINATE;
+    if (!(fabs(s.origin_x) <= largest && fabs(s.origin_y) <= largest && s.recentre_distance > 0.0f))
+        return mspringi_section_fail(network, section, "the origin is (%g, %g) m", s.origin_x, s.origin_y);
+    if (!(s.relative_h == 0.0f || (s.relative_h >= FLT_MIN && s.relative_h <= FLT_MAX)))
+        return mspringi_section_fail(network, section, "relative springs are for a substep of %g s",
+                                     (double)s.relative_h);
+    if (!(isfinite(s.gravity_x) && isfinite(s.gravity_y) && s.global_damping >= 0.0f && s.global_damping <= 1e6f))
+        return mspringi_section_fail(network, section, "gravity is (%g, %g) m/s^2, global damping %g 1/s",
+                                     (double)s.gravity_x, (double)s.gravity_y, (double)s.global_damping);
+    if (!(s.max_speed > 0.0f && s.max_speed <= 1e15f && s.relax >= 0.0f && s.relax <= 1.0f))
+        return mspringi_section_fail(network, section, "max_speed is %g m/s, the relax fraction %g",
+                                     (double)s.max_speed, (double)s.relax);
+    if (s.substeps < 1 || s.substeps > MSPRING_MAX_SUBSTEPS || s.max_substeps < 1 ||
+        s.max_substeps > MSPRING_MAX_SUBSTEPS || s.auto_substeps > (network->implicit ? 0 : 1))
+        return mspringi_section_fail(network, section, "substeps is %u, max_substeps %u", (unsigned)s.substeps,
+                                     (unsigned)s.max_substeps);
+    return MSPRING_OK;
+}
+
+static void settings_load(mspring_network *network, const uint8_t *from, size_t size) {
+    (void)size;
+    const settings s = read_settings(from);
+    network->origin_x = s.origin_x;
+    network->origin_y = s.origin_y;
+    network->recentre_distance = s.recentre_distance;
+    network->gravity_x = s.gravity_x;
+    network->gravity_y = s.gravity_y;
+    network->global_damping = s.global_damping;
+    network->max_speed = s.max_speed;
+    network->strain.relax = s.relax;
+    network->substeps = s.substeps;
+    network->max_substeps = s.max_substeps;
+    network->auto_substeps = s.auto_substeps;
+    mspringi_derive_relative(network, s.relative_h);
+}
+
+const mspringi_section mspringi_section_settings = {"sett",        "settings",     false,        settings_size,
+                                                    settings_save, settings_check, settings_load};
+
+/* ----------------------------------------------------------------------------------------------------- motion */
+
+static size_t motion_floats(const mspring_network *network) {
+    return 4 * mspringi_slot_count(network);
+}
+
+static size_t motion_size(const mspring_network *network) {
+    return motion_floats(network) * sizeof(float);
+}
+
+static void motion_save(const mspring_network *network, mspringi_writer *to) {
+    mspringi_put(to, network->state.x, motion_floats(network), sizeof(float));
+}
+
+static mspring_result motion_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_section *section = &mspringi_section_motion;
+    const size_t slots = mspringi_slot_count(network);
+    mspring_result result = mspringi_section_check_size(network, section, size, motion_size(network));
+    const float largest = (float)MSPRING_MAX_COORDINATE;
+    for (mspring_id p = 0; result == MSPRING_OK && p < network->topology.particle_count; ++p) {
+        const uint32_t slot = network->topology.slot_of_particle[p];
+        const float x = mspringi_float_at(from, slot), y = mspringi_float_at(from, slots + slot);
+        const float vx = mspringi_float_at(from, 2 * slots + slot), vy = mspringi_float_at(from, 3 * slots + slot);
+        if (!(fabsf(x) <= largest && fabsf(y) <= largest && isfinite(vx) && isfinite(vy)))
+            result = mspringi_section_fail(network, section,
+                                           "particle %u is at (%g, %g) m from the origin, at (%g, %g) m/s",
+                                           (unsigned)p, (double)x, (double)y, (double)vx, (double)vy);
+    }
+    return result;
+}
+
+static void motion_load(mspring_network *network, const uint8_t *from, size_t size) {
+    mspringi_get(from, network->state.x, size / sizeof(float), sizeof(float));
+    mspringi_clear_empty_slots(network);
+    network->edits.state++;
+}
+
+const mspringi_section mspringi_section_motion = {
+    "moti", "positions and velocities", false, motion_size, motion_save, motion_check, motion_load};
+
+/* ----------------------------------------------------------------------------------------------------- masses */
+
+// First what there is: a mass for each particle; then inverse masses by slot or, where some are scaled, a scale for
+// each particle; then, where they differ, the masses that relative springs go by.
+enum { SCALED = 1, SPRING_MASSES = 2 };
+
+static uint32_t masses_kind(const mspring_network *network) {
+    return (network->inverse_mass_scale ? (uint32_t)SCALED : 0) |
+           (network->spring_mass ? (uint32_t)SPRING_MASSES : 0);
+}
+
+static size_t masses_size_of(const mspring_network *network, uint32_t kind) {
+    const size_t particles = network->topology.particle_count;
+    return sizeof kind + sizeof(float) * (particles + (kind & SCALED ? particles : mspringi_slot_count(network)) +
+                                          (kind & SPRING_MASSES ? particles : 0));
+}
+
+static size_t masses_size(const mspring_network *network) {
+    return masses_size_of(network, masses_kind(network));
+}
+
+static void masses_save(const mspring_network *network, mspringi_writer *to) {
+    const uint32_t kind = masses_kind(network);
+    const size_t particles = network->topology.particle_count;
+    mspringi_put(to, &kind, 1, sizeof kind);
+    mspringi_put(to, network->mass, particles, sizeof(float));
+    if (kind & SCALED)
+        mspringi_put(to, network->inverse_mass_scale, particles, sizeof(float));
+    else
+        mspringi_put(to, network->inverse_mass, mspringi_slot_count(network), sizeof(float));
+    if (kind & SPRING_MASSES)
+        mspringi_put(to, network->spring_mass, particles, sizeof(float));
+}
+
+typedef struct masses {
+    uint32_t kind;
+    const uint8_t *mass, *inverse_or_scale, *spring_mass;
+} masses;
+
+static masses read_masses(const mspring_network *network, const uint8_t *from) {
+    const size_t particles = network->topology.particle_count;
+    masses m;
+    m.mass = mspringi_get(from, &m.kind, 1, sizeof m.kind);
+    m.inverse_or_scale = m.mass + particles * sizeof(float);
+    m.spring_mass =
+        m.inverse_or_scale + (m.kind & SCALED ? particles : mspringi_slot_count(network)) * sizeof(float);
+    return m;
+}
+
+// What is not scaled has inverse mass 0 or the inverse of its mass: a scale of 0 or 1.
+static float scale_in(const mspring_network *network, const masses *m, mspring_id particle) {
+    if (m->kind & SCALED)
+        return mspringi_float_at(m->inverse_or_scale, particle);
+    return mspringi_float_at(m->inverse_or_scale, network->topology.slot_of_particle[particle]) > 0.0f ? 1.0f
+                                                                                                       : 0.0f;
+}
+
+static mspring_result masses_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_section *section = &mspringi_section_masses;
+    uint32_t kind = 0;
+    if (size >= sizeof kind)
+        mspringi_get(from, &kind, 1, sizeof kind);
+    if (kind > (SCALED | SPRING_MASSES) || (kind & SPRING_MASSES && !network->relative))
+        return mspringi_section_fail(network, section, "they are of kind %u", (unsigned)kind);
+    mspring_result result = mspringi_section_check_size(network, section, size, masses_size_of(network, kind));
+    if (result != MSPRING_OK)
+        return result;
+    const masses m = read_masses(network, from);
+    for (mspring_id p = 0; p < network->topology.particle_count; ++p) {
+        const float mass = mspringi_float_at(m.mass, p);
+        if (!mspringi_is_mass(mass) ||
+            (kind & SPRING_MASSES && !mspringi_is_mass(mspringi_float_at(m.spring_mass, p))))
+            return mspringi_section_fail(network, section, "particle %u has a mass of %g kg", (unsigned)p,
+                                         (double)mass);
+        if (!mspringi_is_inverse_mass_scale(scale_in(network, &m, p)))
+            return mspringi_section_fail(network, section, "particle %u has its inverse mass scaled by %g",
+                                         (unsigned)p, (double)scale_in(network, &m, p));
+    }
+    if (kind & SCALED)
+        result = mspringi_reserve_inverse_mass_scales(network);
+    return result == MSPRING_OK && kind & SPRING_MASSES ? mspringi_reserve_spring_masses(network) : result;
+}
+
+static void masses_load(mspring_network *network, const uint8_t *from, size_t size) {
+    (void)size;
+    const masses m = read_masses(network, from);
+    const uint32_t particles = network->topology.particle_count;
+    mspringi_get(m.mass, network->mass, particles, sizeof(float));
+    for (mspring_id p = 0; p < particles; ++p) {
+        const float scale = scale_in(network, &m, p);
+        network->inverse_mass[network->topology.slot_of_particle[p]] = scale / network->mass[p];
+        if (network->inverse_mass_scale)
+            network->inverse_mass_scale[p] = scale;
+    }
+    bool renew = false;
+    for (mspring_id p = 0; network->spring_mass && p < particles; ++p) {
+        const float mass = m.kind & SPRING_MASSES ? mspringi_float_at(m.spring_mass, p) : network->mass[p];
+        renew = renew || mass != network->spring_mass[p];
+        network->spring_mass[p] = mass;
+    }
+    if (renew)
+        mspringi_renew_relative(network);
+    network->edits.masses++;
+}
+
+const mspringi_section mspringi_section_masses = {"mass",      "masses",     false,      masses_size,
+                                                  masses_save, masses_check, masses_load};
+
+/* ----------------------------------------------------------------------------------------------------- forces */
+
+static size_t forces_size(const mspring_network *network) {
+    return network->forces.held_any ? 2 * mspringi_slot_count(network) * sizeof(float) : 0;
+}
+
+static void forces_save(const mspring_network *network, mspringi_writer *to) {
+    mspringi_put(to, network->forces.held.x, 2 * mspringi_slot_count(network), sizeof(float));
+}
+
+static mspring_result forces_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_section *section = &mspringi_section_forces;
+    const size_t floats = 2 * mspringi_slot_count(network);
+    if (size == 0)
+        return MSPRING_OK;
+    mspring_result result = mspringi_section_check_size(network, section, size, floats * sizeof(float));
+    for (size_t i = 0; result == MSPRING_OK && i < floats; ++i)
+        if (!isfinite(mspringi_float_at(from, i)))
+            result = mspringi_section_fail(network, section, "a force is %g N", (double)mspringi_float_at(from, i));
+    return result == MSPRING_OK ? mspringi_field_reserve(network, &network->forces.held) : result;
+}
+
+static void forces_load(mspring_network *network, const uint8_t *from, size_t size) {
+    const size_t floats = 2 * mspringi_slot_count(network);
+    if (size > 0)
+        mspringi_get(from, network->forces.held.x, floats, sizeof(float));
+    else if (network->forces.held_any)
+        memset(network->forces.held.x, 0, floats * sizeof(float));
+    network->forces.held_any = size > 0;
+}
+
+const mspringi_section mspringi_section_forces = {
+    "forc", "forces given for the next step", false, forces_size, forces_save, forces_check, forces_load};
