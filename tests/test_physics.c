@@ -339,6 +339,38 @@ static void particles_in_one_place_exert_no_force(void **state) {
     }
 }
 
+static void what_is_damped_comes_to_rest(void **state) {
+    (void)state;
+    // exp(-100 t): below the smallest normal number after 0.9 s, and at 0 once it is below 1e-30 m/s. What drifts
+    // without damping drifts on, however slowly.
+    for (int damped = 0; damped < 2; damped++) {
+        mspring_builder *builder = support_builder();
+        for (int i = 0; i < 40; i++) {
+            support_particle(builder, i, 0, 1);
+        }
+        mspring_network_def def = support_def(0, 4);
+        def.global_damping = damped ? 100 : 0;
+        mspring_network *network = support_network(builder, &def);
+        float vx[40], vy[40];
+        for (int i = 0; i < 40; i++) {
+            vx[i] = damped ? 1 : 1e-40f;
+            vy[i] = damped ? -3 : -1e-44f;
+        }
+        check_ok(mspring_network_set_velocities(network, 0, 40, vx, vy));
+        for (int step = 0; step < 200; step++) {
+            support_steps(network, 1, 0.01);
+            for (mspring_id id = 0; id < 40; id++) {
+                const support_point v = support_velocity(network, id);
+                assert_true(!damped || v.x == 0 || fabs(v.x) >= 1e-30);
+                assert_true(!damped || v.y == 0 || fabs(v.y) >= 1e-30);
+                assert_true(damped || (v.x == (double)vx[id] && v.y == (double)vy[id]));
+            }
+        }
+        assert_true(support_velocity(network, 39).x == 0 || !damped);
+        mspring_network_destroy(network);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(undamped_oscillator_has_the_schemes_period),
@@ -351,6 +383,7 @@ int main(void) {
         cmocka_unit_test(energy_has_no_trend),
         cmocka_unit_test(pinned_particles_keep_their_velocity),
         cmocka_unit_test(particles_in_one_place_exert_no_force),
+        cmocka_unit_test(what_is_damped_comes_to_rest),
     };
     return cmocka_run_group_tests_name("physics", tests, NULL, NULL);
 }

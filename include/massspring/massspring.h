@@ -18,7 +18,8 @@
 ///     v(t+h) = (v + (F / m + gravity) h) * exp(-global_damping h);   p(t+h) = p + v(t+h) h
 ///
 /// A spring of length 0 has no direction and exerts no force. A pinned particle feels no force: it keeps the
-/// velocity that the host gives it (zero at first) and moves by it.
+/// velocity that the host gives it (zero at first) and moves by it. Where there is damping, a speed below 1e-30 m/s
+/// is 0 after a step, so that motion that dies away comes to an end.
 ///
 /// **Precision.** The state is single precision relative to a local origin that the network holds in double
 /// and moves along by itself, so a network behaves 10 km away from the world's origin as it does at it.
