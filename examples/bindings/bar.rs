@@ -1,0 +1,116 @@
+//! The bending of a bar, in Rust: 80 x 5 particles of iron, pinned at the left end, after a minute.
+//!
+//!     rustc -O bar.rs -L native=/path/of/the/library && ./bar
+//!
+//! SPDX-License-Identifier: MIT
+use std::ffi::{c_char, c_void, CStr};
+use std::ptr::{null, null_mut};
+
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+struct Material {
+    struct_size: u32,
+    particle_flags: u32,
+    spring_flags: u32,
+    mass: f32,
+    stiffness: f32,
+    damping: f32,
+}
+
+#[repr(C)]
+struct LatticeDef {
+    struct_size: u32,
+    width: u32,
+    height: u32,
+    material_count: u32,
+    x: f64,
+    y: f64,
+    spacing: f64,
+    cells: *const u16,
+    materials: *const Material,
+}
+
+const PINNED: u32 = 1;
+
+#[link(name = "massspring")]
+extern "C" {
+    fn mspring_material_init(material: *mut Material, size: usize) -> i32;
+    fn mspring_lattice_def_init(def: *mut LatticeDef, size: usize) -> i32;
+    fn mspring_result_string(result: i32) -> *const c_char;
+    fn mspring_builder_create(allocator: *const c_void, builder: *mut *mut c_void) -> i32;
+    fn mspring_builder_destroy(builder: *mut c_void);
+    fn mspring_builder_add_lattice(builder: *mut c_void, def: *const LatticeDef, ids: *mut u32) -> i32;
+    fn mspring_network_create(builder: *mut c_void, def: *const c_void, network: *mut *mut c_void) -> i32;
+    fn mspring_network_destroy(network: *mut c_void);
+    fn mspring_network_set_global_damping(network: *mut c_void, rate: f32) -> i32;
+    fn mspring_network_step(network: *mut c_void, dt: f64) -> i32;
+    fn mspring_network_get_positions(network: *const c_void, first: u32, count: u32, x: *mut f64, y: *mut f64) -> i32;
+    fn mspring_network_state_hash(network: *const c_void, hash: *mut u64) -> i32;
+}
+
+fn check(result: i32) -> Result<(), String> {
+    match result {
+        0 => Ok(()),
+        _ => Err(unsafe { CStr::from_ptr(mspring_result_string(result)) }.to_string_lossy().into_owned()),
+    }
+}
+
+struct Network(*mut c_void);
+
+impl Network {
+    /// The bar, and the particle at the top of its free end.
+    fn bar(width: usize, height: usize) -> Result<(Network, u32), String> {
+        let mut materials = [Material::default(); 2]; // 0 is free, 1 is pinned
+        for iron in &mut materials {
+            check(unsafe { mspring_material_init(iron, size_of::<Material>()) })?;
+            iron.mass = 73.4;
+            iron.stiffness = 6.76e7;
+        }
+        materials[1].particle_flags = PINNED;
+        let mut cells = vec![0u16; width * height];
+        cells.iter_mut().step_by(width).for_each(|cell| *cell = 1);
+        let mut ids = vec![0u32; width * height];
+        let (mut builder, mut network) = (null_mut(), null_mut());
+        unsafe {
+            let mut def = std::mem::zeroed::<LatticeDef>();
+            check(mspring_lattice_def_init(&mut def, size_of::<LatticeDef>()))?;
+            def.width = width as u32;
+            def.height = height as u32;
+            def.material_count = 2;
+            def.cells = cells.as_ptr();
+            def.materials = materials.as_ptr();
+            check(mspring_builder_create(null(), &mut builder))?;
+            let made = check(mspring_builder_add_lattice(builder, &def, ids.as_mut_ptr()))
+                .and_then(|_| check(mspring_network_create(builder, null(), &mut network)));
+            mspring_builder_destroy(builder);
+            made?;
+        }
+        Ok((Network(network), ids[width - 1]))
+    }
+
+    fn height_of(&self, particle: u32) -> Result<f64, String> {
+        let (mut x, mut y) = (0.0, 0.0);
+        check(unsafe { mspring_network_get_positions(self.0, particle, 1, &mut x, &mut y) })?;
+        Ok(y)
+    }
+}
+
+impl Drop for Network {
+    fn drop(&mut self) {
+        unsafe { mspring_network_destroy(self.0) }
+    }
+}
+
+fn main() -> Result<(), String> {
+    let (network, free_end) = Network::bar(80, 5)?;
+    check(unsafe { mspring_network_set_global_damping(network.0, 1.0) })?;
+    let top = network.height_of(free_end)?;
+    for _ in 0..60 * 64 * 30 {
+        check(unsafe { mspring_network_step(network.0, 1.0 / (64.0 * 30.0)) })?;
+    }
+    let mut hash = 0;
+    check(unsafe { mspring_network_state_hash(network.0, &mut hash) })?;
+    let drop = top - network.height_of(free_end)?;
+    println!("the free end has dropped by {drop:.2} m, hash {hash:016x}");
+    Ok(())
+}

@@ -1,0 +1,100 @@
+/// @file massspring.hpp
+/// The library for C++17: objects that free themselves, and exceptions that carry the error message. Part of an
+/// example, to copy and to extend; it is not installed, and the ABI is that of massspring.h.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MASSSPRING_HPP
+#define MASSSPRING_HPP
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <massspring/massspring.h>
+
+namespace massspring {
+
+struct error : std::runtime_error {
+    error(mspring_result code, const char *message)
+        : std::runtime_error(std::string(mspring_result_string(code)) + ": " + message), code(code) {}
+    mspring_result code;
+};
+
+/// A definition with its defaults, by the init function of its type.
+template <typename Def, mspring_result (*init)(Def *, size_t)> struct with_defaults : Def {
+    with_defaults() : Def() {
+        if (mspring_result result = init(this, sizeof(Def)); result != MSPRING_OK)
+            throw error(result, "the library is older than its header");
+    }
+};
+using material = with_defaults<mspring_material, mspring_material_init>;
+using lattice_def = with_defaults<mspring_lattice_def, mspring_lattice_def_init>;
+
+class builder {
+public:
+    builder() {
+        mspring_builder *made = nullptr;
+        if (mspring_result result = mspring_builder_create(nullptr, &made); result != MSPRING_OK)
+            throw error(result, "builder");
+        handle.reset(made);
+    }
+    /// Particle ids of the cells, row by row from the top.
+    std::vector<mspring_id> add_lattice(const mspring_lattice_def &def) {
+        std::vector<mspring_id> ids(size_t(def.width) * def.height);
+        check(mspring_builder_add_lattice(get(), &def, ids.data()));
+        return ids;
+    }
+    void check(mspring_result result) const {
+        if (result != MSPRING_OK)
+            throw error(result, mspring_builder_error(get()));
+    }
+    mspring_builder *get() const { return handle.get(); }
+
+private:
+    struct destroy {
+        void operator()(mspring_builder *made) const { mspring_builder_destroy(made); }
+    };
+    std::unique_ptr<mspring_builder, destroy> handle;
+};
+
+class network {
+public:
+    explicit network(const builder &from, const mspring_network_def *def = nullptr) {
+        mspring_network *made = nullptr;
+        from.check(mspring_network_create(from.get(), def, &made));
+        handle.reset(made);
+    }
+    void set_global_damping(float rate) { check(mspring_network_set_global_damping(get(), rate)); }
+    void step(double dt) { check(mspring_network_step(get(), dt)); }
+
+    struct point {
+        double x, y;
+    };
+    point position(mspring_id particle) const {
+        point p{};
+        check(mspring_network_get_positions(get(), particle, 1, &p.x, &p.y));
+        return p;
+    }
+    std::uint64_t hash() const {
+        std::uint64_t value = 0;
+        check(mspring_network_state_hash(get(), &value));
+        return value;
+    }
+    void check(mspring_result result) const {
+        if (result != MSPRING_OK)
+            throw error(result, mspring_network_error(get()));
+    }
+    mspring_network *get() const { return handle.get(); }
+
+private:
+    struct destroy {
+        void operator()(mspring_network *made) const { mspring_network_destroy(made); }
+    };
+    std::unique_ptr<mspring_network, destroy> handle;
+};
+
+} // namespace massspring
+
+#endif
