@@ -170,7 +170,7 @@ static outcome run(const recipe *made, uint32_t worker_count, const mspring_task
     for (size_t i = 0; i < COUNT_OF(defs); i++) {
         check_ok(mspring_network_add_hook(network, &defs[i], NULL));
     }
-    support_steps(network, 5, 0.02);
+    support_steps(network, 2, 0.02);
     outcome out = {.hash = support_hash(network)};
     for (uint32_t worker = 0; worker < WORKERS; worker++) {
         out.below += stores[worker].below;
