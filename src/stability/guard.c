@@ -238,17 +238,22 @@ mspring_result mspringi_guard_begin(mspring_network *network, double dt, float h
     return MSPRING_OK;
 }
 
+// Whether any velocity changed by more than limit. Bit by bit, so that compilers make vectors of it.
+static bool any_change_above(const float *now, const float *before, size_t count, float limit) {
+    uint32_t above = 0;
+    for (size_t i = 0; i < count; ++i)
+        above |= (uint32_t)(fabsf(now[i] - before[i]) > limit);
+    return above;
+}
+
 // The largest change of a velocity.
 static float largest_change(const float *now, const float *before, size_t count) {
-    float high[MSPRINGI_WIDTH] = {0.0f}, all = 0.0f;
-    for (size_t i = 0; i < count; i += MSPRINGI_WIDTH)
-        for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
-            const float change = fabsf(now[i + lane] - before[i + lane]);
-            high[lane] = change > high[lane] ? change : high[lane];
-        }
-    for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
-        all = high[lane] > all ? high[lane] : all;
-    return all;
+    float largest = 0.0f;
+    for (size_t i = 0; i < count; ++i) {
+        const float change = fabsf(now[i] - before[i]);
+        largest = change > largest ? change : largest;
+    }
+    return largest;
 }
 
 mspring_result mspringi_guard_end(mspring_network *network, double dt, float h) {
@@ -256,14 +261,12 @@ mspring_result mspringi_guard_end(mspring_network *network, double dt, float h) 
     if (!is_bounded(network))
         return explain_bounds(network, dt);
     if (guard->watches) {
-        const size_t slots = mspringi_slot_count(network);
-        const float change_x = largest_change(network->state.vx, network->backup.vx, slots);
-        const float change_y = largest_change(network->state.vy, network->backup.vy, slots);
-        const float change = change_x > change_y ? change_x : change_y;
+        const float *now = network->state.vx, *before = network->backup.vx;
+        const size_t count = 2 * mspringi_slot_count(network); // vy lies behind vx
         const double harmless = HARMLESS * network->shortest / (double)h;
         const float calm = harmless < 1e15 ? (float)harmless : 1e15f;
-        guard->suspicious = change > SUSPICIOUS * fmaxf(guard->peak, calm);
-        guard->peak = guard->suspicious ? change : guard->peak * FADING;
+        guard->suspicious = any_change_above(now, before, count, SUSPICIOUS * fmaxf(guard->peak, calm));
+        guard->peak = guard->suspicious ? largest_change(now, before, count) : guard->peak * FADING;
     }
     return MSPRING_OK;
 }
