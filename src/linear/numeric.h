@@ -17,13 +17,19 @@
 /// Numbers in a vector.
 #define LANES (sizeof(VECTOR) / sizeof(REAL))
 
+#define COLUMNS NAME(columns)
+#define TILE NAME(tile)
+#define CORNER NAME(corner)
+#define PAIR NAME(pair)
+#define PLACE NAME(place)
+
 /// The columns of one front on their way.
-typedef struct NAME(columns) {
+typedef struct COLUMNS {
     REAL *pivots, *border;               ///< L: pivot rows and border rows
     REAL *scaled_pivots, *scaled_border; ///< W
     REAL *reciprocal;                    ///< of D
     size_t count, pivot_rows, border_rows;
-} NAME(columns);
+} COLUMNS;
 
 MSPRINGI_INLINE VECTOR NAME(load)(const REAL *from) {
     return *(const VECTOR *)(const void *)from;
@@ -61,21 +67,21 @@ MSPRINGI_INLINE size_t NAME(tile_rows)(size_t rows_left) {
 }
 
 /// What a tile works with: its part of some columns, its rows of W, and the rows of L that belong to the columns.
-typedef struct NAME(tile) {
+typedef struct TILE {
     REAL *values;      ///< first column, first row of the tile
     size_t rows;       ///< from a column to the next
     REAL *scaled;      ///< W of the tile: [column][row of the tile]
     const REAL *lower; ///< L in the rows that the columns are the pivots of, first column of the front
     size_t lower_rows; ///< from a column to the next
     size_t before;     ///< columns of the front that come before
-} NAME(tile);
+} TILE;
 
 /// What a group's own rows come to: 1 / D and L.
-typedef struct NAME(corner) {
+typedef struct CORNER {
     REAL reciprocal[GROUP], lower[GROUP][GROUP]; ///< L: [column][row]
-} NAME(corner);
+} CORNER;
 
-MSPRINGI_INLINE void NAME(subtract)(VECTOR sum[GROUP][MSPRINGI_TILE_VECTORS], const NAME(tile) * t, size_t columns,
+MSPRINGI_INLINE void NAME(subtract)(VECTOR sum[GROUP][MSPRINGI_TILE_VECTORS], const TILE *t, size_t columns,
                                     size_t vectors) {
     const REAL *scaled = t->scaled, *lower = t->lower;
     for (size_t p = 0; p < t->before; p += 2) { // columns come in pairs
@@ -99,7 +105,7 @@ MSPRINGI_INLINE void NAME(subtract)(VECTOR sum[GROUP][MSPRINGI_TILE_VECTORS], co
 }
 
 /// Subtract the products of the columns before.
-MSPRINGI_INLINE void NAME(update_tile)(const NAME(tile) * t, size_t columns, size_t vectors) {
+MSPRINGI_INLINE void NAME(update_tile)(const TILE *t, size_t columns, size_t vectors) {
     VECTOR sum[GROUP][MSPRINGI_TILE_VECTORS];
     MSPRINGI_UNROLL
     for (size_t c = 0; c < columns; ++c)
@@ -115,8 +121,8 @@ MSPRINGI_INLINE void NAME(update_tile)(const NAME(tile) * t, size_t columns, siz
 }
 
 /// Subtract the products of the columns before, unless that is done, and eliminate the group's columns.
-MSPRINGI_INLINE void NAME(eliminate_tile)(const NAME(tile) * t, const NAME(corner) * corner, bool updated,
-                                          size_t columns, size_t vectors) {
+MSPRINGI_INLINE void NAME(eliminate_tile)(const TILE *t, const CORNER *corner, bool updated, size_t columns,
+                                          size_t vectors) {
     VECTOR sum[GROUP][MSPRINGI_TILE_VECTORS];
     MSPRINGI_UNROLL
     for (size_t c = 0; c < columns; ++c)
@@ -144,7 +150,7 @@ MSPRINGI_INLINE void NAME(eliminate_tile)(const NAME(tile) * t, const NAME(corne
     }
 }
 
-static void NAME(update)(const NAME(tile) * t, size_t columns, size_t vectors) {
+static void NAME(update)(const TILE *t, size_t columns, size_t vectors) {
 #if MSPRINGI_TILE_VECTORS >= 4
     if (vectors == 4 && columns == GROUP)
         NAME(update_tile)(t, GROUP, 4);
@@ -162,8 +168,7 @@ static void NAME(update)(const NAME(tile) * t, size_t columns, size_t vectors) {
         NAME(update_tile)(t, 2, 1);
 }
 
-static void NAME(eliminate)(const NAME(tile) * t, const NAME(corner) * corner, bool updated, size_t columns,
-                            size_t vectors) {
+static void NAME(eliminate)(const TILE *t, const CORNER *corner, bool updated, size_t columns, size_t vectors) {
 #if MSPRINGI_TILE_VECTORS >= 4
     if (vectors == 4 && columns == GROUP)
         NAME(eliminate_tile)(t, corner, updated, GROUP, 4);
@@ -185,8 +190,7 @@ static void NAME(eliminate)(const NAME(tile) * t, const NAME(corner) * corner, b
 
 /// Eliminate a group's own rows, which the columns before have been subtracted from. Returns the column whose pivot
 /// is not positive, or columns.
-MSPRINGI_INLINE size_t NAME(eliminate_corner)(NAME(corner) * corner, const REAL *values, size_t rows,
-                                              size_t columns) {
+MSPRINGI_INLINE size_t NAME(eliminate_corner)(CORNER *corner, const REAL *values, size_t rows, size_t columns) {
     REAL scaled[GROUP][GROUP];
     MSPRINGI_UNROLL
     for (size_t c = 0; c < columns; ++c) {
@@ -209,20 +213,19 @@ MSPRINGI_INLINE size_t NAME(eliminate_corner)(NAME(corner) * corner, const REAL 
 
 /// Eliminate the columns first ... first + columns - 1 in the rows below. Returns the column whose pivot is not
 /// positive, or the number of columns in the front.
-MSPRINGI_INLINE size_t NAME(eliminate_group)(const NAME(columns) * f, size_t first, size_t columns) {
+MSPRINGI_INLINE size_t NAME(eliminate_group)(const COLUMNS *f, size_t first, size_t columns) {
     size_t row = 0, rows = NAME(tile_rows)(f->pivot_rows);
     while (row + rows <= first) {
         row += rows;
         rows = NAME(tile_rows)(f->pivot_rows - row);
     }
-    NAME(tile)
-    t = {.rows = f->pivot_rows, .lower = f->pivots + first, .lower_rows = f->pivot_rows, .before = first};
+    TILE t = {.rows = f->pivot_rows, .lower = f->pivots + first, .lower_rows = f->pivot_rows, .before = first};
     REAL *const values = f->pivots + first * f->pivot_rows;
     t.values = values + row;
     t.scaled = f->scaled_pivots + row * f->count;
     if (first > 0)
         NAME(update)(&t, columns, rows / LANES);
-    NAME(corner) corner;
+    CORNER corner;
     const size_t done = columns == GROUP ? NAME(eliminate_corner)(&corner, values + first, f->pivot_rows, GROUP)
                                          : NAME(eliminate_corner)(&corner, values + first, f->pivot_rows, 2);
     if (done < columns)
@@ -247,8 +250,8 @@ MSPRINGI_INLINE size_t NAME(eliminate_group)(const NAME(columns) * f, size_t fir
 }
 
 /// Subtract the products of all columns from the update matrix, lower triangle.
-MSPRINGI_INLINE void NAME(update_border)(const NAME(columns) * f, REAL *update, size_t update_columns) {
-    NAME(tile) t = {.rows = f->border_rows, .lower_rows = f->border_rows, .before = f->count};
+MSPRINGI_INLINE void NAME(update_border)(const COLUMNS *f, REAL *update, size_t update_columns) {
+    TILE t = {.rows = f->border_rows, .lower_rows = f->border_rows, .before = f->count};
     size_t rows;
     for (size_t row = 0; row < f->border_rows; row += rows) {
         rows = NAME(tile_rows)(f->border_rows - row);
@@ -277,7 +280,7 @@ MSPRINGI_INLINE void NAME(add_edges)(REAL *columns, size_t rows, const mspringi_
 }
 
 /// Put a front's part of A into its columns, which are zero. 0 + makes 0 of -0, see add_columns().
-MSPRINGI_INLINE void NAME(assemble)(const NAME(columns) * f, const mspringi_cholesky_plan *plan,
+MSPRINGI_INLINE void NAME(assemble)(const COLUMNS *f, const mspringi_cholesky_plan *plan,
                                     const mspringi_front *front, const MATRIX *matrix) {
     const mspringi_cholesky_entry *entries = plan->entries;
     REAL *to = f->pivots;
@@ -291,38 +294,42 @@ MSPRINGI_INLINE void NAME(assemble)(const NAME(columns) * f, const mspringi_chol
     NAME(add_edges)(f->border, f->border_rows, entries + front->border_entry, entries + front->end_entry, matrix);
 }
 
-/// Add columns of one array to columns of another, the first rows rows of each. A vector may reach beyond them,
-/// where it adds 0: nothing there is -0, so nothing changes.
-MSPRINGI_INLINE void NAME(add_columns)(REAL *to, size_t to_rows, const REAL *from, size_t from_rows, size_t columns,
-                                       size_t rows) {
+/// Where some columns begin, and how far it is from one to the next.
+typedef struct NAME(place) {
+    REAL *at;
+    size_t rows;
+} PLACE;
+
+/// Add the first rows rows of some columns to others. A vector may reach beyond them, where it adds 0: nothing
+/// there is -0, so nothing changes.
+MSPRINGI_INLINE void NAME(add_columns)(PLACE to, PLACE from, size_t columns, size_t rows) {
     const size_t whole = (rows - 1) / LANES * LANES;
     const MASK mask = *(const MASK_ANYWHERE *)(const void *)(NAME(masks) + MSPRINGI_PAD - (rows - whole));
-    for (size_t c = 0; c < columns; ++c, to += to_rows, from += from_rows) {
+    for (size_t c = 0; c < columns; ++c, to.at += to.rows, from.at += from.rows) {
         for (size_t i = 0; i < whole; i += LANES)
-            NAME(store_anywhere)(to + i, NAME(load_anywhere)(to + i) + NAME(load_anywhere)(from + i));
-        const VECTOR last = NAME(keep)(NAME(load_anywhere)(from + whole), mask);
-        NAME(store_anywhere)(to + whole, NAME(load_anywhere)(to + whole) + last);
+            NAME(store_anywhere)(to.at + i, NAME(load_anywhere)(to.at + i) + NAME(load_anywhere)(from.at + i));
+        const VECTOR last = NAME(keep)(NAME(load_anywhere)(from.at + whole), mask);
+        NAME(store_anywhere)(to.at + whole, NAME(load_anywhere)(to.at + whole) + last);
     }
 }
 
 /// Add the update matrix of a child to a front's columns and its own update matrix.
-MSPRINGI_INLINE void NAME(add_child)(const NAME(columns) * f, REAL *update, size_t update_columns,
-                                     const mspringi_front_run *runs, uint32_t run_count, const REAL *child,
-                                     size_t child_rows, size_t child_columns) {
-    for (uint32_t a = 0; a < run_count; ++a) {
+MSPRINGI_INLINE void NAME(add_child)(const COLUMNS *f, REAL *update, size_t update_columns,
+                                     const mspringi_front *child, const mspringi_front_run *runs, REAL *values) {
+    const size_t child_rows = mspringi_border_rows(child), child_columns = 2 * (size_t)child->border_count;
+    for (uint32_t a = 0; a < child->run_count; ++a) {
         const size_t columns = 2 * (size_t)runs[a].count;
-        for (uint32_t b = a; b < run_count; ++b) {
-            const size_t to_rows = runs[b].is_pivot ? f->pivot_rows : f->border_rows;
-            REAL *to = !runs[a].is_pivot ? update : runs[b].is_pivot ? f->pivots : f->border;
-            NAME(add_columns)
-            (to + 2 * (runs[a].to * to_rows + runs[b].to), to_rows,
-             child + 2 * (runs[a].first * child_rows + runs[b].first), child_rows, columns,
-             2 * (size_t)runs[b].count);
+        REAL *const from = values + 2 * runs[a].first * child_rows;
+        for (uint32_t b = a; b < child->run_count; ++b) {
+            const size_t rows = runs[b].is_pivot ? f->pivot_rows : f->border_rows;
+            REAL *const to = !runs[a].is_pivot ? update : runs[b].is_pivot ? f->pivots : f->border;
+            const PLACE there = {to + 2 * (runs[a].to * rows + runs[b].to), rows};
+            const PLACE here = {from + 2 * (size_t)runs[b].first, child_rows};
+            NAME(add_columns)(there, here, columns, 2 * (size_t)runs[b].count);
         }
-        const REAL *from = child + 2 * runs[a].first * child_rows + child_columns;
-        REAL *to = (runs[a].is_pivot ? f->border : update) + 2 * runs[a].to * f->border_rows + update_columns;
-        for (size_t c = 0; c < columns; ++c, to += f->border_rows, from += child_rows)
-            *to += *from;
+        REAL *const to = (runs[a].is_pivot ? f->border : update) + 2 * runs[a].to * f->border_rows + update_columns;
+        for (size_t c = 0; c < columns; ++c)
+            to[c * f->border_rows] += from[c * child_rows + child_columns];
     }
 }
 
@@ -332,10 +339,9 @@ static uint32_t NAME(eliminate_all)(FACTOR *factor, const MATRIX *matrix, REAL *
     const mspringi_cholesky_plan *plan = factor->plan;
     for (uint32_t n = 0; n < plan->front_count; ++n) {
         const mspringi_front *front = &plan->fronts[n];
-        NAME(columns)
-        f = {.count = 2 * (size_t)front->pivot_count,
-             .pivot_rows = mspringi_pivot_rows(front),
-             .border_rows = mspringi_border_rows(front)};
+        COLUMNS f = {.count = 2 * (size_t)front->pivot_count,
+                     .pivot_rows = mspringi_pivot_rows(front),
+                     .border_rows = mspringi_border_rows(front)};
         f.pivots = factor->panels + front->panel;
         f.border = f.pivots + f.count * f.pivot_rows;
         f.scaled_pivots = factor->scaled;
@@ -351,10 +357,8 @@ static uint32_t NAME(eliminate_all)(FACTOR *factor, const MATRIX *matrix, REAL *
             row[c * f.border_rows] = 0 + right_side[c];
         for (uint32_t c = 0; c < front->child_count; ++c) {
             const mspringi_front *child = &plan->fronts[plan->children[front->first_child + c]];
-            NAME(add_child)
-            (&f, update, update_columns, plan->runs + child->first_run, child->run_count,
-             factor->updates[child->stack] + child->update, mspringi_border_rows(child),
-             2 * (size_t)child->border_count);
+            REAL *const values = factor->updates[child->stack] + child->update;
+            NAME(add_child)(&f, update, update_columns, child, plan->runs + child->first_run, values);
         }
         for (size_t first = 0; first < f.count; first += GROUP) {
             const size_t bad = NAME(eliminate_group)(&f, first, first + GROUP <= f.count ? GROUP : 2);
@@ -414,29 +418,29 @@ MSPRINGI_INLINE void NAME(solve_forward)(const FACTOR *factor, const mspringi_fr
 }
 
 /// Two unknowns.
-typedef struct NAME(pair) {
+typedef struct PAIR {
     REAL first, second;
-} NAME(pair);
+} PAIR;
 
 /// Two unknowns without what they have in common with two later ones, which are rows of lower.
-MSPRINGI_INLINE NAME(pair) NAME(without)(const REAL *lower, size_t rows, const REAL *y, NAME(pair) later) {
-    return (NAME(pair)){(y[0] - lower[1] * later.second) - lower[0] * later.first,
-                        (y[1] - lower[rows + 1] * later.second) - lower[rows] * later.first};
+MSPRINGI_INLINE PAIR NAME(without)(const REAL *lower, size_t rows, const REAL *y, PAIR later) {
+    return (PAIR){(y[0] - lower[1] * later.second) - lower[0] * later.first,
+                  (y[1] - lower[rows + 1] * later.second) - lower[rows] * later.first};
 }
 
 /// y = L^-T y in the pivot rows. The next two unknowns, which the ones after them wait for, do not go through
 /// memory.
 MSPRINGI_INLINE void NAME(solve_pivots)(const REAL *lower, size_t rows, size_t columns, REAL *restrict y) {
-    NAME(pair) now = {y[columns - 2], y[columns - 1]};
+    PAIR now = {y[columns - 2], y[columns - 1]};
     for (size_t at = columns - 2;; at -= 2) {
         now.first -= lower[at * rows + at + 1] * now.second;
         y[at] = now.first;
         y[at + 1] = now.second;
         if (at == 0)
             return;
-        const NAME(pair) next = NAME(without)(lower + (at - 2) * rows + at, rows, y + at - 2, now);
+        const PAIR next = NAME(without)(lower + (at - 2) * rows + at, rows, y + at - 2, now);
         for (size_t i = 0; i < at - 2; i += 2) {
-            const NAME(pair) other = NAME(without)(lower + i * rows + at, rows, y + i, now);
+            const PAIR other = NAME(without)(lower + i * rows + at, rows, y + i, now);
             y[i] = other.first;
             y[i + 1] = other.second;
         }
@@ -505,5 +509,10 @@ static void NAME(solve)(FACTOR *factor, REAL *x, REAL *y) {
     NAME(solve_all_backward)(factor, x, y);
 }
 
+#undef COLUMNS
+#undef TILE
+#undef CORNER
+#undef PAIR
+#undef PLACE
 #undef GROUP
 #undef LANES
