@@ -261,6 +261,32 @@ static void truss_and_ropes_rest(void **state) {
     recipe_free(&made);
 }
 
+// Masses and stiffnesses over six orders of magnitude: some hang a million times as deep as their springs are long.
+static void springs_and_weights_of_all_sizes(void **state) {
+    (void)state;
+    for (uint64_t seed = 1; seed <= 100; seed++) {
+        uint64_t random = seed;
+        recipe made = {0};
+        const uint32_t count = 2 + (uint32_t)(support_random(&random) % 80);
+        for (uint32_t i = 0; i < count; i++) {
+            const double mass = pow(10, support_random_between(&random, -3, 3));
+            recipe_particle(&made, support_random_between(&random, 0, 1), support_random_between(&random, 0, 1),
+                            mass, i == 0 || support_random(&random) % 20 == 0 ? MSPRING_PARTICLE_PINNED : 0);
+            if (i > 0) {
+                const double stiffness = pow(10, support_random_between(&random, -3, 3));
+                recipe_spring(&made, i, (mspring_id)(support_random(&random) % i), stiffness, 0, 0);
+            }
+        }
+        mspring_network *network = network_of(&made, -gravity);
+        const mspring_settle_result result = settled(network);
+        assert_int_equal(result.is_stable, 1);
+        // 1e-9, or what rounding leaves of it: positions of up to 1e8 m have a last place of 1.5e-8 m.
+        assert_true(result.residual <= 1e-9 * result.largest_force + 1e3 * 1.5e-8);
+        mspring_network_destroy(network);
+        recipe_free(&made);
+    }
+}
+
 static void hangs_the_same_far_from_the_origin(void **state) {
     (void)state;
     recipe here = bar(30, 4, 1e8), there = bar(30, 4, 1e8);
@@ -594,6 +620,7 @@ int main(void) {
         cmocka_unit_test(bars_1800x5),
         cmocka_unit_test(random_graphs_rest),
         cmocka_unit_test(truss_and_ropes_rest),
+        cmocka_unit_test(springs_and_weights_of_all_sizes),
         cmocka_unit_test(hangs_the_same_far_from_the_origin),
         cmocka_unit_test(broken_springs_bear_nothing),
         cmocka_unit_test(relative_springs_follow_a_substep),

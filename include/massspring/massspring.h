@@ -582,7 +582,8 @@ typedef struct mspring_settle_def {
     uint32_t max_iterations; ///< 1 to 1000000; default 1000
     uint32_t reserved;       ///< 0
     double tolerance; ///< force (N) that may be left on a particle, as a part of the largest that any spring or
-                      ///< anything outside exerts; 1e-15 to 1; default 1e-9
+                      ///< anything outside exerts; 1e-15 to 1; default 1e-9. Where rounding does not allow that, what
+                      ///< it allows.
     double relative_substep; ///< substep (s) that the stiffness of relative springs follows; default 0: the one of
                              ///< the last step, before which they have none
 } mspring_settle_def;

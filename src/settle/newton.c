@@ -18,12 +18,14 @@
 /// Pushes out of equilibria that are not stable, and how far, as a part of the springs' mean length.
 #define MOST_PUSHES 8
 #define PUSH 1e-3
-/// Steps below this part of the network's size are its rounding.
+/// Steps below this part of the network's size, or of how far it was moved, are rounding: no force can be got below
+/// what they leave.
 #define SMALLEST_STEP 1e-14
 
 typedef struct newton {
     mspringi_statics *statics;
-    double size, push, shift;
+    double reach; ///< longest step, m
+    double push, shift;
     uint32_t pushes;
 } newton;
 
@@ -70,7 +72,7 @@ static double go(newton *n) {
     const double step = largest_of(statics->step, count), bend = largest_of(statics->bend, count);
     if (!(slope >= 0.0 && step < INFINITY && bend < INFINITY))
         return -1.0;
-    const double farthest = step > n->size ? n->size / step : 1.0;
+    const double farthest = step > n->reach ? n->reach / step : 1.0;
     reach best = search(n, farthest * bend > step ? step / bend : farthest, slope);
     if (best.t < 0.5 * farthest) {
         const size_t bytes = 2 * (size_t)count * sizeof *statics->bend.x;
@@ -84,6 +86,8 @@ static double go(newton *n) {
     }
     if (best.t == 0.0)
         return -1.0;
+    if (best.t == farthest && farthest < 1.0)
+        n->reach *= 4.0; // it is further away than the network is large
     for (uint32_t p = 0; p < count; ++p) {
         statics->moved.x[p] += best.t * (statics->step.x[p] + best.t * statics->bend.x[p]);
         statics->moved.y[p] += best.t * (statics->step.y[p] + best.t * statics->bend.y[p]);
@@ -125,7 +129,7 @@ static void push(newton *n) {
 
 mspringi_rest mspringi_statics_rest(mspringi_statics *statics, uint32_t most_iterations, double tolerance,
                                     double size) {
-    newton n = {.statics = statics, .size = size};
+    newton n = {.statics = statics, .reach = size};
     for (uint32_t i = 0; i < statics->springs.count; ++i)
         n.push += PUSH * statics->springs.rest_length[i] / (double)statics->springs.count;
     mspringi_rest rest = {.residual = mspringi_statics_forces(statics)};
@@ -146,6 +150,6 @@ mspringi_rest mspringi_statics_rest(mspringi_statics *statics, uint32_t most_ite
             return rest;
         rest.iterations++;
         rest.residual = mspringi_statics_forces(statics);
-        rest.found = moved <= SMALLEST_STEP * size;
+        rest.found = moved <= SMALLEST_STEP * fmax(size, largest_of(statics->moved, statics->particle_count));
     }
 }
