@@ -1,7 +1,10 @@
 #include "cpu.h"
 
-#include <stdlib.h>
 #include <string.h>
+
+#if !defined(MSPRINGI_FREESTANDING)
+#include <stdlib.h>
+#endif
 
 #include "target.h"
 
@@ -94,7 +97,11 @@ mspring_simd mspringi_cpu_choose(mspring_simd wanted) {
     mspring_simd level = mspring_simd_supported();
     if (wanted != MSPRING_SIMD_AUTO && mspring_simd_available(wanted))
         level = wanted;
+#if defined(MSPRINGI_FREESTANDING)
+    const char *name = NULL;
+#else
     const char *name = getenv("MSPRING_SIMD");
+#endif
     for (mspring_simd l = MSPRING_SIMD_SCALAR; name && l < level; ++l)
         if (mspring_simd_available(l) && strcmp(name, mspring_simd_name(l)) == 0)
             level = l;

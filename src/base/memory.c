@@ -1,16 +1,20 @@
 #include "memory.h"
 
-#include <stdlib.h>
 #include <string.h>
 
+#if !defined(MSPRINGI_FREESTANDING)
+#include <stdlib.h>
 #if defined(_WIN32)
 #include <malloc.h>
+#endif
 #endif
 
 /// In front of every block, so that the size that was asked for is known when it is freed.
 typedef struct block_header {
     size_t size;
 } block_header;
+
+#if !defined(MSPRINGI_FREESTANDING)
 
 static void *default_alloc(size_t size, size_t alignment, void *user) {
     (void)user;
@@ -31,10 +35,18 @@ static void default_free(void *memory, size_t size, void *user) {
 #endif
 }
 
+#endif
+
 mspring_result mspringi_memory_init(mspringi_memory *memory, const mspring_allocator *allocator,
                                     mspringi_message *message) {
+#if defined(MSPRINGI_FREESTANDING)
+    if (!allocator)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "this build has no malloc: give an allocator");
+    const mspring_allocator defaults = {.struct_size = sizeof defaults};
+#else
     const mspring_allocator defaults = {
         .struct_size = sizeof defaults, .alloc = default_alloc, .free = default_free};
+#endif
     if (allocator) {
         mspring_result result = mspringi_check_struct(message, "mspring_allocator", allocator->struct_size,
                                                       sizeof *allocator, sizeof *allocator);

@@ -5,6 +5,8 @@
 #ifndef MSPRINGI_MESSAGE_H
 #define MSPRINGI_MESSAGE_H
 
+#include <stdarg.h>
+
 #include <massspring/massspring.h>
 
 typedef struct mspringi_message {
@@ -18,6 +20,9 @@ typedef struct mspringi_message {
 #else
 #define MSPRINGI_PRINTF(format_index, first_index)
 #endif
+
+/// Write text, cut to fit size bytes. Builds without stdio write the format itself.
+void mspringi_format(char *text, size_t size, const char *format, va_list arguments) MSPRINGI_PRINTF(3, 0);
 
 /// Write the message, cut to fit, and return result.
 mspring_result mspringi_fail(mspringi_message *message, mspring_result result, const char *format, ...)

@@ -1,6 +1,5 @@
 /// Saving and loading snapshots.
 #include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/cpu.h"
@@ -23,7 +22,7 @@ mspring_result mspringi_section_fail(mspring_network *network, const mspringi_se
     char what[160];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(what, sizeof what, format, arguments);
+    mspringi_format(what, sizeof what, format, arguments);
     va_end(arguments);
     return mspringi_fail(&network->message, MSPRING_ERROR_SNAPSHOT, "the snapshot's %s: %s", section->name, what);
 }
