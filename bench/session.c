@@ -23,10 +23,11 @@ typedef struct session {
     bench_network *step; ///< the network
     float *values;       ///< [particles or springs, whichever are more]
     float *more_values;
-    double *x, *y;    ///< [particles]
-    mspring_id *list; ///< [BURST] springs, scattered
-    uint32_t burst;   ///< of them: BURST, or all springs if there are fewer
-    uint32_t calls;   ///< so far
+    float *by_spring[4]; ///< [springs] each
+    double *x, *y;       ///< [particles]
+    mspring_id *list;    ///< [BURST] springs, scattered
+    uint32_t burst;      ///< of them: BURST, or all springs if there are fewer
+    uint32_t calls;      ///< so far
 } session;
 
 typedef mspring_result (*session_fn)(session *with);
@@ -142,6 +143,15 @@ static mspring_result measure_components(session *with) {
     return mspring_network_get_components(with->step->network, 0, 1, &component);
 }
 
+static mspring_result measure_strains(session *with) {
+    return mspring_network_get_extents(with->step->network, NULL, NULL, NULL, with->by_spring[0]);
+}
+
+static mspring_result measure_extents(session *with) {
+    return mspring_network_get_extents(with->step->network, with->by_spring[0], with->by_spring[1],
+                                       with->by_spring[2], with->by_spring[3]);
+}
+
 static mspring_result hash(session *with) {
     uint64_t sum;
     return mspring_network_state_hash(with->step->network, &sum);
@@ -168,6 +178,8 @@ static const session_call calls[] = {
     {"components after that", prepare_burst, update_components},
     {"components after 20 springs", prepare_few, update_components},
     {"mass, centre of a component", no_preparation, measure_components},
+    {"strain of all springs", no_preparation, measure_strains},
+    {"and length and direction", no_preparation, measure_extents},
     {"hash of the state", no_preparation, hash},
 };
 
@@ -295,7 +307,11 @@ static bool make_session(bench_network *network, session *out, scene_error *erro
     out->x = bench_allocate(particles, sizeof *out->x, error);
     out->y = bench_allocate(particles, sizeof *out->y, error);
     out->list = bench_allocate(BURST, sizeof *out->list, error);
-    if (!out->values || !out->more_values || !out->x || !out->y || !out->list) {
+    bool ok = true;
+    for (int i = 0; i < 4; i++) {
+        ok = (out->by_spring[i] = bench_allocate(springs, sizeof *out->by_spring[i], error)) != NULL && ok;
+    }
+    if (!ok || !out->values || !out->more_values || !out->x || !out->y || !out->list) {
         return false;
     }
     for (uint32_t i = 0; i < out->burst; i++) {
@@ -307,6 +323,9 @@ static bool make_session(bench_network *network, session *out, scene_error *erro
 static void free_session(session *unwanted) {
     free(unwanted->values);
     free(unwanted->more_values);
+    for (int i = 0; i < 4; i++) {
+        free(unwanted->by_spring[i]);
+    }
     free(unwanted->x);
     free(unwanted->y);
     free(unwanted->list);

@@ -3,6 +3,7 @@
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "recipe.h"
@@ -264,6 +265,58 @@ static void the_hash_sees_every_bit_that_matters(void **state) {
     assert_int_not_equal(support_hash(m->network), hash);
 }
 
+/* ------------------------------------------------------------------------------------------ all springs at once */
+
+static void extents_are_those_of_each_spring(void **state) {
+    (void)state;
+    for (uint64_t variant = 1; variant <= 10; variant++) {
+        uint64_t seed = variant;
+        const recipe_stuff stuff = {
+            .mass = {1, 2}, .stiffness = {50, 100}, .damping = {0, variant % 2 ? 1 : 0}, .holes = 0.2};
+        recipe made = {0};
+        recipe_lattice(&made, 5 + 7 * (uint32_t)variant, 6, 0, 0, 1, &stuff, &seed);
+        recipe_rope(&made, 0, made.particle_count - 1, 40, &stuff, &seed);
+        recipe_random_springs(&made, 23, &stuff, &seed);
+        recipe_disturb(&made, 0.2, 3, &seed);
+        recipe_shuffle(&made, &seed, NULL);
+        mspring_network *network = recipe_network(&made, NULL);
+        const mspring_id broken = 3;
+        check_ok(mspring_network_break_springs(network, &broken, 1));
+        support_steps(network, 5, 0.001);
+        float *arrays[4];
+        for (int i = 0; i < 4; i++) {
+            arrays[i] = malloc(made.spring_count * sizeof(float));
+            assert_non_null(arrays[i]);
+        }
+        check_ok(mspring_network_get_extents(network, arrays[0], arrays[1], arrays[2], arrays[3]));
+        for (mspring_id s = 0; s < made.spring_count; s++) {
+            mspring_spring_info info = {.struct_size = sizeof info};
+            check_ok(mspring_network_get_spring(network, s, &info));
+            const support_point a = support_position(network, info.a), b = support_position(network, info.b);
+            const double length = hypot(b.x - a.x, b.y - a.y);
+            // Some roundings to single precision, of coordinates of up to 100 m for lengths of about 1 m.
+            check_near((double)arrays[0][s], length, 1e-4);
+            check_near((double)arrays[1][s], (b.x - a.x) / length, 1e-4);
+            check_near((double)arrays[2][s], (b.y - a.y) / length, 1e-4);
+            check_near((double)arrays[3][s], (double)info.strain, 1e-5);
+            assert_true(s != broken || arrays[3][s] == 0);
+        }
+        // What is not wanted is left out.
+        float *only = malloc(made.spring_count * sizeof *only);
+        assert_non_null(only);
+        check_ok(mspring_network_get_extents(network, NULL, NULL, NULL, only));
+        assert_memory_equal(only, arrays[3], made.spring_count * sizeof *only);
+        check_error(mspring_network_get_extents(network, NULL, only, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_get_extents(NULL, NULL, NULL, NULL, only), MSPRING_ERROR_ARGUMENT);
+        free(only);
+        for (int i = 0; i < 4; i++) {
+            free(arrays[i]);
+        }
+        mspring_network_destroy(network);
+        recipe_free(&made);
+    }
+}
+
 int main(void) {
 #define MEASURE_TEST(test) cmocka_unit_test_setup_teardown(test, make_moving, free_moving)
     const struct CMUnitTest tests[] = {
@@ -274,6 +327,7 @@ int main(void) {
         cmocka_unit_test(no_spring_no_strain),
         cmocka_unit_test(the_lowest_of_equal_strains_is_named),
         MEASURE_TEST(the_hash_sees_every_bit_that_matters),
+        cmocka_unit_test(extents_are_those_of_each_spring),
     };
     return cmocka_run_group_tests_name("measure", tests, NULL, NULL);
 }

@@ -880,9 +880,10 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_dampings_at(msp
                                                                              const mspring_id *springs,
                                                                              uint32_t count, const float *damping);
 
-/// Set rest lengths (m); as mspring_network_set_stiffnesses(). Ends a ramp of the spring.
+/// Set rest lengths (m); as mspring_network_set_stiffnesses(), and MSPRING_ERROR_MEMORY. Ends a ramp of the spring.
+/// Before the first such call, lattices keep rest lengths once that many springs share.
 /// @param rest_length  [count], > 0 and at most 4e12
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// @threads exclusive access to network   @allocates at the first rest length or ramp in a network   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_rest_lengths(mspring_network *network,
                                                                               mspring_id first, uint32_t count,
                                                                               const float *rest_length);
@@ -909,7 +910,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_break_springs(mspri
 /// @param springs       [count]
 /// @param ramp_seconds  0 for no ramp, at most 1e6
 /// @return as mspring_network_break_springs()
-/// @threads exclusive access to network   @allocates for more ramps at once than there have been   @since 0.1
+/// @threads exclusive access to network   @allocates at the first rest length or ramp in a network, and for more ramps at once than there have been   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_restore_springs(mspring_network *network,
                                                                              const mspring_id *springs,
                                                                              uint32_t count, double ramp_seconds);
@@ -1102,6 +1103,19 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_spring(const ms
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_strains(const mspring_network *network,
                                                                          mspring_id first, uint32_t count,
+                                                                         float *strain);
+
+/// Length, direction and strain of all springs at once, in id order: a pass over the network in the order in which
+/// it lies in memory. Each array is filled if it is not NULL.
+/// @param length       [spring count], m
+/// @param direction_x, direction_y  [spring count] the unit vector along the spring from the end with the lower id
+/// to
+///                     the other; (0, 0) for a spring of length 0; both or none
+/// @param strain       [spring count], as mspring_network_get_strains(), to the last bit or so
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates the first time   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_extents(mspring_network *network, float *length,
+                                                                         float *direction_x, float *direction_y,
                                                                          float *strain);
 
 /// The largest absolute strain and the spring that has it (the lowest id of several). A network without springs

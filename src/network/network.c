@@ -265,6 +265,8 @@ void mspring_network_destroy(mspring_network *network) {
     mspringi_free(&memory, network->kept);
     mspringi_free(&memory, network->edits.link_log);
     mspringi_free(&memory, network->ramps.list);
+    mspringi_free(&memory, network->extents.scratch);
+    mspringi_free(&memory, network->extents.reversed);
     if (network->strain.least != network->strain.break_strain)
         mspringi_free(&memory, network->strain.least);
     mspringi_free(&memory, network->strain.break_strain);

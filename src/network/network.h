@@ -119,6 +119,12 @@ typedef struct mspringi_rests {
     uint32_t count, shared_count;
 } mspringi_rests;
 
+/// What is needed to measure all springs at once; NULL as long as that has not been done.
+typedef struct mspringi_extents {
+    float *scratch;    ///< [places]
+    uint8_t *reversed; ///< [springs / 8] a bit for each spring: 1 where its base is the end with the higher id
+} mspringi_extents;
+
 struct mspring_network {
     mspringi_memory memory;
     mspringi_message message;
@@ -166,6 +172,7 @@ struct mspring_network {
     mspringi_strain strain;
     mspringi_events events;
     mspringi_components components;
+    mspringi_extents extents;
     mspringi_incidence incidence; ///< made when it is needed first
     mspringi_any_shape any_shape;
 
