@@ -910,7 +910,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_break_springs(mspri
 /// @param springs       [count]
 /// @param ramp_seconds  0 for no ramp, at most 1e6
 /// @return as mspring_network_break_springs()
-/// @threads exclusive access to network   @allocates at the first rest length or ramp in a network, and for more ramps at once than there have been   @since 0.1
+/// @threads exclusive access to network
+/// @allocates at the first rest length or ramp in a network, and for more ramps at once than there have been
+/// @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_restore_springs(mspring_network *network,
                                                                              const mspring_id *springs,
                                                                              uint32_t count, double ramp_seconds);
