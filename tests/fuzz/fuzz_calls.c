@@ -22,7 +22,6 @@ typedef struct twins {
     mspring_network *of[TWINS];
     uint32_t particles, springs;
     uint64_t hash;
-    bool workers; ///< the last one has two
 } twins;
 
 /* ---------------------------------------------------------------------------------------------------- numbers */
@@ -118,7 +117,7 @@ static bool make_twins(twins *made, const recipe *from, fuzz_bytes *bytes) {
     bool whole =
         mspring_builder_add_particles(builder, from->particles, from->particle_count, NULL) == MSPRING_OK &&
         mspring_builder_add_springs(builder, from->springs, from->spring_count, NULL) == MSPRING_OK;
-    *made = (twins){.particles = from->particle_count, .springs = from->spring_count, .workers = workers};
+    *made = (twins){.particles = from->particle_count, .springs = from->spring_count};
     for (int i = 0; i < TWINS && whole; i++) {
         def.simd_level = i == 0 ? MSPRING_SIMD_SCALAR : MSPRING_SIMD_AUTO;
         def.worker_count = i == 2 && workers ? 2 : 1;
@@ -240,7 +239,7 @@ static void make_calls(twins *all, fuzz_bytes *bytes) {
                         .a = any_number(bytes),
                         .b = any_number(bytes),
                         .dt = step_length(bytes),
-                        .implicit = !all->workers && fuzz_byte(bytes) % 4 == 0};
+                        .implicit = fuzz_byte(bytes) % 4 == 0};
         mspring_result results[TWINS];
         for (int twin = 0; twin < TWINS; twin++)
             results[twin] = make_call(all->of[twin], &c);
