@@ -1,0 +1,1263 @@
+/// @file massspring.h
+/// libmassspring: simulation of two-dimensional mass-spring-damper networks.
+///
+/// A network is a set of particles with mass, joined by springs with stiffness and damping. You describe it to
+/// a **builder**, create a **network** from the builder, **step** it by dt, and read it through **views** and
+/// **measurements**.
+///
+///     builder --create--> network (topology + state) --step--> views, measurements
+///
+/// **Units** are SI: metres, kilograms, seconds, newtons, N/m, N s/m. The y axis points up.
+///
+/// **Physics.** One substep of length h, for a spring between particles a and b (semi-implicit, also called
+/// symplectic, Euler):
+///
+///     d = p_b - p_a;  L = |d|;  u = d / L
+///     f = (L - rest_length) * stiffness + ((v_b - v_a) . u) * damping
+///     F_a += f u;  F_b -= f u
+///     v(t+h) = (v + (F / m + gravity) h) * exp(-global_damping h);   p(t+h) = p + v(t+h) h
+///
+/// A spring of length 0 has no direction and exerts no force. A pinned particle feels no force: it keeps the
+/// velocity that the host gives it (zero at first) and moves by it. Where there is damping, a speed below 1e-30 m/s
+/// is 0 after a step, so that motion that dies away comes to an end.
+///
+/// **Precision.** The state is single precision relative to a local origin that the network holds in double
+/// and moves along by itself, so a network behaves 10 km away from the world's origin as it does at it.
+///
+/// **Same bits.** The same calls give the same state, bit for bit, at every SIMD level, with every supported
+/// compiler and optimisation level. mspring_network_state_hash() is the way to check it.
+///
+/// **Errors.** Every function that can fail returns a mspring_result. A failed call changes nothing but the
+/// object's error message, which says what is wrong and where; out-parameters are left untouched. No function
+/// prints, exits or aborts. Passing a handle that was destroyed is the one mistake that cannot be detected.
+///
+/// **Threads.** The library has no global state. Calls on one object must not overlap; calls on different
+/// objects may. Where a function says "shared", several threads may call such functions on one object at once.
+/// A network steps on the caller's thread alone, unless its definition asks for workers (worker_count, tasks): then
+/// calls on it still come from one thread at a time, and it divides their work among the workers itself. The number
+/// of workers changes no bit of the result.
+///
+/// **Memory.** Functions say whether they allocate; a step never does.
+///
+/// **ABI.** Handles are opaque, ids are integers, no struct is passed by value. Every public struct starts with
+/// struct_size; its init function fills in defaults. Structs may grow at the end in later versions, and a
+/// program built against an older header goes on working. A program built against a newer one is refused: by
+/// MSPRING_ERROR_STRUCT, or, where it calls what is not there, by the loader. Nothing that was released is taken
+/// away: what has something better stays, and its description says what to use instead, until the ABI is broken as
+/// a whole, which is counted by the shared library's own number and not by the release.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MASSSPRING_MASSSPRING_H
+#define MASSSPRING_MASSSPRING_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "version.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ------------------------------------------------------------------------------------------ export macros */
+
+/// Marks the functions of the library. Define MSPRING_SHARED where you use the library as a Windows DLL.
+#if defined(_WIN32) && defined(MSPRING_BUILD_SHARED)
+#define MSPRING_API __declspec(dllexport)
+#elif defined(_WIN32) && defined(MSPRING_SHARED)
+#define MSPRING_API __declspec(dllimport)
+#elif defined(__GNUC__)
+#define MSPRING_API __attribute__((visibility("default")))
+#else
+#define MSPRING_API
+#endif
+
+/// Marks results that must not be ignored.
+#if defined(__cplusplus) && __cplusplus >= 201703L
+#define MSPRING_NODISCARD [[nodiscard]]
+#elif defined(__GNUC__)
+#define MSPRING_NODISCARD __attribute__((warn_unused_result))
+#else
+#define MSPRING_NODISCARD
+#endif
+
+/* ------------------------------------------------------------------------------------------------ version */
+
+/// Version of the library that runs, in the form of MSPRING_VERSION.
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API uint32_t mspring_version(void);
+
+/// Version of the library that runs, as text, such as "0.1.0". Static storage.
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API const char *mspring_version_string(void);
+
+/* ------------------------------------------------------------------------------------------- result codes */
+
+/// What a call came to: MSPRING_OK or one of the negative errors below.
+typedef int32_t mspring_result;
+
+enum {
+    MSPRING_OK = 0,
+    MSPRING_ERROR_ARGUMENT = -1,     ///< NULL, NaN, infinite, or outside the range that the function states
+    MSPRING_ERROR_ID = -2,           ///< no such particle or spring
+    MSPRING_ERROR_MEMORY = -3,       ///< the allocator returned NULL
+    MSPRING_ERROR_LIMIT = -4,        ///< more particles, springs or cells than the library can index
+    MSPRING_ERROR_STRUCT = -5,       ///< struct_size is not one that any version of this struct had
+    MSPRING_ERROR_DUPLICATE = -6,    ///< two springs join the same two particles
+    MSPRING_ERROR_UNSTABLE = -7,     ///< the step would have left the bounded range; the state is that before it
+    MSPRING_ERROR_BUSY = -8,         ///< called from inside a hook, where only shared calls are allowed
+    MSPRING_ERROR_THREAD = -9,       ///< the system refuses a thread or a lock
+    MSPRING_ERROR_EQUILIBRIUM = -10, ///< the forces have no equilibrium, or none was found
+    MSPRING_ERROR_SNAPSHOT = -11     ///< this is no snapshot of this network, or a damaged one
+};
+
+/// Short English name of a result code, such as "out of memory". Never NULL; static storage.
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API const char *mspring_result_string(mspring_result result);
+
+/* -------------------------------------------------------------------------------------------- identifiers */
+
+/// Particles and springs are named by dense integers, 0, 1, 2 ... in the order in which they were added. They
+/// never change. (Slots, the places inside a view's arrays, are another numbering: see mspring_view.)
+typedef uint32_t mspring_id;
+
+/// No particle, no spring.
+#define MSPRING_NONE UINT32_MAX
+
+/// Most particles and most springs in one network.
+#define MSPRING_MAX_PARTICLES ((uint32_t)1 << 26)
+#define MSPRING_MAX_SPRINGS ((uint32_t)1 << 28)
+
+/// Largest absolute world coordinate (m) that positions may have when given, and largest coordinate relative
+/// to the local origin that a step may lead to.
+#define MSPRING_MAX_COORDINATE 1e12
+
+/* ---------------------------------------------------------------------------------------------- allocator */
+
+/// Where an object takes its memory from. All fields must be set; the struct is copied.
+/// alloc returns at least size bytes aligned to alignment (a power of two, at most 64), or NULL.
+/// free gets the size that was asked for. Both are called only inside calls that say that they allocate, and
+/// inside the destroy functions.
+typedef struct mspring_allocator {
+    uint32_t struct_size; ///< sizeof(mspring_allocator)
+    void *(*alloc)(size_t size, size_t alignment, void *user);
+    void (*free)(void *memory, size_t size, void *user);
+    void *user;
+} mspring_allocator;
+
+/* ------------------------------------------------------------------------------------------------ workers */
+
+/// Most workers of one network.
+#define MSPRING_MAX_WORKERS 256u
+
+/// A piece of work of the library, to be called as fn(argument, index, worker).
+typedef void (*mspring_task_fn)(void *argument, uint32_t index, uint32_t worker);
+
+/// The host's threads, lent to a network. The struct is copied.
+///
+/// run has to call fn(argument, index, worker) once for each index below count, on any threads, the caller's
+/// included, and to return when all these calls have returned. What the caller wrote before is to be visible to
+/// them, and what they wrote to the caller afterwards, as any thread pool sees to. It has to keep these promises:
+///
+///   - worker is below worker_count, and no two calls that run at the same time have the same worker. (It numbers
+///     threads, so that each can have storage of its own; which thread has which number may change from run to
+///     run.)
+///   - If count is at most concurrent_count, all the calls run at the same time: each starts without waiting for
+///     another to return, and goes on running. The library may then have them wait for each other, so a host
+///     that runs fewer at once would hang. If count is larger, the calls are independent of each other and may run
+///     in any order, even one after the other.
+///
+/// A host that cannot promise more sets concurrent_count to 1; the library then divides only what is independent.
+/// run is called only inside calls on the network that are not marked shared, never by two threads at once and
+/// never from inside fn.
+typedef struct mspring_tasks {
+    uint32_t struct_size;      ///< sizeof(mspring_tasks)
+    uint32_t worker_count;     ///< 1 to MSPRING_MAX_WORKERS; 1 means that run is not called
+    uint32_t concurrent_count; ///< 1 to worker_count
+    uint32_t reserved;         ///< 0
+    void (*run)(uint32_t count, mspring_task_fn fn, void *argument, void *user);
+    void *user;
+} mspring_tasks;
+
+/* -------------------------------------------------------------------------------------------- definitions */
+
+/// Flags of particles.
+enum {
+    MSPRING_PARTICLE_PINNED = 1u << 0 ///< feels no force
+};
+
+/// Flags of springs.
+enum {
+    /// stiffness and damping are fractions of what an explicit substep bears, instead of N/m and N s/m:
+    ///     k = stiffness * mu / h^2,   c = damping * mu / h,   mu = m_a m_b / (m_a + m_b)
+    /// with h the substep. They follow the substep, so such a network is as stiff as its step allows. A full
+    /// lattice of equal springs and masses is stable below stiffness = 1.
+    MSPRING_SPRING_RELATIVE = 1u << 0,
+    /// The spring is broken. In mspring_spring_info only.
+    MSPRING_SPRING_BROKEN = 1u << 8,
+    /// The spring is stressed (mspring_network_set_stress_strains()). In mspring_spring_info only.
+    MSPRING_SPRING_STRESSED = 1u << 9
+};
+
+/// One particle. Fill with mspring_particle_def_init() first.
+typedef struct mspring_particle_def {
+    uint32_t struct_size;
+    uint32_t flags; ///< MSPRING_PARTICLE_PINNED or 0; default 0
+    double x, y;    ///< world position, m, at most MSPRING_MAX_COORDINATE in absolute value; default 0
+    float vx, vy;   ///< velocity, m/s, finite; default 0
+    float mass;     ///< kg, 1e-30 to 1e30; default 1
+} mspring_particle_def;
+
+/// rest_length for "the distance at which the two particles are added".
+#define MSPRING_REST_LENGTH_DISTANCE (-1.0f)
+
+/// One spring. Fill with mspring_spring_def_init() first.
+typedef struct mspring_spring_def {
+    uint32_t struct_size;
+    uint32_t flags;    ///< MSPRING_SPRING_RELATIVE or 0; default 0
+    mspring_id a, b;   ///< the particles it joins, not the same; default MSPRING_NONE
+    float stiffness;   ///< N/m (or a fraction, see MSPRING_SPRING_RELATIVE), 0 to 1e30; default 0
+    float damping;     ///< N s/m (or a fraction), 0 to 1e30; default 0
+    float rest_length; ///< m, > 0 and at most 4e12, or MSPRING_REST_LENGTH_DISTANCE, the default
+} mspring_spring_def;
+
+/// What a lattice cell is made of. Fill with mspring_material_init() first.
+typedef struct mspring_material {
+    uint32_t struct_size;
+    uint32_t particle_flags; ///< MSPRING_PARTICLE_PINNED or 0; default 0
+    uint32_t spring_flags;   ///< MSPRING_SPRING_RELATIVE or 0; default 0; all materials of a lattice must agree
+    float mass;              ///< kg per cell, 1e-30 to 1e30; default 1
+    float stiffness;         ///< as in mspring_spring_def
+    float damping;           ///< as in mspring_spring_def
+} mspring_material;
+
+/// Cell of a lattice with nothing in it.
+#define MSPRING_CELL_EMPTY UINT16_MAX
+
+/// A grid of cells, as an image gives it: every cell that is not empty becomes a particle, every pair of
+/// neighbours (8 to a cell) is joined by a spring at its rest length. The spring's stiffness and damping are
+/// the means of its two materials'. Fill with mspring_lattice_def_init() first.
+typedef struct mspring_lattice_def {
+    uint32_t struct_size;
+    uint32_t width, height;            ///< cells, each at least 1, product at most MSPRING_MAX_PARTICLES
+    uint32_t material_count;           ///< at most 65535
+    double x, y;                       ///< world position of the bottom left cell's centre; default 0
+    double spacing;                    ///< m between neighbouring columns and rows, 1e-9 to 1e9; default 1
+    const uint16_t *cells;             ///< [height][width], the top row first: index into materials, or empty
+    const mspring_material *materials; ///< [material_count]
+} mspring_lattice_def;
+
+/// A chain of equal springs between two particles that are there already. Its inner particles lie evenly on the
+/// straight line between the two. Fill with mspring_rope_def_init() first.
+typedef struct mspring_rope_def {
+    uint32_t struct_size;
+    uint32_t spring_flags;  ///< MSPRING_SPRING_RELATIVE or 0; default 0
+    mspring_id from, to;    ///< its ends; default MSPRING_NONE
+    uint32_t segment_count; ///< springs, at least 1; default 1. The rope has one inner particle fewer.
+    float mass;             ///< kg of each inner particle; default 1
+    float stiffness;        ///< of each spring, as in mspring_spring_def
+    float damping;          ///< of each spring
+    float slack;            ///< rest length of the whole over the distance of its ends, 0.001 to 1000; default 1
+} mspring_rope_def;
+
+/// How a network is evolved.
+typedef int32_t mspring_solver;
+enum {
+    /// Symplectic Euler in substeps of equal length. First order, conserves momentum, cost proportional to the
+    /// number of substeps. Stable while omega_max * h < 2: on a full lattice of equal springs and masses,
+    /// stiffness < mass / (2 h^2). See mspring_network_stable_dt().
+    MSPRING_SOLVER_EXPLICIT = 0,
+    /// One linear system in each substep, whatever the stiffness: stable for any dt and any springs, at a cost that
+    /// does not depend on them. Springs and dampers are linearised at x + h v (their stiffness across their
+    /// direction clamped to 0 where they are compressed, so that the matrix is positive definite) and the system is
+    /// solved by a fixed number of conjugate gradient iterations with a two-level preconditioner: the blocks of the
+    /// single particles, and tiles of neighbouring particles that move as rigid bodies. A substep costs 30 to 60
+    /// explicit ones. It damps what oscillates with less than about ten substeps a period.
+    MSPRING_SOLVER_IMPLICIT = 1
+};
+
+/// How the implicit solver goes from t to t + h. All are stable for any h and damp the fastest oscillations out in
+/// a few steps. The two of second order remember the substep before; the first substep after a change of the
+/// solver, and after the positions of all particles were set, is one of implicit Euler.
+typedef int32_t mspring_integrator;
+enum {
+    MSPRING_INTEGRATOR_GA0 = 0,  ///< generalised-alpha with rho_inf = 0 (Chung and Hulbert, 1993): second order
+    MSPRING_INTEGRATOR_BDF2 = 1, ///< backward differences of second order
+    MSPRING_INTEGRATOR_EULER = 2 ///< implicit Euler: first order, and takes most energy out of oscillations
+};
+
+/// Most substeps in one step.
+#define MSPRING_MAX_SUBSTEPS 1000000
+
+/// substeps for "as few as are stable in whatever shape the network may get into" (see
+/// mspring_network_stable_dt()), chosen at every step. mspring_network_substeps() says how many they were. For the
+/// implicit solver 1.
+#define MSPRING_SUBSTEPS_AUTO UINT32_MAX
+
+/// Solver and its settings. Fill with mspring_solver_def_init() first. What a solver does not use is not looked at.
+typedef struct mspring_solver_def {
+    uint32_t struct_size;
+    mspring_solver solver; ///< default MSPRING_SOLVER_EXPLICIT
+    uint32_t substeps;     ///< substeps in one step, 1 to MSPRING_MAX_SUBSTEPS, or MSPRING_SUBSTEPS_AUTO; default 1
+    uint32_t max_substeps; ///< most that MSPRING_SUBSTEPS_AUTO or MSPRING_GUARD_RETRY may choose, 1 to
+                           ///< MSPRING_MAX_SUBSTEPS: a step that needs more is refused with
+                           ///< MSPRING_ERROR_UNSTABLE; default 1000
+    mspring_integrator integrator; ///< of the implicit solver; default MSPRING_INTEGRATOR_GA0
+    uint32_t iterations;           ///< of conjugate gradients in a substep, at most 10000; 0, the default: 8
+    uint32_t tile_size;     ///< rows and columns of the cells that a lattice is cut into for its tiles: 8, 16,
+                            ///< 32, 64, 128 or 256; 0, the default: by plan, the smallest whose matrix is
+                            ///< cheap beside the rest
+    uint32_t coarse_period; ///< substeps from one factorisation of the tiles' matrix to the next, at most 10000:
+                            ///< more are cheaper, and good as long as the network does not turn far in them; 0, the
+                            ///< default: 1
+} mspring_solver_def;
+
+/// Instruction sets. All give the same bits. Those of one kind of CPU stand in order, scalar below all of them:
+/// scalar < SSE2 < AVX2 < AVX-512 on x86, scalar < NEON on 64-bit ARM, scalar alone elsewhere. Between kinds there
+/// is no order.
+typedef int32_t mspring_simd;
+enum {
+    MSPRING_SIMD_AUTO = 0, ///< the best that CPU and operating system offer
+    MSPRING_SIMD_SCALAR = 1,
+    MSPRING_SIMD_SSE2 = 2,
+    MSPRING_SIMD_AVX2 = 3,
+    MSPRING_SIMD_AVX512 = 4,
+    MSPRING_SIMD_NEON = 5
+};
+
+/// Flags of networks.
+enum {
+    MSPRING_NETWORK_RESERVE_DAMPING = 1u << 0 ///< springs may be given damping later, though none has any now
+};
+
+/// What a step does beside refusing to end with a coordinate or speed that is not finite or out of bounds.
+typedef int32_t mspring_guard;
+enum {
+    /// Refuse a step whose substeps are above the border of mspring_network_stable_dt(): motion would turn round
+    /// and
+    /// grow in each. The border is looked at when the substep changes, and when a step changes a velocity twice as
+    /// much as one did at the last look; not at all where substeps are stable in any shape. Steps below the border
+    /// are never refused.
+    MSPRING_GUARD_GROWTH = 0,
+    /// The same, but take a step that would be refused again with twice as many substeps, four times as many, and
+    /// so
+    /// on up to max_substeps. Later steps keep the number that was needed, until mspring_network_set_solver().
+    /// Hooks
+    /// are called again. Relative springs follow the substep, so more of them are no help there.
+    MSPRING_GUARD_RETRY = 1,
+    MSPRING_GUARD_BOUNDS = 2 ///< look at nothing else
+};
+
+/// A network's settings at the start. Fill with mspring_network_def_init() first.
+typedef struct mspring_network_def {
+    uint32_t struct_size;
+    mspring_simd simd_level; ///< highest level to use; default MSPRING_SIMD_AUTO. A level that this machine lacks,
+                             ///< such as one of another kind of CPU, is no limit, so one program may ask for
+                             ///< at most AVX2 on x86 and run on ARM, too. The environment variable MSPRING_SIMD
+                             ///< (scalar, sse2, avx2, avx512, neon) can lower it further, never raise.
+    float gravity_x;         ///< m/s^2, finite; default 0
+    float gravity_y;         ///< m/s^2, finite; default -9.8
+    float global_damping;    ///< 1/s, 0 to 1e6; velocities decay by exp(-global_damping t); default 0
+    float max_speed;         ///< m/s, > 0 and at most 1e15: a step that ends with a particle faster than this in
+                             ///< x or y is refused with MSPRING_ERROR_UNSTABLE; default 1e6
+    mspring_solver solver;   ///< default MSPRING_SOLVER_EXPLICIT; its other settings are those of
+                             ///< mspring_solver_def_init()
+    uint32_t substeps;       ///< as in mspring_solver_def; default 1
+    const mspring_allocator *allocator; ///< default NULL: malloc and free
+    const mspring_tasks *tasks; ///< the host's threads; default NULL: threads of the library, if worker_count asks
+    uint32_t worker_count;      ///< threads that step the network, the caller's being one of them, 1 to
+                           ///< MSPRING_MAX_WORKERS; default 1. The others are started with the network, end with
+                           ///< it, take no signals, and sleep between steps. One for each core is the most that
+                           ///< helps. With tasks, whose number counts, this is not looked at.
+    uint32_t flags;        ///< MSPRING_NETWORK_RESERVE_DAMPING or 0; default 0
+    uint32_t max_substeps; ///< as in mspring_solver_def; default 1000
+    mspring_guard guard;   ///< default MSPRING_GUARD_GROWTH
+} mspring_network_def;
+
+/// Fill a definition with its defaults. Pass the size that your header gives it: sizeof *def.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL; MSPRING_ERROR_STRUCT for an impossible size.
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API mspring_result mspring_particle_def_init(mspring_particle_def *def, size_t size);
+MSPRING_API mspring_result mspring_spring_def_init(mspring_spring_def *def, size_t size);
+MSPRING_API mspring_result mspring_material_init(mspring_material *material, size_t size);
+MSPRING_API mspring_result mspring_lattice_def_init(mspring_lattice_def *def, size_t size);
+MSPRING_API mspring_result mspring_rope_def_init(mspring_rope_def *def, size_t size);
+MSPRING_API mspring_result mspring_solver_def_init(mspring_solver_def *def, size_t size);
+MSPRING_API mspring_result mspring_network_def_init(mspring_network_def *def, size_t size);
+
+/* ------------------------------------------------------------------------------------------------ builder */
+
+/// Collects particles and springs. It can make any number of networks and is not needed after that.
+typedef struct mspring_builder mspring_builder;
+
+/// Make an empty builder.
+/// @param allocator  NULL for malloc and free; copied
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT or MSPRING_ERROR_MEMORY.
+/// @threads any   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_create(const mspring_allocator *allocator,
+                                                                    mspring_builder **builder);
+
+/// Free a builder. NULL is allowed.
+/// @threads exclusive access to builder   @allocates never   @since 0.1
+MSPRING_API void mspring_builder_destroy(mspring_builder *builder);
+
+/// What was wrong with the last call on this builder that failed, naming the culprit; "" if none has failed.
+/// Belongs to the builder, valid until the next call on it. NULL gives "".
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API const char *mspring_builder_error(const mspring_builder *builder);
+
+/// Number of particles and springs added so far. NULL gives 0.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API uint32_t mspring_builder_particle_count(const mspring_builder *builder);
+MSPRING_API uint32_t mspring_builder_spring_count(const mspring_builder *builder);
+
+/// Add one particle.
+/// @param id  receives its id; may be NULL
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
+/// @threads exclusive access to builder   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_particle(mspring_builder *builder,
+                                                                          const mspring_particle_def *def,
+                                                                          mspring_id *id);
+
+/// Add many particles: all of them or, on error, none.
+/// @param defs      [count], all with the same struct_size
+/// @param first_id  receives the id of the first; the others follow; may be NULL
+/// @return as mspring_builder_add_particle(); the error message names the index.
+/// @threads exclusive access to builder   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_particles(mspring_builder *builder,
+                                                                           const mspring_particle_def *defs,
+                                                                           size_t count, mspring_id *first_id);
+
+/// Add one spring between particles that were added before.
+/// @param id  receives its id; may be NULL
+/// @return MSPRING_OK; MSPRING_ERROR_ID for a particle that does not exist; MSPRING_ERROR_ARGUMENT for a value
+///         out of range, a spring from a particle to itself, or a rest length to be taken from the distance of
+///         two particles in the same place; MSPRING_ERROR_STRUCT, MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
+///         A second spring between the same two particles is found by mspring_network_create().
+/// @threads exclusive access to builder   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_spring(mspring_builder *builder,
+                                                                        const mspring_spring_def *def,
+                                                                        mspring_id *id);
+
+/// Add many springs: all of them or, on error, none. As mspring_builder_add_particles().
+/// @threads exclusive access to builder   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_springs(mspring_builder *builder,
+                                                                         const mspring_spring_def *defs,
+                                                                         size_t count, mspring_id *first_id);
+
+/// Add a lattice: all of it or, on error, nothing. Particle ids follow the cells, row by row from the top, left
+/// to right, empty cells left out. Spring ids follow the particles; each brings those to its right, lower left,
+/// lower and lower right neighbour, in this order, where they exist.
+/// @param cell_ids  [height][width], receives each cell's particle id or MSPRING_NONE; may be NULL
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT (the message names cell or material), MSPRING_ERROR_STRUCT,
+///         MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
+/// @threads exclusive access to builder   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_lattice(mspring_builder *builder,
+                                                                         const mspring_lattice_def *def,
+                                                                         mspring_id *cell_ids);
+
+/// Add a rope: all of it or, on error, nothing. Ids of particles and of springs follow the rope from its first
+/// end to its second.
+/// @param first_particle  receives the id of the first inner particle, MSPRING_NONE if there is none; may be NULL
+/// @param first_spring    receives the id of the first spring; may be NULL
+/// @return as mspring_builder_add_spring()
+/// @threads exclusive access to builder   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_rope(mspring_builder *builder,
+                                                                      const mspring_rope_def *def,
+                                                                      mspring_id *first_particle,
+                                                                      mspring_id *first_spring);
+
+/* ---------------------------------------------------------------------------------------------- lifecycle */
+
+/// A network: its topology, which is fixed, and its state.
+typedef struct mspring_network mspring_network;
+
+/// Make a network of what the builder holds. Reads the builder once, finds the lattices and chains in it from
+/// positions and springs (whatever the order they were added in), and lays the state out for them: see
+/// mspring_plan. On failure the builder's error message says why.
+/// @param def  settings; NULL for the defaults
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT if the builder has no particle or a setting is out of range;
+///         MSPRING_ERROR_DUPLICATE if two springs join the same two particles; MSPRING_ERROR_THREAD if a worker
+///         cannot be started; MSPRING_ERROR_STRUCT, MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
+/// @threads exclusive access to builder   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_create(mspring_builder *builder,
+                                                                    const mspring_network_def *def,
+                                                                    mspring_network **network);
+
+/// Free a network. NULL is allowed. Must not be called from a hook.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_API void mspring_network_destroy(mspring_network *network);
+
+/// What was wrong with the last call on this network that failed; as mspring_builder_error(). Functions marked
+/// shared report by their result alone, so that several threads may call them.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API const char *mspring_network_error(const mspring_network *network);
+
+/// Number of particles and springs. NULL gives 0.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API uint32_t mspring_network_particle_count(const mspring_network *network);
+MSPRING_API uint32_t mspring_network_spring_count(const mspring_network *network);
+
+/// Choose how the following steps are made. The state goes on from where it is.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY or MSPRING_ERROR_BUSY. On
+///         error the solver is the one of before.
+/// @threads exclusive access to network   @allocates for an implicit solver, unless only substeps, iterations or
+///         coarse_period differ from the one of before   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_solver(mspring_network *network,
+                                                                        const mspring_solver_def *def);
+
+/// Set the acceleration of gravity, m/s^2, finite.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_gravity(mspring_network *network, float x,
+                                                                         float y);
+
+/// Set the rate (1/s, 0 to 1e6) at which all velocities decay: by exp(-rate t), whatever the step.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_global_damping(mspring_network *network,
+                                                                                float rate);
+
+/* --------------------------------------------------------------------------------------------------- step */
+
+/// Evolve the network by dt.
+///
+/// A step that would end with a coordinate or speed that is not finite or out of bounds (MSPRING_MAX_COORDINATE,
+/// mspring_network_def.max_speed), or in which the scheme itself makes motion grow (mspring_guard), is taken back:
+/// the state is the one of before the step, bit for bit, forces given for it are still there, and the error message
+/// names a particle. Take a shorter dt, more substeps or a lower stiffness.
+/// @param dt  seconds, finite, > 0, and long enough that dt / substeps is a normal float
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_UNSTABLE, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_step(mspring_network *network, double dt);
+
+/// Number of substeps of the last step, or of the one to come before the first; with MSPRING_SUBSTEPS_AUTO 1 before
+/// the first. NULL gives 0.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API uint32_t mspring_network_substeps(const mspring_network *network);
+
+/* ---------------------------------------------------------------------------------------------- stability */
+
+/// How long (s) an explicit substep of this network may be. Above the limit the fastest oscillation turns round and
+/// grows in each substep.
+///
+/// For small motion about a shape, a substep h is stable just if the largest eigenvalue of
+///     h^2 M^-1 K + 2 h M^-1 C
+/// is at most 2 (1 + exp(global_damping h)), with M the masses, K the tangent stiffness of the shape, C the
+/// dampers, and without pinned particles. (One mode of angular frequency omega and damping ratio zeta: omega h <= 2
+/// (sqrt(1 + zeta^2) - zeta).) The eigenvalue is found by iteration (Lanczos 1950). Relative springs follow h; a
+/// network of relative springs alone is stable at every h (infinite) or at none (0).
+/// @param now        for the shape of now, to about 0.3 % and rather below than above; stretching a network
+/// stiffens
+///                   it across and lowers this. May be NULL.
+/// @param any_shape  for any shape that the network can get into, tangles included: at most now; of a full lattice
+///                   at rest 0.71 of it, or 0.49 with dampers alone. It depends on springs (broken ones count as
+///                   whole), masses and pins only. May be NULL.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for a network NULL, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates yes, and frees it, if now is asked for   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_stable_dt(mspring_network *network, double *now,
+                                                                       double *any_shape);
+
+/// The smallest number of substeps for a step of dt that keeps each below safety times the stable one of now.
+/// @param dt      seconds, finite, > 0
+/// @param safety  > 0, at most 1. A network that keeps its shape does with 0.95; one that will be stretched or
+///                crushed needs less, and 0.7 is enough for anything on a lattice without dampers.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT; MSPRING_ERROR_UNSTABLE if MSPRING_MAX_SUBSTEPS are too few;
+///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates yes, and frees it   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_suggest_substeps(mspring_network *network, double dt,
+                                                                              double safety, uint32_t *substeps);
+
+/* ---------------------------------------------------------------------------------------- static equilibrium */
+
+/// Flags of mspring_settle_def.
+enum {
+    MSPRING_SETTLE_LEAVE_FLOATING = 1u << 0 ///< leave parts that have no equilibrium alone, instead of failing
+};
+
+/// How an equilibrium is sought. Fill with mspring_settle_def_init() first.
+typedef struct mspring_settle_def {
+    uint32_t struct_size;
+    uint32_t flags;          ///< MSPRING_SETTLE_LEAVE_FLOATING or 0; default 0
+    uint32_t max_iterations; ///< 1 to 1000000; default 1000
+    uint32_t reserved;       ///< 0
+    double tolerance; ///< force (N) that may be left on a particle, as a part of the largest that any spring or
+                      ///< anything outside exerts; 1e-15 to 1; default 1e-9. Where rounding does not allow that, what
+                      ///< it allows.
+    double relative_substep; ///< substep (s) that the stiffness of relative springs follows; default 0: the one of
+                             ///< the last step, before which they have none
+} mspring_settle_def;
+
+/// What was found. Set struct_size first.
+typedef struct mspring_settle_result {
+    uint32_t struct_size;
+    uint32_t iterations;  ///< steps of Newton's method
+    double residual;      ///< N, largest force in x or y left on a particle, before positions are rounded to float;
+                          ///< that leaves about stiffness times the last place of a coordinate
+    double largest_force; ///< N, largest force that a spring or, in x or y, anything outside exerts
+    double displacement;  ///< m, farthest that a particle was moved
+    uint32_t is_stable;   ///< 1: every small push would be answered by a force back, or by none
+    uint32_t left_alone;  ///< particles of floating parts that were left where they are
+} mspring_settle_result;
+
+/// Fill a definition with its defaults, as mspring_network_def_init().
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API mspring_result mspring_settle_def_init(mspring_settle_def *def, size_t size);
+
+/// Move the particles to where they rest: static equilibrium under gravity, springs and the forces given for the
+/// next step. Pinned particles stay where they are, hooks are not called, dampers do not matter.
+///
+/// The energy is minimised in double precision by Newton's method with a sparse direct solver (cholesky), from
+/// where the particles are now. Every iteration goes downhill, also from starts that are crushed, folded or all in
+/// one place. There may be several equilibria, tangled ones among them; the one found depends on the start. One
+/// that is not stable, such as a pendulum upside down, is left by a small push. Memory and time grow with the size
+/// as those of a factorisation do: for n particles of a lattice about n log n numbers and n^1.5 operations an
+/// iteration.
+///
+/// Then velocities are zero (those of pinned particles stay), and forces given for the next step are still there.
+/// Parts without pinned particle have an equilibrium only if the forces on them cancel, as without gravity; others
+/// are an error, unless MSPRING_SETTLE_LEAVE_FLOATING leaves them as they are.
+/// @param def     NULL for the defaults
+/// @param result  may be NULL
+/// @return MSPRING_OK; MSPRING_ERROR_EQUILIBRIUM if there is none, it is out of bounds, or max_iterations do not
+///         lead to it (the message names a particle, and the force on it); MSPRING_ERROR_LIMIT if the factor would
+///         have over 2^31 numbers; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY,
+///         MSPRING_ERROR_BUSY. On error nothing has moved.
+/// @threads exclusive access to network   @allocates yes, and frees it   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_settle(mspring_network *network,
+                                                                    const mspring_settle_def *def,
+                                                                    mspring_settle_result *result);
+
+/* --------------------------------------------------------------------------------------- forces and hooks */
+
+/// Add a force (N) to one particle. It acts during the whole of the next step and is gone after it.
+/// @return MSPRING_OK; MSPRING_ERROR_ID; MSPRING_ERROR_ARGUMENT if it is not finite or not with the forces given
+///         before; MSPRING_ERROR_MEMORY; MSPRING_ERROR_BUSY (in a hook use its force arrays).
+/// @threads exclusive access to network   @allocates at the first force given to a network   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_apply_force(mspring_network *network,
+                                                                         mspring_id particle, float x, float y);
+
+/// Add forces to the particles first ... first + count - 1: to all or, on error, to none.
+/// @param x, y  [count], N
+/// @return as mspring_network_apply_force(); the message names the index.
+/// @threads exclusive access to network   @allocates at the first force given to a network   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_apply_forces(mspring_network *network,
+                                                                          mspring_id first, uint32_t count,
+                                                                          const float *x, const float *y);
+
+/// When a hook is called. A hook with a period n (see mspring_hook_def) has the substeps of each step taken in
+/// groups of n, of which the last may be smaller, and is called once for each group: before its first substep, or
+/// after its last. Every step begins a new group.
+typedef int32_t mspring_phase;
+enum {
+    MSPRING_PHASE_BEFORE_STEP = 0,    ///< once; may change x, y, vx, vy; forces it adds act all through the step
+    MSPRING_PHASE_BEFORE_SUBSTEP = 1, ///< adds forces for this group of substeps; must not change x, y, vx, vy
+    MSPRING_PHASE_AFTER_SUBSTEP = 2   ///< may change x, y, vx, vy: collisions; there are no force arrays
+};
+
+/// What a hook gets: arrays by slot, of which it is to handle first_slot ... first_slot + slot_count - 1. Some
+/// slots hold no particle: there particle_of_slot is MSPRING_NONE, and what a hook writes is ignored as long as it
+/// is within the bounds of a step.
+typedef struct mspring_hook_args {
+    uint32_t struct_size;
+    mspring_phase phase;
+    uint32_t substep, substep_count; ///< 0 ... substep_count - 1: the first of its group or, in the phase after it,
+                                     ///< the last; before the step 0
+    uint32_t first_slot, slot_count; ///< whole blocks, see mspring_plan
+    double dt;                 ///< time that the call stands for: the step's or, of a group of substeps, theirs, s
+    double origin_x, origin_y; ///< world position = origin + (x, y)
+    float *x, *y, *vx, *vy;    ///< m, relative to the origin; m/s
+    float *force_x, *force_y;  ///< N: add to them; NULL after a substep
+    const float *inverse_mass; ///< 1/kg; 0 if pinned or no particle
+    const uint32_t *particle_of_slot;
+    uint32_t group_count; ///< substeps in the group, 1 ... period; before the step 1
+    uint32_t worker;      ///< who calls: below mspring_network_worker_count(); no two calls at a time have the same
+    void *storage;        ///< this worker's, see mspring_hook_def; else NULL
+} mspring_hook_args;
+
+/// A hook. It must not call functions on the network but those marked shared.
+typedef void (*mspring_hook_fn)(const mspring_hook_args *args, void *user);
+
+/// Flags of hooks.
+enum {
+    /// The slots are divided into ranges, and the hook is called for each of them, perhaps for several at the same
+    /// time on different workers, in any order. It must read and write only its range's slots, and what is written
+    /// by
+    /// none. If what it does to a slot depends on nothing but that slot and what is the same for all calls, the
+    /// network's state is the same, bit for bit, for any number of workers and any range.
+    MSPRING_HOOK_CONCURRENT = 1u << 0
+};
+
+/// A hook's definition. Fill with mspring_hook_def_init() first.
+typedef struct mspring_hook_def {
+    uint32_t struct_size;
+    mspring_phase phase;  ///< default MSPRING_PHASE_BEFORE_STEP
+    mspring_hook_fn fn;   ///< must be set
+    void *user;           ///< handed to fn; default NULL
+    uint32_t period;      ///< substeps in a group, at least 1, of a hook before the step 1; default 1. Forces of a
+                          ///< hook before a group act unchanged in all its substeps. Between calls of hooks several
+                          ///< substeps are taken at once, so a step with a long period is faster.
+    uint32_t flags;       ///< MSPRING_HOOK_CONCURRENT or 0; default 0: one call, on the thread that steps
+    uint32_t range_slots; ///< with MSPRING_HOOK_CONCURRENT, slots in a range, rounded up to whole blocks; default
+                          ///< 0: one range for each worker, or fewer if the network is small
+    uint32_t reserved;    ///< 0
+    void *storage; ///< [mspring_network_worker_count()][storage_stride] bytes of the host, for each worker its
+                   ///< own, such as a sum to be added up after the step; default NULL
+    size_t storage_stride; ///< bytes from one worker's to the next's, best a multiple of 64; default 0
+} mspring_hook_def;
+
+/// Fill a definition with its defaults, as mspring_network_def_init().
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL; MSPRING_ERROR_STRUCT for an impossible size.
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API mspring_result mspring_hook_def_init(mspring_hook_def *def, size_t size);
+
+/// Have a hook called in every step from now on, after the hooks of its phase that were added before it.
+/// @param def   copied
+/// @param hook  receives a number for mspring_network_remove_hook(); may be NULL
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_add_hook(mspring_network *network,
+                                                                      const mspring_hook_def *def, uint32_t *hook);
+
+/// Remove a hook. Numbers of removed hooks are not used again.
+/// @return MSPRING_OK; MSPRING_ERROR_ID if there is no such hook; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_remove_hook(mspring_network *network, uint32_t hook);
+
+/* -------------------------------------------------------------------------------------------------- views */
+
+/// The state as it lies in memory: arrays by slot. The pointers stay valid, and their contents follow the
+/// steps, until the network is destroyed; origin_x and origin_y are as of the call. Positions and velocities
+/// may be written between steps; finite values only.
+typedef struct mspring_view {
+    uint32_t struct_size;
+    uint32_t slot_count;              ///< length of the arrays by slot; some slots hold no particle
+    uint32_t particle_count;          ///< length of slot_of_particle
+    uint32_t reserved;                ///< 0
+    double origin_x, origin_y;        ///< world position = origin + (x, y), m
+    float *x, *y;                     ///< [slot_count], m, relative to the origin
+    float *vx, *vy;                   ///< [slot_count], m/s
+    const float *inverse_mass;        ///< [slot_count], 1/kg; 0 if pinned or no particle
+    const uint32_t *particle_of_slot; ///< [slot_count], particle id or MSPRING_NONE
+    const uint32_t *slot_of_particle; ///< [particle_count]
+} mspring_view;
+
+/// Fill a view. Set struct_size first. Allowed in hooks.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_view(mspring_network *network, mspring_view *view);
+
+/// Copy out world positions (m) of the particles first ... first + count - 1, in id order.
+/// @param x, y  [count] each
+/// @return MSPRING_OK; MSPRING_ERROR_ID if the range leaves the network; MSPRING_ERROR_ARGUMENT for NULL.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_positions(const mspring_network *network,
+                                                                           mspring_id first, uint32_t count,
+                                                                           double *x, double *y);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_positions_float(const mspring_network *network,
+                                                                                 mspring_id first, uint32_t count,
+                                                                                 float *x, float *y);
+
+/// Copy out velocities (m/s), as mspring_network_get_positions().
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_velocities(const mspring_network *network,
+                                                                            mspring_id first, uint32_t count,
+                                                                            float *vx, float *vy);
+
+/// Set world positions (m) of the particles first ... first + count - 1: all or, on error, none. Setting those
+/// of all particles at once also moves the local origin to them; setting a part of them leaves it where it is.
+/// @param x, y  [count], at most MSPRING_MAX_COORDINATE in absolute value and so far from the origin
+/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the index),
+///         MSPRING_ERROR_BUSY (in a hook use its arrays).
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_positions(mspring_network *network,
+                                                                           mspring_id first, uint32_t count,
+                                                                           const double *x, const double *y);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_positions_float(mspring_network *network,
+                                                                                 mspring_id first, uint32_t count,
+                                                                                 const float *x, const float *y);
+
+/// Set velocities (m/s, finite), as mspring_network_set_positions(). A pinned particle moves by its velocity.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_velocities(mspring_network *network,
+                                                                            mspring_id first, uint32_t count,
+                                                                            const float *vx, const float *vy);
+
+/// Copy out masses (kg) in id order; pinned particles have theirs too.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_masses(const mspring_network *network,
+                                                                        mspring_id first, uint32_t count,
+                                                                        float *mass);
+
+/* -------------------------------------------------------------------------------------------------- edits */
+
+/// Everything below may be changed between steps, at a cost for each particle or spring that does not depend on the
+/// size of the network. Values come for a range of ids (first ... first + count - 1) or, in the functions that end
+/// in _at, for a list of ids, which may repeat: then the last value counts. A call sets all of them or, on error,
+/// none.
+
+/// Set positions (m, world coordinates) of listed particles; as mspring_network_set_positions().
+/// @param particles, x, y  [count]
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_positions_at(mspring_network *network,
+                                                                              const mspring_id *particles,
+                                                                              uint32_t count, const double *x,
+                                                                              const double *y);
+
+/// Set velocities (m/s, finite) of listed particles; as mspring_network_set_velocities().
+/// @param particles, vx, vy  [count]
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_velocities_at(mspring_network *network,
+                                                                               const mspring_id *particles,
+                                                                               uint32_t count, const float *vx,
+                                                                               const float *vy);
+
+/// Set masses (kg), as when water gets in. Stiffness and damping of springs stay what they are: relative springs go
+/// on with the masses that their particles had before, until mspring_network_renew_relative_springs(). A spring
+/// that is stable with some masses is stable with larger ones.
+/// @param mass  [count], 1e-30 to 1e30
+/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the particle),
+///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates at the first call on a network with relative springs
+/// @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_masses(mspring_network *network, mspring_id first,
+                                                                        uint32_t count, const float *mass);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_masses_at(mspring_network *network,
+                                                                           const mspring_id *particles,
+                                                                           uint32_t count, const float *mass);
+
+/// Derive relative springs from the masses that their particles have now. Takes a pass over all springs.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_renew_relative_springs(mspring_network *network);
+
+/// Set how much particles give in to forces: 1 as their mass has it (the default), 0 not at all (they are pinned),
+/// between as if they were heavier by one over this; gravity accelerates them all the same. It stays as masses
+/// change, and is no part of the mass that energy and momentum count with.
+/// @param scale  [count], 0 or 1e-6 to 1
+/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the particle),
+///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates at the first scale that is neither 0 nor 1   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_inverse_mass_scales(mspring_network *network,
+                                                                                     mspring_id first,
+                                                                                     uint32_t count,
+                                                                                     const float *scale);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_inverse_mass_scales_at(mspring_network *network,
+                                                                                        const mspring_id *particles,
+                                                                                        uint32_t count,
+                                                                                        const float *scale);
+
+/// Copy out scales of inverse masses in id order; 0: pinned.
+/// @param scale  [count]
+/// @return MSPRING_OK; MSPRING_ERROR_ID or MSPRING_ERROR_ARGUMENT.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_inverse_mass_scales(const mspring_network *network,
+                                                                                     mspring_id first,
+                                                                                     uint32_t count, float *scale);
+
+/// Set nominal stiffness: N/m, of relative springs the fraction. A broken spring stays broken and has the new
+/// stiffness when it is restored.
+/// @param stiffness  [count], 0 to 1e30
+/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the spring), MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_stiffnesses(mspring_network *network,
+                                                                             mspring_id first, uint32_t count,
+                                                                             const float *stiffness);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_stiffnesses_at(mspring_network *network,
+                                                                                const mspring_id *springs,
+                                                                                uint32_t count,
+                                                                                const float *stiffness);
+
+/// Set nominal damping: N s/m, of relative springs the fraction; as mspring_network_set_stiffnesses(). A network
+/// whose springs were all made without damping has no room for any (MSPRING_ERROR_ARGUMENT), unless it was created
+/// with MSPRING_NETWORK_RESERVE_DAMPING.
+/// @param damping  [count], 0 to 1e30
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_dampings(mspring_network *network,
+                                                                          mspring_id first, uint32_t count,
+                                                                          const float *damping);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_dampings_at(mspring_network *network,
+                                                                             const mspring_id *springs,
+                                                                             uint32_t count, const float *damping);
+
+/// Set rest lengths (m); as mspring_network_set_stiffnesses(), and MSPRING_ERROR_MEMORY. Ends a ramp of the spring.
+/// Before the first such call, lattices keep rest lengths once that many springs share.
+/// @param rest_length  [count], > 0 and at most 4e12
+/// @threads exclusive access to network   @allocates at the first rest length or ramp in a network   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_rest_lengths(mspring_network *network,
+                                                                              mspring_id first, uint32_t count,
+                                                                              const float *rest_length);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_rest_lengths_at(mspring_network *network,
+                                                                                 const mspring_id *springs,
+                                                                                 uint32_t count,
+                                                                                 const float *rest_length);
+
+/// Break springs: from now on they exert nothing, until they are restored. Their ids, rest lengths and nominal
+/// stiffness and damping stay. One that is broken already stays so.
+/// @param springs  [count]
+/// @return MSPRING_OK; MSPRING_ERROR_ID (the message names the index), MSPRING_ERROR_ARGUMENT,
+///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates at the first break in a network   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_break_springs(mspring_network *network,
+                                                                           const mspring_id *springs,
+                                                                           uint32_t count);
+
+/// Restore broken springs to their nominal stiffness and damping. One that is whole stays so.
+///
+/// With a ramp, a spring's rest length goes from the length that it has now to its own in the course of
+/// ramp_seconds of simulated time, evenly from step to step, so that it pulls its ends together instead of kicking
+/// them.
+/// @param springs       [count]
+/// @param ramp_seconds  0 for no ramp, at most 1e6
+/// @return as mspring_network_break_springs()
+/// @threads exclusive access to network
+/// @allocates at the first rest length or ramp in a network, and for more ramps at once than there have been
+/// @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_restore_springs(mspring_network *network,
+                                                                             const mspring_id *springs,
+                                                                             uint32_t count, double ramp_seconds);
+
+/// Break all springs of particles, which fly on as loose ones.
+/// @param particles  [count]
+/// @return as mspring_network_break_springs()
+/// @threads exclusive access to network   @allocates at the first break and first detachment in a network
+/// @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_detach_particles(mspring_network *network,
+                                                                              const mspring_id *particles,
+                                                                              uint32_t count);
+
+/* ------------------------------------------------------------------------------------- strain and events */
+
+/// Have springs break by themselves: one whose absolute strain, |length - rest_length| / rest_length, is over its
+/// break strain at the end of a step is broken then. It is the strain that decides, whatever the stiffness, the
+/// substeps or the solver; and nothing breaks, and nobody is called, in the middle of a step.
+/// @param strain  [count], > 0; INFINITY, the default, for never
+/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the spring),
+///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates at the first threshold of break or stress in a network
+/// @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_break_strains(mspring_network *network,
+                                                                               mspring_id first, uint32_t count,
+                                                                               const float *strain);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_break_strains_at(mspring_network *network,
+                                                                                  const mspring_id *springs,
+                                                                                  uint32_t count,
+                                                                                  const float *strain);
+
+/// Have springs watched: one whose absolute strain is over its stress strain at the end of a step is stressed from
+/// then on, until at the end of some step the strain is below the relax fraction of that. See
+/// MSPRING_EVENT_STRESSED.
+/// @param strain  [count], > 0; INFINITY, the default, for never
+/// @return as mspring_network_set_break_strains()
+/// @threads exclusive access to network   @allocates at the first threshold of stress in a network   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_stress_strains(mspring_network *network,
+                                                                                mspring_id first, uint32_t count,
+                                                                                const float *strain);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_stress_strains_at(mspring_network *network,
+                                                                                   const mspring_id *springs,
+                                                                                   uint32_t count,
+                                                                                   const float *strain);
+
+/// Set the relax fraction of all springs: 0.8 at first. The lower, the longer a spring stays stressed.
+/// @param fraction  0 (once stressed, always) to 1
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_relax_fraction(mspring_network *network,
+                                                                                float fraction);
+
+/// What an event tells.
+typedef int32_t mspring_event_kind;
+enum {
+    MSPRING_EVENT_BROKEN = 0, ///< spring id broke: at the end of a step, by its strain; or in an edit, with strain
+                              ///< 0 and, if that was a detachment, the particle detached in other
+    MSPRING_EVENT_STRESSED = 1, ///< the strain of spring id rose over its stress strain
+    MSPRING_EVENT_RELAXED = 2,  ///< and fell below the relax fraction of it
+    MSPRING_EVENT_RESTORED = 3, ///< spring id was restored
+    MSPRING_EVENT_DETACHED = 4, ///< particle id was detached; after the events of its springs
+    MSPRING_EVENT_SPLIT =
+        5, ///< a component with the lowest particle id has split off the one whose lowest is other
+    MSPRING_EVENT_JOINED = 6 ///< the component whose lowest particle was id is now part of the one of other
+};
+
+/// Something that happened in a step or in an edit. These 16 bytes are all that there will be.
+typedef struct mspring_event {
+    mspring_event_kind kind;
+    mspring_id id;    ///< of a spring or a particle, as the kind has it
+    mspring_id other; ///< as the kind has it; else MSPRING_NONE
+    float strain;     ///< of the spring when it happened, signed; 0 where the kind has none
+} mspring_event;
+
+/// Make room for events, which are not recorded without. Those not read yet are dropped.
+/// @param capacity  events that may wait to be read, at most MSPRING_MAX_SPRINGS; 0 to record none any more
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_reserve_events(mspring_network *network,
+                                                                            uint32_t capacity);
+
+/// Take the oldest events out of the queue, in the order in which they happened; what happened at the end of one
+/// step comes in an order that depends on the network alone, the same on every machine.
+/// @param events    [capacity]
+/// @param capacity  how many to take at most
+/// @param count     receives how many there were
+/// @param lost      receives how many found the queue full, since room was made for it; may be NULL
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_read_events(mspring_network *network,
+                                                                         mspring_event *events, uint32_t capacity,
+                                                                         uint32_t *count, uint64_t *lost);
+
+/* --------------------------------------------------------------------------------------------- components */
+
+/// Bring the components up to date. A component is what hangs together by springs that are not broken: a ship, a
+/// piece of its wreck, a loose particle. It is named by its lowest particle, which stays when other parts split
+/// off, and numbered from 0 in the order of these.
+///
+/// Costs next to nothing if no spring was broken or restored since the last time, little if a few were that are
+/// bridged beside them, and else a pass over the network. What has changed is told by MSPRING_EVENT_SPLIT and
+/// MSPRING_EVENT_JOINED, of the first time nothing.
+/// @param count    receives the number of components; may be NULL
+/// @param changed  receives 1 if some particle's component has another number than the last time, else 0; may be
+///                 NULL
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates the first time   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_update_components(mspring_network *network,
+                                                                               uint32_t *count, uint32_t *changed);
+
+/// Copy out the numbers of the components of the particles first ... first + count - 1, as of the last update.
+/// @param component  [count]
+/// @return MSPRING_OK; MSPRING_ERROR_ID; MSPRING_ERROR_ARGUMENT for NULL or if there was no update yet.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_component_numbers(const mspring_network *network,
+                                                                                   mspring_id first, uint32_t count,
+                                                                                   uint32_t *component);
+
+/// What a component is and does. Set struct_size first.
+typedef struct mspring_component {
+    uint32_t struct_size;
+    mspring_id head; ///< its lowest particle
+    uint32_t particle_count;
+    uint32_t reserved; ///< 0
+    double mass;       ///< kg
+    double x, y;       ///< centre of mass, m, world coordinates
+    double px, py;     ///< momentum, kg m/s, of its particles that are not pinned
+} mspring_component;
+
+/// Look at the components number first ... first + count - 1 as of the last update, with the state as it is now.
+/// Takes a pass over all particles.
+/// @param components  [count], struct_size set in each
+/// @return MSPRING_OK; MSPRING_ERROR_ID if there are not so many; MSPRING_ERROR_STRUCT; MSPRING_ERROR_ARGUMENT for
+///         NULL or if there was no update yet.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_components(const mspring_network *network,
+                                                                            uint32_t first, uint32_t count,
+                                                                            mspring_component *components);
+
+/* ------------------------------------------------------------------------------------------- measurements */
+
+/// Energies in J, summed in double precision in a fixed order.
+///   kinetic    sum of m v^2 / 2 over particles that are not pinned
+///   elastic    sum of stiffness (L - rest_length)^2 / 2 over springs; a relative spring counts with the
+///              stiffness of the last step (before the first: 0)
+///   potential  - sum of m (gravity . p) over particles that are not pinned, p in world coordinates
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL. Any of the out-parameters may be NULL.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_energy(const mspring_network *network, double *kinetic,
+                                                                    double *elastic, double *potential);
+
+/// Momentum (kg m/s) and angular momentum about the world's origin (kg m^2/s) of the particles that are not
+/// pinned. Any of the out-parameters may be NULL.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_momentum(const mspring_network *network, double *px,
+                                                                      double *py, double *angular);
+
+/// Smallest box around all particles, world coordinates (m).
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_bounds(const mspring_network *network, double *min_x,
+                                                                    double *min_y, double *max_x, double *max_y);
+
+/// What a spring is and does. Set struct_size first.
+typedef struct mspring_spring_info {
+    uint32_t struct_size;
+    uint32_t flags;  ///< MSPRING_SPRING_RELATIVE, MSPRING_SPRING_BROKEN, MSPRING_SPRING_STRESSED
+    mspring_id a, b; ///< its particles, the lower id first
+    float stiffness; ///< N/m in force; of a relative spring that of the last step, 0 before the first; 0 if broken
+    float damping;   ///< N s/m, likewise
+    float rest_length;       ///< m
+    float length;            ///< m, now
+    float strain;            ///< (length - rest_length) / rest_length; 0 if broken
+    float force;             ///< N along the spring: > 0 pulls its ends together; with the damper's share
+    float nominal_stiffness; ///< as in mspring_spring_def: N/m or, if relative, a fraction; broken or not
+    float nominal_damping;   ///< likewise
+} mspring_spring_info;
+
+/// Look at one spring.
+/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_spring(const mspring_network *network,
+                                                                        mspring_id spring,
+                                                                        mspring_spring_info *info);
+
+/// Strain of the springs first ... first + count - 1: (length - rest_length) / rest_length, of broken ones 0.
+/// @param strain  [count]
+/// @return MSPRING_OK; MSPRING_ERROR_ID or MSPRING_ERROR_ARGUMENT.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_strains(const mspring_network *network,
+                                                                         mspring_id first, uint32_t count,
+                                                                         float *strain);
+
+/// Length, direction and strain of all springs at once, in id order: a pass over the network in the order in which
+/// it lies in memory. Each array is filled if it is not NULL.
+/// @param length       [spring count], m
+/// @param direction_x, direction_y  [spring count] the unit vector along the spring from the end with the lower id
+/// to
+///                     the other; (0, 0) for a spring of length 0; both or none
+/// @param strain       [spring count], as mspring_network_get_strains(), to the last bit or so
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates the first time   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_extents(mspring_network *network, float *length,
+                                                                         float *direction_x, float *direction_y,
+                                                                         float *strain);
+
+/// The largest absolute strain and the spring that has it (the lowest id of several). A network without springs
+/// has strain 0 and spring MSPRING_NONE. Either out-parameter may be NULL.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_max_strain(const mspring_network *network,
+                                                                        float *strain, mspring_id *spring);
+
+/// A 64-bit hash of positions, velocities and local origin, over their bits in id order: equal states have equal
+/// hashes on every machine. (Not cryptographic.)
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_state_hash(const mspring_network *network,
+                                                                        uint64_t *hash);
+
+/* -------------------------------------------------------------------------------------------------- snapshots */
+
+/// What a snapshot holds.
+typedef int32_t mspring_snapshot_contents;
+enum {
+    /// Everything that the following steps depend on: positions, velocities, origin, settings, masses, forces given
+    /// for the next step, broken and stressed springs, ramps, and what each spring is like.
+    MSPRING_SNAPSHOT_ALL = 0,
+    /// All but the springs' stiffness, damping, rest length, break and stress strain, which only edits change: a
+    /// third of the size, and saved at nearly the speed of a copy, for rollback. It can be loaded only where these
+    /// are what they were: into the same network as long as they have not been edited since, or into another that
+    /// was made alike and edited alike, in the same order.
+    MSPRING_SNAPSHOT_FRAME = 1
+};
+
+/// The size of a snapshot that is saved now, in bytes. It changes with what there is to save: forces, ramps, edits.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL or unknown contents; MSPRING_ERROR_BUSY in a hook.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_snapshot_size(const mspring_network *network,
+                                                                           mspring_snapshot_contents contents,
+                                                                           size_t *size);
+
+/// Save a snapshot into the caller's memory. It is the same on every machine, for any SIMD level and number of
+/// workers, but only of use to networks made of the same particles and springs by a library that lays them out
+/// alike (another refuses it): meant for rollback, replay and network play, not for archives. Of the implicit
+/// solver it holds settings and history, but it can be loaded only where that solver is, with the same integrator
+/// and tiles. Hooks and unread events are not in it.
+/// @param snapshot  [capacity] bytes, of any alignment
+/// @param capacity  at least mspring_network_snapshot_size()
+/// @param size      receives the bytes written; may be NULL
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL, unknown contents or too little room; MSPRING_ERROR_BUSY in
+/// a
+///         hook.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_save(const mspring_network *network,
+                                                                  mspring_snapshot_contents contents,
+                                                                  void *snapshot, size_t capacity, size_t *size);
+
+/// Go back, or forth, to what a snapshot holds: the following steps are the same, bit for bit, as those after it
+/// was saved. Events that have not been read are dropped. The snapshot may come from anywhere: one that is damaged,
+/// cut off, of another network or with values that a network cannot have is refused, and changes nothing.
+/// @return MSPRING_OK; MSPRING_ERROR_SNAPSHOT (the message says what is wrong), MSPRING_ERROR_ARGUMENT for NULL,
+///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates yes, what the network did not need so far   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_load(mspring_network *network, const void *snapshot,
+                                                                  size_t size);
+
+/* ------------------------------------------------------------------------------------- plan and SIMD level */
+
+/// How the network was laid out. A particle belongs to one of four kinds of row: a lattice row (8 neighbours on a
+/// grid), a chain (single strands), the web (any other graph, and ropes that hang on a lattice) or a loose row (no
+/// springs). A spring between neighbours in lattice and chain rows is swept with them, without any index; the
+/// others, leftover springs, are the web's, and cost more each.
+///
+/// Lattice rows are swept in strips of some rows, several substeps in one pass, so that a network larger than the
+/// cache is read once for all of them. What hangs on a lattice is swept with its strips, unless it joins strips
+/// more than 16 apart, or has more strand particles than the lattice has particles: then that lattice takes one
+/// substep at a time.
+typedef struct mspring_plan {
+    uint32_t struct_size;
+    uint32_t particle_count, spring_count;
+    uint32_t lattice_count; ///< grids found
+    uint32_t lattice_particles, lattice_springs;
+    uint32_t lattice_rows;   ///< rows of the grids
+    uint32_t lattice_blocks; ///< blocks of block_width columns in those rows
+    uint32_t chain_count;    ///< strands found
+    uint32_t chain_particles, chain_springs;
+    uint32_t web_particles;    ///< particles of the web: those with springs, but none in a lattice or chain row
+    uint32_t loose_particles;  ///< particles without a spring
+    uint32_t leftover_springs; ///< springs of the web; they take least memory where particles that are near each
+                               ///< other have about as many springs
+    uint32_t pass_rows;        ///< lattice rows that are swept for several substeps in one pass
+    uint32_t pass_lag;         ///< strips by which each substep of a pass stays behind the one before: 1, or what
+                               ///< the ropes need that hang on those rows
+    uint32_t pass_substeps;    ///< most substeps in one pass, by cache size, row length and lag
+    uint32_t slot_count;       ///< slots of the state, empty ones among them
+    uint32_t block_width;      ///< slots in a block
+    uint32_t has_damping;    ///< 1: some spring has damping, or room for it was reserved. 0: steps neither read nor
+                             ///< compute any.
+    uint32_t has_relative;   ///< 1: some spring is relative, and a change of substep costs a pass over all
+    mspring_simd simd_level; ///< what runs
+    mspring_solver solver;
+    mspring_integrator integrator; ///< this and what follows: of the implicit solver, else 0
+    uint32_t iterations;
+    uint32_t tile_size;     ///< rows and columns of the cells of wide lattices
+    uint32_t tile_count;    ///< tiles, each of three unknowns in the coarse matrix
+    uint32_t coarse_values; ///< numbers in that matrix's factor
+    uint32_t coarse_period;
+} mspring_plan;
+
+/// Get the plan. Set struct_size first.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_plan(const mspring_network *network,
+                                                                  mspring_plan *plan);
+
+/// The instruction set that the network's steps use. NULL gives MSPRING_SIMD_AUTO.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API mspring_simd mspring_network_simd_level(const mspring_network *network);
+
+/// The number of workers that the network has: what its definition asks for, or 1 in a build of the library without
+/// threads. (How many take part in a step depends on the network's size.) NULL gives 0.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API uint32_t mspring_network_worker_count(const mspring_network *network);
+
+/// The best instruction set that this CPU and operating system offer.
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API mspring_simd mspring_simd_supported(void);
+
+/// Whether a network can be made to run at this level here: 1 for MSPRING_SIMD_AUTO, MSPRING_SIMD_SCALAR and the
+/// instruction sets that this CPU and operating system offer, 0 for others.
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API uint32_t mspring_simd_available(mspring_simd level);
+
+/// Name of a level as in MSPRING_SIMD: "scalar", "sse2", "avx2", "avx512", "neon", "auto"; "unknown" for others.
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API const char *mspring_simd_name(mspring_simd level);
+
+/// Bytes that the network has taken from its allocator. NULL gives 0.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API size_t mspring_network_memory_used(const mspring_network *network);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
