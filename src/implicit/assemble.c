@@ -57,7 +57,7 @@ static leftover compute_leftover(const mspringi_system *s, uint32_t base, uint32
     const double extension = length - (double)values->rest_length;
     const double stiffness = s->force_scale * (double)values->stiffness;
     const double damping = s->force_scale * (double)values->damping;
-    const double relative = extension * inverse, tensed = relative > 0.0 ? relative : 0.0;
+    const double relative = extension * inverse, tensed = mspringi_swing_share(relative);
     const double dvx = (double)s->vx[tip] - (double)s->vx[base], dvy = (double)s->vy[tip] - (double)s->vy[base];
     const double force = stiffness * extension + damping * (dvx * nx + dvy * ny);
     const double along = (stiffness - stiffness * tensed) + damping * s->damping_rate;
@@ -120,12 +120,20 @@ static void multiply_leftover(const mspring_network *network, mspringi_field fro
 
 /* ---------------------------------------------------------------------------------------------------- masses */
 
-// The masses and what global damping adds to them.
-static void fill_masses(mspring_network *network, double heavier) {
+static mspringi_scheme scheme_now(const mspringi_implicit *n) {
+    return mspringi_scheme_of(n->history.restarts ? MSPRING_INTEGRATOR_EULER : n->integrator);
+}
+
+// What global damping multiplies masses by.
+static double heavier_by(const mspring_network *network, mspringi_scheme scheme, float h) {
+    return 1.0 + scheme.force_share * scheme.velocity_share * (double)h * (double)network->global_damping;
+}
+
+void mspringi_weigh(mspring_network *network, float h) {
     mspringi_implicit *n = network->implicit;
     const size_t slots = mspringi_slot_count(network);
     const float *inverse_mass = network->inverse_mass;
-    const float scale = (float)(n->scale * heavier);
+    const float scale = (float)(n->scale * heavier_by(network, scheme_now(n), h));
     for (size_t i = 0; i < slots; ++i) {
         const float mass = scale / inverse_mass[i];
         n->mass[i] = inverse_mass[i] > 0.0f ? mass : 0.0f;
@@ -138,8 +146,9 @@ static void fill_masses(mspring_network *network, double heavier) {
 typedef struct outside {
     const float *force;          ///< from outside, N; NULL: none
     const float *velocity;       ///< v*
+    const float *turned;         ///< by how much x* is turned on
     const float *first, *second; ///< history of BDF2, or NULL
-    float force_share, velocity_share, first_share, second_share;
+    float force_share, velocity_share, turned_share, first_share, second_share;
     float shift; ///< gravity's
 } outside;
 
@@ -147,7 +156,7 @@ typedef struct outside {
 static void add_outside(size_t slots, const float *mass, const outside *o, float *restrict residual) {
     const outside copy = *o;
     for (size_t i = 0; i < slots; ++i) {
-        float shift = copy.shift + copy.velocity[i] * copy.velocity_share;
+        float shift = copy.shift + copy.velocity[i] * copy.velocity_share - copy.turned[i] * copy.turned_share;
         if (copy.second)
             shift = shift + (copy.first[i] * copy.first_share + copy.second[i] * copy.second_share);
         float sum = residual[i] + mass[i] * shift;
@@ -181,15 +190,14 @@ void mspringi_assemble(mspring_network *network, float h, mspringi_field base) {
     const mspringi_topology *t = &network->topology;
     const mspringi_history *history = &n->history;
     const bool restarts = history->restarts;
-    const mspringi_scheme scheme = mspringi_scheme_of(restarts ? MSPRING_INTEGRATOR_EULER : n->integrator);
+    const mspringi_scheme scheme = scheme_now(n);
     const double c = scheme.force_share * (double)h * (double)h;
     n->system.force_scale = n->scale * c;
     n->system.damping_rate = scheme.velocity_share / (double)h;
     n->system.parts = network->parts;
     n->system.rest_lengths = network->rests.lengths;
     n->system.rests_of_block = network->rests.of_block;
-    const double heavier = 1.0 + c * n->system.damping_rate * (double)network->global_damping;
-    fill_masses(network, heavier);
+    const double heavier = heavier_by(network, scheme, h);
 
     // Rows write these; the slots of other rows begin at nothing.
     const size_t swept = (size_t)t->web_first * MSPRINGI_WIDTH, others = slots - swept;
@@ -204,16 +212,19 @@ void mspringi_assemble(mspring_network *network, float h, mspringi_field base) {
     const bool two = n->integrator == MSPRING_INTEGRATOR_BDF2 && !restarts;
     outside o = {.force = base.x,
                  .velocity = n->velocity.x,
+                 .turned = n->scaled.x,
                  .first = history->first.x,
                  .second = two ? history->second.x : NULL,
                  .force_share = (float)n->system.force_scale,
                  .velocity_share = (float)(-c * (double)network->global_damping / heavier),
+                 .turned_share = (float)(1.0 / heavier),
                  .first_share = (float)(1.0 / 3.0 / heavier),
                  .second_share = (float)(2.0 / 9.0 * (double)h / heavier),
                  .shift = (float)(c * (double)network->gravity_x / heavier)};
     add_outside(slots, n->mass, &o, n->residual.x);
     o.force = base.y;
     o.velocity = n->velocity.y;
+    o.turned = n->scaled.y;
     o.first = history->first.y;
     o.second = two ? history->second.y : NULL;
     o.shift = (float)(c * (double)network->gravity_y / heavier);

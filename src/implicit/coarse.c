@@ -6,46 +6,42 @@
 
 /* --------------------------------------------------------------------------------------------------- envelope */
 
-static void find_envelope(const mspringi_tiles *tiles, uint32_t *first) {
-    for (uint32_t t = 0; t < tiles->count; ++t)
-        first[t] = t;
-    for (uint32_t j = 0; j < tiles->joint_count; ++j) {
-        const mspringi_joint *joint = &tiles->joints[j];
-        if (joint->other < first[joint->tile])
-            first[joint->tile] = joint->other;
-    }
-}
-
 double mspringi_coarse_cost(const mspringi_tiles *tiles) {
     double sum = 0.0;
-    for (uint32_t j = 0; j < tiles->joint_count;) {
-        const uint32_t tile = tiles->joints[j].tile;
-        uint32_t first = tile;
-        for (; j < tiles->joint_count && tiles->joints[j].tile == tile; ++j)
-            if (tiles->joints[j].other < first)
-                first = tiles->joints[j].other;
-        const double length = (double)MSPRINGI_RIGID * (double)(tile - first + 1);
-        sum += 0.5 * MSPRINGI_RIGID * length * length;
+    for (uint32_t cell = 0; cell < tiles->cells.count; ++cell) {
+        const uint32_t first = mspringi_tiles_envelope(tiles, cell);
+        for (uint32_t t = tiles->first_of_cell[cell]; t < tiles->first_of_cell[cell + 1]; ++t) {
+            const double length = (double)MSPRINGI_RIGID * (double)(t - first + 1);
+            sum += 0.5 * MSPRINGI_RIGID * length * length;
+        }
     }
     return sum;
 }
 
+void mspringi_coarse_shape(mspringi_coarse *coarse, const mspringi_tiles *tiles) {
+    coarse->count = tiles->count;
+    coarse->value_count = 0;
+    for (uint32_t cell = 0; cell < tiles->cells.count; ++cell) {
+        const uint32_t first = mspringi_tiles_envelope(tiles, cell);
+        for (uint32_t t = tiles->first_of_cell[cell]; t < tiles->first_of_cell[cell + 1]; ++t) {
+            coarse->first[t] = first;
+            coarse->row[t] = coarse->value_count;
+            coarse->value_count += (size_t)MSPRINGI_RIGID * MSPRINGI_RIGID * (t - first + 1);
+        }
+    }
+}
+
 mspring_result mspringi_coarse_create(mspringi_coarse *coarse, const mspringi_tiles *tiles, mspringi_memory *memory,
                                       mspringi_message *message) {
-    *coarse = (mspringi_coarse){.count = tiles->count};
-    coarse->first = mspringi_alloc(memory, tiles->count, sizeof *coarse->first);
-    coarse->row = mspringi_alloc(memory, tiles->count, sizeof *coarse->row);
-    coarse->unknowns = mspringi_alloc(memory, (size_t)MSPRINGI_RIGID * tiles->count, sizeof *coarse->unknowns);
-    if (coarse->first && coarse->row && coarse->unknowns) {
-        find_envelope(tiles, coarse->first);
-        for (uint32_t t = 0; t < tiles->count; ++t) {
-            coarse->row[t] = coarse->value_count;
-            coarse->value_count += (size_t)MSPRINGI_RIGID * MSPRINGI_RIGID * (t - coarse->first[t] + 1);
-        }
-        coarse->values = mspringi_alloc(memory, coarse->value_count, sizeof *coarse->values);
-    }
-    if (coarse->values)
+    *coarse = (mspringi_coarse){0};
+    coarse->first = mspringi_alloc(memory, tiles->capacity, sizeof *coarse->first);
+    coarse->row = mspringi_alloc(memory, tiles->capacity, sizeof *coarse->row);
+    coarse->unknowns = mspringi_alloc(memory, (size_t)MSPRINGI_RIGID * tiles->capacity, sizeof *coarse->unknowns);
+    coarse->values = mspringi_alloc(memory, tiles->value_capacity, sizeof *coarse->values);
+    if (coarse->first && coarse->row && coarse->unknowns && coarse->values) {
+        mspringi_coarse_shape(coarse, tiles);
         return MSPRING_OK;
+    }
     mspringi_coarse_destroy(coarse, memory);
     return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for a coarse matrix of %u tiles",
                          (unsigned)tiles->count);
@@ -112,11 +108,16 @@ static void add_diagonal(block_rows to, double xx, double xy, double yy, double 
     to.row[2][2] += turn;
 }
 
+// Either may be MSPRING_NONE: that end is pinned.
 static void add_sum(mspringi_coarse *coarse, uint32_t tile, uint32_t other, const joint_sum *sum) {
-    add_diagonal(rows_of(coarse, tile, tile), sum->xx, sum->xy, sum->yy, sum->near_x, sum->near_y, sum->near_near);
-    if (other == MSPRING_NONE)
+    if (tile != MSPRING_NONE)
+        add_diagonal(rows_of(coarse, tile, tile), sum->xx, sum->xy, sum->yy, sum->near_x, sum->near_y,
+                     sum->near_near);
+    if (other != MSPRING_NONE)
+        add_diagonal(rows_of(coarse, other, other), sum->xx, sum->xy, sum->yy, sum->far_x, sum->far_y,
+                     sum->far_far);
+    if (tile == MSPRING_NONE || other == MSPRING_NONE)
         return;
-    add_diagonal(rows_of(coarse, other, other), sum->xx, sum->xy, sum->yy, sum->far_x, sum->far_y, sum->far_far);
     const block_rows to = rows_of(coarse, tile, other);
     to.row[0][0] -= sum->xx;
     to.row[0][1] -= sum->xy;
@@ -147,17 +148,25 @@ static void add_masses(mspringi_coarse *coarse, const mspringi_tiles *tiles, con
     }
 }
 
+// Add joints, those of the same two tiles together as far as they follow each other.
+static void add_joints(mspringi_coarse *coarse, const mspringi_tiles *tiles, const mspringi_joint *joints,
+                       uint32_t count, const float *factors, mspringi_field arm) {
+    for (uint32_t j = 0; j < count;) {
+        const uint32_t tile = tiles->of_slot[joints[j].slot], other = tiles->of_slot[joints[j].other_slot];
+        joint_sum sum = {0};
+        for (; j < count && tiles->of_slot[joints[j].slot] == tile && tiles->of_slot[joints[j].other_slot] == other;
+             ++j)
+            add_joint(&sum, &joints[j], factors, arm);
+        add_sum(coarse, tile, other, &sum);
+    }
+}
+
 void mspringi_coarse_assemble(mspringi_coarse *coarse, const mspringi_tiles *tiles, const float *factors,
                               const float *mass, mspringi_field arm) {
     memset(coarse->values, 0, coarse->value_count * sizeof *coarse->values);
     add_masses(coarse, tiles, mass, arm);
-    for (uint32_t j = 0; j < tiles->joint_count;) {
-        const uint32_t tile = tiles->joints[j].tile, other = tiles->joints[j].other;
-        joint_sum sum = {0};
-        for (; j < tiles->joint_count && tiles->joints[j].tile == tile && tiles->joints[j].other == other; ++j)
-            add_joint(&sum, &tiles->joints[j], factors, arm);
-        add_sum(coarse, tile, other, &sum);
-    }
+    add_joints(coarse, tiles, tiles->cells.joints, tiles->cells.joint_count, factors, arm);
+    add_joints(coarse, tiles, tiles->anchors, tiles->anchor_count, factors, arm);
 }
 
 /* --------------------------------------------------------------------------------------- factoring and solving */

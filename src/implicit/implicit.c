@@ -57,7 +57,7 @@ static mspring_result allocate(mspringi_implicit *n, mspring_network *network) {
     n->diagonal = mspringi_alloc(memory, 3 * slots, sizeof *n->diagonal);
     n->force_carry = mspringi_alloc(memory, 2 * carry, sizeof *n->force_carry);
     n->carry = mspringi_alloc(memory, 3 * carry, sizeof *n->carry);
-    n->restricted = mspringi_alloc(memory, (size_t)MSPRINGI_RIGID * n->tiles.count, sizeof *n->restricted);
+    n->restricted = mspringi_alloc(memory, (size_t)MSPRINGI_RIGID * n->tiles.capacity, sizeof *n->restricted);
     if (!reserve_history(memory, &n->history, slots, two) || !reserve_history(memory, &n->backup, slots, two) ||
         !reserve_field(memory, &n->velocity, slots) || !reserve_field(memory, &n->residual, slots) ||
         !reserve_field(memory, &n->displacement, slots) || !reserve_field(memory, &n->direction, slots) ||
@@ -196,14 +196,24 @@ void mspringi_implicit_restore(mspring_network *network) {
     memset(n->carry, 0, 3 * carry * sizeof *n->carry);
 }
 
-// Forget the history if the host has begun a new motion.
+void mspringi_implicit_follow(mspring_network *network) {
+    mspringi_implicit *n = network->implicit;
+    if (mspringi_tiles_are_outdated(&n->tiles, network, &n->seen)) {
+        mspringi_tiles_follow(&n->tiles, network, &n->seen);
+        mspringi_coarse_shape(&n->coarse, &n->tiles);
+        n->age = 0;
+    }
+    n->seen = network->edits;
+}
+
+// Forget the history if the host has begun a new motion; cut tiles anew where springs broke or pins changed.
 static void follow_edits(mspring_network *network) {
     mspringi_implicit *n = network->implicit;
     if (n->seen.motion != network->edits.motion) {
         memset(n->history.low.x, 0, n->history_size * sizeof *n->history.low.x);
         n->history.restarts = true;
     }
-    n->seen = network->edits;
+    mspringi_implicit_follow(network);
 }
 
 /* --------------------------------------------------------------------------------------------------------- plan */
@@ -214,7 +224,7 @@ void mspringi_implicit_describe(const mspringi_implicit *n, mspring_plan *plan) 
     plan->solver = MSPRING_SOLVER_IMPLICIT;
     plan->integrator = n->integrator;
     plan->iterations = n->iterations;
-    plan->tile_size = n->tiles.size;
+    plan->tile_size = n->tiles.cells.size;
     plan->tile_count = n->tiles.count;
     plan->coarse_values = (uint32_t)(n->coarse.value_count < UINT32_MAX ? n->coarse.value_count : UINT32_MAX);
     plan->coarse_period = n->coarse_period;
@@ -225,6 +235,7 @@ void mspringi_implicit_describe(const mspringi_implicit *n, mspring_plan *plan) 
 void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
     follow_edits(network);
     for (; count > 0; --count) {
+        mspringi_weigh(network, h);
         mspringi_predict(network, h);
         mspringi_assemble(network, h, base);
         mspringi_solve(network);

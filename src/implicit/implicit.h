@@ -67,6 +67,9 @@ void mspringi_implicit_destroy(mspringi_implicit *implicit, mspringi_memory *mem
 /// Take count substeps of length h, all with the forces from outside that are in base (x NULL: none).
 void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count);
 
+/// Cut tiles anew where springs broke or were restored, or pins changed. Allocates nothing.
+void mspringi_implicit_follow(mspring_network *network);
+
 /// Keep the history for a step that fails, and get it back.
 void mspringi_implicit_keep(mspring_network *network);
 void mspringi_implicit_restore(mspring_network *network);
@@ -88,6 +91,8 @@ void mspringi_finish(mspring_network *network, float h);
 
 /* assemble.c */
 
+/// Fill in the masses, with what global damping adds to them.
+void mspringi_weigh(mspring_network *network, float h);
 void mspringi_assemble(mspring_network *network, float h, mspringi_field base);
 void mspringi_multiply(const mspring_network *network, mspringi_field from, mspringi_field to);
 

@@ -14,35 +14,7 @@
 
 /* ------------------------------------------------------------------------------------------------- coarse space */
 
-// Find where each particle is from the mass centre of its tile.
-static void find_arms(mspringi_implicit *n) {
-    const mspringi_tiles *tiles = &n->tiles;
-    for (uint32_t t = 0; t < tiles->count; ++t) {
-        const mspringi_tile_part *const end = tiles->parts + tiles->first_part[t + 1];
-        double sum = 0.0, sum_x = 0.0, sum_y = 0.0;
-        for (const mspringi_tile_part *part = tiles->parts + tiles->first_part[t]; part < end; ++part) {
-            for (uint32_t i = 0; i < MSPRINGI_PART; ++i) {
-                const uint32_t slot = part->first_slot + i;
-                const double mass = part->lanes >> i & 1 ? (double)n->mass[slot] : 0.0;
-                sum += mass;
-                sum_x += mass * n->x[slot];
-                sum_y += mass * n->y[slot];
-            }
-        }
-        const double x = sum_x / sum, y = sum_y / sum;
-        for (const mspringi_tile_part *part = tiles->parts + tiles->first_part[t]; part < end; ++part) {
-            for (uint32_t i = 0; i < MSPRINGI_PART; ++i) {
-                if (!(part->lanes >> i & 1))
-                    continue;
-                n->arm.x[part->first_slot + i] = (float)(n->x[part->first_slot + i] - x);
-                n->arm.y[part->first_slot + i] = (float)(n->y[part->first_slot + i] - y);
-            }
-        }
-    }
-}
-
 static void prepare_coarse(mspringi_implicit *n) {
-    find_arms(n);
     if (n->age == 0) {
         mspringi_coarse_assemble(&n->coarse, &n->tiles, n->factors, n->mass, n->arm);
         mspringi_coarse_factor(&n->coarse);
@@ -79,6 +51,10 @@ static void turn(const mspring_network *network, float beta) {
                                            n->coarse.unknowns + (size_t)MSPRINGI_RIGID * t, beta);
 }
 
+static double dot(const mspring_network *network, mspringi_field a, mspringi_field b) {
+    return (double)network->kernels->system.dot(mspringi_slot_count(network), a.x, a.y, b.x, b.y);
+}
+
 // Particles without springs are in no tile: their rows of A are diagonal.
 static void solve_loose(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
@@ -95,20 +71,40 @@ static void spoil(mspring_network *network) {
     network->implicit->x[network->topology.slot_of_particle[0]] = NAN;
 }
 
+// The first iteration: the tiles alone, as rigid bodies. It takes the fast changes of a heavy or a spinning part
+// off those that follow, which then leave less force unbalanced (80x5 with a tip of 1000 times the mass: no gain of
+// energy, where without it there is one of 0.1 %).
+static void solve_tiles(const mspring_network *network) {
+    const mspringi_implicit *n = network->implicit;
+    const size_t slots = mspringi_slot_count(network);
+    memset(n->scaled.x, 0, 2 * slots * sizeof *n->scaled.x);
+    const double product = correct(network);
+    turn(network, 0.0f);
+    mspringi_multiply(network, n->direction, n->product);
+    const double curvature = dot(network, n->direction, n->product);
+    const bool is_sound = curvature > 0.0 && curvature < INFINITY && product < INFINITY;
+    const float alpha = is_sound ? (float)(product / curvature) : 0.0f;
+    (void)network->kernels->system.advance(&n->system, &n->iterate, alpha);
+}
+
 void mspringi_solve(mspring_network *network) {
     mspringi_implicit *n = network->implicit;
+    const mspringi_system_kernels *kernels = &network->kernels->system;
     const size_t slots = mspringi_slot_count(network);
     memset(n->displacement.x, 0, 2 * slots * sizeof *n->displacement.x);
     memset(n->direction.x, 0, 2 * slots * sizeof *n->direction.x);
     memset(n->product.x, 0, 2 * slots * sizeof *n->product.x);
     prepare_coarse(n);
-    const mspringi_system_kernels *kernels = &network->kernels->system;
-    double product = (double)kernels->advance(&n->system, &n->iterate, 0.0f);
-    product += correct(network);
+    uint32_t left = n->iterations;
+    if (left > 1) {
+        solve_tiles(network);
+        --left;
+    }
+    double product = (double)kernels->advance(&n->system, &n->iterate, 0.0f) + correct(network);
     turn(network, 0.0f);
-    for (uint32_t i = 0; i < n->iterations; ++i) {
+    while (left-- > 0) {
         mspringi_multiply(network, n->direction, n->product);
-        const double curvature = (double)kernels->curvature(&n->iterate);
+        const double curvature = dot(network, n->direction, n->product);
         if (!(curvature < INFINITY && product < INFINITY)) {
             spoil(network);
             return;
@@ -117,7 +113,7 @@ void mspringi_solve(mspring_network *network) {
         if (curvature <= 0.0 || product <= 0.0)
             break;
         double next = (double)kernels->advance(&n->system, &n->iterate, (float)(product / curvature));
-        if (i + 1 == n->iterations)
+        if (left == 0)
             break;
         next += correct(network);
         turn(network, (float)(next / product));

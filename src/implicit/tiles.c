@@ -1,151 +1,23 @@
-/// Cutting a network into tiles.
+/// Finding the tiles in the cells, and following edits.
 #include "tiles.h"
 
 #include "base/mix.h"
 #include "network/springs.h"
-#include "tile_order.h"
 
-/// Grids of at most this many rows are cut across only.
-#define SLENDER_ROWS 10
+/// Room for pieces: tiles beyond twice the cells, numbers of the coarse matrix beyond four times those of cells in
+/// one piece each, and springs to pinned particles beyond a quarter of those inside cells.
+#define SPARE_TILES 64u
+#define SPARE_VALUES ((size_t)4096)
+#define SPARE_ANCHORS 1024u
 
-/// A cell, or MSPRING_NONE for slots that are in none.
-typedef struct tiling {
-    const mspring_network *network;
-    mspringi_memory *memory;
-    uint32_t *cell_of_slot;
-    uint32_t *parent; ///< of a slot in the forest of components
-    uint32_t cell_count;
-} tiling;
-
-bool mspringi_is_live(const mspring_network *network, mspring_id spring) {
+// Whether a spring can pull.
+static bool is_live(const mspring_network *network, mspring_id spring) {
     return mspringi_spring_is_live(network, spring) &&
            mspringi_spring_get_nominal(network, spring).stiffness > 0.0f;
 }
 
-uint32_t mspringi_factors_of_place(mspringi_place place) {
-    return place / MSPRINGI_WIDTH * (MSPRINGI_FACTORS * MSPRINGI_WIDTH) + place % MSPRINGI_WIDTH;
-}
-
-/* ------------------------------------------------------------------------------------------------------ cells */
-
-static bool has_place_in_tile(const mspring_network *network, uint32_t slot) {
+static bool is_free(const mspring_network *network, uint32_t slot) {
     return network->inverse_mass[slot] > 0.0f;
-}
-
-// Whether a row is the first of its grid: no block of the row before has a block above it.
-static bool starts_grid(const mspringi_topology *t, uint32_t row) {
-    if (row == 0)
-        return true;
-    const mspringi_row *before = &t->rows[row - 1];
-    for (uint32_t s = before->first_span; s < before->first_span + before->span_count; ++s)
-        if (t->spans[s].up != 0)
-            return false;
-    return true;
-}
-
-// Give the slots of some rows of a grid, which follow each other, cells of width columns; numbers from first on.
-static uint32_t cut_rows(tiling *g, uint32_t first_row, uint32_t row_count, uint32_t width, uint32_t first) {
-    const mspringi_topology *t = &g->network->topology;
-    uint32_t end = first;
-    for (uint32_t r = first_row; r < first_row + row_count; ++r) {
-        const mspringi_row *row = &t->rows[r];
-        for (uint32_t s = row->first_span; s < row->first_span + row->span_count; ++s) {
-            const mspringi_span *span = &t->spans[s];
-            for (uint32_t slot = span->first_slot; slot < span->end_slot; ++slot) {
-                const uint32_t column = (uint32_t)((int64_t)slot + span->carry);
-                const uint32_t cell = first + column / width;
-                if (has_place_in_tile(g->network, slot))
-                    g->cell_of_slot[slot] = cell;
-                end = cell + 1 > end ? cell + 1 : end;
-            }
-        }
-    }
-    return end;
-}
-
-static void cut_grids(tiling *g, uint32_t size) {
-    const mspringi_topology *t = &g->network->topology;
-    for (uint32_t row = 0; row < t->lattice_rows;) {
-        uint32_t end = row + 1;
-        while (end < t->lattice_rows && !starts_grid(t, end))
-            ++end;
-        const uint32_t rows = end - row;
-        const bool slender = rows <= SLENDER_ROWS && size <= SLENDER_ROWS;
-        const uint32_t height = slender ? rows : size;
-        for (; row < end; row += height)
-            g->cell_count = cut_rows(g, row, height < end - row ? height : end - row, size, g->cell_count);
-        row = end;
-    }
-}
-
-// Cut the chains' slots into pieces of size.
-static void cut_chains(tiling *g, uint32_t size) {
-    const mspringi_topology *t = &g->network->topology;
-    const uint32_t first = t->chain_first * MSPRINGI_WIDTH, count = t->chain_blocks * MSPRINGI_WIDTH;
-    for (uint32_t i = 0; i < count; ++i)
-        if (has_place_in_tile(g->network, first + i))
-            g->cell_of_slot[first + i] = g->cell_count + i / size;
-    g->cell_count += (count + size - 1) / size;
-}
-
-/// Springs by slot, for the slots of the web.
-typedef struct incidence {
-    uint32_t *first;     ///< [slots + 1]
-    uint32_t *neighbour; ///< slots
-} incidence;
-
-static bool list_neighbours(incidence *in, const tiling *g) {
-    const mspringi_topology *t = &g->network->topology;
-    const size_t slots = mspringi_slot_count(g->network);
-    in->first = mspringi_alloc(g->memory, slots + 2, sizeof *in->first);
-    in->neighbour = mspringi_alloc(g->memory, (size_t)2 * t->leftover_count, sizeof *in->neighbour);
-    if (!in->first || !in->neighbour)
-        return false;
-    for (uint32_t i = 0; i < t->leftover_count; ++i) {
-        in->first[t->leftover_a[i] + 2]++;
-        in->first[t->leftover_b[i] + 2]++;
-    }
-    for (size_t slot = 2; slot < slots + 2; ++slot)
-        in->first[slot] += in->first[slot - 1];
-    for (uint32_t i = 0; i < t->leftover_count; ++i) {
-        in->neighbour[in->first[t->leftover_a[i] + 1]++] = t->leftover_b[i];
-        in->neighbour[in->first[t->leftover_b[i] + 1]++] = t->leftover_a[i];
-    }
-    return true;
-}
-
-// Grow neighbourhoods of at most size * size / 2 particles, breadth first, from the first slot that is in none.
-static bool cut_web(tiling *g, uint32_t size) {
-    const mspringi_topology *t = &g->network->topology;
-    const uint32_t first = t->web_first * MSPRINGI_WIDTH, end = first + t->web_blocks * MSPRINGI_WIDTH;
-    const uint32_t most = size * size / 2;
-    if (first == end)
-        return true;
-    incidence in = {NULL, NULL};
-    uint32_t *queue = mspringi_alloc(g->memory, most, sizeof *queue);
-    const bool ok = list_neighbours(&in, g) && queue;
-    for (uint32_t seed = first; ok && seed < end; ++seed) {
-        if (!has_place_in_tile(g->network, seed) || g->cell_of_slot[seed] != MSPRING_NONE)
-            continue;
-        uint32_t count = 0;
-        queue[count++] = seed;
-        g->cell_of_slot[seed] = g->cell_count;
-        for (uint32_t i = 0; i < count; ++i) {
-            for (uint32_t n = in.first[queue[i]]; n < in.first[queue[i] + 1] && count < most; ++n) {
-                const uint32_t slot = in.neighbour[n];
-                if (slot < first || slot >= end || !has_place_in_tile(g->network, slot) ||
-                    g->cell_of_slot[slot] != MSPRING_NONE)
-                    continue;
-                g->cell_of_slot[slot] = g->cell_count;
-                queue[count++] = slot;
-            }
-        }
-        g->cell_count++;
-    }
-    mspringi_free(g->memory, in.first);
-    mspringi_free(g->memory, in.neighbour);
-    mspringi_free(g->memory, queue);
-    return ok;
 }
 
 /* ------------------------------------------------------------------------------------------------- components */
@@ -158,139 +30,196 @@ static uint32_t root_of(uint32_t *parent, uint32_t slot) {
     return slot;
 }
 
-// Join the slots of each cell that live springs connect. The root of a component is its lowest slot.
-static void find_components(tiling *g) {
-    const mspringi_topology *t = &g->network->topology;
-    const uint32_t slots = (uint32_t)mspringi_slot_count(g->network);
-    for (uint32_t slot = 0; slot < slots; ++slot)
-        g->parent[slot] = slot;
-    for (mspring_id s = 0; s < t->spring_count; ++s) {
-        uint32_t a, b;
-        mspringi_topology_ends(t, t->place_of_spring[s], &a, &b);
-        if (g->cell_of_slot[a] != g->cell_of_slot[b] || g->cell_of_slot[a] == MSPRING_NONE ||
-            !mspringi_is_live(g->network, s))
-            continue;
-        a = root_of(g->parent, a);
-        b = root_of(g->parent, b);
-        if (a < b)
-            g->parent[b] = a;
-        else
-            g->parent[a] = b;
-    }
-}
-
-// Number the components in the order of their lowest slots.
-static void number_components(mspringi_tiles *tiles, tiling *g) {
-    const uint32_t slots = (uint32_t)mspringi_slot_count(g->network);
-    tiles->count = 0;
-    for (uint32_t slot = 0; slot < slots; ++slot) {
-        tiles->tile_of_slot[slot] = MSPRING_NONE;
-        if (g->cell_of_slot[slot] == MSPRING_NONE)
-            continue;
-        const uint32_t root = root_of(g->parent, slot);
-        tiles->tile_of_slot[slot] = root == slot ? tiles->count++ : tiles->tile_of_slot[root];
-    }
-}
-
-/* ------------------------------------------------------------------------------------------------------ joints */
-
-// The joint of a spring between two tiles, or between one and a pinned particle; false: it is none.
-static bool find_joint(const mspringi_tiles *tiles, const mspring_network *network, mspring_id spring,
-                       mspringi_joint *joint) {
+// Join the free particles of a cell that live springs connect. The root of a component is its lowest slot.
+static void find_components(mspringi_tiles *tiles, const mspring_network *network, uint32_t cell) {
+    const mspringi_cells *cells = &tiles->cells;
     const mspringi_topology *t = &network->topology;
-    uint32_t a, b;
-    mspringi_topology_ends(t, t->place_of_spring[spring], &a, &b);
-    const uint32_t tile_a = tiles->tile_of_slot[a], tile_b = tiles->tile_of_slot[b];
-    if (tile_a == tile_b || !mspringi_is_live(network, spring))
-        return false;
-    const bool a_first = tile_b == MSPRING_NONE || (tile_a != MSPRING_NONE && tile_a > tile_b);
-    *joint = (mspringi_joint){.tile = a_first ? tile_a : tile_b,
-                              .other = a_first ? tile_b : tile_a,
-                              .slot = a_first ? a : b,
-                              .other_slot = a_first ? b : a,
-                              .factors = mspringi_factors_of_place(t->place_of_spring[spring])};
-    return true;
+    for (uint32_t i = cells->first_slot[cell]; i < cells->first_slot[cell + 1]; ++i)
+        tiles->parent[cells->slots[i]] = cells->slots[i];
+    for (uint32_t i = cells->first_inner[cell]; i < cells->first_inner[cell + 1]; ++i) {
+        const mspring_id spring = cells->inner[i];
+        uint32_t a, b;
+        mspringi_topology_ends(t, t->place_of_spring[spring], &a, &b);
+        if (!is_free(network, a) || !is_free(network, b) || !is_live(network, spring))
+            continue;
+        a = root_of(tiles->parent, a);
+        b = root_of(tiles->parent, b);
+        if (a < b)
+            tiles->parent[b] = a;
+        else
+            tiles->parent[a] = b;
+    }
 }
 
-// List the joints, sorted by tile and then by the other one.
-static bool list_joints(mspringi_tiles *tiles, const mspring_network *network, mspringi_memory *memory) {
-    const uint32_t springs = network->topology.spring_count;
-    mspringi_joint joint;
-    tiles->joint_count = 0;
-    for (mspring_id s = 0; s < springs; ++s)
-        tiles->joint_count += find_joint(tiles, network, s, &joint);
-    tiles->joints = mspringi_alloc(memory, tiles->joint_count, sizeof *tiles->joints);
-    mspringi_joint *sorted = mspringi_alloc(memory, tiles->joint_count, sizeof *sorted);
-    uint32_t *first = mspringi_alloc(memory, (size_t)tiles->count + 2, sizeof *first);
-    const bool ok = tiles->joints && sorted && first;
-    if (ok) {
-        uint32_t count = 0;
-        for (mspring_id s = 0; s < springs; ++s)
-            if (find_joint(tiles, network, s, &joint))
-                tiles->joints[count++] = joint;
-        // Two passes of a stable counting sort: by other (MSPRING_NONE last), then by tile.
-        for (int pass = 0; pass < 2; ++pass) {
-            const mspringi_joint *from = pass == 0 ? tiles->joints : sorted;
-            mspringi_joint *to = pass == 0 ? sorted : tiles->joints;
-            for (uint32_t i = 0; i < tiles->count + 2; ++i)
-                first[i] = 0;
-            for (int place = 0; place < 2; ++place) {
-                for (uint32_t j = 0; j < count; ++j) {
-                    const uint32_t other = from[j].other == MSPRING_NONE ? tiles->count : from[j].other;
-                    const uint32_t key = pass == 0 ? other : from[j].tile;
-                    if (place == 0)
-                        first[key + 1]++;
-                    else
-                        to[first[key]++] = from[j];
-                }
-                for (uint32_t i = 1; place == 0 && i < tiles->count + 2; ++i)
-                    first[i] += first[i - 1];
-            }
-        }
+// Number the components of a cell, in the order of their lowest slots, from first on; all of them as one tile if
+// they are more than most. Returns the end of the numbers.
+static uint32_t number_cell(mspringi_tiles *tiles, const mspring_network *network, uint32_t cell, uint32_t first,
+                            uint32_t most) {
+    const mspringi_cells *cells = &tiles->cells;
+    uint32_t end = first;
+    for (uint32_t i = cells->first_slot[cell]; i < cells->first_slot[cell + 1]; ++i) {
+        const uint32_t slot = cells->slots[i];
+        tiles->of_slot[slot] = MSPRING_NONE;
+        if (!is_free(network, slot))
+            continue;
+        const uint32_t root = root_of(tiles->parent, slot);
+        tiles->of_slot[slot] = root == slot ? end++ : tiles->of_slot[root];
     }
-    mspringi_free(memory, sorted);
-    mspringi_free(memory, first);
-    return ok;
+    if (end - first <= most)
+        return end;
+    for (uint32_t i = cells->first_slot[cell]; i < cells->first_slot[cell + 1]; ++i)
+        if (tiles->of_slot[cells->slots[i]] != MSPRING_NONE)
+            tiles->of_slot[cells->slots[i]] = first;
+    return first + 1;
+}
+
+// Number the tiles of all cells, in the order of the cells.
+static void number_tiles(mspringi_tiles *tiles, const mspring_network *network, uint32_t most) {
+    tiles->count = 0;
+    for (uint32_t cell = 0; cell < tiles->cells.count; ++cell) {
+        tiles->first_of_cell[cell] = tiles->count;
+        tiles->count = number_cell(tiles, network, cell, tiles->count, most);
+    }
+    tiles->first_of_cell[tiles->cells.count] = tiles->count;
+}
+
+size_t mspringi_tiles_coarse_values(const mspringi_tiles *tiles) {
+    size_t values = 0;
+    for (uint32_t cell = 0; cell < tiles->cells.count; ++cell) {
+        const size_t first = mspringi_tiles_envelope(tiles, cell);
+        for (uint32_t t = tiles->first_of_cell[cell]; t < tiles->first_of_cell[cell + 1]; ++t)
+            values += 9 * (t - first + 1);
+    }
+    return values;
+}
+
+// The same, if every cell were one tile.
+static size_t values_of_cells(const mspringi_cells *cells) {
+    size_t values = 0;
+    for (uint32_t cell = 0; cell < cells->count; ++cell)
+        values += 9 * ((size_t)cell - cells->lowest[cell] + 1);
+    return values;
 }
 
 /* ------------------------------------------------------------------------------------------------------- parts */
 
-// List the particles of each tile, some slots at a time.
-static bool list_parts(mspringi_tiles *tiles, const mspring_network *network, mspringi_memory *memory) {
-    const uint32_t slots = (uint32_t)mspringi_slot_count(network);
-    tiles->first_part = mspringi_alloc(memory, (size_t)tiles->count + 2, sizeof *tiles->first_part);
-    if (!tiles->first_part)
-        return false;
-    uint32_t *first = tiles->first_part;
-    for (int pass = 0; pass < 2; ++pass) { // first count, then fill
-        for (uint32_t begin = 0; begin < slots; begin += MSPRINGI_PART) {
-            for (uint32_t lane = 0; lane < MSPRINGI_PART; ++lane) {
-                const uint32_t tile = tiles->tile_of_slot[begin + lane];
-                uint32_t lanes = 0;
-                for (uint32_t i = 0; i < MSPRINGI_PART; ++i)
-                    lanes |= (uint32_t)(tiles->tile_of_slot[begin + i] == tile) << i;
-                if (tile == MSPRING_NONE || lanes & ((1u << lane) - 1u))
-                    continue; // none, or listed at an earlier lane
-                if (pass == 0)
-                    first[tile + 2]++;
-                else
-                    tiles->parts[first[tile + 1]++] = (mspringi_tile_part){begin, lanes};
-            }
-        }
-        if (pass == 0) {
-            for (uint32_t i = 2; i < tiles->count + 2; ++i)
-                first[i] += first[i - 1];
-            tiles->parts = mspringi_alloc(memory, first[tiles->count + 1], sizeof *tiles->parts);
-            if (!tiles->parts)
-                return false;
+// List the particles of a cell's tiles, some slots at a time.
+static uint32_t list_cell_parts(mspringi_tiles *tiles, uint32_t cell, uint32_t first) {
+    const mspringi_cells *cells = &tiles->cells;
+    const uint32_t *const begin = cells->slots + cells->first_slot[cell];
+    const uint32_t *const end = cells->slots + cells->first_slot[cell + 1];
+    uint32_t part = first;
+    for (uint32_t t = tiles->first_of_cell[cell]; t < tiles->first_of_cell[cell + 1]; ++t) {
+        tiles->first_part[t] = part;
+        for (const uint32_t *slot = begin; slot < end; ++slot) {
+            if (tiles->of_slot[*slot] != t)
+                continue;
+            const uint32_t at = *slot / MSPRINGI_PART * MSPRINGI_PART;
+            if (part == tiles->first_part[t] || tiles->parts[part - 1].first_slot != at)
+                tiles->parts[part++] = (mspringi_tile_part){at, 0};
+            tiles->parts[part - 1].lanes |= 1u << (*slot - at);
         }
     }
-    return true;
+    return part;
 }
 
-/* --------------------------------------------------------------------------------------------------- the whole */
+static void list_parts(mspringi_tiles *tiles) {
+    uint32_t part = 0;
+    for (uint32_t cell = 0; cell < tiles->cells.count; ++cell)
+        part = list_cell_parts(tiles, cell, part);
+    tiles->first_part[tiles->count] = part;
+}
 
-// Half the square of the mean rest length: what a body about as large as a spring would have.
+// List the springs inside cells to pinned particles, as far as there is room.
+static void list_anchors(mspringi_tiles *tiles, const mspring_network *network) {
+    const mspringi_cells *cells = &tiles->cells;
+    const mspringi_topology *t = &network->topology;
+    tiles->anchor_count = 0;
+    for (uint32_t i = 0; i < cells->first_inner[cells->count] && tiles->anchor_count < tiles->anchor_capacity;
+         ++i) {
+        const mspringi_place place = t->place_of_spring[cells->inner[i]];
+        uint32_t a, b;
+        mspringi_topology_ends(t, place, &a, &b);
+        if (is_free(network, a) == is_free(network, b))
+            continue;
+        const bool a_free = is_free(network, a);
+        tiles->anchors[tiles->anchor_count++] = (mspringi_joint){
+            .slot = a_free ? a : b, .other_slot = a_free ? b : a, .factors = mspringi_factors_of_place(place)};
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------- edits */
+
+static void mark_dirty(mspringi_tiles *tiles, uint32_t cell) {
+    if (tiles->is_dirty[cell])
+        return;
+    tiles->is_dirty[cell] = 1;
+    tiles->dirty[tiles->dirty_count++] = cell;
+}
+
+static void mark_changed_links(mspringi_tiles *tiles, const mspring_network *network, uint64_t seen) {
+    const mspringi_topology *t = &network->topology;
+    for (uint64_t n = seen; n < network->edits.links; ++n) {
+        uint32_t a, b;
+        mspringi_topology_ends(t, t->place_of_spring[mspringi_edits_link(&network->edits, n)], &a, &b);
+        if (tiles->cells.of_slot[a] == tiles->cells.of_slot[b])
+            mark_dirty(tiles, tiles->cells.of_slot[a]);
+    }
+}
+
+static bool pins_have_changed(const mspringi_tiles *tiles, const mspring_network *network) {
+    const size_t slots = mspringi_slot_count(network);
+    size_t changed = 0;
+    for (size_t slot = 0; slot < slots; ++slot)
+        changed += tiles->cells.of_slot[slot] != MSPRING_NONE &&
+                   (network->inverse_mass[slot] > 0.0f) != (tiles->of_slot[slot] != MSPRING_NONE);
+    return changed > 0;
+}
+
+static bool fits(const mspringi_tiles *tiles) {
+    return tiles->count <= tiles->capacity && mspringi_tiles_coarse_values(tiles) <= tiles->value_capacity;
+}
+
+// Look again at the dirty cells. Everything else is a matter of counting.
+static void renew(mspringi_tiles *tiles, const mspring_network *network) {
+    for (uint32_t i = 0; i < tiles->dirty_count; ++i) {
+        find_components(tiles, network, tiles->dirty[i]);
+        tiles->is_dirty[tiles->dirty[i]] = 0;
+    }
+    tiles->dirty_count = 0;
+    // With a tile to a cell they always fit.
+    uint32_t most = UINT32_MAX;
+    do {
+        number_tiles(tiles, network, most);
+        most = most > 16 ? 16 : most / 4;
+    } while (!fits(tiles) && most > 0);
+    list_parts(tiles);
+}
+
+bool mspringi_tiles_are_outdated(const mspringi_tiles *tiles, const mspring_network *network,
+                                 const mspringi_edits *seen) {
+    const mspringi_edits *edits = &network->edits;
+    return seen->links != edits->links || seen->values != edits->values ||
+           (seen->masses != edits->masses && pins_have_changed(tiles, network));
+}
+
+void mspringi_tiles_follow(mspringi_tiles *tiles, const mspring_network *network, const mspringi_edits *seen) {
+    const mspringi_edits *edits = &network->edits;
+    const bool pins = seen->masses != edits->masses && pins_have_changed(tiles, network);
+    if (pins)
+        list_anchors(tiles, network);
+    if (pins || seen->values != edits->values || !mspringi_edits_have_link(edits, seen->links))
+        for (uint32_t cell = 0; cell < tiles->cells.count; ++cell)
+            mark_dirty(tiles, cell);
+    else
+        mark_changed_links(tiles, network, seen->links);
+    if (tiles->dirty_count > 0)
+        renew(tiles, network);
+}
+
+/* ---------------------------------------------------------------------------------------------------- the whole */
+
+// As if each body were at least about as large as a spring.
 static float choose_turn_inertia(const mspring_network *network) {
     double sum = 0.0;
     const uint32_t count = network->topology.spring_count;
@@ -300,54 +229,60 @@ static float choose_turn_inertia(const mspring_network *network) {
     return (float)(0.02 * mean * mean);
 }
 
-static mspring_result cut(mspringi_tiles *tiles, tiling *g, uint32_t size) {
-    const size_t slots = mspringi_slot_count(g->network);
-    g->cell_of_slot = mspringi_alloc(g->memory, slots, sizeof *g->cell_of_slot);
-    g->parent = mspringi_alloc(g->memory, slots, sizeof *g->parent);
-    tiles->tile_of_slot = mspringi_alloc(g->memory, slots, sizeof *tiles->tile_of_slot);
-    if (!g->cell_of_slot || !g->parent || !tiles->tile_of_slot)
-        return MSPRING_ERROR_MEMORY;
-    for (size_t slot = 0; slot < slots; ++slot)
-        g->cell_of_slot[slot] = MSPRING_NONE;
-    cut_grids(g, size);
-    cut_chains(g, size);
-    if (!cut_web(g, size))
-        return MSPRING_ERROR_MEMORY;
-    find_components(g);
-    number_components(tiles, g);
-    tiles->turn_inertia = choose_turn_inertia(g->network);
-    if (!mspringi_tiles_order(tiles, g->network, g->memory) || !list_parts(tiles, g->network, g->memory) ||
-        !list_joints(tiles, g->network, g->memory))
-        return MSPRING_ERROR_MEMORY;
-    return MSPRING_OK;
-}
-
+// Everything that edits do not change.
 static void take_print(mspringi_tiles *tiles, size_t slots) {
     tiles->print = mspringi_mix_floats(MSPRINGI_MIX_START, tiles->turn_inertia, 0.0f);
     for (size_t slot = 0; slot < slots; ++slot)
-        tiles->print = mspringi_mix(tiles->print, tiles->tile_of_slot[slot]);
+        tiles->print = mspringi_mix(tiles->print, tiles->cells.of_slot[slot]);
+}
+
+static bool find_tiles(mspringi_tiles *tiles, const mspring_network *network, mspringi_memory *memory) {
+    const size_t slots = mspringi_slot_count(network), cells = tiles->cells.count;
+    tiles->capacity = 2 * (uint32_t)cells + SPARE_TILES;
+    tiles->value_capacity = 4 * values_of_cells(&tiles->cells) + SPARE_VALUES;
+    tiles->anchor_capacity = tiles->cells.first_inner[cells] / 4 + SPARE_ANCHORS;
+    tiles->of_slot = mspringi_alloc(memory, slots, sizeof *tiles->of_slot);
+    tiles->parent = mspringi_alloc(memory, slots, sizeof *tiles->parent);
+    tiles->first_of_cell = mspringi_alloc(memory, cells + 1, sizeof *tiles->first_of_cell);
+    tiles->dirty = mspringi_alloc(memory, cells, sizeof *tiles->dirty);
+    tiles->is_dirty = mspringi_alloc(memory, cells, sizeof *tiles->is_dirty);
+    tiles->parts = mspringi_alloc(memory, network->topology.particle_count, sizeof *tiles->parts);
+    tiles->first_part = mspringi_alloc(memory, (size_t)tiles->capacity + 1, sizeof *tiles->first_part);
+    tiles->anchors = mspringi_alloc(memory, tiles->anchor_capacity, sizeof *tiles->anchors);
+    if (!tiles->of_slot || !tiles->parent || !tiles->first_of_cell || !tiles->dirty || !tiles->is_dirty ||
+        !tiles->parts || !tiles->first_part || !tiles->anchors)
+        return false;
+    for (size_t slot = 0; slot < slots; ++slot)
+        tiles->of_slot[slot] = MSPRING_NONE;
+    for (uint32_t cell = 0; cell < cells; ++cell)
+        mark_dirty(tiles, cell);
+    list_anchors(tiles, network);
+    renew(tiles, network);
+    tiles->turn_inertia = choose_turn_inertia(network);
+    take_print(tiles, slots);
+    return true;
 }
 
 mspring_result mspringi_tiles_create(mspringi_tiles *tiles, const mspring_network *network, uint32_t size,
                                      mspringi_memory *memory, mspringi_message *message) {
-    *tiles = (mspringi_tiles){.size = size};
-    tiling g = {.network = network, .memory = memory};
-    mspring_result result = cut(tiles, &g, size);
-    mspringi_free(memory, g.cell_of_slot);
-    mspringi_free(memory, g.parent);
-    if (result == MSPRING_OK) {
-        take_print(tiles, mspringi_slot_count(network));
+    *tiles = (mspringi_tiles){0};
+    mspring_result result = mspringi_cells_create(&tiles->cells, network, size, memory, message);
+    if (result != MSPRING_OK || find_tiles(tiles, network, memory))
         return result;
-    }
     mspringi_tiles_destroy(tiles, memory);
-    return mspringi_fail(message, result, "no memory to cut %u particles into tiles",
+    return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to cut %u particles into tiles",
                          (unsigned)network->topology.particle_count);
 }
 
 void mspringi_tiles_destroy(mspringi_tiles *tiles, mspringi_memory *memory) {
+    mspringi_cells_destroy(&tiles->cells, memory);
     mspringi_free(memory, tiles->first_part);
     mspringi_free(memory, tiles->parts);
-    mspringi_free(memory, tiles->tile_of_slot);
-    mspringi_free(memory, tiles->joints);
+    mspringi_free(memory, tiles->of_slot);
+    mspringi_free(memory, tiles->first_of_cell);
+    mspringi_free(memory, tiles->parent);
+    mspringi_free(memory, tiles->anchors);
+    mspringi_free(memory, tiles->dirty);
+    mspringi_free(memory, tiles->is_dirty);
     *tiles = (mspringi_tiles){0};
 }

@@ -48,6 +48,18 @@ static inline const float *mspringi_system_rests(const mspringi_system *system, 
     return system->rest_lengths + (size_t)system->rests_of_block[block] * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
 }
 
+/// What a spring's stiffness across its direction is, as a share of that along it, if its extension is this share
+/// of its length. When tense, that of its potential's second derivative. That of a compressed spring is negative,
+/// which would make A indefinite: 0, then. A spring pressed to less than three quarters, which has more than one
+/// side to escape to, goes over to stiffness in all directions: the quadratic model is above the potential then
+/// wherever its ends go, so no step overshoots into more energy than there was.
+static inline double mspringi_swing_share(double relative) {
+    const double pressed = -1.5 * relative - 0.5;
+    const double share = relative > pressed ? relative : pressed;
+    const double positive = share > 0.0 ? share : 0.0;
+    return positive < 1.0 ? positive : 1.0;
+}
+
 /// Fill factors, force and diagonal of one or more rows, all of one kind.
 typedef void (*mspringi_assemble_fn)(const mspringi_system *system, const mspringi_span *spans, uint32_t count);
 
@@ -78,8 +90,8 @@ typedef struct mspringi_iterate {
 /// Go on by alpha along the direction, and scale the new residual. Returns r . D^-1 r.
 typedef float (*mspringi_advance_fn)(const mspringi_system *system, const mspringi_iterate *iterate, float alpha);
 
-/// Returns direction . product.
-typedef float (*mspringi_curvature_fn)(const mspringi_iterate *iterate);
+/// Returns a . b, for vectors of two coordinates.
+typedef float (*mspringi_dot_fn)(size_t slots, const float *ax, const float *ay, const float *bx, const float *by);
 
 /// Sum r over the parts of a tile: in x, in y, and its moment about the mass centre.
 typedef void (*mspringi_restrict_fn)(const mspringi_iterate *iterate, const mspringi_tile_part *parts, size_t count,
@@ -89,13 +101,25 @@ typedef void (*mspringi_restrict_fn)(const mspringi_iterate *iterate, const mspr
 typedef void (*mspringi_turn_fn)(const mspringi_iterate *iterate, const mspringi_tile_part *parts, size_t count,
                                  const double *body, float beta);
 
+/// The state that a substep begins with, and what rotating tiles make of it: see implicit/scheme.c.
+typedef struct mspringi_flight {
+    const float *x, *y, *vx, *vy, *mass;
+    float h;
+    float *turned_x, *turned_y; ///< of the tile's rotation beyond h v
+    float *arm_x, *arm_y;       ///< from the tile's mass centre to the predicted position
+} mspringi_flight;
+
+/// Predict the rotation of the tile that has these parts.
+typedef void (*mspringi_fly_fn)(const mspringi_flight *flight, const mspringi_tile_part *parts, size_t count);
+
 typedef struct mspringi_system_kernels {
     mspringi_assemble_fn assemble_lattice[2], assemble_chain[2]; ///< [with damping]
     mspringi_multiply_fn multiply_lattice, multiply_chain;
     mspringi_advance_fn advance;
-    mspringi_curvature_fn curvature;
+    mspringi_dot_fn dot;
     mspringi_restrict_fn restrict_to_tile;
     mspringi_turn_fn turn_tile;
+    mspringi_fly_fn fly_tile;
 } mspringi_system_kernels;
 
 #endif

@@ -46,7 +46,7 @@ static inline void assemble_springs(const mspringi_system *s, size_t base, size_
         const double nx = dx * inverse, ny = dy * inverse;
         const double extension = length - (double)rest_lengths[i];
         const double stiffness = scale * (double)stiffnesses[i];
-        const double relative = extension * inverse, tensed = relative > 0.0 ? relative : 0.0;
+        const double relative = extension * inverse, tensed = mspringi_swing_share(relative);
         double force = stiffness * extension, along = stiffness - stiffness * tensed;
         if (damped) {
             const double dvx = (double)s->vx[tip + i] - (double)s->vx[base + i];

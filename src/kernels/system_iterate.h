@@ -75,17 +75,13 @@ static float advance(const mspringi_system *s, const mspringi_iterate *n, float 
                                n->scaled_x, n->scaled_y);
 }
 
-static float dot_coordinates(size_t slots, const float *restrict ax, const float *restrict ay,
-                             const float *restrict bx, const float *restrict by) {
+static float dot(size_t slots, const float *restrict ax, const float *restrict ay, const float *restrict bx,
+                 const float *restrict by) {
     float sums[MSPRINGI_WIDTH] = {0.0f};
     for (size_t slot = 0; slot < slots; slot += MSPRINGI_WIDTH)
         for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
             sums[i] = sums[i] + (ax[slot + i] * bx[slot + i] + ay[slot + i] * by[slot + i]);
     return sum_block_lanes(sums);
-}
-
-static float curvature(const mspringi_iterate *n) {
-    return dot_coordinates(n->slots, n->direction_x, n->direction_y, n->product_x, n->product_y);
 }
 
 /// All lanes of a part.
@@ -163,6 +159,103 @@ static void turn_tile(const mspringi_iterate *n, const mspringi_tile_part *parts
             px[i] = parts[p].lanes >> i & 1 ? some_x[i] : px[i];
             py[i] = parts[p].lanes >> i & 1 ? some_y[i] : py[i];
         }
+    }
+}
+
+/// Sums by lane over a tile, about a point in it that moves along: mass, first moments of place and velocity,
+/// moment of momentum and of inertia.
+typedef struct tile_moments {
+    part_vec sums[7][PART_VECTORS];
+} tile_moments;
+
+MSPRINGI_PART_INLINE void add_moments(tile_moments *to, const mspringi_flight *f, size_t slot, const float *mass,
+                                      size_t origin) {
+    for (size_t v = 0; v < PART_VECTORS; ++v) {
+        const size_t at = slot + v * PART_LANES;
+        const part_vec m = part_load(mass + v * PART_LANES);
+        const part_vec x = part_sub(part_load(f->x + at), part_set(f->x[origin]));
+        const part_vec y = part_sub(part_load(f->y + at), part_set(f->y[origin]));
+        const part_vec vx = part_sub(part_load(f->vx + at), part_set(f->vx[origin]));
+        const part_vec vy = part_sub(part_load(f->vy + at), part_set(f->vy[origin]));
+        const part_vec values[] = {m,
+                                   part_mul(m, x),
+                                   part_mul(m, y),
+                                   part_mul(m, vx),
+                                   part_mul(m, vy),
+                                   part_mul(m, part_sub(part_mul(x, vy), part_mul(y, vx))),
+                                   part_mul(m, part_add(part_mul(x, x), part_mul(y, y)))};
+        for (size_t i = 0; i < 7; ++i)
+            to->sums[i][v] = part_add(to->sums[i][v], values[i]);
+    }
+}
+
+/// A rigid motion about a point: where the mass centre is and goes to, and the rotation less what h v makes of it.
+typedef struct tile_turn {
+    float x, y, hvx, hvy, inward, sideways;
+} tile_turn;
+
+static tile_turn find_turn(const tile_moments *moments, double h) {
+    double sums[7];
+    for (size_t i = 0; i < 7; ++i)
+        sums[i] = sum_part(moments->sums[i]);
+    const double x = sums[1] / sums[0], y = sums[2] / sums[0], vx = sums[3] / sums[0], vy = sums[4] / sums[0];
+    const double moment = sums[5] - sums[0] * (x * vy - y * vx), inertia = sums[6] - sums[0] * (x * x + y * y);
+    // The rotation whose half angle has this tangent: of the angle omega h up to its third power, whatever that is.
+    const double half = inertia > 1e-6 * sums[6] ? 0.5 * h * moment / inertia : 0.0;
+    const double inward = -2.0 * half * half / (1.0 + half * half); // cos - 1; half of it times half: sin - omega h
+    const tile_turn turn = {(float)x,        (float)y,      (float)(h * vx),
+                            (float)(h * vy), (float)inward, (float)(half * inward)};
+    return turn;
+}
+
+MSPRINGI_PART_INLINE void fly_part(const mspringi_flight *f, size_t slot, size_t origin, const tile_turn *turn,
+                                   float *const to[4]) {
+    const part_vec inward = part_set(turn->inward), sideways = part_set(turn->sideways), h = part_set(f->h);
+    for (size_t i = 0; i < MSPRINGI_PART; i += PART_LANES) {
+        const size_t at = slot + i;
+        const part_vec x = part_sub(part_sub(part_load(f->x + at), part_set(f->x[origin])), part_set(turn->x));
+        const part_vec y = part_sub(part_sub(part_load(f->y + at), part_set(f->y[origin])), part_set(turn->y));
+        const part_vec vx = part_sub(part_load(f->vx + at), part_set(f->vx[origin]));
+        const part_vec vy = part_sub(part_load(f->vy + at), part_set(f->vy[origin]));
+        const part_vec turned_x = part_sub(part_mul(inward, x), part_mul(sideways, y));
+        const part_vec turned_y = part_add(part_mul(inward, y), part_mul(sideways, x));
+        part_store(to[0] + i, turned_x);
+        part_store(to[1] + i, turned_y);
+        part_store(to[2] + i, part_add(part_add(x, turned_x), part_sub(part_mul(h, vx), part_set(turn->hvx))));
+        part_store(to[3] + i, part_add(part_add(y, turned_y), part_sub(part_mul(h, vy), part_set(turn->hvy))));
+    }
+}
+
+static void fly_tile(const mspringi_flight *f, const mspringi_tile_part *parts, size_t count) {
+    float *const to[] = {f->turned_x, f->turned_y, f->arm_x, f->arm_y};
+    tile_moments moments;
+    for (size_t i = 0; i < 7; ++i)
+        for (size_t v = 0; v < PART_VECTORS; ++v)
+            moments.sums[i][v] = part_set(0.0f);
+    size_t origin = parts[0].first_slot;
+    while (!(parts[0].lanes >> (origin - parts[0].first_slot) & 1))
+        ++origin;
+    for (size_t p = 0; p < count; ++p) {
+        const size_t slot = parts[p].first_slot;
+        if (parts[p].lanes == ALL_LANES) {
+            add_moments(&moments, f, slot, f->mass + slot, origin);
+            continue;
+        }
+        _Alignas(64) float mass[MSPRINGI_PART];
+        for (size_t i = 0; i < MSPRINGI_PART; ++i)
+            mass[i] = parts[p].lanes >> i & 1 ? f->mass[slot + i] : 0.0f;
+        add_moments(&moments, f, slot, mass, origin);
+    }
+    const tile_turn turn = find_turn(&moments, (double)f->h);
+    for (size_t p = 0; p < count; ++p) {
+        const size_t slot = parts[p].first_slot;
+        _Alignas(64) float some[4][MSPRINGI_PART];
+        float *const all[] = {to[0] + slot, to[1] + slot, to[2] + slot, to[3] + slot};
+        float *const part[] = {some[0], some[1], some[2], some[3]};
+        fly_part(f, slot, origin, &turn, parts[p].lanes == ALL_LANES ? all : part);
+        for (size_t i = 0; parts[p].lanes != ALL_LANES && i < MSPRINGI_PART; ++i)
+            for (size_t j = 0; j < 4; ++j)
+                all[j][i] = parts[p].lanes >> i & 1 ? some[j][i] : all[j][i];
     }
 }
 

@@ -60,7 +60,8 @@ const mspringi_kernels MSPRINGI_TABLE = {
                .multiply_lattice = multiply_lattice,
                .multiply_chain = multiply_chain,
                .advance = advance,
-               .curvature = curvature,
+               .dot = dot,
                .restrict_to_tile = restrict_to_tile,
-               .turn_tile = turn_tile},
+               .turn_tile = turn_tile,
+               .fly_tile = fly_tile},
 };

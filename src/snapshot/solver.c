@@ -15,12 +15,22 @@ typedef struct implicit_head {
 } implicit_head;
 #define HEAD_BYTES ((size_t)40)
 
-static size_t implicit_size_of(const mspringi_implicit *n, uint32_t age) {
-    return HEAD_BYTES + n->history_size * sizeof(float) + (age > 0 ? n->coarse.value_count * sizeof(double) : 0);
+static size_t implicit_size_of(const mspringi_implicit *n, size_t coarse_values) {
+    return HEAD_BYTES + n->history_size * sizeof(float) + coarse_values * sizeof(double);
+}
+
+// The age of the coarse matrix that the next substep finds.
+static uint32_t age_of(const mspring_network *network) {
+    const mspringi_implicit *n = network->implicit;
+    return mspringi_tiles_are_outdated(&n->tiles, network, &n->seen) ? 0 : n->age;
+}
+
+static size_t coarse_values(const mspring_network *network) {
+    return age_of(network) > 0 ? network->implicit->coarse.value_count : 0;
 }
 
 static size_t implicit_size(const mspring_network *network) {
-    return network->implicit ? implicit_size_of(network->implicit, network->implicit->age) : 0;
+    return network->implicit ? implicit_size_of(network->implicit, coarse_values(network)) : 0;
 }
 
 static void implicit_save(const mspring_network *network, mspringi_writer *to) {
@@ -28,7 +38,7 @@ static void implicit_save(const mspring_network *network, mspringi_writer *to) {
     // A history of a motion that has ended is as good as none.
     const bool ended = n->seen.motion != network->edits.motion;
     const uint32_t words[] = {n->history.restarts || ended, (uint32_t)n->integrator, n->iterations,
-                              n->coarse_period, n->age};
+                              n->coarse_period, age_of(network)};
     mspringi_put(to, &n->tiles.print, 1, sizeof n->tiles.print);
     mspringi_put(to, &n->scale, 1, sizeof n->scale);
     mspringi_put(to, &n->history.h, 1, sizeof n->history.h);
@@ -37,8 +47,7 @@ static void implicit_save(const mspring_network *network, mspringi_writer *to) {
         mspringi_put_zeros(to, n->history_size * sizeof(float));
     else
         mspringi_put(to, n->history.low.x, n->history_size, sizeof(float));
-    if (n->age > 0)
-        mspringi_put(to, n->coarse.values, n->coarse.value_count, sizeof(double));
+    mspringi_put(to, n->coarse.values, coarse_values(network), sizeof(double));
 }
 
 static const uint8_t *read_head(const uint8_t *from, implicit_head *head) {
@@ -82,13 +91,16 @@ static mspring_result implicit_check(mspring_network *network, const uint8_t *fr
         return mspringi_section_check_size(network, section, size, HEAD_BYTES);
     from = read_head(from, &head);
     mspring_result result = check_head(network, &head);
+    // How large the coarse matrix is depends on what is broken in the snapshot.
+    const size_t fixed = implicit_size_of(n, 0), rest = size > fixed ? size - fixed : 0;
+    const size_t values = head.age > 0 ? rest / sizeof(double) : 0;
     if (result == MSPRING_OK)
-        result = mspringi_section_check_size(network, section, size, implicit_size_of(n, head.age));
+        result = mspringi_section_check_size(network, section, size, implicit_size_of(n, values));
     for (size_t i = 0; result == MSPRING_OK && i < n->history_size; ++i)
         if (!isfinite(mspringi_float_at(from, i)))
             result = mspringi_section_fail(network, section, "its history is not finite");
     from += n->history_size * sizeof(float);
-    for (size_t i = 0; result == MSPRING_OK && head.age > 0 && i < n->coarse.value_count; ++i) {
+    for (size_t i = 0; result == MSPRING_OK && i < values; ++i) {
         double value;
         from = mspringi_get(from, &value, 1, sizeof value);
         if (!isfinite(value))
@@ -118,12 +130,13 @@ static void implicit_load(mspring_network *network, const uint8_t *from, size_t 
     n->history.restarts = head.restarts;
     n->iterations = head.iterations;
     n->coarse_period = head.coarse_period;
-    n->age = head.age;
     from = mspringi_get(from, n->history.low.x, n->history_size, sizeof(float));
     clear_history(network);
-    if (head.age > 0)
+    mspringi_implicit_follow(network);
+    // The matrix of other tiles than those that follow from the rest of the snapshot would be of no use.
+    n->age = size == implicit_size_of(n, n->coarse.value_count) ? head.age : 0;
+    if (n->age > 0)
         mspringi_get(from, n->coarse.values, n->coarse.value_count, sizeof(double));
-    n->seen = network->edits;
 }
 
 const mspringi_section mspringi_section_implicit = {"impl",        "implicit solver", false,        implicit_size,

@@ -1,32 +1,32 @@
-/// Numbering tiles so that the envelope of the coarse matrix is narrow.
-#include "tile_order.h"
+/// Numbering cells so that the envelope of the coarse matrix is narrow.
+#include "cells.h"
 
-/// Which tiles springs join: repeated as often as there are springs between them.
-typedef struct tile_graph {
+/// Which cells springs join: repeated as often as there are springs between them.
+typedef struct cell_graph {
     uint32_t count;
     uint32_t *first;     ///< [count + 2]
-    uint32_t *neighbour; ///< [2 * springs between tiles]
-} tile_graph;
+    uint32_t *neighbour; ///< [2 * springs between cells]
+} cell_graph;
 
-static bool ends_of(const mspringi_tiles *tiles, const mspring_network *network, mspring_id spring, uint32_t *a,
+static bool ends_of(const mspringi_cells *cells, const mspring_network *network, mspring_id spring, uint32_t *a,
                     uint32_t *b) {
     const mspringi_topology *t = &network->topology;
     mspringi_topology_ends(t, t->place_of_spring[spring], a, b);
-    *a = tiles->tile_of_slot[*a];
-    *b = tiles->tile_of_slot[*b];
-    return *a != *b && *a != MSPRING_NONE && *b != MSPRING_NONE && mspringi_is_live(network, spring);
+    *a = cells->of_slot[*a];
+    *b = cells->of_slot[*b];
+    return *a != *b;
 }
 
-static bool make_graph(tile_graph *graph, const mspringi_tiles *tiles, const mspring_network *network,
+static bool make_graph(cell_graph *graph, const mspringi_cells *cells, const mspring_network *network,
                        mspringi_memory *memory) {
     const uint32_t springs = network->topology.spring_count;
     uint32_t a, b, total = 0;
-    graph->count = tiles->count;
+    graph->count = cells->count;
     graph->first = mspringi_alloc(memory, (size_t)graph->count + 2, sizeof *graph->first);
     if (!graph->first)
         return false;
     for (mspring_id s = 0; s < springs; ++s) {
-        if (!ends_of(tiles, network, s, &a, &b))
+        if (!ends_of(cells, network, s, &a, &b))
             continue;
         graph->first[a + 2]++;
         graph->first[b + 2]++;
@@ -38,7 +38,7 @@ static bool make_graph(tile_graph *graph, const mspringi_tiles *tiles, const msp
     for (uint32_t i = 2; i < graph->count + 2; ++i)
         graph->first[i] += graph->first[i - 1];
     for (mspring_id s = 0; s < springs; ++s) {
-        if (!ends_of(tiles, network, s, &a, &b))
+        if (!ends_of(cells, network, s, &a, &b))
             continue;
         graph->neighbour[graph->first[a + 1]++] = b;
         graph->neighbour[graph->first[b + 1]++] = a;
@@ -46,8 +46,8 @@ static bool make_graph(tile_graph *graph, const mspringi_tiles *tiles, const msp
     return true;
 }
 
-// Breadth first from a tile, over those that are not marked with stamp; appends to order and returns its new end.
-static uint32_t spread(const tile_graph *graph, uint32_t from, uint32_t *order, uint32_t begin, uint32_t *mark,
+// Breadth first from a cell, over those that are not marked with stamp; appends to order and returns its new end.
+static uint32_t spread(const cell_graph *graph, uint32_t from, uint32_t *order, uint32_t begin, uint32_t *mark,
                        uint32_t stamp) {
     uint32_t end = begin;
     order[end++] = from;
@@ -64,27 +64,27 @@ static uint32_t spread(const tile_graph *graph, uint32_t from, uint32_t *order, 
     return end;
 }
 
-bool mspringi_tiles_order(mspringi_tiles *tiles, const mspring_network *network, mspringi_memory *memory) {
+bool mspringi_cells_order(mspringi_cells *cells, const mspring_network *network, mspringi_memory *memory) {
     const uint32_t slots = (uint32_t)mspringi_slot_count(network);
-    tile_graph graph = {0};
-    uint32_t *order = mspringi_alloc(memory, tiles->count, sizeof *order);
-    uint32_t *mark = mspringi_alloc(memory, tiles->count, sizeof *mark);
-    const bool ok = make_graph(&graph, tiles, network, memory) && order && mark;
+    cell_graph graph = {0};
+    uint32_t *order = mspringi_alloc(memory, cells->count, sizeof *order);
+    uint32_t *mark = mspringi_alloc(memory, cells->count, sizeof *mark);
+    const bool ok = make_graph(&graph, cells, network, memory) && order && mark;
     uint32_t end = 0;
-    for (uint32_t t = 0; ok && t < tiles->count; ++t) {
-        if (mark[t] != 0)
+    for (uint32_t c = 0; ok && c < cells->count; ++c) {
+        if (mark[c] != 0)
             continue;
-        // Start from a tile at one end: the last that a first and a second pass find.
-        uint32_t from = t;
+        // Start from a cell at one end: the last that a first and a second pass find.
+        uint32_t from = c;
         for (uint32_t stamp = 1; stamp <= 2; ++stamp)
             from = order[spread(&graph, from, order, end, mark, stamp) - 1];
         end = spread(&graph, from, order, end, mark, 3);
     }
-    for (uint32_t i = 0; ok && i < tiles->count; ++i)
+    for (uint32_t i = 0; ok && i < cells->count; ++i)
         mark[order[i]] = i;
     for (uint32_t slot = 0; ok && slot < slots; ++slot)
-        if (tiles->tile_of_slot[slot] != MSPRING_NONE)
-            tiles->tile_of_slot[slot] = mark[tiles->tile_of_slot[slot]];
+        if (cells->of_slot[slot] != MSPRING_NONE)
+            cells->of_slot[slot] = mark[cells->of_slot[slot]];
     mspringi_free(memory, graph.first);
     mspringi_free(memory, graph.neighbour);
     mspringi_free(memory, order);

@@ -1,0 +1,149 @@
+/// @file test_implicit_starts.c
+/// The implicit solver from starts that no sane host makes: it has to stay finite, and never to gain energy.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdbool.h>
+
+#include "recipe.h"
+#include "support.h"
+
+enum { COLUMNS = 80, ROWS = 5, COUNT = COLUMNS * ROWS };
+
+typedef struct start {
+    const char *name;
+    double stiffness, dt, gravity;
+    double tip_mass;     ///< times the others' mass
+    double light_masses; ///< the smallest of random masses, as a share of the largest; 0: all equal
+    enum { AS_BUILT, COLLAPSED, FLATTENED, SPINNING } shape;
+    double spin; ///< rad/s
+    uint32_t iterations;
+    bool damped;
+} start;
+
+static const start starts[] = {
+    {.name = "collapsed", .stiffness = 1e9, .shape = COLLAPSED},
+    {.name = "collapsed, stiff", .stiffness = 1e12, .shape = COLLAPSED, .damped = true},
+    {.name = "flattened", .stiffness = 1e9, .shape = FLATTENED, .gravity = 9.8},
+    {.name = "spinning slowly", .stiffness = 1e9, .shape = SPINNING, .spin = 1},
+    {.name = "spinning", .stiffness = 1e9, .shape = SPINNING, .spin = 5},
+    {.name = "spinning fast", .stiffness = 1e9, .shape = SPINNING, .spin = 20, .damped = true},
+    // x + h v stretches it by half a percent, which is thousands of times its kinetic energy: eight iterations
+    // leave 20 % of that behind in the first second.
+    {.name = "spinning, stiff", .stiffness = 1e12, .shape = SPINNING, .spin = 5, .iterations = 25},
+    {.name = "hanging, stiff", .stiffness = 1e12, .gravity = 9.8},
+    {.name = "heavy tip", .stiffness = 1e9, .gravity = 9.8, .tip_mass = 1000},
+    {.name = "heavier tip", .stiffness = 1e10, .gravity = 9.8, .tip_mass = 42000, .damped = true},
+    {.name = "random masses", .stiffness = 1e9, .gravity = 9.8, .light_masses = 1e-3},
+    {.name = "long step", .stiffness = 1e9, .gravity = 9.8, .dt = 1.0 / 15},
+    {.name = "long step, collapsed", .stiffness = 1e10, .dt = 1.0 / 15, .shape = COLLAPSED},
+};
+
+static recipe bar(const start *s) {
+    uint64_t seed = 11;
+    const double damping = s->damped ? 1e-4 * s->stiffness : 0;
+    const recipe_stuff iron = {
+        .mass = {73.3975, 73.3975}, .stiffness = {s->stiffness, s->stiffness}, .damping = {damping, damping}};
+    recipe made = {0};
+    recipe_lattice(&made, COLUMNS, ROWS, 0, 0, 1, &iron, &seed);
+    recipe_disturb(&made, 0, 0, &seed); // rest lengths are those of now
+    for (uint32_t i = 0; i < COUNT; i++) {
+        mspring_particle_def *p = &made.particles[i];
+        const double x = p->x - COLUMNS / 2.0, y = p->y - ROWS / 2.0;
+        if (s->light_masses > 0) {
+            p->mass *= (float)support_random_between(&seed, s->light_masses, 1);
+        }
+        if (i == COUNT - 1 && s->tip_mass > 0) {
+            p->mass *= (float)s->tip_mass;
+        }
+        if (s->shape == AS_BUILT && i % COLUMNS == 0) {
+            p->flags = MSPRING_PARTICLE_PINNED;
+        }
+        if (s->shape == COLLAPSED) {
+            p->x = support_random_between(&seed, 0, 1);
+            p->y = support_random_between(&seed, 0, 1);
+        } else if (s->shape == FLATTENED) {
+            p->y = 0;
+        } else if (s->shape == SPINNING) {
+            p->vx = (float)(-s->spin * y);
+            p->vy = (float)(s->spin * x);
+        }
+    }
+    return made;
+}
+
+static double total_energy(const mspring_network *network) {
+    double kinetic, elastic, potential;
+    check_ok(mspring_network_energy(network, &kinetic, &elastic, &potential));
+    return kinetic + elastic + potential;
+}
+
+static void check_start(const start *s, mspring_integrator integrator) {
+    recipe made = bar(s);
+    mspring_network_def def = support_def((float)-s->gravity, 1);
+    def.max_speed = 1e9f;
+    mspring_network *network = recipe_network(&made, &def);
+    mspring_solver_def solver;
+    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    solver.solver = MSPRING_SOLVER_IMPLICIT;
+    solver.integrator = integrator;
+    solver.iterations = s->iterations;
+    check_ok(mspring_network_set_solver(network, &solver));
+    const double dt = s->dt > 0 ? s->dt : 1.0 / 64;
+    double kinetic;
+    check_ok(mspring_network_energy(network, &kinetic, NULL, NULL));
+    const double first = total_energy(network);
+    // Rounding: a millionth of all the energy that there is, or that falling by the bar's length would give; and
+    // what springs have from ends that are off by two units in the last place at 40 m.
+    const double rounding = 1e-6 * (fabs(first) + COUNT * 73.4 * s->gravity * COLUMNS) +
+                            0.5 * s->stiffness * 8e-6 * 8e-6 * made.spring_count;
+    double most = -INFINITY, last = 0;
+    for (int step = 0; step < 300; step++) {
+        check_ok(mspring_network_step(network, dt));
+        last = total_energy(network);
+        most = fmax(most, last);
+    }
+    if (!(most <= first + rounding)) {
+        print_error("%s, integrator %d: energy from %g to %g J, at the end %g\n", s->name, (int)integrator, first,
+                    most, last);
+    }
+    assert_true(isfinite(last));
+    assert_true(most <= first + rounding);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+static void every_start_is_safe(void **state) {
+    (void)state;
+    for (size_t i = 0; i < COUNT_OF(starts); i++) {
+        for (mspring_integrator n = MSPRING_INTEGRATOR_GA0; n <= MSPRING_INTEGRATOR_EULER; n++) {
+            check_start(&starts[i], n);
+        }
+    }
+}
+
+static void all_in_one_point(void **state) {
+    (void)state;
+    const start s = {.stiffness = 1e9, .shape = COLLAPSED};
+    recipe made = bar(&s);
+    for (uint32_t i = 0; i < COUNT; i++) {
+        made.particles[i].x = made.particles[i].y = 3;
+    }
+    mspring_network_def def = support_def(-9.8f, 1);
+    def.solver = MSPRING_SOLVER_IMPLICIT;
+    mspring_network *network = recipe_network(&made, &def);
+    // Springs of length 0 have no direction, so it falls as one.
+    support_steps(network, 64, 1.0 / 64);
+    check_near(support_position(network, 0).y, 3 - 4.9, 0.01);
+    check_near(support_position(network, COUNT - 1).y, support_position(network, 0).y, 1e-5);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_start_is_safe),
+        cmocka_unit_test(all_in_one_point),
+    };
+    return cmocka_run_group_tests_name("implicit_starts", tests, NULL, NULL);
+}
