@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/cpu.h"
+#include "base/forest.h"
 #include "edits/events.h"
 #include "network/springs.h"
 
@@ -51,24 +52,7 @@ static mspring_result reserve(mspring_network *network) {
     return result;
 }
 
-/* --------------------------------------------------------------------------------------------------- union-find */
-
-static uint32_t find_root(uint32_t *root, uint32_t slot) {
-    while (root[slot] != slot) {
-        root[slot] = root[root[slot]];
-        slot = root[slot];
-    }
-    return slot;
-}
-
-static void join(uint32_t *root, uint32_t a, uint32_t b) {
-    a = find_root(root, a);
-    b = find_root(root, b);
-    if (a < b)
-        root[b] = a;
-    else
-        root[a] = b;
-}
+/* --------------------------------------------------------------------------------------------------- the roots */
 
 static uint32_t lowest_bit(uint32_t bits) {
 #if defined(__GNUC__)
@@ -109,11 +93,11 @@ static void join_rows(const mspring_network *network, uint32_t block) {
     const uint32_t known = (north & east_above) | (north >> 1 & east),
                    known_down = (north & east) | (north >> 1 & east_above);
     for (uint32_t bits = uprights; bits; bits &= bits - 1)
-        join(root, here + lowest_bit(bits), up + lowest_bit(bits));
+        mspringi_forest_join(root, here + lowest_bit(bits), up + lowest_bit(bits));
     for (uint32_t bits = live[MSPRINGI_NORTH_EAST] & ~known; bits; bits &= bits - 1)
-        join(root, here + lowest_bit(bits), up + lowest_bit(bits) + 1);
+        mspringi_forest_join(root, here + lowest_bit(bits), up + lowest_bit(bits) + 1);
     for (uint32_t bits = live[MSPRINGI_SOUTH_EAST] & ~known_down; bits; bits &= bits - 1)
-        join(root, up + lowest_bit(bits), here + lowest_bit(bits) + 1);
+        mspringi_forest_join(root, up + lowest_bit(bits), here + lowest_bit(bits) + 1);
 }
 
 // Give every slot the lowest slot that it hangs together with.
@@ -130,7 +114,7 @@ static void find_roots(const mspring_network *network) {
     for (uint32_t i = 0; i < t->leftover_count; ++i) {
         const mspringi_place place = t->chain_places + i;
         if (network->live[place / MSPRINGI_WIDTH] >> place % MSPRINGI_WIDTH & 1)
-            join(root, t->leftover_a[i], t->leftover_b[i]);
+            mspringi_forest_join(root, t->leftover_a[i], t->leftover_b[i]);
     }
     for (uint32_t slot = 0; slot < slots; ++slot)
         root[slot] = root[root[slot]]; // no root is above its slot, so it has its own already

@@ -1,6 +1,7 @@
 /// Finding the tiles in the cells, and following edits.
 #include "tiles.h"
 
+#include "base/forest.h"
 #include "base/mix.h"
 #include "network/springs.h"
 
@@ -22,14 +23,6 @@ static bool is_free(const mspring_network *network, uint32_t slot) {
 
 /* ------------------------------------------------------------------------------------------------- components */
 
-static uint32_t root_of(uint32_t *parent, uint32_t slot) {
-    while (parent[slot] != slot) {
-        parent[slot] = parent[parent[slot]];
-        slot = parent[slot];
-    }
-    return slot;
-}
-
 // Join the free particles of a cell that live springs connect. The root of a component is its lowest slot.
 static void find_components(mspringi_tiles *tiles, const mspring_network *network, uint32_t cell) {
     const mspringi_cells *cells = &tiles->cells;
@@ -42,12 +35,7 @@ static void find_components(mspringi_tiles *tiles, const mspring_network *networ
         mspringi_topology_ends(t, t->place_of_spring[spring], &a, &b);
         if (!is_free(network, a) || !is_free(network, b) || !is_live(network, spring))
             continue;
-        a = root_of(tiles->parent, a);
-        b = root_of(tiles->parent, b);
-        if (a < b)
-            tiles->parent[b] = a;
-        else
-            tiles->parent[a] = b;
+        mspringi_forest_join(tiles->parent, a, b);
     }
 }
 
@@ -62,7 +50,7 @@ static uint32_t number_cell(mspringi_tiles *tiles, const mspring_network *networ
         tiles->of_slot[slot] = MSPRING_NONE;
         if (!is_free(network, slot))
             continue;
-        const uint32_t root = root_of(tiles->parent, slot);
+        const uint32_t root = mspringi_forest_root(tiles->parent, slot);
         tiles->of_slot[slot] = root == slot ? end++ : tiles->of_slot[root];
     }
     if (end - first <= most)

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/cpu.h"
+#include "base/forest.h"
 #include "equilibrium.h"
 #include "network/network.h"
 #include "network/origin.h"
@@ -53,8 +54,7 @@ static void fill_springs(mspringi_statics *statics, const mspring_network *netwo
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ floating parts
- */
+/* -------------------------------------------------------------------------------------------- floating parts */
 
 /// A set of particles that springs hold together, known by one of them.
 typedef struct part {
@@ -63,28 +63,16 @@ typedef struct part {
     bool is_held;      ///< by a pinned particle
 } part;
 
-static uint32_t find_part(uint32_t *up, uint32_t p) {
-    while (up[p] != p)
-        p = up[p] = up[up[p]];
-    return p;
-}
-
 static void join_parts(const mspringi_statics *statics, uint32_t *up) {
     for (uint32_t p = 0; p < statics->particle_count; ++p)
         up[p] = p;
-    for (uint32_t i = 0; i < statics->springs.count; ++i) {
-        const uint32_t a = find_part(up, statics->springs.a[i]), b = find_part(up, statics->springs.b[i]);
-        // The lower number leads, so that a part is known by its lowest particle.
-        if (a < b)
-            up[b] = a;
-        else
-            up[a] = b;
-    }
+    for (uint32_t i = 0; i < statics->springs.count; ++i)
+        mspringi_forest_join(up, statics->springs.a[i], statics->springs.b[i]);
 }
 
 static void sum_parts(const mspringi_statics *statics, uint32_t *up, part *parts) {
     for (uint32_t p = 0; p < statics->particle_count; ++p) {
-        part *of = &parts[find_part(up, p)];
+        part *of = &parts[mspringi_forest_root(up, p)];
         of->x += statics->outside.x[p];
         of->y += statics->outside.y[p];
         of->size += fabs(statics->outside.x[p]) + fabs(statics->outside.y[p]);
@@ -112,7 +100,7 @@ static mspring_result check_parts(mspringi_statics *statics, const mspring_settl
         sum_parts(statics, up, parts);
         *left_alone = 0;
         for (uint32_t p = 0; p < statics->particle_count && result == MSPRING_OK; ++p) {
-            const uint32_t lowest = find_part(up, p);
+            const uint32_t lowest = mspringi_forest_root(up, p);
             if (!floats_away(&parts[lowest]))
                 continue;
             if (def->flags & MSPRING_SETTLE_LEAVE_FLOATING) {

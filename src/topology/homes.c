@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "analysis.h"
+#include "base/forest.h"
 
 /// Particles in the rows of a strip, about: few strips cost fewer calls, small ones fit the cache more often.
 #define STRIP_PARTICLES 512
@@ -36,31 +37,16 @@ typedef struct finder {
 
 /* --------------------------------------------------------------------------------------------- the components */
 
-static uint32_t root_of(uint32_t *parents, uint32_t particle) {
-    while (parents[particle] != particle) {
-        parents[particle] = parents[parents[particle]];
-        particle = parents[particle];
-    }
-    return particle;
-}
-
-// The lower root becomes the root of both, so that the order of calls does not show.
-static void join(uint32_t *parents, uint32_t a, uint32_t b) {
-    a = root_of(parents, a);
-    b = root_of(parents, b);
-    parents[a < b ? b : a] = a < b ? a : b;
-}
-
 static void find_components(finder *f) {
     const mspring_builder *builder = f->graph->builder;
     for (uint32_t p = 0; p < builder->particle_count; ++p)
         f->component[p] = p;
     for (size_t s = 0; s < builder->spring_count; ++s)
-        join(f->component, builder->springs[s].a, builder->springs[s].b);
+        mspringi_forest_join(f->component, builder->springs[s].a, builder->springs[s].b);
 }
 
 static uint8_t *fitness_of(const finder *f, uint32_t particle) {
-    return &f->fitness[root_of(f->component, particle)];
+    return &f->fitness[mspringi_forest_root(f->component, particle)];
 }
 
 // Components that are more rope than lattice: their strands are better swept as chains.
@@ -70,9 +56,9 @@ static bool find_ropy(finder *f) {
     if (!balance)
         return false;
     for (uint32_t m = 0; m < f->grids->member_count; ++m)
-        balance[root_of(f->component, f->grids->members[m])]++;
+        balance[mspringi_forest_root(f->component, f->grids->members[m])]++;
     for (uint32_t i = 0; i < f->strands->count; ++i)
-        balance[root_of(f->component, f->strands->particles[i])]--;
+        balance[mspringi_forest_root(f->component, f->strands->particles[i])]--;
     for (size_t p = 0; p < particles; ++p)
         f->fitness[p] = balance[p] < 0 ? UNFIT : FIT;
     mspringi_free(f->memory, balance);
