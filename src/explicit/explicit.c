@@ -5,11 +5,12 @@
 
 #include "strip.h"
 
-/// Strips that are swept several times in one pass should stay in this much cache: of the third level, a share that
-/// most CPUs have for one thread. (Where rows are short, 16 substeps fit the second level anyway. Where they are
-/// long, more substeps in the third beat fewer in the second: 10 million springs, AVX-512, ratio to naive 9.3
-/// instead of 6.7 with 512 KiB.)
-#define CACHE_BYTES ((size_t)4 << 20)
+/// Strips that are swept several times in one pass should stay in the second-level cache: this much of it. Where
+/// only a few substeps would find room there (strips are long, or ropes ask for a large lag), more of them are
+/// better off in the third level: this much of it.
+#define NEAR_CACHE_BYTES ((size_t)1 << 20)
+#define FAR_CACHE_BYTES ((size_t)4 << 20)
+#define FEW_SUBSTEPS 4u
 
 /// Most substeps in one pass: each needs a carry row of its own.
 #define DEEPEST 16
@@ -34,15 +35,22 @@ typedef struct job {
 
 /* ------------------------------------------------------------------------------------------------- the wave */
 
-uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t parts) {
-    if (topology->wave_rows == 0)
-        return 1;
-    const size_t floats_per_slot = 4 + 1 + (size_t)MSPRINGI_DIRECTIONS * parts; // state, inverse mass, springs
+// Substeps whose strips fit so much cache, at least one.
+static uint32_t depth_within(const mspringi_topology *topology, uint32_t parts, size_t cache_bytes) {
+    const size_t floats_per_slot =
+        4 + 1 + (size_t)MSPRINGI_DIRECTIONS * (parts - 1); // state, inverse mass, springs
     const size_t slots = (size_t)topology->lattice_blocks * MSPRINGI_WIDTH;
-    const size_t rows = CACHE_BYTES / (floats_per_slot * sizeof(float)) * topology->lattice_rows / slots;
+    const size_t rows = cache_bytes / (floats_per_slot * sizeof(float)) * topology->lattice_rows / slots;
     const size_t strips = rows * topology->wave_strips / topology->wave_rows;
     const size_t depth = strips > topology->lag ? (strips - 1) / topology->lag : 1;
     return (uint32_t)(depth < DEEPEST ? depth : DEEPEST);
+}
+
+uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t parts) {
+    if (topology->wave_rows == 0)
+        return 1;
+    const uint32_t near = depth_within(topology, parts, NEAR_CACHE_BYTES);
+    return near > FEW_SUBSTEPS ? near : depth_within(topology, parts, FAR_CACHE_BYTES);
 }
 
 // How the substeps are divided: worker w makes the passes w, w + workers, ... over all strips, each pass some
