@@ -65,12 +65,16 @@ static void add_everything(recipe *made, uint32_t variant, uint64_t *seed) {
         const mspring_id a = (mspring_id)(support_random(seed) % lattice_particles);
         const mspring_id b = (mspring_id)(support_random(seed) % lattice_particles);
         if (a != b) {
-            recipe_rope(made, a, b, 2 + (uint32_t)(support_random(seed) % 60), &stuff, seed);
+            recipe_rope(made, a, b, 2 + (uint32_t)(support_random(seed) % 12), &stuff, seed);
         }
     }
     if (variant % 2 == 0) {
         const mspring_id weight = recipe_particle(made, -5, -5, 3, 0);
         recipe_rope(made, (mspring_id)(support_random(seed) % lattice_particles), weight, 40, &stuff, seed);
+    }
+    if (variant % 6 == 5) { // more rope than lattice
+        const mspring_id weight = recipe_particle(made, 400, -400, 3, 0);
+        recipe_rope(made, 0, weight, 25000, &stuff, seed);
     }
     if (variant % 5 == 0) {
         recipe_random_springs(made, 30, &stuff, seed);
@@ -120,10 +124,10 @@ static void what_cannot_share_a_pass_does_not_prevent_those_of_others(void **sta
     uint64_t seed = 1;
     recipe made = {0};
     recipe_lattice(&made, 100, 100, 0, 0, 1, &solid, &seed);
-    const mspring_id second = recipe_lattice(&made, 30, 1000, 200, 0, 1, &solid, &seed);
-    recipe_spring(&made, second, second + 29999, 1000, 0, 0); // from its first row to its last
+    const mspring_id second = recipe_lattice(&made, 120, 1000, 200, 0, 1, &solid, &seed);
+    recipe_spring(&made, second, second + 119999, 1000, 0, 0); // from its first row to its last
     const mspring_plan plan = plan_of(&made);
-    assert_int_equal(plan.lattice_rows, 130);
+    assert_int_equal(plan.lattice_rows, 220);
     assert_int_equal(plan.pass_rows, 100);
     assert_int_equal(hash_after_steps(&made, (manner){.workers = 1}),
                      hash_after_steps(&made, (manner){.one_by_one = true, .workers = 1}));
