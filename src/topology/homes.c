@@ -16,6 +16,9 @@
 #define BARE_STRIP_PARTICLES 512
 #define STRIP_PARTICLES 2048
 
+/// Particles of lattices from which a step is worth sharing.
+#define FEWEST_SHARED 4000
+
 /// Strips that each of several workers should find, so that it need not wait for those before and behind it.
 #define STRIPS_PER_WORKER 24
 
@@ -181,7 +184,7 @@ static void find_smallest_lag(finder *f) {
 // must not depend on the workers, since the order of slots is that of sums.
 static void number_rows_for(finder *f, uint32_t workers) {
     const uint32_t wanted = f->grids->member_count / workers / STRIPS_PER_WORKER;
-    if (workers > 1 && wanted < f->strip_particles)
+    if (workers > 1 && f->grids->member_count >= FEWEST_SHARED && wanted < f->strip_particles)
         f->strip_particles = wanted;
     number_rows(f);
 }
