@@ -267,13 +267,15 @@ enum {
     /// number of substeps. Stable while omega_max * h < 2: on a full lattice of equal springs and masses,
     /// stiffness < mass / (2 h^2). See mspring_network_stable_dt().
     MSPRING_SOLVER_EXPLICIT = 0,
-    /// One linear system in each substep, whatever the stiffness: stable for any dt and any springs, at a cost that
-    /// does not depend on them. Springs and dampers are linearised at x + h v, with tiles of neighbouring particles
-    /// turned on as rigid bodies (and with the stiffness across a spring clamped to 0 where it is compressed, so that
-    /// the matrix is positive definite). The system is solved by a fixed number of conjugate gradient iterations with
-    /// a two-level preconditioner: the blocks of the single particles, and the tiles. With eight of them a substep
-    /// costs 20 to 65 explicit ones, least where vectors are short. It damps what oscillates with less than about
-    /// ten substeps a period. Global damping, which explicit steps apply exactly, is as accurate as its integrator.
+    /// One linear system in each substep, whatever the stiffness: stable for any dt and any springs (but for taut
+    /// ropes of extreme stiffness, which can gain energy: 1e14 N/m at a dt of 0.25 s is one), at a cost that does
+    /// not depend on them. Springs and dampers are linearised at x + h v, with tiles of neighbouring particles
+    /// turned on as rigid bodies (and with the stiffness across a spring clamped to 0 where it is compressed, so
+    /// that the matrix is positive definite). The system is solved by a fixed number of conjugate gradient
+    /// iterations with a two-level preconditioner: the blocks of the single particles, and the tiles. With eight
+    /// of them a substep costs 20 to 65 explicit ones, least where vectors are short. It damps what oscillates
+    /// with less than about ten substeps a period. Global damping, which explicit steps apply exactly, is as
+    /// accurate as its integrator.
     MSPRING_SOLVER_IMPLICIT = 1
 };
 
@@ -335,16 +337,13 @@ enum {
 typedef int32_t mspring_guard;
 enum {
     /// Refuse a step whose substeps are above the border of mspring_network_stable_dt(): motion would turn round
-    /// and
-    /// grow in each. The border is looked at when the substep changes, and when a step changes a velocity twice as
-    /// much as one did at the last look; not at all where substeps are stable in any shape. Steps below the border
-    /// are never refused.
+    /// and grow in each. The border is looked at when the substep changes, and when a step changes a velocity twice
+    /// as much as one did at the last look; not at all where substeps are stable in any shape. Steps below the
+    /// border are never refused.
     MSPRING_GUARD_GROWTH = 0,
     /// The same, but take a step that would be refused again with twice as many substeps, four times as many, and
-    /// so
-    /// on up to max_substeps. Later steps keep the number that was needed, until mspring_network_set_solver().
-    /// Hooks
-    /// are called again. Relative springs follow the substep, so more of them are no help there.
+    /// so on up to max_substeps. Later steps keep the number that was needed, until mspring_network_set_solver().
+    /// Hooks are called again. Relative springs follow the substep, so more of them are no help there.
     MSPRING_GUARD_RETRY = 1,
     MSPRING_GUARD_BOUNDS = 2 ///< look at nothing else
 };
@@ -549,8 +548,7 @@ MSPRING_API uint32_t mspring_network_substeps(const mspring_network *network);
 /// (sqrt(1 + zeta^2) - zeta).) The eigenvalue is found by iteration (Lanczos 1950). Relative springs follow h; a
 /// network of relative springs alone is stable at every h (infinite) or at none (0).
 /// @param now        for the shape of now, to about 0.3 % and rather below than above; stretching a network
-/// stiffens
-///                   it across and lowers this. May be NULL.
+///                   stiffens it across and lowers this. May be NULL.
 /// @param any_shape  for any shape that the network can get into, tangles included: at most now; of a full lattice
 ///                   at rest 0.71 of it, or 0.49 with dampers alone. It depends on springs (broken ones count as
 ///                   whole), masses and pins only. May be NULL.
@@ -583,8 +581,8 @@ typedef struct mspring_settle_def {
     uint32_t max_iterations; ///< 1 to 1000000; default 1000
     uint32_t reserved;       ///< 0
     double tolerance; ///< force (N) that may be left on a particle, as a part of the largest that any spring or
-                      ///< anything outside exerts; 1e-15 to 1; default 1e-9. Where rounding does not allow that, what
-                      ///< it allows.
+                      ///< anything outside exerts; 1e-15 to 1; default 1e-9. Where rounding does not allow that,
+                      ///< what it allows.
     double relative_substep; ///< substep (s) that the stiffness of relative springs follows; default 0: the one of
                              ///< the last step, before which they have none
 } mspring_settle_def;
@@ -683,8 +681,7 @@ typedef void (*mspring_hook_fn)(const mspring_hook_args *args, void *user);
 enum {
     /// The slots are divided into ranges, and the hook is called for each of them, perhaps for several at the same
     /// time on different workers, in any order. It must read and write only its range's slots, and what is written
-    /// by
-    /// none. If what it does to a slot depends on nothing but that slot and what is the same for all calls, the
+    /// by none. If what it does to a slot depends on nothing but that slot and what is the same for all calls, the
     /// network's state is the same, bit for bit, for any number of workers and any range.
     MSPRING_HOOK_CONCURRENT = 1u << 0
 };
@@ -1112,8 +1109,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_strains(const m
 /// it lies in memory. Each array is filled if it is not NULL.
 /// @param length       [spring count], m
 /// @param direction_x, direction_y  [spring count] the unit vector along the spring from the end with the lower id
-/// to
-///                     the other; (0, 0) for a spring of length 0; both or none
+///                     to the other; (0, 0) for a spring of length 0; both or none
 /// @param strain       [spring count], as mspring_network_get_strains(), to the last bit or so
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network   @allocates the first time   @since 0.1
@@ -1166,8 +1162,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_snapshot_size(const
 /// @param capacity  at least mspring_network_snapshot_size()
 /// @param size      receives the bytes written; may be NULL
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL, unknown contents or too little room; MSPRING_ERROR_BUSY in
-/// a
-///         hook.
+///         a hook.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_save(const mspring_network *network,
                                                                   mspring_snapshot_contents contents,
