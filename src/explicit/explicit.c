@@ -49,8 +49,8 @@ static uint32_t depth_within(const mspringi_topology *topology, uint32_t parts, 
 uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t parts) {
     if (topology->wave_rows == 0)
         return 1;
-    const uint32_t near = depth_within(topology, parts, NEAR_CACHE_BYTES);
-    return near > FEW_SUBSTEPS ? near : depth_within(topology, parts, FAR_CACHE_BYTES);
+    const uint32_t near_depth = depth_within(topology, parts, NEAR_CACHE_BYTES);
+    return near_depth > FEW_SUBSTEPS ? near_depth : depth_within(topology, parts, FAR_CACHE_BYTES);
 }
 
 // How the substeps are divided: worker w makes the passes w, w + workers, ... over all strips, each pass some

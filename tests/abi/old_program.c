@@ -4,6 +4,7 @@
 ///
 /// SPDX-License-Identifier: MIT
 #include <massspring/massspring.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -23,7 +24,7 @@ static void *count_alloc(size_t size, size_t alignment, void *user) {
     static size_t used;
     size_t *calls = user;
     ++*calls;
-    used = (used + alignment - 1) / alignment * alignment;
+    used += (alignment - ((size_t)(uintptr_t)memory + used) % alignment) % alignment;
     used += size;
     return used <= sizeof memory ? memory + (used - size) : NULL;
 }
