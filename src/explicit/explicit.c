@@ -39,10 +39,11 @@ typedef struct job {
 static uint32_t depth_within(const mspringi_topology *topology, uint32_t parts, size_t cache_bytes) {
     const size_t floats_per_slot =
         4 + 1 + (size_t)MSPRINGI_DIRECTIONS * (parts - 1); // state, inverse mass, springs
-    const size_t slots = (size_t)topology->lattice_blocks * MSPRINGI_WIDTH;
-    const size_t rows = cache_bytes / (floats_per_slot * sizeof(float)) * topology->lattice_rows / slots;
-    const size_t strips = rows * topology->wave_strips / topology->wave_rows;
-    const size_t depth = strips > topology->lag ? (strips - 1) / topology->lag : 1;
+    const uint64_t slots = (uint64_t)topology->lattice_blocks * MSPRINGI_WIDTH;
+    const uint64_t rows =
+        cache_bytes / (floats_per_slot * sizeof(float)) * (uint64_t)topology->lattice_rows / slots;
+    const uint64_t strips = rows * topology->wave_strips / topology->wave_rows;
+    const uint64_t depth = strips > topology->lag ? (strips - 1) / topology->lag : 1;
     return (uint32_t)(depth < DEEPEST ? depth : DEEPEST);
 }
 
