@@ -489,6 +489,47 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_create(mspring_buil
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_API void mspring_network_destroy(mspring_network *network);
 
+/// Flags of mspring_clone_def.
+enum {
+    /// The clone has the original's hooks, too, with their user pointers and storage, so what these point to is
+    /// shared by both.
+    MSPRING_CLONE_HOOKS = 1u << 0
+};
+
+/// What a clone is to have of its own. Fill with mspring_clone_def_init() first.
+typedef struct mspring_clone_def {
+    uint32_t struct_size;
+    uint32_t flags;                     ///< MSPRING_CLONE_HOOKS or 0; default 0: no hooks
+    const mspring_allocator *allocator; ///< default NULL: as the original's, with the same user
+    const mspring_tasks *tasks;         ///< as in mspring_network_def; default NULL
+    uint32_t worker_count;              ///< as in mspring_network_def; default 1, whatever the original has
+    uint32_t reserved;                  ///< 0
+} mspring_clone_def;
+
+/// Fill a definition with its defaults, as mspring_network_def_init().
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API mspring_result mspring_clone_def_init(mspring_clone_def *def, size_t size);
+
+/// Make a network that is as this one is now, and independent of it: to try out what would happen, to go back to,
+/// or to be stepped by another thread. It holds everything that the following steps depend on (solver with its
+/// history, settings, edits, ramps, forces given for the next step) and what is measured of them (thresholds,
+/// components, events not read yet), so the same calls on both give the same bits. Workers it has its own, hooks
+/// none, unless def says otherwise.
+///
+/// Takes as long as copying mspring_network_memory_used() bytes into memory that is new, which most systems hand
+/// out more slowly than it is copied. Where a state is to be kept and brought back often, mspring_network_save()
+/// and mspring_network_load() need less.
+/// @param def    NULL for the defaults
+/// @param clone  receives the clone, to be freed by mspring_network_destroy()
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL, unknown flags, workers that are out of range, or more
+/// workers
+///         than the original has for hooks that have storage; MSPRING_ERROR_STRUCT; MSPRING_ERROR_MEMORY;
+///         MSPRING_ERROR_THREAD if a worker cannot be started; MSPRING_ERROR_BUSY in a hook.
+/// @threads shared   @allocates yes, with the clone's allocator   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_clone(const mspring_network *network,
+                                                                   const mspring_clone_def *def,
+                                                                   mspring_network **clone);
+
 /// What was wrong with the last call on this network that failed; as mspring_builder_error(). Functions marked
 /// shared report by their result alone, so that several threads may call them.
 /// @threads shared   @allocates never   @since 0.1

@@ -72,8 +72,12 @@ mspring_result mspring_network_def_init(mspring_network_def *def, size_t size) {
     return fill(def, size, &defaults, sizeof defaults);
 }
 
+mspring_result mspring_clone_def_init(mspring_clone_def *def, size_t size) {
+    const mspring_clone_def defaults = {.struct_size = sizeof defaults, .worker_count = 1};
+    return fill(def, size, &defaults, sizeof defaults);
+}
+
 mspring_result mspring_settle_def_init(mspring_settle_def *def, size_t size) {
-    const mspring_settle_def defaults = {
-        .struct_size = sizeof defaults, .max_iterations = 1000, .tolerance = 1e-9};
+    const mspring_settle_def defaults = {.struct_size = sizeof defaults, .max_iterations = 1000, .tolerance = 1e-9};
     return fill(def, size, &defaults, sizeof defaults);
 }

@@ -10,9 +10,10 @@
 #endif
 
 /// In front of every block, so that the size that was asked for is known when it is freed.
-typedef struct block_header {
-    size_t size;
-} block_header;
+typedef struct mspringi_block {
+    struct mspringi_block *previous, *next;
+    size_t size; ///< with this header, which takes one alignment unit
+} block;
 
 #if !defined(MSPRINGI_FREESTANDING)
 
@@ -55,32 +56,81 @@ mspring_result mspringi_memory_init(mspringi_memory *memory, const mspring_alloc
         if (!allocator->alloc || !allocator->free)
             return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "mspring_allocator lacks alloc or free");
     }
-    memory->allocator = allocator ? *allocator : defaults;
-    memory->used = 0;
+    *memory = (mspringi_memory){.allocator = allocator ? *allocator : defaults};
     return MSPRING_OK;
+}
+
+// A block of this size, header included, with nothing in it yet.
+static block *take(mspringi_memory *memory, size_t size) {
+    block *taken = memory->allocator.alloc(size, MSPRINGI_ALIGNMENT, memory->allocator.user);
+    if (!taken)
+        return NULL;
+    *taken = (block){.previous = memory->last, .size = size};
+    if (memory->last)
+        memory->last->next = taken;
+    else
+        memory->first = taken;
+    memory->last = taken;
+    memory->used += size;
+    return taken;
+}
+
+static void give_back(mspringi_memory *memory, block *taken) {
+    if (taken->previous)
+        taken->previous->next = taken->next;
+    else
+        memory->first = taken->next;
+    if (taken->next)
+        taken->next->previous = taken->previous;
+    else
+        memory->last = taken->previous;
+    memory->used -= taken->size;
+    memory->allocator.free(taken, taken->size, memory->allocator.user);
+}
+
+static char *contents_of(const block *of) {
+    return (char *)of + MSPRINGI_ALIGNMENT;
 }
 
 void *mspringi_alloc(mspringi_memory *memory, size_t count, size_t size) {
     if (size != 0 && count > (SIZE_MAX - 2 * MSPRINGI_ALIGNMENT) / size)
         return NULL;
-    // The header takes one alignment unit; whole units are what aligned_alloc asks for.
+    // Whole units are what aligned_alloc asks for.
     const size_t total = (count * size + 2 * MSPRINGI_ALIGNMENT - 1) / MSPRINGI_ALIGNMENT * MSPRINGI_ALIGNMENT;
-    char *raw = memory->allocator.alloc(total, MSPRINGI_ALIGNMENT, memory->allocator.user);
-    if (!raw)
-        return NULL;
-    memset(raw, 0, total);
-    ((block_header *)(void *)raw)->size = total;
-    memory->used += total;
-    return raw + MSPRINGI_ALIGNMENT;
+    const block *taken = take(memory, total);
+    return taken ? memset(contents_of(taken), 0, total - MSPRINGI_ALIGNMENT) : NULL;
 }
 
-void mspringi_free(mspringi_memory *memory, void *block) {
-    if (!block)
-        return;
-    char *raw = (char *)block - MSPRINGI_ALIGNMENT;
-    const size_t total = ((block_header *)(void *)raw)->size;
-    memory->used -= total;
-    memory->allocator.free(raw, total, memory->allocator.user);
+void mspringi_free(mspringi_memory *memory, void *contents) {
+    if (contents)
+        give_back(memory, (block *)(void *)((char *)contents - MSPRINGI_ALIGNMENT));
+}
+
+void mspringi_free_all(mspringi_memory *memory) {
+    while (memory->last)
+        give_back(memory, memory->last);
+}
+
+bool mspringi_memory_copy(const mspringi_memory *from, mspringi_memory *to) {
+    for (const block *of = from->first; of; of = of->next) {
+        const block *copy = take(to, of->size);
+        if (!copy)
+            return false;
+        memcpy(contents_of(copy), contents_of(of), of->size - MSPRINGI_ALIGNMENT);
+    }
+    return true;
+}
+
+void *mspringi_memory_moved(const mspringi_memory *from, const mspringi_memory *to, const void *pointer) {
+    const uintptr_t place = (uintptr_t)pointer;
+    const block *copy = to->first;
+    for (const block *of = from->first; pointer && of; of = of->next, copy = copy->next) {
+        // The end counts, too: an array may begin where its block ends if it has no element.
+        const uintptr_t begin = (uintptr_t)contents_of(of), end = (uintptr_t)of + of->size;
+        if (place >= begin && place <= end)
+            return contents_of(copy) + (place - begin);
+    }
+    return NULL;
 }
 
 bool mspringi_grow(mspringi_memory *memory, void **array, size_t *capacity, size_t needed, size_t size) {

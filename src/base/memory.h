@@ -14,10 +14,12 @@
 /// Alignment of every block: a cache line, and the widest vector register.
 #define MSPRINGI_ALIGNMENT 64
 
-/// An allocator and what has been taken from it.
+/// An allocator and what has been taken from it: all blocks that have not been freed, in the order in which they
+/// were taken. May be copied, but only one of the copies used on.
 typedef struct mspringi_memory {
     mspring_allocator allocator;
     size_t used;
+    struct mspringi_block *first, *last;
 } mspringi_memory;
 
 /// Copy the host's allocator, or take malloc and free for NULL.
@@ -30,6 +32,17 @@ void *mspringi_alloc(mspringi_memory *memory, size_t count, size_t size);
 
 /// Free a block of mspringi_alloc(); NULL is allowed.
 void mspringi_free(mspringi_memory *memory, void *block);
+
+/// Free all blocks.
+void mspringi_free_all(mspringi_memory *memory);
+
+/// Copy all blocks of a memory, with what is in them, into one that has none yet, in the same order.
+/// @return false: the allocator has no more; those copied so far are in to
+bool mspringi_memory_copy(const mspringi_memory *from, mspringi_memory *to);
+
+/// What was at pointer in one of from's blocks is here in to, which has mspringi_memory_copy() of them. NULL for
+/// NULL.
+void *mspringi_memory_moved(const mspringi_memory *from, const mspringi_memory *to, const void *pointer);
 
 /// Make room in a growing array of *capacity elements for needed of them, at least doubling it. False: no
 /// memory, and the array is as it was.

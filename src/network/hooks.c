@@ -83,12 +83,6 @@ mspring_result mspring_network_remove_hook(mspring_network *network, uint32_t ho
     return MSPRING_OK;
 }
 
-void mspringi_hooks_destroy(mspring_network *network, mspringi_memory *memory) {
-    for (size_t i = 0; i < network->hook_count; ++i)
-        mspringi_free(memory, network->hooks[i].held.x);
-    mspringi_free(memory, network->hooks);
-}
-
 /* --------------------------------------------------------------------------------------------------- one call */
 
 // A hook's call, divided into ranges.

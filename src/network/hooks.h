@@ -22,6 +22,4 @@ void mspringi_hooks_before_substep(mspring_network *network, uint32_t substep, d
 /// Call the hooks that are due after this substep of length h.
 void mspringi_hooks_after_substep(mspring_network *network, uint32_t substep, double h);
 
-void mspringi_hooks_destroy(mspring_network *network, mspringi_memory *memory);
-
 #endif

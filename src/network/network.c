@@ -66,6 +66,20 @@ mspring_result mspringi_field_reserve(mspring_network *network, mspringi_field *
     return MSPRING_OK;
 }
 
+mspring_result mspringi_carry_reserve(mspring_network *network) {
+    const uint32_t rows = network->depth * mspringi_tasks_concurrency(network->tasks);
+    if (network->carry && network->carry_rows >= rows)
+        return MSPRING_OK;
+    const size_t values = (size_t)2 * rows * network->topology.carry_blocks * MSPRINGI_WIDTH;
+    float *carry = mspringi_alloc(&network->memory, values, sizeof *carry);
+    if (!carry)
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for what rows hand on to rows");
+    mspringi_free(&network->memory, network->carry);
+    network->carry = carry;
+    network->carry_rows = rows;
+    return MSPRING_OK;
+}
+
 static bool reserve_state(mspring_network *network, mspringi_state *state) {
     const size_t slots = mspringi_slot_count(network);
     float *values = mspringi_alloc(&network->memory, 4 * slots, sizeof *values);
@@ -99,20 +113,17 @@ static mspring_result allocate(mspring_network *network, bool relative) {
         mspringi_alloc(memory, (size_t)8 * t->web.group_count * MSPRINGI_WIDTH, sizeof *network->packed);
     network->attached = mspringi_alloc(memory, (size_t)2 * t->web.attached_count, sizeof *network->attached);
     network->depth = mspringi_explicit_depth(t, network->parts);
-    network->carry_rows = network->depth * mspringi_tasks_concurrency(network->tasks);
-    network->carry = mspringi_alloc(memory, (size_t)2 * network->carry_rows * t->carry_blocks * MSPRINGI_WIDTH,
-                                    sizeof *network->carry);
     network->live = mspringi_alloc(memory, mspringi_place_words(t), sizeof *network->live);
     if (relative)
         network->relative = mspringi_alloc(memory, t->spring_count, sizeof *network->relative);
     if (!reserve_state(network, &network->state) || !reserve_state(network, &network->backup) ||
         !network->inverse_mass || !network->mass || !network->lattice_springs || !network->chain_springs ||
-        !network->web_springs || !network->packed || !network->attached || !network->carry || !network->live ||
+        !network->web_springs || !network->packed || !network->attached || !network->live ||
         (relative && !network->relative))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for a network of %u particles and %u springs", (unsigned)t->particle_count,
                              (unsigned)t->spring_count);
-    return MSPRING_OK;
+    return mspringi_carry_reserve(network);
 }
 
 static void fill_particles(mspring_network *network, const mspring_builder *builder) {
@@ -170,8 +181,8 @@ static void fill_springs(mspring_network *network, const mspring_builder *builde
 static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const mspring_builder *builder,
                                              const mspring_network_def *def) {
     bool damped, relative;
-    mspring_result result =
-        mspringi_tasks_create(def->worker_count, def->tasks, &network->memory, &network->message, &network->tasks);
+    mspring_result result = mspringi_tasks_create(def->worker_count, def->tasks, &network->tasks_memory,
+                                                  &network->message, &network->tasks);
     if (result == MSPRING_OK)
         result = mspringi_topology_create(&network->topology, builder, mspringi_tasks_concurrency(network->tasks),
                                           &network->memory, &network->message);
@@ -230,6 +241,7 @@ mspring_result mspring_network_create(mspring_builder *builder, const mspring_ne
     if (!created)
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for a network");
     created->memory = memory;
+    created->tasks_memory = (mspringi_memory){.allocator = memory.allocator};
     const mspringi_fp_state before = mspringi_fp_enter();
     result = fill(created, builder, def);
     mspringi_fp_leave(before);
@@ -245,42 +257,7 @@ mspring_result mspring_network_create(mspring_builder *builder, const mspring_ne
 void mspring_network_destroy(mspring_network *network) {
     if (!network)
         return;
-    mspringi_memory memory = network->memory;
-    mspringi_tasks_destroy(network->tasks, &memory);
-    mspringi_implicit_destroy(network->implicit, &memory);
-    mspringi_topology_destroy(&network->topology, &memory);
-    mspringi_free(&memory, network->state.x);
-    mspringi_free(&memory, network->backup.x);
-    mspringi_free(&memory, network->inverse_mass);
-    mspringi_free(&memory, network->mass);
-    mspringi_rests_destroy(&network->rests, &memory);
-    mspringi_free(&memory, network->lattice_springs);
-    mspringi_free(&memory, network->chain_springs);
-    mspringi_free(&memory, network->web_springs);
-    mspringi_free(&memory, network->packed);
-    mspringi_free(&memory, network->attached);
-    mspringi_free(&memory, network->carry);
-    mspringi_free(&memory, network->relative);
-    mspringi_free(&memory, network->live);
-    mspringi_free(&memory, network->kept);
-    mspringi_free(&memory, network->edits.link_log);
-    mspringi_free(&memory, network->ramps.list);
-    mspringi_free(&memory, network->extents.scratch);
-    mspringi_free(&memory, network->extents.reversed);
-    if (network->strain.least != network->strain.break_strain)
-        mspringi_free(&memory, network->strain.least);
-    mspringi_free(&memory, network->strain.break_strain);
-    mspringi_free(&memory, network->strain.stress_strain);
-    mspringi_free(&memory, network->strain.stressed);
-    mspringi_free(&memory, network->strain.hits);
-    mspringi_free(&memory, network->events.ring);
-    mspringi_free(&memory, network->inverse_mass_scale);
-    mspringi_free(&memory, network->spring_mass);
-    mspringi_incidence_destroy(&network->incidence, &memory);
-    mspringi_components_destroy(&network->components, &memory);
-    mspringi_free(&memory, network->forces.held.x);
-    mspringi_free(&memory, network->forces.base.x);
-    mspringi_free(&memory, network->forces.driven.x);
-    mspringi_hooks_destroy(network, &memory);
-    mspringi_free(&memory, network);
+    mspringi_memory memory = network->memory, tasks_memory = network->tasks_memory;
+    mspringi_tasks_destroy(network->tasks, &tasks_memory);
+    mspringi_free_all(&memory);
 }

@@ -125,8 +125,10 @@ typedef struct mspringi_extents {
     uint8_t *reversed; ///< [springs / 8] a bit for each spring: 1 where its base is the end with the higher id
 } mspringi_extents;
 
+/// A pointer added here, or to what hangs on it, goes into clone.c, too.
 struct mspring_network {
-    mspringi_memory memory;
+    mspringi_memory memory;       ///< the network itself and all that it holds, but for
+    mspringi_memory tasks_memory; ///< what its workers are, which a copy of the network has none of
     mspringi_message message;
     mspringi_topology topology;
     uint64_t topology_print;  ///< hash of which particles the springs join, and of where they lie
@@ -207,6 +209,9 @@ mspring_result mspringi_check_range(mspring_network *network, const char *what, 
 
 /// Take back what a hook, or the host through a view, has written to slots without particle.
 void mspringi_clear_empty_slots(const mspring_network *network);
+
+/// Allocate the carry rows that the network's workers need, unless it has as many.
+mspring_result mspringi_carry_reserve(mspring_network *network);
 
 /// Allocate a field of all slots, zeroed; leaves it alone if it is there.
 mspring_result mspringi_field_reserve(mspring_network *network, mspringi_field *field);

@@ -86,11 +86,6 @@ mspring_result mspringi_rests_create(mspringi_rests *rests, const mspringi_topol
     return MSPRING_OK;
 }
 
-void mspringi_rests_destroy(mspringi_rests *rests, mspringi_memory *memory) {
-    mspringi_free(memory, rests->of_block);
-    mspringi_free(memory, rests->lengths);
-}
-
 mspring_result mspringi_rests_separate(mspring_network *network) {
     mspringi_rests *rests = &network->rests;
     const uint32_t blocks = network->topology.lattice_blocks;

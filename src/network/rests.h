@@ -12,7 +12,6 @@
 mspring_result mspringi_rests_create(mspringi_rests *rests, const mspringi_topology *topology,
                                      const mspring_builder *builder, mspringi_memory *memory,
                                      mspringi_message *message);
-void mspringi_rests_destroy(mspringi_rests *rests, mspringi_memory *memory);
 
 /// Give every lattice spring a rest length of its own, which mspringi_rests_at() may then set. Allocates, once.
 mspring_result mspringi_rests_separate(mspring_network *network);
