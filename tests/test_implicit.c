@@ -242,6 +242,43 @@ static void a_flying_lattice_stays_what_it_is(void **state) {
     }
 }
 
+static void particles_without_springs_leave_the_others_alone(void **state) {
+    (void)state;
+    for (size_t i = 0; i < COUNT_OF(integrators); i++) {
+        uint64_t seed = 3;
+        const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {1e6, 1e6}};
+        recipe made = {0};
+        for (int j = 0; j < 30; j++) {
+            const double x = support_random_between(&seed, 0, 6), y = support_random_between(&seed, 0, 6);
+            recipe_particle(&made, x, y, 1, 0);
+        }
+        recipe_random_springs(&made, 80, &stuff, &seed);
+        recipe_disturb(&made, 1e-3, 0, &seed);
+        mspring_network_def def = support_def(-9.8f, 1);
+        mspring_network *alone = recipe_network(&made, &def);
+        const uint32_t count = made.particle_count;
+        const mspring_id loose = recipe_particle(&made, 3, 3, 5, 0);
+        made.particles[loose].vx = 2;
+        mspring_network *together = recipe_network(&made, &def);
+        use_implicit(alone, integrators[i], 0);
+        use_implicit(together, integrators[i], 0);
+        support_steps(alone, 20, 0.01);
+        support_steps(together, 20, 0.01);
+        for (mspring_id id = 0; id < count; id++) {
+            const support_point a = support_position(alone, id), b = support_position(together, id);
+            check_near(a.x, b.x, 0);
+            check_near(a.y, b.y, 0);
+        }
+        // All integrators are exact to h in free fall.
+        const support_point at = support_position(together, loose);
+        check_near(at.x, 3 + 2 * 0.2, 1e-5);
+        check_near(at.y, 3 - 9.8 * 0.2 * 0.2 / 2, 9.8 * 0.2 * 0.01);
+        mspring_network_destroy(alone);
+        mspring_network_destroy(together);
+        recipe_free(&made);
+    }
+}
+
 static void drag_first(const mspring_hook_args *args, void *user) {
     (void)user;
     for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
@@ -341,6 +378,7 @@ int main(void) {
         cmocka_unit_test(global_damping_slows_free_flight),
         cmocka_unit_test(solvers_change_without_a_kick),
         cmocka_unit_test(a_flying_lattice_stays_what_it_is),
+        cmocka_unit_test(particles_without_springs_leave_the_others_alone),
         cmocka_unit_test(hooks_hold_and_push),
         cmocka_unit_test(a_failed_step_leaves_the_history_alone),
         cmocka_unit_test(setting_all_positions_begins_a_new_motion),

@@ -55,7 +55,8 @@ static double dot(const mspring_network *network, mspringi_field a, mspringi_fie
     return (double)network->kernels->system.dot(mspringi_slot_count(network), a.x, a.y, b.x, b.y);
 }
 
-// Particles without springs are in no tile: their rows of A are diagonal.
+// Particles without springs are in no tile: their rows of A are diagonal. What is done with them leaves the
+// iteration, whose sums go over all slots.
 static void solve_loose(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const mspringi_implicit *n = network->implicit;
@@ -63,6 +64,7 @@ static void solve_loose(const mspring_network *network) {
     for (size_t i = first; i < first + (size_t)t->loose_blocks * MSPRINGI_WIDTH; ++i) {
         n->displacement.x[i] = n->mass[i] > 0.0f ? n->residual.x[i] / n->mass[i] : 0.0f;
         n->displacement.y[i] = n->mass[i] > 0.0f ? n->residual.y[i] / n->mass[i] : 0.0f;
+        n->residual.x[i] = n->residual.y[i] = 0.0f;
     }
 }
 
@@ -94,6 +96,7 @@ void mspringi_solve(mspring_network *network) {
     memset(n->displacement.x, 0, 2 * slots * sizeof *n->displacement.x);
     memset(n->direction.x, 0, 2 * slots * sizeof *n->direction.x);
     memset(n->product.x, 0, 2 * slots * sizeof *n->product.x);
+    solve_loose(network);
     prepare_coarse(n);
     uint32_t left = n->iterations;
     if (left > 1) {
@@ -119,5 +122,4 @@ void mspringi_solve(mspring_network *network) {
         turn(network, (float)(next / product));
         product = next;
     }
-    solve_loose(network);
 }
