@@ -33,6 +33,9 @@ int main(int count, char **arguments) {
     case BENCH_ROOFLINE:
         ok = bench_run_roofline(&options);
         break;
+    case BENCH_MAP:
+        ok = bench_run_map(&options);
+        break;
     case BENCH_CHECK:
         ok = bench_run_check(&options);
         break;

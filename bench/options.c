@@ -21,6 +21,7 @@ void bench_options_help(void) {
          "  --session            what a game's edits, events and measurements cost, next to its step\n"
          "  --linear             what the sparse direct solver costs, in explicit substeps\n"
          "  --roofline           the bounds of this machine, and how near to them each scene comes\n"
+         "  --map                where networks are stable, at the extremes of every setting; takes minutes\n"
          "  --check              compare positions with those of the naive step; measures nothing\n"
          "  --list               show the scenes\n"
          "  --help               show this\n"
@@ -42,7 +43,8 @@ void bench_options_help(void) {
          "\n"
          "Output (default: a table for people)\n"
          "  --csv                CSV\n"
-         "  --markdown           a Markdown table");
+         "  --markdown           a Markdown table\n"
+         "  --out FOLDER         of --map: draw its pictures into this folder");
 }
 
 static bool read_count(const char *option, const char *text, uint32_t most, uint32_t *out, scene_error *error) {
@@ -100,14 +102,9 @@ static bool is_switch(const char *option, bench_options *out) {
     static const struct {
         const char *name;
         bench_mode mode;
-    } modes[] = {{"--features", BENCH_FEATURES},
-                 {"--session", BENCH_SESSION},
-                 {"--linear", BENCH_LINEAR},
-                 {"--roofline", BENCH_ROOFLINE},
-                 {"--check", BENCH_CHECK},
-                 {"--list", BENCH_LIST},
-                 {"--help", BENCH_HELP},
-                 {"-h", BENCH_HELP}};
+    } modes[] = {{"--features", BENCH_FEATURES}, {"--session", BENCH_SESSION}, {"--linear", BENCH_LINEAR},
+                 {"--roofline", BENCH_ROOFLINE}, {"--map", BENCH_MAP},         {"--check", BENCH_CHECK},
+                 {"--list", BENCH_LIST},         {"--help", BENCH_HELP},       {"-h", BENCH_HELP}};
     for (size_t i = 0; i < sizeof modes / sizeof *modes; i++) {
         if (strcmp(option, modes[i].name) == 0) {
             out->mode = modes[i].mode;
@@ -142,6 +139,10 @@ static bool read_value(const char *option, const char *value, bench_options *out
         out->network = value;
         return true;
     }
+    if (strcmp(option, "--out") == 0) {
+        out->out = value;
+        return true;
+    }
     if (strcmp(option, "--stiffness") == 0) {
         return read_fraction(option, value, &out->settings.stiffness, error);
     }
@@ -174,7 +175,7 @@ static bool read_value(const char *option, const char *value, bench_options *out
 static bool known_with_value(const char *option) {
     static const char *const names[] = {"--scene",     "--image",   "--materials", "--network",
                                         "--stiffness", "--damping", "--substeps",  "--repeat",
-                                        "--level",     "--solver",  "--threads"};
+                                        "--level",     "--solver",  "--threads",   "--out"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         if (strcmp(option, names[i]) == 0) {
             return true;

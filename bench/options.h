@@ -17,6 +17,7 @@ typedef enum bench_mode {
     BENCH_SESSION,
     BENCH_LINEAR,
     BENCH_ROOFLINE,
+    BENCH_MAP,
     BENCH_CHECK,
     BENCH_LIST,
     BENCH_HELP
@@ -30,6 +31,7 @@ typedef struct bench_options {
     const char *scenes[BENCH_MAX_SCENES + 1]; ///< ended by NULL
     int scene_count;
     const char *network; ///< file, or NULL
+    const char *out;     ///< folder for the pictures of the map, or NULL
     bench_scene_settings settings;
     bool all_levels;
     mspring_simd level; ///< MSPRING_SIMD_AUTO: the best
