@@ -160,18 +160,39 @@ static mspring_network *implicit_graph(mspring_network_def *def) {
     return graph(def);
 }
 
+static mspring_network *direct_bar(mspring_network_def *def) {
+    def->solver = MSPRING_SOLVER_DIRECT;
+    return bar_80x5(def);
+}
+
+static mspring_network *direct_ropes(mspring_network_def *def) {
+    def->solver = MSPRING_SOLVER_DIRECT;
+    return bar_with_ropes(def);
+}
+
 /// Everything, with all integrators in turn.
-static void push_and_change_solver(mspring_network *network, uint32_t step) {
+static void push_and_use(mspring_network *network, uint32_t step, mspring_solver kind) {
     push_some(network, step);
     if (step % 10 != 0) {
         return;
     }
     mspring_solver_def solver;
     check_ok(mspring_solver_def_init(&solver, sizeof solver));
-    solver.solver = step / 10 % 4 == 3 ? MSPRING_SOLVER_EXPLICIT : MSPRING_SOLVER_IMPLICIT;
+    solver.solver = step / 10 % 4 == 3 ? MSPRING_SOLVER_EXPLICIT : kind;
     solver.substeps = step / 10 % 4 == 3 ? 4 : 1;
     solver.integrator = (mspring_integrator)(step / 10 % 4 % 3);
     check_ok(mspring_network_set_solver(network, &solver));
+}
+
+static void push_and_change_solver(mspring_network *network, uint32_t step) {
+    push_and_use(network, step, MSPRING_SOLVER_IMPLICIT);
+}
+
+/// The same with the direct solver, with and without a spring that is too stiff for single precision.
+static void push_and_solve_directly(mspring_network *network, uint32_t step) {
+    push_and_use(network, step, MSPRING_SOLVER_DIRECT);
+    const float stiffness = step / 10 % 4 != 3 && step % 2 == 1 ? 1e9f : 1e3f;
+    check_ok(mspring_network_set_stiffnesses(network, 7, 1, &stiffness));
 }
 
 const golden_scene golden_scenes[] = {
@@ -189,6 +210,9 @@ const golden_scene golden_scenes[] = {
     {"implicit_ropes", implicit_ropes, NULL, 2, 20, 1.0 / 64},
     {"implicit_graph", implicit_graph, NULL, 1, 20, 1.0 / 64},
     {"implicit_everything", everything_damped, push_and_change_solver, 1, 80, 1.0 / 64},
+    {"direct_bar", direct_bar, NULL, 1, 64, 1.0 / 64},
+    {"direct_ropes", direct_ropes, NULL, 2, 20, 1.0 / 64},
+    {"direct_everything", everything_damped, push_and_solve_directly, 1, 80, 1.0 / 64},
 };
 const uint32_t golden_scene_count = COUNT_OF(golden_scenes);
 

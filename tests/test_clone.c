@@ -43,7 +43,7 @@ static mspring_solver_def solver_def(mspring_solver solver, mspring_integrator i
     return def;
 }
 
-static mspring_solver_def solvers[4];
+static mspring_solver_def solvers[5];
 
 static int list_solvers(void **state) {
     (void)state;
@@ -51,6 +51,7 @@ static int list_solvers(void **state) {
     solvers[1] = solver_def(MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_GA0, 3);
     solvers[2] = solver_def(MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, 1);
     solvers[3] = solver_def(MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_EULER, 2);
+    solvers[4] = solver_def(MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_BDF2, 0);
     return 0;
 }
 

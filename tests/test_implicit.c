@@ -1,5 +1,5 @@
 /// @file test_implicit.c
-/// The implicit solver against closed forms and against itself with shorter steps.
+/// The implicit and the direct solver against closed forms and against themselves with shorter steps.
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
@@ -10,10 +10,13 @@
 static const mspring_integrator integrators[] = {MSPRING_INTEGRATOR_GA0, MSPRING_INTEGRATOR_BDF2,
                                                  MSPRING_INTEGRATOR_EULER};
 
+/// Which of the two.
+static mspring_solver tested = MSPRING_SOLVER_IMPLICIT;
+
 static void use_implicit(mspring_network *network, mspring_integrator integrator, uint32_t iterations) {
     mspring_solver_def solver;
     check_ok(mspring_solver_def_init(&solver, sizeof solver));
-    solver.solver = MSPRING_SOLVER_IMPLICIT;
+    solver.solver = tested;
     solver.integrator = integrator;
     solver.iterations = iterations;
     check_ok(mspring_network_set_solver(network, &solver));
@@ -383,5 +386,7 @@ int main(void) {
         cmocka_unit_test(a_failed_step_leaves_the_history_alone),
         cmocka_unit_test(setting_all_positions_begins_a_new_motion),
     };
-    return cmocka_run_group_tests_name("implicit", tests, NULL, NULL);
+    const int failed = cmocka_run_group_tests_name("implicit", tests, NULL, NULL);
+    tested = MSPRING_SOLVER_DIRECT;
+    return failed + cmocka_run_group_tests_name("direct", tests, NULL, NULL);
 }

@@ -276,8 +276,7 @@ static void first_force_survives_failure(void **state) {
     recipe_free(&made);
 }
 
-static void changing_the_solver_survives_every_failure(void **state) {
-    (void)state;
+static void check_change_to(mspring_solver kind) {
     recipe made = small_recipe();
     size_t fail_at = 0;
     for (mspring_result result = MSPRING_ERROR_MEMORY; result != MSPRING_OK;) {
@@ -292,6 +291,7 @@ static void changing_the_solver_survives_every_failure(void **state) {
         support_steps(network, 3, 0.01);
         support_steps(twin, 3, 0.01);
         const size_t used = mspring_network_memory_used(network);
+        solver.solver = kind;
         solver.integrator = MSPRING_INTEGRATOR_BDF2;
         watched.fail_at = watched.calls + ++fail_at;
         result = mspring_network_set_solver(network, &solver);
@@ -311,6 +311,12 @@ static void changing_the_solver_survives_every_failure(void **state) {
     }
     assert_true(fail_at > 20);
     recipe_free(&made);
+}
+
+static void changing_the_solver_survives_every_failure(void **state) {
+    (void)state;
+    check_change_to(MSPRING_SOLVER_IMPLICIT);
+    check_change_to(MSPRING_SOLVER_DIRECT);
 }
 
 static void no_step_allocates(void **state) {
@@ -357,6 +363,17 @@ static void no_step_allocates(void **state) {
         support_steps(network, 1, 0.01);
     }
     assert_int_equal(watched.calls, calls_implicit);
+    solver.solver = MSPRING_SOLVER_DIRECT;
+    check_ok(mspring_network_set_solver(network, &solver));
+    const size_t calls_direct = watched.calls;
+    for (uint32_t step = 0; step < 10; step++) {
+        // Soft and stiff: in single and in double precision.
+        const float stiffness = step % 2 == 0 ? 100.0f : 1e12f;
+        check_ok(mspring_network_set_stiffnesses(network, 0, 1, &stiffness));
+        check_ok(mspring_network_set_solver(network, &solver));
+        support_steps(network, 1, 0.01);
+    }
+    assert_int_equal(watched.calls, calls_direct);
     mspring_network_destroy(network);
     check_watched_clean(&watched);
     recipe_free(&made);

@@ -117,7 +117,7 @@ static void bad_settings_are_refused(void **state) {
     REFUSED(max_speed, 0, MSPRING_ERROR_ARGUMENT, "max_speed");
     REFUSED(max_speed, -1, MSPRING_ERROR_ARGUMENT, "max_speed");
     REFUSED(max_speed, 1.1e15f, MSPRING_ERROR_ARGUMENT, "max_speed");
-    REFUSED(solver, 2, MSPRING_ERROR_ARGUMENT, "solver");
+    REFUSED(solver, 3, MSPRING_ERROR_ARGUMENT, "solver");
     REFUSED(solver, -1, MSPRING_ERROR_ARGUMENT, "solver");
     REFUSED(substeps, 0, MSPRING_ERROR_ARGUMENT, "substeps");
     REFUSED(substeps, 1000001, MSPRING_ERROR_ARGUMENT, "substeps");
@@ -167,7 +167,7 @@ static void bad_solver_is_refused(void **state) {
     REFUSED(substeps, 1000001, MSPRING_ERROR_ARGUMENT, "substeps");
     REFUSED(max_substeps, 0, MSPRING_ERROR_ARGUMENT, "max_substeps");
     REFUSED(max_substeps, 1000001, MSPRING_ERROR_ARGUMENT, "max_substeps");
-    REFUSED(solver, 2, MSPRING_ERROR_ARGUMENT, "solver");
+    REFUSED(solver, 3, MSPRING_ERROR_ARGUMENT, "solver");
     REFUSED(solver, -7, MSPRING_ERROR_ARGUMENT, "solver");
     REFUSED(struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_solver_def");
     REFUSED(struct_size, sizeof good + 4, MSPRING_ERROR_STRUCT, "mspring_solver_def");
@@ -180,6 +180,8 @@ static void bad_solver_is_refused(void **state) {
     REFUSED(tile_size, 12, MSPRING_ERROR_ARGUMENT, "tile_size");
     REFUSED(tile_size, 512, MSPRING_ERROR_ARGUMENT, "tile_size");
     REFUSED(substeps, 0, MSPRING_ERROR_ARGUMENT, "substeps");
+    good.solver = MSPRING_SOLVER_DIRECT;
+    REFUSED(integrator, MSPRING_INTEGRATOR_EULER + 1, MSPRING_ERROR_ARGUMENT, "integrator");
 #undef REFUSED
     check_error(mspring_network_set_solver(network, NULL), MSPRING_ERROR_ARGUMENT);
     check_contains(mspring_network_error(network), "NULL");

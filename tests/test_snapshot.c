@@ -40,10 +40,11 @@ static mspring_network *make(const recipe *made, mspring_simd level, uint32_t wo
     return recipe_network(made, &def);
 }
 
-static void make_implicit(mspring_network *network, mspring_integrator integrator, uint32_t coarse_period) {
+static void use_solver(mspring_network *network, mspring_solver kind, mspring_integrator integrator,
+                       uint32_t coarse_period) {
     mspring_solver_def solver;
     check_ok(mspring_solver_def_init(&solver, sizeof solver));
-    solver.solver = MSPRING_SOLVER_IMPLICIT;
+    solver.solver = kind;
     solver.integrator = integrator;
     solver.coarse_period = coarse_period;
     solver.substeps = 2;
@@ -154,14 +155,14 @@ static uint64_t look_at(const mspring_network *network) {
 enum { FRAMES = 60, BACK = 8 };
 
 /// Go on for some frames, go back, and go on again: the same.
-static void check_rollback(mspring_snapshot_contents contents, uint32_t worker_count, uint32_t coarse_period,
-                           mspring_integrator integrator) {
+static void check_rollback(mspring_snapshot_contents contents, uint32_t worker_count, mspring_solver kind,
+                           mspring_integrator integrator, uint32_t coarse_period) {
     recipe made = mixed_recipe(3);
     mspring_network *network = make(&made, MSPRING_SIMD_AUTO, worker_count);
     mspring_network *straight = make(&made, MSPRING_SIMD_SCALAR, 1);
-    if (coarse_period > 0) {
-        make_implicit(network, integrator, coarse_period);
-        make_implicit(straight, integrator, coarse_period);
+    if (kind != MSPRING_SOLVER_EXPLICIT) {
+        use_solver(network, kind, integrator, coarse_period);
+        use_solver(straight, kind, integrator, coarse_period);
     }
     uint64_t seen[FRAMES];
     saved states[FRAMES];
@@ -204,17 +205,19 @@ static void check_rollback(mspring_snapshot_contents contents, uint32_t worker_c
 
 static void a_rollback_gives_the_same_bits(void **state) {
     (void)state;
-    check_rollback(MSPRING_SNAPSHOT_ALL, 1, 0, 0);
-    check_rollback(MSPRING_SNAPSHOT_FRAME, 1, 0, 0);
-    check_rollback(MSPRING_SNAPSHOT_FRAME, 3, 0, 0);
+    check_rollback(MSPRING_SNAPSHOT_ALL, 1, MSPRING_SOLVER_EXPLICIT, 0, 0);
+    check_rollback(MSPRING_SNAPSHOT_FRAME, 1, MSPRING_SOLVER_EXPLICIT, 0, 0);
+    check_rollback(MSPRING_SNAPSHOT_FRAME, 3, MSPRING_SOLVER_EXPLICIT, 0, 0);
 }
 
-static void a_rollback_of_the_implicit_solver_gives_the_same_bits(void **state) {
+static void a_rollback_of_the_implicit_solvers_gives_the_same_bits(void **state) {
     (void)state;
     for (mspring_integrator integrator = MSPRING_INTEGRATOR_GA0; integrator <= MSPRING_INTEGRATOR_EULER;
          integrator++) {
-        check_rollback(MSPRING_SNAPSHOT_ALL, 1, 1, integrator);
-        check_rollback(MSPRING_SNAPSHOT_FRAME, 1, 5, integrator);
+        check_rollback(MSPRING_SNAPSHOT_ALL, 1, MSPRING_SOLVER_IMPLICIT, integrator, 1);
+        check_rollback(MSPRING_SNAPSHOT_FRAME, 1, MSPRING_SOLVER_IMPLICIT, integrator, 5);
+        check_rollback(MSPRING_SNAPSHOT_ALL, 1, MSPRING_SOLVER_DIRECT, integrator, 0);
+        check_rollback(MSPRING_SNAPSHOT_FRAME, 1, MSPRING_SOLVER_DIRECT, integrator, 0);
     }
 }
 
@@ -224,8 +227,10 @@ static void solvers_have_to_be_alike(void **state) {
     mspring_network *explicit_one = make(&made, MSPRING_SIMD_AUTO, 1);
     mspring_network *implicit_one = make(&made, MSPRING_SIMD_AUTO, 1);
     mspring_network *other_one = make(&made, MSPRING_SIMD_AUTO, 1);
-    make_implicit(implicit_one, MSPRING_INTEGRATOR_BDF2, 1);
-    make_implicit(other_one, MSPRING_INTEGRATOR_EULER, 1);
+    mspring_network *direct_one = make(&made, MSPRING_SIMD_AUTO, 1);
+    use_solver(implicit_one, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, 1);
+    use_solver(other_one, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_EULER, 1);
+    use_solver(direct_one, MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_BDF2, 1);
     saved of_explicit = save(explicit_one, MSPRING_SNAPSHOT_ALL);
     saved of_implicit = save(implicit_one, MSPRING_SNAPSHOT_ALL);
     check_error(mspring_network_load(implicit_one, of_explicit.bytes, of_explicit.size), MSPRING_ERROR_SNAPSHOT);
@@ -234,6 +239,13 @@ static void solvers_have_to_be_alike(void **state) {
     check_contains(mspring_network_error(explicit_one), "implicit solver");
     check_error(mspring_network_load(other_one, of_implicit.bytes, of_implicit.size), MSPRING_ERROR_SNAPSHOT);
     check_contains(mspring_network_error(other_one), "integrator");
+    check_error(mspring_network_load(direct_one, of_implicit.bytes, of_implicit.size), MSPRING_ERROR_SNAPSHOT);
+    check_contains(mspring_network_error(direct_one), "another solver");
+    saved of_direct = save(direct_one, MSPRING_SNAPSHOT_ALL);
+    check_error(mspring_network_load(implicit_one, of_direct.bytes, of_direct.size), MSPRING_ERROR_SNAPSHOT);
+    check_contains(mspring_network_error(implicit_one), "another solver");
+    mspring_network_destroy(direct_one);
+    free(of_direct.bytes);
     free(of_explicit.bytes);
     free(of_implicit.bytes);
     mspring_network_destroy(explicit_one);
@@ -378,13 +390,13 @@ static void renew_checksum(saved *of) {
 
 /// Whoever wants to do harm gets the checksum right. Whatever is in there: it is refused and nothing has changed,
 /// or it is accepted and is a state like any other.
-static void forge(bool implicit) {
+static void forge(mspring_solver kind) {
     const uint32_t words[] = {0,          1,          0x7fc00000 /* NaN */, 0x7f800000 /* infinity */, 0xff800000,
                               0x7f7fffff, 0xffffffff, 0x80000000,           0xbf800000 /* -1 */,       0x00000001};
     recipe made = small_recipe();
     mspring_network *network = small_network(&made);
-    if (implicit) {
-        make_implicit(network, MSPRING_INTEGRATOR_BDF2, 7);
+    if (kind != MSPRING_SOLVER_EXPLICIT) {
+        use_solver(network, kind, MSPRING_INTEGRATOR_BDF2, 7);
         check_ok(mspring_network_step(network, 0.01));
     }
     saved good = save(network, MSPRING_SNAPSHOT_ALL);
@@ -428,8 +440,9 @@ static void forge(bool implicit) {
 
 static void forgeries_do_no_harm(void **state) {
     (void)state;
-    forge(false);
-    forge(true);
+    forge(MSPRING_SOLVER_EXPLICIT);
+    forge(MSPRING_SOLVER_IMPLICIT);
+    forge(MSPRING_SOLVER_DIRECT);
 }
 
 static void foreign_snapshots_are_refused(void **state) {
@@ -573,7 +586,7 @@ static void loading_survives_every_failure(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_rollback_gives_the_same_bits),
-        cmocka_unit_test(a_rollback_of_the_implicit_solver_gives_the_same_bits),
+        cmocka_unit_test(a_rollback_of_the_implicit_solvers_gives_the_same_bits),
         cmocka_unit_test(solvers_have_to_be_alike),
         cmocka_unit_test(snapshots_are_the_same_everywhere),
         cmocka_unit_test(all_goes_into_a_new_network),

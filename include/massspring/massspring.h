@@ -277,10 +277,22 @@ enum {
     /// of them a substep costs 20 to 65 explicit ones, least where vectors are short. It damps what oscillates
     /// with less than about ten substeps a period. Global damping, which explicit steps apply exactly, is as
     /// accurate as its integrator.
-    MSPRING_SOLVER_IMPLICIT = 1
+    MSPRING_SOLVER_IMPLICIT = 1,
+    /// The same system, solved by a factorisation (block Cholesky) that is computed anew in each substep: exact but
+    /// for rounding, so that there is nothing to choose. Springs and dampers are linearised at x + h v itself. The
+    /// cost for each particle grows with how wide the network is: a substep costs 30 to 100 explicit ones where it
+    /// is thin (a bar of 5 rows of any length), 200 to 600 for 70 rows. The order of elimination is found, and all
+    /// memory taken, when the solver is chosen; broken springs and pins need no new one.
+    /// The factor is in single precision as long as springs, seen over a substep, are not over some thousand times
+    /// as stiff as their particles are heavy (4 to 8 k h^2 / m beyond 16384; 1e9 N/m between masses of 73 kg at
+    /// 1/64 s are below), and in double precision, which costs 1.3 to 2.5 times as much, beyond that. Should even
+    /// that not do (k h^2 / m of about 1e14 and more), particles are made heavier for this substep by the least
+    /// that helps: 1.4e-14 of the stiffness at them, or 64 times that, and so on up to a thousandth; then the step
+    /// is refused.
+    MSPRING_SOLVER_DIRECT = 2
 };
 
-/// How the implicit solver goes from t to t + h. All are stable for any h and damp the fastest oscillations out in
+/// How the implicit solvers go from t to t + h. All are stable for any h and damp the fastest oscillations out in
 /// a few steps. The two of second order remember the substep before; the first substep after a change of the
 /// solver, and after the positions of all particles were set, is one of implicit Euler.
 typedef int32_t mspring_integrator;
@@ -295,7 +307,7 @@ enum {
 
 /// substeps for "as few as are stable in whatever shape the network may get into" (see
 /// mspring_network_stable_dt()), chosen at every step. mspring_network_substeps() says how many they were. For the
-/// implicit solver 1.
+/// implicit and the direct solver 1.
 #define MSPRING_SUBSTEPS_AUTO UINT32_MAX
 
 /// Solver and its settings. Fill with mspring_solver_def_init() first. What a solver does not use is not looked at.
@@ -306,7 +318,7 @@ typedef struct mspring_solver_def {
     uint32_t max_substeps; ///< most that MSPRING_SUBSTEPS_AUTO or MSPRING_GUARD_RETRY may choose, 1 to
                            ///< MSPRING_MAX_SUBSTEPS: a step that needs more is refused with
                            ///< MSPRING_ERROR_UNSTABLE; default 1000
-    mspring_integrator integrator; ///< of the implicit solver; default MSPRING_INTEGRATOR_GA0
+    mspring_integrator integrator; ///< of the implicit and the direct solver; default MSPRING_INTEGRATOR_GA0
     uint32_t iterations;           ///< of conjugate gradients in a substep, at most 10000; 0, the default: 8
     uint32_t tile_size;     ///< rows and columns of the cells that a lattice is cut into for its tiles: 8, 16,
                             ///< 32, 64, 128 or 256; 0, the default: by plan, the smallest whose matrix is
@@ -541,10 +553,11 @@ MSPRING_API uint32_t mspring_network_particle_count(const mspring_network *netwo
 MSPRING_API uint32_t mspring_network_spring_count(const mspring_network *network);
 
 /// Choose how the following steps are made. The state goes on from where it is.
-/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY or MSPRING_ERROR_BUSY. On
-///         error the solver is the one of before.
-/// @threads exclusive access to network   @allocates for an implicit solver, unless only substeps, iterations or
-///         coarse_period differ from the one of before   @since 0.1
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY or MSPRING_ERROR_BUSY;
+///         MSPRING_ERROR_LIMIT if the direct solver's factor would have over 2^31 numbers. On error the solver is
+///         the one of before.
+/// @threads exclusive access to network   @allocates for an implicit or direct solver, unless only substeps,
+///         iterations or coarse_period differ from the one of before   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_solver(mspring_network *network,
                                                                         const mspring_solver_def *def);
 
@@ -1197,9 +1210,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_snapshot_size(const
 
 /// Save a snapshot into the caller's memory. It is the same on every machine, for any SIMD level and number of
 /// workers, but only of use to networks made of the same particles and springs by a library that lays them out
-/// alike (another refuses it): meant for rollback, replay and network play, not for archives. Of the implicit
-/// solver it holds settings and history, but it can be loaded only where that solver is, with the same integrator
-/// and tiles. Hooks and unread events are not in it.
+/// alike (another refuses it): meant for rollback, replay and network play, not for archives. Of the implicit or
+/// direct solver it holds settings and history, but it can be loaded only where that solver is, with the same
+/// integrator and tiles. Hooks and unread events are not in it.
 /// @param snapshot  [capacity] bytes, of any alignment
 /// @param capacity  at least mspring_network_snapshot_size()
 /// @param size      receives the bytes written; may be NULL
@@ -1254,12 +1267,14 @@ typedef struct mspring_plan {
     uint32_t has_relative;   ///< 1: some spring is relative, and a change of substep costs a pass over all
     mspring_simd simd_level; ///< what runs
     mspring_solver solver;
-    mspring_integrator integrator; ///< this and what follows: of the implicit solver, else 0
-    uint32_t iterations;
+    mspring_integrator integrator; ///< of the implicit or direct solver; this and what follows are 0 for others
+    uint32_t iterations;    ///< this and the next four: of the implicit solver
     uint32_t tile_size;     ///< rows and columns of the cells of wide lattices
     uint32_t tile_count;    ///< tiles, each of three unknowns in the coarse matrix
     uint32_t coarse_values; ///< numbers in that matrix's factor
     uint32_t coarse_period;
+    uint64_t factor_values; ///< of the direct solver: numbers in its factor, which is there in both precisions,
+    double factor_products; ///< and products that computing it takes
 } mspring_plan;
 
 /// Get the plan. Set struct_size first.

@@ -166,22 +166,6 @@ static void add_outside(size_t slots, const float *mass, const outside *o, float
     }
 }
 
-// Invert the 2 x 2 blocks on the diagonal, in place. Single precision has rounded them: a millionth of their size
-// on top keeps those positive definite that are so by their mass alone, such as a taut rope's.
-static void invert_diagonal(const mspringi_system *s, size_t slots) {
-    float *restrict const block_xx = s->xx, *restrict const block_xy = s->xy, *restrict const block_yy = s->yy;
-    for (size_t i = 0; i < slots; ++i) {
-        const double mass = (double)s->mass[i], trace = (double)block_xx[i] + (double)block_yy[i];
-        const double on_top = mass + 1e-6 * trace;
-        const double xx = (double)block_xx[i] + on_top, yy = (double)block_yy[i] + on_top;
-        const double xy = (double)block_xy[i];
-        const double reciprocal = 1.0 / (xx * yy - xy * xy), factor = mass > 0.0 ? reciprocal : 0.0;
-        block_xx[i] = (float)(mass > 0.0 ? yy * factor : 0.0);
-        block_xy[i] = (float)(mass > 0.0 ? -xy * factor : 0.0);
-        block_yy[i] = (float)(mass > 0.0 ? xx * factor : 0.0);
-    }
-}
-
 /* --------------------------------------------------------------------------------------------------- the whole */
 
 void mspringi_assemble(mspring_network *network, float h, mspringi_field base) {
@@ -229,7 +213,6 @@ void mspringi_assemble(mspring_network *network, float h, mspringi_field base) {
     o.second = two ? history->second.y : NULL;
     o.shift = (float)(c * (double)network->gravity_y / heavier);
     add_outside(slots, n->mass, &o, n->residual.y);
-    invert_diagonal(&n->system, slots);
 }
 
 void mspringi_multiply(const mspring_network *network, mspringi_field from, mspringi_field to) {

@@ -57,13 +57,11 @@ static mspring_result allocate(mspringi_implicit *n, mspring_network *network) {
     n->diagonal = mspringi_alloc(memory, 3 * slots, sizeof *n->diagonal);
     n->force_carry = mspringi_alloc(memory, 2 * carry, sizeof *n->force_carry);
     n->carry = mspringi_alloc(memory, 3 * carry, sizeof *n->carry);
-    n->restricted = mspringi_alloc(memory, (size_t)MSPRINGI_RIGID * n->tiles.capacity, sizeof *n->restricted);
     if (!reserve_history(memory, &n->history, slots, two) || !reserve_history(memory, &n->backup, slots, two) ||
         !reserve_field(memory, &n->velocity, slots) || !reserve_field(memory, &n->residual, slots) ||
-        !reserve_field(memory, &n->displacement, slots) || !reserve_field(memory, &n->direction, slots) ||
-        !reserve_field(memory, &n->product, slots) || !reserve_field(memory, &n->scaled, slots) ||
-        !reserve_field(memory, &n->arm, slots) || !n->factors || !n->x || !n->mass || !n->diagonal ||
-        !n->force_carry || !n->carry || !n->restricted)
+        !reserve_field(memory, &n->displacement, slots) || !reserve_field(memory, &n->product, slots) ||
+        !reserve_field(memory, &n->scaled, slots) || !n->factors || !n->x || !n->mass || !n->diagonal ||
+        !n->force_carry || !n->carry)
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for an implicit solver of %u particles", (unsigned)t->particle_count);
     n->y = n->x + slots;
@@ -89,6 +87,18 @@ static mspring_result allocate(mspringi_implicit *n, mspring_network *network) {
         .carry_xy = n->carry + carry,
         .carry_yy = n->carry + 2 * carry,
     };
+    return MSPRING_OK;
+}
+
+// What conjugate gradients need besides.
+static mspring_result allocate_iterate(mspringi_implicit *n, mspring_network *network) {
+    mspringi_memory *memory = &network->memory;
+    const size_t slots = mspringi_slot_count(network);
+    n->restricted = mspringi_alloc(memory, (size_t)MSPRINGI_RIGID * n->tiles.capacity, sizeof *n->restricted);
+    if (!reserve_field(memory, &n->direction, slots) || !reserve_field(memory, &n->arm, slots) || !n->restricted)
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                             "no memory for the iterations of %u particles",
+                             (unsigned)network->topology.particle_count);
     n->iterate = (mspringi_iterate){
         .slots = slots,
         .solution_x = n->displacement.x,
@@ -123,6 +133,13 @@ static mspring_result cut_tiles(mspringi_implicit *n, mspring_network *network, 
     }
 }
 
+static mspring_result make_two_level(mspringi_implicit *n, mspring_network *network) {
+    mspring_result result = cut_tiles(n, network, n->tile_size);
+    if (result == MSPRING_OK)
+        result = mspringi_coarse_create(&n->coarse, &n->tiles, &network->memory, &network->message);
+    return result == MSPRING_OK ? allocate_iterate(n, network) : result;
+}
+
 mspring_result mspringi_implicit_create(mspring_network *network, const mspring_solver_def *def,
                                         mspringi_implicit **implicit) {
     mspringi_implicit *n = mspringi_alloc(&network->memory, 1, sizeof *n);
@@ -130,14 +147,13 @@ mspring_result mspringi_implicit_create(mspring_network *network, const mspring_
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for an implicit solver");
     n->tile_size = def->tile_size;
     n->integrator = def->integrator;
+    n->is_direct = def->solver == MSPRING_SOLVER_DIRECT;
     n->scale = choose_scale(network);
     n->seen = network->edits;
     mspringi_implicit_adjust(n, def);
-    mspring_result result = cut_tiles(n, network, def->tile_size);
+    mspring_result result = allocate(n, network);
     if (result == MSPRING_OK)
-        result = mspringi_coarse_create(&n->coarse, &n->tiles, &network->memory, &network->message);
-    if (result == MSPRING_OK)
-        result = allocate(n, network);
+        result = n->is_direct ? mspringi_direct_create(&n->direct, network) : make_two_level(n, network);
     if (result == MSPRING_OK)
         *implicit = n;
     else
@@ -146,18 +162,20 @@ mspring_result mspringi_implicit_create(mspring_network *network, const mspring_
 }
 
 bool mspringi_implicit_fits(const mspringi_implicit *n, const mspring_solver_def *def) {
-    return n && n->tile_size == def->tile_size && n->integrator == def->integrator;
+    return n && n->is_direct == (def->solver == MSPRING_SOLVER_DIRECT) && n->integrator == def->integrator &&
+           (n->is_direct || n->tile_size == def->tile_size);
 }
 
 void mspringi_implicit_adjust(mspringi_implicit *n, const mspring_solver_def *def) {
-    n->iterations = def->iterations > 0 ? def->iterations : DEFAULT_ITERATIONS;
-    n->coarse_period = def->coarse_period > 0 ? def->coarse_period : 1;
+    n->iterations = !n->is_direct && def->iterations > 0 ? def->iterations : DEFAULT_ITERATIONS;
+    n->coarse_period = !n->is_direct && def->coarse_period > 0 ? def->coarse_period : 1;
     n->age = 0;
 }
 
 void mspringi_implicit_destroy(mspringi_implicit *n, mspringi_memory *memory) {
     if (!n)
         return;
+    mspringi_direct_destroy(&n->direct, memory);
     mspringi_tiles_destroy(&n->tiles, memory);
     mspringi_coarse_destroy(&n->coarse, memory);
     void *const blocks[] = {n->history.low.x, n->backup.low.x,   n->x,           n->velocity.x,
@@ -198,7 +216,7 @@ void mspringi_implicit_restore(mspring_network *network) {
 
 void mspringi_implicit_follow(mspring_network *network) {
     mspringi_implicit *n = network->implicit;
-    if (mspringi_tiles_are_outdated(&n->tiles, network, &n->seen)) {
+    if (!n->is_direct && mspringi_tiles_are_outdated(&n->tiles, network, &n->seen)) {
         mspringi_tiles_follow(&n->tiles, network, &n->seen);
         mspringi_coarse_shape(&n->coarse, &n->tiles);
         n->age = 0;
@@ -221,8 +239,12 @@ static void follow_edits(mspring_network *network) {
 void mspringi_implicit_describe(const mspringi_implicit *n, mspring_plan *plan) {
     if (!n)
         return;
-    plan->solver = MSPRING_SOLVER_IMPLICIT;
+    plan->solver = n->is_direct ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT;
     plan->integrator = n->integrator;
+    plan->factor_values = n->direct.plan.panel_reals;
+    plan->factor_products = n->direct.plan.multiply_adds;
+    if (n->is_direct)
+        return;
     plan->iterations = n->iterations;
     plan->tile_size = n->tiles.cells.size;
     plan->tile_count = n->tiles.count;
@@ -238,7 +260,10 @@ void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_fiel
         mspringi_weigh(network, h);
         mspringi_predict(network, h);
         mspringi_assemble(network, h, base);
-        mspringi_solve(network);
+        if (network->implicit->is_direct)
+            mspringi_direct_solve(network);
+        else
+            mspringi_solve(network);
         mspringi_finish(network, h);
     }
 }

@@ -4,6 +4,7 @@
 ///   predict    where the particles would be without forces               scheme.c
 ///   assemble   springs, linearised there, into A d = b                   assemble.c
 ///   solve      two-level preconditioned conjugate gradients              solve.c, tiles.c, coarse.c
+///              or, for the direct solver, a factorisation                direct/direct.c
 ///   finish     positions and velocities from d                           scheme.c
 ///
 /// SPDX-License-Identifier: MIT
@@ -13,6 +14,7 @@
 #include "network/network.h"
 
 #include "coarse.h"
+#include "direct/direct.h"
 #include "tiles.h"
 
 /// Most iterations, and most substeps with one coarse matrix.
@@ -52,7 +54,9 @@ typedef struct mspringi_implicit {
     mspringi_iterate iterate;
     mspringi_edits seen; ///< the edits that it has followed
 
-    mspringi_tiles tiles;
+    bool is_direct;
+    mspringi_direct direct; ///< all there is of it unless is_direct: zero
+    mspringi_tiles tiles;   ///< none, nor a coarse matrix, if it is
     mspringi_coarse coarse;
 } mspringi_implicit;
 
@@ -96,8 +100,14 @@ void mspringi_weigh(mspring_network *network, float h);
 void mspringi_assemble(mspring_network *network, float h, mspringi_field base);
 void mspringi_multiply(const mspring_network *network, mspringi_field from, mspringi_field to);
 
-/* solve.c */
+/* solve.c: from residual, factors and diagonal to displacement */
 
 void mspringi_solve(mspring_network *network);
+
+/// Particles without springs are in no tile and no factor: their rows of A are diagonal.
+void mspringi_solve_loose(const mspring_network *network);
+
+/// Numbers overflowed: see to it that the step is refused.
+void mspringi_spoil(mspring_network *network);
 
 #endif

@@ -12,6 +12,24 @@
 #include <math.h>
 #include <string.h>
 
+/* ----------------------------------------------------------------------------------------------------- diagonal */
+
+// Invert the 2 x 2 blocks on the diagonal, in place. Single precision has rounded them: a millionth of their size
+// on top keeps those positive definite that are so by their mass alone, such as a taut rope's.
+static void invert_diagonal(const mspringi_system *s, size_t slots) {
+    float *restrict const block_xx = s->xx, *restrict const block_xy = s->xy, *restrict const block_yy = s->yy;
+    for (size_t i = 0; i < slots; ++i) {
+        const double mass = (double)s->mass[i], trace = (double)block_xx[i] + (double)block_yy[i];
+        const double on_top = mass + 1e-6 * trace;
+        const double xx = (double)block_xx[i] + on_top, yy = (double)block_yy[i] + on_top;
+        const double xy = (double)block_xy[i];
+        const double reciprocal = 1.0 / (xx * yy - xy * xy), factor = mass > 0.0 ? reciprocal : 0.0;
+        block_xx[i] = (float)(mass > 0.0 ? yy * factor : 0.0);
+        block_xy[i] = (float)(mass > 0.0 ? -xy * factor : 0.0);
+        block_yy[i] = (float)(mass > 0.0 ? xx * factor : 0.0);
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------- coarse space */
 
 static void prepare_coarse(mspringi_implicit *n) {
@@ -55,9 +73,8 @@ static double dot(const mspring_network *network, mspringi_field a, mspringi_fie
     return (double)network->kernels->system.dot(mspringi_slot_count(network), a.x, a.y, b.x, b.y);
 }
 
-// Particles without springs are in no tile: their rows of A are diagonal. What is done with them leaves the
-// iteration, whose sums go over all slots.
-static void solve_loose(const mspring_network *network) {
+// What is done with them leaves the iteration, whose sums go over all slots.
+void mspringi_solve_loose(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const mspringi_implicit *n = network->implicit;
     const size_t first = (size_t)t->loose_first * MSPRINGI_WIDTH;
@@ -68,8 +85,7 @@ static void solve_loose(const mspring_network *network) {
     }
 }
 
-// Numbers overflowed: see to it that the step is refused.
-static void spoil(mspring_network *network) {
+void mspringi_spoil(mspring_network *network) {
     network->implicit->x[network->topology.slot_of_particle[0]] = NAN;
 }
 
@@ -96,7 +112,8 @@ void mspringi_solve(mspring_network *network) {
     memset(n->displacement.x, 0, 2 * slots * sizeof *n->displacement.x);
     memset(n->direction.x, 0, 2 * slots * sizeof *n->direction.x);
     memset(n->product.x, 0, 2 * slots * sizeof *n->product.x);
-    solve_loose(network);
+    invert_diagonal(&n->system, slots);
+    mspringi_solve_loose(network);
     prepare_coarse(n);
     uint32_t left = n->iterations;
     if (left > 1) {
@@ -109,7 +126,7 @@ void mspringi_solve(mspring_network *network) {
         mspringi_multiply(network, n->direction, n->product);
         const double curvature = dot(network, n->direction, n->product);
         if (!(curvature < INFINITY && product < INFINITY)) {
-            spoil(network);
+            mspringi_spoil(network);
             return;
         }
         // Nothing is left to do, or to be done in this precision.

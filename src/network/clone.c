@@ -108,6 +108,43 @@ static void move_iterate(const moving *m, mspringi_iterate *iterate) {
     MOVE(iterate->arm_y);
 }
 
+#define DEFINE_MOVE_FACTOR(real)                                                                                   \
+    static void move_factor_##real(const moving *m, mspringi_cholesky_##real *factor) {                            \
+        MOVE(factor->plan);                                                                                        \
+        MOVE(factor->panels);                                                                                      \
+        MOVE(factor->reciprocal);                                                                                  \
+        MOVE(factor->updates[0]);                                                                                  \
+        MOVE(factor->updates[1]);                                                                                  \
+        MOVE(factor->scaled);                                                                                      \
+        MOVE(factor->vector);                                                                                      \
+        MOVE(factor->part);                                                                                        \
+    }
+DEFINE_MOVE_FACTOR(float)
+DEFINE_MOVE_FACTOR(double)
+
+static void move_direct(const moving *m, mspringi_direct *direct) {
+    MOVE(direct->end_a);
+    MOVE(direct->end_b);
+    MOVE(direct->plan.order);
+    MOVE(direct->plan.fronts);
+    MOVE(direct->plan.children);
+    MOVE(direct->plan.border);
+    MOVE(direct->plan.runs);
+    MOVE(direct->plan.entries);
+    move_factor_float(m, &direct->single);
+    move_factor_double(m, &direct->twice);
+    MOVE(direct->edges.xx);
+    MOVE(direct->edges.xy);
+    MOVE(direct->edges.yy);
+    MOVE(direct->edges_twice.xx);
+    MOVE(direct->edges_twice.xy);
+    MOVE(direct->edges_twice.yy);
+    MOVE(direct->nodes_twice.xx);
+    MOVE(direct->nodes_twice.xy);
+    MOVE(direct->nodes_twice.yy);
+    MOVE(direct->solution);
+}
+
 static void move_implicit(const moving *m, mspringi_implicit *n) {
     mspringi_field *const fields[] = {&n->velocity, &n->residual, &n->displacement, &n->direction,
                                       &n->product,  &n->scaled,   &n->arm};
@@ -127,6 +164,7 @@ static void move_implicit(const moving *m, mspringi_implicit *n) {
     move_system(m, &n->system);
     move_iterate(m, &n->iterate);
     MOVE(n->seen.link_log);
+    move_direct(m, &n->direct);
     move_tiles(m, &n->tiles);
     MOVE(n->coarse.first);
     MOVE(n->coarse.row);

@@ -9,6 +9,8 @@ static mspring_result check_implicit(const mspring_solver_def *def, mspringi_mes
     if (def->integrator < MSPRING_INTEGRATOR_GA0 || def->integrator > MSPRING_INTEGRATOR_EULER)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "integrator is %d, which is none",
                              (int)def->integrator);
+    if (def->solver == MSPRING_SOLVER_DIRECT)
+        return MSPRING_OK;
     if (def->iterations > MSPRINGI_MOST_ITERATIONS)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "iterations is %u, it must be at most %d",
                              (unsigned)def->iterations, MSPRINGI_MOST_ITERATIONS);
@@ -30,7 +32,7 @@ static mspring_result check_solver(const mspring_solver_def *def, mspringi_messa
         mspringi_check_struct(message, "mspring_solver_def", def->struct_size, sizeof *def, sizeof *def);
     if (result != MSPRING_OK)
         return result;
-    if (def->solver < MSPRING_SOLVER_EXPLICIT || def->solver > MSPRING_SOLVER_IMPLICIT)
+    if (def->solver < MSPRING_SOLVER_EXPLICIT || def->solver > MSPRING_SOLVER_DIRECT)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "solver is %d, which is none", (int)def->solver);
     const bool automatic = def->substeps == MSPRING_SUBSTEPS_AUTO;
     if (!automatic && (def->substeps < 1 || def->substeps > MSPRING_MAX_SUBSTEPS))
@@ -39,13 +41,13 @@ static mspring_result check_solver(const mspring_solver_def *def, mspringi_messa
     if (def->max_substeps < 1 || def->max_substeps > MSPRING_MAX_SUBSTEPS)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "max_substeps is %u, it must be 1 to %u",
                              (unsigned)def->max_substeps, (unsigned)MSPRING_MAX_SUBSTEPS);
-    return def->solver == MSPRING_SOLVER_IMPLICIT ? check_implicit(def, message) : MSPRING_OK;
+    return def->solver != MSPRING_SOLVER_EXPLICIT ? check_implicit(def, message) : MSPRING_OK;
 }
 
 // Exchange the implicit solver, or the lack of it, for that of the definition.
 static mspring_result change_implicit(mspring_network *network, const mspring_solver_def *def) {
     mspringi_implicit *made = NULL;
-    if (def->solver == MSPRING_SOLVER_IMPLICIT) {
+    if (def->solver != MSPRING_SOLVER_EXPLICIT) {
         if (mspringi_implicit_fits(network->implicit, def)) {
             mspringi_implicit_adjust(network->implicit, def);
             return MSPRING_OK;

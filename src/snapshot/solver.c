@@ -1,5 +1,6 @@
-/// What a solver carries from step to step, in a snapshot: of the implicit one its history and, unless it is to be
-/// factored anew, its coarse matrix. The explicit one carries nothing.
+/// What a solver carries from step to step, in a snapshot: of the implicit ones the history and, unless it is to be
+/// factored anew, the coarse matrix. The explicit one carries nothing, and the direct one has no tiles, so that the
+/// hash of them is 0.
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -22,7 +23,7 @@ static size_t implicit_size_of(const mspringi_implicit *n, size_t coarse_values)
 // The age of the coarse matrix that the next substep finds.
 static uint32_t age_of(const mspring_network *network) {
     const mspringi_implicit *n = network->implicit;
-    return mspringi_tiles_are_outdated(&n->tiles, network, &n->seen) ? 0 : n->age;
+    return n->is_direct || mspringi_tiles_are_outdated(&n->tiles, network, &n->seen) ? 0 : n->age;
 }
 
 static size_t coarse_values(const mspring_network *network) {
@@ -65,7 +66,8 @@ static mspring_result check_head(mspring_network *network, const implicit_head *
     const mspringi_section *section = &mspringi_section_implicit;
     const mspringi_implicit *n = network->implicit;
     if (head->integrator != (uint32_t)n->integrator || head->tiles_print != n->tiles.print)
-        return mspringi_section_fail(network, section, "the network's has another integrator, or other tiles");
+        return mspringi_section_fail(network, section,
+                                     "the network has another solver or integrator, or other tiles");
     if (!(head->scale >= DBL_MIN && head->scale <= DBL_MAX && head->h >= 0.0f && head->h <= FLT_MAX) ||
         head->restarts > 1)
         return mspringi_section_fail(network, section, "its scale is %g, its substep %g s", head->scale,

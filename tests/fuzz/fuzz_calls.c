@@ -171,7 +171,7 @@ typedef struct call {
     uint32_t count;
     float a, b;
     double dt;
-    bool implicit;
+    mspring_solver solver;
 } call;
 
 static mspring_result make_call(mspring_network *network, const call *c) {
@@ -216,7 +216,7 @@ static mspring_result make_call(mspring_network *network, const call *c) {
         FUZZ_CHECK(mspring_solver_def_init(&solver, sizeof solver) == MSPRING_OK);
         solver.substeps = c->count == 0 ? MSPRING_SUBSTEPS_AUTO : 1 + c->particle % 33;
         solver.max_substeps = 64;
-        solver.solver = c->implicit ? MSPRING_SOLVER_IMPLICIT : MSPRING_SOLVER_EXPLICIT;
+        solver.solver = c->solver;
         return mspring_network_set_solver(network, &solver);
     case 15:
         return mspring_network_set_break_strains(network, c->spring, c->count, pair);
@@ -230,6 +230,8 @@ static mspring_result make_call(mspring_network *network, const call *c) {
 }
 
 static void make_calls(twins *all, fuzz_bytes *bytes) {
+    static const mspring_solver solvers[] = {MSPRING_SOLVER_IMPLICIT, MSPRING_SOLVER_DIRECT,
+                                             MSPRING_SOLVER_EXPLICIT, MSPRING_SOLVER_EXPLICIT};
     for (int i = 0; i < MOST_CALLS && bytes->at < bytes->size; i++) {
         // Now and then one that is not there.
         const call c = {.kind = fuzz_byte(bytes),
@@ -239,7 +241,7 @@ static void make_calls(twins *all, fuzz_bytes *bytes) {
                         .a = any_number(bytes),
                         .b = any_number(bytes),
                         .dt = step_length(bytes),
-                        .implicit = fuzz_byte(bytes) % 4 == 0};
+                        .solver = solvers[fuzz_byte(bytes) % 4]};
         mspring_result results[TWINS];
         for (int twin = 0; twin < TWINS; twin++)
             results[twin] = make_call(all->of[twin], &c);
