@@ -15,6 +15,29 @@ static void version_is_that_of_the_header(void **state) {
     assert_string_equal(mspring_version_string(), text);
 }
 
+// The tests link the static library of a hosted build.
+static void features_are_those_of_the_build(void **state) {
+    (void)state;
+    const uint32_t features = mspring_features();
+    assert_true(features & MSPRING_FEATURE_HOSTED);
+    assert_false(features & MSPRING_FEATURE_SHARED);
+    assert_int_equal(features & ~(uint32_t)(MSPRING_FEATURE_HOSTED | MSPRING_FEATURE_THREADS), 0);
+
+    mspring_builder *builder = NULL;
+    mspring_network *network = NULL;
+    assert_int_equal(mspring_builder_create(NULL, &builder), MSPRING_OK);
+    mspring_particle_def particle;
+    assert_int_equal(mspring_particle_def_init(&particle, sizeof particle), MSPRING_OK);
+    assert_int_equal(mspring_builder_add_particle(builder, &particle, NULL), MSPRING_OK);
+    mspring_network_def def;
+    assert_int_equal(mspring_network_def_init(&def, sizeof def), MSPRING_OK);
+    def.worker_count = 2;
+    assert_int_equal(mspring_network_create(builder, &def, &network), MSPRING_OK);
+    assert_int_equal(mspring_network_worker_count(network), features & MSPRING_FEATURE_THREADS ? 2 : 1);
+    mspring_network_destroy(network);
+    mspring_builder_destroy(builder);
+}
+
 static void every_result_has_its_own_name(void **state) {
     (void)state;
     for (mspring_result a = MSPRING_ERROR_SNAPSHOT; a <= MSPRING_OK; a++) {
@@ -206,6 +229,7 @@ static void init_refuses_null_and_other_sizes(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(version_is_that_of_the_header),
+        cmocka_unit_test(features_are_those_of_the_build),
         cmocka_unit_test(every_result_has_its_own_name),
         cmocka_unit_test(simd_levels_have_the_names_of_the_variable),
         cmocka_unit_test(simd_levels_are_those_of_one_kind_of_cpu),

@@ -91,6 +91,19 @@ MSPRING_API uint32_t mspring_version(void);
 /// @threads any   @allocates never   @since 0.1
 MSPRING_API const char *mspring_version_string(void);
 
+/// What a build of the library has beside what all have.
+enum {
+    MSPRING_FEATURE_THREADS = 1u << 0, ///< networks may have several workers; without, they have one
+    MSPRING_FEATURE_HOSTED = 1u << 1,  ///< there is a default allocator, error messages have their numbers, and the
+                                       ///< environment variable MSPRING_SIMD is read
+    MSPRING_FEATURE_SHARED = 1u << 2   ///< this is the shared library
+};
+
+/// Features of the library that runs: bits of MSPRING_FEATURE_. (When compiling, MSPRING_VERSION tells what the
+/// header has: `#if MSPRING_VERSION >= 1000` is true from 0.1.0 on.)
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API uint32_t mspring_features(void);
+
 /* ------------------------------------------------------------------------------------------- result codes */
 
 /// What a call came to: MSPRING_OK or one of the negative errors below.

@@ -1,12 +1,26 @@
 #include <massspring/massspring.h>
 
-#define TEXT_OF(token) #token
-#define TEXT(token) TEXT_OF(token)
+#define QUOTED_AS_IS(token) #token
+#define QUOTED(token) QUOTED_AS_IS(token)
 
 uint32_t mspring_version(void) {
     return MSPRING_VERSION;
 }
 
 const char *mspring_version_string(void) {
-    return TEXT(MSPRING_VERSION_MAJOR) "." TEXT(MSPRING_VERSION_MINOR) "." TEXT(MSPRING_VERSION_PATCH);
+    return QUOTED(MSPRING_VERSION_MAJOR) "." QUOTED(MSPRING_VERSION_MINOR) "." QUOTED(MSPRING_VERSION_PATCH);
+}
+
+uint32_t mspring_features(void) {
+    uint32_t features = 0;
+#if defined(MSPRINGI_THREADS)
+    features |= MSPRING_FEATURE_THREADS;
+#endif
+#if !defined(MSPRINGI_FREESTANDING)
+    features |= MSPRING_FEATURE_HOSTED;
+#endif
+#if defined(MSPRING_BUILD_SHARED)
+    features |= MSPRING_FEATURE_SHARED;
+#endif
+    return features;
 }
