@@ -205,7 +205,7 @@ static bool concerns(const mspringi_section *section, const mspringi_snapshot_he
 }
 
 static MSPRINGI_NOINLINE mspring_result load(mspring_network *network, const uint8_t *snapshot, size_t size) {
-    mspringi_snapshot_header header;
+    mspringi_snapshot_header header = {0};
     found in;
     mspring_result result = check_frame(network, snapshot, size, &header);
     if (result == MSPRING_OK)
