@@ -1,0 +1,183 @@
+/// @file settle.c
+/// Let a scene down onto a floor.
+///
+/// SPDX-License-Identifier: MIT
+#include "load/settle.h"
+#include "common/clock.h"
+#include "draw/network_picture.h"
+#include "scenes/internal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    IMPLICIT_SUBSTEPS = 4, // in a frame: the floor is met once in each
+    MOST_WIDTH = 1200,
+    MOST_HEIGHT = 700
+};
+
+static const double frame = 1.0 / 64;
+static const double safety = 0.7;    // of the longest stable substep
+static const float drag = 0.5f;      // 1/s
+static const float friction = 20.0f; // 1/s, of what touches the floor
+static const double burst = 1.5;     // times its size: a structure that has flown apart
+
+// After each substep: nothing falls through the floor, and what lies on it slides to a halt.
+static void floor_hook(const mspring_hook_args *args, void *user) {
+    const double *height = user;
+    const float floor_y = (float)(*height - args->origin_y);
+    const float keep = fmaxf(0, 1 - friction * (float)args->dt);
+    for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
+        if (args->y[slot] >= floor_y || args->inverse_mass[slot] == 0)
+            continue;
+        args->y[slot] = floor_y;
+        args->vy[slot] = args->vy[slot] < 0 ? 0 : args->vy[slot];
+        args->vx[slot] *= keep;
+    }
+}
+
+static bool fail(mspring_network *network, mspring_result result, const char *what, scene_error *error) {
+    return scene_fail(error, "%s: %s: %s", what, mspring_result_string(result), mspring_network_error(network));
+}
+
+static bool draw(const network_shape *shape, mspring_network *network, const char *path, const char *title,
+                 scene_error *error) {
+    draw_error problem = {""};
+    double *x = malloc(shape->particle_count * sizeof *x);
+    double *y = malloc(shape->particle_count * sizeof *y);
+    bool ok = x && y && mspring_network_get_positions(network, 0, shape->particle_count, x, y) == MSPRING_OK;
+    if (ok) {
+        world_box box = world_box_add(network_shape_bounds(shape), x, y, shape->particle_count);
+        double limit = network_strain_limit(shape, x, y);
+        network_view view = network_view_fit(shape, box, MOST_WIDTH, MOST_HEIGHT, limit);
+        figure drawn;
+        figure_start(&drawn, view.width, view.height, 0xffffff);
+        network_picture_draw(&drawn, shape, &view, x, y, title);
+        ok = figure_write_png(&drawn, path, &problem);
+        figure_free(&drawn);
+        if (ok)
+            printf("wrote %s\n", path);
+        else
+            scene_fail(error, "%s", problem.text);
+    } else {
+        scene_fail_memory(error, "cannot draw");
+    }
+    free(x);
+    free(y);
+    return ok;
+}
+
+static bool shape_of(mspring_network *network, network_shape *shape, scene_error *error) {
+    draw_error problem = {""};
+    return network_shape_make(shape, network, MSPRING_NONE, &problem) || scene_fail(error, "%s", problem.text);
+}
+
+bool settle_draw(scene *drawn, const char *path, scene_error *error) {
+    mspring_network *network = NULL;
+    network_shape shape;
+    mspring_result result = mspring_network_create(drawn->builder, NULL, &network);
+    if (result != MSPRING_OK)
+        return scene_fail_builder(error, "cannot make the network", drawn->builder, result);
+    bool ok = shape_of(network, &shape, error);
+    if (ok) {
+        ok = draw(&shape, network, path, drawn->name, error);
+        network_shape_free(&shape);
+    }
+    mspring_network_destroy(network);
+    return ok;
+}
+
+// path with _solver before its ending.
+static void picture_path(const char *path, const char *solver, char made[1024]) {
+    const char *dot = strrchr(path, '.');
+    size_t length = dot && !strchr(dot, '/') ? (size_t)(dot - path) : strlen(path);
+    snprintf(made, 1024, "%.*s_%s%s", (int)(length < 900 ? length : 900), path, solver,
+             dot ? path + length : ".png");
+}
+
+typedef struct box {
+    double left, bottom, right, top;
+} box;
+
+static box bounds_of(const mspring_network *network) {
+    box b = {0, 0, 0, 0};
+    if (mspring_network_bounds(network, &b.left, &b.bottom, &b.right, &b.top) != MSPRING_OK)
+        b.left = b.bottom = b.right = b.top = NAN;
+    return b;
+}
+
+static bool start(mspring_network *network, mspring_solver solver, double *floor_height, scene_error *error) {
+    mspring_hook_def hook;
+    mspring_solver_def def;
+    mspring_hook_def_init(&hook, sizeof hook);
+    mspring_solver_def_init(&def, sizeof def);
+    hook.phase = MSPRING_PHASE_AFTER_SUBSTEP;
+    hook.fn = floor_hook;
+    hook.user = floor_height;
+    hook.flags = MSPRING_HOOK_CONCURRENT;
+    def.solver = solver;
+    def.substeps = IMPLICIT_SUBSTEPS;
+    mspring_result result = mspring_network_add_hook(network, &hook, NULL);
+    if (result == MSPRING_OK && solver == MSPRING_SOLVER_EXPLICIT)
+        result = mspring_network_suggest_substeps(network, frame, safety, &def.substeps);
+    if (result == MSPRING_OK)
+        result = mspring_network_set_solver(network, &def);
+    return result == MSPRING_OK || fail(network, result, "cannot set the solver", error);
+}
+
+static bool let_down(mspring_network *network, const char *name, const settle_request *request,
+                     scene_error *error) {
+    const box first = bounds_of(network);
+    const int frames = (int)ceil(request->seconds / frame);
+    const double began = clock_seconds();
+    double most_energy = 0;
+    double energy = 0;
+    for (int i = 0; i < frames; i++) {
+        mspring_result result = mspring_network_step(network, frame);
+        if (result != MSPRING_OK)
+            return fail(network, result, name, error);
+        if (mspring_network_energy(network, &energy, NULL, NULL) == MSPRING_OK && energy > most_energy)
+            most_energy = energy;
+    }
+    const double spent = clock_seconds() - began;
+    const box last = bounds_of(network);
+    float strain = 0;
+    const bool measured = mspring_network_max_strain(network, &strain, NULL) == MSPRING_OK;
+    printf("%-10s %u substeps, %d frames of 1/64 s, %.3g ms each: top %.4g m lower, %.4g m wider, kinetic energy "
+           "%.3g J (most %.3g), strain %.3g\n",
+           name, mspring_network_substeps(network), frames, 1e3 * spent / frames, first.top - last.top,
+           (last.right - last.left) - (first.right - first.left), energy, most_energy, measured ? strain : NAN);
+    const double size = fmax(first.right - first.left, first.top - first.bottom);
+    if (!(last.right - last.left <= burst * size && last.top - last.bottom <= burst * size))
+        return scene_fail(error, "%s: it has flown apart", name);
+    return true;
+}
+
+bool settle_run(scene *settled, mspring_solver solver, const settle_request *request, scene_error *error) {
+    const char *name = solver == MSPRING_SOLVER_EXPLICIT ? "explicit" : "implicit";
+    mspring_network_def def;
+    mspring_network *network = NULL;
+    network_shape shape;
+    mspring_network_def_init(&def, sizeof def);
+    def.global_damping = drag;
+    mspring_result result = mspring_network_create(settled->builder, &def, &network);
+    if (result != MSPRING_OK)
+        return scene_fail_builder(error, "cannot make the network", settled->builder, result);
+    double floor_height = bounds_of(network).bottom;
+    bool ok = shape_of(network, &shape, error);
+    if (ok) {
+        ok = start(network, solver, &floor_height, error) && let_down(network, name, request, error);
+        if (ok && request->picture) {
+            char path[1024];
+            char title[128];
+            picture_path(request->picture, name, path);
+            snprintf(title, sizeof title, "%s, %s, after %g s", settled->name, name, request->seconds);
+            ok = draw(&shape, network, path, title, error);
+        }
+        network_shape_free(&shape);
+    }
+    mspring_network_destroy(network);
+    return ok;
+}
