@@ -278,23 +278,33 @@ static void loose_kernels(void **state) {
     }
 }
 
-static void bounded_sees_every_lane(void **state) {
+static void check_largest(float found, float expected) {
+    assert_true(isnan(expected) ? isnan(found) : found == expected);
+}
+
+static void largest_sees_every_lane(void **state) {
     (void)state;
-    const float limit = 1e6f;
-    const float bad[] = {NAN, INFINITY, -INFINITY, 1.0001e6f, -1.0001e6f}, good[] = {0, -0.0f, 1e6f, -1e6f, 1e-40f};
-    _Alignas(64) float values[3 * W];
-    for (size_t count = 0; count <= COUNT_OF(values); count += W) {
-        for (size_t place = 0; place < COUNT_OF(values); place++) {
-            for (size_t i = 0; i < COUNT_OF(bad); i++) {
-                for (size_t j = 0; j < COUNT_OF(values); j++) {
-                    values[j] = good[j % COUNT_OF(good)];
-                }
-                assert_true(kernels->bounded(values, count, limit));
-                values[place] = bad[i];
-                assert_int_equal(kernels->bounded(values, count, limit), place >= count);
+    const float large[] = {NAN, INFINITY, -INFINITY, 1.5f, -1.5f}, small[] = {0, -0.0f, 1, -1, 1e-40f};
+    const float changes[] = {NAN, INFINITY, INFINITY, 1.25f, 1.75f}; // from 0.25; of -1: 1.25
+    _Alignas(64) float values[3 * W], before[3 * W];
+    for (size_t place = 0; place < COUNT_OF(values); place++) {
+        for (size_t i = 0; i < COUNT_OF(large); i++) {
+            for (size_t j = 0; j < COUNT_OF(values); j++) {
+                values[j] = small[j % COUNT_OF(small)];
+                before[j] = 0.25f;
+            }
+            values[place] = large[i];
+            for (size_t count = W; count <= COUNT_OF(values); count += W) {
+                const mspringi_largest alone = kernels->largest(values, NULL, count);
+                const mspringi_largest both = kernels->largest(values, before, count);
+                check_largest(alone.value, place < count ? fabsf(large[i]) : 1);
+                check_largest(both.value, place < count ? fabsf(large[i]) : 1);
+                check_largest(both.change, place < count ? changes[i] : 1.25f);
+                check_largest(alone.change, 0);
             }
         }
     }
+    check_largest(kernels->largest(values, before, 0).value, 0);
 }
 
 int main(int argc, char **argv) {
@@ -308,7 +318,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(lattice_kernels),
         cmocka_unit_test(chain_kernels),
         cmocka_unit_test(loose_kernels),
-        cmocka_unit_test(bounded_sees_every_lane),
+        cmocka_unit_test(largest_sees_every_lane),
     };
     return cmocka_run_group_tests_name("kernels", tests, NULL, NULL);
 }

@@ -85,13 +85,26 @@ static inline void store_packed(float *packed, vec x, vec y, vec vx, vec vy) {
     }
 }
 
-static bool bounded(const float *values, size_t count, float limit) {
-    const __m256 absolute = _mm256_castsi256_ps(_mm256_set1_epi32(0x7fffffff)), limits = _mm256_set1_ps(limit);
-    __m256 all = _mm256_cmp_ps(limits, limits, _CMP_EQ_OQ);
-    for (size_t i = 0; i < count; i += LANES)
-        all = _mm256_and_ps(all,
-                            _mm256_cmp_ps(_mm256_and_ps(_mm256_load_ps(values + i), absolute), limits, _CMP_LE_OQ));
-    return _mm256_movemask_ps(all) == 0xff;
+// Absolute values, as integers: those of floats are in the same order, with NaN above all.
+static inline __m256i absolute(vec a) {
+    return _mm256_and_si256(_mm256_castps_si256(a), _mm256_set1_epi32(0x7fffffff));
+}
+static inline float largest_lane(__m256i a) {
+    __m128i half = _mm_max_epi32(_mm256_castsi256_si128(a), _mm256_extracti128_si256(a, 1));
+    half = _mm_max_epi32(half, _mm_shuffle_epi32(half, _MM_SHUFFLE(1, 0, 3, 2)));
+    half = _mm_max_epi32(half, _mm_shuffle_epi32(half, _MM_SHUFFLE(2, 3, 0, 1)));
+    return _mm_cvtss_f32(_mm_castsi128_ps(half));
+}
+
+static mspringi_largest largest(const float *now, const float *before, size_t count) {
+    __m256i value = _mm256_setzero_si256(), change = value;
+    for (size_t i = 0; i < count; i += LANES) {
+        const vec v = load(now + i);
+        value = _mm256_max_epi32(value, absolute(v));
+        if (before)
+            change = _mm256_max_epi32(change, absolute(sub(v, load(before + i))));
+    }
+    return (mspringi_largest){largest_lane(value), largest_lane(change)};
 }
 
 #include "sweep.h"

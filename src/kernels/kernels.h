@@ -51,8 +51,12 @@ typedef void (*mspringi_pack_fn)(const mspringi_sweep *sweep, size_t first_block
 typedef void (*mspringi_attached_fn)(const mspringi_sweep *sweep, uint32_t first, uint32_t count, float *x,
                                      float *y);
 
-/// Whether all of count values (a multiple of MSPRINGI_WIDTH) are at most limit in absolute value; NaN is not.
-typedef bool (*mspringi_bounded_fn)(const float *values, size_t count, float limit);
+/// Of count values (a multiple of MSPRINGI_WIDTH) the largest absolute one and, if before is not NULL, the largest
+/// absolute change. NaN, if there is one, counts as the largest.
+typedef struct mspringi_largest {
+    float value, change;
+} mspringi_largest;
+typedef mspringi_largest (*mspringi_largest_fn)(const float *now, const float *before, size_t count);
 
 /// What a strain pass works on: arrays by slot and, by place, the least strain that anything happens at.
 typedef struct mspringi_strain_sweep {
@@ -87,7 +91,7 @@ typedef struct mspringi_kernels {
     mspringi_row_fn loose[2]; ///< [with forces]
     mspringi_pack_fn pack;
     mspringi_attached_fn attached[2]; ///< [with damping]
-    mspringi_bounded_fn bounded;
+    mspringi_largest_fn largest;
     mspringi_strain_fn lattice_strain, chain_strain;
     mspringi_system_kernels system;
 } mspringi_kernels;

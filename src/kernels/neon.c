@@ -76,12 +76,16 @@ static inline void store_packed(float *packed, vec x, vec y, vec vx, vec vy) {
     vst4q_f32(packed, nodes);
 }
 
-static bool bounded(const float *values, size_t count, float limit) {
-    const vec limits = vdupq_n_f32(limit);
-    uint32x4_t all = vceqq_f32(limits, limits);
-    for (size_t i = 0; i < count; i += LANES)
-        all = vandq_u32(all, vcaleq_f32(vld1q_f32(values + i), limits));
-    return vminvq_u32(all) == UINT32_MAX;
+// The maximum of NaN and a number is NaN here.
+static mspringi_largest largest(const float *now, const float *before, size_t count) {
+    vec value = zero(), change = value;
+    for (size_t i = 0; i < count; i += LANES) {
+        const vec v = load(now + i);
+        value = vmaxq_f32(value, vabsq_f32(v));
+        if (before)
+            change = vmaxq_f32(change, vabsq_f32(sub(v, load(before + i))));
+    }
+    return (mspringi_largest){vmaxvq_f32(value), vmaxvq_f32(change)};
 }
 
 #include "sweep.h"

@@ -3,6 +3,7 @@
 #include "kernels.h"
 
 #include <math.h>
+#include <string.h>
 
 typedef struct vector {
     float x, y;
@@ -183,11 +184,26 @@ static inline void loose(const mspringi_sweep *s, const mspringi_span *spans, ui
             move(s, slot, (vector){0.0f, 0.0f}, forced);
 }
 
-static bool bounded(const float *values, size_t count, float limit) {
-    bool all = true;
-    for (size_t i = 0; i < count; ++i)
-        all = all & (fabsf(values[i]) <= limit);
-    return all;
+static inline uint32_t absolute_bits(float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits & 0x7fffffffu;
+}
+
+static inline float float_of(uint32_t bits) {
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static mspringi_largest largest(const float *now, const float *before, size_t count) {
+    uint32_t value = 0, change = 0;
+    for (size_t i = 0; i < count; ++i) {
+        const uint32_t v = absolute_bits(now[i]), c = before ? absolute_bits(now[i] - before[i]) : 0;
+        value = v > value ? v : value;
+        change = c > change ? c : change;
+    }
+    return (mspringi_largest){float_of(value), float_of(change)};
 }
 
 #include "scalar_lane.h"

@@ -70,12 +70,29 @@ static inline void store_packed(float *packed, vec x, vec y, vec vx, vec vy) {
     _mm_store_ps(packed + 12, vy);
 }
 
-static bool bounded(const float *values, size_t count, float limit) {
-    const __m128 absolute = _mm_castsi128_ps(_mm_set1_epi32(0x7fffffff)), limits = _mm_set1_ps(limit);
-    __m128 all = _mm_cmpeq_ps(limits, limits);
-    for (size_t i = 0; i < count; i += LANES)
-        all = _mm_and_ps(all, _mm_cmple_ps(_mm_and_ps(_mm_load_ps(values + i), absolute), limits));
-    return _mm_movemask_ps(all) == 0xf;
+// Absolute values, as integers: those of floats are in the same order, with NaN above all.
+static inline __m128i absolute(vec a) {
+    return _mm_and_si128(_mm_castps_si128(a), _mm_set1_epi32(0x7fffffff));
+}
+static inline __m128i larger(__m128i a, __m128i b) {
+    const __m128i first = _mm_cmpgt_epi32(a, b);
+    return _mm_or_si128(_mm_and_si128(first, a), _mm_andnot_si128(first, b));
+}
+static inline float largest_lane(__m128i a) {
+    a = larger(a, _mm_shuffle_epi32(a, _MM_SHUFFLE(1, 0, 3, 2)));
+    a = larger(a, _mm_shuffle_epi32(a, _MM_SHUFFLE(2, 3, 0, 1)));
+    return _mm_cvtss_f32(_mm_castsi128_ps(a));
+}
+
+static mspringi_largest largest(const float *now, const float *before, size_t count) {
+    __m128i value = _mm_setzero_si128(), change = value;
+    for (size_t i = 0; i < count; i += LANES) {
+        const vec v = load(now + i);
+        value = larger(value, absolute(v));
+        if (before)
+            change = larger(change, absolute(sub(v, load(before + i))));
+    }
+    return (mspringi_largest){largest_lane(value), largest_lane(change)};
 }
 
 #include "sweep.h"

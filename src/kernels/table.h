@@ -1,5 +1,5 @@
 /// @file table.h
-/// The variants of an instruction set's lattice(), chain(), web(), loose(), attached(), pack(), bounded(),
+/// The variants of an instruction set's lattice(), chain(), web(), loose(), attached(), pack(), largest(),
 /// lattice_strain() and chain_strain(), and the table of them. Included at the end of each kernel file, which
 /// defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
 ///
@@ -52,7 +52,7 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .web = {{web_plain, web_forced}, {web_damped, web_damped_forced}},
     .pack = pack,
     .attached = {attached_plain, attached_damped},
-    .bounded = bounded,
+    .largest = largest,
     .lattice_strain = lattice_strain,
     .chain_strain = chain_strain,
     .system = {.assemble_lattice = {assemble_lattice_plain, assemble_lattice_damped},

@@ -34,15 +34,6 @@
 
 /* --------------------------------------------------------------------------------------------------- bounds */
 
-static bool is_bounded(const mspring_network *network) {
-    const mspringi_state *s = &network->state;
-    const size_t slots = mspringi_slot_count(network);
-    const float largest = (float)MSPRING_MAX_COORDINATE;
-    return network->kernels->bounded(s->x, slots, largest) && network->kernels->bounded(s->y, slots, largest) &&
-           network->kernels->bounded(s->vx, slots, network->max_speed) &&
-           network->kernels->bounded(s->vy, slots, network->max_speed);
-}
-
 static bool is_in_bounds(const mspring_network *network, uint32_t slot) {
     const mspringi_state *s = &network->state;
     const float largest = (float)MSPRING_MAX_COORDINATE, fastest = network->max_speed;
@@ -238,35 +229,20 @@ mspring_result mspringi_guard_begin(mspring_network *network, double dt, float h
     return MSPRING_OK;
 }
 
-// Whether any velocity changed by more than limit. Bit by bit, so that compilers make vectors of it.
-static bool any_change_above(const float *now, const float *before, size_t count, float limit) {
-    uint32_t above = 0;
-    for (size_t i = 0; i < count; ++i)
-        above |= (uint32_t)(fabsf(now[i] - before[i]) > limit);
-    return above;
-}
-
-// The largest change of a velocity.
-static float largest_change(const float *now, const float *before, size_t count) {
-    float largest = 0.0f;
-    for (size_t i = 0; i < count; ++i) {
-        const float change = fabsf(now[i] - before[i]);
-        largest = change > largest ? change : largest;
-    }
-    return largest;
-}
-
 mspring_result mspringi_guard_end(mspring_network *network, double dt, float h) {
     mspringi_guard *guard = &network->guard;
-    if (!is_bounded(network))
+    const mspringi_kernels *kernels = network->kernels;
+    const mspringi_state *s = &network->state;
+    const size_t both = 2 * mspringi_slot_count(network); // y lies behind x, vy behind vx
+    const mspringi_largest place = kernels->largest(s->x, NULL, both);
+    const mspringi_largest speed = kernels->largest(s->vx, guard->watches ? network->backup.vx : NULL, both);
+    if (!(place.value <= (float)MSPRING_MAX_COORDINATE && speed.value <= network->max_speed))
         return explain_bounds(network, dt);
     if (guard->watches) {
-        const float *now = network->state.vx, *before = network->backup.vx;
-        const size_t count = 2 * mspringi_slot_count(network); // vy lies behind vx
         const double harmless = HARMLESS * network->shortest / (double)h;
         const float calm = harmless < 1e15 ? (float)harmless : 1e15f;
-        guard->suspicious = any_change_above(now, before, count, SUSPICIOUS * fmaxf(guard->peak, calm));
-        guard->peak = guard->suspicious ? largest_change(now, before, count) : guard->peak * FADING;
+        guard->suspicious = speed.change > SUSPICIOUS * fmaxf(guard->peak, calm);
+        guard->peak = guard->suspicious ? speed.change : guard->peak * FADING;
     }
     return MSPRING_OK;
 }
