@@ -1,0 +1,172 @@
+/// @file fuzz_snapshot.c
+/// Snapshots that were tampered with, and bytes that never were one: they are refused with a message and change
+/// nothing, or give a network that goes on without anything that is not finite. Most get a checksum that fits, or
+/// nothing would be seen of what is behind it.
+///
+/// SPDX-License-Identifier: MIT
+#include "fuzz.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "recipe.h"
+#include "snapshot/format.h"
+#include "support.h"
+
+enum { KINDS = 4, MOST_PARTICLES = 64, MOST_CHANGES = 8 };
+
+/// A network with a bit of everything in its snapshot, made once.
+typedef struct subject {
+    mspring_network *network;
+    mspring_solver_def solver;
+    uint32_t particles;
+    uint8_t *all, *frame;
+    size_t all_size, frame_size;
+    uint64_t hash;
+} subject;
+
+static uint64_t hash_of(const mspring_network *network) {
+    uint64_t hash = 0;
+    FUZZ_CHECK(mspring_network_state_hash(network, &hash) == MSPRING_OK);
+    return hash;
+}
+
+static uint8_t *save(const mspring_network *network, mspring_snapshot_contents contents, size_t *size) {
+    FUZZ_CHECK(mspring_network_snapshot_size(network, contents, size) == MSPRING_OK);
+    uint8_t *bytes = malloc(*size);
+    FUZZ_CHECK(bytes != NULL);
+    FUZZ_CHECK(mspring_network_save(network, contents, bytes, *size, NULL) == MSPRING_OK);
+    return bytes;
+}
+
+static recipe make_recipe(int kind) {
+    uint64_t seed = 40 + (uint64_t)kind;
+    const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {50, 100}, .damping = {0, kind & 1 ? 1 : 0}};
+    const recipe_stuff relative = {.mass = {1, 2},
+                                   .stiffness = {0.1, 0.2},
+                                   .spring_flags = MSPRING_SPRING_RELATIVE,
+                                   .pinned = 0.1,
+                                   .holes = 0.1};
+    recipe made = {0};
+    recipe_lattice(&made, 5, 3, 0, 0, 1, kind & 1 ? &relative : &stuff, &seed);
+    recipe_particle(&made, 8, 1, 1, MSPRING_PARTICLE_PINNED);
+    recipe_rope(&made, 0, made.particle_count - 1, 6, &stuff, &seed);
+    recipe_random_springs(&made, 5, &stuff, &seed);
+    recipe_particle(&made, 0, 9, 1, 0);
+    recipe_disturb(&made, 0.02, 0.1, &seed);
+    return made;
+}
+
+// Edit what snapshots keep, so that every section is there.
+static void edit(mspring_network *network, bool implicit) {
+    const float strains[2] = {0.5f, 0.7f}, lower[2] = {0.2f, 0.3f}, mass = 3, scale = 0.5f;
+    const mspring_id broken[2] = {1, 4};
+    FUZZ_CHECK(mspring_network_set_break_strains(network, 2, 2, strains) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_set_stress_strains(network, 2, 2, lower) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_break_springs(network, broken, 2) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_step(network, 0.01) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_restore_springs(network, broken, 1, 1.0) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_set_masses(network, 3, 1, &mass) == MSPRING_OK);
+    if (!implicit)
+        FUZZ_CHECK(mspring_network_set_inverse_mass_scales(network, 5, 1, &scale) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_apply_force(network, 6, 3, -2) == MSPRING_OK);
+}
+
+static subject make_subject(int kind) {
+    subject made = {.network = NULL};
+    recipe from = make_recipe(kind);
+    mspring_network_def def = support_def(-9.8f, 2);
+    FUZZ_CHECK(mspring_solver_def_init(&made.solver, sizeof made.solver) == MSPRING_OK);
+    made.solver.substeps = 2;
+    made.solver.solver = kind & 2 ? MSPRING_SOLVER_IMPLICIT : MSPRING_SOLVER_EXPLICIT;
+    made.solver.integrator = kind & 1 ? MSPRING_INTEGRATOR_BDF2 : MSPRING_INTEGRATOR_GA0;
+    made.network = recipe_network(&from, &def);
+    FUZZ_CHECK(mspring_network_set_solver(made.network, &made.solver) == MSPRING_OK);
+    recipe_free(&from);
+    edit(made.network, kind & 2);
+    made.particles = mspring_network_particle_count(made.network);
+    FUZZ_CHECK(made.particles <= MOST_PARTICLES);
+    made.all = save(made.network, MSPRING_SNAPSHOT_ALL, &made.all_size);
+    made.frame = save(made.network, MSPRING_SNAPSHOT_FRAME, &made.frame_size);
+    made.hash = hash_of(made.network);
+    return made;
+}
+
+static void check_finite(const subject *s) {
+    double x[MOST_PARTICLES], y[MOST_PARTICLES];
+    float vx[MOST_PARTICLES], vy[MOST_PARTICLES];
+    FUZZ_CHECK(mspring_network_get_positions(s->network, 0, s->particles, x, y) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_get_velocities(s->network, 0, s->particles, vx, vy) == MSPRING_OK);
+    for (uint32_t i = 0; i < s->particles; i++)
+        FUZZ_CHECK(isfinite(x[i]) && isfinite(y[i]) && isfinite(vx[i]) && isfinite(vy[i]));
+}
+
+// Change some values of the snapshot, which has room for no more than it holds.
+static void tamper(uint8_t *bytes, size_t size, fuzz_bytes *from) {
+    static const float values[] = {0, -1, 1e-45f, 1e30f, -1e30f, INFINITY, -INFINITY, NAN};
+    for (int changes = fuzz_byte(from) % (MOST_CHANGES + 1); changes > 0; changes--) {
+        const uint8_t kind = fuzz_byte(from);
+        const size_t at = (fuzz_byte(from) * 256u + fuzz_byte(from)) % size, word = at / 4 * 4;
+        if (kind < 100)
+            bytes[at] = fuzz_byte(from);
+        else if (kind < 180 && word + sizeof values[0] <= size)
+            memcpy(bytes + word, &values[kind % COUNT_OF(values)], sizeof values[0]);
+        else
+            bytes[at] ^= (uint8_t)(1u << kind % 8);
+    }
+}
+
+static void renew_checksum(uint8_t *bytes, size_t size) {
+    if (size < MSPRINGI_SNAPSHOT_HEADER_BYTES + MSPRINGI_SNAPSHOT_CHECKSUM_BYTES)
+        return;
+    const size_t summed = size - MSPRINGI_SNAPSHOT_CHECKSUM_BYTES;
+    mspringi_checksum checksum = {{0}, {0}};
+    mspringi_checksum_add(&checksum, bytes, summed / MSPRINGI_CHECKSUM_UNIT);
+    const uint64_t value = mspringi_checksum_value(&checksum);
+    for (int byte = 0; byte < 8; byte++)
+        bytes[summed + (size_t)byte] = (uint8_t)(value >> 8 * byte);
+}
+
+// Load what may be anything, and go on from it.
+static void try_load(subject *s, const uint8_t *bytes, size_t size) {
+    if (mspring_network_load(s->network, bytes, size) != MSPRING_OK) {
+        FUZZ_CHECK(strlen(mspring_network_error(s->network)) > 0);
+        FUZZ_CHECK(hash_of(s->network) == s->hash);
+        return;
+    }
+    check_finite(s);
+    // A million substeps would be allowed.
+    FUZZ_CHECK(mspring_network_set_solver(s->network, &s->solver) == MSPRING_OK);
+    const uint64_t before = hash_of(s->network);
+    const mspring_result result = mspring_network_step(s->network, 0.01);
+    FUZZ_CHECK(result == MSPRING_OK || hash_of(s->network) == before);
+    check_finite(s);
+    FUZZ_CHECK(mspring_network_load(s->network, s->all, s->all_size) == MSPRING_OK);
+    FUZZ_CHECK(hash_of(s->network) == s->hash);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    static subject subjects[KINDS];
+    fuzz_bytes bytes = {data, size, 0};
+    const uint8_t how = fuzz_byte(&bytes);
+    subject *s = &subjects[how % KINDS];
+    if (!s->network)
+        *s = make_subject(how % KINDS);
+    if (how / KINDS % 16 == 0) { // not even begun as one
+        try_load(s, data, size);
+        return 0;
+    }
+    const bool all = how & 64;
+    size_t length = all ? s->all_size : s->frame_size;
+    uint8_t *copy = malloc(length);
+    FUZZ_CHECK(copy != NULL);
+    memcpy(copy, all ? s->all : s->frame, length);
+    tamper(copy, length, &bytes);
+    if (how & 128) // the rest of a section may become another's
+        length -= fuzz_byte(&bytes) % 4 * MSPRINGI_CHECKSUM_UNIT % length;
+    if (fuzz_byte(&bytes) % 8 > 0)
+        renew_checksum(copy, length);
+    try_load(s, copy, length);
+    free(copy);
+    return 0;
+}
