@@ -30,6 +30,9 @@ bool draw_close(FILE *stream, const char *path, draw_error *error);
 /// Draw text of the given height (of its capitals) with its baseline starting at x, y.
 void stroke_font_draw(canvas *target, double x, double y, double height, draw_colour colour, const char *text);
 double stroke_font_width(double height, const char *text);
+/// The strokes of a letter: points, each a digit (x) and a letter (y), see stroke_font.c; a space has those of an
+/// unknown one.
+const char *stroke_font_glyph(char c);
 
 /* zlib_stb.c or zlib_stored.c */
 

@@ -89,11 +89,21 @@ static const char *const glyphs[128] = {
     ['_'] = "0d7d",
     ['<'] = "6n0j6f",
     ['>'] = "0n6j0f",
+    ['!'] = "0q0h/0e0f",
+    ['?'] = "0o1q4q6p6n3k3h/3e3f",
+    ['*'] = "3l3q/0m6p/0p6m",
+    ['['] = "2q0q0d2d",
+    [']'] = "0q2q2d0d",
+    ['|'] = "0q0d",
+    ['"'] = "0o0q/3o3q",
+    [';'] = "1f0c/1l1m",
+    ['^'] = "0n3q6n",
+    ['~'] = "0j1k2k4i5i6j",
 };
 
 static const char *const unknown_glyph = "0e0q7q7e0e";
 
-static const char *glyph_of(char c) {
+const char *stroke_font_glyph(char c) {
     unsigned char index = (unsigned char)c;
     return index < 128 && glyphs[index] ? glyphs[index] : unknown_glyph;
 }
@@ -102,7 +112,7 @@ static double glyph_width(char c) {
     if (c == ' ')
         return space;
     double widest = 0;
-    for (const char *point = glyph_of(c); *point; point++)
+    for (const char *point = stroke_font_glyph(c); *point; point++)
         if (*point >= '0' && *point <= '8' && *point - '0' > widest)
             widest = *point - '0';
     return widest;
@@ -133,7 +143,7 @@ void stroke_font_draw(canvas *target, double x, double y, double height, draw_co
     double scale = height / cap_height;
     for (; *text; text++) {
         if (*text != ' ')
-            draw_glyph(target, x, y, scale, colour, glyph_of(*text));
+            draw_glyph(target, x, y, scale, colour, stroke_font_glyph(*text));
         x += (glyph_width(*text) + gap) * scale;
     }
 }

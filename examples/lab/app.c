@@ -1,0 +1,186 @@
+/// @file app.c
+/// Frames: actions, steps on two threads, a picture.
+///
+/// SPDX-License-Identifier: MIT
+#include "lab/app.h"
+#include "common/clock.h"
+#include "common/output.h"
+#include "draw/png.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool complain(const char *text) {
+    fprintf(stderr, "lab: %s\n", text);
+    return false;
+}
+
+bool app_free(lab_app *unwanted) {
+    bool ok = true;
+    helper_stop(unwanted->helper);
+    if (unwanted->record)
+        ok = fclose(unwanted->record) == 0 || complain("cannot write the recording");
+    script_free(&unwanted->script);
+    view_free(&unwanted->view);
+    model_free(&unwanted->model);
+    return ok;
+}
+
+bool app_start(lab_app *made, const lab_options *options) {
+    scene_error error = {""};
+    memset(made, 0, sizeof *made);
+    made->options = options;
+    if (options->script && !script_read(options->script, &made->script, &error))
+        return complain(error.text);
+    if (!model_start(&made->model, options->scene, &error)) {
+        script_free(&made->script);
+        return complain(error.text);
+    }
+    made->helper = helper_start();
+    bool ok = view_make(&made->view, options->width, options->height) || complain("out of memory for the window");
+    if (ok && options->record) {
+        made->record = fopen(options->record, "w");
+        ok = made->record || complain("cannot write the recording");
+        const lab_action first = action_of_text(ACTION_SCENE, options->scene);
+        ok = ok && script_record(made->record, 0, &first);
+    }
+    made->view.shows_costs = !options->no_clock;
+    controller_start(&made->controller, app_perform, made);
+    if (!ok)
+        app_free(made);
+    return ok;
+}
+
+void app_perform(const lab_action *action, void *user) {
+    lab_app *app = user;
+    scene_error error = {""};
+    const lab_action rounded = action_rounded(action);
+    if (app->record)
+        script_record(app->record, app->model.frame, &rounded);
+    if (!model_do(&app->model, &rounded, &error))
+        snprintf(app->model.message, sizeof app->model.message, "%.250s", error.text);
+}
+
+static bool play_script(lab_app *app) {
+    scene_error error = {""};
+    for (; app->script_at < app->script.count; app->script_at++) {
+        const script_line *line = &app->script.lines[app->script_at];
+        if (line->frame > app->model.frame)
+            break;
+        if (!model_do(&app->model, &line->action, &error)) {
+            fprintf(stderr, "lab: %s:%u: %s\n", app->script.name, line->line, error.text);
+            return false;
+        }
+    }
+    return true;
+}
+
+bool app_script_done(const lab_app *app) {
+    return app->script_at == app->script.count || app->model.ended;
+}
+
+/* --------------------------------------------------------------------------------------------------------- frames
+ */
+
+// What a thread does in a frame.
+typedef struct side_job {
+    lab_app *app;
+    int side;
+    uint32_t steps;
+    double stepped, drawn; // seconds
+} side_job;
+
+static void play_side(void *user) {
+    side_job *job = user;
+    lab_app *app = job->app;
+    const double begin = clock_seconds();
+    model_play_side(&app->model, job->side, job->steps);
+    const double stepped = clock_seconds();
+    view_draw_side(&app->view, &app->model, job->side);
+    job->stepped = stepped - begin;
+    job->drawn = clock_seconds() - stepped;
+}
+
+static void note_costs(lab_app *app, double begin, double end) {
+    lab_costs *costs = &app->costs;
+    const double seconds = end - begin, between = begin - app->last_begin;
+    const bool first = app->frames == 0;
+    costs->frame = first ? seconds : costs->frame + 0.1 * (seconds - costs->frame);
+    if (!first && between > 0)
+        costs->per_second = costs->per_second > 0
+                                ? 1 / (1 / costs->per_second + 0.1 * (between - 1 / costs->per_second))
+                                : 1 / between;
+    app->last_begin = begin;
+    app->frames++;
+    app->total_frame += seconds;
+    app->longest_frame = seconds > app->longest_frame ? seconds : app->longest_frame;
+    app->slow_frames += seconds > 1.0 / FRAMES_PER_SECOND;
+}
+
+bool app_frame(lab_app *app, bool show_pointer) {
+    const double begin = clock_seconds();
+    if (!play_script(app))
+        return false;
+    const uint32_t steps = model_begin_frame(&app->model);
+    if (!view_begin(&app->view, &app->model))
+        return complain("out of memory for the picture");
+    side_job jobs[2] = {{app, 0, steps, 0, 0}, {app, 1, steps, 0, 0}};
+    if (app->model.side_count == 2)
+        helper_run_both(app->helper, play_side, &jobs[0], &jobs[1]);
+    else
+        play_side(&jobs[0]);
+    model_end_frame(&app->model, steps);
+    lab_pointer pointer = {.kind = POINTER_NONE};
+    if (show_pointer)
+        pointer = controller_pointer(&app->controller, &app->model, &app->view);
+    view_end(&app->view, &app->model, &pointer, &app->costs);
+    note_costs(app, begin, clock_seconds());
+    if (app->model.screenshot[0]) {
+        const bool written = output_make_folder(app->options->frames) &&
+                             app_write_png(&app->view.target, app->options->frames, app->model.screenshot);
+        snprintf(app->model.message, sizeof app->model.message, "%s %.100s.png %s %.100s",
+                 written ? "written" : "cannot write", app->model.screenshot, written ? "into" : "to",
+                 app->options->frames);
+        app->model.screenshot[0] = 0;
+        if (!written && app->options->headless)
+            return false;
+    }
+    return true;
+}
+
+void app_report(const lab_app *app) {
+    const lab_model *model = &app->model;
+    for (int i = 0; i < model->side_count; i++) {
+        const lab_side *side = &model->sides[i];
+        char cost[48] = "";
+        if (!app->options->no_clock)
+            snprintf(cost, sizeof cost, ", %.2f ms a step", 1e3 * side->measured.seconds);
+        printf("%-5s %s, %llu steps%s, bending %.6g m, %u broken\n", i == 0 ? "left" : "right",
+               side->solver.solver == MSPRING_SOLVER_EXPLICIT ? "explicit" : "implicit",
+               (unsigned long long)side->steps, cost, side->measured.bending, side->broken_count);
+    }
+    if (!app->options->no_clock && app->frames > 0)
+        printf("frames %llu, %.2f ms on average, longest %.2f ms, over %.1f ms: %u\n",
+               (unsigned long long)app->frames, 1e3 * app->total_frame / (double)app->frames,
+               1e3 * app->longest_frame, 1e3 / FRAMES_PER_SECOND, app->slow_frames);
+    printf("state after %llu frames: %016llx\n", (unsigned long long)model->frame,
+           (unsigned long long)model_hash(model));
+}
+
+bool app_write_png(const lab_raster *source, const char *folder, const char *name) {
+    char path[OUTPUT_PATH_SIZE];
+    draw_error error = {""};
+    canvas pixels = {0};
+    bool ok = output_path(path, folder, name, ".png");
+    ok = ok && (canvas_make(&pixels, (uint32_t)source->width, (uint32_t)source->height, 0) ||
+                complain("out of memory for a picture"));
+    if (!ok)
+        return false;
+    for (size_t i = 0; i < (size_t)source->width * (size_t)source->height; i++)
+        for (int channel = 0; channel < 3; channel++)
+            pixels.rgb[3 * i + (size_t)channel] = (uint8_t)(source->pixels[i] >> (16 - 8 * channel));
+    ok = png_write(&pixels, path, &error) || complain(error.text);
+    canvas_free(&pixels);
+    return ok;
+}

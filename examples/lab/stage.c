@@ -1,0 +1,353 @@
+/// @file stage.c
+/// Ready scenes and files, and their arrays.
+///
+/// SPDX-License-Identifier: MIT
+#include "lab/stage.h"
+#include "data/pixels.h"
+#include "data/ship.h"
+#include "lab/ship_materials.h"
+#include "scenes/image.h"
+#include "scenes/internal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *const stage_ready_names[STAGE_READY_COUNT] = {"ship", "bar", "beam", "bridge", "net", "rope", "graph"};
+
+static const float relative_stiffness = 0.5f, relative_damping = 0.02f;
+
+// Where a scene has no dampers, the slider's 1 is this part of critical damping of a single spring.
+static const float made_up_damping = 0.02f;
+
+/* ------------------------------------------------------------------------------------------------ making scenes */
+
+static scene_options options_for(bool relative, bool from_file) {
+    scene_options options = from_file ? scene_options_from_file() : scene_options_default();
+    options.relative = relative;
+    if (relative) {
+        options.stiffness = relative_stiffness;
+        options.damping = relative_damping;
+    }
+    return options;
+}
+
+// The steamer, drawn here and now: neither a file nor a reader for it is needed.
+static bool make_ship(lab_stage *made, bool relative, scene_error *error) {
+    enum { HEAD = 32 };
+    const size_t pixels = (size_t)SHIP_WIDTH * SHIP_HEIGHT;
+    char *bytes = malloc(HEAD + 3 * pixels);
+    canvas drawn = {0};
+    scene_materials materials = {0};
+    const scene_options options = options_for(relative, true);
+    bool ok = bytes && canvas_make(&drawn, SHIP_WIDTH, SHIP_HEIGHT, PIXELS_EMPTY);
+    if (!ok)
+        scene_fail_memory(error, "cannot draw the ship");
+    if (ok) {
+        ship_draw(&drawn);
+        const int head = snprintf(bytes, HEAD, "P6 %d %d 255\n", SHIP_WIDTH, SHIP_HEIGHT);
+        memcpy(bytes + head, drawn.rgb, 3 * pixels);
+        ok = scene_materials_parse(ship_materials, strlen(ship_materials), "ship_materials.csv", &materials,
+                                   error) &&
+             scene_image_parse(bytes, (size_t)head + 3 * pixels, "ship.ppm", &materials, &options, &made->made,
+                               error);
+        made->material = ok ? malloc(pixels * sizeof *made->material) : NULL;
+        for (size_t i = 0, id = 0; made->material && i < pixels; i++) {
+            const lab_colour colour = pixels_get(&drawn, (int)(i % SHIP_WIDTH), (int)(i / SHIP_WIDTH));
+            if (colour != PIXELS_EMPTY)
+                made->material[id++] = colour;
+        }
+        scene_materials_free(&materials);
+        canvas_free(&drawn);
+    }
+    free(bytes);
+    return ok;
+}
+
+// Particles on a line from pin to pin and a deck of a lattice under them, hung up by ropes.
+static bool make_bridge(lab_stage *made, bool relative, scene_error *error) {
+    enum { COLUMNS = 121, ROWS = 4, ROPES = 23, PITCH = 5, RISE = 34 };
+    uint16_t cells[ROWS][COLUMNS] = {{0}};
+    mspring_material materials[2];
+    for (int i = 0; i < 2; i++) {
+        mspring_material_init(&materials[i], sizeof materials[i]);
+        materials[i].mass = 60;
+        materials[i].stiffness = relative ? relative_stiffness : 3e7f;
+        materials[i].damping = relative ? relative_damping : 3000;
+        materials[i].spring_flags = relative ? MSPRING_SPRING_RELATIVE : 0;
+    }
+    materials[1].particle_flags = MSPRING_PARTICLE_PINNED;
+    for (int row = 0; row < ROWS; row++)
+        cells[row][0] = cells[row][COLUMNS - 1] = 1;
+    mspring_id ids[ROWS][COLUMNS];
+    mspring_lattice_def deck;
+    mspring_lattice_def_init(&deck, sizeof deck);
+    deck.width = COLUMNS, deck.height = ROWS, deck.cells = cells[0], deck.materials = materials;
+    deck.material_count = 2;
+    if (!scene_start(&made->made, error))
+        return false;
+    mspring_builder *builder = made->made.builder;
+    mspring_result result = mspring_builder_add_lattice(builder, &deck, ids[0]);
+    // The main cable is a parabola of knots, from tower to tower; hangers go down from it.
+    mspring_id knot = MSPRING_NONE;
+    for (int i = 0; result == MSPRING_OK && i <= ROPES + 1; i++) {
+        const double place = 2.0 * i / (ROPES + 1) - 1;
+        mspring_particle_def particle;
+        mspring_particle_def_init(&particle, sizeof particle);
+        particle.x = i * PITCH;
+        particle.y = ROWS - 1 + 4 + (RISE - 4) * place * place;
+        particle.mass = 60;
+        particle.flags = i == 0 || i == ROPES + 1 ? MSPRING_PARTICLE_PINNED : 0;
+        mspring_id here = MSPRING_NONE;
+        result = mspring_builder_add_particle(builder, &particle, &here);
+        mspring_rope_def rope;
+        mspring_rope_def_init(&rope, sizeof rope);
+        rope.mass = 12, rope.stiffness = relative ? relative_stiffness : 1.2e7f;
+        rope.damping = relative ? relative_damping : 800;
+        rope.spring_flags = relative ? MSPRING_SPRING_RELATIVE : 0;
+        if (result == MSPRING_OK && i > 0) {
+            rope.from = knot, rope.to = here, rope.segment_count = 6;
+            result = mspring_builder_add_rope(builder, &rope, NULL, NULL);
+        }
+        if (result == MSPRING_OK && i > 0 && i <= ROPES) {
+            rope.from = here, rope.to = ids[0][i * PITCH];
+            rope.segment_count = 2 + (uint32_t)(particle.y / 3);
+            result = mspring_builder_add_rope(builder, &rope, NULL, NULL);
+        }
+        knot = here;
+    }
+    snprintf(made->made.name, sizeof made->made.name, "bridge");
+    made->made.probe = ids[ROWS - 1][COLUMNS / 2];
+    const uint32_t springs = mspring_builder_spring_count(builder);
+    made->made.break_strain = malloc(springs * sizeof(float));
+    for (uint32_t i = 0; made->made.break_strain && i < springs; i++)
+        made->made.break_strain[i] = 0.12f;
+    if (result == MSPRING_OK)
+        return true;
+    scene_fail_builder(error, "bridge", builder, result);
+    scene_free(&made->made);
+    return false;
+}
+
+// Bars of a lattice, one above the other, tied together and to the pins by ropes.
+static bool make_net(lab_stage *made, bool relative, scene_error *error) {
+    scene_options options = options_for(relative, false);
+    options.damping = relative ? relative_damping : 1400;
+    if (!scene_bar(160, 16, &options, &made->made, error))
+        return false;
+    options.mass = 30;
+    if (!relative)
+        options.stiffness = 2e7f, options.damping = 800;
+    if (!scene_add_ropes(&made->made, 60, 12, 7, &options, error)) {
+        scene_free(&made->made);
+        return false;
+    }
+    snprintf(made->made.name, sizeof made->made.name, "net");
+    return true;
+}
+
+static bool read_image(lab_stage *made, const char *path, bool relative, scene_error *error) {
+    char *bytes = NULL;
+    size_t length = 0;
+    scene_materials tables[2] = {{0}};
+    pixel_image image = {0};
+    scene_error first = {""};
+    const scene_options options = options_for(relative, true);
+    bool ok =
+        file_read(path, &bytes, &length, error) && scene_materials_builtin(&tables[0], error) &&
+        scene_materials_parse(ship_materials, strlen(ship_materials), "ship_materials.csv", &tables[1], error);
+    // An image is in the colours of one table or of the other.
+    if (ok && !scene_image_parse(bytes, length, path, &tables[0], &options, &made->made, &first))
+        ok = scene_image_parse(bytes, length, path, &tables[1], &options, &made->made, error);
+    if (ok && image_decode(bytes, length, path, &image, error)) {
+        const size_t pixels = (size_t)image.width * image.height;
+        const uint32_t most = mspring_builder_particle_count(made->made.builder);
+        made->material = malloc(most * sizeof *made->material);
+        uint32_t id = 0;
+        for (size_t i = 0; made->material && i < pixels && id < most; i++) {
+            const uint8_t *rgba = image.rgba + 4 * i;
+            const lab_colour colour = (lab_colour)rgba[0] << 16 | (lab_colour)rgba[1] << 8 | rgba[2];
+            if (rgba[3] != 0 && colour != PIXELS_EMPTY)
+                made->material[id++] = colour;
+        }
+        image_free(&image);
+    }
+    scene_materials_free(&tables[0]);
+    scene_materials_free(&tables[1]);
+    free(bytes);
+    return ok;
+}
+
+static bool make_scene(lab_stage *made, const char *name, bool relative, scene_error *error) {
+    const scene_options options = options_for(relative, false);
+    if (strcmp(name, "ship") == 0)
+        return make_ship(made, relative, error);
+    if (strcmp(name, "bar") == 0)
+        return scene_bar(80, 5, &options, &made->made, error);
+    if (strcmp(name, "beam") == 0)
+        return scene_bar(300, 40, &options, &made->made, error);
+    if (strcmp(name, "bridge") == 0)
+        return make_bridge(made, relative, error);
+    if (strcmp(name, "net") == 0)
+        return make_net(made, relative, error);
+    if (strcmp(name, "rope") == 0)
+        return scene_rope(120, &options, &made->made, error);
+    if (strcmp(name, "graph") == 0)
+        return scene_random_graph(3000, 8, 5, &options, &made->made, error);
+    const scene_options file_options = options_for(relative, true);
+    return scene_file_is_image(name) ? read_image(made, name, relative, error)
+                                     : scene_network_file(name, &file_options, &made->made, error);
+}
+
+/* ------------------------------------------------------------------------------------------------ its arrays */
+
+static bool allocate(lab_stage *made) {
+    const size_t particles = made->particle_count, springs = made->spring_count ? made->spring_count : 1;
+    made->x = malloc(particles * sizeof *made->x);
+    made->y = malloc(particles * sizeof *made->y);
+    made->mass = malloc(particles * sizeof *made->mass);
+    made->pinned = malloc(particles * sizeof *made->pinned);
+    made->a = malloc(springs * sizeof *made->a);
+    made->b = malloc(springs * sizeof *made->b);
+    made->rest = malloc(springs * sizeof *made->rest);
+    made->stiffness = malloc(springs * sizeof *made->stiffness);
+    made->damping = malloc(springs * sizeof *made->damping);
+    made->long_springs = malloc(springs * sizeof *made->long_springs);
+    return made->x && made->y && made->mass && made->pinned && made->a && made->b && made->rest &&
+           made->stiffness && made->damping && made->long_springs;
+}
+
+static int compare_floats(const void *a, const void *b) {
+    const float first = *(const float *)a, second = *(const float *)b;
+    return first < second ? -1 : first > second;
+}
+
+// The rest length that a quarter of the springs do not exceed: in a grid the spacing, not the diagonal.
+static double typical_spacing(const lab_stage *made) {
+    if (made->spring_count == 0)
+        return 1;
+    float *sorted = malloc(made->spring_count * sizeof *sorted);
+    if (!sorted)
+        return made->rest[0];
+    memcpy(sorted, made->rest, made->spring_count * sizeof *sorted);
+    qsort(sorted, made->spring_count, sizeof *sorted, compare_floats);
+    const double spacing = sorted[made->spring_count / 4];
+    free(sorted);
+    return spacing;
+}
+
+static void find_bounds(lab_stage *made) {
+    made->min_x = made->max_x = made->x[0];
+    made->min_y = made->max_y = made->y[0];
+    for (uint32_t i = 1; i < made->particle_count; i++) {
+        made->min_x = made->x[i] < made->min_x ? made->x[i] : made->min_x;
+        made->max_x = made->x[i] > made->max_x ? made->x[i] : made->max_x;
+        made->min_y = made->y[i] < made->min_y ? made->y[i] : made->min_y;
+        made->max_y = made->y[i] > made->max_y ? made->y[i] : made->max_y;
+    }
+}
+
+// The particle that is farthest from the nearest pin, of some hundred.
+static mspring_id far_from_pins(const lab_stage *made) {
+    const uint32_t stride = made->particle_count / 400 + 1;
+    mspring_id farthest = 0;
+    double most = -1;
+    for (uint32_t i = 0; i < made->particle_count; i += stride) {
+        double nearest = 1e300;
+        for (uint32_t p = 0; p < made->particle_count; p++) {
+            const double x = made->x[p] - made->x[i], y = made->y[p] - made->y[i];
+            if (made->pinned[p] && x * x + y * y < nearest)
+                nearest = x * x + y * y;
+        }
+        if (nearest > most) {
+            most = nearest;
+            farthest = i;
+        }
+    }
+    return farthest;
+}
+
+static mspring_result read_network(lab_stage *made, const mspring_network *network) {
+    mspring_result result = mspring_network_get_positions(network, 0, made->particle_count, made->x, made->y);
+    if (result == MSPRING_OK)
+        result = mspring_network_get_masses(network, 0, made->particle_count, made->mass);
+    for (uint32_t i = 0; result == MSPRING_OK && i < made->particle_count; i++) {
+        float scale = 1;
+        result = mspring_network_get_inverse_mass_scales(network, i, 1, &scale);
+        made->pinned[i] = scale == 0;
+    }
+    for (uint32_t i = 0; result == MSPRING_OK && i < made->spring_count; i++) {
+        mspring_spring_info info = {.struct_size = sizeof info};
+        result = mspring_network_get_spring(network, i, &info);
+        made->a[i] = info.a;
+        made->b[i] = info.b;
+        made->rest[i] = info.rest_length;
+        made->stiffness[i] = info.nominal_stiffness;
+        made->damping[i] = info.nominal_damping;
+        made->has_damping = made->has_damping || info.nominal_damping > 0;
+    }
+    return result;
+}
+
+static void make_up_damping(lab_stage *made) {
+    for (uint32_t i = 0; i < made->spring_count; i++) {
+        const float a = made->mass[made->a[i]], b = made->mass[made->b[i]];
+        made->damping[i] =
+            made->relative ? relative_damping : made_up_damping * 2 * sqrtf(made->stiffness[i] * (a * b / (a + b)));
+    }
+}
+
+static bool read_scene(lab_stage *made, scene_error *error) {
+    mspring_network *network = NULL;
+    mspring_builder *builder = made->made.builder;
+    const mspring_result result = mspring_network_create(builder, NULL, &network);
+    if (result != MSPRING_OK)
+        return scene_fail_builder(error, made->made.name, builder, result);
+    made->particle_count = mspring_network_particle_count(network);
+    made->spring_count = mspring_network_spring_count(network);
+    const bool ok = allocate(made) && read_network(made, network) == MSPRING_OK;
+    mspring_network_destroy(network);
+    if (!ok)
+        return scene_fail_memory(error, "cannot show the scene");
+    if (!made->has_damping)
+        make_up_damping(made);
+    find_bounds(made);
+    made->spacing = typical_spacing(made);
+    for (uint32_t i = 0; i < made->spring_count; i++)
+        if (made->rest[i] > 1.7 * made->spacing)
+            made->long_springs[made->long_count++] = i;
+    made->probe = made->made.probe != MSPRING_NONE ? made->made.probe : far_from_pins(made);
+    return true;
+}
+
+bool stage_open(lab_stage *made, const char *name, bool relative, scene_error *error) {
+    lab_stage opened = {.relative = relative};
+    bool ok = make_scene(&opened, name, relative, error);
+    if (ok && !read_scene(&opened, error)) {
+        stage_free(&opened);
+        ok = false;
+    }
+    if (!ok) {
+        free(opened.material);
+        return false;
+    }
+    *made = opened;
+    return true;
+}
+
+void stage_free(lab_stage *unwanted) {
+    scene_free(&unwanted->made);
+    free(unwanted->x);
+    free(unwanted->y);
+    free(unwanted->mass);
+    free(unwanted->pinned);
+    free(unwanted->material);
+    free(unwanted->a);
+    free(unwanted->b);
+    free(unwanted->rest);
+    free(unwanted->stiffness);
+    free(unwanted->damping);
+    free(unwanted->long_springs);
+    memset(unwanted, 0, sizeof *unwanted);
+}

@@ -1,0 +1,82 @@
+/// @file view.h
+/// The model as a picture.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef LAB_VIEW_H
+#define LAB_VIEW_H
+
+#include "lab/layout.h"
+#include "lab/text.h"
+
+/// What the mouse is about to do: shown over the networks.
+typedef enum pointer_kind { POINTER_NONE, POINTER_CIRCLE, POINTER_CUT } pointer_kind;
+typedef struct lab_pointer {
+    pointer_kind kind;
+    double x, y, x2, y2, radius; ///< world coordinates; of a cut, its ends
+    lab_colour colour;
+} lab_pointer;
+
+/// How long a frame's parts took, seconds; negative: not shown.
+typedef struct lab_costs {
+    double frame;      ///< from its beginning to its end, without waiting
+    double steps[2];   ///< of that, stepping,
+    double drawing;    ///< and drawing
+    double per_second; ///< frames
+} lab_costs;
+
+/// How the world lies in a view.
+typedef struct lab_camera {
+    double scale;            ///< pixels per metre
+    double x, y;             ///< world coordinates of the view's middle
+    double pixel_x, pixel_y; ///< and its pixel
+} lab_camera;
+
+/// What is kept for drawing a side.
+typedef struct view_side {
+    float *x, *y;         ///< [particles] pixels
+    uint8_t *tint;        ///< [particles] place in the colours
+    float *extreme;       ///< [particles] of the springs' values the one with the largest absolute value
+    uint32_t *number;     ///< [particles] component, or row of the plan
+    const void *numbered; ///< the network that number holds the rows of, or NULL
+    lab_layer layer;
+} view_side;
+
+typedef struct lab_view {
+    lab_raster target;
+    lab_layout layout;
+    lab_font small, normal, large;
+    view_side sides[2];
+    uint32_t capacity; ///< particles that the sides have room for
+    double limit[2];   ///< of strain and force, the ends of the colours
+    double speed_limit;
+    double min_x, min_y, max_x, max_y; ///< what a camera that sees everything has seen so far
+    const void *seen;                  ///< of which network
+    bool shows_costs;                  ///< figures that differ from run to run
+} lab_view;
+
+bool view_make(lab_view *made, int width, int height);
+void view_free(lab_view *unwanted);
+bool view_resize(lab_view *view, int width, int height);
+
+/// Before the sides are drawn: where all is. Returns false when out of memory.
+bool view_begin(lab_view *view, const lab_model *model);
+/// Draw one side; different sides may be drawn at the same time.
+void view_draw_side(lab_view *view, const lab_model *model, int side);
+/// Draw the rest.
+void view_end(lab_view *view, const lab_model *model, const lab_pointer *pointer, const lab_costs *costs);
+
+lab_camera view_camera(const lab_view *view, const lab_model *model, int side);
+void camera_to_world(const lab_camera *camera, double pixel_x, double pixel_y, double *x, double *y);
+void camera_to_pixel(const lab_camera *camera, double x, double y, double *pixel_x, double *pixel_y);
+
+/* view_network.c, view_panel.c, view_plots.c, view_help.c */
+
+void view_draw_network(lab_view *view, const lab_model *model, int side);
+void view_draw_panel(lab_view *view, const lab_model *model);
+void view_draw_plots(lab_view *view, const lab_model *model);
+void view_draw_help(lab_view *view);
+
+/// A number as people write it: three digits, and k, M, G.
+const char *view_number(double value, char buffer[32]);
+
+#endif

@@ -1,0 +1,26 @@
+/// @file view_help.c
+/// The keys, on the screen.
+///
+/// SPDX-License-Identifier: MIT
+#include "lab/keys.h"
+#include "lab/tint.h"
+#include "lab/view.h"
+
+void view_draw_help(lab_view *view) {
+    enum { LINE = 19, WIDTH = 700, TOP = 52, KEY = 118, MARGIN = 26 };
+    const lab_box all = {0, 0, view->target.width, view->target.height};
+    const int rows = (keys_help_count + 1) / 2;
+    const int width = WIDTH < all.width - 16 ? WIDTH : all.width - 16, height = TOP + rows * LINE + 20;
+    const lab_box box = {(all.width - width) / 2, (all.height - height) / 2 > 8 ? (all.height - height) / 2 : 8,
+                         width, height < all.height - 16 ? height : all.height - 16};
+    raster_fill(&view->target, all, all, TINT_WINDOW, 140);
+    raster_round(&view->target, box, box, 10, TINT_EDGE, 256);
+    raster_round(&view->target, box, box_shrink(box, 1), 9, TINT_PANEL, 256);
+    text_draw(&view->target, box, &view->large, box.x + MARGIN, box.y + 32, TEXT_LEFT, TINT_TEXT, "keys and mouse");
+    for (int i = 0; i < keys_help_count; i++) {
+        const int x = box.x + MARGIN + (i >= rows ? (width - MARGIN) / 2 : 0),
+                  y = box.y + TOP + 12 + i % rows * LINE;
+        text_draw(&view->target, box, &view->normal, x, y, TEXT_LEFT, TINT_LEFT, keys_help[i].key);
+        text_draw(&view->target, box, &view->normal, x + KEY, y, TEXT_LEFT, TINT_TEXT, keys_help[i].about);
+    }
+}

@@ -1,0 +1,100 @@
+/// @file view_plots.c
+/// Time series of what is measured.
+///
+/// SPDX-License-Identifier: MIT
+#include "draw/colour_scale.h"
+#include "lab/tint.h"
+#include "lab/view.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const struct {
+    const char *title, *unit;
+} plots[PROBE_KINDS] = {
+    {"bending", "m"}, {"kinetic", "J"}, {"elastic", "J"}, {"max strain", "%"}, {"a step", "ms"}};
+
+static double shown_value(int kind, double value) {
+    return kind == PROBE_STRAIN ? 100 * value : value;
+}
+
+// A value with its unit; no thousands of percent or of milliseconds.
+static const char *value_text(int kind, double value, char text[64]) {
+    char digits[32];
+    if (kind == PROBE_STRAIN || kind == PROBE_COST)
+        snprintf(text, 64, value < 100 ? "%.3g %s" : "%.0f %s", value, plots[kind].unit);
+    else
+        snprintf(text, 64, "%s%s", view_number(value, digits), plots[kind].unit);
+    return text;
+}
+
+// The range of the values of a plot, on all sides.
+static void find_range(const lab_series *series, int kind, int sides, double *low, double *high) {
+    *low = 0;
+    *high = 0;
+    for (int side = 0; side < sides; side++)
+        for (int i = 0; i < series->count; i++) {
+            const double value = shown_value(kind, series->values[kind][side][i]);
+            *low = value < *low ? value : *low;
+            *high = value > *high ? value : *high;
+        }
+    *high = *high > 0 ? colour_scale_round_up(*high * 1.02) : *high;
+    *low = *low < 0 ? -colour_scale_round_up(-*low * 1.02) : 0;
+    if (!(*high > *low))
+        *high = *low + 1;
+}
+
+static void draw_line(lab_view *view, const lab_series *series, int kind, int side, lab_box area, double low,
+                      double high) {
+    const lab_colour colour = tint_of_side(side);
+    const float *values = series->values[kind][side];
+    const double across = (area.width - 3) / (double)(SERIES_LENGTH - 1), up = (area.height - 3) / (high - low);
+    // Points that share a pixel are one stroke from the lowest to the highest.
+    double before_x = 0, before_y = 0;
+    for (int i = 0; i < series->count; i++) {
+        const double x = area.x + 1 + i * across;
+        const double y = area.y + area.height - 2 - (fmin(shown_value(kind, values[i]), high) - low) * up;
+        if (i > 0 && x - before_x < 1 && i < series->count - 1 && fabs(y - before_y) < 1)
+            continue;
+        if (i > 0)
+            raster_line(&view->target, area, before_x, before_y, x, y, 1.4, colour, 230);
+        before_x = x;
+        before_y = y;
+    }
+}
+
+static void draw_plot(lab_view *view, const lab_model *model, int kind, lab_box box) {
+    const lab_series *series = &model->series;
+    char text[64];
+    double low, high;
+    raster_round(&view->target, box, box, 6, TINT_PANEL, 256);
+    text_draw(&view->target, box, &view->normal, box.x + 10, box.y + 17, TEXT_LEFT, TINT_FAINT, plots[kind].title);
+    find_range(series, kind, model->side_count, &low, &high);
+    text_draw(&view->target, box, &view->small, box.x + box.width - 10, box.y + 17, TEXT_RIGHT, TINT_FAINT,
+              value_text(kind, high, text));
+    const lab_box area = {box.x + 8, box.y + 24, box.width - 16, box.height - 48};
+    raster_fill(&view->target, area, area, TINT_VIEW, 256);
+    const int zero = area.y + area.height - 2 + (int)(low * (area.height - 3) / (high - low));
+    raster_fill(&view->target, area, (lab_box){area.x, zero, area.width, 1}, TINT_EDGE, 256);
+    for (int side = 0; side < model->side_count; side++) {
+        draw_line(view, series, kind, side, area, low, high);
+        if (series->count == 0)
+            continue;
+        const double last = shown_value(kind, series->values[kind][side][series->count - 1]);
+        text_draw(&view->target, box, &view->normal, side == 0 ? box.x + 10 : box.x + box.width - 10,
+                  box.y + box.height - 8, side == 0 ? TEXT_LEFT : TEXT_RIGHT, tint_of_side(side),
+                  value_text(kind, last, text));
+    }
+}
+
+void view_draw_plots(lab_view *view, const lab_model *model) {
+    const lab_box box = view->layout.plots;
+    const int count = view->shows_costs ? PROBE_KINDS : PROBE_KINDS - 1, gap = 8;
+    if (box.width == 0)
+        return;
+    for (int i = 0; i < count; i++) {
+        const int left = box.x + (box.width + gap) * i / count,
+                  right = box.x + (box.width + gap) * (i + 1) / count - gap;
+        draw_plot(view, model, i, (lab_box){left, box.y, right - left, box.height});
+    }
+}
