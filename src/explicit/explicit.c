@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "contact/floor.h"
 #include "strip.h"
 
 /// Strips that are swept several times in one pass should stay in the second-level cache: this much of it. Where
@@ -165,9 +166,11 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
         mspringi_substep substep = mspringi_substep_prepare(network, rest->h, rest->base, i, rest->count, 0);
         substep.next_packed = NULL;
         mspringi_span share = {0};
+        const mspringi_strip *strip = t->strips; // that the share is of
         for (uint32_t s = t->wave_strips; s < t->strip_count; ++s) {
             const mspringi_row *row = &t->rows[t->strips[s].first_row];
             if (row->kind == MSPRINGI_ROW_WEB) {
+                strip = &t->strips[s];
                 share = share_of(&t->spans[row->first_span], index, rest->workers);
                 mspringi_web_pack(network, &substep, &share);
             } else if (index == 0) {
@@ -175,8 +178,10 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
             }
         }
         meet(rest, index, i + 1);
-        if (share.end_slot > share.first_slot)
+        if (share.end_slot > share.first_slot) {
             mspringi_web_sweep(network, &substep, &share);
+            mspringi_floor_touch(network, strip, &share, 1, substep.sweep.h);
+        }
         for (uint32_t s = t->wave_strips; index == 0 && s < t->strip_count; ++s)
             if (t->rows[t->strips[s].first_row].kind != MSPRINGI_ROW_WEB)
                 mspringi_strip_sweep(network, &substep, &t->strips[s]);
@@ -195,9 +200,13 @@ static void sweep_rest(mspring_network *network, float h, mspringi_field base, u
 }
 
 void mspringi_explicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+    if (network->floor)
+        mspringi_floor_survey(network, (double)h * (double)count);
     // The wave's strips know nothing of the others, nor they of the wave's.
     sweep_wave(network, h, base, count);
     sweep_rest(network, h, base, count);
+    if (network->floor)
+        mspringi_floor_touch_far(network, h);
 }
 
 void mspringi_explicit_reset(mspring_network *network) {
