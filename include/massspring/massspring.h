@@ -790,66 +790,11 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_add_hook(mspring_ne
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_remove_hook(mspring_network *network, uint32_t hook);
 
-/* -------------------------------------------------------------------------------------------------- floor */
-
-/// Most half-planes of a floor, and most heights.
-#define MSPRING_MAX_PLANES 8u
-#define MSPRING_MAX_HEIGHTS ((uint32_t)1 << 26)
-
-/// What particles cannot get through: half-planes, such as the sides of a box, and a field of heights, such as a
-/// sea floor. Fill with mspring_floor_def_init() first.
-typedef struct mspring_floor_def {
-    uint32_t struct_size;
-    uint32_t plane_count; ///< half-planes, at most MSPRING_MAX_PLANES; default 0
-    const double *planes; ///< [plane_count][4]: x and y of a point on the border (m, world coordinates), then x and
-                          ///< y of a vector of any length across it, towards where particles may be
-    double heights_x;     ///< of the first height, m, world coordinates; default 0
-    double heights_y;     ///< of height 0, m, world coordinates; default 0
-    double spacing;       ///< m from one height to the next, 1e-9 to 1e9; default 1
-    const float *heights; ///< [height_count], m above heights_y: joined by straight lines, level beyond both ends;
-                          ///< particles may be above
-    uint32_t height_count; ///< 0, the default: no field of heights; else 2 to MSPRING_MAX_HEIGHTS
-    float friction;        ///< of particles that slide (Coulomb): force along the surface over that across it, 0 to
-                           ///< 1e6; default 0
-    float restitution;     ///< of particles that come from afar: speed across the surface after contact over that
-                           ///< before, 0 to 1; default 0. Below about 0.02 m/s they do not bounce.
-    uint32_t reserved;     ///< 0
-} mspring_floor_def;
-
-/// Fill a definition with its defaults, as mspring_network_def_init().
-/// @threads any   @allocates never   @since 0.1
-MSPRING_API mspring_result mspring_floor_def_init(mspring_floor_def *def, size_t size);
-
-/// Give the network a floor instead of the one it has. It acts on every particle that is not pinned, in every
-/// substep: a particle that was above it at the beginning is not below it at the end, whatever its speed and
-/// however long the substep, but for some last places of its coordinates (a millionth of its distance from the
-/// local origin); one that was below is put onto it. Contact takes energy and never gives any. Peaks of the heights
-/// that are narrower than the way of a particle in a substep are met, too.
-///
-/// The floor is a setting, as gravity is, but too large for snapshots, which leave it as it is; state hashes do not
-/// count it. Static equilibria (mspring_network_settle()) do not know of it.
-/// @param def  copied with all that it points to; NULL: no floor
-/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY. On
-///         error the floor is the one of before.
-/// @threads exclusive access to network   @allocates yes; 20 to 24 bytes for a height and 16 for a particle
-/// @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_floor(mspring_network *network,
-                                                                       const mspring_floor_def *def);
-
-/// Copy out what momentum (N s) the floor gave to the particles first ... first + count - 1 in the last step: over
-/// its length, the mean force. 0 without a floor.
-/// @param x, y  [count]
-/// @return MSPRING_OK; MSPRING_ERROR_ID or MSPRING_ERROR_ARGUMENT.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_floor_impulses(const mspring_network *network,
-                                                                                mspring_id first, uint32_t count,
-                                                                                float *x, float *y);
-
 /* -------------------------------------------------------------------------------------------------- views */
 
 /// The state as it lies in memory: arrays by slot. The pointers stay valid, and their contents follow the
-/// steps, until the network is destroyed; origin_x and origin_y are as of the call. Positions and velocities
-/// may be written between steps; finite values only.
+/// steps, until the network is compacted, expanded or destroyed; origin_x and origin_y are as of the call.
+/// Positions and velocities may be written between steps; finite values only.
 typedef struct mspring_view {
     uint32_t struct_size;
     uint32_t slot_count;              ///< length of the arrays by slot; some slots hold no particle
@@ -1046,6 +991,41 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_restore_springs(msp
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_detach_particles(mspring_network *network,
                                                                               const mspring_id *particles,
                                                                               uint32_t count);
+
+/* ------------------------------------------------------------------------------------------- compaction */
+
+/// Leave springs that are broken out of the plan, so that a wreck costs what is left of it: lattices are swept
+/// where squares are left, strands as chains, single springs as web, and particles without spring as loose ones.
+/// Until then a broken spring costs as much as a whole one. Worth it where a quarter of the springs or more has
+/// broken.
+///
+/// Ids, values and thresholds of all springs stay as they are and can be read and set as before. **Slots change**:
+/// a view that was taken before is not valid any more, and hooks see other slots. Positions and velocities are
+/// moved bit for bit; but forces are summed in another order from then on, so the steps that follow differ in
+/// rounding from those of a network that was not compacted. They are the same on every machine, at every level and
+/// for any number of workers, as long as the same calls come between the same steps.
+///
+/// Restoring a spring that was left out takes all springs in again, as mspring_network_expand() does; then the
+/// network can be compacted anew.
+///
+/// The work comes in about a dozen pieces, so that it can be done over several frames; each looks at particles or
+/// springs a few times. Between them the network may be stepped and edited: springs that break meanwhile stay in
+/// the plan, and if one is restored that the plan would leave out, the work begins anew. The network moves in the
+/// last piece, until when nothing is to be seen of it.
+/// @param pieces  how many of them to do at most; 0 for all
+/// @param left    receives how many are left; 0: the network is compact. May be NULL.
+/// @return MSPRING_OK; MSPRING_ERROR_MEMORY, after which the network is as it was and the work begins anew;
+///         MSPRING_ERROR_LIMIT, MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates yes, and frees most   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_compact(mspring_network *network, uint32_t pieces,
+                                                                     uint32_t *left);
+
+/// Take all springs into the plan again, as it was when the network was created: the way back from
+/// mspring_network_compact(), with the same consequences for slots and bits. A compaction that has begun is
+/// dropped.
+/// @return MSPRING_OK; MSPRING_ERROR_MEMORY, MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates yes, and frees most   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_expand(mspring_network *network);
 
 /* ------------------------------------------------------------------------------------- strain and events */
 
@@ -1336,10 +1316,10 @@ typedef struct mspring_plan {
     mspring_simd simd_level; ///< what runs
     mspring_solver solver;
     mspring_integrator integrator; ///< of the implicit or direct solver; this and what follows are 0 for others
-    uint32_t iterations;    ///< this and the next four: of the implicit solver
-    uint32_t tile_size;     ///< rows and columns of the cells of wide lattices
-    uint32_t tile_count;    ///< tiles, each of three unknowns in the coarse matrix
-    uint32_t coarse_values; ///< numbers in that matrix's factor
+    uint32_t iterations;           ///< this and the next four: of the implicit solver
+    uint32_t tile_size;            ///< rows and columns of the cells of wide lattices
+    uint32_t tile_count;           ///< tiles, each of three unknowns in the coarse matrix
+    uint32_t coarse_values;        ///< numbers in that matrix's factor
     uint32_t coarse_period;
     uint64_t factor_values; ///< of the direct solver: numbers in its factor, which is there in both precisions,
     double factor_products; ///< and products that computing it takes

@@ -111,6 +111,20 @@ void mspringi_free_all(mspringi_memory *memory) {
         give_back(memory, memory->last);
 }
 
+void mspringi_memory_hand_over(mspringi_memory *from, mspringi_memory *to) {
+    if (!from->first)
+        return;
+    from->first->previous = to->last;
+    if (to->last)
+        to->last->next = from->first;
+    else
+        to->first = from->first;
+    to->last = from->last;
+    to->used += from->used;
+    from->first = from->last = NULL;
+    from->used = 0;
+}
+
 bool mspringi_memory_copy(const mspringi_memory *from, mspringi_memory *to) {
     for (const block *of = from->first; of; of = of->next) {
         const block *copy = take(to, of->size);

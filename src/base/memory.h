@@ -36,6 +36,9 @@ void mspringi_free(mspringi_memory *memory, void *block);
 /// Free all blocks.
 void mspringi_free_all(mspringi_memory *memory);
 
+/// Hand all blocks over to another memory with the same allocator.
+void mspringi_memory_hand_over(mspringi_memory *from, mspringi_memory *to);
+
 /// Copy all blocks of a memory, with what is in them, into one that has none yet, in the same order.
 /// @return false: the allocator has no more; those copied so far are in to
 bool mspringi_memory_copy(const mspringi_memory *from, mspringi_memory *to);

@@ -57,7 +57,8 @@ static void list_ends(const mspring_network *network, mspringi_direct *direct) {
         direct->end_a[place] = direct->end_b[place] = nowhere;
     for (mspring_id spring = 0; spring < t->spring_count; ++spring) {
         const mspringi_place place = t->place_of_spring[spring];
-        mspringi_topology_ends(t, place, &direct->end_a[place], &direct->end_b[place]);
+        if (!mspringi_place_is_parked(t, place))
+            mspringi_topology_ends(t, place, &direct->end_a[place], &direct->end_b[place]);
     }
 }
 

@@ -2,6 +2,7 @@
 #include "breaking.h"
 
 #include "base/cpu.h"
+#include "compact/compact.h"
 #include "events.h"
 #include "network/springs.h"
 #include "ramps.h"
@@ -102,6 +103,9 @@ mspring_result mspring_network_restore_springs(mspring_network *network, const m
                                "the ramp is %g s long, it must be 0 to 1e6", ramp_seconds);
     if (result == MSPRING_OK && ramp_seconds > 0.0)
         result = mspringi_ramps_reserve(network, count);
+    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
+        if (mspringi_spring_is_parked(network, springs[i]))
+            result = mspringi_expand(network);
     if (result != MSPRING_OK)
         return result;
     const mspringi_fp_state before = mspringi_fp_enter();

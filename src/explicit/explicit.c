@@ -3,7 +3,6 @@
 
 #include <string.h>
 
-#include "contact/floor.h"
 #include "strip.h"
 
 /// Strips that are swept several times in one pass should stay in the second-level cache: this much of it. Where
@@ -61,7 +60,7 @@ uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t par
 static job plan_wave(const mspring_network *network, float h, mspringi_field base, uint32_t count) {
     const mspringi_topology *t = &network->topology;
     job made = {.network = network, .base = base, .h = h, .count = count};
-    const bool shared = (uint64_t)t->spring_count * count >= SMALLEST_SHARED_WORK;
+    const bool shared = (uint64_t)mspringi_woven_count(t) * count >= SMALLEST_SHARED_WORK;
     made.workers = shared ? mspringi_tasks_concurrency(network->tasks) : 1;
     while (made.workers > 1 && made.workers * (t->lag + 2 + SLACK) > t->wave_strips)
         made.workers--;
@@ -154,6 +153,13 @@ static void meet(const job *rest, uint32_t worker, uint32_t n) {
             mspringi_progress_wait(&rest->progress[other], n);
 }
 
+// Take all substeps of a share of the loose particles: nothing else moves them.
+static void sweep_loose(const job *rest, const mspringi_span *all, uint32_t index) {
+    const mspringi_substep substep = mspringi_substep_prepare(rest->network, rest->h, rest->base, 0, 1, 0);
+    const mspringi_span share = share_of(all, index, rest->workers);
+    rest->network->kernels->loose[rest->base.x != NULL](&substep.sweep, &share, rest->count);
+}
+
 // Take one substep after the other: all workers pack and sweep the web, the first one everything else. Substeps
 // have the packed nodes in two places in turn, so one meeting in each keeps the next from changing what this one
 // reads.
@@ -166,11 +172,12 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
         mspringi_substep substep = mspringi_substep_prepare(network, rest->h, rest->base, i, rest->count, 0);
         substep.next_packed = NULL;
         mspringi_span share = {0};
-        const mspringi_strip *strip = t->strips; // that the share is of
         for (uint32_t s = t->wave_strips; s < t->strip_count; ++s) {
             const mspringi_row *row = &t->rows[t->strips[s].first_row];
-            if (row->kind == MSPRINGI_ROW_WEB) {
-                strip = &t->strips[s];
+            if (row->kind == MSPRINGI_ROW_LOOSE) {
+                if (i == 0)
+                    sweep_loose(rest, &t->spans[row->first_span], index);
+            } else if (row->kind == MSPRINGI_ROW_WEB) {
                 share = share_of(&t->spans[row->first_span], index, rest->workers);
                 mspringi_web_pack(network, &substep, &share);
             } else if (index == 0) {
@@ -178,12 +185,10 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
             }
         }
         meet(rest, index, i + 1);
-        if (share.end_slot > share.first_slot) {
+        if (share.end_slot > share.first_slot)
             mspringi_web_sweep(network, &substep, &share);
-            mspringi_floor_touch(network, strip, &share, 1, substep.sweep.h);
-        }
         for (uint32_t s = t->wave_strips; index == 0 && s < t->strip_count; ++s)
-            if (t->rows[t->strips[s].first_row].kind != MSPRINGI_ROW_WEB)
+            if (t->rows[t->strips[s].first_row].kind < MSPRINGI_ROW_WEB)
                 mspringi_strip_sweep(network, &substep, &t->strips[s]);
     }
 }
@@ -200,13 +205,9 @@ static void sweep_rest(mspring_network *network, float h, mspringi_field base, u
 }
 
 void mspringi_explicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
-    if (network->floor)
-        mspringi_floor_survey(network, (double)h * (double)count);
     // The wave's strips know nothing of the others, nor they of the wave's.
     sweep_wave(network, h, base, count);
     sweep_rest(network, h, base, count);
-    if (network->floor)
-        mspringi_floor_touch_far(network, h);
 }
 
 void mspringi_explicit_reset(mspring_network *network) {

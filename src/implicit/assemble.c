@@ -83,11 +83,12 @@ static void assemble_leftover(const mspring_network *network) {
     if (t->leftover_count == 0)
         return;
     for (mspring_id spring = 0; spring < t->spring_count; ++spring) {
-        if (t->place_of_spring[spring] < t->chain_places)
+        const mspringi_place place = t->place_of_spring[spring];
+        if (place < t->chain_places || mspringi_place_is_parked(t, place))
             continue;
         const mspringi_spring_values values = mspringi_spring_get(network, spring);
         const leftover l = compute_leftover(s, values.base, values.tip, &values);
-        float *factors = leftover_factors(network->implicit, t->place_of_spring[spring] - t->chain_places);
+        float *factors = leftover_factors(network->implicit, place - t->chain_places);
         factors[MSPRINGI_PULL_X * MSPRINGI_WIDTH] = l.pull_x;
         factors[MSPRINGI_PULL_Y * MSPRINGI_WIDTH] = l.pull_y;
         factors[MSPRINGI_SWING * MSPRINGI_WIDTH] = l.swing;

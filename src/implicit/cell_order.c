@@ -11,6 +11,8 @@ typedef struct cell_graph {
 static bool ends_of(const mspringi_cells *cells, const mspring_network *network, mspring_id spring, uint32_t *a,
                     uint32_t *b) {
     const mspringi_topology *t = &network->topology;
+    if (mspringi_place_is_parked(t, t->place_of_spring[spring]))
+        return false;
     mspringi_topology_ends(t, t->place_of_spring[spring], a, b);
     *a = cells->of_slot[*a];
     *b = cells->of_slot[*b];

@@ -186,6 +186,8 @@ static bool list_inner(cutting *g) {
         return false;
     for (int pass = 0; pass < 2; ++pass) { // first count, then fill
         for (mspring_id s = 0; s < t->spring_count; ++s) {
+            if (mspringi_place_is_parked(t, t->place_of_spring[s]))
+                continue;
             mspringi_topology_ends(t, t->place_of_spring[s], &a, &b);
             const uint32_t cell = cells->of_slot[a];
             if (cell != cells->of_slot[b])
@@ -228,6 +230,8 @@ static bool list_joints(cutting *g) {
     const bool ok = cells->joints && scratch && first;
     uint32_t count = 0, a, b;
     for (mspring_id s = 0; ok && s < t->spring_count; ++s) {
+        if (mspringi_place_is_parked(t, t->place_of_spring[s]))
+            continue;
         mspringi_topology_ends(t, t->place_of_spring[s], &a, &b);
         if (cells->of_slot[a] == cells->of_slot[b])
             continue;

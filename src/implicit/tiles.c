@@ -262,6 +262,11 @@ mspring_result mspringi_tiles_create(mspringi_tiles *tiles, const mspring_networ
                          (unsigned)network->topology.particle_count);
 }
 
+void mspringi_tiles_take_inertia(mspringi_tiles *tiles, const mspringi_tiles *from, size_t slots) {
+    tiles->turn_inertia = from->turn_inertia;
+    take_print(tiles, slots);
+}
+
 void mspringi_tiles_destroy(mspringi_tiles *tiles, mspringi_memory *memory) {
     mspringi_cells_destroy(&tiles->cells, memory);
     mspringi_free(memory, tiles->first_part);

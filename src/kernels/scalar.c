@@ -178,10 +178,28 @@ static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count
     }
 }
 
-static inline void loose(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, bool forced) {
-    for (const mspringi_span *span = spans; span < spans + count; ++span)
-        for (size_t slot = span->first_slot; slot < span->end_slot; ++slot)
-            move(s, slot, (vector){0.0f, 0.0f}, forced);
+// As move(), with the particle in registers.
+static inline void loose(const mspringi_sweep *s, const mspringi_span *span, uint32_t substeps, bool forced) {
+    const float h = s->h, decay = s->decay;
+    for (size_t slot = span->first_slot; slot < span->end_slot; ++slot) {
+        const float inverse_mass = s->inverse_mass[slot], inverse_mass_h = inverse_mass * h;
+        const float force_x = forced ? s->force_x[slot] : 0.0f, force_y = forced ? s->force_y[slot] : 0.0f;
+        const float change_x = force_x * inverse_mass_h + s->gravity_h_x;
+        const float change_y = force_y * inverse_mass_h + s->gravity_h_y;
+        float x = s->x[slot], y = s->y[slot], vx = s->vx[slot], vy = s->vy[slot];
+        for (uint32_t i = 0; i < substeps; ++i) {
+            if (inverse_mass > 0.0f) {
+                vx = (vx + change_x) * decay;
+                vy = (vy + change_y) * decay;
+            }
+            x = x + vx * h;
+            y = y + vy * h;
+        }
+        s->x[slot] = x;
+        s->y[slot] = y;
+        s->vx[slot] = vx;
+        s->vy[slot] = vy;
+    }
 }
 
 static inline uint32_t absolute_bits(float value) {

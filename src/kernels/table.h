@@ -5,7 +5,6 @@
 ///
 /// SPDX-License-Identifier: MIT
 
-#include "bounds.h"
 #include "strain.h"
 #include "system_assemble.h"
 #include "system_iterate.h"
@@ -29,12 +28,12 @@ MSPRINGI_VARIANT(web, forced, false, true)
 MSPRINGI_VARIANT(web, damped, true, false)
 MSPRINGI_VARIANT(web, damped_forced, true, true)
 
-static void loose_plain(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count) {
-    loose(sweep, spans, count, false);
+static void loose_plain(const mspringi_sweep *sweep, const mspringi_span *span, uint32_t substeps) {
+    loose(sweep, span, substeps, false);
 }
 
-static void loose_forced(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count) {
-    loose(sweep, spans, count, true);
+static void loose_forced(const mspringi_sweep *sweep, const mspringi_span *span, uint32_t substeps) {
+    loose(sweep, span, substeps, true);
 }
 
 static void attached_plain(const mspringi_sweep *sweep, uint32_t first, uint32_t count, float *x, float *y) {
@@ -54,7 +53,6 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .pack = pack,
     .attached = {attached_plain, attached_damped},
     .largest = largest,
-    .leaves = leaves,
     .lattice_strain = lattice_strain,
     .chain_strain = chain_strain,
     .system = {.assemble_lattice = {assemble_lattice_plain, assemble_lattice_damped},

@@ -2,7 +2,6 @@
 ///
 /// Whoever adds such a pointer to what a network holds adds it here. One that is forgotten leads back into the
 /// original, which test_clone finds by looking at every word of a clone.
-#include "contact/floor.h"
 #include "implicit/implicit.h"
 #include "network.h"
 
@@ -31,6 +30,7 @@ static void move_topology(const moving *m, mspringi_topology *t) {
     MOVE(t->particle_of_slot);
     MOVE(t->place_of_spring);
     MOVE(t->up_of_block);
+    MOVE(t->grid_of_row);
     MOVE(t->empty_runs);
     MOVE(t->leftover_a);
     MOVE(t->leftover_b);
@@ -175,16 +175,6 @@ static void move_implicit(const moving *m, mspringi_implicit *n) {
 
 /* ------------------------------------------------------------------------------------------------- the network */
 
-static void move_floor(const moving *m, mspringi_floor *floor) {
-    MOVE(floor->heights.heights);
-    MOVE(floor->heights.normals);
-    for (uint32_t i = 0; i < MSPRINGI_HEIGHT_LEVELS; ++i)
-        MOVE(floor->heights.highest[i]);
-    MOVE(floor->clearances);
-    move_field(m, &floor->start);
-    move_field(m, &floor->impulse);
-}
-
 static void move_parameters(const moving *m, mspring_network *n) {
     MOVE(n->inverse_mass);
     MOVE(n->mass);
@@ -235,14 +225,12 @@ static void move_forces(const moving *m, mspring_network *n) {
 
 static void move_network(const moving *m, mspring_network *n) {
     move_topology(m, &n->topology);
+    move_topology(m, &n->whole);
     move_state(m, &n->state);
     move_state(m, &n->backup);
     move_parameters(m, n);
     move_records(m, n);
     move_forces(m, n);
-    MOVE(n->floor);
-    if (n->floor)
-        move_floor(m, n->floor);
     MOVE(n->implicit);
     if (n->implicit)
         move_implicit(m, n->implicit);
@@ -281,8 +269,9 @@ static mspring_result copy(const mspring_network *network, const mspring_clone_d
         return MSPRING_ERROR_MEMORY;
     }
     made->memory = memory;
-    made->tasks_memory = (mspringi_memory){.allocator = *allocator};
+    made->tasks_memory = made->plan_memory = (mspringi_memory){.allocator = *allocator};
     made->tasks = NULL;
+    made->replan = NULL;
     made->message = (mspringi_message){0};
     move_network(&(moving){&network->memory, &made->memory}, made);
     if (!(def->flags & MSPRING_CLONE_HOOKS))

@@ -47,13 +47,14 @@ static inline void compute_word(const float *x, const float *y, size_t base, siz
     }
 }
 
-// The springs of the web, gathered sixteen at a time.
+// The springs of the web and the parked ones, gathered sixteen at a time.
 static inline void compute_leftovers(const mspring_network *network, measure what) {
     const mspringi_topology *t = &network->topology;
+    const uint32_t count = t->leftover_count + t->parked_count;
     const mspringi_state *s = &network->state;
-    for (uint32_t first = 0; first < t->leftover_count; first += MSPRINGI_WIDTH) {
+    for (uint32_t first = 0; first < count; first += MSPRINGI_WIDTH) {
         float x[2 * MSPRINGI_WIDTH] = {0}, y[2 * MSPRINGI_WIDTH] = {0}, rest_lengths[MSPRINGI_WIDTH] = {0};
-        for (uint32_t lane = 0; lane < MSPRINGI_WIDTH && first + lane < t->leftover_count; ++lane) {
+        for (uint32_t lane = 0; lane < MSPRINGI_WIDTH && first + lane < count; ++lane) {
             const mspringi_spring_values values = mspringi_place_get(network, t->chain_places + first + lane);
             x[lane] = s->x[values.base];
             y[lane] = s->y[values.base];

@@ -97,33 +97,62 @@ static void look_at_springs(const mspring_builder *builder, bool *damped, bool *
     }
 }
 
-static mspring_result allocate(mspring_network *network, bool relative) {
+mspring_result mspringi_layout_reserve(mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     mspringi_memory *memory = &network->memory;
     const size_t parts = network->parts;
     network->inverse_mass = mspringi_alloc(memory, mspringi_slot_count(network), sizeof *network->inverse_mass);
-    network->mass = mspringi_alloc(memory, t->particle_count, sizeof *network->mass);
     network->lattice_springs =
         mspringi_alloc(memory, (parts - 1) * t->lattice_places, sizeof *network->lattice_springs);
     network->chain_springs =
         mspringi_alloc(memory, parts * (t->chain_places - t->lattice_places), sizeof *network->chain_springs);
-    const size_t rungs = t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0;
+    const size_t rungs = (t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0) +
+                         ((size_t)t->parked_count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
     network->web_springs = mspringi_alloc(memory, parts * rungs * MSPRINGI_WIDTH, sizeof *network->web_springs);
     network->packed =
         mspringi_alloc(memory, (size_t)8 * t->web.group_count * MSPRINGI_WIDTH, sizeof *network->packed);
     network->attached = mspringi_alloc(memory, (size_t)2 * t->web.attached_count, sizeof *network->attached);
     network->depth = mspringi_explicit_depth(t, network->parts);
     network->live = mspringi_alloc(memory, mspringi_place_words(t), sizeof *network->live);
-    if (relative)
-        network->relative = mspringi_alloc(memory, t->spring_count, sizeof *network->relative);
     if (!reserve_state(network, &network->state) || !reserve_state(network, &network->backup) ||
-        !network->inverse_mass || !network->mass || !network->lattice_springs || !network->chain_springs ||
-        !network->web_springs || !network->packed || !network->attached || !network->live ||
-        (relative && !network->relative))
+        !network->inverse_mass || !network->lattice_springs || !network->chain_springs || !network->web_springs ||
+        !network->packed || !network->attached || !network->live)
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for a network of %u particles and %u springs", (unsigned)t->particle_count,
                              (unsigned)t->spring_count);
     return mspringi_carry_reserve(network);
+}
+
+void mspringi_layout_free(const mspring_network *network, mspringi_memory *memory) {
+    mspringi_free(memory, network->state.x);
+    mspringi_free(memory, network->backup.x);
+    mspringi_free(memory, network->inverse_mass);
+    mspringi_free(memory, network->lattice_springs);
+    mspringi_free(memory, network->chain_springs);
+    mspringi_free(memory, network->web_springs);
+    mspringi_free(memory, network->packed);
+    mspringi_free(memory, network->attached);
+    mspringi_free(memory, network->carry);
+    mspringi_free(memory, network->live);
+}
+
+void mspringi_layout_forget(mspring_network *network) {
+    network->state = network->backup = (mspringi_state){NULL, NULL, NULL, NULL};
+    network->inverse_mass = NULL;
+    network->lattice_springs = network->chain_springs = network->web_springs = NULL;
+    network->packed = network->attached = network->carry = NULL;
+    network->live = NULL;
+}
+
+static mspring_result allocate(mspring_network *network, bool relative) {
+    const mspringi_topology *t = &network->topology;
+    network->mass = mspringi_alloc(&network->memory, t->particle_count, sizeof *network->mass);
+    if (relative)
+        network->relative = mspringi_alloc(&network->memory, t->spring_count, sizeof *network->relative);
+    if (!network->mass || (relative && !network->relative))
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for %u particles and %u springs",
+                             (unsigned)t->particle_count, (unsigned)t->spring_count);
+    return mspringi_layout_reserve(network);
 }
 
 static void fill_particles(mspring_network *network, const mspring_builder *builder) {
@@ -241,7 +270,7 @@ mspring_result mspring_network_create(mspring_builder *builder, const mspring_ne
     if (!created)
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for a network");
     created->memory = memory;
-    created->tasks_memory = (mspringi_memory){.allocator = memory.allocator};
+    created->tasks_memory = created->plan_memory = (mspringi_memory){.allocator = memory.allocator};
     const mspringi_fp_state before = mspringi_fp_enter();
     result = fill(created, builder, def);
     mspringi_fp_leave(before);
@@ -259,5 +288,6 @@ void mspring_network_destroy(mspring_network *network) {
         return;
     mspringi_memory memory = network->memory, tasks_memory = network->tasks_memory;
     mspringi_tasks_destroy(network->tasks, &tasks_memory);
+    mspringi_free_all(&network->plan_memory);
     mspringi_free_all(&memory);
 }

@@ -129,10 +129,16 @@ typedef struct mspringi_extents {
 struct mspring_network {
     mspringi_memory memory;       ///< the network itself and all that it holds, but for
     mspringi_memory tasks_memory; ///< what its workers are, which a copy of the network has none of
+    mspringi_memory plan_memory;  ///< a compaction that is under way, likewise
     mspringi_message message;
     mspringi_topology topology;
-    uint64_t topology_print;  ///< hash of which particles the springs join, and of where they lie
-    uint64_t parameter_print; ///< hash of what the springs are like, and of all edits of that
+    mspringi_topology whole; ///< the one the network was created with, while it is compact; else empty
+    bool is_compact;
+    uint64_t whole_print;           ///< topology_print of whole
+    uint32_t whole_tile_size;       ///< of the implicit solver that whole had; 0 if there was none
+    struct mspringi_replan *replan; ///< a compaction that is under way, or NULL
+    uint64_t topology_print;        ///< hash of which particles the springs join, and of where they lie
+    uint64_t parameter_print;       ///< hash of what the springs are like, and of all edits of that
     const mspringi_kernels *kernels;
     mspringi_tasks *tasks; ///< NULL: the caller's thread steps alone
 
@@ -165,7 +171,6 @@ struct mspring_network {
     uint32_t max_substeps;
     bool auto_substeps;
     struct mspringi_implicit *implicit; ///< NULL: the explicit solver
-    struct mspringi_floor *floor;       ///< NULL: there is none
     mspring_guard guard_policy;
     mspringi_guard guard;
     double shortest; ///< smallest rest length at first, m
@@ -213,6 +218,12 @@ void mspringi_clear_empty_slots(const mspring_network *network);
 
 /// Allocate the carry rows that the network's workers need, unless it has as many.
 mspring_result mspringi_carry_reserve(mspring_network *network);
+
+/// Allocate what the explicit solver has by slot and by place. On error some of it is there.
+mspring_result mspringi_layout_reserve(mspring_network *network);
+/// Free that from this memory, or forget it.
+void mspringi_layout_free(const mspring_network *network, mspringi_memory *memory);
+void mspringi_layout_forget(mspring_network *network);
 
 /// Allocate a field of all slots, zeroed; leaves it alone if it is there.
 mspring_result mspringi_field_reserve(mspring_network *network, mspringi_field *field);

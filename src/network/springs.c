@@ -73,6 +73,18 @@ void mspringi_spring_set_rest_length(mspring_network *network, mspring_id spring
         *records.ends[i].rest_length = rest_length;
 }
 
+void mspringi_spring_copy(const mspring_network *from, mspring_network *to, mspring_id spring) {
+    const spring_record had = find_records(from, from->topology.place_of_spring[spring]).ends[0];
+    const spring_records records = find_records(to, to->topology.place_of_spring[spring]);
+    for (int i = 0; i < records.count; ++i) {
+        const spring_record *record = &records.ends[i];
+        *record->rest_length = *had.rest_length;
+        *record->stiffness = *had.stiffness;
+        if (record->damping)
+            *record->damping = *had.damping;
+    }
+}
+
 // Stiffness and damping of a relative spring for the substep that was derived for last.
 static mspringi_relative derive(const mspring_network *network, const mspringi_spring_values *values,
                                 mspringi_relative fractions) {

@@ -17,6 +17,9 @@ mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspri
 /// Set stiffness and damping in force, wherever the spring has records.
 void mspringi_spring_set(mspring_network *network, mspring_id spring, float stiffness, float damping);
 
+/// Give a spring of another network of the same springs what it has in this one.
+void mspringi_spring_copy(const mspring_network *from, mspring_network *to, mspring_id spring);
+
 /// (length - rest_length) / rest_length, now; of a broken spring 0.
 float mspringi_spring_strain(const mspring_network *network, mspring_id spring);
 

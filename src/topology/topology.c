@@ -24,8 +24,8 @@ static uint32_t column_block_of(block_key key) {
 }
 
 /// What is needed while a topology is made.
-typedef struct assembly {
-    mspringi_topology *topology;
+typedef struct mspringi_assembly {
+    mspringi_topology made, *topology; ///< the latter is the former
     mspringi_memory *memory;
     mspringi_message *message;
     const mspring_builder *builder;
@@ -43,6 +43,7 @@ typedef struct assembly {
     uint32_t *end_block;   ///< [grids] in blocks
     uint32_t home_blocks;  ///< blocks of the web that have been given to rows
     size_t row_capacity, span_capacity;
+    uint32_t done; ///< pieces of the work
 } assembly;
 
 static mspring_result out_of_memory(assembly *a) {
@@ -334,7 +335,7 @@ static uint32_t widest_row(const assembly *a) {
     return widest;
 }
 
-static bool append_lattice_rows(assembly *a, uint32_t grid) {
+static bool append_lattice_rows(assembly *a, uint32_t grid, uint32_t number) {
     mspringi_topology *t = a->topology;
     for (uint32_t i = a->first_block[grid]; i < a->end_block[grid]; ++i) {
         const uint32_t row = row_of(a->blocks[i]), column_block = column_block_of(a->blocks[i]);
@@ -348,7 +349,7 @@ static bool append_lattice_rows(assembly *a, uint32_t grid) {
         if (starts_row) {
             if (!append_row(a, MSPRINGI_ROW_CHAIN))
                 return false;
-            t->lattice_rows++;
+            t->grid_of_row[t->lattice_rows++] = number;
         }
         if (up != MSPRING_NONE)
             t->rows[t->row_count - 1].kind = MSPRINGI_ROW_LATTICE;
@@ -503,10 +504,12 @@ static mspring_result make_rows(assembly *a) {
     mspringi_topology *t = a->topology;
     t->carry_blocks = widest_row(a);
     t->up_of_block = mspringi_alloc(a->memory, t->lattice_blocks, sizeof *t->up_of_block);
-    if (!t->up_of_block)
+    t->grid_of_row =
+        mspringi_alloc(a->memory, t->lattice_blocks, sizeof *t->grid_of_row); // no more rows than blocks
+    if (!t->up_of_block || !t->grid_of_row)
         return out_of_memory(a);
     for (uint32_t i = 0; i < a->grids.count; ++i)
-        if (!append_lattice_rows(a, a->homes.grid_order[i]))
+        if (!append_lattice_rows(a, a->homes.grid_order[i], i))
             return out_of_memory(a);
     const uint32_t homed_blocks = web_blocks(a, a->web.homed_count);
     if (!append_chain_row(a) ||
@@ -553,67 +556,116 @@ static mspring_result allocate_maps(assembly *a) {
     return t->slot_of_particle && t->particle_of_slot && t->place_of_spring ? MSPRING_OK : out_of_memory(a);
 }
 
-static mspring_result assemble(assembly *a) {
+/* The pieces: each goes over particles or springs a few times at most. */
+
+static mspring_result look_for_graph(assembly *a) {
     const size_t particles = a->builder->particle_count;
     a->kinds = mspringi_alloc(a->memory, particles, sizeof *a->kinds);
     if (!a->kinds)
         return out_of_memory(a);
     memset(a->kinds, MSPRINGI_ROW_LOOSE, particles);
-    mspring_result result = mspringi_graph_create(&a->graph, a->builder, a->memory, a->message);
+    return mspringi_graph_create(&a->graph, a->builder, a->memory, a->message);
+}
+
+static mspring_result look_for_strands(assembly *a) {
+    return mspringi_strands_find(&a->strands, &a->graph, a->kinds, a->memory, a->message);
+}
+
+static mspring_result look_for_grids(assembly *a) {
+    return mspringi_grids_find(&a->grids, &a->graph, a->kinds, a->memory, a->message);
+}
+
+static mspring_result look_for_homes(assembly *a) {
+    mspring_result result =
+        mspringi_homes_find(&a->homes, &a->graph, &a->grids, &a->strands, a->workers, a->memory, a->message);
     if (result == MSPRING_OK)
-        result = mspringi_strands_find(&a->strands, &a->graph, a->kinds, a->memory, a->message);
-    if (result == MSPRING_OK)
-        result = mspringi_grids_find(&a->grids, &a->graph, a->kinds, a->memory, a->message);
-    if (result == MSPRING_OK)
-        result =
-            mspringi_homes_find(&a->homes, &a->graph, &a->grids, &a->strands, a->workers, a->memory, a->message);
-    if (result == MSPRING_OK) {
         mspringi_strands_drop(&a->strands, &a->homes, a->kinds);
-        result = mspringi_web_list_find(&a->web, &a->graph, &a->homes, a->kinds, a->memory, a->message);
-    }
-    if (result == MSPRING_OK)
-        result = number_blocks(a);
+    return result;
+}
+
+static mspring_result list_web(assembly *a) {
+    return mspringi_web_list_find(&a->web, &a->graph, &a->homes, a->kinds, a->memory, a->message);
+}
+
+static mspring_result give_slots(assembly *a) {
+    mspring_result result = number_blocks(a);
     if (result == MSPRING_OK)
         result = allocate_maps(a);
     if (result != MSPRING_OK)
         return result;
     assign_slots(a);
-    result = list_empty_slots(a);
-    if (result == MSPRING_OK)
-        result = assign_places(a);
-    if (result == MSPRING_OK)
-        result = make_rows(a);
-    if (result == MSPRING_OK)
-        result = make_strips(a);
-    return result == MSPRING_OK ? make_web(a) : result;
+    return list_empty_slots(a);
+}
+
+static mspring_result lay_rows(assembly *a) {
+    mspring_result result = make_rows(a);
+    return result == MSPRING_OK ? make_strips(a) : result;
+}
+
+static mspring_result (*const pieces[MSPRINGI_TOPOLOGY_PIECES])(assembly *a) = {
+    look_for_graph, look_for_strands, look_for_grids, look_for_homes, list_web,
+    give_slots,     assign_places,    lay_rows,       make_web,
+};
+
+mspring_result mspringi_topology_begin(const mspring_builder *builder, uint32_t workers, mspringi_memory *memory,
+                                       mspringi_message *message, mspringi_assembly **begun) {
+    assembly *a = mspringi_alloc(memory, 1, sizeof *a);
+    if (!a)
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to lay out %zu particles and %zu springs",
+                             builder->particle_count, builder->spring_count);
+    a->made = (mspringi_topology){.particle_count = (uint32_t)builder->particle_count,
+                                  .spring_count = (uint32_t)builder->spring_count};
+    a->topology = &a->made;
+    a->memory = memory;
+    a->message = message;
+    a->builder = builder;
+    a->workers = workers;
+    *begun = a;
+    return MSPRING_OK;
+}
+
+mspring_result mspringi_topology_go_on(mspringi_assembly *begun) {
+    return begun->done < MSPRINGI_TOPOLOGY_PIECES ? pieces[begun->done++](begun) : MSPRING_OK;
+}
+
+void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory) {
+    if (!begun)
+        return;
+    mspringi_topology_destroy(&begun->made, memory);
+    mspringi_free(memory, begun->kinds);
+    mspringi_free(memory, begun->blocks);
+    mspringi_free(memory, begun->first_block);
+    mspringi_free(memory, begun->end_block);
+    mspringi_graph_destroy(&begun->graph, memory);
+    mspringi_strands_destroy(&begun->strands, memory);
+    mspringi_grids_destroy(&begun->grids, memory);
+    mspringi_homes_destroy(&begun->homes, memory);
+    mspringi_web_list_destroy(&begun->web, memory);
+    mspringi_free(memory, begun);
+}
+
+void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory, mspringi_topology *topology) {
+    begun->made.lattice_count = begun->grids.count;
+    begun->made.lattice_particles = begun->grids.member_count;
+    begun->made.chain_count = begun->strands.strand_count;
+    begun->made.chain_particles = begun->strands.count;
+    begun->made.chain_springs = begun->strands.spring_count;
+    begun->made.web_particles = begun->web.count;
+    *topology = begun->made;
+    begun->made = (mspringi_topology){0};
+    mspringi_topology_abandon(begun, memory);
 }
 
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
                                         uint32_t workers, mspringi_memory *memory, mspringi_message *message) {
-    *topology = (mspringi_topology){.particle_count = (uint32_t)builder->particle_count,
-                                    .spring_count = (uint32_t)builder->spring_count};
-    assembly a = {
-        .topology = topology, .memory = memory, .message = message, .builder = builder, .workers = workers};
-    mspring_result result = assemble(&a);
-    if (result == MSPRING_OK) {
-        topology->lattice_count = a.grids.count;
-        topology->lattice_particles = a.grids.member_count;
-        topology->chain_count = a.strands.strand_count;
-        topology->chain_particles = a.strands.count;
-        topology->chain_springs = a.strands.spring_count;
-        topology->web_particles = a.web.count;
-    } else {
-        mspringi_topology_destroy(topology, memory);
-    }
-    mspringi_free(memory, a.kinds);
-    mspringi_free(memory, a.blocks);
-    mspringi_free(memory, a.first_block);
-    mspringi_free(memory, a.end_block);
-    mspringi_graph_destroy(&a.graph, memory);
-    mspringi_strands_destroy(&a.strands, memory);
-    mspringi_grids_destroy(&a.grids, memory);
-    mspringi_homes_destroy(&a.homes, memory);
-    mspringi_web_list_destroy(&a.web, memory);
+    mspringi_assembly *begun = NULL;
+    mspring_result result = mspringi_topology_begin(builder, workers, memory, message, &begun);
+    for (int piece = 0; result == MSPRING_OK && piece < MSPRINGI_TOPOLOGY_PIECES; ++piece)
+        result = mspringi_topology_go_on(begun);
+    if (result == MSPRING_OK)
+        mspringi_topology_finish(begun, memory, topology);
+    else
+        mspringi_topology_abandon(begun, memory);
     return result;
 }
 
@@ -622,6 +674,7 @@ void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *mem
     mspringi_free(memory, topology->particle_of_slot);
     mspringi_free(memory, topology->place_of_spring);
     mspringi_free(memory, topology->up_of_block);
+    mspringi_free(memory, topology->grid_of_row);
     mspringi_web_destroy(&topology->web, memory);
     mspringi_free(memory, topology->leftover_a);
     mspringi_free(memory, topology->leftover_b);

@@ -65,7 +65,8 @@ typedef struct mspringi_strip {
 
 /// Where a spring lies: below lattice_places a lattice record, (block * MSPRINGI_DIRECTIONS + direction) *
 /// MSPRINGI_WIDTH + lane; below chain_places a chain record, lattice_places + block * MSPRINGI_WIDTH + lane; above
-/// that, chain_places + number among the leftover springs. Block counts from the first of its kind.
+/// that, chain_places + number among the leftover springs, behind which are the parked ones. Block counts from the
+/// first of its kind.
 typedef uint32_t mspringi_place;
 
 typedef struct mspringi_empty_run {
@@ -85,12 +86,15 @@ typedef struct mspringi_topology {
     mspringi_place *place_of_spring; ///< [spring_count]
     uint32_t *up_of_block;           ///< [lattice_blocks] block above each lattice block; itself if there is none
 
+    uint32_t *grid_of_row; ///< [lattice_rows] number of the grid of each of the first rows
+
     mspringi_empty_run *empty_runs; ///< slots that hold no particle
     uint32_t empty_run_count;
 
     mspringi_place lattice_places, chain_places;
     uint32_t leftover_count;
-    uint32_t *leftover_a, *leftover_b; ///< [leftover_count] slots
+    uint32_t parked_count;             ///< springs that are broken and that nothing sweeps, see replan.h
+    uint32_t *leftover_a, *leftover_b; ///< [leftover_count + parked_count] slots
     mspringi_web web;
 
     mspringi_span *spans; ///< and one more, so that there is one after the last
@@ -112,12 +116,34 @@ typedef struct mspringi_topology {
 
 /// Words of MSPRINGI_WIDTH bits that hold a bit for each place.
 static inline size_t mspringi_place_words(const mspringi_topology *topology) {
-    return ((size_t)topology->chain_places + topology->leftover_count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
+    return ((size_t)topology->chain_places + topology->leftover_count + topology->parked_count + MSPRINGI_WIDTH -
+            1) /
+           MSPRINGI_WIDTH;
+}
+
+/// Whether the spring in this place is parked.
+static inline bool mspringi_place_is_parked(const mspringi_topology *topology, mspringi_place place) {
+    return place - topology->chain_places >= topology->leftover_count && place >= topology->chain_places;
+}
+
+/// Springs that are swept.
+static inline uint32_t mspringi_woven_count(const mspringi_topology *topology) {
+    return topology->spring_count - topology->parked_count;
 }
 
 /// Lay out what the builder holds, for steps that so many workers share.
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
                                         uint32_t workers, mspringi_memory *memory, mspringi_message *message);
+/// The same in pieces: begin, go on so many times unless one fails, then finish; or abandon at any time, which
+/// allows NULL. The builder and what memory and message point to must stay.
+#define MSPRINGI_TOPOLOGY_PIECES 9
+typedef struct mspringi_assembly mspringi_assembly;
+mspring_result mspringi_topology_begin(const mspring_builder *builder, uint32_t workers, mspringi_memory *memory,
+                                       mspringi_message *message, mspringi_assembly **begun);
+mspring_result mspringi_topology_go_on(mspringi_assembly *begun);
+void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory, mspringi_topology *topology);
+void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory);
+
 void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *memory);
 
 /// The two slots that a spring joins; where the place has a direction, base and tip in its sense.

@@ -1,0 +1,132 @@
+/// @file wreck.c
+/// Networks of which nine springs of ten have broken, in one way or another.
+///
+/// SPDX-License-Identifier: MIT
+#include "wreck.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/// Pieces: cells of so many metres, of which some have a whole square of so many in their middle.
+#define CELL 16.0
+#define PIECE 10.0
+
+/// Blasts: smallest radius and range of radii, m.
+#define SMALLEST_BLAST 3.0
+#define BLAST_RANGE 10.0
+
+/// One number of a sequence that depends on index alone.
+static uint32_t scatter(uint32_t index) {
+    uint32_t bits = (index + 1u) * 2654435769u;
+    bits = (bits ^ (bits >> 16)) * 2246822519u;
+    bits = (bits ^ (bits >> 13)) * 3266489917u;
+    return bits ^ (bits >> 16);
+}
+
+const char *bench_wreck_name(bench_wreck kind) {
+    static const char *const names[] = {"a wreck in pieces", "a wreck of blasts", "a shattered wreck"};
+    return names[kind];
+}
+
+/// Whether a point is in the square in the middle of its cell, and that is one of those that are left: one more for
+/// each step of share, in 4096.
+static bool is_in_piece(double x, double y, uint32_t share) {
+    const double column = floor(x / CELL), row = floor(y / CELL), margin = 0.5 * (CELL - PIECE);
+    const double dx = x - column * CELL, dy = y - row * CELL;
+    const bool inside = dx >= margin && dx < CELL - margin && dy >= margin && dy < CELL - margin;
+    return inside && scatter((uint32_t)(int32_t)column * 7919u + (uint32_t)(int32_t)row) % 4096 < share;
+}
+
+/// Ends of all springs, and which have broken.
+typedef struct wreckage {
+    mspring_id *a, *b, *broken;
+    bool *is_broken;
+    uint32_t count;
+} wreckage;
+
+static void break_spring(wreckage *all, mspring_id s) {
+    if (!all->is_broken[s]) {
+        all->is_broken[s] = true;
+        all->broken[all->count++] = s;
+    }
+}
+
+static void break_all_but_pieces(const bench_network *n, wreckage *all) {
+    const double *x = n->start_x, *y = n->start_y;
+    uint32_t share = 0, left = 0;
+    while (share < 4096 && left < n->spring_count / 10) {
+        share += 16;
+        left = 0;
+        for (mspring_id s = 0; s < n->spring_count; s++) {
+            const mspring_id a = all->a[s], b = all->b[s];
+            left += is_in_piece(x[a], y[a], share) && is_in_piece(x[b], y[b], share) &&
+                    floor(x[a] / CELL) == floor(x[b] / CELL);
+        }
+    }
+    for (mspring_id s = 0; s < n->spring_count; s++) {
+        const mspring_id a = all->a[s], b = all->b[s];
+        if (!is_in_piece(x[a], y[a], share) || !is_in_piece(x[b], y[b], share)) {
+            break_spring(all, s);
+        }
+    }
+}
+
+static void blast(const bench_network *n, wreckage *all) {
+    const double *x = n->start_x, *y = n->start_y;
+    for (uint32_t i = 0; all->count < n->spring_count - n->spring_count / 10; i++) {
+        const mspring_id centre = scatter(2 * i) % n->particle_count;
+        const double radius = SMALLEST_BLAST + BLAST_RANGE * (double)scatter(2 * i + 1) / 4294967296.0;
+        for (mspring_id s = 0; s < n->spring_count; s++) {
+            if (hypot(x[all->a[s]] - x[centre], y[all->a[s]] - y[centre]) < radius) {
+                break_spring(all, s);
+            }
+        }
+    }
+}
+
+static bool list_ends(const bench_network *n, wreckage *all, scene_error *error) {
+    all->a = bench_allocate(n->spring_count, sizeof *all->a, error);
+    all->b = bench_allocate(n->spring_count, sizeof *all->b, error);
+    all->broken = bench_allocate(n->spring_count, sizeof *all->broken, error);
+    all->is_broken = bench_allocate(n->spring_count, sizeof *all->is_broken, error);
+    if (all->a == NULL || all->b == NULL || all->broken == NULL || all->is_broken == NULL) {
+        return false;
+    }
+    for (mspring_id s = 0; s < n->spring_count; s++) {
+        mspring_spring_info info = {.struct_size = sizeof info};
+        if (mspring_network_get_spring(n->network, s, &info) != MSPRING_OK) {
+            abort(); // there are so many springs
+        }
+        all->a[s] = info.a;
+        all->b[s] = info.b;
+        all->is_broken[s] = false;
+    }
+    return true;
+}
+
+bool bench_wreck_make(const bench_network *network, bench_wreck kind, scene_error *error) {
+    wreckage all = {0};
+    bool ok = list_ends(network, &all, error);
+    if (ok && kind == BENCH_WRECK_PIECES) {
+        break_all_but_pieces(network, &all);
+    } else if (ok && kind == BENCH_WRECK_BLASTS) {
+        blast(network, &all);
+    }
+    for (mspring_id s = 0; ok && kind == BENCH_WRECK_SHATTERED && s < network->spring_count; s++) {
+        if (scatter(s) % 10 != 0) {
+            break_spring(&all, s);
+        }
+    }
+    if (ok) {
+        mspring_result result = mspring_network_break_springs(network->network, all.broken, all.count);
+        if (result != MSPRING_OK) {
+            bench_library_error(error, "making a wreck", result, mspring_network_error(network->network));
+            ok = false;
+        }
+    }
+    free(all.a);
+    free(all.b);
+    free(all.broken);
+    free(all.is_broken);
+    return ok;
+}

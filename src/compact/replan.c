@@ -1,0 +1,172 @@
+/// A topology of the springs that are left.
+#include "replan.h"
+
+#include <string.h>
+
+#include "network/springs.h"
+
+struct mspringi_replan {
+    struct mspring_builder left; ///< particles in the first topology's rows and columns, live springs
+    mspring_id *ids;             ///< [left.spring_count] of the live springs, rising
+    mspringi_assembly *assembly;
+    mspringi_topology topology; ///< once the assembly has made it
+    uint64_t links;             ///< edits.links when live springs were listed
+    uint32_t done;              ///< pieces of the work
+};
+
+// The topology that the network was created with.
+static const mspringi_topology *first_topology(const mspring_network *network) {
+    return network->is_compact ? &network->whole : &network->topology;
+}
+
+/* --------------------------------------------------------------------------------------------- what is left */
+
+// Where a particle is in its grid: grids lie one above the other, too far apart to be taken for one. Particles
+// of no grid lie on a diagonal on the other side, where no two can be taken for neighbours on a grid, in the order
+// in which they lie in memory.
+static void place_particles(const mspringi_topology *first, mspringi_particle *particles) {
+    for (mspring_id p = 0; p < first->particle_count; ++p)
+        particles[p].x = particles[p].y = -10.0 - 3.0 * (double)first->slot_of_particle[p];
+    for (uint32_t r = 0; r < first->lattice_rows; ++r) {
+        const mspringi_row *row = &first->rows[r];
+        for (const mspringi_span *span = first->spans + row->first_span;
+             span < first->spans + row->first_span + row->span_count; ++span) {
+            for (uint32_t slot = span->first_slot; slot < span->end_slot; ++slot) {
+                const mspring_id p = first->particle_of_slot[slot];
+                if (p == MSPRING_NONE)
+                    continue;
+                particles[p].x = (double)((int64_t)slot + span->carry);
+                particles[p].y = (double)r + 2.0 * (double)first->grid_of_row[r];
+            }
+        }
+    }
+}
+
+static mspring_result list_what_is_left(mspringi_replan *replan, mspring_network *network) {
+    const mspringi_topology *first = first_topology(network);
+    struct mspring_builder *left = &replan->left;
+    size_t live = 0;
+    replan->links = network->edits.links;
+    for (mspring_id s = 0; s < first->spring_count; ++s)
+        live += mspringi_spring_is_live(network, s);
+    left->particles = mspringi_alloc(&network->plan_memory, first->particle_count, sizeof *left->particles);
+    left->springs = mspringi_alloc(&network->plan_memory, live, sizeof *left->springs);
+    replan->ids = mspringi_alloc(&network->plan_memory, live, sizeof *replan->ids);
+    if (!left->particles || !left->springs || !replan->ids)
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to list %zu springs that are left",
+                             live);
+    place_particles(first, left->particles);
+    left->particle_count = first->particle_count;
+    for (mspring_id s = 0; s < first->spring_count; ++s) {
+        uint32_t base, tip;
+        if (!mspringi_spring_is_live(network, s))
+            continue;
+        mspringi_topology_ends(first, first->place_of_spring[s], &base, &tip);
+        replan->ids[left->spring_count] = s;
+        left->springs[left->spring_count++] =
+            (mspringi_spring){.a = first->particle_of_slot[base], .b = first->particle_of_slot[tip]};
+    }
+    return mspringi_topology_begin(left, mspringi_tasks_concurrency(network->tasks), &network->plan_memory,
+                                   &network->message, &replan->assembly);
+}
+
+/* ------------------------------------------------------------------------------------------------- parking */
+
+// Give the springs that are not left places behind those that are, with records behind the web's rungs, of which
+// one serves both ends.
+static mspring_result park(mspringi_replan *replan, mspring_network *network) {
+    const mspringi_topology *first = first_topology(network);
+    mspringi_topology *t = &replan->topology;
+    const uint32_t all = first->spring_count, woven = t->spring_count, parked = all - woven;
+    const size_t leftover = (size_t)t->leftover_count + parked;
+    const uint32_t rungs = t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0;
+    if ((uint64_t)t->chain_places + leftover >= MSPRING_NONE ||
+        (uint64_t)rungs * MSPRINGI_WIDTH + parked >= MSPRING_NONE)
+        return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT, "%u springs are more than can be numbered",
+                             (unsigned)all);
+    mspringi_place *places = mspringi_alloc(&network->plan_memory, all, sizeof *places);
+    uint32_t *a = mspringi_alloc(&network->plan_memory, leftover, sizeof *a);
+    uint32_t *b = mspringi_alloc(&network->plan_memory, leftover, sizeof *b);
+    uint32_t *entry = mspringi_alloc(&network->plan_memory, 2 * leftover, sizeof *entry);
+    if (!places || !a || !b || !entry) {
+        mspringi_free(&network->plan_memory, places);
+        mspringi_free(&network->plan_memory, a);
+        mspringi_free(&network->plan_memory, b);
+        mspringi_free(&network->plan_memory, entry);
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to park %u springs",
+                             (unsigned)parked);
+    }
+    memcpy(a, t->leftover_a, t->leftover_count * sizeof *a);
+    memcpy(b, t->leftover_b, t->leftover_count * sizeof *b);
+    if (t->leftover_count > 0)
+        memcpy(entry, t->web.entry, 2 * (size_t)t->leftover_count * sizeof *entry);
+    for (mspring_id s = 0, next_woven = 0, next_parked = 0; s < all; ++s) {
+        if (next_woven < woven && replan->ids[next_woven] == s) {
+            places[s] = t->place_of_spring[next_woven++];
+            continue;
+        }
+        const uint32_t i = t->leftover_count + next_parked;
+        uint32_t base, tip;
+        mspringi_topology_ends(first, first->place_of_spring[s], &base, &tip);
+        places[s] = t->chain_places + i;
+        a[i] = t->slot_of_particle[first->particle_of_slot[base]];
+        b[i] = t->slot_of_particle[first->particle_of_slot[tip]];
+        entry[2 * i] = entry[2 * i + 1] = rungs * MSPRINGI_WIDTH + next_parked++;
+    }
+    mspringi_free(&network->plan_memory, t->place_of_spring);
+    mspringi_free(&network->plan_memory, t->leftover_a);
+    mspringi_free(&network->plan_memory, t->leftover_b);
+    mspringi_free(&network->plan_memory, t->web.entry);
+    t->place_of_spring = places;
+    t->leftover_a = a;
+    t->leftover_b = b;
+    t->web.entry = entry;
+    t->spring_count = all;
+    t->parked_count = parked;
+    return MSPRING_OK;
+}
+
+static mspring_result finish(mspringi_replan *replan, mspring_network *network) {
+    mspringi_topology_finish(replan->assembly, &network->plan_memory, &replan->topology);
+    replan->assembly = NULL;
+    return park(replan, network);
+}
+
+/* ------------------------------------------------------------------------------------------------ piece by piece
+ */
+
+mspring_result mspringi_replan_begin(mspring_network *network, mspringi_replan **begun) {
+    mspringi_replan *replan = mspringi_alloc(&network->plan_memory, 1, sizeof *replan);
+    if (!replan)
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for another plan");
+    *begun = replan;
+    return MSPRING_OK;
+}
+
+mspring_result mspringi_replan_go_on(mspringi_replan *replan, mspring_network *network) {
+    const uint32_t piece = replan->done++;
+    if (piece == 0)
+        return list_what_is_left(replan, network);
+    return piece <= MSPRINGI_TOPOLOGY_PIECES ? mspringi_topology_go_on(replan->assembly) : finish(replan, network);
+}
+
+uint32_t mspringi_replan_pieces_left(const mspringi_replan *replan) {
+    return MSPRINGI_REPLAN_PIECES - replan->done;
+}
+
+bool mspringi_replan_is_valid(const mspringi_replan *replan, const mspring_network *network) {
+    for (mspring_id s = 0; replan->links != network->edits.links && s < network->topology.spring_count; ++s)
+        if (mspringi_place_is_parked(&replan->topology, replan->topology.place_of_spring[s]) &&
+            mspringi_spring_is_live(network, s))
+            return false;
+    return true;
+}
+
+void mspringi_replan_take(mspringi_replan *replan, mspring_network *network, mspringi_topology *topology) {
+    *topology = replan->topology;
+    mspringi_free(&network->plan_memory, replan->left.particles);
+    mspringi_free(&network->plan_memory, replan->left.springs);
+    mspringi_free(&network->plan_memory, replan->ids);
+    mspringi_free(&network->plan_memory, replan);
+    mspringi_memory_hand_over(&network->plan_memory, &network->memory);
+}

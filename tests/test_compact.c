@@ -1,0 +1,671 @@
+/// @file test_compact.c
+/// Compaction: nothing is to be seen of it but cost and slots, and it can be undone.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "allocator.h"
+#include "recipe.h"
+#include "support.h"
+
+enum { SEVERAL_FRAMES = 12 };
+
+/// Rows of every kind, springs of both kinds, dampers.
+static recipe mixed_recipe(void) {
+    uint64_t seed = 5;
+    const recipe_stuff relative = {.mass = {1, 2},
+                                   .stiffness = {0.1, 0.2},
+                                   .damping = {0, 0.05},
+                                   .spring_flags = MSPRING_SPRING_RELATIVE,
+                                   .pinned = 0.02,
+                                   .holes = 0.1};
+    const recipe_stuff absolute = {.mass = {1, 2}, .stiffness = {50, 100}, .damping = {0, 1}};
+    recipe made = {0};
+    recipe_lattice(&made, 45, 14, 0, 0, 1, &relative, &seed);
+    const mspring_id other = recipe_lattice(&made, 9, 30, 60, 0.5, 1, &absolute, &seed);
+    recipe_rope(&made, 2, other, 20, &absolute, &seed);
+    recipe_random_springs(&made, 25, &absolute, &seed);
+    recipe_particle(&made, 5, 40, 1, 0);
+    recipe_disturb(&made, 0.05, 0.5, &seed);
+    return made;
+}
+
+static mspring_network *make(const recipe *made, mspring_simd level, uint32_t worker_count) {
+    mspring_network_def def = support_def(-9.8f, 4);
+    def.simd_level = level;
+    def.worker_count = worker_count;
+    def.global_damping = 0.1f;
+    return recipe_network(made, &def);
+}
+
+typedef enum wreck { SHATTERED, TORN, DISSOLVED, WRECKS } wreck;
+
+/// Whether a spring breaks in a wreck: nine of ten anywhere, whatever crosses one of some lines, all.
+static bool breaks(const recipe *made, wreck kind, mspring_id s) {
+    const mspring_particle_def *a = &made->particles[made->springs[s].a], *b = &made->particles[made->springs[s].b];
+    uint64_t seed = s;
+    if (kind == SHATTERED) {
+        return support_random(&seed) % 10 != 0;
+    }
+    return kind == DISSOLVED || floor(a->x / 11) != floor(b->x / 11) || fmod(a->y, 16) > 12;
+}
+
+static void make_wreck(mspring_network *network, const recipe *made, wreck kind) {
+    for (mspring_id s = 0; s < made->spring_count; s++) {
+        if (breaks(made, kind, s)) {
+            check_ok(mspring_network_break_springs(network, &s, 1));
+        }
+    }
+}
+
+static void compact(mspring_network *network) {
+    uint32_t left = 1;
+    check_ok(mspring_network_compact(network, 0, &left));
+    assert_int_equal(left, 0);
+}
+
+static mspring_plan plan_of(const mspring_network *network) {
+    mspring_plan plan = {.struct_size = sizeof plan};
+    check_ok(mspring_network_plan(network, &plan));
+    return plan;
+}
+
+/// Springs that a step sweeps.
+static uint32_t swept(const mspring_network *network) {
+    const mspring_plan plan = plan_of(network);
+    return plan.lattice_springs + plan.chain_springs + plan.leftover_springs;
+}
+
+static uint32_t live_count(const mspring_network *network) {
+    uint32_t count = 0;
+    for (mspring_id s = 0; s < mspring_network_spring_count(network); s++) {
+        mspring_spring_info info = {.struct_size = sizeof info};
+        check_ok(mspring_network_get_spring(network, s, &info));
+        count += !(info.flags & MSPRING_SPRING_BROKEN);
+    }
+    return count;
+}
+
+static void set_solver(mspring_network *network, mspring_solver which, mspring_integrator integrator) {
+    mspring_solver_def solver;
+    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    solver.solver = which;
+    solver.integrator = integrator;
+    solver.substeps = 2;
+    solver.iterations = 60;
+    check_ok(mspring_network_set_solver(network, &solver));
+}
+
+/* -------------------------------------------------------------------------------------- what is to be seen */
+
+/// All that can be asked of particles and springs, in their order.
+typedef struct look {
+    uint64_t hash;
+    double energy[3], momentum[3];
+    mspring_spring_info *springs;
+    float *by_spring[4], *scale;
+    uint32_t *component, component_count;
+} look;
+
+static void *array(size_t count, size_t size) {
+    void *made = calloc(count, size);
+    assert_non_null(made);
+    return made;
+}
+
+static look look_at(mspring_network *network) {
+    const uint32_t springs = mspring_network_spring_count(network);
+    const uint32_t particles = mspring_network_particle_count(network);
+    look seen = {.hash = support_hash(network)};
+    seen.springs = array(springs, sizeof *seen.springs);
+    for (mspring_id s = 0; s < springs; s++) {
+        seen.springs[s].struct_size = sizeof *seen.springs;
+        check_ok(mspring_network_get_spring(network, s, &seen.springs[s]));
+    }
+    for (int i = 0; i < 4; i++) {
+        seen.by_spring[i] = array(springs, sizeof(float));
+    }
+    seen.scale = array(particles, sizeof(float));
+    seen.component = array(particles, sizeof *seen.component);
+    check_ok(mspring_network_energy(network, &seen.energy[0], &seen.energy[1], &seen.energy[2]));
+    check_ok(mspring_network_momentum(network, &seen.momentum[0], &seen.momentum[1], &seen.momentum[2]));
+    check_ok(mspring_network_get_extents(network, seen.by_spring[0], seen.by_spring[1], seen.by_spring[2],
+                                         seen.by_spring[3]));
+    check_ok(mspring_network_get_inverse_mass_scales(network, 0, particles, seen.scale));
+    check_ok(mspring_network_update_components(network, &seen.component_count, NULL));
+    check_ok(mspring_network_get_component_numbers(network, 0, particles, seen.component));
+    return seen;
+}
+
+static void check_same_look(look a, look b, const mspring_network *network) {
+    const uint32_t springs = mspring_network_spring_count(network);
+    const uint32_t particles = mspring_network_particle_count(network);
+    assert_int_equal(a.hash, b.hash);
+    assert_memory_equal(a.energy, b.energy, sizeof a.energy);
+    assert_memory_equal(a.momentum, b.momentum, sizeof a.momentum);
+    assert_memory_equal(a.springs, b.springs, springs * sizeof *a.springs);
+    for (int i = 0; i < 4; i++) {
+        for (mspring_id s = 0; s < springs; s++) { // the sense of a difference may be another, and so 0's sign
+            check_near(a.by_spring[i][s], b.by_spring[i][s], 0);
+        }
+        free(a.by_spring[i]);
+        free(b.by_spring[i]);
+    }
+    assert_memory_equal(a.scale, b.scale, particles * sizeof *a.scale);
+    assert_int_equal(a.component_count, b.component_count);
+    assert_memory_equal(a.component, b.component, particles * sizeof *a.component);
+    free(a.springs);
+    free(b.springs);
+    free(a.scale);
+    free(b.scale);
+    free(a.component);
+    free(b.component);
+}
+
+static void nothing_changes_but_the_plan(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    for (wreck kind = 0; kind < WRECKS; kind++) {
+        mspring_network *network = make(&made, MSPRING_SIMD_AUTO, 1);
+        const float scale = 0.5f;
+        check_ok(mspring_network_set_inverse_mass_scales(network, 7, 1, &scale));
+        support_steps(network, 2, 1.0 / 64);
+        make_wreck(network, &made, kind);
+        const uint32_t before = swept(network);
+        const look seen = look_at(network);
+        compact(network);
+        check_same_look(seen, look_at(network), network);
+        assert_int_equal(swept(network), live_count(network));
+        assert_true(before > live_count(network));
+        // Nothing more to do, and no slot changes by that.
+        mspring_view view = {.struct_size = sizeof view}, again = {.struct_size = sizeof again};
+        check_ok(mspring_network_view(network, &view));
+        compact(network);
+        check_ok(mspring_network_view(network, &again));
+        assert_ptr_equal(view.x, again.x);
+        const look then = look_at(network);
+        check_ok(mspring_network_expand(network));
+        check_same_look(then, look_at(network), network);
+        assert_int_equal(swept(network), before);
+        mspring_network_destroy(network);
+    }
+    recipe_free(&made);
+}
+
+/// The plan is the one that a network of the springs that are left is created with.
+static void plans_are_those_of_what_is_left(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    for (wreck kind = 0; kind < WRECKS; kind++) {
+        mspring_network *network = make(&made, MSPRING_SIMD_AUTO, 1);
+        recipe left = made;
+        left.springs = array(made.spring_count, sizeof *left.springs);
+        left.spring_count = 0;
+        for (mspring_id s = 0; s < made.spring_count; s++) {
+            if (!breaks(&made, kind, s)) {
+                left.springs[left.spring_count++] = made.springs[s];
+            }
+        }
+        mspring_network *fresh = make(&left, MSPRING_SIMD_AUTO, 1);
+        make_wreck(network, &made, kind);
+        compact(network);
+        const mspring_plan a = plan_of(network), b = plan_of(fresh);
+        assert_int_equal(a.lattice_particles, b.lattice_particles);
+        assert_int_equal(a.lattice_springs, b.lattice_springs);
+        assert_int_equal(a.lattice_blocks, b.lattice_blocks);
+        assert_int_equal(a.chain_particles, b.chain_particles);
+        assert_int_equal(a.web_particles, b.web_particles);
+        assert_int_equal(a.leftover_springs, b.leftover_springs);
+        assert_int_equal(a.loose_particles, b.loose_particles);
+        free(left.springs);
+        mspring_network_destroy(network);
+        mspring_network_destroy(fresh);
+    }
+    recipe_free(&made);
+}
+
+/* ------------------------------------------------------------------------------------------------- stepping */
+
+static void push(const mspring_hook_args *args, void *user) {
+    (void)user;
+    for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
+        args->force_x[slot] += 2 + args->y[slot] * 0.01f;
+    }
+}
+
+static void add_pushing_hook(mspring_network *network) {
+    mspring_hook_def hook;
+    check_ok(mspring_hook_def_init(&hook, sizeof hook));
+    hook.phase = MSPRING_PHASE_BEFORE_SUBSTEP;
+    hook.fn = push;
+    hook.period = 2;
+    hook.flags = MSPRING_HOOK_CONCURRENT;
+    check_ok(mspring_network_add_hook(network, &hook, NULL));
+}
+
+/// How the runs differ: one solver or another, with hooks or not.
+enum { RUNS = 6 };
+
+static void set_up_run(mspring_network *network, int run) {
+    if (run % 2 == 1) {
+        add_pushing_hook(network);
+    }
+    if (run >= 2) {
+        set_solver(network, run < 5 ? MSPRING_SOLVER_IMPLICIT : MSPRING_SOLVER_DIRECT,
+                   run % 3 == 0   ? MSPRING_INTEGRATOR_BDF2
+                   : run % 3 == 1 ? MSPRING_INTEGRATOR_EULER
+                                  : MSPRING_INTEGRATOR_GA0);
+    }
+}
+
+static double largest_difference(const mspring_network *a, const mspring_network *b) {
+    double largest = 0;
+    for (mspring_id p = 0; p < mspring_network_particle_count(a); p++) {
+        const support_point pa = support_position(a, p), pb = support_position(b, p);
+        largest = fmax(largest, hypot(pa.x - pb.x, pa.y - pb.y));
+    }
+    return largest;
+}
+
+/// A compact network moves as one that is not, but for rounding (and, if implicit, for tiles, which converge from
+/// other sides): some 1e-7 of coordinates of 60 m in each of 40 to 80 substeps, and motion that goes on from there.
+static void motion_goes_on(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    for (int run = 0; run < RUNS; run++) {
+        for (wreck kind = 0; kind < WRECKS; kind++) {
+            mspring_network *network = make(&made, MSPRING_SIMD_AUTO, 1);
+            set_up_run(network, run);
+            support_steps(network, 3, 1.0 / 64);
+            make_wreck(network, &made, kind);
+            support_steps(network, 1, 1.0 / 64);
+            mspring_network *compacted = make(&made, MSPRING_SIMD_AUTO, 1);
+            set_up_run(compacted, run);
+            support_steps(compacted, 3, 1.0 / 64);
+            make_wreck(compacted, &made, kind);
+            support_steps(compacted, 1, 1.0 / 64);
+            assert_int_equal(support_hash(network), support_hash(compacted));
+            check_ok(mspring_network_apply_force(network, 40, 300, 100));
+            check_ok(mspring_network_apply_force(compacted, 40, 300, 100));
+            compact(compacted);
+            support_steps(network, 20, 1.0 / 64);
+            support_steps(compacted, 20, 1.0 / 64);
+            check_near(largest_difference(network, compacted), 0, run < 2 ? 1e-3 : 1e-2);
+            mspring_network_destroy(network);
+            mspring_network_destroy(compacted);
+        }
+    }
+    recipe_free(&made);
+}
+
+/// Forth and back between two steps is as if nothing had been, bit for bit.
+static void expanding_undoes_compacting(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    for (int run = 0; run < RUNS; run++) {
+        uint64_t hashes[2];
+        for (int there = 0; there < 2; there++) {
+            mspring_network *network = make(&made, MSPRING_SIMD_AUTO, 1);
+            set_up_run(network, run);
+            support_steps(network, 3, 1.0 / 64);
+            make_wreck(network, &made, TORN);
+            support_steps(network, 3, 1.0 / 64);
+            check_ok(mspring_network_apply_force(network, 40, 300, 100));
+            if (there) {
+                compact(network);
+                check_ok(mspring_network_expand(network));
+            }
+            support_steps(network, 5, 1.0 / 64);
+            hashes[there] = support_hash(network);
+            mspring_network_destroy(network);
+        }
+        assert_int_equal(hashes[0], hashes[1]);
+    }
+    recipe_free(&made);
+}
+
+/* -------------------------------------------------------------------------------------------- the same bits */
+
+/// A session in which springs break and are restored while the network is compacted piece by piece.
+static uint64_t session_hash(const recipe *made, mspring_simd level, uint32_t workers, int run) {
+    mspring_network *network = make(made, level, workers);
+    set_up_run(network, run);
+    uint32_t left = 0;
+    for (uint32_t frame = 0; frame < SEVERAL_FRAMES; frame++) {
+        if (frame == 1) {
+            make_wreck(network, made, TORN);
+        }
+        if (frame == 9) {
+            make_wreck(network, made, SHATTERED);
+        }
+        const mspring_id some[] = {frame * 31 % made->spring_count, frame * 57 % made->spring_count};
+        check_ok(mspring_network_break_springs(network, some, 2));
+        if (frame == 3 || frame == 7) { // once while it is under way, once when it is done
+            check_ok(mspring_network_restore_springs(network, some, 2, 0.1));
+        }
+        check_ok(mspring_network_compact(network, frame < 6 ? 4 : 0, &left));
+        support_steps(network, 2, 1.0 / 64);
+    }
+    assert_int_equal(left, 0);
+    const uint64_t hash = support_hash(network);
+    mspring_network_destroy(network);
+    return hash;
+}
+
+static void bits_are_the_same_everywhere(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    mspring_simd levels[MSPRING_SIMD_AVX512];
+    const uint32_t level_count = support_levels(levels);
+    for (int run = 0; run < RUNS; run += run < 2 ? 1 : 3) {
+        const uint64_t expected = session_hash(&made, MSPRING_SIMD_SCALAR, 1, run);
+        for (uint32_t i = 0; i < level_count; i++) {
+            assert_int_equal(session_hash(&made, levels[i], 1, run), expected);
+        }
+        assert_int_equal(session_hash(&made, MSPRING_SIMD_AUTO, 3, run), expected);
+    }
+    recipe_free(&made);
+}
+
+/* ---------------------------------------------------------------------------------------------- pieces, edits */
+
+static void work_is_done_in_pieces(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    mspring_network *network = make(&made, MSPRING_SIMD_AUTO, 1), *at_once = make(&made, MSPRING_SIMD_AUTO, 1);
+    make_wreck(network, &made, TORN);
+    make_wreck(at_once, &made, TORN);
+    const uint32_t before = swept(network);
+    uint32_t left = 100, pieces = 0;
+    while (left > 0) {
+        const uint32_t left_before = left;
+        assert_int_equal(swept(network), before);
+        check_ok(mspring_network_compact(network, 1, &left));
+        assert_true(left < left_before);
+        pieces++;
+    }
+    assert_true(pieces >= 10 && pieces <= 20); // "about a dozen"
+    compact(at_once);
+    support_steps(network, 5, 1.0 / 64);
+    support_steps(at_once, 5, 1.0 / 64);
+    assert_int_equal(support_hash(network), support_hash(at_once));
+    mspring_network_destroy(network);
+    mspring_network_destroy(at_once);
+    recipe_free(&made);
+}
+
+static void springs_that_are_left_out_can_be_edited_and_restored(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    for (int run = 0; run < RUNS; run++) {
+        mspring_network *network = make(&made, MSPRING_SIMD_AUTO, 1), *plain = make(&made, MSPRING_SIMD_AUTO, 1);
+        mspring_network *const both[] = {network, plain};
+        for (int i = 0; i < 2; i++) {
+            set_up_run(both[i], run);
+            support_steps(both[i], 2, 1.0 / 64);
+            make_wreck(both[i], &made, DISSOLVED);
+            if (i == 0) {
+                compact(network);
+                assert_int_equal(swept(network), 0);
+            }
+            const mspring_id id = 17;
+            const float stiffness = 0.07f, rest_length = 1.1f, damping = 0.02f;
+            check_ok(mspring_network_set_stiffnesses_at(both[i], &id, 1, &stiffness));
+            check_ok(mspring_network_set_dampings_at(both[i], &id, 1, &damping));
+            check_ok(mspring_network_set_rest_lengths_at(both[i], &id, 1, &rest_length));
+            const mspring_id back[] = {id, 18, 300, 4};
+            check_ok(mspring_network_restore_springs(both[i], back, 4, 0.2));
+            support_steps(both[i], 5, 1.0 / 64);
+        }
+        // No step was made in between, so there is no difference of rounding either.
+        assert_int_equal(swept(network), swept(plain));
+        check_same_look(look_at(network), look_at(plain), network);
+        mspring_network_destroy(network);
+        mspring_network_destroy(plain);
+    }
+    recipe_free(&made);
+}
+
+static void strains_are_watched_as_before(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    mspring_event events[2][64];
+    uint32_t counts[2];
+    float *strain = array(made.spring_count, sizeof *strain);
+    for (mspring_id s = 0; s < made.spring_count; s++) {
+        strain[s] = 0.02f + 0.01f * (float)(s % 5);
+    }
+    for (int compacted = 0; compacted < 2; compacted++) {
+        mspring_network *network = make(&made, MSPRING_SIMD_AUTO, 1);
+        check_ok(mspring_network_set_stress_strains(network, 0, made.spring_count, strain));
+        for (mspring_id s = 0; s < made.spring_count; s++) {
+            strain[s] *= 2;
+        }
+        check_ok(mspring_network_set_break_strains(network, 0, made.spring_count, strain));
+        for (mspring_id s = 0; s < made.spring_count; s++) {
+            strain[s] /= 2;
+        }
+        support_steps(network, 1, 1.0 / 64);
+        make_wreck(network, &made, SHATTERED);
+        if (compacted) {
+            compact(network);
+        }
+        check_ok(mspring_network_reserve_events(network, 64));
+        support_steps(network, 1, 1.0 / 64);
+        check_ok(mspring_network_read_events(network, events[compacted], 64, &counts[compacted], NULL));
+        mspring_network_destroy(network);
+    }
+    // In the order of the plan, so each is looked for.
+    assert_int_equal(counts[0], counts[1]);
+    assert_in_range(counts[0], 4, 63);
+    for (uint32_t i = 0; i < counts[0]; i++) {
+        bool found = false;
+        for (uint32_t j = 0; j < counts[1]; j++) {
+            found = found || (events[1][j].id == events[0][i].id && events[1][j].kind == events[0][i].kind &&
+                              fabsf(events[1][j].strain - events[0][i].strain) < 1e-4f);
+        }
+        assert_true(found);
+    }
+    free(strain);
+    recipe_free(&made);
+}
+
+/* -------------------------------------------------------------------------------------------------- snapshots */
+
+typedef struct saved {
+    uint8_t *bytes;
+    size_t size;
+} saved;
+
+static saved save(const mspring_network *network) {
+    saved out;
+    check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &out.size));
+    out.bytes = array(out.size, 1);
+    check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_ALL, out.bytes, out.size, NULL));
+    return out;
+}
+
+static void snapshots_are_of_one_plan(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    for (int run = 0; run < RUNS; run++) {
+        mspring_network *network = make(&made, MSPRING_SIMD_AUTO, 1);
+        set_up_run(network, run);
+        support_steps(network, 2, 1.0 / 64);
+        make_wreck(network, &made, TORN);
+        saved whole = save(network);
+        support_steps(network, 4, 1.0 / 64);
+        const uint64_t from_whole = support_hash(network);
+        compact(network);
+        support_steps(network, 1, 1.0 / 64);
+        saved compacted = save(network);
+        support_steps(network, 4, 1.0 / 64);
+        const uint64_t from_compacted = support_hash(network);
+
+        check_error(mspring_network_load(network, whole.bytes, whole.size), MSPRING_ERROR_SNAPSHOT);
+        assert_int_equal(support_hash(network), from_compacted);
+        check_ok(mspring_network_load(network, compacted.bytes, compacted.size));
+        support_steps(network, 4, 1.0 / 64);
+        assert_int_equal(support_hash(network), from_compacted);
+
+        check_ok(mspring_network_expand(network));
+        check_error(mspring_network_load(network, compacted.bytes, compacted.size), MSPRING_ERROR_SNAPSHOT);
+        check_ok(mspring_network_load(network, whole.bytes, whole.size));
+        support_steps(network, 4, 1.0 / 64);
+        assert_int_equal(support_hash(network), from_whole);
+        free(whole.bytes);
+        free(compacted.bytes);
+        mspring_network_destroy(network);
+    }
+    recipe_free(&made);
+}
+
+/* ----------------------------------------------------------------------------------------------------- clones */
+
+static void clones_are_compact_too(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    for (uint32_t pieces = 0; pieces < 12; pieces++) {
+        mspring_network *network = make(&made, MSPRING_SIMD_AUTO, 1), *clone = NULL;
+        make_wreck(network, &made, TORN);
+        check_ok(mspring_network_compact(network, pieces, NULL));
+        check_ok(mspring_network_clone(network, NULL, &clone));
+        assert_int_equal(swept(network), swept(clone));
+        support_steps(network, 3, 1.0 / 64);
+        support_steps(clone, 3, 1.0 / 64);
+        assert_int_equal(support_hash(network), support_hash(clone));
+        // What was under way is not cloned, so the clone begins anew; then it is at the same place.
+        compact(network);
+        mspring_network_destroy(network);
+        compact(clone);
+        check_ok(mspring_network_expand(clone));
+        support_steps(clone, 3, 1.0 / 64);
+        mspring_network_destroy(clone);
+    }
+    recipe_free(&made);
+}
+
+/* ----------------------------------------------------------------------------------------------------- errors */
+
+/// A call that may be out of memory, with an allocator that fails once: then the network is as it was, and the call
+/// can be made again.
+static void check_survives(mspring_network *network, watched_allocator *watched, size_t fail_at,
+                           mspring_result (*call)(mspring_network *), bool *failed) {
+    const uint64_t hash = support_hash(network);
+    const uint32_t before = swept(network);
+    watched->fail_at = watched->calls + fail_at;
+    mspring_result result = call(network);
+    *failed = result != MSPRING_OK;
+    watched->fail_at = 0;
+    if (*failed) {
+        check_error(result, MSPRING_ERROR_MEMORY);
+        check_contains(mspring_network_error(network), "memory");
+        assert_int_equal(support_hash(network), hash);
+        assert_int_equal(swept(network), before);
+        check_ok(call(network));
+    }
+    assert_int_equal(support_hash(network), hash);
+}
+
+static mspring_result compact_all(mspring_network *network) {
+    return mspring_network_compact(network, 0, NULL);
+}
+
+static void every_failure_leaves_the_network_as_it_was(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    float *strain = array(made.spring_count, sizeof *strain);
+    for (mspring_id s = 0; s < made.spring_count; s++) {
+        strain[s] = 10;
+    }
+    uint64_t expected = 0;
+    bool failed = true;
+    size_t fail_at = 1;
+    for (; failed; fail_at++) {
+        watched_allocator watched = {.fail_at = 0};
+        mspring_allocator allocator = watched_interface(&watched);
+        mspring_network_def def = support_def(-9.8f, 4);
+        def.allocator = &allocator;
+        bool compacting_failed, expanding_failed;
+        mspring_network *network = recipe_network(&made, &def);
+        set_up_run(network, 3);
+        check_ok(mspring_network_set_stress_strains(network, 0, made.spring_count, strain));
+        check_ok(mspring_network_update_components(network, NULL, NULL));
+        make_wreck(network, &made, TORN);
+        support_steps(network, 1, 1.0 / 64);
+        check_ok(mspring_network_apply_force(network, 3, 1, 2));
+        check_survives(network, &watched, fail_at, compact_all, &compacting_failed);
+        support_steps(network, 1, 1.0 / 64);
+        check_survives(network, &watched, fail_at, mspring_network_expand, &expanding_failed);
+        support_steps(network, 1, 1.0 / 64);
+        expected = fail_at == 1 ? support_hash(network) : expected;
+        assert_int_equal(support_hash(network), expected);
+        mspring_network_destroy(network);
+        check_watched_clean(&watched);
+        failed = compacting_failed || expanding_failed;
+    }
+    assert_true(fail_at > 50); // topology, state, records, solver
+    free(strain);
+    recipe_free(&made);
+}
+
+static void a_compaction_may_stay_unfinished(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    for (uint32_t pieces = 1; pieces < 12; pieces++) {
+        watched_allocator watched = {.fail_at = 0};
+        mspring_allocator allocator = watched_interface(&watched);
+        mspring_network_def def = support_def(-9.8f, 4);
+        def.allocator = &allocator;
+        mspring_network *network = recipe_network(&made, &def);
+        make_wreck(network, &made, TORN);
+        check_ok(mspring_network_compact(network, pieces, NULL));
+        if (pieces % 2 == 0) {
+            check_ok(mspring_network_expand(network)); // drops it
+        }
+        mspring_network_destroy(network);
+        check_watched_clean(&watched);
+    }
+    recipe_free(&made);
+}
+
+static void compact_in_hook(const mspring_hook_args *args, void *user) {
+    (void)args;
+    check_error(mspring_network_compact(user, 0, NULL), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_expand(user), MSPRING_ERROR_BUSY);
+}
+
+static void misuse_is_refused(void **state) {
+    (void)state;
+    check_error(mspring_network_compact(NULL, 0, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_expand(NULL), MSPRING_ERROR_ARGUMENT);
+    recipe made = mixed_recipe();
+    mspring_network *network = make(&made, MSPRING_SIMD_AUTO, 1);
+    check_ok(mspring_network_expand(network)); // nothing to undo
+    check_ok(support_add_hook(network, MSPRING_PHASE_BEFORE_STEP, compact_in_hook, network, NULL));
+    support_steps(network, 1, 1.0 / 64);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_changes_but_the_plan),
+        cmocka_unit_test(plans_are_those_of_what_is_left),
+        cmocka_unit_test(motion_goes_on),
+        cmocka_unit_test(expanding_undoes_compacting),
+        cmocka_unit_test(bits_are_the_same_everywhere),
+        cmocka_unit_test(work_is_done_in_pieces),
+        cmocka_unit_test(springs_that_are_left_out_can_be_edited_and_restored),
+        cmocka_unit_test(strains_are_watched_as_before),
+        cmocka_unit_test(snapshots_are_of_one_plan),
+        cmocka_unit_test(clones_are_compact_too),
+        cmocka_unit_test(every_failure_leaves_the_network_as_it_was),
+        cmocka_unit_test(a_compaction_may_stay_unfinished),
+        cmocka_unit_test(misuse_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
