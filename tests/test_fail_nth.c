@@ -1,0 +1,366 @@
+/// @file test_fail_nth.c
+/// A life that calls every function that allocates, with the n-th allocation failing, for every n: the call that it
+/// hits says so and changes nothing, succeeds when it is made again, and all ends as if nothing had happened.
+///
+/// SPDX-License-Identifier: MIT
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "allocator.h"
+#include "recipe.h"
+#include "support.h"
+
+typedef struct life {
+    watched_allocator watched;
+    mspring_allocator allocator;
+    mspring_builder *builder;
+    mspring_network *network, *clone;
+    recipe made;
+    unsigned char *snapshot;
+    size_t snapshot_size;
+    uint32_t failures; ///< calls that failed and were made again
+} life;
+
+/* ------------------------------------------------------------------------------------------------- the calls */
+
+static mspring_result make_builder(life *l) {
+    return mspring_builder_create(&l->allocator, &l->builder);
+}
+
+static mspring_result add_particles(life *l) {
+    return mspring_builder_add_particles(l->builder, l->made.particles, l->made.particle_count, NULL);
+}
+
+static mspring_result add_particle(life *l) {
+    return mspring_builder_add_particle(l->builder, &l->made.particles[0], NULL);
+}
+
+static mspring_result add_springs(life *l) {
+    return mspring_builder_add_springs(l->builder, l->made.springs, l->made.spring_count, NULL);
+}
+
+static mspring_result add_spring(life *l) {
+    mspring_spring_def def;
+    check_ok(mspring_spring_def_init(&def, sizeof def));
+    def.a = 1;
+    def.b = l->made.particle_count; // the one added alone
+    def.stiffness = 0.1f;
+    def.flags = MSPRING_SPRING_RELATIVE;
+    def.rest_length = 2;
+    return mspring_builder_add_spring(l->builder, &def, NULL);
+}
+
+static mspring_result add_lattice(life *l) {
+    static const uint16_t cells[20 * 10] = {0};
+    mspring_material material;
+    mspring_lattice_def def;
+    check_ok(mspring_material_init(&material, sizeof material));
+    check_ok(mspring_lattice_def_init(&def, sizeof def));
+    material.stiffness = 100;
+    def.width = 20, def.height = 10, def.x = 50, def.cells = cells, def.materials = &material;
+    def.material_count = 1;
+    return mspring_builder_add_lattice(l->builder, &def, NULL);
+}
+
+static mspring_result add_rope(life *l) {
+    mspring_rope_def def;
+    check_ok(mspring_rope_def_init(&def, sizeof def));
+    def.from = 2, def.to = l->made.particle_count + 5, def.segment_count = 30, def.stiffness = 100;
+    return mspring_builder_add_rope(l->builder, &def, NULL, NULL);
+}
+
+static mspring_result create(life *l) {
+    mspring_network_def def = support_def(-9.8f, 2);
+    def.allocator = &l->allocator;
+    def.flags = MSPRING_NETWORK_RESERVE_DAMPING;
+    return mspring_network_create(l->builder, &def, &l->network);
+}
+
+static mspring_result step(life *l) {
+    return mspring_network_step(l->network, 0.005);
+}
+
+static mspring_result apply_force(life *l) {
+    return mspring_network_apply_force(l->network, 1, 2, 3);
+}
+
+static mspring_result apply_forces(life *l) {
+    const float x[2] = {1, 2}, y[2] = {3, 4};
+    return mspring_network_apply_forces(l->network, 2, 2, x, y);
+}
+
+static void push(const mspring_hook_args *args, void *user) {
+    (void)user;
+    for (uint32_t slot = args->first_slot; args->force_x && slot < args->first_slot + args->slot_count; slot++)
+        args->force_x[slot] += 0.01f;
+}
+
+static mspring_result hook(life *l, mspring_phase phase, uint32_t period) {
+    mspring_hook_def def;
+    check_ok(mspring_hook_def_init(&def, sizeof def));
+    def.phase = phase;
+    def.period = period;
+    def.fn = push;
+    return mspring_network_add_hook(l->network, &def, NULL);
+}
+
+static mspring_result hook_before_step(life *l) {
+    return hook(l, MSPRING_PHASE_BEFORE_STEP, 1);
+}
+
+static mspring_result hook_before_substep(life *l) {
+    return hook(l, MSPRING_PHASE_BEFORE_SUBSTEP, 1);
+}
+
+static mspring_result hook_with_period(life *l) {
+    return hook(l, MSPRING_PHASE_BEFORE_SUBSTEP, 2);
+}
+
+static mspring_result stable_dt(life *l) {
+    double now = 0, any_shape = 0;
+    return mspring_network_stable_dt(l->network, &now, &any_shape);
+}
+
+static mspring_result suggest_substeps(life *l) {
+    uint32_t substeps = 0;
+    return mspring_network_suggest_substeps(l->network, 0.01, 0.9, &substeps);
+}
+
+static mspring_result set_masses(life *l) {
+    const float masses[3] = {3, 4, 5};
+    return mspring_network_set_masses(l->network, 1, 3, masses);
+}
+
+static mspring_result set_scales(life *l) {
+    const float scales[2] = {0.5f, 0};
+    return mspring_network_set_inverse_mass_scales(l->network, 4, 2, scales);
+}
+
+static mspring_result set_rest_lengths(life *l) {
+    const float lengths[2] = {1.01f, 1.02f};
+    return mspring_network_set_rest_lengths(l->network, 5, 2, lengths);
+}
+
+static mspring_result break_springs(life *l) {
+    const mspring_id springs[3] = {1, 7, 9};
+    return mspring_network_break_springs(l->network, springs, 3);
+}
+
+static mspring_result restore_springs(life *l) {
+    const mspring_id springs[2] = {7, 9};
+    return mspring_network_restore_springs(l->network, springs, 2, 0.5);
+}
+
+static mspring_result detach(life *l) {
+    const mspring_id particle = 8;
+    return mspring_network_detach_particles(l->network, &particle, 1);
+}
+
+static mspring_result set_break_strains(life *l) {
+    const float strains[2] = {0.4f, 0.5f};
+    return mspring_network_set_break_strains(l->network, 3, 2, strains);
+}
+
+static mspring_result set_stress_strains(life *l) {
+    const float strains[2] = {0.1f, 0.2f};
+    return mspring_network_set_stress_strains(l->network, 3, 2, strains);
+}
+
+static mspring_result reserve_events(life *l) {
+    return mspring_network_reserve_events(l->network, 50);
+}
+
+static mspring_result update_components(life *l) {
+    return mspring_network_update_components(l->network, NULL, NULL);
+}
+
+static mspring_result get_extents(life *l) {
+    float *length = test_malloc(mspring_network_spring_count(l->network) * sizeof *length);
+    const mspring_result result = mspring_network_get_extents(l->network, length, NULL, NULL, NULL);
+    test_free(length);
+    return result;
+}
+
+static mspring_result clone(life *l) {
+    return mspring_network_clone(l->network, NULL, &l->clone);
+}
+
+static mspring_result save(life *l) {
+    check_ok(mspring_network_snapshot_size(l->network, MSPRING_SNAPSHOT_ALL, &l->snapshot_size));
+    free(l->snapshot);
+    l->snapshot = malloc(l->snapshot_size);
+    assert_non_null(l->snapshot);
+    return mspring_network_save(l->network, MSPRING_SNAPSHOT_ALL, l->snapshot, l->snapshot_size, NULL);
+}
+
+// What loads the snapshot lacks all that it did not need so far.
+static mspring_result start_again(life *l) {
+    mspring_network_destroy(l->network);
+    l->network = NULL;
+    return MSPRING_OK;
+}
+
+static mspring_result load(life *l) {
+    return mspring_network_load(l->network, l->snapshot, l->snapshot_size);
+}
+
+static mspring_result set_solver(life *l, mspring_solver solver, mspring_integrator integrator) {
+    mspring_solver_def def;
+    check_ok(mspring_solver_def_init(&def, sizeof def));
+    def.solver = solver;
+    def.integrator = integrator;
+    return mspring_network_set_solver(l->network, &def);
+}
+
+static mspring_result use_implicit(life *l) {
+    return set_solver(l, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2);
+}
+
+static mspring_result use_direct(life *l) {
+    return set_solver(l, MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_GA0);
+}
+
+static mspring_result settle(life *l) {
+    mspring_settle_def def;
+    check_ok(mspring_settle_def_init(&def, sizeof def));
+    def.flags = MSPRING_SETTLE_LEAVE_FLOATING;
+    return mspring_network_settle(l->network, &def, NULL);
+}
+
+static const struct {
+    const char *name;
+    mspring_result (*call)(life *l);
+} calls[] = {
+    {"builder", make_builder},
+    {"particles", add_particles},
+    {"particle", add_particle},
+    {"springs", add_springs},
+    {"spring", add_spring},
+    {"lattice", add_lattice},
+    {"rope", add_rope},
+    {"create", create},
+    {"stable_dt", stable_dt},
+    {"suggest_substeps", suggest_substeps},
+    {"force", apply_force},
+    {"step", step},
+    {"forces", apply_forces},
+    {"hook before step", hook_before_step},
+    {"hook before substep", hook_before_substep},
+    {"hook with period", hook_with_period},
+    {"step", step},
+    {"masses", set_masses},
+    {"inverse mass scales", set_scales},
+    {"rest lengths", set_rest_lengths},
+    {"break strains", set_break_strains},
+    {"stress strains", set_stress_strains},
+    {"events", reserve_events},
+    {"break", break_springs},
+    {"step", step},
+    {"restore", restore_springs},
+    {"detach", detach},
+    {"components", update_components},
+    {"extents", get_extents},
+    {"clone", clone},
+    {"step", step},
+    {"save", save},
+    {"start again", start_again},
+    {"create again", create},
+    {"load", load},
+    {"step", step},
+    {"implicit", use_implicit},
+    {"step", step},
+    {"direct", use_direct},
+    {"step", step},
+    {"settle", settle},
+    {"step", step},
+};
+
+/* --------------------------------------------------------------------------------------------------- the lives */
+
+static recipe small_recipe(void) {
+    uint64_t seed = 15;
+    const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {100, 200}, .damping = {0, 1}, .pinned = 0.1};
+    recipe made = {0};
+    recipe_lattice(&made, 7, 5, 0, 0, 1, &stuff, &seed);
+    recipe_random_springs(&made, 5, &stuff, &seed);
+    recipe_disturb(&made, 0.01, 0, &seed);
+    return made;
+}
+
+static uint64_t hash_of(const life *l) {
+    return l->network ? support_hash(l->network) : 0;
+}
+
+static size_t used_by(const life *l) {
+    return mspring_network_memory_used(l->network);
+}
+
+// Make a call; if memory fails, look that nothing has changed, and make it again.
+static void make_call(life *l, size_t number) {
+    const uint64_t before = hash_of(l);
+    const size_t live = l->watched.live, used = used_by(l);
+    const uint32_t particles = mspring_builder_particle_count(l->builder);
+    const uint32_t springs = mspring_builder_spring_count(l->builder);
+    const size_t clones = l->clone != NULL;
+    mspring_result result = calls[number].call(l);
+    if (result == MSPRING_ERROR_MEMORY) {
+        l->failures++;
+        if (hash_of(l) != before || l->watched.live < live)
+            print_error("%s has changed something\n", calls[number].name);
+        assert_int_equal(hash_of(l), before);
+        assert_int_equal(mspring_builder_particle_count(l->builder), particles);
+        assert_int_equal(mspring_builder_spring_count(l->builder), springs);
+        assert_int_equal(l->clone != NULL, clones);
+        // What a call has reserved before it failed it may keep, for the next time; but it counts it.
+        assert_true(used_by(l) >= used);
+        result = calls[number].call(l);
+    }
+    if (result != MSPRING_OK)
+        print_error("%s: %s\n", calls[number].name,
+                    l->network ? mspring_network_error(l->network) : mspring_builder_error(l->builder));
+    check_ok(result);
+}
+
+/// Live with the n-th allocation failing, 0 for none. Returns how many there were.
+static size_t live_through(size_t fail_at, uint64_t *hash, uint32_t *failures) {
+    life l = {.made = small_recipe()};
+    l.allocator = watched_interface(&l.watched);
+    l.watched.fail_at = fail_at;
+    for (size_t i = 0; i < COUNT_OF(calls); i++)
+        make_call(&l, i);
+    const size_t made = l.watched.calls;
+    *hash = hash_of(&l);
+    *failures = l.failures;
+    mspring_network_destroy(l.network);
+    mspring_network_destroy(l.clone);
+    mspring_builder_destroy(l.builder);
+    check_watched_clean(&l.watched);
+    free(l.snapshot);
+    recipe_free(&l.made);
+    return made;
+}
+
+static void every_failure_is_survived(void **state) {
+    (void)state;
+    uint64_t expected = 0, hash = 0;
+    uint32_t failures = 0;
+    const size_t count = live_through(0, &expected, &failures);
+    assert_int_equal(failures, 0);
+    assert_true(count > 200);
+    for (size_t n = 1; n <= count; n++) {
+        (void)live_through(n, &hash, &failures);
+        if (hash != expected || failures != 1)
+            print_error("allocation %zu of %zu: %u calls failed\n", n, count, (unsigned)failures);
+        assert_int_equal(failures, 1);
+        assert_int_equal(hash, expected);
+    }
+    print_message("%zu allocations, each failed once\n", count);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_failure_is_survived),
+    };
+    return cmocka_run_group_tests_name("fail_nth", tests, NULL, NULL);
+}
