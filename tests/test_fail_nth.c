@@ -194,6 +194,14 @@ static mspring_result save(life *l) {
     return mspring_network_save(l->network, MSPRING_SNAPSHOT_ALL, l->snapshot, l->snapshot_size, NULL);
 }
 
+static mspring_result compact(life *l) {
+    return mspring_network_compact(l->network, 0, NULL);
+}
+
+static mspring_result expand(life *l) {
+    return mspring_network_expand(l->network);
+}
+
 // What loads the snapshot lacks all that it did not need so far.
 static mspring_result start_again(life *l) {
     mspring_network_destroy(l->network);
@@ -259,6 +267,9 @@ static const struct {
     {"step", step},
     {"restore", restore_springs},
     {"detach", detach},
+    {"compact", compact},
+    {"step", step},
+    {"expand", expand},
     {"components", update_components},
     {"extents", get_extents},
     {"clone", clone},

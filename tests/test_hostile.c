@@ -310,6 +310,8 @@ static void add_hook(arguments *a) {
       mspring_network_save(a->network, a->kind, a->out[0], a->size, a->out[1]))                                    \
     X(mspring_network_load, "NZV", a->size = a->snapshot_size,                                                     \
       mspring_network_load(a->network, a->snapshot, a->size))                                                      \
+    X(mspring_network_compact, "No", NOTHING, mspring_network_compact(a->network, 0, a->out[0]))                   \
+    X(mspring_network_expand, "N", NOTHING, mspring_network_expand(a->network))                                    \
     X(mspring_network_plan, "nP", OUT_STRUCT(0, plan), mspring_network_plan(a->network, a->out[0]))
 
 typedef struct function {
