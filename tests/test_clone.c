@@ -94,6 +94,18 @@ static void use_everything(mspring_network *network) {
     check_ok(mspring_network_reserve_events(network, 64));
     check_ok(mspring_network_update_components(network, NULL, NULL));
     check_ok(mspring_network_get_extents(network, values, NULL, NULL, NULL));
+    mspring_floor_def floor;
+    const double plane[4] = {0, -3, 0.1, 1};
+    const float heights[] = {0, 1, 0, 2, 0};
+    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    floor.planes = plane;
+    floor.plane_count = 1;
+    floor.heights = heights;
+    floor.height_count = COUNT_OF(heights);
+    floor.heights_y = -4;
+    floor.spacing = 5;
+    floor.friction = 0.5f;
+    check_ok(mspring_network_set_floor(network, &floor));
 }
 
 /// A frame of a game, which does a bit of everything, as a function of the frame's number alone.

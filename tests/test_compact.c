@@ -250,6 +250,13 @@ static void add_pushing_hook(mspring_network *network) {
 enum { RUNS = 6 };
 
 static void set_up_run(mspring_network *network, int run) {
+    const double plane[4] = {0, -2, 0, 1};
+    mspring_floor_def def;
+    check_ok(mspring_floor_def_init(&def, sizeof def));
+    def.planes = plane;
+    def.plane_count = 1;
+    def.friction = 0.3f;
+    check_ok(mspring_network_set_floor(network, &def));
     if (run % 2 == 1) {
         add_pushing_hook(network);
     }

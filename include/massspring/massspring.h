@@ -790,6 +790,61 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_add_hook(mspring_ne
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_remove_hook(mspring_network *network, uint32_t hook);
 
+/* -------------------------------------------------------------------------------------------------- floor */
+
+/// Most half-planes of a floor, and most heights.
+#define MSPRING_MAX_PLANES 8u
+#define MSPRING_MAX_HEIGHTS ((uint32_t)1 << 26)
+
+/// What particles cannot get through: half-planes, such as the sides of a box, and a field of heights, such as a
+/// sea floor. Fill with mspring_floor_def_init() first.
+typedef struct mspring_floor_def {
+    uint32_t struct_size;
+    uint32_t plane_count; ///< half-planes, at most MSPRING_MAX_PLANES; default 0
+    const double *planes; ///< [plane_count][4]: x and y of a point on the border (m, world coordinates), then x and
+                          ///< y of a vector of any length across it, towards where particles may be
+    double heights_x;     ///< of the first height, m, world coordinates; default 0
+    double heights_y;     ///< of height 0, m, world coordinates; default 0
+    double spacing;       ///< m from one height to the next, 1e-9 to 1e9; default 1
+    const float *heights; ///< [height_count], m above heights_y: joined by straight lines, level beyond both ends;
+                          ///< particles may be above
+    uint32_t height_count; ///< 0, the default: no field of heights; else 2 to MSPRING_MAX_HEIGHTS
+    float friction;        ///< of particles that slide (Coulomb): force along the surface over that across it, 0 to
+                           ///< 1e6; default 0
+    float restitution;     ///< of particles that come from afar: speed across the surface after contact over that
+                           ///< before, 0 to 1; default 0. Below about 0.02 m/s they do not bounce.
+    uint32_t reserved;     ///< 0
+} mspring_floor_def;
+
+/// Fill a definition with its defaults, as mspring_network_def_init().
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API mspring_result mspring_floor_def_init(mspring_floor_def *def, size_t size);
+
+/// Give the network a floor instead of the one it has. It acts on every particle that is not pinned, in every
+/// substep: a particle that was above it at the beginning is not below it at the end, whatever its speed and
+/// however long the substep, but for some last places of its coordinates (a millionth of its distance from the
+/// local origin); one that was below is put onto it. Contact takes energy and never gives any. Peaks of the heights
+/// that are narrower than the way of a particle in a substep are met, too.
+///
+/// The floor is a setting, as gravity is, but too large for snapshots, which leave it as it is; state hashes do not
+/// count it. Static equilibria (mspring_network_settle()) do not know of it.
+/// @param def  copied with all that it points to; NULL: no floor
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY. On
+///         error the floor is the one of before.
+/// @threads exclusive access to network   @allocates yes; 20 to 24 bytes for a height and 16 for a particle
+/// @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_floor(mspring_network *network,
+                                                                       const mspring_floor_def *def);
+
+/// Copy out what momentum (N s) the floor gave to the particles first ... first + count - 1 in the last step: over
+/// its length, the mean force. 0 without a floor.
+/// @param x, y  [count]
+/// @return MSPRING_OK; MSPRING_ERROR_ID or MSPRING_ERROR_ARGUMENT.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_floor_impulses(const mspring_network *network,
+                                                                                mspring_id first, uint32_t count,
+                                                                                float *x, float *y);
+
 /* -------------------------------------------------------------------------------------------------- views */
 
 /// The state as it lies in memory: arrays by slot. The pointers stay valid, and their contents follow the

@@ -53,6 +53,11 @@ mspring_result mspring_hook_def_init(mspring_hook_def *def, size_t size) {
     return fill(def, size, &defaults, sizeof defaults);
 }
 
+mspring_result mspring_floor_def_init(mspring_floor_def *def, size_t size) {
+    const mspring_floor_def defaults = {.struct_size = sizeof defaults, .spacing = 1.0};
+    return fill(def, size, &defaults, sizeof defaults);
+}
+
 mspring_result mspring_solver_def_init(mspring_solver_def *def, size_t size) {
     const mspring_solver_def defaults = {
         .struct_size = sizeof defaults, .solver = MSPRING_SOLVER_EXPLICIT, .substeps = 1, .max_substeps = 1000};

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "contact/floor.h"
 #include "strip.h"
 
 /// Strips that are swept several times in one pass should stay in the second-level cache: this much of it. Where
@@ -20,6 +21,10 @@
 
 /// Strips that a worker may lag behind the one before, besides those that it must, before others have to wait.
 #define SLACK 4
+
+/// Slots of loose particles that go through all substeps before the next do where there is a floor: they stay in
+/// the first-level cache.
+#define LOOSE_AT_ONCE ((uint32_t)512)
 
 /// What the workers have in common.
 typedef struct job {
@@ -153,11 +158,27 @@ static void meet(const job *rest, uint32_t worker, uint32_t n) {
             mspringi_progress_wait(&rest->progress[other], n);
 }
 
-// Take all substeps of a share of the loose particles: nothing else moves them.
-static void sweep_loose(const job *rest, const mspringi_span *all, uint32_t index) {
-    const mspringi_substep substep = mspringi_substep_prepare(rest->network, rest->h, rest->base, 0, 1, 0);
-    const mspringi_span share = share_of(all, index, rest->workers);
-    rest->network->kernels->loose[rest->base.x != NULL](&substep.sweep, &share, rest->count);
+// Take all substeps of a share of the loose particles: nothing moves them but a floor, which has to be looked at
+// after each substep.
+static void sweep_loose(const job *rest, const mspringi_strip *strip, uint32_t index) {
+    const mspring_network *network = rest->network;
+    const mspringi_topology *t = &network->topology;
+    const mspringi_loose_fn sweep = network->kernels->loose[rest->base.x != NULL];
+    const mspringi_substep substep = mspringi_substep_prepare(network, rest->h, rest->base, 0, 1, 0);
+    const mspringi_span share = share_of(&t->spans[t->rows[strip->first_row].first_span], index, rest->workers);
+    mspringi_span some = share;
+    if (!network->floor) {
+        sweep(&substep.sweep, &share, rest->count);
+        return;
+    }
+    for (uint32_t first = share.first_slot; first < share.end_slot; first = some.end_slot) {
+        some.first_slot = first;
+        some.end_slot = share.end_slot - first < LOOSE_AT_ONCE ? share.end_slot : first + LOOSE_AT_ONCE;
+        for (uint32_t i = 0; i < rest->count; ++i) {
+            sweep(&substep.sweep, &some, 1);
+            mspringi_floor_touch(network, strip, &some, 1, rest->h);
+        }
+    }
 }
 
 // Take one substep after the other: all workers pack and sweep the web, the first one everything else. Substeps
@@ -172,12 +193,14 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
         mspringi_substep substep = mspringi_substep_prepare(network, rest->h, rest->base, i, rest->count, 0);
         substep.next_packed = NULL;
         mspringi_span share = {0};
+        const mspringi_strip *strip = t->strips; // that the share is of
         for (uint32_t s = t->wave_strips; s < t->strip_count; ++s) {
             const mspringi_row *row = &t->rows[t->strips[s].first_row];
             if (row->kind == MSPRINGI_ROW_LOOSE) {
                 if (i == 0)
-                    sweep_loose(rest, &t->spans[row->first_span], index);
+                    sweep_loose(rest, &t->strips[s], index);
             } else if (row->kind == MSPRINGI_ROW_WEB) {
+                strip = &t->strips[s];
                 share = share_of(&t->spans[row->first_span], index, rest->workers);
                 mspringi_web_pack(network, &substep, &share);
             } else if (index == 0) {
@@ -185,8 +208,10 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
             }
         }
         meet(rest, index, i + 1);
-        if (share.end_slot > share.first_slot)
+        if (share.end_slot > share.first_slot) {
             mspringi_web_sweep(network, &substep, &share);
+            mspringi_floor_touch(network, strip, &share, 1, substep.sweep.h);
+        }
         for (uint32_t s = t->wave_strips; index == 0 && s < t->strip_count; ++s)
             if (t->rows[t->strips[s].first_row].kind < MSPRINGI_ROW_WEB)
                 mspringi_strip_sweep(network, &substep, &t->strips[s]);
@@ -205,9 +230,13 @@ static void sweep_rest(mspring_network *network, float h, mspringi_field base, u
 }
 
 void mspringi_explicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+    if (network->floor)
+        mspringi_floor_survey(network, (double)h * (double)count);
     // The wave's strips know nothing of the others, nor they of the wave's.
     sweep_wave(network, h, base, count);
     sweep_rest(network, h, base, count);
+    if (network->floor)
+        mspringi_floor_touch_far(network, h);
 }
 
 void mspringi_explicit_reset(mspring_network *network) {

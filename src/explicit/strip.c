@@ -1,6 +1,7 @@
 /// Sweeping a strip of rows, and what hangs on it.
 #include "strip.h"
 
+#include "contact/floor.h"
 #include "decay.h"
 
 mspringi_substep mspringi_substep_prepare(const mspring_network *network, float h, mspringi_field base, uint32_t i,
@@ -142,12 +143,18 @@ void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep
     }
     if (strip->attached_count > 0)
         pull_attached(network, substep, strip);
+    if (network->floor) {
+        const mspringi_row *last = rows + strip->row_count - 1;
+        mspringi_floor_touch(network, strip, &network->topology.spans[rows->first_span],
+                             last->first_span + last->span_count - rows->first_span, substep->sweep.h);
+    }
     if (strip->attached_count > 0 && substep->next_packed)
         pack_attached(network, strip, substep->next_packed);
     if (strip->home_span == MSPRING_NONE)
         return;
     const mspringi_span *span = &network->topology.spans[strip->home_span];
     mspringi_web_sweep(network, substep, span);
+    mspringi_floor_touch(network, strip, span, 1, substep->sweep.h);
     if (substep->next_packed)
         pack_span(network, &substep->sweep, span, substep->next_packed);
 }

@@ -62,6 +62,14 @@ typedef struct mspringi_largest {
 } mspringi_largest;
 typedef mspringi_largest (*mspringi_largest_fn)(const float *now, const float *before, size_t count);
 
+/// A box.
+typedef struct mspringi_bounds {
+    float min_x, max_x, min_y, max_y;
+} mspringi_bounds;
+
+/// Whether any of count slots (a multiple of MSPRINGI_WIDTH) lies outside a box.
+typedef bool (*mspringi_leaves_fn)(const float *x, const float *y, size_t count, const mspringi_bounds *bounds);
+
 /// What a strain pass works on: arrays by slot and, by place, the least strain that anything happens at.
 typedef struct mspringi_strain_sweep {
     const float *x, *y;
@@ -96,6 +104,7 @@ typedef struct mspringi_kernels {
     mspringi_pack_fn pack;
     mspringi_attached_fn attached[2]; ///< [with damping]
     mspringi_largest_fn largest;
+    mspringi_leaves_fn leaves;
     mspringi_strain_fn lattice_strain, chain_strain;
     mspringi_system_kernels system;
 } mspringi_kernels;

@@ -5,6 +5,7 @@
 ///
 /// SPDX-License-Identifier: MIT
 
+#include "bounds.h"
 #include "strain.h"
 #include "system_assemble.h"
 #include "system_iterate.h"
@@ -53,6 +54,7 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .pack = pack,
     .attached = {attached_plain, attached_damped},
     .largest = largest,
+    .leaves = leaves,
     .lattice_strain = lattice_strain,
     .chain_strain = chain_strain,
     .system = {.assemble_lattice = {assemble_lattice_plain, assemble_lattice_damped},

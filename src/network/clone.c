@@ -2,6 +2,7 @@
 ///
 /// Whoever adds such a pointer to what a network holds adds it here. One that is forgotten leads back into the
 /// original, which test_clone finds by looking at every word of a clone.
+#include "contact/floor.h"
 #include "implicit/implicit.h"
 #include "network.h"
 
@@ -175,6 +176,16 @@ static void move_implicit(const moving *m, mspringi_implicit *n) {
 
 /* ------------------------------------------------------------------------------------------------- the network */
 
+static void move_floor(const moving *m, mspringi_floor *floor) {
+    MOVE(floor->heights.heights);
+    MOVE(floor->heights.normals);
+    for (uint32_t i = 0; i < MSPRINGI_HEIGHT_LEVELS; ++i)
+        MOVE(floor->heights.highest[i]);
+    MOVE(floor->clearances);
+    move_field(m, &floor->start);
+    move_field(m, &floor->impulse);
+}
+
 static void move_parameters(const moving *m, mspring_network *n) {
     MOVE(n->inverse_mass);
     MOVE(n->mass);
@@ -231,6 +242,9 @@ static void move_network(const moving *m, mspring_network *n) {
     move_parameters(m, n);
     move_records(m, n);
     move_forces(m, n);
+    MOVE(n->floor);
+    if (n->floor)
+        move_floor(m, n->floor);
     MOVE(n->implicit);
     if (n->implicit)
         move_implicit(m, n->implicit);

@@ -171,6 +171,7 @@ struct mspring_network {
     uint32_t max_substeps;
     bool auto_substeps;
     struct mspringi_implicit *implicit; ///< NULL: the explicit solver
+    struct mspringi_floor *floor;       ///< NULL: there is none
     mspring_guard guard_policy;
     mspringi_guard guard;
     double shortest; ///< smallest rest length at first, m

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/cpu.h"
+#include "contact/floor.h"
 #include "edits/ramps.h"
 #include "edits/strain.h"
 #include "explicit/explicit.h"
@@ -57,8 +58,18 @@ static mspringi_field prepare_base(mspring_network *network, double dt) {
 
 /* -------------------------------------------------------------------------------------------------- substeps */
 
+static void take_implicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+    for (; count > 0; --count) {
+        mspringi_floor_keep(network);
+        mspringi_implicit_substeps(network, h, base, 1);
+        mspringi_floor_touch_all(network, h);
+    }
+}
+
 static void take_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
-    if (network->implicit)
+    if (network->implicit && network->floor)
+        take_implicit_substeps(network, h, base, count);
+    else if (network->implicit)
         mspringi_implicit_substeps(network, h, base, count);
     else
         mspringi_explicit_substeps(network, h, base, count);
@@ -133,6 +144,7 @@ static mspring_result attempt(mspring_network *network, double dt) {
     mspring_result result = mspringi_guard_begin(network, dt, h);
     copy_state(network, &network->state, &network->backup);
     mspringi_implicit_keep(network);
+    mspringi_floor_begin(network->floor);
     if (result == MSPRING_OK) {
         run_substeps(network, dt, h);
         if (network->is_open)

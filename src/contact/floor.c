@@ -1,0 +1,214 @@
+/// The floor as the host defines it.
+#include "floor.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/cpu.h"
+
+#define SHORTEST_SPACING 1e-9
+#define LONGEST_SPACING 1e9
+
+/* ----------------------------------------------------------------------------------------------------- checking */
+
+static bool is_coordinate(double value) {
+    return fabs(value) <= MSPRING_MAX_COORDINATE;
+}
+
+static mspring_result check_planes(const mspring_floor_def *def, mspringi_message *message) {
+    if (def->plane_count > MSPRING_MAX_PLANES)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the floor has %u planes, it may have %u",
+                             (unsigned)def->plane_count, (unsigned)MSPRING_MAX_PLANES);
+    if (def->plane_count > 0 && !def->planes)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the floor's planes are NULL");
+    for (uint32_t i = 0; i < def->plane_count; ++i) {
+        const double *plane = def->planes + 4 * (size_t)i;
+        if (!is_coordinate(plane[0]) || !is_coordinate(plane[1]))
+            return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                                 "the floor's plane %u goes through (%g, %g), which is out of bounds", (unsigned)i,
+                                 plane[0], plane[1]);
+        const double square = plane[2] * plane[2] + plane[3] * plane[3];
+        if (!(square >= 1e-200 && square <= 1e200))
+            return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                                 "the floor's plane %u faces (%g, %g), which is no direction", (unsigned)i,
+                                 plane[2], plane[3]);
+    }
+    return MSPRING_OK;
+}
+
+static mspring_result check_heights(const mspring_floor_def *def, mspringi_message *message) {
+    if (def->height_count == 0)
+        return MSPRING_OK;
+    if (def->height_count < 2 || def->height_count > MSPRING_MAX_HEIGHTS)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the floor has %u heights, it may have 0 or 2 to %u",
+                             (unsigned)def->height_count, (unsigned)MSPRING_MAX_HEIGHTS);
+    if (!def->heights)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the floor's heights are NULL");
+    if (!(def->spacing >= SHORTEST_SPACING && def->spacing <= LONGEST_SPACING))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "the floor's heights are %g m apart, it must be 1e-9 to 1e9", def->spacing);
+    const double end = def->heights_x + def->spacing * (double)(def->height_count - 1);
+    if (!is_coordinate(def->heights_x) || !is_coordinate(end) || !is_coordinate(def->heights_y))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "the floor's heights go from (%g, %g) to x = %g, which is out of bounds",
+                             def->heights_x, def->heights_y, end);
+    for (uint32_t i = 0; i < def->height_count; ++i)
+        if (!is_coordinate((double)def->heights[i]))
+            return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                                 "height %u of the floor is %g m, which is out of bounds", (unsigned)i,
+                                 (double)def->heights[i]);
+    return MSPRING_OK;
+}
+
+static mspring_result check_floor(const mspring_floor_def *def, mspringi_message *message) {
+    mspring_result result =
+        mspringi_check_struct(message, "mspring_floor_def", def->struct_size, sizeof *def, sizeof *def);
+    if (result != MSPRING_OK)
+        return result;
+    if (!(def->friction >= 0.0f && def->friction <= 1e6f))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the floor's friction is %g, it must be 0 to 1e6",
+                             (double)def->friction);
+    if (!(def->restitution >= 0.0f && def->restitution <= 1.0f))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the floor's restitution is %g, it must be 0 to 1",
+                             (double)def->restitution);
+    if (def->plane_count == 0 && def->height_count == 0)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the floor has neither planes nor heights");
+    result = check_planes(def, message);
+    return result == MSPRING_OK ? check_heights(def, message) : result;
+}
+
+/* ----------------------------------------------------------------------------------------------------- copying */
+
+static uint32_t level_count(uint32_t count, uint32_t level) {
+    return (uint32_t)(((uint64_t)count + ((uint64_t)1 << level) - 1) >> level);
+}
+
+// Copy the heights, and on top of them the highest of 2, of 4 and so on, until one is left: all in one block.
+static bool copy_heights(mspringi_heights *to, const mspring_floor_def *def, mspringi_memory *memory) {
+    size_t total = 0;
+    for (uint32_t level = 0; level == 0 || level_count(def->height_count, level - 1) > 1; ++level)
+        total += level_count(def->height_count, level);
+    float *values = mspringi_alloc(memory, total, sizeof *values);
+    if (!values)
+        return false;
+    to->heights = values;
+    memcpy(values, def->heights, def->height_count * sizeof *values);
+    for (uint32_t level = 0;; ++level) {
+        const uint32_t count = level_count(def->height_count, level);
+        to->highest[level] = values;
+        values += count;
+        if (count == 1)
+            return true;
+        for (uint32_t i = 0; i < count; i += 2) {
+            const float a = to->highest[level][i], b = to->highest[level][i + 1 < count ? i + 1 : i];
+            values[i / 2] = a > b ? a : b;
+        }
+    }
+}
+
+static bool find_normals(mspringi_heights *h, mspringi_memory *memory) {
+    h->normals = mspringi_alloc(memory, 2 * ((size_t)h->count - 1), sizeof *h->normals);
+    for (uint32_t i = 0; h->normals && i + 1 < h->count; ++i) {
+        const double rise = (double)h->heights[i + 1] - (double)h->heights[i];
+        const double length = sqrt(h->spacing * h->spacing + rise * rise);
+        h->normals[2 * (size_t)i] = -rise / length;
+        h->normals[2 * (size_t)i + 1] = h->spacing / length;
+    }
+    return h->normals != NULL;
+}
+
+static bool copy_floor(mspringi_floor *to, const mspring_floor_def *def, mspringi_memory *memory) {
+    to->friction = (double)def->friction;
+    to->restitution = (double)def->restitution;
+    to->plane_count = def->plane_count;
+    for (uint32_t i = 0; i < def->plane_count; ++i) {
+        const double *plane = def->planes + 4 * (size_t)i;
+        const double length = sqrt(plane[2] * plane[2] + plane[3] * plane[3]);
+        to->planes[i] = (mspringi_half_plane){plane[0], plane[1], plane[2] / length, plane[3] / length};
+    }
+    to->heights.count = def->height_count;
+    to->heights.x = def->heights_x;
+    to->heights.y = def->heights_y;
+    to->heights.spacing = def->spacing;
+    return def->height_count == 0 ||
+           (copy_heights(&to->heights, def, memory) && find_normals(&to->heights, memory));
+}
+
+void mspringi_floor_destroy(mspringi_floor *floor, mspringi_memory *memory) {
+    if (!floor)
+        return;
+    mspringi_free(memory, floor->heights.heights);
+    mspringi_free(memory, floor->heights.normals);
+    mspringi_free(memory, floor->clearances);
+    mspringi_free(memory, floor->start.x);
+    mspringi_free(memory, floor->impulse.x);
+    mspringi_free(memory, floor);
+}
+
+static bool reserve_field(mspringi_field *field, size_t slots, mspringi_memory *memory) {
+    field->x = mspringi_alloc(memory, 2 * slots, sizeof *field->x);
+    if (field->x)
+        field->y = field->x + slots;
+    return field->x != NULL;
+}
+
+// NULL if there is no memory.
+static MSPRINGI_NOINLINE mspringi_floor *make_floor(mspring_network *network, const mspring_floor_def *def) {
+    mspringi_memory *memory = &network->memory;
+    mspringi_floor *made = mspringi_alloc(memory, 1, sizeof *made);
+    if (!made)
+        return NULL;
+    made->strip_count = network->topology.strip_count;
+    made->slot_count = mspringi_slot_count(network);
+    made->clearances = mspringi_alloc(memory, made->strip_count, sizeof *made->clearances);
+    if (!copy_floor(made, def, memory) || !made->clearances ||
+        !reserve_field(&made->impulse, made->slot_count, memory) ||
+        !reserve_field(&made->start, made->slot_count, memory)) {
+        mspringi_floor_destroy(made, memory);
+        return NULL;
+    }
+    return made;
+}
+
+mspring_result mspring_network_set_floor(mspring_network *network, const mspring_floor_def *def) {
+    mspring_result result = mspringi_enter(network);
+    if (result == MSPRING_OK && def)
+        result = check_floor(def, &network->message);
+    if (result != MSPRING_OK)
+        return result;
+    mspringi_floor *made = NULL;
+    if (def) {
+        const mspringi_fp_state before = mspringi_fp_enter();
+        made = make_floor(network, def);
+        mspringi_fp_leave(before);
+        if (!made)
+            return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for a floor of %u heights",
+                                 (unsigned)def->height_count);
+    }
+    mspringi_floor_destroy(network->floor, &network->memory);
+    network->floor = made;
+    return MSPRING_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------------- impulses */
+
+void mspringi_floor_begin(mspringi_floor *floor) {
+    if (!floor || !floor->has_impulse)
+        return;
+    memset(floor->impulse.x, 0, 2 * floor->slot_count * sizeof *floor->impulse.x);
+    floor->has_impulse = false;
+}
+
+mspring_result mspring_network_get_floor_impulses(const mspring_network *network, mspring_id first, uint32_t count,
+                                                  float *x, float *y) {
+    if (!network || (count > 0 && (!x || !y)))
+        return MSPRING_ERROR_ARGUMENT;
+    if (first > network->topology.particle_count || count > network->topology.particle_count - first)
+        return MSPRING_ERROR_ID;
+    for (uint32_t i = 0; i < count; ++i) {
+        const uint32_t slot = network->topology.slot_of_particle[first + i];
+        x[i] = network->floor ? network->floor->impulse.x[slot] : 0.0f;
+        y[i] = network->floor ? network->floor->impulse.y[slot] : 0.0f;
+    }
+    return MSPRING_OK;
+}

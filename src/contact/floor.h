@@ -1,0 +1,112 @@
+/// @file floor.h
+/// What particles cannot get through: half-planes and a field of heights.
+///
+///   floor.c      the definition, given by the host
+///   surface.c    where the surface is, which way it faces, and which boxes are clear of it
+///   collide.c    what it does to a particle after a substep
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_FLOOR_H
+#define MSPRINGI_FLOOR_H
+
+#include "network/network.h"
+
+/// The border of a half-plane. The distance from it is n . p + offset, > 0 where particles may be.
+typedef struct mspringi_line {
+    double nx, ny, offset; ///< n of length 1, offset for local coordinates
+} mspringi_line;
+
+typedef struct mspringi_half_plane {
+    double x, y;   ///< a point on its border, world coordinates
+    double nx, ny; ///< of length 1
+} mspringi_half_plane;
+
+/// Enough to come from MSPRING_MAX_HEIGHTS heights to one.
+#define MSPRINGI_HEIGHT_LEVELS 27
+
+/// Straight lines from (x + i spacing, y + heights[i]) to the next; level beyond both ends.
+typedef struct mspringi_heights {
+    double x, y, spacing; ///< world coordinates
+    double local_x, local_y;
+    uint32_t count; ///< 0: there are none
+    float *heights;
+    double *normals;                        ///< [count - 1][2] of each straight part
+    float *highest[MSPRINGI_HEIGHT_LEVELS]; ///< [level][i]: the highest of 2^level of them from i 2^level on;
+                                            ///< highest[0] is heights
+} mspringi_heights;
+
+/// What is clear of the surface, for the slots of a strip.
+typedef struct mspringi_clearance {
+    mspringi_bounds clear; ///< no surface is in it
+    bool is_far;           ///< the strip cannot come out of it in the substeps that this was made for
+} mspringi_clearance;
+
+typedef struct mspringi_floor {
+    mspringi_half_plane planes[MSPRING_MAX_PLANES];
+    mspringi_line lines[MSPRING_MAX_PLANES]; ///< the same, local
+    uint32_t plane_count;
+    mspringi_heights heights;
+    double friction, restitution;
+    mspringi_clearance *clearances; ///< [strip_count]
+    uint32_t strip_count;
+    mspringi_field start;   ///< [slot_count] positions before an implicit substep, m
+    mspringi_field impulse; ///< [slot_count] N s on each slot in the last step
+    size_t slot_count;
+    bool has_impulse; ///< impulse is not all zero
+} mspringi_floor;
+
+/// A particle that has moved from its start in a substep, local coordinates.
+typedef struct mspringi_body {
+    double start_x, start_y, x, y, vx, vy;
+} mspringi_body;
+
+void mspringi_floor_destroy(mspringi_floor *floor, mspringi_memory *memory);
+
+/// Forget the impulses of the step before. NULL is allowed, as in all that follow.
+void mspringi_floor_begin(mspringi_floor *floor);
+
+/* surface.c */
+
+/// Have lines and heights follow the local origin.
+void mspringi_floor_follow(mspringi_floor *floor, double origin_x, double origin_y);
+
+/// Distances below which a particle at (x, y) touches a surface: some last places of its coordinates.
+double mspringi_floor_slop(double x, double y);
+
+/// The straight parts of a field of heights are numbered by their left ends; the level ones beyond its ends are -1
+/// and count - 1.
+mspringi_line mspringi_heights_line(const mspringi_heights *heights, int64_t part);
+
+/// The part that is below x.
+int64_t mspringi_heights_part_below(const mspringi_heights *heights, double x);
+
+/// The part that a particle on its way from (start_x, start_y) to (x, y) meets or, if it meets none, the one that
+/// is below it at the end.
+int64_t mspringi_heights_part_met(const mspringi_heights *heights, double start_x, double start_y, double x,
+                                  double y);
+
+/// Smallest distance from any surface, < 0 where particles cannot be. (That of a point above the heights is the one
+/// from the line below it.)
+double mspringi_floor_distance(const mspringi_floor *floor, double x, double y);
+
+/// Look how far every strip is from the surface, and which of them stay clear of it for so many seconds.
+void mspringi_floor_survey(mspring_network *network, double seconds);
+
+/* collide.c */
+
+/// Let the surface act on a body that a substep of h seconds has moved.
+void mspringi_floor_collide(const mspringi_floor *floor, mspringi_body *body, double h);
+
+/// Let the surface act on the particles of whole blocks that a substep of h seconds has moved. Blocks of a strip
+/// that stays clear are left out.
+void mspringi_floor_touch(const mspring_network *network, const mspringi_strip *strip, const mspringi_span *spans,
+                          uint32_t span_count, float h);
+
+/// Look once at the strips that were left out.
+void mspringi_floor_touch_far(const mspring_network *network, float h);
+
+/// Keep the positions before an implicit substep, and let the surface act after it.
+void mspringi_floor_keep(const mspring_network *network);
+void mspringi_floor_touch_all(mspring_network *network, float h);
+
+#endif
