@@ -487,6 +487,36 @@ static void explicit_contact_gives_no_energy(void **state) {
         contact_gives_no_energy(&(way){MSPRING_SOLVER_EXPLICIT, 0, 40}, 0.5 * i, 1.0 / 64, 0.02);
 }
 
+/// A bar that breaks into squares and single particles, and is compacted in the air and on the floor.
+static void compaction_keeps_the_floor(void **state) {
+    (void)state;
+    static ground grounds[6];
+    (void)make_grounds(grounds, 40, 0);
+    mspring_floor_def *def = &grounds[4].def;
+    def->planes = grounds[4].planes;
+    def->heights = grounds[4].heights;
+    mspring_network *network = bar(1, 1, MSPRING_SIMD_AUTO);
+    check_ok(mspring_network_set_floor(network, def));
+    for (uint32_t round = 0; round < 4; round++) {
+        const uint32_t springs = mspring_network_spring_count(network);
+        for (mspring_id s = round; s < springs; s += 3)
+            check_ok(mspring_network_break_springs(network, &s, 1));
+        uint32_t left = 1;
+        while (left > 0)
+            check_ok(mspring_network_compact(network, 1000, &left));
+        for (uint32_t step = 0; step < 64; step++) {
+            static double x[400], y[400];
+            check_ok(mspring_network_step(network, 1.0 / 64));
+            check_ok(mspring_network_get_positions(network, 0, 400, x, y));
+            for (uint32_t i = 0; i < 400; i++)
+                assert_true(above(def, x[i], y[i]) > -tolerance);
+        }
+        if (round == 2)
+            check_ok(mspring_network_expand(network));
+    }
+    mspring_network_destroy(network);
+}
+
 /* ----------------------------------------------------------------------------------------------------- same bits
  */
 
@@ -614,6 +644,7 @@ int main(void) {
         cmocka_unit_test(bars_lie_still_explicitly),
         cmocka_unit_test(bars_slide_explicitly),
         cmocka_unit_test(explicit_contact_gives_no_energy),
+        cmocka_unit_test(compaction_keeps_the_floor),
         cmocka_unit_test(levels_and_workers_agree),
         cmocka_unit_test(far_floors_change_nothing),
         cmocka_unit_test(errors_name_the_culprit),

@@ -66,36 +66,19 @@ static mspring_result make_strain(mspring_network *to, const mspring_network *fr
     return result;
 }
 
-static bool make_floor_parts(mspring_network *to) {
-    mspringi_floor *floor = to->floor;
-    floor->strip_count = to->topology.strip_count;
-    floor->slot_count = mspringi_slot_count(to);
-    floor->clearances = mspringi_alloc(&to->memory, floor->strip_count, sizeof *floor->clearances);
-    return floor->clearances && mspringi_field_reserve(to, &floor->start) == MSPRING_OK &&
-           mspringi_field_reserve(to, &floor->impulse) == MSPRING_OK;
-}
-
-// The surface itself is shared.
-static mspring_result make_floor(mspring_network *to, const mspring_network *from) {
-    if (!from->floor)
-        return MSPRING_OK;
-    to->floor = mspringi_alloc(&to->memory, 1, sizeof *to->floor);
-    if (to->floor) {
-        *to->floor = *from->floor;
-        to->floor->clearances = NULL;
-        to->floor->start = to->floor->impulse = (mspringi_field){NULL, NULL};
-    }
-    if (!to->floor || !make_floor_parts(to))
-        return mspringi_fail(&to->message, MSPRING_ERROR_MEMORY, "no memory for the floor");
-    return MSPRING_OK;
-}
-
 static mspring_result make_components(mspring_network *to, const mspring_network *from) {
     if (!from->components.number)
         return MSPRING_OK;
     to->components.root = mspringi_alloc(&to->memory, mspringi_slot_count(to), sizeof *to->components.root);
     return to->components.root ? MSPRING_OK
                                : mspringi_fail(&to->message, MSPRING_ERROR_MEMORY, "no memory for components");
+}
+
+static mspring_result make_floor(mspring_network *to, const mspring_network *from) {
+    if (!from->floor)
+        return MSPRING_OK;
+    to->floor = mspringi_floor_move(to, from);
+    return to->floor ? MSPRING_OK : mspringi_fail(&to->message, MSPRING_ERROR_MEMORY, "no memory for a floor");
 }
 
 static mspring_result make_implicit(mspring_network *to, const mspring_network *from, uint32_t tile_size) {
@@ -130,10 +113,6 @@ static void move_particles(mspring_network *to, const mspring_network *from) {
                            to->backup.y, to->backup.vx, to->backup.vy, to->inverse_mass};
     for (size_t i = 0; i < sizeof old / sizeof old[0]; ++i)
         move_values(old[i], made[i], from, to);
-    if (from->floor) {
-        move_values(from->floor->impulse.x, to->floor->impulse.x, from, to);
-        move_values(from->floor->impulse.y, to->floor->impulse.y, from, to);
-    }
     if (!from->forces.held_any)
         return;
     move_values(from->forces.held.x, to->forces.held.x, from, to);
@@ -205,12 +184,7 @@ static void free_layout(const mspring_network *network, mspringi_memory *memory)
     mspringi_free(memory, network->components.root);
     mspringi_free(memory, network->extents.scratch);
     mspringi_free(memory, network->extents.reversed);
-    if (network->floor) {
-        mspringi_free(memory, network->floor->clearances);
-        mspringi_free(memory, network->floor->start.x);
-        mspringi_free(memory, network->floor->impulse.x);
-        mspringi_free(memory, network->floor);
-    }
+    mspringi_floor_free_layout(network->floor, memory);
     mspringi_implicit_destroy(network->implicit, memory);
 }
 
@@ -225,8 +199,8 @@ static mspring_network without_layout(const mspring_network *network, const mspr
     to.strain = (mspringi_strain){.relax = network->strain.relax};
     to.components.root = NULL;
     to.extents = (mspringi_extents){0};
-    to.floor = NULL;
     to.implicit = NULL;
+    to.floor = NULL;
     return to;
 }
 

@@ -153,13 +153,16 @@ static bool touch_spans(const mspring_network *network, const mspringi_field *st
     return any;
 }
 
+bool mspringi_floor_is_near(const mspring_network *network, const mspringi_strip *strip) {
+    return network->floor && !network->floor->clearances[strip - network->topology.strips].is_far;
+}
+
 void mspringi_floor_touch(const mspring_network *network, const mspringi_strip *strip, const mspringi_span *spans,
                           uint32_t span_count, float h) {
-    if (!network->floor)
+    if (!mspringi_floor_is_near(network, strip))
         return;
     const mspringi_clearance *clearance = &network->floor->clearances[strip - network->topology.strips];
-    if (!clearance->is_far)
-        (void)touch_spans(network, NULL, &clearance->clear, spans, span_count, h);
+    (void)touch_spans(network, NULL, &clearance->clear, spans, span_count, h);
 }
 
 static void touch_strip(const mspring_network *network, const mspringi_field *start, uint32_t number, float h) {

@@ -134,15 +134,23 @@ static bool copy_floor(mspringi_floor *to, const mspring_floor_def *def, mspring
            (copy_heights(&to->heights, def, memory) && find_normals(&to->heights, memory));
 }
 
+/* ------------------------------------------------------------------------------------------------------ layout */
+
+void mspringi_floor_free_layout(mspringi_floor *floor, mspringi_memory *memory) {
+    if (!floor)
+        return;
+    mspringi_free(memory, floor->clearances);
+    mspringi_free(memory, floor->start.x);
+    mspringi_free(memory, floor->impulse.x);
+    mspringi_free(memory, floor);
+}
+
 void mspringi_floor_destroy(mspringi_floor *floor, mspringi_memory *memory) {
     if (!floor)
         return;
     mspringi_free(memory, floor->heights.heights);
     mspringi_free(memory, floor->heights.normals);
-    mspringi_free(memory, floor->clearances);
-    mspringi_free(memory, floor->start.x);
-    mspringi_free(memory, floor->impulse.x);
-    mspringi_free(memory, floor);
+    mspringi_floor_free_layout(floor, memory);
 }
 
 static bool reserve_field(mspringi_field *field, size_t slots, mspringi_memory *memory) {
@@ -152,23 +160,47 @@ static bool reserve_field(mspringi_field *field, size_t slots, mspringi_memory *
     return field->x != NULL;
 }
 
-// NULL if there is no memory.
-static MSPRINGI_NOINLINE mspringi_floor *make_floor(mspring_network *network, const mspring_floor_def *def) {
+// What lies by strip and by slot. False: there is no memory.
+static bool reserve_layout(mspringi_floor *floor, mspring_network *network) {
     mspringi_memory *memory = &network->memory;
-    mspringi_floor *made = mspringi_alloc(memory, 1, sizeof *made);
+    floor->slot_count = mspringi_slot_count(network);
+    floor->clearances = mspringi_alloc(memory, network->topology.strip_count, sizeof *floor->clearances);
+    floor->impulse = floor->start = (mspringi_field){NULL, NULL};
+    return floor->clearances && reserve_field(&floor->impulse, floor->slot_count, memory) &&
+           reserve_field(&floor->start, floor->slot_count, memory);
+}
+
+mspringi_floor *mspringi_floor_move(mspring_network *to, const mspring_network *from) {
+    mspringi_floor *made = mspringi_alloc(&to->memory, 1, sizeof *made);
     if (!made)
         return NULL;
-    made->strip_count = network->topology.strip_count;
-    made->slot_count = mspringi_slot_count(network);
-    made->clearances = mspringi_alloc(memory, made->strip_count, sizeof *made->clearances);
-    if (!copy_floor(made, def, memory) || !made->clearances ||
-        !reserve_field(&made->impulse, made->slot_count, memory) ||
-        !reserve_field(&made->start, made->slot_count, memory)) {
-        mspringi_floor_destroy(made, memory);
+    *made = *from->floor;
+    if (!reserve_layout(made, to)) {
+        mspringi_floor_free_layout(made, &to->memory);
+        return NULL;
+    }
+    for (mspring_id p = 0; p < to->topology.particle_count; ++p) {
+        const uint32_t before = from->topology.slot_of_particle[p], now = to->topology.slot_of_particle[p];
+        made->impulse.x[now] = from->floor->impulse.x[before];
+        made->impulse.y[now] = from->floor->impulse.y[before];
+    }
+    return made;
+}
+
+// NULL if there is no memory.
+static MSPRINGI_NOINLINE mspringi_floor *make_floor(mspring_network *network, const mspring_floor_def *def) {
+    mspringi_floor *made = mspringi_alloc(&network->memory, 1, sizeof *made);
+    if (!made)
+        return NULL;
+    if (!reserve_layout(made, network) || !copy_floor(made, def, &network->memory)) {
+        mspringi_floor_destroy(made, &network->memory);
         return NULL;
     }
     return made;
 }
+
+/* --------------------------------------------------------------------------------------------------- the setting
+ */
 
 mspring_result mspring_network_set_floor(mspring_network *network, const mspring_floor_def *def) {
     mspring_result result = mspringi_enter(network);

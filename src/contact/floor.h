@@ -48,9 +48,8 @@ typedef struct mspringi_floor {
     mspringi_heights heights;
     double friction, restitution;
     mspringi_clearance *clearances; ///< [strip_count]
-    uint32_t strip_count;
-    mspringi_field start;   ///< [slot_count] positions before an implicit substep, m
-    mspringi_field impulse; ///< [slot_count] N s on each slot in the last step
+    mspringi_field start;           ///< [slot_count] positions before an implicit substep, m
+    mspringi_field impulse;         ///< [slot_count] N s on each slot in the last step
     size_t slot_count;
     bool has_impulse; ///< impulse is not all zero
 } mspringi_floor;
@@ -61,6 +60,13 @@ typedef struct mspringi_body {
 } mspringi_body;
 
 void mspringi_floor_destroy(mspringi_floor *floor, mspringi_memory *memory);
+
+/// Make the floor of another network, which has the same particles in another layout; the two share the definition.
+/// NULL if there is no memory.
+mspringi_floor *mspringi_floor_move(mspring_network *to, const mspring_network *from);
+
+/// Free a floor that shares its definition with another. NULL is allowed.
+void mspringi_floor_free_layout(mspringi_floor *floor, mspringi_memory *memory);
 
 /// Forget the impulses of the step before. NULL is allowed, as in all that follow.
 void mspringi_floor_begin(mspringi_floor *floor);
@@ -96,6 +102,9 @@ void mspringi_floor_survey(mspring_network *network, double seconds);
 
 /// Let the surface act on a body that a substep of h seconds has moved.
 void mspringi_floor_collide(const mspringi_floor *floor, mspringi_body *body, double h);
+
+/// Whether a strip may come near the surface in the substeps that the last survey was for.
+bool mspringi_floor_is_near(const mspring_network *network, const mspringi_strip *strip);
 
 /// Let the surface act on the particles of whole blocks that a substep of h seconds has moved. Blocks of a strip
 /// that stays clear are left out.

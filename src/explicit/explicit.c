@@ -22,10 +22,6 @@
 /// Strips that a worker may lag behind the one before, besides those that it must, before others have to wait.
 #define SLACK 4
 
-/// Slots of loose particles that go through all substeps before the next do where there is a floor: they stay in
-/// the first-level cache.
-#define LOOSE_AT_ONCE ((uint32_t)512)
-
 /// What the workers have in common.
 typedef struct job {
     const mspring_network *network;
@@ -158,26 +154,16 @@ static void meet(const job *rest, uint32_t worker, uint32_t n) {
             mspringi_progress_wait(&rest->progress[other], n);
 }
 
-// Take all substeps of a share of the loose particles: nothing moves them but a floor, which has to be looked at
-// after each substep.
+// Take all substeps of a share of the loose particles: nothing else moves them but a floor that is near.
 static void sweep_loose(const job *rest, const mspringi_strip *strip, uint32_t index) {
     const mspring_network *network = rest->network;
     const mspringi_topology *t = &network->topology;
-    const mspringi_loose_fn sweep = network->kernels->loose[rest->base.x != NULL];
     const mspringi_substep substep = mspringi_substep_prepare(network, rest->h, rest->base, 0, 1, 0);
     const mspringi_span share = share_of(&t->spans[t->rows[strip->first_row].first_span], index, rest->workers);
-    mspringi_span some = share;
-    if (!network->floor) {
-        sweep(&substep.sweep, &share, rest->count);
-        return;
-    }
-    for (uint32_t first = share.first_slot; first < share.end_slot; first = some.end_slot) {
-        some.first_slot = first;
-        some.end_slot = share.end_slot - first < LOOSE_AT_ONCE ? share.end_slot : first + LOOSE_AT_ONCE;
-        for (uint32_t i = 0; i < rest->count; ++i) {
-            sweep(&substep.sweep, &some, 1);
-            mspringi_floor_touch(network, strip, &some, 1, rest->h);
-        }
+    const uint32_t at_once = mspringi_floor_is_near(network, strip) ? 1 : rest->count;
+    for (uint32_t i = 0; i < rest->count; i += at_once) {
+        network->kernels->loose[rest->base.x != NULL](&substep.sweep, &share, at_once);
+        mspringi_floor_touch(network, strip, &share, 1, rest->h);
     }
 }
 
