@@ -298,47 +298,6 @@ static bool measure_strain(session *with, const bench_options *options, const be
     return ok;
 }
 
-/// Time steps with a floor against steps without, the same network falling in both.
-/// @param drop  m from the lowest particle down to the floor
-static bool measure_floor(session *with, const bench_options *options, const bench_scene *subject,
-                          mspring_simd level, const char *name, double drop, uint32_t repeat, scene_error *error) {
-    bench_network floored, plain;
-    if (!bench_network_create(subject->made.builder, level, 1, with->step->substeps, &floored, error)) {
-        return false;
-    }
-    if (!bench_network_create(subject->made.builder, level, 1, with->step->substeps, &plain, error)) {
-        bench_network_free(&floored);
-        return false;
-    }
-    double left = 0, bottom = 0, right = 0, top = 0;
-    mspring_floor_def def;
-    mspring_result result = mspring_network_bounds(plain.network, &left, &bottom, &right, &top);
-    const double plane[4] = {0, bottom - drop, 0, 1};
-    if (result == MSPRING_OK) {
-        result = mspring_floor_def_init(&def, sizeof def);
-    }
-    def.planes = plane;
-    def.plane_count = 1;
-    def.friction = 0.5f;
-    if (result == MSPRING_OK) {
-        result = mspring_network_set_floor(floored.network, &def);
-    }
-    bool ok = result == MSPRING_OK;
-    if (!ok) {
-        bench_library_error(error, "a floor", result, mspring_network_error(floored.network));
-    }
-    bench_runner first = bench_network_runner(&plain), second = bench_network_runner(&floored);
-    bench_turns turns;
-    ok = ok && bench_turns_measure(&first, &second, repeat, &turns, error);
-    if (ok) {
-        print_row(options, subject, with->step, name, turns.second_min - turns.first_min,
-                  turns.second_median - turns.first_median, turns.first_min);
-    }
-    bench_network_free(&plain);
-    bench_network_free(&floored);
-    return ok;
-}
-
 /// Compact a network, and say how long all of it took and its longest piece.
 static bool compact(mspring_network *network, double *all, double *longest, scene_error *error) {
     uint32_t left = 1;
