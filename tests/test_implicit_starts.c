@@ -103,7 +103,12 @@ static void check_start(const start *s, mspring_integrator integrator) {
                             0.5 * s->stiffness * 8e-6 * 8e-6 * made.spring_count;
     double most = -INFINITY, last = 0;
     for (int step = 0; step < 300; step++) {
-        check_ok(mspring_network_step(network, dt));
+        const mspring_result result = mspring_network_step(network, dt);
+        if (result != MSPRING_OK) {
+            print_error("%s, solver %d, integrator %d, step %d: %s\n", s->name, (int)tested, (int)integrator, step,
+                        mspring_network_error(network));
+        }
+        check_ok(result);
         last = total_energy(network);
         most = fmax(most, last);
     }

@@ -280,11 +280,11 @@ enum {
     /// number of substeps. Stable while omega_max * h < 2: on a full lattice of equal springs and masses,
     /// stiffness < mass / (2 h^2). See mspring_network_stable_dt().
     MSPRING_SOLVER_EXPLICIT = 0,
-    /// One linear system in each substep, whatever the stiffness: stable on lattices for any dt and any
-    /// springs (taut ropes and random graphs of extreme stiffness can gain energy: 1e13 N/m and more between masses
-    /// of 1 kg at a dt of 0.06 s and more), at a cost that does not depend on them. Springs and dampers are
-    /// linearised at x + h v, with tiles of neighbouring particles
-    /// turned on as rigid bodies (and with the stiffness across a spring clamped to 0 where it is compressed, so
+    /// One linear system in each substep, whatever the stiffness: stable on lattices for any dt and any springs, at
+    /// a cost that does not depend on them. Ropes and other springs outside of lattices have little stiffness
+    /// across them; where they are so stiff, and move so far in a substep, that this would stretch them by energy
+    /// that nothing has put in, the step is refused (see mspring_guard). Springs and dampers are linearised at x +
+    /// h v, with tiles of neighbouring particles turned on as rigid bodies (and with the stiffness across a spring clamped to 0 where it is compressed, so
     /// that the matrix is positive definite). The system is solved by a fixed number of conjugate gradient
     /// iterations with a two-level preconditioner: the blocks of the single particles, and the tiles. With eight
     /// of them a substep costs 20 to 65 explicit ones, least where vectors are short. It damps what oscillates
@@ -365,7 +365,9 @@ enum {
     /// Refuse a step whose substeps are above the border of mspring_network_stable_dt(): motion would turn round
     /// and grow in each. The border is looked at when the substep changes, and when a step changes a velocity twice
     /// as much as one did at the last look; not at all where substeps are stable in any shape. Steps below the
-    /// border are never refused.
+    /// border are never refused. With the implicit and the direct solver, refuse instead a step in which springs
+    /// outside of lattices get more than twice the energy that there was, kinetic and elastic, with what gravity,
+    /// forces and moving pins can have added.
     MSPRING_GUARD_GROWTH = 0,
     /// The same, but take a step that would be refused again with twice as many substeps, four times as many, and
     /// so on up to max_substeps. Later steps keep the number that was needed, until mspring_network_set_solver().

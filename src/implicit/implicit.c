@@ -200,6 +200,7 @@ void mspringi_implicit_keep(mspring_network *network) {
     if (!n)
         return;
     copy_history(n, &n->history, &n->backup);
+    n->gain.to = 0.0;
 }
 
 void mspringi_implicit_restore(mspring_network *network) {
@@ -264,6 +265,7 @@ void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_fiel
             mspringi_direct_solve(network);
         else
             mspringi_solve(network);
+        mspringi_energy_look(network, h, base);
         mspringi_finish(network, h);
     }
 }

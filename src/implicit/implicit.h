@@ -15,6 +15,7 @@
 
 #include "coarse.h"
 #include "direct/direct.h"
+#include "stability/energy.h"
 #include "tiles.h"
 
 /// Most iterations, and most substeps with one coarse matrix.
@@ -54,6 +55,7 @@ typedef struct mspringi_implicit {
     mspringi_iterate iterate;
     mspringi_edits seen; ///< the edits that it has followed
 
+    mspringi_gain gain; ///< of the present step
     bool is_direct;
     mspringi_direct direct; ///< all there is of it unless is_direct: zero
     mspringi_tiles tiles;   ///< none, nor a coarse matrix, if it is

@@ -150,6 +150,8 @@ static mspring_result attempt(mspring_network *network, double dt) {
         if (network->is_open)
             mspringi_clear_empty_slots(network);
         result = mspringi_guard_end(network, dt, h);
+        if (result == MSPRING_OK)
+            result = mspringi_energy_verdict(network, dt);
     }
     if (result != MSPRING_OK) {
         copy_state(network, &network->backup, &network->state);
