@@ -30,6 +30,9 @@ int main(int count, char **arguments) {
     case BENCH_LINEAR:
         ok = bench_run_linear(&options);
         break;
+    case BENCH_IMPLICIT:
+        ok = bench_run_implicit(&options);
+        break;
     case BENCH_ROOFLINE:
         ok = bench_run_roofline(&options);
         break;

@@ -16,6 +16,7 @@ typedef enum bench_mode {
     BENCH_FEATURES,
     BENCH_SESSION,
     BENCH_LINEAR,
+    BENCH_IMPLICIT,
     BENCH_ROOFLINE,
     BENCH_MAP,
     BENCH_CHECK,

@@ -1,0 +1,117 @@
+/// @file implicit.c
+/// What a step of the implicit solver costs: in substeps of the explicit one, measured in turn on the same network
+/// with one worker each; and, with --threads, how much faster several workers are than one.
+///
+/// SPDX-License-Identifier: MIT
+#include <stdio.h>
+
+#include "modes.h"
+
+static const char *const default_scenes[] = {"bar_80x5", "bar_544x68", "ship", "bar_1800x5", NULL};
+
+static const bench_column columns[] = {
+    {"scene", "scene", -16},
+    {"springs", "springs", 8},
+    {"level", "level", -6},
+    {"iterations", "iterations", 10},
+    {"tiles", "tiles", 6},
+    {"us_per_step_min", "us/step min", 12},
+    {"us_per_step_median", "us/step median", 14},
+    {"substeps_min", "substeps min", 12},
+    {"substeps_median", "substeps", 9},
+    {"workers", "workers", 7},
+    {"speedup_min", "speedup min", 11},
+    {"speedup_median", "speedup", 8},
+};
+
+#define COLUMN_COUNT ((int)(sizeof columns / sizeof *columns))
+
+/// A network with an implicit solver.
+static bool create(const bench_scene *subject, mspring_simd level, uint32_t workers, bench_network *out,
+                   scene_error *error) {
+    if (!bench_network_create(subject->made.builder, level, workers, 1, out, error)) {
+        return false;
+    }
+    mspring_solver_def def = {0};
+    mspring_result result = mspring_solver_def_init(&def, sizeof def);
+    def.solver = MSPRING_SOLVER_IMPLICIT;
+    if (result == MSPRING_OK) {
+        result = mspring_network_set_solver(out->network, &def);
+    }
+    if (result != MSPRING_OK) {
+        bench_library_error(error, "setting the solver", result, mspring_network_error(out->network));
+        bench_network_free(out);
+    }
+    return result == MSPRING_OK;
+}
+
+static bool measure(const bench_scene *subject, const bench_options *options, bench_network *by_substeps,
+                    bench_network *alone, bench_network *shared, scene_error *error) {
+    const uint32_t repeat = options->repeat > 0 ? options->repeat : bench_default_repeat(alone->spring_count);
+    const bench_runner substeps = bench_network_runner(by_substeps), one = bench_network_runner(alone),
+                       several = bench_network_runner(shared);
+    bench_turns cost, gain;
+    if (!bench_turns_measure(&substeps, &one, repeat, &cost, error) ||
+        !bench_turns_measure(&several, &one, repeat, &gain, error) || !bench_network_check(shared, error)) {
+        return false;
+    }
+    mspring_plan plan = {.struct_size = sizeof plan};
+    const mspring_result result = mspring_network_plan(alone->network, &plan);
+    if (result != MSPRING_OK) {
+        bench_library_error(error, "asking for the plan", result, "");
+        return false;
+    }
+    const bench_cell cells[COLUMN_COUNT] = {
+        bench_cell_of("%s", subject->label),
+        bench_cell_of("%u", alone->spring_count),
+        bench_cell_of("%s", mspring_simd_name(mspring_network_simd_level(alone->network))),
+        bench_cell_of("%u", plan.iterations),
+        bench_cell_of("%u", plan.tile_count),
+        bench_cell_of("%.1f", 1e6 * cost.second_min),
+        bench_cell_of("%.1f", 1e6 * cost.second_median),
+        bench_cell_of("%.1f", cost.second_min / cost.first_min * by_substeps->substeps),
+        bench_cell_of("%.1f", cost.ratio_median * by_substeps->substeps),
+        bench_cell_of("%u", mspring_network_worker_count(shared->network)),
+        bench_cell_of("%.2f", gain.second_min / gain.first_min),
+        bench_cell_of("%.2f", gain.ratio_median),
+    };
+    bench_table_row(options->format, columns, COLUMN_COUNT, cells);
+    return true;
+}
+
+static bool measure_level(const bench_scene *subject, const bench_options *options, mspring_simd level) {
+    const uint32_t springs = mspring_builder_spring_count(subject->made.builder);
+    const uint32_t substeps = options->substeps > 0 ? options->substeps : bench_default_substeps(springs);
+    bench_network networks[3] = {{0}};
+    scene_error error;
+    const bool ok =
+        bench_network_create(subject->made.builder, level, 1, substeps, &networks[0], &error) &&
+        create(subject, level, 1, &networks[1], &error) &&
+        create(subject, level, options->workers, &networks[2], &error) &&
+        measure(subject, options, &networks[0], &networks[1], &networks[2], &error);
+    if (!ok) {
+        bench_complain(subject->label, &error);
+    }
+    for (int i = 0; i < 3; i++) {
+        bench_network_free(&networks[i]);
+    }
+    return ok;
+}
+
+static bool visit(const bench_scene *subject, const bench_options *options, void *user) {
+    (void)user;
+    mspring_simd levels[4];
+    scene_error error;
+    const int count = bench_options_levels(options, levels, &error);
+    bool ok = true;
+    for (int i = 0; i < count; i++) {
+        ok = measure_level(subject, options, levels[i]) && ok;
+    }
+    return ok;
+}
+
+bool bench_run_implicit(const bench_options *options) {
+    bench_table_preamble(options->format);
+    bench_table_head(options->format, columns, COLUMN_COUNT);
+    return bench_for_each_scene(options, default_scenes, visit, NULL);
+}
