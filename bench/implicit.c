@@ -84,11 +84,10 @@ static bool measure_level(const bench_scene *subject, const bench_options *optio
     const uint32_t substeps = options->substeps > 0 ? options->substeps : bench_default_substeps(springs);
     bench_network networks[3] = {{0}};
     scene_error error;
-    const bool ok =
-        bench_network_create(subject->made.builder, level, 1, substeps, &networks[0], &error) &&
-        create(subject, level, 1, &networks[1], &error) &&
-        create(subject, level, options->workers, &networks[2], &error) &&
-        measure(subject, options, &networks[0], &networks[1], &networks[2], &error);
+    const bool ok = bench_network_create(subject->made.builder, level, 1, substeps, &networks[0], &error) &&
+                    create(subject, level, 1, &networks[1], &error) &&
+                    create(subject, level, options->workers, &networks[2], &error) &&
+                    measure(subject, options, &networks[0], &networks[1], &networks[2], &error);
     if (!ok) {
         bench_complain(subject->label, &error);
     }

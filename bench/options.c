@@ -103,10 +103,11 @@ static bool is_switch(const char *option, bench_options *out) {
     static const struct {
         const char *name;
         bench_mode mode;
-    } modes[] = {{"--features", BENCH_FEATURES}, {"--session", BENCH_SESSION},   {"--linear", BENCH_LINEAR},
-                 {"--implicit", BENCH_IMPLICIT}, {"--roofline", BENCH_ROOFLINE}, {"--map", BENCH_MAP},
-                 {"--check", BENCH_CHECK},       {"--list", BENCH_LIST},         {"--help", BENCH_HELP},
-                 {"-h", BENCH_HELP}};
+    } modes[] = {{"--features", BENCH_FEATURES}, {"--session", BENCH_SESSION},
+                 {"--linear", BENCH_LINEAR},     {"--implicit", BENCH_IMPLICIT},
+                 {"--roofline", BENCH_ROOFLINE}, {"--map", BENCH_MAP},
+                 {"--check", BENCH_CHECK},       {"--list", BENCH_LIST},
+                 {"--help", BENCH_HELP},         {"-h", BENCH_HELP}};
     for (size_t i = 0; i < sizeof modes / sizeof *modes; i++) {
         if (strcmp(option, modes[i].name) == 0) {
             out->mode = modes[i].mode;

@@ -80,6 +80,67 @@ static void any_host_gives_the_same_bits(void **state) {
     recipe_free(&made);
 }
 
+/// Steps of an implicit network, some of its springs broken on the way.
+static uint64_t run_implicit(const recipe *made, const mspring_solver_def *solver, uint32_t worker_count,
+                             const mspring_tasks *tasks) {
+    mspring_network_def def = support_def(-9.8f, 1);
+    def.worker_count = worker_count;
+    def.tasks = tasks;
+    mspring_network *network = recipe_network(made, &def);
+    check_ok(mspring_network_set_solver(network, solver));
+    uint64_t hash = hash_of_steps(network);
+    for (mspring_id spring = 100; spring < 2000; spring += 100) {
+        check_ok(mspring_network_break_springs(network, &spring, 1));
+    }
+    hash = hash * 31 + hash_of_steps(network);
+    mspring_network_destroy(network);
+    return hash;
+}
+
+static void any_number_of_workers_gives_the_same_implicit_bits(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    mspring_solver_def solver;
+    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    solver.solver = MSPRING_SOLVER_IMPLICIT;
+    for (mspring_integrator i = MSPRING_INTEGRATOR_GA0; i <= MSPRING_INTEGRATOR_EULER; i++) {
+        solver.integrator = i;
+        solver.substeps = 1 + (uint32_t)i;
+        solver.coarse_period = 1 + (uint32_t)i;
+        const uint64_t expected = run_implicit(&made, &solver, 1, NULL);
+        for (size_t w = 0; w < COUNT_OF(worker_counts); w++) {
+            assert_int_equal(run_implicit(&made, &solver, worker_counts[w], NULL), expected);
+            host hosts[HOST_COUNT];
+            hosts_fill(hosts, worker_counts[w]);
+            assert_int_equal(run_implicit(&made, &solver, 1, &hosts[(size_t)i % HOST_COUNT].tasks), expected);
+        }
+    }
+    // The direct solver shares what is around its factorisation.
+    solver.solver = MSPRING_SOLVER_DIRECT;
+    assert_int_equal(run_implicit(&made, &solver, 3, NULL), run_implicit(&made, &solver, 1, NULL));
+    recipe_free(&made);
+}
+
+/// A clone may have more workers than the network that it was made of.
+static void a_clone_has_room_for_its_workers(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    mspring_network_def def = support_def(-9.8f, 1);
+    def.solver = MSPRING_SOLVER_IMPLICIT;
+    mspring_network *network = recipe_network(&made, &def), *clone = NULL;
+    support_steps(network, 2, 0.02);
+    mspring_clone_def more;
+    check_ok(mspring_clone_def_init(&more, sizeof more));
+    more.worker_count = 3;
+    check_ok(mspring_network_clone(network, &more, &clone));
+    support_steps(network, 3, 0.02);
+    support_steps(clone, 3, 0.02);
+    assert_int_equal(support_hash(clone), support_hash(network));
+    mspring_network_destroy(clone);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
 static void networks_with_workers_live_side_by_side(void **state) {
     (void)state;
     recipe made = mixed_recipe();
@@ -213,6 +274,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_number_of_workers_gives_the_same_bits),
         cmocka_unit_test(any_host_gives_the_same_bits),
+        cmocka_unit_test(any_number_of_workers_gives_the_same_implicit_bits),
+        cmocka_unit_test(a_clone_has_room_for_its_workers),
         cmocka_unit_test(networks_with_workers_live_side_by_side),
         cmocka_unit_test(bad_workers_are_refused),
         cmocka_unit_test(networks_with_workers_survive_every_failure),

@@ -1,6 +1,7 @@
 /// The system of an implicit substep as a matrix of 2 x 2 blocks, factored and solved.
 #include "direct.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "implicit/implicit.h"
@@ -279,9 +280,9 @@ void mspringi_direct_solve(mspring_network *network) {
     const size_t slots = mspringi_slot_count(network);
     const bool is_soft = finish_diagonal(&n->system, slots);
     if (!(is_soft && solve_in_single(network)) && !solve_in_double(network)) {
-        mspringi_spoil(network);
+        // Numbers overflowed: see to it that the step is refused.
+        n->x[network->topology.slot_of_particle[0]] = NAN;
         return;
     }
     hold_pinned(n, slots);
-    mspringi_solve_loose(network);
 }

@@ -8,36 +8,74 @@
 
 /* ----------------------------------------------------------------------------------------------- matrix rows */
 
-static bool is_swept(const mspringi_row *row) {
-    return row->kind == MSPRINGI_ROW_LATTICE || row->kind == MSPRINGI_ROW_CHAIN;
+/// A worker's share of the panels, with carry rows of its own.
+typedef struct panel_share {
+    mspringi_system system;
+    const mspringi_panel *begin, *end;
+} panel_share;
+
+static panel_share share_panels(const mspring_network *network, const mspringi_mate *mate) {
+    const mspringi_implicit *n = network->implicit;
+    const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH;
+    panel_share share = {.system = n->system,
+                         .begin = n->panels.list + mspringi_share_of(mate, n->panels.count),
+                         .end = n->panels.list + mspringi_share_end(mate, n->panels.count)};
+    share.system.force_carry_x = n->force_carry + 2 * mate->index * carry;
+    share.system.force_carry_y = share.system.force_carry_x + carry;
+    share.system.carry_xx = n->carry + 3 * mate->index * carry;
+    share.system.carry_xy = share.system.carry_xx + carry;
+    share.system.carry_yy = share.system.carry_xy + carry;
+    return share;
 }
 
-// Count the rows from r on that are of one kind and can be done in one go.
-static uint32_t count_alike(const mspringi_topology *t, uint32_t r) {
-    uint32_t count = 1;
-    while (r + count < t->row_count && t->rows[r + count].kind == t->rows[r].kind)
-        ++count;
-    return count;
+// Whether the first of a share's panels gets something from a row that is another's.
+static bool is_handed_on(const panel_share *share) {
+    return share->begin < share->end && share->begin->below_count > 0;
 }
 
-static uint32_t count_spans(const mspringi_row *rows, uint32_t row_count) {
-    const mspringi_row *last = &rows[row_count - 1];
-    return last->first_span + last->span_count - rows->first_span;
+// Carry rows are 0 where grids end. Where a share ends inside of one, they are not.
+static void clear_carry(const mspring_network *network, const panel_share *share, bool forces) {
+    const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH;
+    const mspringi_panels *panels = &network->implicit->panels;
+    if (share->begin == share->end || share->end == panels->list + panels->count || share->end->below_count == 0)
+        return;
+    if (forces)
+        memset(share->system.force_carry_x, 0, 2 * carry * sizeof *share->system.force_carry_x);
+    memset(share->system.carry_xx, 0, (forces ? 3 : 2) * carry * sizeof *share->system.carry_xx);
 }
 
-static void assemble_rows(const mspring_network *network) {
+static void assemble_panels(const mspring_network *network, const mspringi_mate *mate) {
     const mspringi_topology *t = &network->topology;
     const mspringi_system_kernels *kernels = &network->kernels->system;
     const bool damped = network->parts > MSPRINGI_DAMPING;
-    for (uint32_t r = 0; r < t->row_count;) {
-        const mspringi_row *row = &t->rows[r];
-        const uint32_t count = count_alike(t, r);
+    const panel_share share = share_panels(network, mate);
+    if (is_handed_on(&share))
+        kernels->hand_on_forces[damped](&share.system, t->spans + share.begin->below_first,
+                                        share.begin->below_count);
+    for (const mspringi_panel *panel = share.begin; panel < share.end; ++panel) {
         const mspringi_assemble_fn assemble =
-            row->kind == MSPRINGI_ROW_LATTICE ? kernels->assemble_lattice[damped] : kernels->assemble_chain[damped];
-        if (is_swept(row))
-            assemble(&network->implicit->system, t->spans + row->first_span, count_spans(row, count));
-        r += count;
+            panel->is_lattice ? kernels->assemble_lattice[damped] : kernels->assemble_chain[damped];
+        assemble(&share.system, t->spans + panel->first_span, panel->span_count);
     }
+    clear_carry(network, &share, true);
+}
+
+static void multiply_panels(const mspring_network *network, const mspringi_mate *mate) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_implicit *n = network->implicit;
+    const mspringi_system_kernels *kernels = &network->kernels->system;
+    const mspringi_field from = n->direction, to = n->product;
+    const panel_share share = share_panels(network, mate);
+    if (is_handed_on(&share))
+        kernels->hand_on_product(&share.system, t->spans + share.begin->below_first, share.begin->below_count,
+                                 from.x, from.y);
+    for (const mspringi_panel *panel = share.begin; panel < share.end; ++panel) {
+        const mspringi_multiply_fn multiply =
+            panel->is_lattice ? kernels->multiply_lattice : kernels->multiply_chain;
+        n->panels.sums[panel - n->panels.list] =
+            multiply(&share.system, t->spans + panel->first_span, panel->span_count, from.x, from.y, to.x, to.y);
+    }
+    clear_carry(network, &share, false);
 }
 
 /* ------------------------------------------------------------------------------------------ leftover springs */
@@ -101,11 +139,22 @@ static void assemble_leftover(const mspring_network *network) {
     }
 }
 
-static void multiply_leftover(const mspring_network *network, mspringi_field from, mspringi_field to) {
+// Multiply the web's own particles by their masses, and add the leftover springs. Returns direction . product of
+// all that.
+static double multiply_leftover(const mspring_network *network, mspringi_field from, mspringi_field to) {
     const mspringi_topology *t = &network->topology;
+    const mspringi_implicit *n = network->implicit;
+    const size_t web = (size_t)t->web_first * MSPRINGI_WIDTH,
+                 web_end = web + (size_t)t->web_blocks * MSPRINGI_WIDTH;
+    double sum = 0.0;
+    for (size_t i = web; i < web_end; ++i) {
+        to.x[i] = n->mass[i] * from.x[i];
+        to.y[i] = n->mass[i] * from.y[i];
+        sum += (double)(from.x[i] * to.x[i] + from.y[i] * to.y[i]);
+    }
     for (uint32_t i = 0; i < t->leftover_count; ++i) {
         const uint32_t a = t->leftover_a[i], b = t->leftover_b[i];
-        const float *factors = leftover_factors(network->implicit, i);
+        const float *factors = leftover_factors(n, i);
         const float pull_x = factors[MSPRINGI_PULL_X * MSPRINGI_WIDTH];
         const float pull_y = factors[MSPRINGI_PULL_Y * MSPRINGI_WIDTH];
         const float swing = factors[MSPRINGI_SWING * MSPRINGI_WIDTH];
@@ -116,123 +165,52 @@ static void multiply_leftover(const mspring_network *network, mspringi_field fro
         to.y[a] -= y;
         to.x[b] += x;
         to.y[b] += y;
+        sum += (double)(dx * x + dy * y);
     }
-}
-
-/* ---------------------------------------------------------------------------------------------------- masses */
-
-static mspringi_scheme scheme_now(const mspringi_implicit *n) {
-    return mspringi_scheme_of(n->history.restarts ? MSPRING_INTEGRATOR_EULER : n->integrator);
-}
-
-// What global damping multiplies masses by.
-static double heavier_by(const mspring_network *network, mspringi_scheme scheme, float h) {
-    return 1.0 + scheme.force_share * scheme.velocity_share * (double)h * (double)network->global_damping;
-}
-
-void mspringi_weigh(mspring_network *network, float h) {
-    mspringi_implicit *n = network->implicit;
-    const size_t slots = mspringi_slot_count(network);
-    const float *inverse_mass = network->inverse_mass;
-    const float scale = (float)(n->scale * heavier_by(network, scheme_now(n), h));
-    for (size_t i = 0; i < slots; ++i) {
-        const float mass = scale / inverse_mass[i];
-        n->mass[i] = inverse_mass[i] > 0.0f ? mass : 0.0f;
-    }
-}
-
-/* --------------------------------------------------------------------------------------------- right-hand side */
-
-/// What comes on the springs' force, in a coordinate.
-typedef struct outside {
-    const float *force;          ///< from outside, N; NULL: none
-    const float *velocity;       ///< v*
-    const float *turned;         ///< by how much x* is turned on
-    const float *first, *second; ///< history of BDF2, or NULL
-    float force_share, velocity_share, turned_share, first_share, second_share;
-    float shift; ///< gravity's
-} outside;
-
-// The springs' force is in residual already. The whole is 0 where d is.
-static void add_outside(size_t slots, const float *mass, const outside *o, float *restrict residual) {
-    const outside copy = *o;
-    for (size_t i = 0; i < slots; ++i) {
-        float shift = copy.shift + copy.velocity[i] * copy.velocity_share - copy.turned[i] * copy.turned_share;
-        if (copy.second)
-            shift = shift + (copy.first[i] * copy.first_share + copy.second[i] * copy.second_share);
-        float sum = residual[i] + mass[i] * shift;
-        if (copy.force)
-            sum = sum + copy.force[i] * copy.force_share;
-        residual[i] = mass[i] > 0.0f ? sum : 0.0f;
-    }
+    return sum;
 }
 
 /* --------------------------------------------------------------------------------------------------- the whole */
 
-void mspringi_assemble(mspring_network *network, float h, mspringi_field base) {
-    mspringi_implicit *n = network->implicit;
-    const size_t slots = mspringi_slot_count(network);
-    const mspringi_topology *t = &network->topology;
-    const mspringi_history *history = &n->history;
-    const bool restarts = history->restarts;
-    const mspringi_scheme scheme = scheme_now(n);
-    const double c = scheme.force_share * (double)h * (double)h;
-    n->system.force_scale = n->scale * c;
-    n->system.damping_rate = scheme.velocity_share / (double)h;
-    n->system.parts = network->parts;
-    n->system.rest_lengths = network->rests.lengths;
-    n->system.rests_of_block = network->rests.of_block;
-    const double heavier = heavier_by(network, scheme, h);
-
-    // Rows write these; the slots of other rows begin at nothing.
-    const size_t swept = (size_t)t->web_first * MSPRINGI_WIDTH, others = slots - swept;
-    memset(n->residual.x + swept, 0, others * sizeof *n->residual.x);
-    memset(n->residual.y + swept, 0, others * sizeof *n->residual.y);
-    memset(n->system.xx + swept, 0, others * sizeof *n->system.xx);
-    memset(n->system.xy + swept, 0, others * sizeof *n->system.xy);
-    memset(n->system.yy + swept, 0, others * sizeof *n->system.yy);
-    assemble_rows(network);
-    assemble_leftover(network);
-
-    const bool two = n->integrator == MSPRING_INTEGRATOR_BDF2 && !restarts;
-    outside o = {.force = base.x,
-                 .velocity = n->velocity.x,
-                 .turned = n->scaled.x,
-                 .first = history->first.x,
-                 .second = two ? history->second.x : NULL,
-                 .force_share = (float)n->system.force_scale,
-                 .velocity_share = (float)(-c * (double)network->global_damping / heavier),
-                 .turned_share = (float)(1.0 / heavier),
-                 .first_share = (float)(1.0 / 3.0 / heavier),
-                 .second_share = (float)(2.0 / 9.0 * (double)h / heavier),
-                 .shift = (float)(c * (double)network->gravity_x / heavier)};
-    add_outside(slots, n->mass, &o, n->residual.x);
-    o.force = base.y;
-    o.velocity = n->velocity.y;
-    o.turned = n->scaled.y;
-    o.first = history->first.y;
-    o.second = two ? history->second.y : NULL;
-    o.shift = (float)(c * (double)network->gravity_y / heavier);
-    add_outside(slots, n->mass, &o, n->residual.y);
+// Rows write these; the slots of other rows begin at nothing.
+static void clear_others(const mspring_network *network, mspringi_slots slots) {
+    const mspringi_implicit *n = network->implicit;
+    const size_t swept = (size_t)network->topology.web_first * MSPRINGI_WIDTH;
+    const size_t first = slots.first > swept ? slots.first : swept;
+    float *const arrays[] = {n->residual.x, n->residual.y, n->system.xx, n->system.xy, n->system.yy};
+    for (size_t i = 0; i < sizeof arrays / sizeof arrays[0] && first < slots.end; ++i)
+        memset(arrays[i] + first, 0, (slots.end - first) * sizeof *arrays[i]);
 }
 
-void mspringi_multiply(const mspring_network *network, mspringi_field from, mspringi_field to) {
-    const mspringi_topology *t = &network->topology;
+void mspringi_assemble(const mspringi_substep_of *substep, mspringi_mate *mate) {
+    const mspring_network *network = substep->network;
     const mspringi_implicit *n = network->implicit;
-    const mspringi_system_kernels *kernels = &network->kernels->system;
-    for (uint32_t r = 0; r < t->row_count;) {
-        const mspringi_row *row = &t->rows[r];
-        const uint32_t count = count_alike(t, r);
-        const mspringi_multiply_fn multiply =
-            row->kind == MSPRINGI_ROW_LATTICE ? kernels->multiply_lattice : kernels->multiply_chain;
-        if (is_swept(row))
-            multiply(&n->system, t->spans + row->first_span, count_spans(row, count), from.x, from.y, to.x, to.y);
-        r += count;
+    const mspringi_slots slots = mspringi_slots_of(network, mate);
+    mspringi_meet(mate);
+    assemble_panels(network, mate);
+    clear_others(network, slots);
+    mspringi_meet(mate);
+    if (network->topology.leftover_count > 0) {
+        if (mate->index == 0)
+            assemble_leftover(network);
+        mspringi_meet(mate);
     }
-    const size_t slots = mspringi_slot_count(network);
-    for (size_t i = (size_t)t->web_first * MSPRINGI_WIDTH; i < slots; ++i) {
-        to.x[i] = n->mass[i] * from.x[i];
-        to.y[i] = n->mass[i] * from.y[i];
+    network->kernels->system.add_outside(&substep->outside[0], n->residual.x, slots.first, slots.end);
+    network->kernels->system.add_outside(&substep->outside[1], n->residual.y, slots.first, slots.end);
+}
+
+double mspringi_multiply(const mspringi_substep_of *substep, mspringi_mate *mate) {
+    const mspring_network *network = substep->network;
+    mspringi_implicit *n = network->implicit;
+    multiply_panels(network, mate);
+    mspringi_meet(mate);
+    if (network->topology.web_blocks > 0 || network->topology.leftover_count > 0) {
+        if (mate->index == 0)
+            n->leftover_product = multiply_leftover(network, n->direction, n->product);
+        mspringi_meet(mate);
     }
-    multiply_leftover(network, from, to);
+    double sum = n->leftover_product;
+    for (uint32_t p = 0; p < n->panels.count; ++p)
+        sum += (double)n->panels.sums[p];
+    return sum;
 }

@@ -243,9 +243,13 @@ static bool list_joints(cutting *g) {
     if (ok) {
         sort_joints(cells, cells->joints, scratch, first, true);
         sort_joints(cells, scratch, cells->joints, first, false);
+        // Each is at the end of its cell's now, which is where the next one's begin.
+        for (uint32_t cell = cells->count; cell > 0; --cell)
+            first[cell] = first[cell - 1];
+        first[0] = 0;
     }
+    cells->first_joint = first;
     mspringi_free(g->memory, scratch);
-    mspringi_free(g->memory, first);
     return ok;
 }
 
@@ -297,6 +301,7 @@ void mspringi_cells_destroy(mspringi_cells *cells, mspringi_memory *memory) {
     mspringi_free(memory, cells->first_inner);
     mspringi_free(memory, cells->inner);
     mspringi_free(memory, cells->joints);
+    mspringi_free(memory, cells->first_joint);
     mspringi_free(memory, cells->lowest);
     *cells = (mspringi_cells){0};
 }

@@ -27,7 +27,8 @@ typedef struct mspringi_cells {
     uint32_t *inner;        ///< springs inside a cell, by cell
     mspringi_joint *joints; ///< springs between cells, sorted by the two
     uint32_t joint_count;
-    uint32_t *lowest; ///< [count] lowest of a cell and its neighbours
+    uint32_t *first_joint; ///< [count + 1] in joints, by the later cell
+    uint32_t *lowest;      ///< [count] lowest of a cell and its neighbours
 } mspringi_cells;
 
 /// Cut a network into cells of size x size particles, numbered so that neighbours have near numbers.

@@ -18,7 +18,9 @@ typedef struct mspringi_coarse {
     size_t *row;     ///< [tiles] where its three rows begin in values, each 3 * (tile - first + 1) long
     double *values;  ///< the lower triangle, then its factor with reciprocals on the diagonal
     size_t value_count;
-    double *unknowns; ///< [tiles][3]
+    double *far_turns; ///< [blocks] what each block's springs resist a turn of the earlier of its tiles with
+    double (*unknowns)[MSPRINGI_RIGID];   ///< [tiles]
+    double (*restricted)[MSPRINGI_RIGID]; ///< [tiles] the right-hand side
 } mspringi_coarse;
 
 /// Multiply-adds that factoring takes with these tiles.
@@ -32,14 +34,25 @@ void mspringi_coarse_destroy(mspringi_coarse *coarse, mspringi_memory *memory);
 /// Take over the tiles that there are now.
 void mspringi_coarse_shape(mspringi_coarse *coarse, const mspringi_tiles *tiles);
 
-/// Compute Z^T A Z. Springs inside a tile are left out: they resist a turn of it with their tension only.
-void mspringi_coarse_assemble(mspringi_coarse *coarse, const mspringi_tiles *tiles, const float *factors,
-                              const float *mass, mspringi_field arm);
+/// What Z^T A Z is made of. Springs inside a tile are left out: they resist a turn of it with their tension only.
+typedef struct mspringi_coarse_parts {
+    const mspringi_system_kernels *kernels;
+    const mspringi_iterate *iterate;
+    const float *factors, *mass;
+} mspringi_coarse_parts;
+
+/// Compute the rows of the tiles of cells first to end - 1, but for what these get from later tiles' springs.
+void mspringi_coarse_assemble(mspringi_coarse *coarse, const mspringi_tiles *tiles,
+                              const mspringi_coarse_parts *parts, uint32_t first, uint32_t end);
+
+/// Add that, and springs to pinned particles, when all rows are there.
+void mspringi_coarse_complete(mspringi_coarse *coarse, const mspringi_tiles *tiles,
+                              const mspringi_coarse_parts *parts);
 
 /// Factor in place. Never fails: a pivot that rounding has made too small is replaced.
 void mspringi_coarse_factor(mspringi_coarse *coarse);
 
-/// Solve for the right-hand side in unknowns, in place.
-void mspringi_coarse_solve(mspringi_coarse *coarse);
+/// Solve for restricted. Returns restricted . unknowns.
+double mspringi_coarse_solve(mspringi_coarse *coarse);
 
 #endif

@@ -12,6 +12,9 @@
 /// takes.
 #define COARSE_COST_PER_SLOT 20.0
 
+/// Slots from which more than one worker is worth it.
+#define SMALLEST_SHARED_SLOTS 4096
+
 /* ----------------------------------------------------------------------------------------------------- creation */
 
 static bool reserve_field(mspringi_memory *memory, mspringi_field *field, size_t slots) {
@@ -47,7 +50,7 @@ static double choose_scale(const mspring_network *network) {
 static mspring_result allocate(mspringi_implicit *n, mspring_network *network) {
     mspringi_memory *memory = &network->memory;
     const mspringi_topology *t = &network->topology;
-    const size_t slots = mspringi_slot_count(network), carry = (size_t)t->carry_blocks * MSPRINGI_WIDTH;
+    const size_t slots = mspringi_slot_count(network);
     const size_t leftover = ((size_t)t->leftover_count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
     const bool two = n->integrator == MSPRING_INTEGRATOR_BDF2;
     n->history_size = (two ? 6 : 4) * slots;
@@ -55,13 +58,11 @@ static mspring_result allocate(mspringi_implicit *n, mspring_network *network) {
     n->x = mspringi_alloc(memory, 2 * slots, sizeof *n->x);
     n->mass = mspringi_alloc(memory, slots, sizeof *n->mass);
     n->diagonal = mspringi_alloc(memory, 3 * slots, sizeof *n->diagonal);
-    n->force_carry = mspringi_alloc(memory, 2 * carry, sizeof *n->force_carry);
-    n->carry = mspringi_alloc(memory, 3 * carry, sizeof *n->carry);
+    n->sums = mspringi_alloc(memory, slots / MSPRINGI_CHUNK + 1, sizeof *n->sums);
     if (!reserve_history(memory, &n->history, slots, two) || !reserve_history(memory, &n->backup, slots, two) ||
         !reserve_field(memory, &n->velocity, slots) || !reserve_field(memory, &n->residual, slots) ||
         !reserve_field(memory, &n->displacement, slots) || !reserve_field(memory, &n->product, slots) ||
-        !reserve_field(memory, &n->scaled, slots) || !n->factors || !n->x || !n->mass || !n->diagonal ||
-        !n->force_carry || !n->carry)
+        !reserve_field(memory, &n->scaled, slots) || !n->factors || !n->x || !n->mass || !n->diagonal || !n->sums)
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for an implicit solver of %u particles", (unsigned)t->particle_count);
     n->y = n->x + slots;
@@ -81,11 +82,6 @@ static mspring_result allocate(mspringi_implicit *n, mspring_network *network) {
         .xx = n->diagonal,
         .xy = n->diagonal + slots,
         .yy = n->diagonal + 2 * slots,
-        .force_carry_x = n->force_carry,
-        .force_carry_y = n->force_carry + carry,
-        .carry_xx = n->carry,
-        .carry_xy = n->carry + carry,
-        .carry_yy = n->carry + 2 * carry,
     };
     return MSPRING_OK;
 }
@@ -94,13 +90,12 @@ static mspring_result allocate(mspringi_implicit *n, mspring_network *network) {
 static mspring_result allocate_iterate(mspringi_implicit *n, mspring_network *network) {
     mspringi_memory *memory = &network->memory;
     const size_t slots = mspringi_slot_count(network);
-    n->restricted = mspringi_alloc(memory, (size_t)MSPRINGI_RIGID * n->tiles.capacity, sizeof *n->restricted);
-    if (!reserve_field(memory, &n->direction, slots) || !reserve_field(memory, &n->arm, slots) || !n->restricted)
+    n->flights = mspringi_alloc(memory, n->tiles.capacity, sizeof *n->flights);
+    if (!reserve_field(memory, &n->direction, slots) || !reserve_field(memory, &n->arm, slots) || !n->flights)
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for the iterations of %u particles",
                              (unsigned)network->topology.particle_count);
     n->iterate = (mspringi_iterate){
-        .slots = slots,
         .solution_x = n->displacement.x,
         .solution_y = n->displacement.y,
         .residual_x = n->residual.x,
@@ -115,6 +110,32 @@ static mspring_result allocate_iterate(mspringi_implicit *n, mspring_network *ne
         .arm_y = n->arm.y,
     };
     return MSPRING_OK;
+}
+
+// Carry rows for the workers that there are now.
+static mspring_result reserve_carry(mspringi_implicit *n, mspring_network *network) {
+    mspringi_memory *memory = &network->memory;
+    const uint32_t rows = mspringi_tasks_concurrency(network->tasks);
+    const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH;
+    if (n->carry_rows >= rows)
+        return MSPRING_OK;
+    double *forces = mspringi_alloc(memory, 2 * carry * rows, sizeof *forces);
+    float *others = mspringi_alloc(memory, 3 * carry * rows, sizeof *others);
+    if (!forces || !others) {
+        mspringi_free(memory, forces);
+        mspringi_free(memory, others);
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for what rows hand on to rows");
+    }
+    mspringi_free(memory, n->force_carry);
+    mspringi_free(memory, n->carry);
+    n->force_carry = forces;
+    n->carry = others;
+    n->carry_rows = rows;
+    return MSPRING_OK;
+}
+
+mspring_result mspringi_implicit_reserve(mspring_network *network) {
+    return network->implicit ? reserve_carry(network->implicit, network) : MSPRING_OK;
 }
 
 // Cut into tiles of the size asked for or else, beginning at the default, of the first whose coarse matrix is cheap
@@ -153,7 +174,11 @@ mspring_result mspringi_implicit_create(mspring_network *network, const mspring_
     mspringi_implicit_adjust(n, def);
     mspring_result result = allocate(n, network);
     if (result == MSPRING_OK)
+        result = mspringi_panels_create(&n->panels, &network->topology, &network->memory, &network->message);
+    if (result == MSPRING_OK)
         result = n->is_direct ? mspringi_direct_create(&n->direct, network) : make_two_level(n, network);
+    if (result == MSPRING_OK)
+        result = reserve_carry(n, network);
     if (result == MSPRING_OK)
         *implicit = n;
     else
@@ -176,12 +201,13 @@ void mspringi_implicit_destroy(mspringi_implicit *n, mspringi_memory *memory) {
     if (!n)
         return;
     mspringi_direct_destroy(&n->direct, memory);
+    mspringi_panels_destroy(&n->panels, memory);
     mspringi_tiles_destroy(&n->tiles, memory);
     mspringi_coarse_destroy(&n->coarse, memory);
-    void *const blocks[] = {n->history.low.x, n->backup.low.x,   n->x,           n->velocity.x,
-                            n->residual.x,    n->displacement.x, n->direction.x, n->product.x,
-                            n->scaled.x,      n->arm.x,          n->mass,        n->diagonal,
-                            n->factors,       n->force_carry,    n->carry,       n->restricted};
+    void *const blocks[] = {n->history.low.x,  n->backup.low.x, n->x,         n->velocity.x,  n->residual.x,
+                            n->displacement.x, n->direction.x,  n->product.x, n->scaled.x,    n->arm.x,
+                            n->mass,           n->diagonal,     n->factors,   n->force_carry, n->carry,
+                            n->sums,           n->flights};
     for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; ++i)
         mspringi_free(memory, blocks[i]);
     mspringi_free(memory, n);
@@ -189,17 +215,20 @@ void mspringi_implicit_destroy(mspringi_implicit *n, mspringi_memory *memory) {
 
 /* ------------------------------------------------------------------------------------------------------ history */
 
-static void copy_history(const mspringi_implicit *n, const mspringi_history *from, mspringi_history *to) {
-    memcpy(to->low.x, from->low.x, n->history_size * sizeof *to->low.x);
-    to->h = from->h;
-    to->restarts = from->restarts;
+// Whatever is computed by parts of tiles is 0 at slots that have none.
+static void clear_outside_of_tiles(const mspring_network *network) {
+    const mspringi_implicit *n = network->implicit;
+    const mspringi_field fields[] = {n->scaled, n->direction, n->product};
+    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i)
+        memset(fields[i].x, 0, 2 * mspringi_slot_count(network) * sizeof *fields[i].x);
 }
 
 void mspringi_implicit_keep(mspring_network *network) {
     mspringi_implicit *n = network->implicit;
     if (!n)
         return;
-    copy_history(n, &n->history, &n->backup);
+    n->is_kept = true;
+    n->has_changed = false;
     n->gain.to = 0.0;
 }
 
@@ -207,12 +236,20 @@ void mspringi_implicit_restore(mspring_network *network) {
     mspringi_implicit *n = network->implicit;
     if (!n)
         return;
-    copy_history(n, &n->backup, &n->history);
-    // The factor is one of the failed step's. The carry rows are zero between steps unless numbers overflowed.
+    if (n->has_changed) {
+        const mspringi_history failed = n->history;
+        n->history = n->backup;
+        n->backup = failed;
+    }
+    n->has_changed = n->is_kept = false;
+    // The factor is one of the failed step's. The others are zero between steps, or where there is no tile, unless
+    // numbers overflowed.
     n->age = 0;
-    const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH;
+    const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH * n->carry_rows;
     memset(n->force_carry, 0, 2 * carry * sizeof *n->force_carry);
     memset(n->carry, 0, 3 * carry * sizeof *n->carry);
+    if (!n->is_direct)
+        clear_outside_of_tiles(network);
 }
 
 void mspringi_implicit_follow(mspring_network *network) {
@@ -220,6 +257,7 @@ void mspringi_implicit_follow(mspring_network *network) {
     if (!n->is_direct && mspringi_tiles_are_outdated(&n->tiles, network, &n->seen)) {
         mspringi_tiles_follow(&n->tiles, network, &n->seen);
         mspringi_coarse_shape(&n->coarse, &n->tiles);
+        clear_outside_of_tiles(network);
         n->age = 0;
     }
     n->seen = network->edits;
@@ -255,17 +293,72 @@ void mspringi_implicit_describe(const mspringi_implicit *n, mspring_plan *plan) 
 
 /* ----------------------------------------------------------------------------------------------------- substeps */
 
+// Find d = displacement + alpha direction. Returns alpha; NaN if numbers overflowed.
+static float solve(const mspringi_substep_of *substep, mspringi_mate *mate) {
+    if (!substep->network->implicit->is_direct)
+        return mspringi_solve(substep, mate);
+    mspringi_meet(mate);
+    if (mate->index == 0)
+        mspringi_direct_solve(substep->network);
+    mspringi_meet(mate);
+    return 0.0f;
+}
+
+static void complete_slot(const mspringi_implicit *n, float alpha, size_t slot) {
+    const float x = n->direction.x[slot], y = n->direction.y[slot];
+    n->direction.x[slot] = n->direction.y[slot] = 0.0f;
+    n->displacement.x[slot] = n->displacement.x[slot] + alpha * x;
+    n->displacement.y[slot] = n->displacement.y[slot] + alpha * y;
+}
+
+// Let displacement be d at slots that have springs outside of lattices.
+static void complete_outside(const mspring_network *network, float alpha) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_implicit *n = network->implicit;
+    const size_t chain = (size_t)t->chain_first * MSPRINGI_WIDTH, web = (size_t)t->web_first * MSPRINGI_WIDTH;
+    for (size_t i = 0; i < (size_t)t->chain_blocks * MSPRINGI_WIDTH; ++i)
+        complete_slot(n, alpha, chain + i);
+    for (size_t i = 0; i < (size_t)t->web_blocks * MSPRINGI_WIDTH; ++i)
+        complete_slot(n, alpha, web + i);
+    for (uint32_t i = 0; i < t->web.attached_count; ++i)
+        if (t->web.attached_slot[i] != MSPRING_NONE)
+            complete_slot(n, alpha, t->web.attached_slot[i]);
+}
+
+static void look_at_energy(const mspringi_substep_of *substep, float alpha) {
+    if (!substep->network->implicit->is_direct)
+        complete_outside(substep->network, alpha);
+    mspringi_energy_look(substep->network, substep->h, substep->base);
+}
+
+// A worker's part of a substep.
+static void run_substep(void *argument, uint32_t index, uint32_t worker) {
+    const mspringi_substep_of *substep = argument;
+    mspringi_mate mate = {.index = index, .count = substep->workers, .progress = substep->progress};
+    (void)worker;
+    mspringi_predict(substep, &mate);
+    mspringi_assemble(substep, &mate);
+    const float alpha = solve(substep, &mate);
+    if (mspringi_energy_is_watched(substep->network)) {
+        mspringi_meet(&mate);
+        if (mate.index == 0)
+            look_at_energy(substep, alpha);
+        mspringi_meet(&mate);
+    }
+    mspringi_land(substep, &mate, alpha);
+}
+
 void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+    mspringi_implicit *n = network->implicit;
     follow_edits(network);
+    const bool shared = mspringi_slot_count(network) >= SMALLEST_SHARED_SLOTS;
+    mspringi_substep_of substep = {.network = network, .base = base, .h = h};
+    substep.workers = shared ? mspringi_tasks_concurrency(network->tasks) : 1;
+    substep.progress = substep.workers > 1 ? mspringi_tasks_progress(network->tasks) : NULL;
     for (; count > 0; --count) {
-        mspringi_weigh(network, h);
-        mspringi_predict(network, h);
-        mspringi_assemble(network, h, base);
-        if (network->implicit->is_direct)
-            mspringi_direct_solve(network);
-        else
-            mspringi_solve(network);
-        mspringi_energy_look(network, h, base);
-        mspringi_finish(network, h);
+        mspringi_scheme_prepare(&substep);
+        mspringi_tasks_run(substep.progress ? network->tasks : NULL, substep.workers, run_substep, &substep);
+        mspringi_scheme_close(&substep);
+        n->age = n->age + 1 < n->coarse_period ? n->age + 1 : 0;
     }
 }

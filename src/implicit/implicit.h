@@ -1,11 +1,15 @@
 /// @file implicit.h
 /// The implicit solver: one linear system a substep, whatever the stiffness.
 ///
-///   predict    where the particles would be without forces               scheme.c
-///   assemble   springs, linearised there, into A d = b                   assemble.c
-///   solve      two-level preconditioned conjugate gradients              solve.c, tiles.c, coarse.c
-///              or, for the direct solver, a factorisation                direct/direct.c
-///   finish     positions and velocities from d                           scheme.c
+///   weigh, fly, predict    where the particles would be without forces               scheme.c
+///   assemble               springs, linearised there, into A d = b                   assemble.c
+///   solve                  two-level preconditioned conjugate gradients              solve.c, tiles.c, coarse.c
+///                          or, for the direct solver, a factorisation                direct/direct.c
+///   land                   positions and velocities from d                           scheme.c
+///
+/// Workers share all of it (crew.h): slots in chunks, rows in panels (panels.h), and tiles. Whatever is summed is
+/// summed in these pieces first, so that the bits do not depend on how many there are. The factorisation of the
+/// direct solver is one worker's.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_IMPLICIT_H
@@ -14,7 +18,9 @@
 #include "network/network.h"
 
 #include "coarse.h"
+#include "crew.h"
 #include "direct/direct.h"
+#include "panels.h"
 #include "stability/energy.h"
 #include "tiles.h"
 
@@ -37,25 +43,32 @@ typedef struct mspringi_implicit {
     uint32_t age;       ///< substeps since the coarse matrix was factored; 0: it is to be
     double scale;       ///< power of two that brings masses near 1
 
-    mspringi_history history, backup;
-    size_t history_size; ///< floats in a history
+    mspringi_history history, backup; ///< backup is that of before the step once that has written one
+    bool is_kept;                     ///< history is that of before the step
+    bool has_changed;                 ///< backup is
+    size_t history_size;              ///< floats in a history
 
     double *x, *y;           ///< [slots] predicted positions, in one block
     mspringi_field velocity; ///< after the substep, if d were 0
     mspringi_field residual, displacement, direction, product, scaled;
-    mspringi_field arm;      ///< from the mass centre of its tile to each particle, m
-    float *mass;             ///< [slots] scaled; 0 if pinned or empty
-    float *diagonal;         ///< [slots] xx, then xy, then yy of A's blocks, then of their inverses
-    float *factors;          ///< of lattices, chains and leftover springs, one behind the other
-    float *leftover_factors; ///< where those of the leftover springs begin: [block][factor][lane]
-    double *force_carry;
-    float *carry;
-    double *restricted; ///< the coarse right-hand side
+    mspringi_field arm;            ///< from the mass centre of its tile to each particle, m
+    float *mass;                   ///< [slots] scaled; 0 if pinned or empty
+    float *diagonal;               ///< [slots] xx, then xy, then yy of A's blocks, then of their inverses
+    float *factors;                ///< of lattices, chains and leftover springs, one behind the other
+    float *leftover_factors;       ///< where those of the leftover springs begin: [block][factor][lane]
+    double *force_carry;           ///< carry rows, one for each worker: see mspringi_system
+    float *carry;                  ///< likewise
+    uint32_t carry_rows;           ///< workers that there are some for
+    float *sums;                   ///< [chunks]
+    mspringi_tile_flight *flights; ///< [tiles]
+    double coarse_product;         ///< r . Z Ac^-1 Z^T r
+    double leftover_product;       ///< what leftover springs add to p . A p
     mspringi_system system;
     mspringi_iterate iterate;
     mspringi_edits seen; ///< the edits that it has followed
 
     mspringi_gain gain; ///< of the present step
+    mspringi_panels panels;
     bool is_direct;
     mspringi_direct direct; ///< all there is of it unless is_direct: zero
     mspringi_tiles tiles;   ///< none, nor a coarse matrix, if it is
@@ -83,6 +96,33 @@ void mspringi_implicit_restore(mspring_network *network);
 /// Add to the plan what it says of the implicit solver. Nothing for NULL.
 void mspringi_implicit_describe(const mspringi_implicit *implicit, mspring_plan *plan);
 
+/// Have carry rows for the workers that there are now.
+mspring_result mspringi_implicit_reserve(mspring_network *network);
+
+/// What the workers of one substep share.
+typedef struct mspringi_substep_of {
+    mspring_network *network;
+    mspringi_field base;
+    float h;
+    float mass_scale;
+    uint32_t workers;
+    mspringi_progress *progress;
+    mspringi_flight flight;
+    mspringi_outside outside[2];
+    mspringi_landing landing[2];
+    mspringi_memory_of memory;
+} mspringi_substep_of;
+
+/// A range of slots: those of a mate's share of the chunks.
+typedef struct mspringi_slots {
+    size_t first, end;
+} mspringi_slots;
+static inline mspringi_slots mspringi_slots_of(const mspring_network *network, const mspringi_mate *mate) {
+    const size_t slots = mspringi_slot_count(network), chunks = (slots + MSPRINGI_CHUNK - 1) / MSPRINGI_CHUNK;
+    const size_t end = mspringi_share_end(mate, chunks) * MSPRINGI_CHUNK;
+    return (mspringi_slots){mspringi_share_of(mate, chunks) * MSPRINGI_CHUNK, end < slots ? end : slots};
+}
+
 /* scheme.c */
 
 /// Where an integrator puts the forces: A = M + c K + s C, with c = force_share h^2 and s = c velocity_share / h;
@@ -92,24 +132,23 @@ typedef struct mspringi_scheme {
 } mspringi_scheme;
 mspringi_scheme mspringi_scheme_of(mspring_integrator integrator);
 
-void mspringi_predict(mspring_network *network, float h);
-void mspringi_finish(mspring_network *network, float h);
+/// Fill in all that a substep needs to know but its workers.
+void mspringi_scheme_prepare(mspringi_substep_of *substep);
+void mspringi_predict(const mspringi_substep_of *substep, mspringi_mate *mate);
+/// d = displacement + alpha direction.
+void mspringi_land(const mspringi_substep_of *substep, const mspringi_mate *mate, float alpha);
+/// Let the history be that of the substep that has landed.
+void mspringi_scheme_close(const mspringi_substep_of *substep);
 
 /* assemble.c */
 
-/// Fill in the masses, with what global damping adds to them.
-void mspringi_weigh(mspring_network *network, float h);
-void mspringi_assemble(mspring_network *network, float h, mspringi_field base);
-void mspringi_multiply(const mspring_network *network, mspringi_field from, mspringi_field to);
+void mspringi_assemble(const mspringi_substep_of *substep, mspringi_mate *mate);
+/// product = A direction. Returns their scalar product, when all have met.
+double mspringi_multiply(const mspringi_substep_of *substep, mspringi_mate *mate);
 
-/* solve.c: from residual, factors and diagonal to displacement */
+/* solve.c: from residual, factors and diagonal to d */
 
-void mspringi_solve(mspring_network *network);
-
-/// Particles without springs are in no tile and no factor: their rows of A are diagonal.
-void mspringi_solve_loose(const mspring_network *network);
-
-/// Numbers overflowed: see to it that the step is refused.
-void mspringi_spoil(mspring_network *network);
+/// Solve for d, but for the last step along the direction. Returns its length; NaN if numbers overflowed.
+float mspringi_solve(const mspringi_substep_of *substep, mspringi_mate *mate);
 
 #endif

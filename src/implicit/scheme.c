@@ -26,8 +26,6 @@
 /// flight, but the histories, which do not know of it, would make the whole first order.
 #include "implicit.h"
 
-#include <string.h>
-
 mspringi_scheme mspringi_scheme_of(mspring_integrator integrator) {
     switch (integrator) {
     case MSPRING_INTEGRATOR_BDF2:
@@ -43,124 +41,201 @@ static mspring_integrator integrator_now(const mspringi_implicit *n) {
     return n->history.restarts ? MSPRING_INTEGRATOR_EULER : n->integrator;
 }
 
-// Bring a history to another substep: of a smooth motion, E grows as h^2 and G as h.
-static void rescale_history(mspring_network *network, float h) {
-    mspringi_implicit *n = network->implicit;
-    mspringi_history *history = &n->history;
-    const size_t slots = mspringi_slot_count(network);
-    if (history->h == h || n->integrator != MSPRING_INTEGRATOR_BDF2 || history->restarts)
-        return;
-    const float ratio = h / history->h, ratio_squared = ratio * ratio;
-    for (size_t i = 0; i < 2 * slots; ++i) {
-        history->first.x[i] = history->first.x[i] * ratio_squared;
-        history->second.x[i] = history->second.x[i] * ratio;
-    }
+/* ------------------------------------------------------------------------------------------------- preparation */
+
+// What a history of another substep is multiplied with: of a smooth motion, E grows as h^2 and G as h.
+static float rescaling(const mspringi_implicit *n, float h) {
+    const bool other = n->integrator == MSPRING_INTEGRATOR_BDF2 && !n->history.restarts && n->history.h != h;
+    return other ? h / n->history.h : 1.0f;
 }
 
-// One coordinate's predicted position, and velocity of d = 0.
-static void predict_coordinate(size_t slots, const float *position, const float *low, const float *velocity,
-                               const float *first, const float *turned, const float *inverse_mass, float h,
-                               float first_share, float rate, double *restrict predicted, float *restrict start) {
-    for (size_t i = 0; i < slots; ++i) {
-        const float moved = (velocity[i] + first_share * first[i]) + rate * turned[i];
-        const double straight = ((double)position[i] + (double)low[i]) + (double)h * (double)velocity[i];
-        predicted[i] = straight + (double)turned[i];
-        start[i] = inverse_mass[i] > 0.0f ? moved : velocity[i];
-    }
-}
-
-// How far tiles turn on; into scaled, which is free before the solution.
-static void fly_tiles(const mspring_network *network, float h) {
+static mspringi_flight prepare_flight(const mspringi_substep_of *substep, mspring_integrator integrator) {
+    const mspring_network *network = substep->network;
     const mspringi_implicit *n = network->implicit;
-    const mspringi_tiles *tiles = &n->tiles;
-    const mspringi_flight flight = {.x = network->state.x,
-                                    .y = network->state.y,
-                                    .vx = network->state.vx,
-                                    .vy = network->state.vy,
-                                    .mass = n->mass,
-                                    .h = h,
-                                    .turned_x = n->scaled.x,
-                                    .turned_y = n->scaled.y,
-                                    .arm_x = n->arm.x,
-                                    .arm_y = n->arm.y};
-    memset(n->scaled.x, 0, 2 * mspringi_slot_count(network) * sizeof *n->scaled.x);
-    for (uint32_t t = 0; t < tiles->count; ++t)
-        network->kernels->system.fly_tile(&flight, tiles->parts + tiles->first_part[t],
-                                          tiles->first_part[t + 1] - tiles->first_part[t]);
-}
-
-void mspringi_predict(mspring_network *network, float h) {
-    mspringi_implicit *n = network->implicit;
-    const mspringi_history *history = &n->history;
-    const mspringi_state *s = &network->state;
-    const size_t slots = mspringi_slot_count(network);
-    rescale_history(network, h);
-    const mspring_integrator integrator = integrator_now(n);
+    const float h = substep->h, ratio = rescaling(n, h);
     const float share = integrator == MSPRING_INTEGRATOR_GA0    ? 0.25f * h
-                        : integrator == MSPRING_INTEGRATOR_BDF2 ? -0.5f / h
+                        : integrator == MSPRING_INTEGRATOR_BDF2 ? -0.5f / h * (ratio * ratio)
                                                                 : 0.0f;
-    const float rate = (float)(mspringi_scheme_of(integrator).velocity_share / (double)h);
-    fly_tiles(network, h);
-    predict_coordinate(slots, s->x, history->low.x, s->vx, history->first.x, n->scaled.x, network->inverse_mass, h,
-                       share, rate, n->x, n->velocity.x);
-    predict_coordinate(slots, s->y, history->low.y, s->vy, history->first.y, n->scaled.y, network->inverse_mass, h,
-                       share, rate, n->y, n->velocity.y);
+    return (mspringi_flight){
+        .x = network->state.x,
+        .y = network->state.y,
+        .vx = network->state.vx,
+        .vy = network->state.vy,
+        .low_x = n->history.low.x,
+        .low_y = n->history.low.y,
+        .first_x = n->history.first.x,
+        .first_y = n->history.first.y,
+        .inverse_mass = network->inverse_mass,
+        .mass = n->mass,
+        .h = h,
+        .first_share = share,
+        .rate = (float)(mspringi_scheme_of(integrator).velocity_share / (double)h),
+        .turned_x = n->scaled.x, // free before the solution
+        .turned_y = n->scaled.y,
+        .arm_x = n->arm.x,
+        .arm_y = n->arm.y,
+        .to_x = n->x,
+        .to_y = n->y,
+        .start_vx = n->velocity.x,
+        .start_vy = n->velocity.y,
+    };
 }
 
-// One coordinate's state after a substep. A pinned particle has d = 0. displacement becomes what it is from x + h
-// v.
-static void finish_coordinate(size_t slots, const double *predicted, const float *start, const float *inverse_mass,
-                              float h, float rate, float *restrict displacement, float *restrict position,
-                              float *restrict low, float *restrict velocity, float *restrict change) {
-    for (size_t i = 0; i < slots; ++i) {
-        const double straight = ((double)position[i] + (double)low[i]) + (double)h * (double)velocity[i];
-        const double end = predicted[i] + (double)displacement[i];
-        const float rounded = (float)end;
-        const float after = inverse_mass[i] > 0.0f ? start[i] + rate * displacement[i] : velocity[i];
-        position[i] = rounded;
-        low[i] = (float)(end - (double)rounded);
-        change[i] = after - velocity[i];
-        velocity[i] = after;
-        displacement[i] = (float)(end - straight);
-    }
+// The forces from outside, and the inertia of what was predicted.
+static void prepare_outside(mspringi_substep_of *substep, double c, double heavier) {
+    const mspring_network *network = substep->network;
+    const mspringi_implicit *n = network->implicit;
+    const bool two = n->integrator == MSPRING_INTEGRATOR_BDF2 && !n->history.restarts;
+    const float h = substep->h, ratio = rescaling(n, h);
+    const double damping = (double)network->global_damping;
+    mspringi_outside o = {
+        .mass = n->mass,
+        .force_share = (float)n->system.force_scale,
+        .velocity_share = (float)(-c * damping / heavier),
+        .turned_share = (float)(1.0 / heavier),
+        .first_share = (float)(1.0 / 3.0 / heavier) * (ratio * ratio),
+        .second_share = (float)(2.0 / 9.0 * (double)h / heavier) * ratio,
+    };
+    o.force = substep->base.x;
+    o.velocity = n->velocity.x;
+    o.turned = n->scaled.x;
+    o.first = n->history.first.x;
+    o.second = two ? n->history.second.x : NULL;
+    o.shift = (float)(c * (double)network->gravity_x / heavier);
+    substep->outside[0] = o;
+    o.force = substep->base.y;
+    o.velocity = n->velocity.y;
+    o.turned = n->scaled.y;
+    o.first = n->history.first.y;
+    o.second = two ? n->history.second.y : NULL;
+    o.shift = (float)(c * (double)network->gravity_y / heavier);
+    substep->outside[1] = o;
 }
 
-// change holds v(t+h) - v of one coordinate.
-static void update_history(const mspringi_implicit *n, mspring_integrator integrator, size_t slots, float h,
-                           const float *displacement, const float *change, float *restrict first,
-                           float *restrict second) {
-    const float per_h = 1.0f / h;
+static mspringi_memory_of choose_memory(const mspringi_implicit *n) {
     switch (n->integrator) {
     case MSPRING_INTEGRATOR_GA0:
-        for (size_t i = 0; i < slots; ++i)
-            first[i] = integrator == MSPRING_INTEGRATOR_EULER ? change[i] * per_h
-                                                              : displacement[i] * per_h * per_h + 0.5f * first[i];
-        break;
+        return n->history.restarts ? MSPRINGI_REMEMBER_CHANGE : MSPRINGI_REMEMBER_ACCELERATION;
     case MSPRING_INTEGRATOR_BDF2:
-        for (size_t i = 0; i < slots; ++i) {
-            first[i] = displacement[i] - h * change[i]; // (h v + d) - h v(t+h)
-            second[i] = change[i];
-        }
-        break;
+        return MSPRINGI_REMEMBER_BOTH;
     default:
-        break;
+        return MSPRINGI_REMEMBER_NOTHING;
     }
 }
 
-void mspringi_finish(mspring_network *network, float h) {
+// The first substep of a step writes its history to the backup, which becomes the history: what was there before is
+// the backup then.
+static void prepare_landing(mspringi_substep_of *substep, float rate) {
+    const mspring_network *network = substep->network;
+    const mspringi_implicit *n = network->implicit;
+    const mspringi_history *from = &n->history, *to = n->is_kept ? &n->backup : &n->history;
+    const mspringi_field direction = n->is_direct ? n->product : n->direction; // nothing, or what is left of d
+    substep->memory = choose_memory(n);
+    substep->landing[0] = (mspringi_landing){.predicted = n->x,
+                                             .start = n->velocity.x,
+                                             .inverse_mass = network->inverse_mass,
+                                             .solution = n->displacement.x,
+                                             .direction = direction.x,
+                                             .low = from->low.x,
+                                             .first = from->first.x,
+                                             .position = network->state.x,
+                                             .velocity = network->state.vx,
+                                             .to_low = to->low.x,
+                                             .to_first = to->first.x,
+                                             .to_second = to->second.x,
+                                             .h = substep->h,
+                                             .rate = rate};
+    substep->landing[1] = (mspringi_landing){.predicted = n->y,
+                                             .start = n->velocity.y,
+                                             .inverse_mass = network->inverse_mass,
+                                             .solution = n->displacement.y,
+                                             .direction = direction.y,
+                                             .low = from->low.y,
+                                             .first = from->first.y,
+                                             .position = network->state.y,
+                                             .velocity = network->state.vy,
+                                             .to_low = to->low.y,
+                                             .to_first = to->first.y,
+                                             .to_second = to->second.y,
+                                             .h = substep->h,
+                                             .rate = rate};
+}
+
+void mspringi_scheme_prepare(mspringi_substep_of *substep) {
+    const mspring_network *network = substep->network;
     mspringi_implicit *n = network->implicit;
-    mspringi_history *history = &n->history;
-    const mspringi_state *s = &network->state;
-    const size_t slots = mspringi_slot_count(network);
     const mspring_integrator integrator = integrator_now(n);
-    const float rate = (float)(mspringi_scheme_of(integrator).velocity_share / (double)h);
-    const mspringi_field change = n->product; // done with
-    finish_coordinate(slots, n->x, n->velocity.x, network->inverse_mass, h, rate, n->displacement.x, s->x,
-                      history->low.x, s->vx, change.x);
-    finish_coordinate(slots, n->y, n->velocity.y, network->inverse_mass, h, rate, n->displacement.y, s->y,
-                      history->low.y, s->vy, change.y);
-    update_history(n, integrator, slots, h, n->displacement.x, change.x, history->first.x, history->second.x);
-    update_history(n, integrator, slots, h, n->displacement.y, change.y, history->first.y, history->second.y);
-    history->h = h;
-    history->restarts = false;
+    const mspringi_scheme scheme = mspringi_scheme_of(integrator);
+    const double h = (double)substep->h, c = scheme.force_share * h * h;
+    // What global damping multiplies masses by.
+    const double heavier = 1.0 + scheme.force_share * scheme.velocity_share * h * (double)network->global_damping;
+    n->system.force_scale = n->scale * c;
+    n->system.damping_rate = scheme.velocity_share / h;
+    n->system.parts = network->parts;
+    n->system.rest_lengths = network->rests.lengths;
+    n->system.rests_of_block = network->rests.of_block;
+    substep->mass_scale = (float)(n->scale * heavier);
+    substep->flight = prepare_flight(substep, integrator);
+    prepare_outside(substep, c, heavier);
+    prepare_landing(substep, substep->flight.rate);
+}
+
+/* ----------------------------------------------------------------------------------------------------- the flight
+ */
+
+void mspringi_predict(const mspringi_substep_of *substep, mspringi_mate *mate) {
+    const mspring_network *network = substep->network;
+    const mspringi_implicit *n = network->implicit;
+    const mspringi_system_kernels *kernels = &network->kernels->system;
+    const mspringi_tiles *tiles = &n->tiles;
+    const mspringi_slots slots = mspringi_slots_of(network, mate);
+    kernels->weigh(network->inverse_mass, substep->mass_scale, n->mass, slots.first, slots.end);
+    mspringi_meet(mate);
+    for (size_t t = mspringi_share_of(mate, tiles->count); t < mspringi_share_end(mate, tiles->count); ++t)
+        kernels->aim_tile(&substep->flight, tiles->parts + tiles->first_part[t],
+                          tiles->first_part[t + 1] - tiles->first_part[t], &n->flights[t]);
+    mspringi_meet(mate);
+    const mspringi_part_range parts = mspringi_tiles_parts(tiles, slots.first, slots.end);
+    kernels->fly(&substep->flight, parts.parts, parts.count, n->flights);
+    kernels->predict(&substep->flight, slots.first, slots.end);
+}
+
+/* ------------------------------------------------------------------------------------------------------- landing
+ */
+
+// Particles without springs are in no tile and no factor: their rows of A are diagonal.
+static void land_loose(const mspring_network *network, mspringi_slots slots) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_implicit *n = network->implicit;
+    const size_t loose = (size_t)t->loose_first * MSPRINGI_WIDTH;
+    const size_t loose_end = loose + (size_t)t->loose_blocks * MSPRINGI_WIDTH;
+    const size_t end = slots.end < loose_end ? slots.end : loose_end;
+    for (size_t i = slots.first > loose ? slots.first : loose; i < end; ++i) {
+        n->displacement.x[i] = n->mass[i] > 0.0f ? n->residual.x[i] / n->mass[i] : 0.0f;
+        n->displacement.y[i] = n->mass[i] > 0.0f ? n->residual.y[i] / n->mass[i] : 0.0f;
+    }
+}
+
+void mspringi_land(const mspringi_substep_of *substep, const mspringi_mate *mate, float alpha) {
+    const mspring_network *network = substep->network;
+    const mspringi_slots slots = mspringi_slots_of(network, mate);
+    land_loose(network, slots);
+    for (int i = 0; i < 2; ++i) {
+        mspringi_landing landing = substep->landing[i];
+        landing.alpha = alpha;
+        network->kernels->system.land[substep->memory](&landing, slots.first, slots.end);
+    }
+}
+
+void mspringi_scheme_close(const mspringi_substep_of *substep) {
+    mspringi_implicit *n = substep->network->implicit;
+    if (n->is_kept) {
+        const mspringi_history before = n->history;
+        n->history = n->backup;
+        n->backup = before;
+        n->is_kept = false;
+        n->has_changed = true;
+    }
+    n->history.h = substep->h;
+    n->history.restarts = false;
 }

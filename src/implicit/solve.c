@@ -6,137 +6,147 @@
 /// from its mass centre, [1 0 -Y; 0 1 X] in t's three columns. (Nicolaides 1987 has the additive coarse correction
 /// by domains; rigid bodies as the coarse space of elasticity are Mandel's, 1993.)
 ///
-/// The number of iterations is fixed, and every sum has a fixed order, whatever the instruction set.
+/// The number of iterations is fixed, and every sum has a fixed order, whatever the instruction set and however
+/// many workers there are. All workers run the same code and compute the same scalars from the same sums.
 #include "implicit.h"
 
 #include <math.h>
 #include <string.h>
 
-/* ----------------------------------------------------------------------------------------------------- diagonal */
-
-// Invert the 2 x 2 blocks on the diagonal, in place. Single precision has rounded them: a millionth of their size
-// on top keeps those positive definite that are so by their mass alone, such as a taut rope's.
-static void invert_diagonal(const mspringi_system *s, size_t slots) {
-    float *restrict const block_xx = s->xx, *restrict const block_xy = s->xy, *restrict const block_yy = s->yy;
-    for (size_t i = 0; i < slots; ++i) {
-        const double mass = (double)s->mass[i], trace = (double)block_xx[i] + (double)block_yy[i];
-        const double on_top = mass + 1e-6 * trace;
-        const double xx = (double)block_xx[i] + on_top, yy = (double)block_yy[i] + on_top;
-        const double xy = (double)block_xy[i];
-        const double reciprocal = 1.0 / (xx * yy - xy * xy), factor = mass > 0.0 ? reciprocal : 0.0;
-        block_xx[i] = (float)(mass > 0.0 ? yy * factor : 0.0);
-        block_xy[i] = (float)(mass > 0.0 ? -xy * factor : 0.0);
-        block_yy[i] = (float)(mass > 0.0 ? xx * factor : 0.0);
-    }
-}
+typedef mspringi_substep_of substep_of;
 
 /* ------------------------------------------------------------------------------------------------- coarse space */
 
-static void prepare_coarse(mspringi_implicit *n) {
-    if (n->age == 0) {
-        mspringi_coarse_assemble(&n->coarse, &n->tiles, n->factors, n->mass, n->arm);
-        mspringi_coarse_factor(&n->coarse);
-    }
-    n->age = n->age + 1 < n->coarse_period ? n->age + 1 : 0;
+static mspringi_coarse_parts coarse_parts(const mspring_network *network) {
+    const mspringi_implicit *n = network->implicit;
+    return (mspringi_coarse_parts){&network->kernels->system, &n->iterate, n->factors, n->mass};
+}
+
+// Invert the blocks of D, but those of particles without springs: these are not solved for here.
+static void invert(const mspring_network *network, mspringi_slots slots) {
+    const mspringi_implicit *n = network->implicit;
+    const size_t loose = (size_t)network->topology.loose_first * MSPRINGI_WIDTH;
+    const size_t end = slots.end < loose ? slots.end : loose;
+    float *const blocks[] = {n->system.xx, n->system.xy, n->system.yy};
+    if (end > slots.first)
+        network->kernels->system.invert(&n->system, slots.first, end);
+    const size_t first = slots.first > loose ? slots.first : loose;
+    for (size_t i = 0; i < 3 && first < slots.end; ++i)
+        memset(blocks[i] + first, 0, (slots.end - first) * sizeof *blocks[i]);
+}
+
+static void assemble_coarse(const mspring_network *network, const mspringi_mate *mate) {
+    mspringi_implicit *n = network->implicit;
+    const mspringi_coarse_parts parts = coarse_parts(network);
+    const size_t cells = n->tiles.cells.count;
+    if (n->age == 0)
+        mspringi_coarse_assemble(&n->coarse, &n->tiles, &parts, (uint32_t)mspringi_share_of(mate, cells),
+                                 (uint32_t)mspringi_share_end(mate, cells));
+}
+
+static void factor_coarse(const mspring_network *network) {
+    mspringi_implicit *n = network->implicit;
+    const mspringi_coarse_parts parts = coarse_parts(network);
+    if (n->age > 0)
+        return;
+    mspringi_coarse_complete(&n->coarse, &n->tiles, &parts);
+    mspringi_coarse_factor(&n->coarse);
 }
 
 /* --------------------------------------------------------------------------------------------------- iteration */
 
 // Apply Ac^-1 to Z^T r, into the coarse unknowns. Returns r . Z Ac^-1 Z^T r.
-static double correct(const mspring_network *network) {
+static double correct(const substep_of *substep, mspringi_mate *mate, bool is_first) {
+    const mspring_network *network = substep->network;
     mspringi_implicit *n = network->implicit;
     const mspringi_tiles *tiles = &n->tiles;
-    const size_t count = (size_t)MSPRINGI_RIGID * tiles->count;
-    double sum = 0.0;
-    for (uint32_t t = 0; t < tiles->count; ++t)
+    for (size_t t = mspringi_share_of(mate, tiles->count); t < mspringi_share_end(mate, tiles->count); ++t)
         network->kernels->system.restrict_to_tile(&n->iterate, tiles->parts + tiles->first_part[t],
                                                   tiles->first_part[t + 1] - tiles->first_part[t],
-                                                  n->restricted + (size_t)MSPRINGI_RIGID * t);
-    memcpy(n->coarse.unknowns, n->restricted, count * sizeof *n->restricted);
-    mspringi_coarse_solve(&n->coarse);
-    for (size_t i = 0; i < count; ++i)
-        sum += n->restricted[i] * n->coarse.unknowns[i];
-    return sum;
-}
-
-// direction = z + beta direction.
-static void turn(const mspring_network *network, float beta) {
-    const mspringi_implicit *n = network->implicit;
-    const mspringi_tiles *tiles = &n->tiles;
-    for (uint32_t t = 0; t < tiles->count; ++t)
-        network->kernels->system.turn_tile(&n->iterate, tiles->parts + tiles->first_part[t],
-                                           tiles->first_part[t + 1] - tiles->first_part[t],
-                                           n->coarse.unknowns + (size_t)MSPRINGI_RIGID * t, beta);
-}
-
-static double dot(const mspring_network *network, mspringi_field a, mspringi_field b) {
-    return (double)network->kernels->system.dot(mspringi_slot_count(network), a.x, a.y, b.x, b.y);
-}
-
-// What is done with them leaves the iteration, whose sums go over all slots.
-void mspringi_solve_loose(const mspring_network *network) {
-    const mspringi_topology *t = &network->topology;
-    const mspringi_implicit *n = network->implicit;
-    const size_t first = (size_t)t->loose_first * MSPRINGI_WIDTH;
-    for (size_t i = first; i < first + (size_t)t->loose_blocks * MSPRINGI_WIDTH; ++i) {
-        n->displacement.x[i] = n->mass[i] > 0.0f ? n->residual.x[i] / n->mass[i] : 0.0f;
-        n->displacement.y[i] = n->mass[i] > 0.0f ? n->residual.y[i] / n->mass[i] : 0.0f;
-        n->residual.x[i] = n->residual.y[i] = 0.0f;
+                                                  n->coarse.restricted[t]);
+    mspringi_meet(mate);
+    if (mate->index == 0) {
+        if (is_first)
+            factor_coarse(network);
+        n->coarse_product = mspringi_coarse_solve(&n->coarse);
     }
+    mspringi_meet(mate);
+    return n->coarse_product;
 }
 
-void mspringi_spoil(mspring_network *network) {
-    network->implicit->x[network->topology.slot_of_particle[0]] = NAN;
+// direction = z + beta direction, or what of it there is to be.
+static void turn(const substep_of *substep, mspringi_mate *mate, mspringi_turn what, float beta) {
+    const mspring_network *network = substep->network;
+    const mspringi_implicit *n = network->implicit;
+    const mspringi_slots slots = mspringi_slots_of(network, mate);
+    const mspringi_part_range parts = mspringi_tiles_parts(&n->tiles, slots.first, slots.end);
+    network->kernels->system.turn[what](&n->iterate, parts.parts, parts.count,
+                                        (const double(*)[MSPRINGI_RIGID])n->coarse.unknowns, beta);
+    mspringi_meet(mate);
+}
+
+// Go on by alpha. Returns r . D^-1 r.
+static double advance(const substep_of *substep, mspringi_mate *mate, float alpha, bool is_first) {
+    const mspring_network *network = substep->network;
+    const mspringi_implicit *n = network->implicit;
+    const mspringi_slots slots = mspringi_slots_of(network, mate);
+    const size_t chunks = (mspringi_slot_count(network) + MSPRINGI_CHUNK - 1) / MSPRINGI_CHUNK;
+    network->kernels->system.advance(&n->system, &n->iterate, alpha, is_first, slots.first, slots.end, n->sums);
+    mspringi_meet(mate);
+    double sum = 0.0;
+    for (size_t i = 0; i < chunks; ++i)
+        sum += (double)n->sums[i];
+    return sum;
 }
 
 // The first iteration: the tiles alone, as rigid bodies. It takes the fast changes of a heavy or a spinning part
 // off those that follow, which then leave less force unbalanced (80x5 with a tip of 1000 times the mass: no gain of
 // energy, where without it there is one of 0.1 %).
-static void solve_tiles(const mspring_network *network) {
-    const mspringi_implicit *n = network->implicit;
-    const size_t slots = mspringi_slot_count(network);
-    memset(n->scaled.x, 0, 2 * slots * sizeof *n->scaled.x);
-    const double product = correct(network);
-    turn(network, 0.0f);
-    mspringi_multiply(network, n->direction, n->product);
-    const double curvature = dot(network, n->direction, n->product);
+static double solve_tiles(const substep_of *substep, mspringi_mate *mate) {
+    const double product = correct(substep, mate, true);
+    turn(substep, mate, MSPRINGI_TURN_BODIES, 0.0f);
+    const double curvature = mspringi_multiply(substep, mate);
     const bool is_sound = curvature > 0.0 && curvature < INFINITY && product < INFINITY;
-    const float alpha = is_sound ? (float)(product / curvature) : 0.0f;
-    (void)network->kernels->system.advance(&n->system, &n->iterate, alpha);
+    return advance(substep, mate, is_sound ? (float)(product / curvature) : 0.0f, true);
 }
 
-void mspringi_solve(mspring_network *network) {
-    mspringi_implicit *n = network->implicit;
-    const mspringi_system_kernels *kernels = &network->kernels->system;
-    const size_t slots = mspringi_slot_count(network);
-    memset(n->displacement.x, 0, 2 * slots * sizeof *n->displacement.x);
-    memset(n->direction.x, 0, 2 * slots * sizeof *n->direction.x);
-    memset(n->product.x, 0, 2 * slots * sizeof *n->product.x);
-    invert_diagonal(&n->system, slots);
-    mspringi_solve_loose(network);
-    prepare_coarse(n);
-    uint32_t left = n->iterations;
-    if (left > 1) {
-        solve_tiles(network);
-        --left;
+// d = 0.
+static double begin_anew(const substep_of *substep, mspringi_mate *mate) {
+    const mspringi_implicit *n = substep->network->implicit;
+    const mspringi_slots slots = mspringi_slots_of(substep->network, mate);
+    const mspringi_field fields[] = {n->direction, n->product};
+    for (size_t i = 0; i < 2; ++i) {
+        memset(fields[i].x + slots.first, 0, (slots.end - slots.first) * sizeof *fields[i].x);
+        memset(fields[i].y + slots.first, 0, (slots.end - slots.first) * sizeof *fields[i].y);
     }
-    double product = (double)kernels->advance(&n->system, &n->iterate, 0.0f) + correct(network);
-    turn(network, 0.0f);
-    while (left-- > 0) {
-        mspringi_multiply(network, n->direction, n->product);
-        const double curvature = dot(network, n->direction, n->product);
-        if (!(curvature < INFINITY && product < INFINITY)) {
-            mspringi_spoil(network);
-            return;
-        }
+    return advance(substep, mate, 0.0f, true);
+}
+
+float mspringi_solve(const substep_of *substep, mspringi_mate *mate) {
+    const mspring_network *network = substep->network;
+    mspringi_implicit *n = network->implicit;
+    uint32_t left = n->iterations;
+    invert(network, mspringi_slots_of(network, mate));
+    assemble_coarse(network, mate);
+    mspringi_meet(mate);
+    const bool tiles_first = left > 1;
+    double product = tiles_first ? solve_tiles(substep, mate) : begin_anew(substep, mate);
+    left -= tiles_first;
+    product += correct(substep, mate, !tiles_first);
+    turn(substep, mate, MSPRINGI_TURN_AFRESH, 0.0f);
+    for (;;) {
+        const double curvature = mspringi_multiply(substep, mate);
+        if (!(curvature < INFINITY && product < INFINITY))
+            return NAN;
         // Nothing is left to do, or to be done in this precision.
         if (curvature <= 0.0 || product <= 0.0)
-            break;
-        double next = (double)kernels->advance(&n->system, &n->iterate, (float)(product / curvature));
-        if (left == 0)
-            break;
-        next += correct(network);
-        turn(network, (float)(next / product));
+            return 0.0f;
+        const float alpha = (float)(product / curvature);
+        if (--left == 0)
+            return alpha;
+        double next = advance(substep, mate, alpha, false);
+        next += correct(substep, mate, false);
+        turn(substep, mate, MSPRINGI_TURN_FURTHER, (float)(next / product));
         product = next;
     }
 }

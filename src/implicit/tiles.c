@@ -1,12 +1,14 @@
 /// Finding the tiles in the cells, and following edits.
 #include "tiles.h"
 
+#include <string.h>
+
 #include "base/forest.h"
 #include "base/mix.h"
 #include "network/springs.h"
 
 /// Room for pieces: tiles beyond twice the cells, numbers of the coarse matrix beyond four times those of cells in
-/// one piece each, and springs to pinned particles beyond a quarter of those inside cells.
+/// one piece each, and springs to pinned particles beyond a quarter of all.
 #define SPARE_TILES 64u
 #define SPARE_VALUES ((size_t)4096)
 #define SPARE_ANCHORS 1024u
@@ -104,36 +106,62 @@ static uint32_t list_cell_parts(mspringi_tiles *tiles, uint32_t cell, uint32_t f
                 continue;
             const uint32_t at = *slot / MSPRINGI_PART * MSPRINGI_PART;
             if (part == tiles->first_part[t] || tiles->parts[part - 1].first_slot != at)
-                tiles->parts[part++] = (mspringi_tile_part){at, 0};
+                tiles->parts[part++] = (mspringi_tile_part){.first_slot = at, .tile = t};
             tiles->parts[part - 1].lanes |= 1u << (*slot - at);
         }
     }
     return part;
 }
 
-static void list_parts(mspringi_tiles *tiles) {
+// Sort the parts by slot; those at the same slots stay in the order of their tiles.
+static void sort_parts(mspringi_tiles *tiles, size_t slots) {
+    const size_t groups = slots / MSPRINGI_PART;
+    const uint32_t count = tiles->first_part[tiles->count];
+    uint32_t *const first = tiles->first_by_slot;
+    memset(first, 0, (groups + 1) * sizeof *first);
+    for (uint32_t p = 0; p < count; ++p)
+        first[tiles->parts[p].first_slot / MSPRINGI_PART + 1]++;
+    for (size_t group = 0; group < groups; ++group)
+        first[group + 1] += first[group];
+    // From the last one on, so that first ends up at the beginnings.
+    for (uint32_t p = count; p-- > 0;)
+        tiles->parts_by_slot[--first[tiles->parts[p].first_slot / MSPRINGI_PART + 1]] = tiles->parts[p];
+    for (size_t group = 0; group < groups; ++group)
+        first[group] = first[group + 1];
+    first[groups] = count;
+}
+
+static void list_parts(mspringi_tiles *tiles, size_t slots) {
     uint32_t part = 0;
     for (uint32_t cell = 0; cell < tiles->cells.count; ++cell)
         part = list_cell_parts(tiles, cell, part);
     tiles->first_part[tiles->count] = part;
+    sort_parts(tiles, slots);
 }
 
-// List the springs inside cells to pinned particles, as far as there is room.
+// Note a spring if just one of its ends is pinned, as far as there is room.
+static void add_anchor(mspringi_tiles *tiles, const mspring_network *network, uint32_t a, uint32_t b,
+                       uint32_t factors) {
+    const bool a_free = is_free(network, a);
+    if (a_free == is_free(network, b) || tiles->anchor_count == tiles->anchor_capacity)
+        return;
+    tiles->anchors[tiles->anchor_count++] =
+        (mspringi_joint){.slot = a_free ? a : b, .other_slot = a_free ? b : a, .factors = factors};
+}
+
+// List the springs to pinned particles, inside cells and between them.
 static void list_anchors(mspringi_tiles *tiles, const mspring_network *network) {
     const mspringi_cells *cells = &tiles->cells;
     const mspringi_topology *t = &network->topology;
     tiles->anchor_count = 0;
-    for (uint32_t i = 0; i < cells->first_inner[cells->count] && tiles->anchor_count < tiles->anchor_capacity;
-         ++i) {
+    for (uint32_t i = 0; i < cells->first_inner[cells->count]; ++i) {
         const mspringi_place place = t->place_of_spring[cells->inner[i]];
         uint32_t a, b;
         mspringi_topology_ends(t, place, &a, &b);
-        if (is_free(network, a) == is_free(network, b))
-            continue;
-        const bool a_free = is_free(network, a);
-        tiles->anchors[tiles->anchor_count++] = (mspringi_joint){
-            .slot = a_free ? a : b, .other_slot = a_free ? b : a, .factors = mspringi_factors_of_place(place)};
+        add_anchor(tiles, network, a, b, mspringi_factors_of_place(place));
     }
+    for (const mspringi_joint *joint = cells->joints; joint < cells->joints + cells->joint_count; ++joint)
+        add_anchor(tiles, network, joint->slot, joint->other_slot, joint->factors);
 }
 
 /* ------------------------------------------------------------------------------------------------------- edits */
@@ -181,7 +209,7 @@ static void renew(mspringi_tiles *tiles, const mspring_network *network) {
         number_tiles(tiles, network, most);
         most = most > 16 ? 16 : most / 4;
     } while (!fits(tiles) && most > 0);
-    list_parts(tiles);
+    list_parts(tiles, mspringi_slot_count(network));
 }
 
 bool mspringi_tiles_are_outdated(const mspringi_tiles *tiles, const mspring_network *network,
@@ -228,17 +256,19 @@ static bool find_tiles(mspringi_tiles *tiles, const mspring_network *network, ms
     const size_t slots = mspringi_slot_count(network), cells = tiles->cells.count;
     tiles->capacity = 2 * (uint32_t)cells + SPARE_TILES;
     tiles->value_capacity = 4 * values_of_cells(&tiles->cells) + SPARE_VALUES;
-    tiles->anchor_capacity = tiles->cells.first_inner[cells] / 4 + SPARE_ANCHORS;
+    tiles->anchor_capacity = network->topology.spring_count / 4 + SPARE_ANCHORS;
     tiles->of_slot = mspringi_alloc(memory, slots, sizeof *tiles->of_slot);
     tiles->parent = mspringi_alloc(memory, slots, sizeof *tiles->parent);
     tiles->first_of_cell = mspringi_alloc(memory, cells + 1, sizeof *tiles->first_of_cell);
     tiles->dirty = mspringi_alloc(memory, cells, sizeof *tiles->dirty);
     tiles->is_dirty = mspringi_alloc(memory, cells, sizeof *tiles->is_dirty);
     tiles->parts = mspringi_alloc(memory, network->topology.particle_count, sizeof *tiles->parts);
+    tiles->parts_by_slot = mspringi_alloc(memory, network->topology.particle_count, sizeof *tiles->parts_by_slot);
+    tiles->first_by_slot = mspringi_alloc(memory, slots / MSPRINGI_PART + 1, sizeof *tiles->first_by_slot);
     tiles->first_part = mspringi_alloc(memory, (size_t)tiles->capacity + 1, sizeof *tiles->first_part);
     tiles->anchors = mspringi_alloc(memory, tiles->anchor_capacity, sizeof *tiles->anchors);
     if (!tiles->of_slot || !tiles->parent || !tiles->first_of_cell || !tiles->dirty || !tiles->is_dirty ||
-        !tiles->parts || !tiles->first_part || !tiles->anchors)
+        !tiles->parts || !tiles->parts_by_slot || !tiles->first_by_slot || !tiles->first_part || !tiles->anchors)
         return false;
     for (size_t slot = 0; slot < slots; ++slot)
         tiles->of_slot[slot] = MSPRING_NONE;
@@ -271,6 +301,8 @@ void mspringi_tiles_destroy(mspringi_tiles *tiles, mspringi_memory *memory) {
     mspringi_cells_destroy(&tiles->cells, memory);
     mspringi_free(memory, tiles->first_part);
     mspringi_free(memory, tiles->parts);
+    mspringi_free(memory, tiles->parts_by_slot);
+    mspringi_free(memory, tiles->first_by_slot);
     mspringi_free(memory, tiles->of_slot);
     mspringi_free(memory, tiles->first_of_cell);
     mspringi_free(memory, tiles->parent);

@@ -15,12 +15,14 @@
 typedef struct mspringi_tiles {
     mspringi_cells cells;
     uint32_t count, capacity;
-    uint32_t *first_part;      ///< [capacity + 1]
-    mspringi_tile_part *parts; ///< tile after tile, at most one for each particle
-    uint32_t *of_slot;         ///< [slots] MSPRING_NONE: none
-    uint32_t *first_of_cell;   ///< [cells + 1] tiles follow the order of their cells
-    uint32_t *parent;          ///< [slots] of a slot in the forest of components
-    mspringi_joint *anchors;   ///< springs inside a cell to pinned particles
+    uint32_t *first_part;              ///< [capacity + 1]
+    mspringi_tile_part *parts;         ///< tile after tile, at most one for each particle
+    mspringi_tile_part *parts_by_slot; ///< the same, sorted by slot
+    uint32_t *first_by_slot;           ///< [slots / MSPRINGI_PART + 1] in parts_by_slot
+    uint32_t *of_slot;                 ///< [slots] MSPRING_NONE: none
+    uint32_t *first_of_cell;           ///< [cells + 1] tiles follow the order of their cells
+    uint32_t *parent;                  ///< [slots] of a slot in the forest of components
+    mspringi_joint *anchors;           ///< springs of tiles to pinned particles
     uint32_t anchor_count, anchor_capacity;
     size_t value_capacity; ///< most numbers that the coarse matrix may have
     uint32_t *dirty;       ///< cells to be looked at again
@@ -36,6 +38,20 @@ mspring_result mspringi_tiles_create(mspringi_tiles *tiles, const mspring_networ
 /// others.
 void mspringi_tiles_take_inertia(mspringi_tiles *tiles, const mspringi_tiles *from, size_t slots);
 void mspringi_tiles_destroy(mspringi_tiles *tiles, mspringi_memory *memory);
+
+/// Parts by slot.
+typedef struct mspringi_part_range {
+    const mspringi_tile_part *parts;
+    size_t count;
+} mspringi_part_range;
+
+/// Those of slots first to end - 1, multiples of MSPRINGI_PART.
+static inline mspringi_part_range mspringi_tiles_parts(const mspringi_tiles *tiles, size_t first, size_t end) {
+    if (tiles->count == 0)
+        return (mspringi_part_range){NULL, 0};
+    const uint32_t begin = tiles->first_by_slot[first / MSPRINGI_PART];
+    return (mspringi_part_range){tiles->parts_by_slot + begin, tiles->first_by_slot[end / MSPRINGI_PART] - begin};
+}
 
 /// Numbers in the coarse matrix of these tiles.
 size_t mspringi_tiles_coarse_values(const mspringi_tiles *tiles);

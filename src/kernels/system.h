@@ -63,9 +63,17 @@ static inline double mspringi_swing_share(double relative) {
 /// Fill factors, force and diagonal of one or more rows, all of one kind.
 typedef void (*mspringi_assemble_fn)(const mspringi_system *system, const mspringi_span *spans, uint32_t count);
 
-/// Compute to = A from for one or more rows, all of one kind: x and y are (from_x, from_y).
-typedef void (*mspringi_multiply_fn)(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
-                                     const float *from_x, const float *from_y, float *to_x, float *to_y);
+/// Only leave in the carry row what these rows hand on to the row above, as assembling or multiplying them does.
+/// Nothing is taken from the carry row.
+typedef void (*mspringi_hand_on_forces_fn)(const mspringi_system *system, const mspringi_span *spans,
+                                           uint32_t count);
+typedef void (*mspringi_hand_on_product_fn)(const mspringi_system *system, const mspringi_span *spans,
+                                            uint32_t count, const float *from_x, const float *from_y);
+
+/// Compute to = A from for one or more rows, all of one kind: x and y are (from_x, from_y). Returns from . to of
+/// these rows.
+typedef float (*mspringi_multiply_fn)(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
+                                      const float *from_x, const float *from_y, float *to_x, float *to_y);
 
 /// Slots of a part of a tile.
 #define MSPRINGI_PART 8
@@ -74,11 +82,17 @@ typedef void (*mspringi_multiply_fn)(const mspringi_system *system, const msprin
 typedef struct mspringi_tile_part {
     uint32_t first_slot; ///< a multiple of MSPRINGI_PART
     uint32_t lanes;      ///< bit i: slot first_slot + i
+    uint32_t tile;
 } mspringi_tile_part;
+
+/// [lanes][lane] 1 where the bit of the lane is set, else 0.
+extern const float mspringi_part_weights[1 << MSPRINGI_PART][MSPRINGI_PART];
+
+/// A sum over slots is one of sums over so many slots each, whoever computes them: the last may be shorter.
+#define MSPRINGI_CHUNK 512
 
 /// The vectors of conjugate gradients, arrays by slot. The direction is 0 where d is.
 typedef struct mspringi_iterate {
-    size_t slots;
     float *solution_x, *solution_y; ///< d
     float *residual_x, *residual_y; ///< r = b - A d
     float *scaled_x, *scaled_y;     ///< D^-1 r
@@ -87,39 +101,127 @@ typedef struct mspringi_iterate {
     const float *arm_x, *arm_y;   ///< from the mass centre of its tile to each particle
 } mspringi_iterate;
 
-/// Go on by alpha along the direction, and scale the new residual. Returns r . D^-1 r.
-typedef float (*mspringi_advance_fn)(const mspringi_system *system, const mspringi_iterate *iterate, float alpha);
+/// Add the mass to the blocks on the diagonal and invert them, in place; 0 where there is no mass. Slots first to
+/// end - 1, multiples of MSPRINGI_WIDTH, as in what follows.
+typedef void (*mspringi_invert_fn)(const mspringi_system *system, size_t first, size_t end);
 
-/// Returns a . b, for vectors of two coordinates.
-typedef float (*mspringi_dot_fn)(size_t slots, const float *ax, const float *ay, const float *bx, const float *by);
+/// Go on by alpha along the direction, from d = 0 if it is the first advance, and scale the new residual. sums[i]
+/// becomes r . D^-1 r of chunk i; first is a multiple of MSPRINGI_CHUNK.
+typedef void (*mspringi_advance_fn)(const mspringi_system *system, const mspringi_iterate *iterate, float alpha,
+                                    bool is_first, size_t first, size_t end, float *sums);
+
+/// Sum mass, and the moment of inertia about the mass centre, over the parts of a tile.
+typedef void (*mspringi_inertia_fn)(const mspringi_iterate *iterate, const float *mass,
+                                    const mspringi_tile_part *parts, size_t count, double *to);
 
 /// Sum r over the parts of a tile: in x, in y, and its moment about the mass centre.
 typedef void (*mspringi_restrict_fn)(const mspringi_iterate *iterate, const mspringi_tile_part *parts, size_t count,
                                      double *to);
 
-/// On the parts of a tile, direction = D^-1 r + the motion of a rigid body + beta direction.
-typedef void (*mspringi_turn_fn)(const mspringi_iterate *iterate, const mspringi_tile_part *parts, size_t count,
-                                 const double *body, float beta);
+/// What there is to add up in a new direction.
+typedef enum mspringi_turn {
+    MSPRINGI_TURN_BODIES,  ///< the motion of the tiles as rigid bodies
+    MSPRINGI_TURN_AFRESH,  ///< that and D^-1 r
+    MSPRINGI_TURN_FURTHER, ///< both and beta times the direction before
+    MSPRINGI_TURNS
+} mspringi_turn;
 
-/// The state that a substep begins with, and what rotating tiles make of it: see implicit/scheme.c.
+/// Compute the direction at these parts, which are sorted by slot; slots that are in none of them have none.
+typedef void (*mspringi_turn_fn)(const mspringi_iterate *iterate, const mspringi_tile_part *parts, size_t count,
+                                 const double (*bodies)[3], float beta);
+
+/* ----------------------------------------------------------------------------------- before and after the system
+ */
+
+/// How a tile flies on as a rigid body: a point in it, its mass centre from there, and the rotation less what h v
+/// makes of it.
+typedef struct mspringi_tile_flight {
+    float origin_x, origin_y, origin_vx, origin_vy;
+    float x, y, hvx, hvy, inward, sideways;
+} mspringi_tile_flight;
+
+/// The state that a substep begins with, and what is predicted of it: see implicit/scheme.c.
 typedef struct mspringi_flight {
-    const float *x, *y, *vx, *vy, *mass;
+    const float *x, *y, *vx, *vy, *low_x, *low_y;
+    const float *first_x, *first_y; ///< history
+    const float *inverse_mass, *mass;
     float h;
-    float *turned_x, *turned_y; ///< of the tile's rotation beyond h v
+    float first_share;          ///< of the history in the velocity
+    float rate;                 ///< of velocity, for a displacement
+    float *turned_x, *turned_y; ///< of the tile's rotation beyond h v; 0 where there is no tile
     float *arm_x, *arm_y;       ///< from the tile's mass centre to the predicted position
+    double *to_x, *to_y;        ///< predicted position
+    float *start_vx, *start_vy; ///< velocity if d were 0
 } mspringi_flight;
 
-/// Predict the rotation of the tile that has these parts.
-typedef void (*mspringi_fly_fn)(const mspringi_flight *flight, const mspringi_tile_part *parts, size_t count);
+/// mass = scale / inverse mass, or 0.
+typedef void (*mspringi_weigh_fn)(const float *inverse_mass, float scale, float *mass, size_t first, size_t end);
+
+/// Find how the tile that has these parts flies on.
+typedef void (*mspringi_aim_fn)(const mspringi_flight *flight, const mspringi_tile_part *parts, size_t count,
+                                mspringi_tile_flight *to);
+
+/// Compute turned and arm at these parts, which are sorted by slot.
+typedef void (*mspringi_fly_fn)(const mspringi_flight *flight, const mspringi_tile_part *parts, size_t count,
+                                const mspringi_tile_flight *tiles);
+
+/// Predict positions, and the velocity if d were 0.
+typedef void (*mspringi_predict_fn)(const mspringi_flight *flight, size_t first, size_t end);
+
+/// What comes on the springs' force, in a coordinate.
+typedef struct mspringi_outside {
+    const float *mass;
+    const float *force;          ///< from outside, N; NULL: none
+    const float *velocity;       ///< v*
+    const float *turned;         ///< by how much x* is turned on
+    const float *first, *second; ///< history of BDF2; second NULL: none
+    float force_share, velocity_share, turned_share, first_share, second_share;
+    float shift; ///< gravity's
+} mspringi_outside;
+
+/// Add it to the springs' force in residual. The whole is 0 where d is.
+typedef void (*mspringi_outside_fn)(const mspringi_outside *outside, float *residual, size_t first, size_t end);
+
+/// The end of a substep, in a coordinate.
+typedef struct mspringi_landing {
+    const double *predicted;
+    const float *start; ///< velocity if d were 0
+    const float *inverse_mass;
+    const float *solution, *direction; ///< d = solution + alpha direction
+    const float *low, *first;          ///< history
+    float *position, *velocity;
+    float *to_low, *to_first, *to_second; ///< history; may be the same arrays
+    float alpha;
+    float h, rate;
+} mspringi_landing;
+
+/// The history that is kept.
+typedef enum mspringi_memory_of {
+    MSPRINGI_REMEMBER_NOTHING,      ///< of implicit Euler
+    MSPRINGI_REMEMBER_CHANGE,       ///< of the first step of GA0
+    MSPRINGI_REMEMBER_ACCELERATION, ///< of GA0
+    MSPRINGI_REMEMBER_BOTH,         ///< of BDF2
+    MSPRINGI_REMEMBERS
+} mspringi_memory_of;
+
+typedef void (*mspringi_land_fn)(const mspringi_landing *landing, size_t first, size_t end);
 
 typedef struct mspringi_system_kernels {
+    mspringi_weigh_fn weigh;
+    mspringi_aim_fn aim_tile;
+    mspringi_fly_fn fly;
+    mspringi_predict_fn predict;
     mspringi_assemble_fn assemble_lattice[2], assemble_chain[2]; ///< [with damping]
+    mspringi_hand_on_forces_fn hand_on_forces[2];                ///< of lattice rows, [with damping]
+    mspringi_outside_fn add_outside;
+    mspringi_invert_fn invert;
     mspringi_multiply_fn multiply_lattice, multiply_chain;
+    mspringi_hand_on_product_fn hand_on_product; ///< of lattice rows
     mspringi_advance_fn advance;
-    mspringi_dot_fn dot;
+    mspringi_inertia_fn inertia_of_tile;
     mspringi_restrict_fn restrict_to_tile;
-    mspringi_turn_fn turn_tile;
-    mspringi_fly_fn fly_tile;
+    mspringi_turn_fn turn[MSPRINGI_TURNS];
+    mspringi_land_fn land[MSPRINGI_REMEMBERS];
 } mspringi_system_kernels;
 
 #endif

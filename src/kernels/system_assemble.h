@@ -141,6 +141,61 @@ static inline void assemble_lattice(const mspringi_system *system, const mspring
     }
 }
 
+// Forces and blocks that a block's springs hand on to the row above, in the order of sum_block().
+#define MSPRINGI_HAND_ON_FORCES(part)                                                                              \
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)                                                                    \
+        diagonal->force.part[i + 1] = north_east->force_##part[i];                                                 \
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)                                                                    \
+        s->force_carry_##part[carry + i] =                                                                         \
+            (south_east->force_##part[i] - north->force_##part[i]) - diagonal->force.part[i];                      \
+    diagonal->force.part[0] = diagonal->force.part[MSPRINGI_WIDTH];
+
+#define MSPRINGI_HAND_ON_BLOCKS(part)                                                                              \
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)                                                                    \
+        diagonal->block.part[i + 1] = north_east->part[i];                                                         \
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)                                                                    \
+        s->carry_##part[carry + i] = (south_east->part[i] + north->part[i]) + diagonal->block.part[i];             \
+    diagonal->block.part[0] = diagonal->block.part[MSPRINGI_WIDTH];
+
+static inline void hand_on_block(const mspringi_system *s, size_t carry, const assembled *north,
+                                 const assembled *north_east, const assembled *south_east,
+                                 handed *restrict diagonal) {
+    MSPRINGI_HAND_ON_FORCES(x)
+    MSPRINGI_HAND_ON_FORCES(y)
+    MSPRINGI_HAND_ON_BLOCKS(xx)
+    MSPRINGI_HAND_ON_BLOCKS(xy)
+    MSPRINGI_HAND_ON_BLOCKS(yy)
+}
+
+#undef MSPRINGI_HAND_ON_FORCES
+#undef MSPRINGI_HAND_ON_BLOCKS
+
+static inline void hand_on_forces(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
+                                  bool damped) {
+    const mspringi_system copy = *system, *const s = &copy;
+    const size_t part = (size_t)(damped ? 2 : 1) * MSPRINGI_WIDTH;
+    float factors[MSPRINGI_FACTORS * MSPRINGI_WIDTH]; // whoever has these rows keeps theirs
+    assembled north, north_east, south_east;
+    handed diagonal = {{{0.0}, {0.0}}, {{0.0f}, {0.0f}, {0.0f}}};
+    for (const mspringi_span *span = spans; span < spans + count; ++span) {
+        const size_t first = span->first_slot / MSPRINGI_WIDTH;
+        const size_t end = (span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
+        for (size_t block = first; block < end; ++block) {
+            const size_t slot = block * MSPRINGI_WIDTH, index = span->first_record + (block - first);
+            const size_t up = (size_t)((int64_t)slot + span->up), carry = (size_t)((int64_t)slot + span->carry);
+            const float *record = s->lattice_springs + index * MSPRINGI_DIRECTIONS * part;
+            const float *rests = mspringi_system_rests(s, index);
+            assemble_springs(s, slot, up, rests + MSPRINGI_NORTH * MSPRINGI_WIDTH, record + MSPRINGI_NORTH * part,
+                             factors, &north, damped);
+            assemble_springs(s, slot, up + 1, rests + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH,
+                             record + MSPRINGI_NORTH_EAST * part, factors, &north_east, damped);
+            assemble_springs(s, up, slot + 1, rests + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH,
+                             record + MSPRINGI_SOUTH_EAST * part, factors, &south_east, damped);
+            hand_on_block(s, carry, &north, &north_east, &south_east, &diagonal);
+        }
+    }
+}
+
 // East springs only.
 static inline void assemble_chain(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
                                   bool damped) {
@@ -184,6 +239,14 @@ static void assemble_chain_plain(const mspringi_system *system, const mspringi_s
 
 static void assemble_chain_damped(const mspringi_system *system, const mspringi_span *spans, uint32_t count) {
     assemble_chain(system, spans, count, true);
+}
+
+static void hand_on_forces_plain(const mspringi_system *system, const mspringi_span *spans, uint32_t count) {
+    hand_on_forces(system, spans, count, false);
+}
+
+static void hand_on_forces_damped(const mspringi_system *system, const mspringi_span *spans, uint32_t count) {
+    hand_on_forces(system, spans, count, true);
 }
 
 #endif

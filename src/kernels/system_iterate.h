@@ -38,6 +38,8 @@ static inline part_vec part_mul(part_vec a, part_vec b) {
 #define MSPRINGI_PART_INLINE static inline __attribute__((always_inline))
 #endif
 
+/* -------------------------------------------------------------------------------------------------- by slot */
+
 static inline float sum_block_lanes(float *lanes) {
     for (size_t half = MSPRINGI_WIDTH / 2; half > 0; half /= 2)
         for (size_t i = 0; i < half; ++i)
@@ -45,20 +47,38 @@ static inline float sum_block_lanes(float *lanes) {
     return lanes[0];
 }
 
+// Single precision has rounded the blocks: a millionth of their size on top keeps those positive definite that are
+// so by their mass alone, such as a taut rope's.
+static void invert(const mspringi_system *s, size_t first, size_t end) {
+    const float *restrict const masses = s->mass;
+    float *restrict const block_xx = s->xx, *restrict const block_xy = s->xy, *restrict const block_yy = s->yy;
+    for (size_t i = first; i < end; ++i) {
+        const double mass = (double)masses[i], trace = (double)block_xx[i] + (double)block_yy[i];
+        const double on_top = mass + 1e-6 * trace;
+        const double xx = (double)block_xx[i] + on_top, yy = (double)block_yy[i] + on_top;
+        const double xy = (double)block_xy[i];
+        const double reciprocal = 1.0 / (xx * yy - xy * xy), factor = mass > 0.0 ? reciprocal : 0.0;
+        block_xx[i] = (float)(mass > 0.0 ? yy * factor : 0.0);
+        block_xy[i] = (float)(mass > 0.0 ? -xy * factor : 0.0);
+        block_yy[i] = (float)(mass > 0.0 ? xx * factor : 0.0);
+    }
+}
+
 // The parameters are what compilers know to be apart from each other.
-static float advance_coordinates(size_t slots, float alpha, const float *restrict px, const float *restrict py,
-                                 const float *restrict qx, const float *restrict qy, const float *restrict xx,
-                                 const float *restrict xy, const float *restrict yy, float *restrict dx,
-                                 float *restrict dy, float *restrict rx, float *restrict ry, float *restrict zx,
-                                 float *restrict zy) {
+MSPRINGI_PART_INLINE float advance_chunk(size_t slots, float alpha, bool is_first, const float *restrict px,
+                                         const float *restrict py, const float *restrict qx,
+                                         const float *restrict qy, const float *restrict xx,
+                                         const float *restrict xy, const float *restrict yy, float *restrict dx,
+                                         float *restrict dy, float *restrict rx, float *restrict ry,
+                                         float *restrict zx, float *restrict zy) {
     float sums[MSPRINGI_WIDTH] = {0.0f};
     for (size_t slot = 0; slot < slots; slot += MSPRINGI_WIDTH) {
         for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
             const size_t at = slot + i;
-            dx[at] = dx[at] + alpha * px[at];
-            dy[at] = dy[at] + alpha * py[at];
             const float x = rx[at] - alpha * qx[at], y = ry[at] - alpha * qy[at];
             const float scaled_x = xx[at] * x + xy[at] * y, scaled_y = xy[at] * x + yy[at] * y;
+            dx[at] = (is_first ? 0.0f : dx[at]) + alpha * px[at];
+            dy[at] = (is_first ? 0.0f : dy[at]) + alpha * py[at];
             rx[at] = x;
             ry[at] = y;
             zx[at] = scaled_x;
@@ -69,42 +89,29 @@ static float advance_coordinates(size_t slots, float alpha, const float *restric
     return sum_block_lanes(sums);
 }
 
-static float advance(const mspringi_system *s, const mspringi_iterate *n, float alpha) {
-    return advance_coordinates(n->slots, alpha, n->direction_x, n->direction_y, n->product_x, n->product_y, s->xx,
-                               s->xy, s->yy, n->solution_x, n->solution_y, n->residual_x, n->residual_y,
-                               n->scaled_x, n->scaled_y);
+MSPRINGI_PART_INLINE void advance_chunks(const mspringi_system *s, const mspringi_iterate *n, float alpha,
+                                         bool is_first, size_t first, size_t end, float *sums) {
+    for (size_t at = first; at < end; at += MSPRINGI_CHUNK) {
+        const size_t slots = end - at < MSPRINGI_CHUNK ? end - at : MSPRINGI_CHUNK;
+        sums[at / MSPRINGI_CHUNK] = advance_chunk(
+            slots, alpha, is_first, n->direction_x + at, n->direction_y + at, n->product_x + at, n->product_y + at,
+            s->xx + at, s->xy + at, s->yy + at, n->solution_x + at, n->solution_y + at, n->residual_x + at,
+            n->residual_y + at, n->scaled_x + at, n->scaled_y + at);
+    }
 }
 
-static float dot(size_t slots, const float *restrict ax, const float *restrict ay, const float *restrict bx,
-                 const float *restrict by) {
-    float sums[MSPRINGI_WIDTH] = {0.0f};
-    for (size_t slot = 0; slot < slots; slot += MSPRINGI_WIDTH)
-        for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
-            sums[i] = sums[i] + (ax[slot + i] * bx[slot + i] + ay[slot + i] * by[slot + i]);
-    return sum_block_lanes(sums);
+static void advance(const mspringi_system *s, const mspringi_iterate *n, float alpha, bool is_first, size_t first,
+                    size_t end, float *sums) {
+    if (is_first)
+        advance_chunks(s, n, alpha, true, first, end, sums);
+    else
+        advance_chunks(s, n, alpha, false, first, end, sums);
 }
 
-/// All lanes of a part.
-#define ALL_LANES ((1u << MSPRINGI_PART) - 1u)
+/* -------------------------------------------------------------------------------------------------- by tile */
 
 /// Vectors in a part.
 #define PART_VECTORS (MSPRINGI_PART / PART_LANES)
-
-/// Sums by lane of a tile's residual, and of its moment.
-typedef struct tile_sums {
-    part_vec x[PART_VECTORS], y[PART_VECTORS], turn[PART_VECTORS];
-} tile_sums;
-
-MSPRINGI_PART_INLINE void add_part(tile_sums *to, const float *rx, const float *ry, const float *arm_x,
-                                   const float *arm_y) {
-    for (size_t v = 0; v < PART_VECTORS; ++v) {
-        const part_vec x = part_load(rx + v * PART_LANES), y = part_load(ry + v * PART_LANES);
-        to->x[v] = part_add(to->x[v], x);
-        to->y[v] = part_add(to->y[v], y);
-        to->turn[v] = part_add(to->turn[v], part_sub(part_mul(part_load(arm_x + v * PART_LANES), y),
-                                                     part_mul(part_load(arm_y + v * PART_LANES), x)));
-    }
-}
 
 static double sum_part(const part_vec *sums) {
     _Alignas(64) float lanes[MSPRINGI_PART];
@@ -114,151 +121,101 @@ static double sum_part(const part_vec *sums) {
                     ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7])));
 }
 
-static void restrict_to_tile(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count, double *to) {
-    tile_sums sums;
-    for (size_t v = 0; v < PART_VECTORS; ++v)
-        sums.x[v] = sums.y[v] = sums.turn[v] = part_set(0.0f);
+// In double precision: tiles of particles of the same mass, however many, are to get the same share of a force.
+static void inertia_of_tile(const mspringi_iterate *n, const float *mass, const mspringi_tile_part *parts,
+                            size_t count, double *to) {
+    double sum[MSPRINGI_PART] = {0.0}, inertia[MSPRINGI_PART] = {0.0};
     for (size_t p = 0; p < count; ++p) {
         const size_t slot = parts[p].first_slot;
-        if (parts[p].lanes == ALL_LANES) {
-            add_part(&sums, n->residual_x + slot, n->residual_y + slot, n->arm_x + slot, n->arm_y + slot);
-            continue;
-        }
-        _Alignas(64) float x[MSPRINGI_PART], y[MSPRINGI_PART];
+        const float *const weights = mspringi_part_weights[parts[p].lanes];
         for (size_t i = 0; i < MSPRINGI_PART; ++i) {
-            const bool counts = parts[p].lanes >> i & 1;
-            x[i] = counts ? n->residual_x[slot + i] : 0.0f;
-            y[i] = counts ? n->residual_y[slot + i] : 0.0f;
+            const double x = (double)n->arm_x[slot + i], y = (double)n->arm_y[slot + i];
+            const double m = (double)(weights[i] * mass[slot + i]);
+            sum[i] = sum[i] + m;
+            inertia[i] = inertia[i] + m * (x * x + y * y);
         }
-        add_part(&sums, x, y, n->arm_x + slot, n->arm_y + slot);
     }
-    to[0] = sum_part(sums.x);
-    to[1] = sum_part(sums.y);
-    to[2] = sum_part(sums.turn);
+    for (size_t half = MSPRINGI_PART / 2; half > 0; half /= 2) {
+        for (size_t i = 0; i < half; ++i) {
+            sum[i] = sum[i] + sum[i + half];
+            inertia[i] = inertia[i] + inertia[i + half];
+        }
+    }
+    to[0] = sum[0];
+    to[1] = inertia[0];
 }
 
-static void turn_tile(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count, const double *body,
-                      float beta) {
-    const part_vec shift_x = part_set((float)body[0]), shift_y = part_set((float)body[1]);
-    const part_vec angle = part_set((float)body[2]), betas = part_set(beta);
+static void restrict_to_tile(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count, double *to) {
+    part_vec sum_x[PART_VECTORS], sum_y[PART_VECTORS], sum_turn[PART_VECTORS];
+    for (size_t v = 0; v < PART_VECTORS; ++v)
+        sum_x[v] = sum_y[v] = sum_turn[v] = part_set(0.0f);
     for (size_t p = 0; p < count; ++p) {
-        const size_t slot = parts[p].first_slot;
-        const bool all = parts[p].lanes == ALL_LANES;
-        _Alignas(64) float some_x[MSPRINGI_PART], some_y[MSPRINGI_PART];
-        float *const px = n->direction_x + slot, *const py = n->direction_y + slot;
-        float *const to_x = all ? px : some_x, *const to_y = all ? py : some_y;
-        for (size_t i = 0; i < MSPRINGI_PART; i += PART_LANES) {
-            const part_vec body_x = part_sub(shift_x, part_mul(part_load(n->arm_y + slot + i), angle));
-            const part_vec body_y = part_add(shift_y, part_mul(part_load(n->arm_x + slot + i), angle));
-            part_store(to_x + i, part_add(part_add(part_load(n->scaled_x + slot + i), body_x),
-                                          part_mul(betas, part_load(px + i))));
-            part_store(to_y + i, part_add(part_add(part_load(n->scaled_y + slot + i), body_y),
-                                          part_mul(betas, part_load(py + i))));
-        }
-        for (size_t i = 0; !all && i < MSPRINGI_PART; ++i) {
-            px[i] = parts[p].lanes >> i & 1 ? some_x[i] : px[i];
-            py[i] = parts[p].lanes >> i & 1 ? some_y[i] : py[i];
+        for (size_t v = 0; v < PART_VECTORS; ++v) {
+            const size_t slot = parts[p].first_slot + v * PART_LANES;
+            const part_vec weight = part_load(mspringi_part_weights[parts[p].lanes] + v * PART_LANES);
+            const part_vec x = part_mul(weight, part_load(n->residual_x + slot));
+            const part_vec y = part_mul(weight, part_load(n->residual_y + slot));
+            sum_x[v] = part_add(sum_x[v], x);
+            sum_y[v] = part_add(sum_y[v], y);
+            sum_turn[v] = part_add(sum_turn[v], part_sub(part_mul(part_load(n->arm_x + slot), y),
+                                                         part_mul(part_load(n->arm_y + slot), x)));
         }
     }
+    to[0] = sum_part(sum_x);
+    to[1] = sum_part(sum_y);
+    to[2] = sum_part(sum_turn);
 }
 
-/// Sums by lane over a tile, about a point in it that moves along: mass, first moments of place and velocity,
-/// moment of momentum and of inertia.
-typedef struct tile_moments {
-    part_vec sums[7][PART_VECTORS];
-} tile_moments;
-
-MSPRINGI_PART_INLINE void add_moments(tile_moments *to, const mspringi_flight *f, size_t slot, const float *mass,
-                                      size_t origin) {
-    for (size_t v = 0; v < PART_VECTORS; ++v) {
-        const size_t at = slot + v * PART_LANES;
-        const part_vec m = part_load(mass + v * PART_LANES);
-        const part_vec x = part_sub(part_load(f->x + at), part_set(f->x[origin]));
-        const part_vec y = part_sub(part_load(f->y + at), part_set(f->y[origin]));
-        const part_vec vx = part_sub(part_load(f->vx + at), part_set(f->vx[origin]));
-        const part_vec vy = part_sub(part_load(f->vy + at), part_set(f->vy[origin]));
-        const part_vec values[] = {m,
-                                   part_mul(m, x),
-                                   part_mul(m, y),
-                                   part_mul(m, vx),
-                                   part_mul(m, vy),
-                                   part_mul(m, part_sub(part_mul(x, vy), part_mul(y, vx))),
-                                   part_mul(m, part_add(part_mul(x, x), part_mul(y, y)))};
-        for (size_t i = 0; i < 7; ++i)
-            to->sums[i][v] = part_add(to->sums[i][v], values[i]);
-    }
+// Whether a part is the first of those at its slots.
+static inline bool begins_group(const mspringi_tile_part *parts, size_t p) {
+    return p == 0 || parts[p].first_slot != parts[p - 1].first_slot;
 }
 
-/// A rigid motion about a point: where the mass centre is and goes to, and the rotation less what h v makes of it.
-typedef struct tile_turn {
-    float x, y, hvx, hvy, inward, sideways;
-} tile_turn;
-
-static tile_turn find_turn(const tile_moments *moments, double h) {
-    double sums[7];
-    for (size_t i = 0; i < 7; ++i)
-        sums[i] = sum_part(moments->sums[i]);
-    const double x = sums[1] / sums[0], y = sums[2] / sums[0], vx = sums[3] / sums[0], vy = sums[4] / sums[0];
-    const double moment = sums[5] - sums[0] * (x * vy - y * vx), inertia = sums[6] - sums[0] * (x * x + y * y);
-    // The rotation whose half angle has this tangent: of the angle omega h up to its third power, whatever that is.
-    const double half = inertia > 1e-6 * sums[6] ? 0.5 * h * moment / inertia : 0.0;
-    const double inward = -2.0 * half * half / (1.0 + half * half); // cos - 1; half of it times half: sin - omega h
-    const tile_turn turn = {(float)x,        (float)y,      (float)(h * vx),
-                            (float)(h * vy), (float)inward, (float)(half * inward)};
-    return turn;
-}
-
-MSPRINGI_PART_INLINE void fly_part(const mspringi_flight *f, size_t slot, size_t origin, const tile_turn *turn,
-                                   float *const to[4]) {
-    const part_vec inward = part_set(turn->inward), sideways = part_set(turn->sideways), h = part_set(f->h);
-    for (size_t i = 0; i < MSPRINGI_PART; i += PART_LANES) {
-        const size_t at = slot + i;
-        const part_vec x = part_sub(part_sub(part_load(f->x + at), part_set(f->x[origin])), part_set(turn->x));
-        const part_vec y = part_sub(part_sub(part_load(f->y + at), part_set(f->y[origin])), part_set(turn->y));
-        const part_vec vx = part_sub(part_load(f->vx + at), part_set(f->vx[origin]));
-        const part_vec vy = part_sub(part_load(f->vy + at), part_set(f->vy[origin]));
-        const part_vec turned_x = part_sub(part_mul(inward, x), part_mul(sideways, y));
-        const part_vec turned_y = part_add(part_mul(inward, y), part_mul(sideways, x));
-        part_store(to[0] + i, turned_x);
-        part_store(to[1] + i, turned_y);
-        part_store(to[2] + i, part_add(part_add(x, turned_x), part_sub(part_mul(h, vx), part_set(turn->hvx))));
-        part_store(to[3] + i, part_add(part_add(y, turned_y), part_sub(part_mul(h, vy), part_set(turn->hvy))));
-    }
-}
-
-static void fly_tile(const mspringi_flight *f, const mspringi_tile_part *parts, size_t count) {
-    float *const to[] = {f->turned_x, f->turned_y, f->arm_x, f->arm_y};
-    tile_moments moments;
-    for (size_t i = 0; i < 7; ++i)
-        for (size_t v = 0; v < PART_VECTORS; ++v)
-            moments.sums[i][v] = part_set(0.0f);
-    size_t origin = parts[0].first_slot;
-    while (!(parts[0].lanes >> (origin - parts[0].first_slot) & 1))
-        ++origin;
+// The slots of a tile's part get its body's motion; those of other tiles at the same slots theirs, when their turn
+// comes.
+MSPRINGI_PART_INLINE void turn(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
+                               const double (*bodies)[3], float beta, mspringi_turn what) {
+    const part_vec betas = part_set(beta);
     for (size_t p = 0; p < count; ++p) {
-        const size_t slot = parts[p].first_slot;
-        if (parts[p].lanes == ALL_LANES) {
-            add_moments(&moments, f, slot, f->mass + slot, origin);
-            continue;
+        const double *body = bodies[parts[p].tile];
+        const part_vec shift_x = part_set((float)body[0]), shift_y = part_set((float)body[1]);
+        const part_vec angle = part_set((float)body[2]);
+        const bool begins = begins_group(parts, p);
+        for (size_t v = 0; v < PART_VECTORS; ++v) {
+            const size_t slot = parts[p].first_slot + v * PART_LANES;
+            const part_vec weight = part_load(mspringi_part_weights[parts[p].lanes] + v * PART_LANES);
+            part_vec x = part_mul(weight, part_sub(shift_x, part_mul(part_load(n->arm_y + slot), angle)));
+            part_vec y = part_mul(weight, part_add(shift_y, part_mul(part_load(n->arm_x + slot), angle)));
+            if (!begins) {
+                x = part_add(part_load(n->direction_x + slot), x);
+                y = part_add(part_load(n->direction_y + slot), y);
+            } else if (what != MSPRINGI_TURN_BODIES) {
+                x = part_add(part_load(n->scaled_x + slot), x);
+                y = part_add(part_load(n->scaled_y + slot), y);
+            }
+            if (begins && what == MSPRINGI_TURN_FURTHER) {
+                x = part_add(x, part_mul(betas, part_load(n->direction_x + slot)));
+                y = part_add(y, part_mul(betas, part_load(n->direction_y + slot)));
+            }
+            part_store(n->direction_x + slot, x);
+            part_store(n->direction_y + slot, y);
         }
-        _Alignas(64) float mass[MSPRINGI_PART];
-        for (size_t i = 0; i < MSPRINGI_PART; ++i)
-            mass[i] = parts[p].lanes >> i & 1 ? f->mass[slot + i] : 0.0f;
-        add_moments(&moments, f, slot, mass, origin);
-    }
-    const tile_turn turn = find_turn(&moments, (double)f->h);
-    for (size_t p = 0; p < count; ++p) {
-        const size_t slot = parts[p].first_slot;
-        _Alignas(64) float some[4][MSPRINGI_PART];
-        float *const all[] = {to[0] + slot, to[1] + slot, to[2] + slot, to[3] + slot};
-        float *const part[] = {some[0], some[1], some[2], some[3]};
-        fly_part(f, slot, origin, &turn, parts[p].lanes == ALL_LANES ? all : part);
-        for (size_t i = 0; parts[p].lanes != ALL_LANES && i < MSPRINGI_PART; ++i)
-            for (size_t j = 0; j < 4; ++j)
-                all[j][i] = parts[p].lanes >> i & 1 ? some[j][i] : all[j][i];
     }
 }
 
-#undef ALL_LANES
+static void turn_bodies(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
+                        const double (*bodies)[3], float beta) {
+    turn(n, parts, count, bodies, beta, MSPRINGI_TURN_BODIES);
+}
+
+static void turn_afresh(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
+                        const double (*bodies)[3], float beta) {
+    turn(n, parts, count, bodies, beta, MSPRINGI_TURN_AFRESH);
+}
+
+static void turn_further(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
+                         const double (*bodies)[3], float beta) {
+    turn(n, parts, count, bodies, beta, MSPRINGI_TURN_FURTHER);
+}
 
 #endif

@@ -9,6 +9,7 @@
 #include "strain.h"
 #include "system_assemble.h"
 #include "system_iterate.h"
+#include "system_motion.h"
 #include "system_multiply.h"
 
 #define MSPRINGI_VARIANT(kind, name, damped, forced)                                                               \
@@ -57,13 +58,26 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .leaves = leaves,
     .lattice_strain = lattice_strain,
     .chain_strain = chain_strain,
-    .system = {.assemble_lattice = {assemble_lattice_plain, assemble_lattice_damped},
+    .system = {.weigh = weigh,
+               .aim_tile = aim_tile,
+               .fly = fly,
+               .predict = predict,
+               .assemble_lattice = {assemble_lattice_plain, assemble_lattice_damped},
                .assemble_chain = {assemble_chain_plain, assemble_chain_damped},
+               .hand_on_forces = {hand_on_forces_plain, hand_on_forces_damped},
+               .add_outside = add_outside,
+               .invert = invert,
                .multiply_lattice = multiply_lattice,
                .multiply_chain = multiply_chain,
+               .hand_on_product = hand_on_product,
                .advance = advance,
-               .dot = dot,
+               .inertia_of_tile = inertia_of_tile,
                .restrict_to_tile = restrict_to_tile,
-               .turn_tile = turn_tile,
-               .fly_tile = fly_tile},
+               .turn = {[MSPRINGI_TURN_BODIES] = turn_bodies,
+                        [MSPRINGI_TURN_AFRESH] = turn_afresh,
+                        [MSPRINGI_TURN_FURTHER] = turn_further},
+               .land = {[MSPRINGI_REMEMBER_NOTHING] = land_nothing,
+                        [MSPRINGI_REMEMBER_CHANGE] = land_change,
+                        [MSPRINGI_REMEMBER_ACCELERATION] = land_acceleration,
+                        [MSPRINGI_REMEMBER_BOTH] = land_both}},
 };

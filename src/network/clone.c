@@ -60,9 +60,12 @@ static void move_tiles(const moving *m, mspringi_tiles *tiles) {
     MOVE(cells->first_inner);
     MOVE(cells->inner);
     MOVE(cells->joints);
+    MOVE(cells->first_joint);
     MOVE(cells->lowest);
     MOVE(tiles->first_part);
     MOVE(tiles->parts);
+    MOVE(tiles->parts_by_slot);
+    MOVE(tiles->first_by_slot);
     MOVE(tiles->of_slot);
     MOVE(tiles->first_of_cell);
     MOVE(tiles->parent);
@@ -162,7 +165,10 @@ static void move_implicit(const moving *m, mspringi_implicit *n) {
     MOVE(n->leftover_factors);
     MOVE(n->force_carry);
     MOVE(n->carry);
-    MOVE(n->restricted);
+    MOVE(n->sums);
+    MOVE(n->flights);
+    MOVE(n->panels.list);
+    MOVE(n->panels.sums);
     move_system(m, &n->system);
     move_iterate(m, &n->iterate);
     MOVE(n->seen.link_log);
@@ -172,6 +178,8 @@ static void move_implicit(const moving *m, mspringi_implicit *n) {
     MOVE(n->coarse.row);
     MOVE(n->coarse.values);
     MOVE(n->coarse.unknowns);
+    MOVE(n->coarse.restricted);
+    MOVE(n->coarse.far_turns);
 }
 
 /* ------------------------------------------------------------------------------------------------- the network */
@@ -269,7 +277,9 @@ static bool has_hook_with_storage(const mspring_network *network) {
 static mspring_result employ(mspring_network *network, const mspring_clone_def *def) {
     mspring_result result = mspringi_tasks_create(def->worker_count, def->tasks, &network->tasks_memory,
                                                   &network->message, &network->tasks);
-    return result == MSPRING_OK ? mspringi_carry_reserve(network) : result;
+    if (result == MSPRING_OK)
+        result = mspringi_carry_reserve(network);
+    return result == MSPRING_OK ? mspringi_implicit_reserve(network) : result;
 }
 
 static mspring_result copy(const mspring_network *network, const mspring_clone_def *def,

@@ -174,8 +174,7 @@ static particle_sums sum_particles(const mspring_network *network, mspringi_fiel
 void mspringi_energy_look(mspring_network *network, float h, mspringi_field base) {
     const mspringi_topology *t = &network->topology;
     mspringi_gain *gain = &network->implicit->gain;
-    if (t->lattice_places == t->chain_places + t->leftover_count || gain->to > 0.0 ||
-        network->guard_policy == MSPRING_GUARD_BOUNDS)
+    if (!mspringi_energy_is_watched(network) || gain->to > 0.0)
         return;
     const double way = find_suspicious_way(network, h);
     if (!(way > 0.0))

@@ -24,8 +24,15 @@ typedef struct mspringi_gain {
     mspringi_place place;
 } mspringi_gain;
 
+/// Whether there is anything to look at.
+static inline bool mspringi_energy_is_watched(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    return t->lattice_places < t->chain_places + t->leftover_count && network->guard_policy != MSPRING_GUARD_BOUNDS;
+}
+
 /// Look at the substep of h that the network's implicit solver is about to finish: predicted positions and
-/// displacement are there, the state is that of before. base: forces from outside (x NULL: none).
+/// displacement, at the ends of springs outside of lattices, are there, the state is that of before. base: forces
+/// from outside (x NULL: none).
 void mspringi_energy_look(mspring_network *network, float h, mspringi_field base);
 
 /// Fail if a substep of the present step gained too much.

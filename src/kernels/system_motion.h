@@ -1,0 +1,222 @@
+/// @file system_motion.h
+/// What an implicit substep does before and after its linear system: see implicit/scheme.c for the formulas. Plain
+/// C by slot, or vectors within the parts of a tile, as in system_iterate.h.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_SYSTEM_MOTION_H
+#define MSPRINGI_SYSTEM_MOTION_H
+
+#include "system_iterate.h"
+
+static void weigh(const float *restrict inverse_mass, float scale, float *restrict mass, size_t first, size_t end) {
+    for (size_t i = first; i < end; ++i) {
+        const float inverse = inverse_mass[i], heavy = scale / inverse;
+        mass[i] = inverse > 0.0f ? heavy : 0.0f;
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------- flying tiles
+ */
+
+/// Sums by lane over a tile, about a point in it that moves along: mass, first moments of place and velocity,
+/// moment of momentum and of inertia.
+typedef struct tile_moments {
+    part_vec sums[7][PART_VECTORS];
+} tile_moments;
+
+MSPRINGI_PART_INLINE void add_moments(tile_moments *to, const mspringi_flight *f, const mspringi_tile_part *part,
+                                      const mspringi_tile_flight *t) {
+    for (size_t v = 0; v < PART_VECTORS; ++v) {
+        const size_t at = part->first_slot + v * PART_LANES;
+        const part_vec m =
+            part_mul(part_load(mspringi_part_weights[part->lanes] + v * PART_LANES), part_load(f->mass + at));
+        const part_vec x = part_sub(part_load(f->x + at), part_set(t->origin_x));
+        const part_vec y = part_sub(part_load(f->y + at), part_set(t->origin_y));
+        const part_vec vx = part_sub(part_load(f->vx + at), part_set(t->origin_vx));
+        const part_vec vy = part_sub(part_load(f->vy + at), part_set(t->origin_vy));
+        const part_vec values[] = {m,
+                                   part_mul(m, x),
+                                   part_mul(m, y),
+                                   part_mul(m, vx),
+                                   part_mul(m, vy),
+                                   part_mul(m, part_sub(part_mul(x, vy), part_mul(y, vx))),
+                                   part_mul(m, part_add(part_mul(x, x), part_mul(y, y)))};
+        for (size_t i = 0; i < 7; ++i)
+            to->sums[i][v] = part_add(to->sums[i][v], values[i]);
+    }
+}
+
+static void aim_tile(const mspringi_flight *f, const mspringi_tile_part *parts, size_t count,
+                     mspringi_tile_flight *to) {
+    tile_moments moments;
+    for (size_t i = 0; i < 7; ++i)
+        for (size_t v = 0; v < PART_VECTORS; ++v)
+            moments.sums[i][v] = part_set(0.0f);
+    size_t origin = parts[0].first_slot;
+    while (!(parts[0].lanes >> (origin - parts[0].first_slot) & 1))
+        ++origin;
+    to->origin_x = f->x[origin];
+    to->origin_y = f->y[origin];
+    to->origin_vx = f->vx[origin];
+    to->origin_vy = f->vy[origin];
+    for (size_t p = 0; p < count; ++p)
+        add_moments(&moments, f, &parts[p], to);
+    double sums[7];
+    for (size_t i = 0; i < 7; ++i)
+        sums[i] = sum_part(moments.sums[i]);
+    const double h = (double)f->h;
+    const double x = sums[1] / sums[0], y = sums[2] / sums[0], vx = sums[3] / sums[0], vy = sums[4] / sums[0];
+    const double moment = sums[5] - sums[0] * (x * vy - y * vx), inertia = sums[6] - sums[0] * (x * x + y * y);
+    // The rotation whose half angle has this tangent: of the angle omega h up to its third power, whatever that is.
+    const double half = inertia > 1e-6 * sums[6] ? 0.5 * h * moment / inertia : 0.0;
+    const double inward = -2.0 * half * half / (1.0 + half * half); // cos - 1; half of it times half: sin - omega h
+    to->x = (float)x;
+    to->y = (float)y;
+    to->hvx = (float)(h * vx);
+    to->hvy = (float)(h * vy);
+    to->inward = (float)inward;
+    to->sideways = (float)(half * inward);
+}
+
+// Slots of a part's vectors that are not the tile's get 0, unless others of the same slots have been there.
+MSPRINGI_PART_INLINE void put_part(float *to, part_vec weight, part_vec value, bool begins) {
+    const part_vec own = part_mul(weight, value);
+    part_store(to, begins ? own : part_add(part_load(to), own));
+}
+
+static void fly(const mspringi_flight *f, const mspringi_tile_part *parts, size_t count,
+                const mspringi_tile_flight *tiles) {
+    const part_vec h = part_set(f->h);
+    for (size_t p = 0; p < count; ++p) {
+        const mspringi_tile_flight *t = &tiles[parts[p].tile];
+        const bool begins = begins_group(parts, p);
+        const part_vec inward = part_set(t->inward), sideways = part_set(t->sideways);
+        for (size_t v = 0; v < PART_VECTORS; ++v) {
+            const size_t at = parts[p].first_slot + v * PART_LANES;
+            const part_vec weight = part_load(mspringi_part_weights[parts[p].lanes] + v * PART_LANES);
+            const part_vec x = part_sub(part_sub(part_load(f->x + at), part_set(t->origin_x)), part_set(t->x));
+            const part_vec y = part_sub(part_sub(part_load(f->y + at), part_set(t->origin_y)), part_set(t->y));
+            const part_vec vx = part_sub(part_load(f->vx + at), part_set(t->origin_vx));
+            const part_vec vy = part_sub(part_load(f->vy + at), part_set(t->origin_vy));
+            const part_vec turned_x = part_sub(part_mul(inward, x), part_mul(sideways, y));
+            const part_vec turned_y = part_add(part_mul(inward, y), part_mul(sideways, x));
+            const part_vec moved_x = part_sub(part_mul(h, vx), part_set(t->hvx));
+            const part_vec moved_y = part_sub(part_mul(h, vy), part_set(t->hvy));
+            put_part(f->turned_x + at, weight, turned_x, begins);
+            put_part(f->turned_y + at, weight, turned_y, begins);
+            put_part(f->arm_x + at, weight, part_add(part_add(x, turned_x), moved_x), begins);
+            put_part(f->arm_y + at, weight, part_add(part_add(y, turned_y), moved_y), begins);
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------- by slot
+ */
+
+// The parameters are what compilers know to be apart from each other.
+static void predict_coordinate(size_t first, size_t end, const float *restrict position, const float *restrict low,
+                               const float *restrict velocity, const float *restrict history,
+                               const float *restrict turned, const float *restrict inverse_mass, float h,
+                               float first_share, float rate, double *restrict predicted, float *restrict start) {
+    for (size_t i = first; i < end; ++i) {
+        const float moved = (velocity[i] + first_share * history[i]) + rate * turned[i];
+        const double straight = ((double)position[i] + (double)low[i]) + (double)h * (double)velocity[i];
+        predicted[i] = straight + (double)turned[i];
+        start[i] = inverse_mass[i] > 0.0f ? moved : velocity[i];
+    }
+}
+
+static void predict(const mspringi_flight *f, size_t first, size_t end) {
+    predict_coordinate(first, end, f->x, f->low_x, f->vx, f->first_x, f->turned_x, f->inverse_mass, f->h,
+                       f->first_share, f->rate, f->to_x, f->start_vx);
+    predict_coordinate(first, end, f->y, f->low_y, f->vy, f->first_y, f->turned_y, f->inverse_mass, f->h,
+                       f->first_share, f->rate, f->to_y, f->start_vy);
+}
+
+MSPRINGI_PART_INLINE void add_some_outside(const mspringi_outside *outside, float *restrict residual, size_t first,
+                                           size_t end, bool forced, bool second) {
+    const mspringi_outside o = *outside;
+    const float *restrict const mass = o.mass, *restrict const velocity = o.velocity;
+    const float *restrict const turned = o.turned, *restrict const force = o.force;
+    const float *restrict const first_history = o.first, *restrict const second_history = o.second;
+    for (size_t i = first; i < end; ++i) {
+        float shift = o.shift + velocity[i] * o.velocity_share - turned[i] * o.turned_share;
+        if (second)
+            shift = shift + (first_history[i] * o.first_share + second_history[i] * o.second_share);
+        float sum = residual[i] + mass[i] * shift;
+        if (forced)
+            sum = sum + force[i] * o.force_share;
+        residual[i] = mass[i] > 0.0f ? sum : 0.0f;
+    }
+}
+
+static void add_outside(const mspringi_outside *o, float *residual, size_t first, size_t end) {
+    if (o->force && o->second)
+        add_some_outside(o, residual, first, end, true, true);
+    else if (o->force)
+        add_some_outside(o, residual, first, end, true, false);
+    else if (o->second)
+        add_some_outside(o, residual, first, end, false, true);
+    else
+        add_some_outside(o, residual, first, end, false, false);
+}
+
+// A pinned particle has d = 0.
+MSPRINGI_PART_INLINE void land(size_t count, const double *restrict predicted, const float *restrict start,
+                               const float *restrict inverse_mass, const float *restrict solution,
+                               const float *restrict direction, const float *low, const float *history, float alpha,
+                               float h, float rate, float *restrict position, float *restrict velocity,
+                               float *restrict to_low, float *restrict to_first, float *restrict to_second,
+                               mspringi_memory_of memory) {
+    const float per_h = 1.0f / h;
+    for (size_t i = 0; i < count; ++i) {
+        const float d = solution[i] + alpha * direction[i], v = velocity[i];
+        const double straight = ((double)position[i] + (double)low[i]) + (double)h * (double)v;
+        const double end = predicted[i] + (double)d;
+        const float rounded = (float)end, beyond = (float)(end - straight);
+        const float moved = start[i] + rate * d, after = inverse_mass[i] > 0.0f ? moved : v, change = after - v;
+        position[i] = rounded;
+        velocity[i] = after;
+        to_low[i] = (float)(end - (double)rounded);
+        switch (memory) {
+        case MSPRINGI_REMEMBER_CHANGE:
+            to_first[i] = change * per_h;
+            break;
+        case MSPRINGI_REMEMBER_ACCELERATION:
+            to_first[i] = beyond * per_h * per_h + 0.5f * history[i];
+            break;
+        case MSPRINGI_REMEMBER_BOTH:
+            to_first[i] = beyond - h * change; // (h v + d) - h v(t+h)
+            to_second[i] = change;
+            break;
+        default:
+            break;
+        }
+    }
+}
+
+// In whole blocks and by way of the stack, so that the history may be written to where it was read.
+#define MSPRINGI_LAND(name, memory)                                                                                \
+    static void land_##name(const mspringi_landing *l, size_t first, size_t end) {                                 \
+        for (size_t i = first; i < end; i += MSPRINGI_WIDTH) {                                                     \
+            float low[MSPRINGI_WIDTH], history[MSPRINGI_WIDTH], unused[MSPRINGI_WIDTH];                            \
+            for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {                                                 \
+                low[lane] = l->low[i + lane];                                                                      \
+                history[lane] = l->first[i + lane];                                                                \
+            }                                                                                                      \
+            land(MSPRINGI_WIDTH, l->predicted + i, l->start + i, l->inverse_mass + i, l->solution + i,             \
+                 l->direction + i, low, history, l->alpha, l->h, l->rate, l->position + i, l->velocity + i,        \
+                 l->to_low + i, l->to_first + i, memory == MSPRINGI_REMEMBER_BOTH ? l->to_second + i : unused,     \
+                 memory);                                                                                          \
+        }                                                                                                          \
+    }
+
+MSPRINGI_LAND(nothing, MSPRINGI_REMEMBER_NOTHING)
+MSPRINGI_LAND(change, MSPRINGI_REMEMBER_CHANGE)
+MSPRINGI_LAND(acceleration, MSPRINGI_REMEMBER_ACCELERATION)
+MSPRINGI_LAND(both, MSPRINGI_REMEMBER_BOTH)
+
+#undef MSPRINGI_LAND
+#undef PART_VECTORS
+
+#endif
