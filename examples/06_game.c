@@ -1,36 +1,67 @@
 /// @file 06_game.c
-/// A game loop: a ship floats, is hit, takes water, is repaired, breaks, sinks and lies on the sea floor.
+/// A game loop: a ship floats, is hit, takes water, is bailed out and repaired, again and again; then it is broken,
+/// sinks and lies on the sea floor.
 ///
-/// Everything that a game does to its springs is here once: a fixed step behind frames of any length, forces and
-/// collisions as hooks, masses that change, springs that break by their strain, events, components, repair.
+/// Everything that a game does to its springs is here once: a fixed step behind frames of any length, forces as a
+/// hook, a sea floor, masses that change, springs that break by their strain, events, components, repair, threads
+/// of the host. And it keeps books: of momentum, energy and water, nothing may be lost or found.
 ///
 /// SPDX-License-Identifier: MIT
 #include "common/output.h"
-#include "draw/network_picture.h"
+#include "common/thread_pool.h"
+#include "game/books.h"
+#include "game/strip.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 64, HEIGHT = 12, MOST = WIDTH * HEIGHT, MOST_SPRINGS = 4 * MOST, SUBSTEPS = 40, EVENTS = 4096 };
+enum {
+    WIDTH = 64,
+    HEIGHT = 12,
+    MOST = WIDTH * HEIGHT,
+    MOST_SPRINGS = 4 * MOST,
+    SUBSTEPS = 40,
+    EVENTS = 8192,
+    HEIGHTS = 81
+};
 
 static const double dt = 1.0 / 64;   // of a step, s
-static const double duration = 60;   // s
-static const double sea_floor = -30; // m; the water's surface is y = 0
 static const float displaced = 1000; // kg of water in the volume of a particle
 static const float hull_mass = 350;  // kg
 static const float drag = 300;       // N s/m of a particle under water
-static const float leak = 200;       // kg/s through each broken spring under water
+static const double leak = 200;      // kg/s through each broken spring under water
+static const double pump = 20000;    // kg/s that is bailed out of a ship afloat
+static const double ramp = 2;        // s that a repair takes
+static const double sinking = 45;    // s from the last blast to the end
+static const double gravity = -(double)9.8f;
+
+typedef struct options {
+    const char *folder;
+    double minutes;
+    uint32_t host_threads; // 0: the library's own
+    bool implicit;
+} options;
 
 typedef struct game {
     mspring_network *network;
     uint32_t particles, springs;
+    mspring_id end[MOST_SPRINGS]; // one end of each spring
+    bool broken_now[MOST_SPRINGS];
     float dry[MOST], wet[MOST]; // kg: masses without water and with
     uint32_t piece[MOST];       // component of each particle
     uint32_t piece_count;
     double water[MOST], size[MOST]; // by component: kg in it, particles of it
+    double entered, bailed;         // kg
     uint32_t broken, restored, splits;
+    double x[MOST], y[MOST], before_x[MOST], before_y[MOST]; // m, after the last step and before it
+    double force_x[MOST], force_y[MOST];                     // N, of the water in the last step
+    float impulse_x[MOST], impulse_y[MOST];                  // N s, of the floor in the last step
+    double borne[MOST];                                      // N s, upwards from the floor in the last seconds
+    double last_blast;                                       // s
+    double ramps_end;                                        // s
+    books accounts;
 } game;
 
 // A call that cannot fail in this program, or it is wrong.
@@ -47,36 +78,59 @@ static void must(mspring_result result, const char *what, const game *played) {
 
 // Before each step: what is under water is carried by the water that it displaces, and slowed by it.
 static void float_hook(const mspring_hook_args *args, void *user) {
-    (void)user;
+    game *played = user;
     for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
-        if (args->origin_y + (double)args->y[slot] >= 0 || args->particle_of_slot[slot] == MSPRING_NONE)
+        const uint32_t particle = args->particle_of_slot[slot];
+        if (particle == MSPRING_NONE)
             continue;
-        args->force_x[slot] -= drag * args->vx[slot];
-        args->force_y[slot] += displaced * 9.8f - drag * args->vy[slot];
+        const bool is_wet = args->origin_y + (double)args->y[slot] < 0;
+        const float x = is_wet ? -drag * args->vx[slot] : 0;
+        const float y = is_wet ? displaced * 9.8f - drag * args->vy[slot] : 0;
+        args->force_x[slot] += x;
+        args->force_y[slot] += y;
+        played->force_x[particle] = x;
+        played->force_y[particle] = y;
     }
 }
 
-// After every second substep: the sea floor.
-static void floor_hook(const mspring_hook_args *args, void *user) {
-    const float height = (float)(sea_floor - args->origin_y);
-    (void)user;
-    for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
-        if (args->y[slot] >= height || args->particle_of_slot[slot] == MSPRING_NONE)
-            continue;
-        args->y[slot] = height;
-        args->vy[slot] = args->vy[slot] < 0 ? -0.2f * args->vy[slot] : args->vy[slot];
-        args->vx[slot] *= 0.9f;
-    }
-}
-
-static mspring_result add_hook(mspring_network *network, mspring_phase phase, mspring_hook_fn fn, uint32_t period) {
+static mspring_result add_float_hook(game *played) {
     mspring_hook_def def;
     mspring_result result = mspring_hook_def_init(&def, sizeof def);
-    def.phase = phase;
-    def.fn = fn;
-    def.period = period;
-    def.flags = MSPRING_HOOK_CONCURRENT;
-    return result == MSPRING_OK ? mspring_network_add_hook(network, &def, NULL) : result;
+    def.phase = MSPRING_PHASE_BEFORE_STEP;
+    def.fn = float_hook;
+    def.user = played;
+    def.flags = MSPRING_HOOK_CONCURRENT; // each slot for itself
+    return result == MSPRING_OK ? mspring_network_add_hook(played->network, &def, NULL) : result;
+}
+
+// The sea floor: dunes of up to 2 m, 4 m from one height to the next.
+static const double floor_left = -100, floor_bottom = -32, floor_spacing = 4;
+
+static float floor_height(int i) {
+    static const float dune[] = {0, 0.5f, 1.4f, 2, 1.2f, 0.3f, 0.6f};
+    return dune[i % 7];
+}
+
+static double floor_at(double x) {
+    const double place = fmin(fmax((x - floor_left) / floor_spacing, 0), HEIGHTS - 2);
+    const int i = (int)place;
+    return floor_bottom + floor_height(i) + (place - i) * (floor_height(i + 1) - floor_height(i));
+}
+
+static mspring_result make_floor(mspring_network *network) {
+    static float heights[HEIGHTS];
+    mspring_floor_def def;
+    mspring_result result = mspring_floor_def_init(&def, sizeof def);
+    for (int i = 0; i < HEIGHTS; i++)
+        heights[i] = floor_height(i);
+    def.heights = heights;
+    def.height_count = HEIGHTS;
+    def.heights_x = floor_left;
+    def.heights_y = floor_bottom;
+    def.spacing = floor_spacing;
+    def.friction = 0.6f;
+    def.restitution = 0.1f;
+    return result == MSPRING_OK ? mspring_network_set_floor(network, &def) : result;
 }
 
 /* ------------------------------------------------------------------------------------------------------ the ship
@@ -90,7 +144,7 @@ static bool is_ship(int column, int row) {
     return hull || house || mast;
 }
 
-static mspring_result build(mspring_builder *builder) {
+static mspring_result build(mspring_builder *builder, bool implicit) {
     static uint16_t cells[HEIGHT * WIDTH];
     for (int row = 0; row < HEIGHT; row++)
         for (int column = 0; column < WIDTH; column++)
@@ -101,9 +155,15 @@ static mspring_result build(mspring_builder *builder) {
     if (result != MSPRING_OK || (result = mspring_lattice_def_init(&def, sizeof def)) != MSPRING_OK)
         return result;
     hull.mass = hull_mass;
-    hull.spring_flags = MSPRING_SPRING_RELATIVE;
     hull.stiffness = 0.02f;
     hull.damping = 0.03f;
+    if (implicit) { // what these fractions come to at SUBSTEPS
+        const double h = dt / SUBSTEPS, half_mass = 0.5 * (double)hull_mass;
+        hull.stiffness = (float)((double)hull.stiffness * half_mass / (h * h));
+        hull.damping = (float)((double)hull.damping * half_mass / h);
+    } else {
+        hull.spring_flags = MSPRING_SPRING_RELATIVE;
+    }
     def.width = WIDTH;
     def.height = HEIGHT;
     def.y = -2;
@@ -113,26 +173,36 @@ static mspring_result build(mspring_builder *builder) {
     return mspring_builder_add_lattice(builder, &def, NULL);
 }
 
-static bool start(game *played, mspring_builder *builder) {
+static bool start(game *played, mspring_builder *builder, const options *asked, const mspring_tasks *tasks) {
     mspring_network_def def;
-    float breaking[MOST_SPRINGS];
-    if (mspring_network_def_init(&def, sizeof def) != MSPRING_OK || build(builder) != MSPRING_OK)
+    static float breaking[MOST_SPRINGS];
+    if (mspring_network_def_init(&def, sizeof def) != MSPRING_OK || build(builder, asked->implicit) != MSPRING_OK)
         return false;
-    def.substeps = SUBSTEPS;
+    def.substeps = asked->implicit ? 1 : SUBSTEPS;
+    def.solver = asked->implicit ? MSPRING_SOLVER_IMPLICIT : MSPRING_SOLVER_EXPLICIT;
     def.worker_count = 2;
+    def.tasks = tasks;
     if (mspring_network_create(builder, &def, &played->network) != MSPRING_OK) {
         fprintf(stderr, "cannot make the ship: %s\n", mspring_builder_error(builder));
         return false;
     }
     played->particles = mspring_network_particle_count(played->network);
     played->springs = mspring_network_spring_count(played->network);
-    for (uint32_t i = 0; i < played->springs; i++)
-        breaking[i] = 0.02f;
+    for (mspring_id s = 0; s < played->springs; s++) {
+        mspring_spring_info info = {.struct_size = sizeof info};
+        must(mspring_network_get_spring(played->network, s, &info), "spring", played);
+        played->end[s] = info.a;
+        breaking[s] = 0.02f;
+    }
     must(mspring_network_set_break_strains(played->network, 0, played->springs, breaking), "strains", played);
     must(mspring_network_reserve_events(played->network, EVENTS), "events", played);
     must(mspring_network_get_masses(played->network, 0, played->particles, played->dry), "masses", played);
-    must(add_hook(played->network, MSPRING_PHASE_BEFORE_STEP, float_hook, 1), "float hook", played);
-    must(add_hook(played->network, MSPRING_PHASE_AFTER_SUBSTEP, floor_hook, 2), "floor hook", played);
+    must(mspring_network_get_positions(played->network, 0, played->particles, played->x, played->y), "positions",
+         played);
+    must(add_float_hook(played), "float hook", played);
+    must(make_floor(played->network), "sea floor", played);
+    played->last_blast = 60 * asked->minutes - sinking;
+    books_open(&played->accounts, played->network);
     return true;
 }
 
@@ -140,48 +210,62 @@ static bool start(game *played, mspring_builder *builder) {
 
 // Throw particles away from (x, y), the nearest most.
 static void blast(game *played, double x, double y, double radius, double speed) {
-    double px[MOST], py[MOST];
     float vx[MOST], vy[MOST];
-    must(mspring_network_get_positions(played->network, 0, played->particles, px, py), "positions", played);
     must(mspring_network_get_velocities(played->network, 0, played->particles, vx, vy), "velocities", played);
     for (uint32_t i = 0; i < played->particles; i++) {
-        const double dx = px[i] - x, dy = py[i] - y, distance = sqrt(dx * dx + dy * dy);
+        const double dx = played->x[i] - x, dy = played->y[i] - y, distance = sqrt(dx * dx + dy * dy);
         if (distance > radius || distance == 0)
             continue;
         vx[i] += (float)(speed * (1 - distance / radius) * dx / distance);
         vy[i] += (float)(speed * (1 - distance / radius) * dy / distance);
     }
     must(mspring_network_set_velocities(played->network, 0, played->particles, vx, vy), "velocities", played);
+    books_edit(&played->accounts, played->network);
 }
 
-// Restore every broken spring that is not torn too far, and let it pull its ends together in two seconds.
-static void repair(game *played) {
+// Restore every broken spring that is not torn too far, and let it pull its ends together.
+static void repair(game *played, double time) {
     static mspring_id list[MOST_SPRINGS];
     uint32_t count = 0;
     for (mspring_id s = 0; s < played->springs; s++) {
         mspring_spring_info info = {.struct_size = sizeof info};
+        if (!played->broken_now[s])
+            continue;
         must(mspring_network_get_spring(played->network, s, &info), "spring", played);
-        if ((info.flags & MSPRING_SPRING_BROKEN) && info.length < 2 * info.rest_length)
+        if (info.length < 2 * info.rest_length)
             list[count++] = s;
     }
-    must(mspring_network_restore_springs(played->network, list, count, 2.0), "repair", played);
+    must(mspring_network_restore_springs(played->network, list, count, ramp), "repair", played);
+    played->ramps_end = time + ramp + 2 * dt;
+    books_edit(&played->accounts, played->network);
 }
 
-// Water comes in through broken springs below the surface and spreads over the piece of ship that they belong to.
-static void take_water(game *played) {
-    double x[MOST], y[MOST];
-    must(mspring_network_get_positions(played->network, 0, played->particles, x, y), "positions", played);
+// Water comes in through broken springs below the surface and spreads over the piece of ship that they belong to,
+// as long as that has room. The largest piece is bailed out until the last blast.
+static void take_water(game *played, double time) {
+    uint32_t largest = 0;
+    for (uint32_t p = 1; p < played->piece_count; p++)
+        largest = played->size[p] > played->size[largest] ? p : largest;
     for (mspring_id s = 0; s < played->springs; s++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        must(mspring_network_get_spring(played->network, s, &info), "spring", played);
-        if ((info.flags & MSPRING_SPRING_BROKEN) && y[info.a] < 0)
-            played->water[played->piece[info.a]] += (double)leak * dt;
+        const uint32_t piece = played->piece[played->end[s]];
+        if (!played->broken_now[s] || played->y[played->end[s]] >= 0)
+            continue;
+        const double room = (double)displaced * played->size[piece] - played->water[piece];
+        const double comes = fmin(leak * dt, fmax(room, 0));
+        played->water[piece] += comes;
+        played->entered += comes;
+    }
+    if (time < played->last_blast) {
+        const double goes = fmin(pump * dt, played->water[largest]);
+        played->water[largest] -= goes;
+        played->bailed += goes;
     }
     for (uint32_t i = 0; i < played->particles; i++) {
         const double share = played->water[played->piece[i]] / played->size[played->piece[i]];
-        played->wet[i] = played->dry[i] + (float)fmin(share, (double)displaced);
+        played->wet[i] = played->dry[i] + (float)share;
     }
     must(mspring_network_set_masses(played->network, 0, played->particles, played->wet), "masses", played);
+    books_edit(&played->accounts, played->network);
 }
 
 // Number the pieces anew; each keeps the water of its particles.
@@ -210,59 +294,122 @@ static void read_events(game *played) {
     uint32_t count;
     must(mspring_network_read_events(played->network, events, EVENTS, &count, NULL), "events", played);
     for (uint32_t i = 0; i < count; i++) {
+        if (events[i].kind == MSPRING_EVENT_BROKEN || events[i].kind == MSPRING_EVENT_RESTORED)
+            played->broken_now[events[i].id] = events[i].kind == MSPRING_EVENT_BROKEN;
         played->broken += events[i].kind == MSPRING_EVENT_BROKEN;
         played->restored += events[i].kind == MSPRING_EVENT_RESTORED;
         played->splits += events[i].kind == MSPRING_EVENT_SPLIT;
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------ the loop
+/* ------------------------------------------------------------------------------------------------------ the steps
  */
+
+// Every half a minute a blast somewhere below the ship, and repair three seconds later; then the last one.
+static void let_happen(game *played, uint32_t step) {
+    const uint32_t round = step / (30 * 64), within = step % (30 * 64);
+    const double time = step * dt, x = 20 + round * 17 % 30;
+    if (within == 5 * 64 && time + 5 < played->last_blast)
+        blast(played, x, -4, 8, 50);
+    if (within == 8 * 64 && time < played->last_blast)
+        repair(played, time);
+    if (time == played->last_blast)
+        blast(played, 36, -6, 12, 220);
+}
+
+static void enter_step(game *played, double time) {
+    memcpy(played->before_x, played->x, sizeof played->x);
+    memcpy(played->before_y, played->y, sizeof played->y);
+    must(mspring_network_get_positions(played->network, 0, played->particles, played->x, played->y), "positions",
+         played);
+    must(mspring_network_get_floor_impulses(played->network, 0, played->particles, played->impulse_x,
+                                            played->impulse_y),
+         "floor", played);
+    books_enter(&played->accounts, played->network,
+                &(books_step){.particles = played->particles,
+                              .force_x = played->force_x,
+                              .force_y = played->force_y,
+                              .x = played->before_x,
+                              .y = played->before_y,
+                              .after_x = played->x,
+                              .after_y = played->y,
+                              .mass = played->wet,
+                              .impulse_x = played->impulse_x,
+                              .impulse_y = played->impulse_y,
+                              .gravity = gravity,
+                              .dt = dt,
+                              .ramps = time < played->ramps_end});
+}
 
 // One step of the game, whatever the frames.
 static void update(game *played, uint32_t step) {
-    if (step == 5 * 64)
-        blast(played, 20, -4, 8, 50);
-    if (step == 8 * 64)
-        repair(played);
-    if (step == 15 * 64)
-        blast(played, 36, -6, 12, 220);
+    const double time = step * dt;
+    let_happen(played, step);
     find_pieces(played);
-    take_water(played);
+    take_water(played, time);
     must(mspring_network_step(played->network, dt), "step", played);
+    enter_step(played, time);
     read_events(played);
 }
 
-static void print_state(game *played, double time) {
+/* ------------------------------------------------------------------------------------------------------ the end
+ */
+
+static uint32_t find_largest_piece(const game *played, mspring_component *largest) {
     static mspring_component pieces[MOST];
     for (uint32_t i = 0; i < played->piece_count; i++)
         pieces[i].struct_size = sizeof pieces[i];
     must(mspring_network_get_components(played->network, 0, played->piece_count, pieces), "pieces", played);
-    const mspring_component *largest = pieces;
+    uint32_t found = 0;
     for (uint32_t i = 1; i < played->piece_count; i++)
-        if (pieces[i].particle_count > largest->particle_count)
-            largest = &pieces[i];
-    printf("%5.0f s %8u %8u %8u %12.0f t %10.2f m\n", time, played->broken, played->restored, played->piece_count,
-           largest->mass / 1000, largest->y);
+        if (pieces[i].particle_count > pieces[found].particle_count)
+            found = i;
+    *largest = pieces[found];
+    return found;
 }
 
-static bool draw(const game *played, const double *x, const double *y, const char *folder, const char *name,
-                 const char *title) {
-    network_shape shape = {0};
-    draw_error error = {""};
-    if (!network_shape_make(&shape, played->network, MSPRING_NONE, &error)) {
-        fprintf(stderr, "%s\n", error.text);
-        return false;
-    }
-    const world_box box = {-8, sea_floor - 1, WIDTH + 8, 10};
-    const network_view view = network_view_fit(&shape, box, 1200, 900, 0.03);
-    figure picture;
-    figure_start(&picture, view.width, view.height, 0xffffff);
-    network_picture_draw(&picture, &shape, &view, x, y, title);
-    const bool ok = output_figure(&picture, folder, name);
-    figure_free(&picture);
-    network_shape_free(&shape);
-    return ok;
+// All water that came in is aboard or was bailed out; masses are floats, so to 1e-6.
+static bool check_water(const game *played) {
+    double aboard = 0;
+    for (uint32_t i = 0; i < played->particles; i++)
+        aboard += (double)played->wet[i] - (double)played->dry[i];
+    const double missing = played->entered - played->bailed - aboard;
+    printf("water:    %.1f t came in, %.1f t were bailed out, %.1f t are aboard; %.2g t are missing\n",
+           played->entered / 1000, played->bailed / 1000, aboard / 1000, fabs(missing) / 1000);
+    if (fabs(missing) <= 1e-6 * played->entered)
+        return true;
+    fprintf(stderr, "the books of water do not close\n");
+    return false;
+}
+
+// The largest piece lies on the sea floor, which bears what the water does not carry.
+static bool check_end(const game *played, double seconds) {
+    mspring_component hull;
+    const uint32_t piece = find_largest_piece(played, &hull);
+    double borne = 0, weight = 0;
+    for (uint32_t i = 0; i < played->particles; i++)
+        if (played->piece[i] == piece) {
+            borne += played->borne[i] / seconds;
+            weight -= ((double)played->wet[i] - (double)displaced) * gravity;
+        }
+    const double speed = sqrt(hull.px * hull.px + hull.py * hull.py) / hull.mass;
+    printf(
+        "the end:  %u particles lie at %.2f m, at %.2g m/s; the floor bears %.1f kN, they weigh %.1f kN in water\n",
+        hull.particle_count, hull.y, speed, borne / 1000, weight / 1000);
+    if (speed < 0.02 && weight > 0 && fabs(borne - weight) < 0.01 * weight)
+        return true;
+    fprintf(stderr, "the ship does not rest on the sea floor\n");
+    return false;
+}
+
+/* ------------------------------------------------------------------------------------------------------ the loop
+ */
+
+static void print_state(const game *played, double time) {
+    mspring_component largest;
+    (void)find_largest_piece(played, &largest);
+    printf("%5.0f s %8u %8u %8u %12.0f t %10.2f m\n", time, played->broken, played->restored, played->piece_count,
+           largest.mass / 1000, largest.y);
 }
 
 // Frames as a machine that is busy with other things has them: 7 to 30 ms, the same in every run.
@@ -270,61 +417,141 @@ static double frame_length(uint32_t frame) {
     return 0.007 + 0.023 * (double)(frame * 2654435769u >> 8) / (double)(1u << 24);
 }
 
-static bool play(game *played, const char *folder) {
-    static const struct {
+// What is shown lies between the last two steps.
+static void show(const game *played, figure *pictures, uint32_t number, double accumulated, const char *title) {
+    static double x[MOST], y[MOST];
+    const strip_world world = {-12, WIDTH + 12, -34, 12, floor_at, 0.01};
+    for (uint32_t i = 0; i < played->particles; i++) {
+        x[i] = played->before_x[i] + (played->x[i] - played->before_x[i]) * accumulated / dt;
+        y[i] = played->before_y[i] + (played->y[i] - played->before_y[i]) * accumulated / dt;
+    }
+    strip_add(pictures, number, &world, played->network, x, y, title);
+}
+
+static void play(game *played, const options *asked, figure *pictures) {
+    const double duration = 60 * asked->minutes, last = played->last_blast, minute = asked->minutes > 1 ? 60 : 5;
+    const struct {
         double time;
-        const char *name, *title;
-    } pictures[] = {{4, "06_game_afloat", "Afloat"},
-                    {7, "06_game_hit", "Hit"},
-                    {14, "06_game_repaired", "Repaired"},
-                    {20, "06_game_broken", "Broken"},
-                    {59, "06_game_sunk", "Sunk"}};
-    double before_x[MOST], before_y[MOST], x[MOST], y[MOST];
-    size_t drawn = 0;
-    uint32_t step = 0;
+        const char *title;
+    } shown[] = {
+        {4, "afloat"},           {6, "hit"}, {12, "repaired"}, {last + 0.5, "broken"}, {last + 6, "going down"},
+        {duration - 0.5, "sunk"}};
+    uint32_t drawn = 0, step = 0;
     double accumulated = 0, time = 0;
     printf("   time   broken restored   pieces  largest piece, its centre\n");
     for (uint32_t frame = 0; time < duration; frame++) {
         const double length = frame_length(frame);
         time += length;
         for (accumulated += length; accumulated >= dt; accumulated -= dt) {
-            must(mspring_network_get_positions(played->network, 0, played->particles, before_x, before_y),
-                 "positions", played);
             update(played, step++);
-            if (step % (5 * 64) == 0)
+            if (fmod(step * dt, minute) == 0)
                 print_state(played, step * dt);
+            for (uint32_t i = 0; i < played->particles && step * dt > duration - 5; i++)
+                played->borne[i] += (double)played->impulse_y[i];
         }
-        if (drawn == sizeof pictures / sizeof *pictures || time < pictures[drawn].time)
-            continue;
-        // What is shown lies between the last two steps.
-        must(mspring_network_get_positions(played->network, 0, played->particles, x, y), "positions", played);
-        for (uint32_t i = 0; i < played->particles; i++) {
-            x[i] = before_x[i] + (x[i] - before_x[i]) * accumulated / dt;
-            y[i] = before_y[i] + (y[i] - before_y[i]) * accumulated / dt;
+        if (drawn < sizeof shown / sizeof *shown && time >= shown[drawn].time) {
+            show(played, pictures, drawn, accumulated, shown[drawn].title);
+            drawn++;
         }
-        if (!draw(played, x, y, folder, pictures[drawn].name, pictures[drawn].title))
-            return false;
-        drawn++;
     }
     uint64_t hash;
     must(mspring_network_state_hash(played->network, &hash), "hash", played);
     printf("state after %u steps: %016llx\n", step, (unsigned long long)hash);
-    return true;
+}
+
+static bool run(const options *asked, const mspring_tasks *tasks) {
+    static game played;
+    mspring_builder *builder = NULL;
+    if (mspring_builder_create(NULL, &builder) != MSPRING_OK)
+        return false;
+    bool ok = start(&played, builder, asked, tasks);
+    mspring_builder_destroy(builder);
+    if (ok) {
+        figure pictures;
+        strip_start(&pictures);
+        play(&played, asked, &pictures);
+        ok = check_water(&played);
+        // Velocities are floats, each substep rounds them: 1e-4 of all that went through in 10 minutes. Implicit
+        // substeps balance forces to what their iterations leave.
+        ok = books_close(&played.accounts, asked->implicit ? 0.02 : 1e-4) && ok;
+        ok = check_end(&played, 5) && ok;
+        ok = output_figure(&pictures, asked->folder, "06_game") && ok;
+        figure_free(&pictures);
+    }
+    mspring_network_destroy(played.network);
+    return ok;
+}
+
+/* ------------------------------------------------------------------------------------------------------- options
+ */
+
+static int usage(FILE *to, const char *program) {
+    fprintf(to,
+            "06_game: a ship floats, is hit and repaired, broken, and sinks.\n\n"
+            "usage: %s [--out FOLDER] [--minutes M] [--host-threads N] [--implicit]\n\n"
+            "  --out FOLDER       where the pictures go (default: out)\n"
+            "  --minutes M        of the game, 1 to 600 (default 1)\n"
+            "  --host-threads N   lend the network a pool of N threads, 1 to 64 (default: two of its own)\n"
+            "  --implicit         one implicit substep instead of %d explicit ones\n",
+            program, SUBSTEPS);
+    return to == stderr ? 2 : EXIT_SUCCESS;
+}
+
+// Returns whether there is something to do; else *exit_code is set.
+static bool read_arguments(int count, char **arguments, options *asked, int *exit_code) {
+    *asked = (options){.folder = "out", .minutes = 1};
+    for (int i = 1; i < count; i++) {
+        const char *name = arguments[i], *value = i + 1 < count ? arguments[i + 1] : NULL;
+        char *end = NULL;
+        if (strcmp(name, "--help") == 0) {
+            *exit_code = usage(stdout, arguments[0]);
+            return false;
+        }
+        bool ok = true;
+        if (strcmp(name, "--implicit") == 0) {
+            asked->implicit = true;
+            continue;
+        }
+        if (value && strcmp(name, "--out") == 0) {
+            asked->folder = value;
+        } else if (value && strcmp(name, "--minutes") == 0) {
+            asked->minutes = strtod(value, &end);
+            ok = *value && !*end && asked->minutes >= 1 && asked->minutes <= 600 &&
+                 asked->minutes == floor(asked->minutes);
+        } else if (value && strcmp(name, "--host-threads") == 0) {
+            asked->host_threads = (uint32_t)strtoul(value, &end, 10);
+            ok = *value && !*end && asked->host_threads >= 1 && asked->host_threads <= 64;
+        } else {
+            ok = false;
+        }
+        if (!ok) {
+            *exit_code = usage(stderr, arguments[0]);
+            return false;
+        }
+        i++;
+    }
+    if (output_make_folder(asked->folder))
+        return true;
+    *exit_code = EXIT_FAILURE;
+    return false;
 }
 
 int main(int count, char **arguments) {
-    static game played;
+    options asked;
     int exit_code = EXIT_SUCCESS;
-    const char *folder = output_folder_from_arguments(
-        count, arguments, "06_game: a ship floats, is hit, repaired, broken, and sinks.", &exit_code);
-    if (!folder)
+    if (!read_arguments(count, arguments, &asked, &exit_code))
         return exit_code;
-    mspring_builder *builder = NULL;
-    if (mspring_builder_create(NULL, &builder) != MSPRING_OK)
+    if (asked.host_threads == 0)
+        return run(&asked, NULL) ? EXIT_SUCCESS : EXIT_FAILURE;
+    thread_pool *pool = thread_pool_create(asked.host_threads);
+    if (!pool) {
+        fprintf(stderr, "cannot start %u threads\n", asked.host_threads);
         return EXIT_FAILURE;
-    bool ok = start(&played, builder);
-    mspring_builder_destroy(builder);
-    ok = ok && play(&played, folder);
-    mspring_network_destroy(played.network);
+    }
+    const mspring_tasks tasks = thread_pool_tasks(pool);
+    const bool ok = run(&asked, &tasks);
+    printf("the pool of %u threads was lent %llu times\n", asked.host_threads,
+           (unsigned long long)thread_pool_runs(pool));
+    thread_pool_destroy(pool);
     return ok ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -7,8 +7,10 @@
 #   examples.sh memory   BENDING SOURCE   the same, with more than fits into memory
 #   examples.sh results  BENDING SOURCE   `bending` given what is right: the numbers that it must print
 #   examples.sh programs BENDING SOURCE   the small programs beside it: what they print and draw
+#   examples.sh game     BENDING SOURCE [MINUTES]   the game, ten minutes long: its books close, and it ends in the same
+#                                         state at every level and with any threads
 set -eu
-part=$1 bending=$2 source=$3
+part=$1 bending=$2 source=$3 minutes=${4:-10}
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 cases=0 wrong=0
@@ -351,6 +353,21 @@ programs() {
   same "$(echo "$line" | tr -s ' ' | cut -d' ' -f1-3)" "truss $(head -n 20 "$source/examples/data/truss.msn" |
     awk '!/^#/ && NF == 2 { print; exit }')" 'scene, particles, springs'
   refused 1 'nowhere.png' nowhere.png
+}
+
+# The game keeps books of water, momentum and energy, and fails if they do not close.
+game() {
+  game=$(cd "$(dirname "$bending")" && pwd)/06_game
+  "$game" --minutes "$minutes" --out "$scratch" >"$scratch/out" 2>"$scratch/err" || complain 'the game fails'
+  first=$(grep '^state' "$scratch/out")
+  [ "$minutes" -ne 10 ] || same "$first" 'state after 38400 steps: d67bd9b09d1c4e2e' 'the state after ten minutes'
+  other=$(MSPRING_SIMD=sse2 "$game" --minutes "$minutes" --host-threads 3 --out "$scratch" 2>"$scratch/err" | grep '^state') ||
+    complain 'the game fails with threads of its own'
+  same "$other" "$first" 'the state with threads of its own'
+  "$game" --implicit --out "$scratch" >"$scratch/out" 2>"$scratch/err" || complain 'the implicit game fails'
+  other=$(MSPRING_SIMD=scalar "$game" --implicit --host-threads 1 --out "$scratch" 2>"$scratch/err" | grep '^state') ||
+    complain 'the implicit game fails on one thread'
+  same "$other" "$(grep '^state' "$scratch/out")" 'the state of the implicit game'
 }
 
 memory() {

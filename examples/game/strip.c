@@ -1,0 +1,77 @@
+/// @file strip.c
+/// Panels: sky, water, sea floor, and the springs coloured by strain.
+///
+/// SPDX-License-Identifier: MIT
+#include "game/strip.h"
+
+#include "draw/colour_scale.h"
+
+#include <stdlib.h>
+
+static const draw_colour sky = 0xf4f6fa, water = 0xd7e6f4, sand = 0xd8c79c, ink = 0x26262e, broken_ink = 0xb0b4bc;
+
+enum { GAP = 12, TITLE = 26 };
+
+void strip_start(figure *made) {
+    figure_start(made, STRIP_COLUMNS * (STRIP_PANEL_WIDTH + GAP) + GAP,
+                 STRIP_ROWS * (STRIP_PANEL_HEIGHT + TITLE) + GAP, 0xffffff);
+}
+
+/// Where the world lies in a panel.
+typedef struct panel {
+    double x, y, scale_x, scale_y;
+    const strip_world *world;
+} panel;
+
+static double to_x(const panel *in, double x) {
+    return in->x + (x - in->world->left) * in->scale_x;
+}
+
+static double to_y(const panel *in, double y) {
+    return in->y + (in->world->top - y) * in->scale_y;
+}
+
+static bool is_inside(const panel *in, double x, double y) {
+    return x >= in->world->left && x <= in->world->right && y >= in->world->bottom && y <= in->world->top;
+}
+
+static void draw_world(figure *target, const panel *in) {
+    const strip_world *w = in->world;
+    figure_rectangle(target, in->x, in->y, STRIP_PANEL_WIDTH, STRIP_PANEL_HEIGHT, sky);
+    figure_rectangle(target, in->x, to_y(in, 0), STRIP_PANEL_WIDTH, in->y + STRIP_PANEL_HEIGHT - to_y(in, 0),
+                     water);
+    for (int pixel = 0; pixel < STRIP_PANEL_WIDTH; pixel++) {
+        const double y = to_y(in, w->floor_at(w->left + pixel / in->scale_x));
+        figure_rectangle(target, in->x + pixel, y, 1, in->y + STRIP_PANEL_HEIGHT - y, sand);
+    }
+}
+
+static void draw_spring(figure *target, const panel *in, const mspring_spring_info *spring, const double *x,
+                        const double *y) {
+    const mspring_id a = spring->a, b = spring->b;
+    if ((spring->flags & MSPRING_SPRING_BROKEN) || !is_inside(in, x[a], y[a]) || !is_inside(in, x[b], y[b]))
+        return;
+    const int step = colour_scale_find((double)spring->strain, in->world->strain_limit);
+    figure_line(target, to_x(in, x[a]), to_y(in, y[a]), to_x(in, x[b]), to_y(in, y[b]), 0.9,
+                colour_scale_step(step));
+}
+
+void strip_add(figure *target, uint32_t number, const strip_world *world, const mspring_network *network,
+               const double *x, const double *y, const char *title) {
+    const panel in = {.x = GAP + number % STRIP_COLUMNS * (STRIP_PANEL_WIDTH + GAP),
+                      .y = TITLE + number / STRIP_COLUMNS * (STRIP_PANEL_HEIGHT + TITLE),
+                      .scale_x = STRIP_PANEL_WIDTH / (world->right - world->left),
+                      .scale_y = STRIP_PANEL_HEIGHT / (world->top - world->bottom),
+                      .world = world};
+    draw_world(target, &in);
+    for (uint32_t i = 0; i < mspring_network_particle_count(network); i++)
+        if (is_inside(&in, x[i], y[i]))
+            figure_disc(target, to_x(&in, x[i]), to_y(&in, y[i]), 0.9, broken_ink);
+    for (mspring_id s = 0; s < mspring_network_spring_count(network); s++) {
+        mspring_spring_info info = {.struct_size = sizeof info};
+        if (mspring_network_get_spring(network, s, &info) != MSPRING_OK)
+            abort(); // ids are those that there are
+        draw_spring(target, &in, &info, x, y);
+    }
+    figure_text(target, in.x + 2, in.y - 8, 11, FIGURE_LEFT, ink, title);
+}
