@@ -146,7 +146,7 @@ static void a_pulled_particle_comes_along_and_a_pinned_one_does_not(void **state
         assert_true(fabs(x - before[i][0]) < 1e-6);
         assert_true(fabs(y - before[i][1]) < 1e-6);
     }
-    model_free(&model);
+    model_end(&model);
 }
 
 static void a_cut_makes_two_parts(void **state) {
@@ -161,7 +161,7 @@ static void a_cut_makes_two_parts(void **state) {
         assert_int_equal(parts, 2);
         assert_int_equal(model.sides[i].broken_count, 5 + 2 * 4); // rows, and two diagonals between each two
     }
-    model_free(&model);
+    model_end(&model);
 }
 
 static void undo_brings_back_the_state_of_before(void **state) {
@@ -189,7 +189,7 @@ static void undo_brings_back_the_state_of_before(void **state) {
         assert_string_equal(model.sides[0].complaint, "");
         assert_int_equal(model.sides[0].broken_count, 0);
     }
-    model_free(&model);
+    model_end(&model);
 }
 
 static void what_is_too_stiff_is_refused_and_goes_on_when_it_is_not(void **state) {
@@ -204,7 +204,7 @@ static void what_is_too_stiff_is_refused_and_goes_on_when_it_is_not(void **state
     must_do(&model, "stiffness 1");
     frames(&model, 4);
     assert_true(model.sides[0].complaint[0] == 0);
-    model_free(&model);
+    model_end(&model);
 }
 
 static void a_scene_that_cannot_be_opened_changes_nothing(void **state) {
@@ -219,7 +219,7 @@ static void a_scene_that_cannot_be_opened_changes_nothing(void **state) {
     assert_non_null(strstr(error.text, "no/such/file.png"));
     assert_int_equal(model_hash(&model), before);
     frames(&model, 10);
-    model_free(&model);
+    model_end(&model);
 }
 
 /* ----------------------------------------------------------------------------------------------- scripts,
@@ -239,7 +239,7 @@ static void a_script_ends_in_the_same_state_everywhere(void **state) {
     start(&model, "rope");
     play(&model, &script);
     assert_int_equal(model_hash(&model), 0x6fbaea6c492014deu);
-    model_free(&model);
+    model_end(&model);
     script_free(&script);
 }
 
@@ -299,7 +299,7 @@ static void a_recording_of_the_mouse_plays_to_the_same_state(void **state) {
     play(&model, &script);
     frames(&model, (int)(last_frame - model.frame));
     assert_int_equal(model_hash(&model), expected);
-    model_free(&model);
+    model_end(&model);
     script_free(&script);
     free(text);
 }
@@ -387,7 +387,7 @@ static void nothing_overlaps_in_windows_of_any_size(void **state) {
                         assert_false(overlap(box, layout.controls[b].box));
                 }
             }
-    model_free(&model);
+    model_end(&model);
 }
 
 static void sliders_give_valid_actions_from_end_to_end(void **state) {
@@ -410,7 +410,7 @@ static void sliders_give_valid_actions_from_end_to_end(void **state) {
         }
     }
     assert_int_equal(sliders, 9);
-    model_free(&model);
+    model_end(&model);
 }
 
 int main(void) {

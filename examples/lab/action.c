@@ -48,7 +48,9 @@ typedef struct action_def {
 static const action_def defs[ACTION_KINDS] = {
     [ACTION_SCENE] = {"scene", "take a ready scene, an image or a text network", {TEXT("SCENE")}},
     [ACTION_SIDES] = {"sides", "one network, or two of the same scene", {COUNT("COUNT", 1, 2)}},
-    [ACTION_SOLVER] = {"solver", "how it goes from step to step", {SIDE, CHOICE("SOLVER", "explicit", "implicit")}},
+    [ACTION_SOLVER] = {"solver",
+                       "how it goes from step to step",
+                       {SIDE, CHOICE("SOLVER", "explicit", "implicit", "direct")}},
     [ACTION_INTEGRATOR] = {"integrator",
                            "of the implicit solver",
                            {SIDE, CHOICE("SCHEME", "ga0", "bdf2", "euler")}},
@@ -64,6 +66,7 @@ static const action_def defs[ACTION_KINDS] = {
     [ACTION_DT] = {"dt", "seconds in a step", {NUMBER("SECONDS", 1e-4, 0.25)}},
     [ACTION_RELATIVE] = {"relative", "stiffness as a fraction of what an explicit substep bears", {SWITCH}},
     [ACTION_BREAKING] = {"breaking", "whether springs break that are stretched too far", {SWITCH}},
+    [ACTION_FLOOR] = {"floor", "whether there is one, below the scene", {SWITCH}},
     [ACTION_GRIP] = {"grip", "how hard particles are pulled, 1/s", {NUMBER("RATE", 1, 100)}},
     [ACTION_GRAB] = {"grab", "take hold of the particles around a place", {PLACE, NUMBER("RADIUS", 0, 1e6)}},
     [ACTION_PULL] = {"pull", "them to another place", {PLACE}},

@@ -16,7 +16,7 @@ enum { SIDE_LEFT = 1, SIDE_RIGHT = 2, SIDE_BOTH = 3 };
 typedef enum action_kind {
     ACTION_SCENE,      ///< text: a name or a file
     ACTION_SIDES,      ///< 1 or 2
-    ACTION_SOLVER,     ///< sides, solver_choice
+    ACTION_SOLVER,     ///< sides, mspring_solver
     ACTION_INTEGRATOR, ///< sides, mspring_integrator
     ACTION_SUBSTEPS,   ///< sides, number; 0: by the library
     ACTION_ITERATIONS, ///< sides, number
@@ -28,6 +28,7 @@ typedef enum action_kind {
     ACTION_DT,         ///< s
     ACTION_RELATIVE,   ///< off, on
     ACTION_BREAKING,   ///< off, on
+    ACTION_FLOOR,      ///< off, on
     ACTION_GRIP,       ///< 1/s: how hard the mouse pulls
     ACTION_GRAB,       ///< x, y, radius
     ACTION_PULL,       ///< x, y

@@ -23,7 +23,7 @@ bool app_free(lab_app *unwanted) {
         ok = fclose(unwanted->record) == 0 || complain("cannot write the recording");
     script_free(&unwanted->script);
     view_free(&unwanted->view);
-    model_free(&unwanted->model);
+    model_end(&unwanted->model);
     return ok;
 }
 
@@ -157,8 +157,8 @@ void app_report(const lab_app *app) {
         if (!app->options->no_clock)
             snprintf(cost, sizeof cost, ", %.2f ms a step", 1e3 * side->measured.seconds);
         printf("%-5s %s, %llu steps%s, bending %.6g m, %u broken\n", i == 0 ? "left" : "right",
-               side->solver.solver == MSPRING_SOLVER_EXPLICIT ? "explicit" : "implicit",
-               (unsigned long long)side->steps, cost, side->measured.bending, side->broken_count);
+               action_choice_name(ACTION_SOLVER, 1, side->solver.solver), (unsigned long long)side->steps, cost,
+               side->measured.bending, side->broken_count);
     }
     if (!app->options->no_clock && app->frames > 0)
         printf("frames %llu, %.2f ms on average, longest %.2f ms, over %.1f ms: %u\n",

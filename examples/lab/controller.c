@@ -18,7 +18,7 @@ const key_help keys_help[] = {
     {"[ ]", "smaller, larger reach"},
     {"O", "probe here: its bending is measured"},
     {"G", "gravity on, off"},
-    {"T", "the other solver, on this side"},
+    {"T", "the next solver, on this side"},
     {"tab", "one side, or two"},
     {"U, ctrl Z", "undo"},
     {"R", "start the scene again"},
@@ -160,7 +160,7 @@ static void press_key(lab_controller *controller, const lab_model *model, const 
         perform(controller, ACTION_RESET, 0, 0, 0, 0);
         break;
     case 't':
-        perform(controller, ACTION_SOLVER, 1 << controller->side, solver->solver == MSPRING_SOLVER_EXPLICIT, 0, 0);
+        perform(controller, ACTION_SOLVER, 1 << controller->side, (solver->solver + 1) % 3, 0, 0);
         break;
     case KEY_TAB:
         perform(controller, ACTION_SIDES, model->side_count == 1 ? 2 : 1, 0, 0, 0);

@@ -39,7 +39,7 @@ void layer_free(lab_layer *unwanted) {
     memset(unwanted, 0, sizeof *unwanted);
 }
 
-static void add(uint64_t *sum, uint32_t coverage, layer_colour colour) {
+static inline void add(uint64_t *sum, uint32_t coverage, layer_colour colour) {
     if (*sum >> COVERAGE_SHIFT <= MOST)
         *sum += colour * coverage;
 }
@@ -51,16 +51,39 @@ static int overlap(int pixel, int low, int high) {
     return to > from ? to - from : 0;
 }
 
+// A square that lies in the layer whole, in 1/FULL pixels: what it covers of the columns is the same in every row.
+static void add_square(lab_layer *layer, uint32_t left, uint32_t top, uint32_t side, layer_colour colour) {
+    const uint32_t right = left + side - 1, bottom = top + side - 1; // the last parts, not the ends
+    const uint32_t first = left / FULL, last = right / FULL, last_row = bottom / FULL;
+    const uint32_t first_part = first == last ? side : FULL - left % FULL, last_part = right % FULL + 1;
+    for (uint32_t row = top / FULL; row <= last_row; row++) {
+        const uint32_t from = row * FULL > top ? row * FULL : top;
+        const uint32_t to = row == last_row ? bottom + 1 : (row + 1) * FULL;
+        const uint32_t rows = to - from;
+        uint64_t *sums = layer->sums + (size_t)row * (size_t)layer->box.width;
+        add(&sums[first], rows * first_part / FULL, colour);
+        for (uint32_t column = first + 1; column < last; column++)
+            add(&sums[column], rows, colour);
+        if (last > first)
+            add(&sums[last], rows * last_part / FULL, colour);
+    }
+}
+
 void layer_square(lab_layer *layer, float x, float y, float half, layer_colour colour) {
+    const float width = (float)layer->box.width, height = (float)layer->box.height;
     x -= (float)layer->box.x;
     y -= (float)layer->box.y;
-    if (!(x > -half && y > -half && x < (float)layer->box.width + half && y < (float)layer->box.height + half))
+    if (!(x > -half && y > -half && x < width + half && y < height + half))
         return;
+    const int side = (int)(2 * half * FULL + 0.5f);
+    if (x >= half && y >= half && x + half < width - 1 && y + half < height - 1) {
+        add_square(layer, (uint32_t)((x - half) * FULL), (uint32_t)((y - half) * FULL), (uint32_t)side, colour);
+        return;
+    }
     // Positive before the conversion, which cuts towards zero.
     const int offset = 1024;
     const int left = (int)((x - half + (float)offset) * FULL) - offset * FULL;
     const int top = (int)((y - half + (float)offset) * FULL) - offset * FULL;
-    const int side = (int)(2 * half * FULL + 0.5f);
     const int first_x = left > 0 ? left / FULL : 0, first_y = top > 0 ? top / FULL : 0;
     int last_x = (left + side - 1) / FULL, last_y = (top + side - 1) / FULL;
     last_x = last_x < layer->box.width ? last_x : layer->box.width - 1;

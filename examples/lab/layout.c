@@ -113,7 +113,7 @@ static void add_playing(control_stack *stack, const lab_model *model) {
 
 static void add_physics(control_stack *stack, const lab_model *model) {
     const lab_settings *now = &model->settings;
-    static const char *const toggles[] = {"relative", "breaking"};
+    static const char *const toggles[] = {"relative", "breaking", "floor"};
     add_slider(stack, "gravity", number(ACTION_GRAVITY, now->gravity), 0, 0, 30, false, "%.1f m/s^2", now->gravity);
     add_slider(stack, "mass", number(ACTION_MASS, now->mass), 0, 0.1, 10, true, "x %.2f", now->mass);
     if (model->stage.relative)
@@ -125,24 +125,26 @@ static void add_physics(control_stack *stack, const lab_model *model) {
     add_slider(stack, "damping", number(ACTION_DAMPING, now->damping), 0, 0, 10, false, "x %.2f", now->damping);
     add_slider(stack, "air", number(ACTION_AIR, now->air), 0, 0, 4, false, "%.2f /s", now->air);
     add_slider(stack, "step", number(ACTION_DT, now->dt), 0, 1.0 / 512, 1.0 / 8, true, "%.2f ms", 1e3 * now->dt);
-    lab_control *toggle = add_buttons(stack, 2, toggles);
+    lab_control *toggle = add_buttons(stack, 3, toggles);
     if (!toggle)
         return;
     toggle[0].is_on = model->stage.relative;
     toggle[0].action = number(ACTION_RELATIVE, !model->stage.relative);
     toggle[1].is_on = now->breaking;
     toggle[1].action = number(ACTION_BREAKING, !now->breaking);
+    toggle[2].is_on = now->has_floor;
+    toggle[2].action = number(ACTION_FLOOR, !now->has_floor);
 }
 
 static void add_solver(control_stack *stack, const lab_model *model, int side) {
-    static const char *const labels[] = {"explicit", "implicit"};
+    static const char *const labels[] = {"explicit", "implicit", "direct"};
     const lab_solver *now = &model->solvers[side];
     const int bit = 1 << side;
     stack->y += 6;
-    lab_control *solver = add_buttons(stack, 2, labels);
+    lab_control *solver = add_buttons(stack, 3, labels);
     if (!solver)
         return;
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 3; i++) {
         solver[i].is_on = now->solver == i;
         solver[i].action = action_of(ACTION_SOLVER, bit, i, 0, 0);
         solver[i].side_colour = side + 1;

@@ -57,7 +57,8 @@ static lab_settings settings_for(const lab_stage *stage) {
                           .air = 0,
                           .dt = 1.0 / FRAMES_PER_SECOND,
                           .grip = 30,
-                          .breaking = false};
+                          .breaking = false,
+                          .has_floor = !stage->has_pins};
 }
 
 static void begin_anew(lab_model *model) {
@@ -66,6 +67,20 @@ static void begin_anew(lab_model *model) {
     model->holding = false;
     for (int i = 0; i < model->side_count; i++)
         side_measure(&model->sides[i], &model->settings, model->probe);
+}
+
+// Files may be stiffer than the substeps bear that did for the scene before.
+static void make_stable(lab_model *model) {
+    for (int i = 0; i < model->side_count; i++) {
+        lab_solver solver = model->solvers[i];
+        const uint32_t needed = side_suggest_substeps(&model->sides[i], model->settings.dt);
+        if (solver.solver != MSPRING_SOLVER_EXPLICIT || !solver.substeps || needed <= solver.substeps ||
+            needed > 1000)
+            continue;
+        solver.substeps = needed;
+        if (side_set_solver(&model->sides[i], &solver))
+            model->solvers[i] = solver;
+    }
 }
 
 // Opens a scene on some sides, or leaves all as it is. keeps: settings, time and the state of the old networks.
@@ -102,6 +117,8 @@ static bool open_scene(lab_model *model, const char *name, bool relative, int si
         model->probe = model->stage.probe;
         model->look.metres = 0;
     }
+    if (!keeps && !stage.is_ready)
+        make_stable(model);
     begin_anew(model);
     return true;
 }
@@ -116,7 +133,7 @@ bool model_start(lab_model *made, const char *scene_name, scene_error *error) {
     return open_scene(made, scene_name, false, 2, false, error);
 }
 
-void model_free(lab_model *unwanted) {
+void model_end(lab_model *unwanted) {
     undo_clear(&unwanted->undo);
     free_sides(unwanted->sides, unwanted->side_count);
     stage_free(&unwanted->stage);
@@ -152,8 +169,10 @@ static bool change_setting(lab_model *model, const lab_action *action, scene_err
     };
     if (places[action->kind])
         *places[action->kind] = action->values[0];
-    else
+    else if (action->kind == ACTION_BREAKING)
         settings.breaking = action->values[0] != 0;
+    else
+        settings.has_floor = action->values[0] != 0;
     remember(model, action->kind, true);
     return set_settings(model, &settings, error);
 }
@@ -336,6 +355,7 @@ bool model_do(lab_model *model, const lab_action *action, scene_error *error) {
     case ACTION_DT:
     case ACTION_GRIP:
     case ACTION_BREAKING:
+    case ACTION_FLOOR:
         return change_setting(model, action, error);
     case ACTION_GRAB:
     case ACTION_PIN:

@@ -62,7 +62,7 @@ typedef struct lab_model {
 
 /// A model with the ship on both sides, explicit and implicit.
 bool model_start(lab_model *made, const char *scene_name, scene_error *error);
-void model_free(lab_model *unwanted);
+void model_end(lab_model *unwanted);
 
 /// Do it. On error, such as a file that cannot be read, all is as before.
 bool model_do(lab_model *model, const lab_action *action, scene_error *error);

@@ -82,20 +82,27 @@ void raster_frame(lab_raster *target, lab_box clip, lab_box box, lab_colour colo
 }
 
 void raster_round(lab_raster *target, lab_box clip, lab_box box, double radius, lab_colour colour, int alpha) {
-    const lab_box part = intersection(clip, box);
-    const double left = box.x + radius, right = box.x + box.width - radius;
-    const double top = box.y + radius, bottom = box.y + box.height - radius;
-    for (int y = part.y; y < part.y + part.height; y++) {
-        uint32_t *row = target->pixels + (size_t)y * (size_t)target->width;
-        const double middle_y = y + 0.5;
-        const double dy = middle_y < top ? top - middle_y : middle_y > bottom ? middle_y - bottom : 0;
-        for (int x = part.x; x < part.x + part.width; x++) {
-            const double middle_x = x + 0.5;
-            const double dx = middle_x < left ? left - middle_x : middle_x > right ? middle_x - right : 0;
-            const int part_covered =
-                dx > 0 && dy > 0 ? cover(radius + 0.5 - sqrt(dx * dx + dy * dy), alpha) : alpha;
-            row[x] = colour_mix(row[x], colour, part_covered);
-        }
+    // The corners pixel by pixel, the rest as boxes.
+    const int corner = (int)ceil(radius);
+    if (2 * corner > box.width || 2 * corner > box.height) {
+        raster_fill(target, clip, box, colour, alpha);
+        return;
+    }
+    raster_fill(target, clip, (lab_box){box.x + corner, box.y, box.width - 2 * corner, corner}, colour, alpha);
+    raster_fill(target, clip, (lab_box){box.x, box.y + corner, box.width, box.height - 2 * corner}, colour, alpha);
+    raster_fill(target, clip,
+                (lab_box){box.x + corner, box.y + box.height - corner, box.width - 2 * corner, corner}, colour,
+                alpha);
+    for (int i = 0; i < 4 * corner * corner; i++) {
+        const int column = i % (2 * corner), row = i / (2 * corner);
+        const int x = column < corner ? box.x + column : box.x + box.width - 2 * corner + column;
+        const int y = row < corner ? box.y + row : box.y + box.height - 2 * corner + row;
+        if (!box_holds(clip, x, y))
+            continue;
+        const double dx = fabs(column + 0.5 - corner) - (corner - radius),
+                     dy = fabs(row + 0.5 - corner) - (corner - radius);
+        uint32_t *pixel = &target->pixels[(size_t)y * (size_t)target->width + (size_t)x];
+        *pixel = colour_mix(*pixel, colour, cover(radius + 0.5 - sqrt(dx * dx + dy * dy), alpha));
     }
 }
 

@@ -51,6 +51,12 @@ bool side_set_solver(lab_side *side, const lab_solver *solver) {
     return true;
 }
 
+uint32_t side_suggest_substeps(lab_side *side, double dt) {
+    uint32_t substeps = 0;
+    const mspring_result result = mspring_network_suggest_substeps(side->network, dt, 0.7, &substeps);
+    return result == MSPRING_OK ? substeps : 0;
+}
+
 void side_start_measuring_time(lab_side *side) {
     side->measured.seconds = 0;
 }
@@ -106,6 +112,16 @@ static mspring_result set_breaking(lab_side *side, bool breaking) {
     return result;
 }
 
+static mspring_result set_floor(lab_side *side, bool has_floor) {
+    const double plane[4] = {0, side->stage->floor_y, 0, 1};
+    mspring_floor_def def;
+    mspring_floor_def_init(&def, sizeof def);
+    def.plane_count = 1;
+    def.planes = plane;
+    def.friction = 0.6f;
+    return mspring_network_set_floor(side->network, has_floor ? &def : NULL);
+}
+
 bool side_set_settings(lab_side *side, const lab_settings *settings, const lab_settings *before) {
     mspring_result result = MSPRING_OK;
     if (settings->gravity != before->gravity)
@@ -114,6 +130,8 @@ bool side_set_settings(lab_side *side, const lab_settings *settings, const lab_s
         result = mspring_network_set_global_damping(side->network, (float)settings->air);
     if (result == MSPRING_OK && settings->mass != before->mass)
         result = set_masses(side, settings->mass);
+    if (result == MSPRING_OK && settings->has_floor != before->has_floor)
+        result = set_floor(side, settings->has_floor);
     if (side->stage->spring_count > 0) {
         if (result == MSPRING_OK && settings->stiffness != before->stiffness)
             result = set_stiffnesses(side, settings->stiffness);
@@ -272,17 +290,32 @@ static void measure_springs(lab_side *side, const lab_settings *settings) {
     side->measured.max_strain = most;
 }
 
-void side_measure(lab_side *side, const lab_settings *settings, mspring_id probe) {
-    double x, y, kinetic = 0;
-    read_broken(side);
-    measure_springs(side, settings);
+static void measure_particles(lab_side *side, const lab_settings *settings) {
+    const mspring_view *view = &side->view;
+    float min_x = INFINITY, min_y = INFINITY, max_x = -INFINITY, max_y = -INFINITY;
+    double kinetic = 0;
     for (uint32_t i = 0; i < side->stage->particle_count; i++) {
-        const uint32_t slot = side->view.slot_of_particle[i];
-        const double vx = side->view.vx[slot], vy = side->view.vy[slot];
-        if (side->view.inverse_mass[slot] > 0)
+        const uint32_t slot = view->slot_of_particle[i];
+        const double vx = view->vx[slot], vy = view->vy[slot];
+        if (view->inverse_mass[slot] > 0)
             kinetic += side->stage->mass[i] * (vx * vx + vy * vy);
+        min_x = view->x[slot] < min_x ? view->x[slot] : min_x;
+        max_x = view->x[slot] > max_x ? view->x[slot] : max_x;
+        min_y = view->y[slot] < min_y ? view->y[slot] : min_y;
+        max_y = view->y[slot] > max_y ? view->y[slot] : max_y;
     }
     side->measured.kinetic = 0.5 * kinetic * settings->mass;
+    side->measured.min_x = view->origin_x + min_x;
+    side->measured.max_x = view->origin_x + max_x;
+    side->measured.min_y = view->origin_y + min_y;
+    side->measured.max_y = view->origin_y + max_y;
+}
+
+void side_measure(lab_side *side, const lab_settings *settings, mspring_id probe) {
+    double x, y;
+    read_broken(side);
+    measure_springs(side, settings);
+    measure_particles(side, settings);
     side_position(side, probe, &x, &y);
     side->measured.bending = side->stage->y[probe] - y;
 }

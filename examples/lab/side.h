@@ -10,7 +10,7 @@
 /// What both sides have in common.
 typedef struct lab_settings {
     double gravity, mass, stiffness, damping, air, dt, grip; ///< as the actions of these names
-    bool breaking;
+    bool breaking, has_floor;
 } lab_settings;
 
 /// What each has for itself.
@@ -26,7 +26,8 @@ typedef struct lab_measures {
     double kinetic, elastic; ///< J
     double max_strain;
     double rms_strain;
-    double seconds; ///< that a step takes, on the average of the last ones
+    double min_x, min_y, max_x, max_y; ///< box around all particles
+    double seconds;                    ///< that a step takes, on the average of the last ones
 } lab_measures;
 
 typedef struct lab_side {
@@ -56,6 +57,8 @@ void side_free(lab_side *unwanted);
 /// Take over solver or settings. On error, which complaint tells, nothing changes.
 bool side_set_solver(lab_side *side, const lab_solver *solver);
 bool side_set_settings(lab_side *side, const lab_settings *settings, const lab_settings *before);
+/// Substeps that a step needs if the network keeps nearly its shape, for explicit steps; 0 if there are too many.
+uint32_t side_suggest_substeps(lab_side *side, double dt);
 void side_start_measuring_time(lab_side *side);
 
 /// Take one step, with the forces on what is held. If it is refused, complaint says why, and nothing has moved.

@@ -6,6 +6,7 @@
 #include "data/pixels.h"
 #include "data/ship.h"
 #include "lab/ship_materials.h"
+#include "loaders/structure.h"
 #include "scenes/image.h"
 #include "scenes/internal.h"
 
@@ -179,6 +180,22 @@ static bool read_image(lab_stage *made, const char *path, bool relative, scene_e
     return ok;
 }
 
+// A vehicle of another program, seen from the side.
+static bool read_structure(lab_stage *made, const char *path, bool relative, scene_error *error) {
+    structure read;
+    const structure_options options = structure_options_default();
+    if (!structure_load(path, &options, &read, error))
+        return false;
+    for (uint32_t i = 0; relative && i < read.spring_count; i++) {
+        read.springs[i].flags = MSPRING_SPRING_RELATIVE;
+        read.springs[i].stiffness = relative_stiffness;
+        read.springs[i].damping = relative_damping;
+    }
+    const bool ok = structure_scene(&read, path, &made->made, error);
+    structure_free(&read);
+    return ok;
+}
+
 static bool make_scene(lab_stage *made, const char *name, bool relative, scene_error *error) {
     const scene_options options = options_for(relative, false);
     if (strcmp(name, "ship") == 0)
@@ -195,6 +212,9 @@ static bool make_scene(lab_stage *made, const char *name, bool relative, scene_e
         return scene_rope(120, &options, &made->made, error);
     if (strcmp(name, "graph") == 0)
         return scene_random_graph(3000, 8, 5, &options, &made->made, error);
+    made->is_ready = false;
+    if (structure_format_of(name) != STRUCTURE_UNKNOWN)
+        return read_structure(made, name, relative, error);
     const scene_options file_options = options_for(relative, true);
     return scene_file_is_image(name) ? read_image(made, name, relative, error)
                                      : scene_network_file(name, &file_options, &made->made, error);
@@ -313,6 +333,10 @@ static bool read_scene(lab_stage *made, scene_error *error) {
     if (!made->has_damping)
         make_up_damping(made);
     find_bounds(made);
+    for (uint32_t i = 0; i < made->particle_count; i++)
+        made->has_pins = made->has_pins || made->pinned[i];
+    // What is not held lies on the floor; else it is there to fall upon.
+    made->floor_y = made->min_y - (made->has_pins ? 0.15 * (made->max_x - made->min_x) : 0);
     made->spacing = typical_spacing(made);
     for (uint32_t i = 0; i < made->spring_count; i++)
         if (made->rest[i] > 1.7 * made->spacing)
@@ -322,7 +346,7 @@ static bool read_scene(lab_stage *made, scene_error *error) {
 }
 
 bool stage_open(lab_stage *made, const char *name, bool relative, scene_error *error) {
-    lab_stage opened = {.relative = relative};
+    lab_stage opened = {.relative = relative, .is_ready = true};
     bool ok = make_scene(&opened, name, relative, error);
     if (ok && !read_scene(&opened, error)) {
         stage_free(&opened);

@@ -22,8 +22,11 @@ typedef struct lab_stage {
     uint32_t long_count;
     double spacing; ///< of neighbours, m: that of most particles
     double min_x, min_y, max_x, max_y;
+    double floor_y;   ///< where a floor lies, m
     mspring_id probe; ///< the scene's, or one far away from all pins
     bool relative;
+    bool is_ready; ///< one of the ready scenes
+    bool has_pins;
     bool has_damping; ///< the scene's own; if not, some is made up for the slider
 } lab_stage;
 

@@ -27,6 +27,7 @@ static void free_side(view_side *kept) {
     free(kept->tint);
     free(kept->extreme);
     free(kept->number);
+    free(kept->behind);
     layer_free(&kept->layer);
     memset(kept, 0, sizeof *kept);
 }
@@ -46,6 +47,7 @@ bool view_resize(lab_view *view, int width, int height) {
         return false;
     raster_free(&view->target);
     view->target = made;
+    memset(view->filled, 0, sizeof view->filled);
     return true;
 }
 
@@ -121,13 +123,11 @@ static void see(lab_view *view, const lab_model *model) {
         view->max_y = stage->max_y;
     }
     for (int i = 0; i < model->side_count; i++) {
-        double min_x, min_y, max_x, max_y;
-        if (mspring_network_bounds(model->sides[i].network, &min_x, &min_y, &max_x, &max_y) != MSPRING_OK)
-            continue;
-        view->min_x = fmin(view->min_x, fmax(min_x, stage->min_x - reach));
-        view->min_y = fmin(view->min_y, fmax(min_y, stage->min_y - reach));
-        view->max_x = fmax(view->max_x, fmin(max_x, stage->max_x + reach));
-        view->max_y = fmax(view->max_y, fmin(max_y, stage->max_y + reach));
+        const lab_measures *now = &model->sides[i].measured;
+        view->min_x = fmin(view->min_x, fmax(now->min_x, stage->min_x - reach));
+        view->min_y = fmin(view->min_y, fmax(now->min_y, stage->min_y - reach));
+        view->max_x = fmax(view->max_x, fmin(now->max_x, stage->max_x + reach));
+        view->max_y = fmax(view->max_y, fmin(now->max_y, stage->max_y + reach));
     }
 }
 
@@ -183,10 +183,24 @@ static bool make_room(lab_view *view, const lab_model *model) {
     return true;
 }
 
+// What no part covers, and what lies behind the rounded ones.
+static void fill_behind(lab_view *view) {
+    const lab_layout *layout = &view->layout;
+    const lab_box boxes[] = {layout->panel, layout->plots, layout->sides[0], layout->sides[1]};
+    const lab_box all = {0, 0, layout->width, layout->height};
+    if (memcmp(boxes, view->filled, sizeof boxes) != 0) {
+        memcpy(view->filled, boxes, sizeof boxes);
+        raster_fill(&view->target, all, all, TINT_WINDOW, 256);
+    }
+    raster_fill(&view->target, all, layout->panel, TINT_WINDOW, 256);
+    raster_fill(&view->target, all, layout->plots, TINT_WINDOW, 256);
+}
+
 bool view_begin(lab_view *view, const lab_model *model) {
     layout_make(&view->layout, model, view->target.width, view->target.height);
     see(view, model);
     adapt_scales(view, model);
+    fill_behind(view);
     return make_room(view, model);
 }
 
@@ -199,6 +213,9 @@ static void describe_solver(const lab_side *side, char *text, size_t size) {
     if (side->solver.solver == MSPRING_SOLVER_EXPLICIT)
         snprintf(text, size, "%u substep%s%s", substeps, substeps == 1 ? "" : "s",
                  side->solver.substeps ? "" : ", chosen by the library");
+    else if (side->solver.solver == MSPRING_SOLVER_DIRECT)
+        snprintf(text, size, "%s, %u substep%s", integrators[side->solver.integrator], substeps,
+                 substeps == 1 ? "" : "s");
     else
         snprintf(text, size, "%s, %u substep%s of %u iterations", integrators[side->solver.integrator], substeps,
                  substeps == 1 ? "" : "s", side->solver.iterations);
@@ -209,7 +226,7 @@ static void draw_head(lab_view *view, const lab_model *model, int index) {
     const lab_box box = view->layout.sides[index],
                   head = {box.x, box.y, box.width, view->layout.views[index].y - box.y};
     const lab_colour colour = tint_of_side(index);
-    const char *name = side->solver.solver == MSPRING_SOLVER_EXPLICIT ? "explicit" : "implicit";
+    const char *name = action_choice_name(ACTION_SOLVER, 1, side->solver.solver);
     char text[128], digits[32];
     raster_fill(&view->target, head, head, TINT_PANEL, 256);
     raster_fill(&view->target, head, (lab_box){head.x, head.y, 4, head.height}, colour, 256);
@@ -238,9 +255,9 @@ static void draw_head(lab_view *view, const lab_model *model, int index) {
 
 // What the colours mean, in the upper right corner.
 static void draw_scale(lab_view *view, const lab_model *model, lab_box box) {
-    enum { WIDTH = 120 };
+    enum { WIDTH = 190 };
     const colour_choice by = model->look.colour;
-    if (by == COLOUR_ISLAND || by == COLOUR_PLAN || box.width < 3 * WIDTH)
+    if (by == COLOUR_ISLAND || by == COLOUR_PLAN || box.width < 2 * WIDTH)
         return;
     const int left = box.x + box.width - WIDTH - 14, top = box.y + 20;
     const char *title = by == COLOUR_SPEED ? "speed" : by == COLOUR_FORCE ? "force" : "strain";
@@ -277,7 +294,6 @@ void view_draw_side(lab_view *view, const lab_model *model, int side) {
     const lab_box box = view->layout.views[side];
     if (box.width < 16 || box.height < 16)
         return;
-    raster_fill(&view->target, box, box, TINT_VIEW, 256);
     view_draw_network(view, model, side);
     draw_scale(view, model, box);
     draw_complaint(view, &model->sides[side], box);
@@ -360,27 +376,7 @@ static void draw_pointer(lab_view *view, const lab_model *model, const lab_point
     }
 }
 
-static void fill_between(lab_view *view) {
-    const lab_layout *layout = &view->layout;
-    const lab_box all = {0, layout->top.height, layout->width, layout->height - layout->top.height};
-    // Only what no other part covers: the sides are drawn by now.
-    for (int y = all.y; y < all.y + all.height; y++) {
-        uint32_t *row = view->target.pixels + (size_t)y * (size_t)layout->width;
-        for (int x = 0; x < layout->width; x++) {
-            bool covered = false;
-            for (int i = 0; i < layout->side_count && !covered; i++)
-                if (box_holds(layout->sides[i], x, y)) {
-                    covered = true;
-                    x = layout->sides[i].x + layout->sides[i].width - 1;
-                }
-            if (!covered)
-                row[x] = TINT_WINDOW;
-        }
-    }
-}
-
 void view_end(lab_view *view, const lab_model *model, const lab_pointer *pointer, const lab_costs *costs) {
-    fill_between(view);
     draw_top(view, model, costs);
     draw_status(view, model);
     view_draw_panel(view, model);

@@ -39,6 +39,12 @@ typedef struct view_side {
     uint32_t *number;     ///< [particles] component, or row of the plan
     const void *numbered; ///< the network that number holds the rows of, or NULL
     lab_layer layer;
+    // What lies behind the network, as long as the camera stands still.
+    uint32_t *behind; ///< [height][width] of its box
+    size_t behind_capacity;
+    lab_box behind_box;
+    double behind_camera[3];
+    const void *behind_network;
 } view_side;
 
 typedef struct lab_view {
@@ -51,6 +57,7 @@ typedef struct lab_view {
     double speed_limit;
     double min_x, min_y, max_x, max_y; ///< what a camera that sees everything has seen so far
     const void *seen;                  ///< of which network
+    lab_box filled[4];                 ///< parts between which the window has been filled
     bool shows_costs;                  ///< figures that differ from run to run
 } lab_view;
 

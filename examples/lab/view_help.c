@@ -7,7 +7,7 @@
 #include "lab/view.h"
 
 void view_draw_help(lab_view *view) {
-    enum { LINE = 19, WIDTH = 700, TOP = 52, KEY = 118, MARGIN = 26 };
+    enum { LINE = 19, WIDTH = 880, TOP = 52, KEY = 140, MARGIN = 26 };
     const lab_box all = {0, 0, view->target.width, view->target.height};
     const int rows = (keys_help_count + 1) / 2;
     const int width = WIDTH < all.width - 16 ? WIDTH : all.width - 16, height = TOP + rows * LINE + 20;

@@ -7,6 +7,8 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 // From this many pixels between neighbours on springs are lines.
 static const double lines_from = 3.5;
@@ -138,12 +140,18 @@ static void place_particles(view_side *kept, const lab_side *side, const lab_cam
     }
 }
 
-static void draw_grid(lab_view *view, const lab_camera *camera, lab_box box) {
+// Metres from one line of the grid to the next.
+static double grid_step(const lab_camera *camera) {
     double step = pow(10, ceil(log10(60 / camera->scale)));
     if (step * camera->scale > 240)
         step /= 5;
     else if (step * camera->scale > 120)
         step /= 2;
+    return step;
+}
+
+static void draw_grid(lab_view *view, const lab_camera *camera, lab_box box) {
+    const double step = grid_step(camera);
     double left, top, right, bottom;
     camera_to_world(camera, box.x, box.y, &left, &top);
     camera_to_world(camera, box.x + box.width, box.y + box.height, &right, &bottom);
@@ -157,7 +165,11 @@ static void draw_grid(lab_view *view, const lab_camera *camera, lab_box box) {
         camera_to_pixel(camera, 0, y, &px, &py);
         raster_fill(&view->target, box, (lab_box){box.x, (int)py, box.width, 1}, TINT_GRID, 256);
     }
-    // A ruler in the lower right corner: a step of the grid.
+}
+
+// In the lower right corner: a step of the grid.
+static void draw_ruler(lab_view *view, const lab_camera *camera, lab_box box) {
+    const double step = grid_step(camera);
     char text[48], digits[32];
     const int length = (int)(step * camera->scale), right_end = box.x + box.width - 12,
               at = box.y + box.height - 12;
@@ -185,6 +197,52 @@ static void draw_ghost(lab_view *view, const lab_stage *stage, view_side *kept, 
     layer_finish(&kept->layer, &view->target);
 }
 
+// What particles cannot get through.
+static void draw_floor(lab_view *view, const lab_stage *stage, const lab_camera *camera, lab_box box) {
+    double x, y;
+    camera_to_pixel(camera, 0, stage->floor_y, &x, &y);
+    if (!(y > box.y - 1 && y < box.y + box.height))
+        return;
+    const int top = (int)y + 1;
+    raster_fill(&view->target, box, (lab_box){box.x, top, box.width, box.y + box.height - top}, TINT_GRID, 256);
+    raster_fill(&view->target, box, (lab_box){box.x, top, box.width, 2}, TINT_EDGE, 256);
+}
+
+// Grid and ghost, drawn when the camera has moved, and else copied.
+static bool draw_behind(lab_view *view, const lab_side *side, view_side *kept, const lab_camera *camera,
+                        lab_box box, float half, float width) {
+    const double place[3] = {camera->scale, camera->x, camera->y};
+    const size_t pixels = (size_t)box.width * (size_t)box.height, row_size = (size_t)box.width * sizeof(uint32_t);
+    uint32_t *const first = view->target.pixels + (size_t)box.y * (size_t)view->target.width + (size_t)box.x;
+    const bool is_there = kept->behind_network == side->network &&
+                          memcmp(place, kept->behind_camera, sizeof place) == 0 &&
+                          memcmp(&box, &kept->behind_box, sizeof box) == 0;
+    if (is_there) {
+        for (size_t row = 0; row < (size_t)box.height; row++)
+            memcpy(first + row * (size_t)view->target.width, kept->behind + row * (size_t)box.width, row_size);
+        return true;
+    }
+    raster_fill(&view->target, box, box, TINT_VIEW, 256);
+    draw_grid(view, camera, box);
+    if (!layer_start(&kept->layer, box))
+        return false;
+    draw_ghost(view, side->stage, kept, camera, half, width);
+    kept->behind_network = NULL;
+    if (pixels > kept->behind_capacity) {
+        uint32_t *larger = realloc(kept->behind, pixels * sizeof *larger);
+        if (!larger)
+            return true;
+        kept->behind = larger;
+        kept->behind_capacity = pixels;
+    }
+    for (size_t row = 0; row < (size_t)box.height; row++)
+        memcpy(kept->behind + row * (size_t)box.width, first + row * (size_t)view->target.width, row_size);
+    memcpy(kept->behind_camera, place, sizeof place);
+    kept->behind_box = box;
+    kept->behind_network = side->network;
+    return true;
+}
+
 static void draw_springs(const lab_side *side, view_side *kept, const lab_model *model, const lab_view *view,
                          const uint32_t *list, uint32_t count, float width) {
     const lab_stage *stage = side->stage;
@@ -205,6 +263,15 @@ static void draw_springs(const lab_side *side, view_side *kept, const lab_model 
 }
 
 static void draw_squares(const lab_side *side, view_side *kept, const lab_model *model, float half) {
+    const colour_choice by = model->look.colour;
+    if (by <= COLOUR_SPEED) {
+        layer_colour colours[TINT_STEPS];
+        for (int i = 0; i < TINT_STEPS; i++)
+            colours[i] = layer_colour_of(by == COLOUR_SPEED ? tint_speed(i) : tint_strain(i));
+        for (uint32_t i = 0; i < side->stage->particle_count; i++)
+            layer_square(&kept->layer, kept->x[i], kept->y[i], half, colours[kept->tint[i]]);
+        return;
+    }
     for (uint32_t i = 0; i < side->stage->particle_count; i++)
         layer_square(&kept->layer, kept->x[i], kept->y[i], half, layer_colour_of(particle_colour(model, kept, i)));
 }
@@ -266,13 +333,9 @@ void view_draw_network(lab_view *view, const lab_model *model, int index) {
     const float half = (float)fmax(0.54 * spacing, 0.5);
     const float width = spacing < lines_from ? 0 : (float)fmin(fmax(0.14 * spacing, 1), 3);
     prepare_colours(view, model, index);
-    draw_grid(view, &camera, box);
-    if (!layer_start(&kept->layer, box))
+    if (!draw_behind(view, side, kept, &camera, box, half, width) || !layer_start(&kept->layer, box))
         return;
-    draw_ghost(view, side->stage, kept, &camera, half, width);
     place_particles(kept, side, &camera);
-    if (!layer_start(&kept->layer, box))
-        return;
     if (width == 0) {
         draw_squares(side, kept, model, half);
         draw_springs(side, kept, model, view, side->stage->long_springs, side->stage->long_count, 1);
@@ -284,7 +347,10 @@ void view_draw_network(lab_view *view, const lab_model *model, int index) {
         draw_squares(side, kept, model, (float)fmin(0.12 * spacing, 4));
         layer_finish(&kept->layer, &view->target);
     }
+    if (model->settings.has_floor)
+        draw_floor(view, side->stage, &camera, box);
     draw_pins(view, side, kept, box, spacing);
     draw_probe(view, model, index, box, &camera);
     draw_hold(view, model, index, box, &camera);
+    draw_ruler(view, &camera, box);
 }
