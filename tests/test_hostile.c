@@ -143,6 +143,21 @@ static void make_hook(arguments *a) {
     memcpy(a->given_bytes, &made, sizeof made);
 }
 
+/// One setting to be tried in a few short steps.
+static void make_tune(arguments *a) {
+    static mspring_solver_def setting;
+    mspring_tune_def made;
+    check_ok(mspring_solver_def_init(&setting, sizeof setting));
+    check_ok(mspring_tune_def_init(&made, sizeof made));
+    made.settings = &setting, made.setting_count = 1, made.dt = 0.001, made.duration = 0.004;
+    memcpy(a->given_bytes, &made, sizeof made);
+}
+
+static void make_tune_row(arguments *a) {
+    const mspring_tune_row made = {.struct_size = sizeof made, .substeps = 1};
+    memcpy(a->given_bytes, &made, sizeof made);
+}
+
 static void add_hook(arguments *a) {
     check_ok(support_add_hook(a->network, MSPRING_PHASE_BEFORE_STEP, no_hook, NULL, &a->id));
 }
@@ -220,6 +235,11 @@ static void add_hook(arguments *a) {
       mspring_network_suggest_substeps(a->network, a->dt, a->safety, a->out[0]))                                   \
     X(mspring_network_settle, "NsWo", (FILL(settle_def), OUT_STRUCT(0, settle_result)),                            \
       mspring_network_settle(a->network, a->given, a->out[0]))                                                     \
+    X(mspring_tune_def_init, "Z0", a->size = sizeof(mspring_tune_def), mspring_tune_def_init(a->out[0], a->size))  \
+    X(mspring_tune_settings, "NT0", NOTHING, mspring_tune_settings(a->network, a->dt, NULL, 0, a->out[0]))         \
+    X(mspring_network_tune, "NsP1", (make_tune(a), OUT_STRUCT(0, tune_row)),                                       \
+      mspring_network_tune(a->network, a->given, a->out[0], 1, a->out[1]))                                         \
+    X(mspring_tune_row_solver, "S0", make_tune_row(a), mspring_tune_row_solver(a->given, a->out[0]))               \
     X(mspring_network_apply_force, "NIXY", NOTHING, mspring_network_apply_force(a->network, a->id, a->x, a->y))    \
     X(mspring_network_apply_forces, "NRFG", NOTHING,                                                               \
       mspring_network_apply_forces(a->network, a->first, a->count, a->f, a->g))                                    \

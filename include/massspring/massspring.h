@@ -697,6 +697,136 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_settle(mspring_netw
                                                                     const mspring_settle_def *def,
                                                                     mspring_settle_result *result);
 
+/* ------------------------------------------------------------------------------------------ tuning: the trade */
+
+/// Which error settings are compared by.
+typedef int32_t mspring_tune_measure;
+enum {
+    MSPRING_TUNE_BY_TRAJECTORY = 0, ///< mspring_tune_row.trajectory_share
+    MSPRING_TUNE_BY_REST = 1,       ///< mspring_tune_row.rest_share
+    MSPRING_TUNE_BY_BENDING = 2 ///< mspring_tune_row.bending, m: for networks with relative springs, which are as
+                                ///< firm as their substeps allow
+};
+
+/// Flags of mspring_tune_def.
+enum {
+    MSPRING_TUNE_NOTHING_ELSE = 1u << 0 ///< measure the costs and what measure asks for, and no other error
+};
+
+/// Told how far a long run has come, 0 to 1, between steps. Returns 1 to go on, 0 to stop: what has been measured
+/// so far is the result then.
+typedef uint32_t (*mspring_progress_fn)(double done, void *user);
+
+/// Seconds since some moment, never going back.
+typedef double (*mspring_clock_fn)(void *user);
+
+/// What is to be tried, and what is wanted. Fill with mspring_tune_def_init() first.
+typedef struct mspring_tune_def {
+    uint32_t struct_size;
+    uint32_t setting_count;             ///< at most 1000
+    const mspring_solver_def *settings; ///< [setting_count]; default NULL: those of mspring_tune_settings()
+    double dt;                          ///< length of a step, s, as in mspring_network_step(); default 1/64
+    double duration; ///< simulated time that trajectories are compared for, s, up to 100000 steps; rounded up to
+                     ///< whole steps, at least four; default 0.25
+    double budget;   ///< s that the call may take, by the clock; default 10. It is looked at between steps, and
+                     ///< between iterations of the search for an equilibrium.
+    mspring_tune_measure measure; ///< default MSPRING_TUNE_BY_TRAJECTORY
+    uint32_t flags;               ///< MSPRING_TUNE_NOTHING_ELSE or 0; default 0
+    double max_error;       ///< a row with more is not recommended; > 0; default 0.01. INFINITY: none is too much
+    double max_cost;        ///< likewise, s for a step; > 0; default INFINITY
+    mspring_clock_fn clock; ///< default NULL: the system's. A build without one (MASSSPRING_FREESTANDING) needs it.
+    mspring_progress_fn progress; ///< default NULL
+    void *user;                   ///< handed to both
+} mspring_tune_def;
+
+/// Flags of mspring_tune_row.
+enum {
+    MSPRING_TUNE_HAS_COST = 1u << 0,
+    MSPRING_TUNE_HAS_TRAJECTORY = 1u << 1, ///< trajectory_error, trajectory_share and energy_drift are measured
+    MSPRING_TUNE_HAS_REST = 1u << 2,       ///< bending, rest_error and rest_share are measured
+    MSPRING_TUNE_REFUSED = 1u << 3, ///< a step was refused as unstable, or the solver cannot have this network
+    MSPRING_TUNE_PARETO = 1u << 4,  ///< no other row has both less cost and less error
+    MSPRING_TUNE_RECOMMENDED = 1u << 5
+};
+
+/// A setting, and what came of it. Numbers that are not measured are 0. Set struct_size first.
+typedef struct mspring_tune_row {
+    uint32_t struct_size;
+    uint32_t flags;
+    uint32_t setting;      ///< its index in the list of settings
+    mspring_solver solver; ///< this and what follows: as in mspring_solver_def, by mspring_tune_row_solver()
+    mspring_integrator integrator;
+    uint32_t substeps; ///< that a step took
+    uint32_t iterations, tile_size, coarse_period;
+    uint32_t step_count;          ///< steps whose time was taken
+    double min_cost, median_cost; ///< s for a step
+    double trajectory_error; ///< m, root of the mean square over the particles that are not pinned and over four
+                             ///< moments, from where a fine run has them
+    double trajectory_share; ///< the same as a share of how far they have gone in the fine run
+    double energy_drift;     ///< energy at the end beyond that of the fine run, as a share of the largest sum of
+                             ///< kinetic and elastic energy that the fine run had at those moments
+    double bending;          ///< m, farthest that a particle is from here when the network is at rest
+    double rest_error;       ///< m, farthest that the mean position of a particle, over the steps from rest on, is
+                             ///< from its place at rest
+    double rest_share;       ///< the same as a share of bending
+} mspring_tune_row;
+
+/// Fill a definition with its defaults, as mspring_network_def_init().
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API mspring_result mspring_tune_def_init(mspring_tune_def *def, size_t size);
+
+/// The settings that are tried where none are given: explicit with some numbers of substeps from the least that is
+/// stable on (none above 1000), implicit with 4, 8 and 15 iterations in one, two and four substeps, and up to 20000
+/// particles direct in one and two.
+/// @param dt        seconds, finite, > 0
+/// @param settings  [capacity]; may be NULL with capacity 0, to ask how many there are
+/// @param count     receives how many there are, also if that is more than capacity
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, also for too little capacity unless that is 0; MSPRING_ERROR_MEMORY,
+///         MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates yes, and frees it   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_tune_settings(mspring_network *network, double dt,
+                                                                   mspring_solver_def *settings, uint32_t capacity,
+                                                                   uint32_t *count);
+
+/// Measure what speed costs in accuracy: run settings of the solver on clones of this network, on this machine,
+/// from the state it has now, and say what a step takes and how good it is.
+///
+///   cost        of every step taken with a setting, by the clock, with the workers that the network has
+///   trajectory  against a run in double precision with fine substeps (symplectic, of second order). Shares are of
+///   at
+///               least a millionth of the network's size.
+///   rest        where the network comes to rest (mspring_network_settle()), and how it stays there when the
+///   setting
+///               goes on from it. Not for networks without an equilibrium.
+///
+/// Have the network in a state as it is to be simulated: just made and falling, or moving. Hooks are not called,
+/// there is no floor, ramps stand still, and nothing breaks by strain. Forces given for the next step act in the
+/// first one. Relative springs follow the substep: each row is compared with a fine run, and an equilibrium, that
+/// have the stiffness of its own substeps, and bending says how firm that is.
+///
+/// Recommended is, if max_error is finite, the row of the least median cost among those within both bounds; else,
+/// of those within max_cost, the one of the least error; of equal ones the first. There may be none. When the
+/// budget is used up, what is not measured is not flagged as measured: first the costs of all are taken, then what
+/// measure asks for, then the rest. All but the costs is the same whenever it is measured, and on any machine.
+/// @param def       NULL for the defaults
+/// @param rows      [capacity], struct_size set in each; one for each setting, in their order
+/// @param capacity  at least as many as there are settings
+/// @param count     receives how many there are
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT (the message says what, or names the setting), MSPRING_ERROR_STRUCT,
+///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY. On error nothing is written, and the network is as it was.
+/// @threads exclusive access to network   @allocates yes, and frees it   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_tune(mspring_network *network,
+                                                                  const mspring_tune_def *def,
+                                                                  mspring_tune_row *rows, uint32_t capacity,
+                                                                  uint32_t *count);
+
+/// The setting of a row, to be given to mspring_network_set_solver(): with as many substeps as its steps took.
+/// @param solver  struct_size need not be set
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL, MSPRING_ERROR_STRUCT.
+/// @threads any   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_tune_row_solver(const mspring_tune_row *row,
+                                                                     mspring_solver_def *solver);
+
 /* --------------------------------------------------------------------------------------- forces and hooks */
 
 /// Add a force (N) to one particle. It acts during the whole of the next step and is gone after it.

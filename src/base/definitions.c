@@ -1,4 +1,5 @@
 /// The defaults of every public definition.
+#include <math.h>
 #include <string.h>
 
 #include <massspring/massspring.h>
@@ -84,5 +85,16 @@ mspring_result mspring_clone_def_init(mspring_clone_def *def, size_t size) {
 
 mspring_result mspring_settle_def_init(mspring_settle_def *def, size_t size) {
     const mspring_settle_def defaults = {.struct_size = sizeof defaults, .max_iterations = 1000, .tolerance = 1e-9};
+    return fill(def, size, &defaults, sizeof defaults);
+}
+
+mspring_result mspring_tune_def_init(mspring_tune_def *def, size_t size) {
+    const mspring_tune_def defaults = {.struct_size = sizeof defaults,
+                                       .dt = 1.0 / 64,
+                                       .duration = 0.25,
+                                       .budget = 10.0,
+                                       .measure = MSPRING_TUNE_BY_TRAJECTORY,
+                                       .max_error = 0.01,
+                                       .max_cost = INFINITY};
     return fill(def, size, &defaults, sizeof defaults);
 }

@@ -214,6 +214,9 @@ mspring_result mspringi_enter(mspring_network *network);
 mspring_result mspringi_check_range(mspring_network *network, const char *what, mspring_id first, uint32_t count,
                                     uint32_t total);
 
+/// Refuse solver definitions that mspring_network_set_solver() would.
+mspring_result mspringi_check_solver(const mspring_solver_def *def, mspringi_message *message);
+
 /// Take back what a hook, or the host through a view, has written to slots without particle.
 void mspringi_clear_empty_slots(const mspring_network *network);
 

@@ -25,7 +25,7 @@ static mspring_result check_implicit(const mspring_solver_def *def, mspringi_mes
     return MSPRING_OK;
 }
 
-static mspring_result check_solver(const mspring_solver_def *def, mspringi_message *message) {
+mspring_result mspringi_check_solver(const mspring_solver_def *def, mspringi_message *message) {
     if (!def)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "solver definition is NULL");
     mspring_result result =
@@ -66,7 +66,7 @@ static mspring_result change_implicit(mspring_network *network, const mspring_so
 mspring_result mspring_network_set_solver(mspring_network *network, const mspring_solver_def *def) {
     mspring_result result = mspringi_enter(network);
     if (result == MSPRING_OK)
-        result = check_solver(def, &network->message);
+        result = mspringi_check_solver(def, &network->message);
     if (result == MSPRING_OK)
         result = change_implicit(network, def);
     if (result != MSPRING_OK)

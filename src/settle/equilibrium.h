@@ -7,6 +7,7 @@
 #define MSPRINGI_EQUILIBRIUM_H
 
 #include "linear/cholesky.h"
+#include "settle.h"
 
 /// Two numbers for each particle.
 typedef struct mspringi_vectors {
@@ -38,6 +39,7 @@ typedef struct mspringi_statics {
     double *block;            ///< the memory of all these numbers by particle
     double *spring_block;     ///< and by spring
     uint32_t *end_block;
+    mspringi_watcher watcher; ///< asked before each iteration
     mspringi_statics_springs springs;
     mspringi_cholesky_plan plan;
     mspringi_cholesky_double factor;

@@ -143,7 +143,8 @@ mspringi_rest mspringi_statics_rest(mspringi_statics *statics, uint32_t most_ite
             rest.found = false;
             rest.residual = mspringi_statics_forces(statics);
         }
-        if (rest.iterations == most_iterations)
+        const mspringi_watcher *watcher = &statics->watcher;
+        if (rest.iterations == most_iterations || (watcher->fn && !watcher->fn(watcher->user)))
             return rest;
         const double moved = iterate(&n);
         if (moved < 0.0)

@@ -167,12 +167,13 @@ static double put_back(const mspringi_statics *statics, mspring_network *network
 }
 
 static mspring_result solve(mspringi_statics *statics, mspring_network *network, const mspring_settle_def *def,
-                            mspring_settle_result *out) {
+                            mspring_settle_result *out, mspringi_watcher watcher) {
     uint32_t left_alone = 0;
     if (!mspringi_statics_create(statics, network->topology.particle_count, count_springs(network),
                                  &network->memory))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to settle %u particles",
                              (unsigned)network->topology.particle_count);
+    statics->watcher = watcher;
     fill_particles(statics, network);
     fill_springs(statics, network);
     mspring_result result = check_parts(statics, def, &left_alone, network);
@@ -197,12 +198,12 @@ static mspring_result solve(mspringi_statics *statics, mspring_network *network,
 }
 
 static MSPRINGI_NOINLINE mspring_result settle(mspring_network *network, const mspring_settle_def *def,
-                                               mspring_settle_result *out) {
+                                               mspring_settle_result *out, mspringi_watcher watcher) {
     mspringi_statics statics = {0};
     const float relative_h = network->relative_h;
     if (def->relative_substep > 0.0)
         mspringi_derive_relative(network, (float)def->relative_substep);
-    const mspring_result result = solve(&statics, network, def, out);
+    const mspring_result result = solve(&statics, network, def, out, watcher);
     if (result != MSPRING_OK)
         mspringi_derive_relative(network, relative_h);
     mspringi_statics_destroy(&statics, &network->memory);
@@ -232,6 +233,12 @@ static mspring_result check_def(const mspring_settle_def *def, mspringi_message 
 
 mspring_result mspring_network_settle(mspring_network *network, const mspring_settle_def *def,
                                       mspring_settle_result *result) {
+    const mspringi_watcher nobody = {NULL, NULL};
+    return mspringi_settle_watched(network, def, result, nobody);
+}
+
+mspring_result mspringi_settle_watched(mspring_network *network, const mspring_settle_def *def,
+                                       mspring_settle_result *result, mspringi_watcher watcher) {
     mspring_settle_def defaults;
     mspring_settle_result out;
     mspring_result outcome = mspringi_enter(network);
@@ -248,7 +255,7 @@ mspring_result mspring_network_settle(mspring_network *network, const mspring_se
     if (outcome != MSPRING_OK)
         return outcome;
     const mspringi_fp_state before = mspringi_fp_enter();
-    outcome = settle(network, def, &out);
+    outcome = settle(network, def, &out, watcher);
     mspringi_fp_leave(before);
     if (outcome == MSPRING_OK && result)
         *result = out;

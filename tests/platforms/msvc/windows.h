@@ -11,6 +11,9 @@
 typedef void *HANDLE;
 typedef int BOOL;
 typedef unsigned long DWORD;
+typedef union LARGE_INTEGER {
+    long long QuadPart;
+} LARGE_INTEGER;
 typedef struct SRWLOCK {
     void *pointer;
 } SRWLOCK;
@@ -25,4 +28,6 @@ void __stdcall WakeAllConditionVariable(CONDITION_VARIABLE *condition);
 BOOL __stdcall SleepConditionVariableSRW(CONDITION_VARIABLE *condition, SRWLOCK *lock, DWORD milliseconds,
                                          unsigned long flags);
 DWORD __stdcall WaitForSingleObject(HANDLE handle, DWORD milliseconds);
+BOOL __stdcall QueryPerformanceCounter(LARGE_INTEGER *count);
+BOOL __stdcall QueryPerformanceFrequency(LARGE_INTEGER *frequency);
 BOOL __stdcall CloseHandle(HANDLE handle);

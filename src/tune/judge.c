@@ -1,0 +1,74 @@
+/// Which rows are worth having.
+#include <math.h>
+
+#include "tuning.h"
+
+static void sort(double *values, uint32_t count) {
+    for (uint32_t gap = count / 2; gap > 0; gap /= 2)
+        for (uint32_t i = gap; i < count; ++i) {
+            const double value = values[i];
+            uint32_t at = i;
+            for (; at >= gap && values[at - gap] > value; at -= gap)
+                values[at] = values[at - gap];
+            values[at] = value;
+        }
+}
+
+static void sum_up(mspringi_trial *trial) {
+    const uint32_t count = trial->time_count;
+    sort(trial->times, count);
+    trial->row.step_count = count;
+    if (count == 0)
+        return;
+    trial->row.min_cost = trial->times[0];
+    trial->row.median_cost = 0.5 * (trial->times[(count - 1) / 2] + trial->times[count / 2]);
+}
+
+static double error_of(const mspring_tune_row *row, mspring_tune_measure measure) {
+    return measure == MSPRING_TUNE_BY_TRAJECTORY ? row->trajectory_share
+           : measure == MSPRING_TUNE_BY_REST     ? row->rest_share
+                                                 : row->bending;
+}
+
+static bool is_measured(const mspring_tune_row *row, mspring_tune_measure measure) {
+    const uint32_t needed =
+        MSPRING_TUNE_HAS_COST | (measure == MSPRING_TUNE_BY_TRAJECTORY ? (uint32_t)MSPRING_TUNE_HAS_TRAJECTORY
+                                                                       : (uint32_t)MSPRING_TUNE_HAS_REST);
+    return (row->flags & needed) == needed && !(row->flags & MSPRING_TUNE_REFUSED);
+}
+
+static bool is_beaten(const mspringi_tuning *tuning, const mspring_tune_row *row) {
+    const mspring_tune_measure measure = tuning->def.measure;
+    for (uint32_t i = 0; i < tuning->trial_count; ++i) {
+        const mspring_tune_row *other = &tuning->trials[i].row;
+        if (!is_measured(other, measure))
+            continue;
+        const double cost = other->median_cost - row->median_cost;
+        const double error = error_of(other, measure) - error_of(row, measure);
+        if (cost <= 0.0 && error <= 0.0 && (cost < 0.0 || error < 0.0))
+            return true;
+    }
+    return false;
+}
+
+void mspringi_tune_judge(const mspringi_tuning *tuning) {
+    const mspring_tune_def *def = &tuning->def;
+    const bool cheapest = def->max_error < INFINITY;
+    mspring_tune_row *best = NULL;
+    for (uint32_t i = 0; i < tuning->trial_count; ++i)
+        sum_up(&tuning->trials[i]);
+    for (uint32_t i = 0; i < tuning->trial_count; ++i) {
+        mspring_tune_row *row = &tuning->trials[i].row;
+        if (!is_measured(row, def->measure))
+            continue;
+        if (!is_beaten(tuning, row))
+            row->flags |= MSPRING_TUNE_PARETO;
+        const double error = error_of(row, def->measure);
+        if (error > def->max_error || row->median_cost > def->max_cost)
+            continue;
+        if (!best || (cheapest ? row->median_cost < best->median_cost : error < error_of(best, def->measure)))
+            best = row;
+    }
+    if (best)
+        best->flags |= MSPRING_TUNE_RECOMMENDED;
+}

@@ -1,0 +1,60 @@
+/// @file tuning.h
+/// What is tried on a network, and what has come of it so far.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_TUNING_H
+#define MSPRINGI_TUNING_H
+
+#include "network/network.h"
+
+/// Moments at which a trajectory is compared.
+#define MSPRINGI_TUNE_MOMENTS 4
+
+/// Room for those that are tried where the host gives none.
+#define MSPRINGI_TUNE_USUAL_SETTINGS 24
+
+/// Steps for the first look at what a setting costs.
+#define MSPRINGI_TUNE_FIRST_STEPS 4
+
+/// A setting that is tried.
+typedef struct mspringi_trial {
+    mspring_solver_def setting;
+    mspring_tune_row row;
+    float relative_h; ///< substep that relative springs had; 0 if there are none
+    bool has_run;     ///< its trajectory, or its rest, in the pass that is made now
+    double *times;    ///< [time_capacity] s for each step so far
+    uint32_t time_count;
+} mspringi_trial;
+
+typedef struct mspringi_tuning {
+    mspring_network *network; ///< the host's
+    mspring_network *base;    ///< a clone of it without hooks, ramps and breaking
+    mspring_tune_def def;
+    uint32_t trial_count, step_count, time_capacity;
+    mspringi_trial *trials;
+    double *times;  ///< of all trials
+    double *places; ///< [moments][2][particles] of the fine run, relative to the base's origin; or sums of places
+    double size;    ///< of the network, m
+    double begun;   ///< s, by the clock
+    double done, units; ///< parts of the work, for who watches
+    bool is_over;       ///< the budget is used up, or who watches has had enough
+} mspringi_tuning;
+
+/// Whether there is time left to go on; part of the present unit of work is done.
+bool mspringi_tuning_goes_on(mspringi_tuning *tuning, double part);
+
+/// Passes over all trials. What the budget does not allow is left out.
+mspring_result mspringi_tune_costs(mspringi_tuning *tuning);
+mspring_result mspringi_tune_trajectories(mspringi_tuning *tuning);
+mspring_result mspringi_tune_rests(mspringi_tuning *tuning);
+/// Take the time of more steps.
+mspring_result mspringi_tune_costs_again(mspringi_tuning *tuning);
+
+/// Say which rows are on the Pareto front, and which is recommended. After all times are in.
+void mspringi_tune_judge(const mspringi_tuning *tuning);
+
+/// Clone a network that lends its workers, so that it must not be stepped meanwhile; fail with the host's message.
+mspring_result mspringi_tune_spawn(mspringi_tuning *tuning, mspring_network *from, mspring_network **clone);
+void mspringi_tune_dismiss(mspring_network *clone);
+
+#endif
