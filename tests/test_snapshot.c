@@ -221,6 +221,30 @@ static void a_rollback_of_the_implicit_solvers_gives_the_same_bits(void **state)
     }
 }
 
+/// What a solver has gone through that is not in a snapshot does not matter: not even after ten thousand steps.
+static void an_old_network_goes_on_like_a_young_one(void **state) {
+    (void)state;
+    recipe made = mixed_recipe(3);
+    for (mspring_solver kind = MSPRING_SOLVER_IMPLICIT; kind <= MSPRING_SOLVER_DIRECT; kind++) {
+        mspring_network *old = make(&made, MSPRING_SIMD_AUTO, 1), *young = make(&made, MSPRING_SIMD_AUTO, 1);
+        use_solver(old, kind, MSPRING_INTEGRATOR_GA0, 1);
+        use_solver(young, kind, MSPRING_INTEGRATOR_GA0, 1);
+        support_steps(young, 1, 0.01);
+        const saved start = save(young, MSPRING_SNAPSHOT_ALL);
+        support_steps(old, 10000, 0.001);
+        load(old, &start);
+        for (int step = 0; step < 5; step++) {
+            support_steps(old, 1, 0.01);
+            support_steps(young, 1, 0.01);
+            assert_int_equal(look_at(old), look_at(young));
+        }
+        free(start.bytes);
+        mspring_network_destroy(old);
+        mspring_network_destroy(young);
+    }
+    recipe_free(&made);
+}
+
 static void solvers_have_to_be_alike(void **state) {
     (void)state;
     recipe made = mixed_recipe(3);
@@ -587,6 +611,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_rollback_gives_the_same_bits),
         cmocka_unit_test(a_rollback_of_the_implicit_solvers_gives_the_same_bits),
+        cmocka_unit_test(an_old_network_goes_on_like_a_young_one),
         cmocka_unit_test(solvers_have_to_be_alike),
         cmocka_unit_test(snapshots_are_the_same_everywhere),
         cmocka_unit_test(all_goes_into_a_new_network),

@@ -164,12 +164,13 @@ void mspringi_direct_destroy(mspringi_direct *direct, mspringi_memory *memory) {
 
 // Add the masses to the blocks on the diagonal. Returns whether single precision will do.
 static bool finish_diagonal(const mspringi_system *s, size_t slots) {
+    const float pinned = (float)PINNED_MASS;
     uint32_t too_stiff = 0;
     for (size_t i = 0; i < slots; ++i) {
-        const float mass = s->mass[i] > 0.0f ? s->mass[i] : (float)PINNED_MASS;
-        too_stiff |= (uint32_t) !(s->xx[i] + s->yy[i] <= mass * SINGLE_STIFFNESS);
-        s->xx[i] = s->xx[i] + mass;
-        s->yy[i] = s->yy[i] + mass;
+        const float mass = s->mass[i], xx = s->xx[i] + mass, yy = s->yy[i] + mass;
+        too_stiff |= (uint32_t)(mass > 0.0f) & (uint32_t) !(xx + yy <= mass * SINGLE_STIFFNESS);
+        s->xx[i] = mass > 0.0f ? xx : pinned; // also where no row writes to, and nothing must add up
+        s->yy[i] = mass > 0.0f ? yy : pinned;
     }
     return !too_stiff;
 }
