@@ -33,6 +33,9 @@ int main(int count, char **arguments) {
     case BENCH_IMPLICIT:
         ok = bench_run_implicit(&options);
         break;
+    case BENCH_SOLVERS:
+        ok = bench_run_solvers(&options);
+        break;
     case BENCH_ROOFLINE:
         ok = bench_run_roofline(&options);
         break;

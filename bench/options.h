@@ -17,6 +17,7 @@ typedef enum bench_mode {
     BENCH_SESSION,
     BENCH_LINEAR,
     BENCH_IMPLICIT,
+    BENCH_SOLVERS,
     BENCH_ROOFLINE,
     BENCH_MAP,
     BENCH_CHECK,
