@@ -298,6 +298,51 @@ static bool measure_strain(session *with, const bench_options *options, const be
     return ok;
 }
 
+/// Time steps of a network that sleeps in turn with those of one that does not. Where somebody has its arrays, a
+/// step looks whether something was written to them.
+static bool measure_sleep(session *with, const bench_options *options, const bench_scene *subject,
+                          mspring_simd level, bool viewed, uint32_t repeat, scene_error *error) {
+    bench_network asleep = {.substeps = with->step->substeps};
+    mspring_network_def def;
+    mspring_result result = mspring_network_def_init(&def, sizeof def);
+    def.simd_level = level;
+    def.substeps = with->step->substeps;
+    def.sleep_speed = OUT_OF_REACH; // at once
+    def.sleep_time = 0;
+    if (result == MSPRING_OK) {
+        result = mspring_network_create(subject->made.builder, &def, &asleep.network);
+    }
+    mspring_view view = {.struct_size = sizeof view};
+    if (result == MSPRING_OK && viewed) {
+        result = mspring_network_view(asleep.network, &view);
+    }
+    if (result == MSPRING_OK) {
+        result = mspring_network_step(asleep.network, BENCH_DT);
+    }
+    bool ok = result == MSPRING_OK && mspring_network_is_asleep(asleep.network);
+    if (!ok) {
+        bench_library_error(error, "falling asleep", result, mspring_network_error(asleep.network));
+    }
+    const uint32_t turns = 8 * repeat; // they are short
+    double *seconds = bench_allocate(turns, sizeof *seconds, error);
+    for (uint32_t i = 0; ok && seconds != NULL && i < turns; i++) {
+        const double start = bench_seconds();
+        ok = mspring_network_step(asleep.network, BENCH_DT) == MSPRING_OK;
+        seconds[i] = bench_seconds() - start;
+    }
+    bench_runner whole = bench_network_runner(with->step);
+    bench_turns step;
+    ok = ok && seconds != NULL && bench_turns_measure(&whole, &whole, 3, &step, error);
+    if (ok) {
+        const double median = bench_median(seconds, turns);
+        print_row(options, subject, with->step, viewed ? "a step asleep, with a view" : "a step asleep", seconds[0],
+                  median, step.first_min);
+    }
+    free(seconds);
+    bench_network_free(&asleep);
+    return ok;
+}
+
 /// Compact a network, and say how long all of it took and its longest piece.
 static bool compact(mspring_network *network, double *all, double *longest, scene_error *error) {
     uint32_t left = 1;
@@ -449,6 +494,9 @@ static bool measure_level(const bench_scene *subject, const bench_options *optio
     ok = ok && measure_floor(&with, options, subject, level, "floor, lowest rows on it", -0.5, repeat, &error);
     for (size_t i = 0; ok && i < CALL_COUNT; i++) {
         ok = measure_call(&calls[i], &with, options, subject, repeat, times, &error);
+    }
+    for (int viewed = 0; ok && viewed < 2; viewed++) {
+        ok = measure_sleep(&with, options, subject, level, viewed == 1, repeat, &error);
     }
     for (bench_wreck kind = 0; ok && repeat >= 5 && kind < BENCH_WRECKS; kind++) {
         ok = measure_wreck(&with, options, subject, level, kind, repeat, times, &error);

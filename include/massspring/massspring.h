@@ -400,6 +400,9 @@ typedef struct mspring_network_def {
     uint32_t flags;        ///< MSPRING_NETWORK_RESERVE_DAMPING or 0; default 0
     uint32_t max_substeps; ///< as in mspring_solver_def; default 1000
     mspring_guard guard;   ///< default MSPRING_GUARD_GROWTH
+    float sleep_speed; ///< m/s, 0 to 1e15: a network sleeps once none of its particles has been faster in x or y
+                       ///< at the end of a step for sleep_time, see mspring_network_is_asleep(); default 0: never
+    float sleep_time;  ///< s of simulated time, 0 to 1e6; default 0.5
 } mspring_network_def;
 
 /// Fill a definition with its defaults. Pass the size that your header gives it: sizeof *def.
@@ -600,6 +603,31 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_global_damping(
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_UNSTABLE, MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_step(mspring_network *network, double dt);
+
+/// Whether the network sleeps: 1 or 0. NULL gives 0.
+///
+/// A network that may sleep (mspring_network_def.sleep_speed) falls asleep at the end of a step, as a whole: once
+/// every particle has been slow for long enough, no pinned one moves and no spring is on a ramp. Its velocities are
+/// set to 0 then, so what was left of its kinetic energy is gone. While it sleeps steps change nothing, and cost
+/// next to nothing if there are no hooks and no forces.
+///
+/// It wakes before or in the step that finds something changed: a position, velocity, mass or pin that is another
+/// one (set by a call or through a view, or by a hook in the step before); a stiffness, damping, rest length or
+/// threshold that was set, a spring that was broken or restored; gravity, solver or floor; the length of the
+/// substep where springs are relative; a force from outside that differs from the one under which it fell asleep,
+/// so much that it would bring its particle to sleep_speed within sleep_time. It also wakes when it is compacted or
+/// expanded. Hooks are called as ever; the forces of those before substeps are looked at in the first of a step. A
+/// network of the implicit solver wakes as to a new motion.
+///
+/// To have parts that come to rest sleep while others move, make them networks of their own.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API uint32_t mspring_network_is_asleep(const mspring_network *network);
+
+/// Wake a network. It has to be still for sleep_time again before it sleeps. Nothing happens to one that is awake
+/// but that.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL; MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_wake(mspring_network *network);
 
 /// Number of substeps of the last step, or of the one to come before the first; with MSPRING_SUBSTEPS_AUTO 1 before
 /// the first. NULL gives 0.

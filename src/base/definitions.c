@@ -74,7 +74,8 @@ mspring_result mspring_network_def_init(mspring_network_def *def, size_t size) {
                                           .substeps = 1,
                                           .worker_count = 1,
                                           .max_substeps = 1000,
-                                          .guard = MSPRING_GUARD_GROWTH};
+                                          .guard = MSPRING_GUARD_GROWTH,
+                                          .sleep_time = 0.5f};
     return fill(def, size, &defaults, sizeof defaults);
 }
 

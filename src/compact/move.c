@@ -12,6 +12,7 @@
 #include "implicit/implicit.h"
 #include "network/rests.h"
 #include "network/springs.h"
+#include "sleep/sleep.h"
 
 /* ------------------------------------------------------------------------------------------------- the new parts
  */
@@ -184,6 +185,7 @@ static void free_layout(const mspring_network *network, mspringi_memory *memory)
     mspringi_free(memory, network->components.root);
     mspringi_free(memory, network->extents.scratch);
     mspringi_free(memory, network->extents.reversed);
+    mspringi_sleep_free(&network->sleep, memory);
     mspringi_floor_free_layout(network->floor, memory);
     mspringi_implicit_destroy(network->implicit, memory);
 }
@@ -199,6 +201,9 @@ static mspring_network without_layout(const mspring_network *network, const mspr
     to.strain = (mspringi_strain){.relax = network->strain.relax};
     to.components.root = NULL;
     to.extents = (mspringi_extents){0};
+    to.sleep.state = to.sleep.inverse_mass = NULL;
+    to.sleep.force = (mspringi_field){NULL, NULL};
+    mspringi_wake(&to);
     to.implicit = NULL;
     to.floor = NULL;
     return to;
@@ -217,6 +222,8 @@ mspring_result mspringi_move(mspring_network *network, const mspringi_topology *
         result = make_components(&to, network);
     if (result == MSPRING_OK)
         result = make_floor(&to, network);
+    if (result == MSPRING_OK && network->sleep.state)
+        result = mspringi_sleep_reserve(&to);
     if (result == MSPRING_OK) {
         move_particles(&to, network);
         move_springs(&to, network);

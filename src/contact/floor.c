@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/cpu.h"
+#include "sleep/sleep.h"
 
 #define SHORTEST_SPACING 1e-9
 #define LONGEST_SPACING 1e9
@@ -219,6 +220,7 @@ mspring_result mspring_network_set_floor(mspring_network *network, const mspring
     }
     mspringi_floor_destroy(network->floor, &network->memory);
     network->floor = made;
+    mspringi_wake(network);
     return MSPRING_OK;
 }
 

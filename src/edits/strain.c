@@ -9,6 +9,7 @@
 #include "events.h"
 #include "network/springs.h"
 #include "selection.h"
+#include "sleep/sleep.h"
 
 /* ---------------------------------------------------------------------------------------------------- the pass */
 
@@ -173,6 +174,8 @@ static mspring_result set_thresholds(mspring_network *network, bool stress, cons
     mspring_result result = at->count > 0 ? mspringi_strain_reserve(network) : MSPRING_OK;
     if (result == MSPRING_OK && stress && at->count > 0)
         result = mspringi_strain_reserve_stress(network);
+    if (result == MSPRING_OK && at->count > 0)
+        mspringi_wake(network);
     for (uint32_t i = 0; result == MSPRING_OK && i < at->count; ++i) {
         const mspring_id spring = mspringi_selected(at, i);
         network->parameter_print =

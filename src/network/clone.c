@@ -227,6 +227,9 @@ static void move_records(const moving *m, mspring_network *n) {
     MOVE(n->components.old_head);
     MOVE(n->components.size);
     MOVE(n->components.root);
+    MOVE(n->sleep.state);
+    MOVE(n->sleep.inverse_mass);
+    move_field(m, &n->sleep.force);
     MOVE(n->extents.scratch);
     MOVE(n->extents.reversed);
     MOVE(n->incidence.first);

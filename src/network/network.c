@@ -10,6 +10,7 @@
 #include "implicit/implicit.h"
 #include "origin.h"
 #include "rests.h"
+#include "sleep/sleep.h"
 #include "springs.h"
 
 /* --------------------------------------------------------------------------------------------------- checks */
@@ -49,6 +50,11 @@ static mspring_result check_def(const mspring_network_def *def, mspringi_message
     if (!(def->max_speed > 0.0f && def->max_speed <= 1e15f))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "max_speed is %g m/s, it must be > 0 and at most 1e15", (double)def->max_speed);
+    if (!(def->sleep_speed >= 0.0f && def->sleep_speed <= 1e15f && def->sleep_time >= 0.0f &&
+          def->sleep_time <= 1e6f))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "sleep_speed is %g m/s, sleep_time %g s, they must be 0 to 1e15 and 0 to 1e6",
+                             (double)def->sleep_speed, (double)def->sleep_time);
     return MSPRING_OK;
 }
 
@@ -228,6 +234,12 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
         return result;
     network->kernels = mspringi_kernels_of(mspringi_cpu_choose(def->simd_level));
     network->max_speed = def->max_speed;
+    network->sleep.speed = def->sleep_speed;
+    network->sleep.time = def->sleep_time;
+    if (def->sleep_speed > 0.0f)
+        result = mspringi_sleep_reserve(network);
+    if (result != MSPRING_OK)
+        return result;
     network->guard_policy = def->guard;
     network->strain.relax = MSPRINGI_USUAL_RELAX;
     result = mspring_network_set_gravity(network, def->gravity_x, def->gravity_y);

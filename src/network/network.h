@@ -119,6 +119,19 @@ typedef struct mspringi_rests {
     uint32_t count, shared_count;
 } mspringi_rests;
 
+/// Whether the network sleeps, and what it was when it fell asleep; no arrays if it never does.
+typedef struct mspringi_sleep {
+    float speed, time; ///< still is what is no faster (0: nothing), asleep what has been so for that long; m/s, s
+    double still;      ///< for how long it has been, s
+    bool is_asleep;
+    bool has_force;                        ///< force is not all zero
+    float *state;                          ///< [4][slots]
+    float *inverse_mass;                   ///< [slots]
+    mspringi_field force;                  ///< from outside
+    mspringi_field in_force;               ///< of the step that is being made; else NULL
+    uint64_t masses, values, links, moved; ///< edits that it has seen; the last is edits.state
+} mspringi_sleep;
+
 /// What is needed to measure all springs at once; NULL as long as that has not been done.
 typedef struct mspringi_extents {
     float *scratch;    ///< [places]
@@ -182,6 +195,7 @@ struct mspring_network {
     mspringi_events events;
     mspringi_components components;
     mspringi_extents extents;
+    mspringi_sleep sleep;
     mspringi_incidence incidence; ///< made when it is needed first
     mspringi_any_shape any_shape;
 

@@ -12,6 +12,7 @@
 #include "implicit/implicit.h"
 #include "network.h"
 #include "origin.h"
+#include "sleep/sleep.h"
 #include "springs.h"
 #include "stability/guard.h"
 #include "stability/stability.h"
@@ -80,12 +81,16 @@ static void run_substeps(mspring_network *network, double dt, float h) {
     const bool hooks_after = mspringi_hooks_any(network, MSPRING_PHASE_AFTER_SUBSTEP);
     const mspringi_field base = prepare_base(network, dt);
     const mspringi_field field = hooks_before ? network->forces.driven : base;
+    network->sleep.in_force = field;
 
     for (uint32_t substep = 0, count; substep < network->substeps; substep += count) {
         count = mspringi_hooks_free_substeps(network, substep);
         if (hooks_before)
             mspringi_hooks_before_substep(network, substep, (double)h, base);
-        take_substeps(network, h, field, count);
+        if (substep == 0)
+            mspringi_sleep_feel(network, field);
+        if (!network->sleep.is_asleep)
+            take_substeps(network, h, field, count);
         if (hooks_after)
             mspringi_hooks_after_substep(network, substep + count - 1, (double)h);
     }
@@ -138,6 +143,8 @@ static mspring_result attempt(mspring_network *network, double dt) {
             &network->message, MSPRING_ERROR_ARGUMENT,
             "dt is %g s (substeps: %u): each substep must be a finite number of at least 1.2e-38 s", dt,
             (unsigned)network->substeps);
+    if (mspringi_sleep_is_idle(network))
+        return MSPRING_OK;
     const float relative_h = network->relative_h;
     mspringi_derive_relative(network, h);
     mspringi_ramps_apply(network, dt);
@@ -154,6 +161,7 @@ static mspring_result attempt(mspring_network *network, double dt) {
             result = mspringi_energy_verdict(network, dt);
     }
     if (result != MSPRING_OK) {
+        network->sleep.in_force = (mspringi_field){NULL, NULL};
         copy_state(network, &network->backup, &network->state);
         mspringi_explicit_reset(network);
         mspringi_implicit_restore(network);
@@ -171,8 +179,10 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
                              dt);
     const uint32_t substeps = network->substeps;
     mspring_result result = network->auto_substeps ? choose_substeps(network, dt) : MSPRING_OK;
-    if (result == MSPRING_OK)
+    if (result == MSPRING_OK) {
+        mspringi_sleep_begin(network, dt);
         result = attempt(network, dt);
+    }
     while (result == MSPRING_ERROR_UNSTABLE && network->guard_policy == MSPRING_GUARD_RETRY &&
            network->substeps < network->max_substeps) {
         const uint32_t twice = 2 * network->substeps;
@@ -183,11 +193,14 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
         network->substeps = substeps;
         return result;
     }
+    if (mspringi_sleep_is_idle(network))
+        return MSPRING_OK;
     if (!network->implicit && (network->global_damping > 0.0f || network->parts > MSPRINGI_DAMPING))
         stop_creeping(network->state.vx, 2 * mspringi_slot_count(network)); // vy lies behind vx
     mspringi_ramps_pass(network, dt);
     mspringi_strain_pass(network);
     mspringi_origin_follow(network);
+    mspringi_sleep_end(network, dt);
     if (network->forces.held_any)
         clear_field(network, network->forces.held);
     network->forces.held_any = false;

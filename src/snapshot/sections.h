@@ -33,6 +33,9 @@ extern const mspringi_section mspringi_section_motion;
 extern const mspringi_section mspringi_section_masses;
 extern const mspringi_section mspringi_section_forces;
 
+// In sleep.c.
+extern const mspringi_section mspringi_section_sleep;
+
 // In guard.c.
 extern const mspringi_section mspringi_section_guard;
 

@@ -1,0 +1,507 @@
+/// @file test_sleep.c
+/// Networks that fall asleep, what wakes them and what does not, and that nothing else depends on it.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "allocator.h"
+#include "recipe.h"
+#include "support.h"
+
+#define DT (1.0 / 64)
+#define SLEEP_SPEED 0.01f
+
+/// A lattice that hangs on a rope from a pin, strongly damped, with relative springs or not.
+static recipe hanging_recipe(uint32_t spring_flags) {
+    uint64_t seed = 5;
+    const bool relative = spring_flags & MSPRING_SPRING_RELATIVE;
+    const recipe_stuff stuff = {.mass = {1, 2},
+                                .stiffness = {relative ? 0.2 : 2000, relative ? 0.2 : 2000},
+                                .damping = {relative ? 0.05 : 5, relative ? 0.05 : 5},
+                                .spring_flags = spring_flags};
+    recipe made = {0};
+    recipe_lattice(&made, 20, 5, 0, 0, 1, &stuff, &seed);
+    const mspring_id pin = recipe_particle(&made, 10, 9, 1, MSPRING_PARTICLE_PINNED);
+    recipe_rope(&made, 90, pin, 4, &stuff, &seed);
+    return made;
+}
+
+static mspring_network_def def_of(float sleep_speed) {
+    mspring_network_def def = support_def(-9.8f, 4);
+    def.global_damping = 4;
+    def.sleep_speed = sleep_speed;
+    return def;
+}
+
+static mspring_network *make(const recipe *made) {
+    const mspring_network_def def = def_of(SLEEP_SPEED);
+    return recipe_network(made, &def);
+}
+
+static void set_solver(mspring_network *network, mspring_solver which) {
+    mspring_solver_def solver;
+    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    solver.solver = which;
+    solver.substeps = which == MSPRING_SOLVER_EXPLICIT ? 4 : 1;
+    check_ok(mspring_network_set_solver(network, &solver));
+}
+
+/// Step until it sleeps: 100 s are far more than the damping needs.
+static void fall_asleep(mspring_network *network) {
+    for (int i = 0; i < 6400 && !mspring_network_is_asleep(network); i++) {
+        support_steps(network, 1, DT);
+    }
+    assert_int_equal(mspring_network_is_asleep(network), 1);
+}
+
+/* ------------------------------------------------------------------------------------------ falling asleep */
+
+static void it_sleeps_once_it_has_been_slow_for_long_enough(void **state) {
+    (void)state;
+    recipe made = hanging_recipe(0);
+    for (mspring_solver solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_IMPLICIT; solver++) {
+        mspring_network *network = make(&made);
+        set_solver(network, solver);
+        uint32_t slow_steps = 0;
+        for (int i = 0; i < 6400 && !mspring_network_is_asleep(network); i++) {
+            const uint32_t before = slow_steps;
+            support_steps(network, 1, DT);
+            bool slow = true;
+            for (mspring_id p = 0; p < made.particle_count; p++) {
+                const support_point v = support_velocity(network, p);
+                slow = slow && fabs(v.x) <= (double)SLEEP_SPEED && fabs(v.y) <= (double)SLEEP_SPEED;
+            }
+            slow_steps = slow ? before + 1 : 0;
+        }
+        assert_int_equal(slow_steps, 32); // 0.5 s
+        double kinetic;
+        check_ok(mspring_network_energy(network, &kinetic, NULL, NULL));
+        check_near(kinetic, 0, 0);
+        const uint64_t hash = support_hash(network);
+        support_steps(network, 100, DT);
+        assert_int_equal(support_hash(network), hash);
+        // Waking it undoes nothing, and it has to be still again for as long.
+        check_ok(mspring_network_wake(network));
+        assert_int_equal(mspring_network_is_asleep(network), 0);
+        support_steps(network, 31, DT);
+        assert_int_equal(mspring_network_is_asleep(network), 0);
+        support_steps(network, 1, DT);
+        assert_int_equal(mspring_network_is_asleep(network), 1);
+        mspring_network_destroy(network);
+    }
+    recipe_free(&made);
+}
+
+static void what_moves_does_not_sleep(void **state) {
+    (void)state;
+    recipe made = hanging_recipe(0);
+    // Off by default.
+    mspring_network_def def = def_of(0);
+    mspring_network *network = recipe_network(&made, &def);
+    support_steps(network, 2000, DT);
+    assert_int_equal(mspring_network_is_asleep(network), 0);
+    mspring_network_destroy(network);
+    // A pin on its way, however slow.
+    network = make(&made);
+    const float slow = 1e-4f, none = 0;
+    check_ok(mspring_network_set_velocities(network, 100, 1, &none, &slow));
+    support_steps(network, 2000, DT);
+    assert_int_equal(mspring_network_is_asleep(network), 0);
+    check_ok(mspring_network_set_velocities(network, 100, 1, &none, &none));
+    fall_asleep(network);
+    mspring_network_destroy(network);
+    // What falls at the speed that gravity and damping leave it.
+    mspring_builder *builder = support_builder();
+    support_particle(builder, 0, 0, 1);
+    network = support_network(builder, &def);
+    support_steps(network, 2000, DT);
+    assert_int_equal(mspring_network_is_asleep(network), 0);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+/* -------------------------------------------------------------------------------------------------- waking */
+
+typedef void (*change_fn)(mspring_network *network);
+
+static void push(mspring_network *network) {
+    check_ok(mspring_network_apply_force(network, 3, 10, 0));
+}
+static void shift(mspring_network *network) {
+    const support_point at = support_position(network, 3);
+    const double x = at.x + 0.01;
+    check_ok(mspring_network_set_positions(network, 3, 1, &x, &at.y));
+}
+static void kick(mspring_network *network) {
+    const float vx = 0.5f, vy = 0;
+    check_ok(mspring_network_set_velocities(network, 3, 1, &vx, &vy));
+}
+static void write_view(mspring_network *network) {
+    mspring_view view = {.struct_size = sizeof view};
+    check_ok(mspring_network_view(network, &view));
+    view.x[view.slot_of_particle[3]] += 0.01f;
+}
+static void fill_with_water(mspring_network *network) {
+    const float mass = 5;
+    check_ok(mspring_network_set_masses(network, 3, 1, &mass));
+}
+static void let_go(mspring_network *network) {
+    const float scale = 1;
+    check_ok(mspring_network_set_inverse_mass_scales(network, 100, 1, &scale));
+}
+static void soften(mspring_network *network) {
+    const float stiffness = 500;
+    check_ok(mspring_network_set_stiffnesses(network, 50, 1, &stiffness));
+}
+static void lengthen(mspring_network *network) {
+    const float rest_length = 1.1f;
+    check_ok(mspring_network_set_rest_lengths(network, 50, 1, &rest_length));
+}
+static void break_one(mspring_network *network) {
+    const mspring_id spring = 50;
+    check_ok(mspring_network_break_springs(network, &spring, 1));
+}
+static void watch(mspring_network *network) {
+    const float strain = 0.5f;
+    check_ok(mspring_network_set_break_strains(network, 50, 1, &strain));
+}
+static void tilt(mspring_network *network) {
+    check_ok(mspring_network_set_gravity(network, 1, -9.8f));
+}
+static void change_solver(mspring_network *network) {
+    set_solver(network, MSPRING_SOLVER_IMPLICIT);
+}
+static void raise_floor(mspring_network *network) {
+    const double plane[4] = {0, 1, 0, 1};
+    mspring_floor_def def;
+    check_ok(mspring_floor_def_init(&def, sizeof def));
+    def.planes = plane;
+    def.plane_count = 1;
+    check_ok(mspring_network_set_floor(network, &def));
+}
+static void settle(mspring_network *network) {
+    check_ok(mspring_network_settle(network, NULL, NULL));
+}
+
+static void changes_wake_it(void **state) {
+    (void)state;
+    static const change_fn changes[] = {push,   shift,         kick,        write_view, fill_with_water,
+                                        let_go, soften,        lengthen,    break_one,  watch,
+                                        tilt,   change_solver, raise_floor, settle};
+    recipe made = hanging_recipe(0);
+    for (size_t i = 0; i < COUNT_OF(changes); i++) {
+        mspring_network *network = make(&made);
+        fall_asleep(network);
+        const uint64_t before = support_hash(network);
+        changes[i](network);
+        support_steps(network, 2, DT);
+        if (mspring_network_is_asleep(network) || support_hash(network) == before) {
+            print_error("change %zu\n", i);
+            fail();
+        }
+        mspring_network_destroy(network);
+    }
+    recipe_free(&made);
+}
+
+static void restoring_wakes_it_and_a_ramp_keeps_it_awake(void **state) {
+    (void)state;
+    recipe made = hanging_recipe(0);
+    mspring_network *network = make(&made);
+    break_one(network);
+    fall_asleep(network);
+    const mspring_id spring = 50;
+    check_ok(mspring_network_restore_springs(network, &spring, 1, 5));
+    support_steps(network, 4 * 64, DT);
+    assert_int_equal(mspring_network_is_asleep(network), 0);
+    fall_asleep(network);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+static void what_stays_the_same_wakes_nothing(void **state) {
+    (void)state;
+    recipe made = hanging_recipe(0);
+    mspring_network *network = make(&made);
+    fall_asleep(network);
+    const uint64_t before = support_hash(network);
+    float *mass = malloc(made.particle_count * sizeof *mass);
+    assert_non_null(mass);
+    mspring_view view = {.struct_size = sizeof view};
+    check_ok(mspring_network_view(network, &view));
+    for (int i = 0; i < 20; i++) {
+        const support_point at = support_position(network, 3);
+        const float none = 0;
+        check_ok(mspring_network_get_masses(network, 0, made.particle_count, mass));
+        check_ok(mspring_network_set_masses(network, 0, made.particle_count, mass));
+        check_ok(mspring_network_set_positions(network, 3, 1, &at.x, &at.y));
+        check_ok(mspring_network_set_velocities(network, 3, 1, &none, &none));
+        check_ok(mspring_network_set_gravity(network, 0, -9.8f));
+        check_ok(mspring_network_set_global_damping(network, (float)i));
+        // 0.005 N on at least 1 kg for 0.5 s: 0.0025 m/s.
+        check_ok(mspring_network_apply_force(network, 3, 0.005f, 0));
+        check_ok(mspring_network_step(network, i % 2 == 0 ? DT : 2 * DT));
+        assert_int_equal(mspring_network_is_asleep(network), 1);
+    }
+    assert_int_equal(support_hash(network), before);
+    free(mass);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+static void relative_springs_follow_another_substep(void **state) {
+    (void)state;
+    recipe made = hanging_recipe(MSPRING_SPRING_RELATIVE);
+    mspring_network *network = make(&made);
+    fall_asleep(network);
+    support_steps(network, 3, DT);
+    assert_int_equal(mspring_network_is_asleep(network), 1);
+    support_steps(network, 1, DT / 2);
+    assert_int_equal(mspring_network_is_asleep(network), 0);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+/* --------------------------------------------------------------------------------------------- forces, hooks */
+
+static void forces_that_stay_let_it_sleep(void **state) {
+    (void)state;
+    recipe made = hanging_recipe(0);
+    mspring_network *network = make(&made);
+    int steps = 0;
+    for (; steps < 6400 && !mspring_network_is_asleep(network); steps++) {
+        check_ok(mspring_network_apply_force(network, 7, 20, 5));
+        support_steps(network, 1, DT);
+    }
+    for (int i = 0; i < 10; i++) {
+        check_ok(mspring_network_apply_force(network, 7, 20, 5));
+        support_steps(network, 1, DT);
+        assert_int_equal(mspring_network_is_asleep(network), 1);
+    }
+    support_steps(network, 1, DT); // without it
+    assert_int_equal(mspring_network_is_asleep(network), 0);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+/// What a hook does: forces, and at the end of a substep a shift.
+typedef struct doings {
+    float force, shift;
+    uint32_t calls;
+} doings;
+
+static void do_things(const mspring_hook_args *args, void *user) {
+    doings *what = user;
+    what->calls++;
+    for (uint32_t slot = 0; slot < args->slot_count; slot++) {
+        if (args->force_x && args->particle_of_slot[slot] == 7) {
+            args->force_x[slot] += what->force;
+        }
+        if (!args->force_x && args->particle_of_slot[slot] == 7) {
+            args->x[slot] += what->shift;
+        }
+    }
+}
+
+static void hooks_are_called_and_wake_it(void **state) {
+    (void)state;
+    recipe made = hanging_recipe(0);
+    for (mspring_phase phase = MSPRING_PHASE_BEFORE_STEP; phase <= MSPRING_PHASE_AFTER_SUBSTEP; phase++) {
+        mspring_network *network = make(&made);
+        doings what = {.force = 5};
+        check_ok(support_add_hook(network, phase, do_things, &what, NULL));
+        fall_asleep(network);
+        what.calls = 0;
+        support_steps(network, 3, DT);
+        assert_int_equal(mspring_network_is_asleep(network), 1);
+        assert_int_equal(what.calls, phase == MSPRING_PHASE_BEFORE_STEP ? 3 : 3 * 4);
+        const uint64_t before = support_hash(network);
+        what.force = 50;
+        what.shift = 0.001f;
+        support_steps(network, 1, DT);
+        assert_int_equal(mspring_network_is_asleep(network), 0);
+        assert_true(support_hash(network) != before);
+        mspring_network_destroy(network);
+    }
+    recipe_free(&made);
+}
+
+static void a_step_that_goes_wrong_leaves_it_asleep(void **state) {
+    (void)state;
+    recipe made = hanging_recipe(0);
+    mspring_network *network = make(&made);
+    doings what = {.force = 5};
+    check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, do_things, &what, NULL));
+    fall_asleep(network);
+    const uint64_t before = support_hash(network);
+    what.shift = NAN;
+    check_error(mspring_network_step(network, DT), MSPRING_ERROR_UNSTABLE);
+    assert_int_equal(support_hash(network), before);
+    assert_int_equal(mspring_network_is_asleep(network), 1);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+/* -------------------------------------------------------------------------------------------- the same bits */
+
+/// Sleeps, is pushed, sleeps again, breaks, is compacted and sleeps.
+static uint64_t session_hash(const recipe *made, mspring_simd level, uint32_t workers, mspring_solver solver) {
+    mspring_network_def def = def_of(SLEEP_SPEED);
+    def.simd_level = level;
+    def.worker_count = workers;
+    mspring_network *network = recipe_network(made, &def);
+    set_solver(network, solver);
+    fall_asleep(network);
+    check_ok(mspring_network_apply_force(network, 5, 300, 100));
+    support_steps(network, 3, DT);
+    fall_asleep(network);
+    break_one(network);
+    check_ok(mspring_network_compact(network, 0, NULL));
+    support_steps(network, 3, DT);
+    assert_int_equal(mspring_network_is_asleep(network), 0);
+    fall_asleep(network);
+    shift(network);
+    support_steps(network, 3, DT);
+    const uint64_t hash = support_hash(network);
+    mspring_network_destroy(network);
+    return hash;
+}
+
+static void bits_are_the_same_everywhere(void **state) {
+    (void)state;
+    mspring_simd levels[MSPRING_SIMD_AVX512];
+    const uint32_t level_count = support_levels(levels);
+    recipe made = hanging_recipe(0);
+    for (mspring_solver solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_IMPLICIT; solver++) {
+        const uint64_t expected = session_hash(&made, MSPRING_SIMD_SCALAR, 1, solver);
+        for (uint32_t i = 0; i < level_count; i++) {
+            assert_int_equal(session_hash(&made, levels[i], 1, solver), expected);
+        }
+        assert_int_equal(session_hash(&made, MSPRING_SIMD_AUTO, 3, solver), expected);
+    }
+    recipe_free(&made);
+}
+
+/* ---------------------------------------------------------------------------------------- snapshots, clones */
+
+/// What follows is the same whether it was saved asleep, on the way there, or disturbed in its sleep.
+static void snapshots_and_clones_sleep_on(void **state) {
+    (void)state;
+    recipe made = hanging_recipe(0);
+    for (int when = 0; when < 4; when++) {
+        mspring_network *network = make(&made), *other = make(&made), *clone = NULL;
+        for (int i = 0; i < 6400 && !mspring_network_is_asleep(network); i++) {
+            check_ok(mspring_network_apply_force(network, 7, 20, 5));
+            support_steps(network, 1, DT);
+        }
+        if (when == 1) {
+            check_ok(mspring_network_wake(network));
+            check_ok(mspring_network_apply_force(network, 7, 20, 5));
+            support_steps(network, 1, DT);
+        } else if (when == 2) {
+            write_view(network);
+        }
+        size_t size;
+        check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_FRAME, &size));
+        void *bytes = malloc(size);
+        assert_non_null(bytes);
+        check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_FRAME, bytes, size, NULL));
+        check_ok(mspring_network_load(other, bytes, size));
+        check_ok(mspring_network_clone(network, NULL, &clone));
+        mspring_network *const all[] = {network, other, clone};
+        uint64_t hashes[3], naps[3];
+        for (int i = 0; i < 3; i++) {
+            naps[i] = mspring_network_is_asleep(all[i]);
+            for (int frame = 0; frame < 40; frame++) {
+                check_ok(mspring_network_apply_force(all[i], 7, when == 3 && frame > 3 ? 60 : 20, 5));
+                support_steps(all[i], 1, DT);
+                naps[i] = naps[i] * 3 + mspring_network_is_asleep(all[i]);
+            }
+            hashes[i] = support_hash(all[i]);
+            mspring_network_destroy(all[i]);
+        }
+        assert_int_equal(hashes[0], hashes[1]);
+        assert_int_equal(hashes[0], hashes[2]);
+        assert_int_equal(naps[0], naps[1]);
+        assert_int_equal(naps[0], naps[2]);
+        free(bytes);
+    }
+    recipe_free(&made);
+}
+
+/* ----------------------------------------------------------------------------------------------------- errors */
+
+static void try_in_hook(const mspring_hook_args *args, void *user) {
+    (void)args;
+    check_error(mspring_network_wake(user), MSPRING_ERROR_BUSY);
+}
+
+static void misuse_is_refused(void **state) {
+    (void)state;
+    check_error(mspring_network_wake(NULL), MSPRING_ERROR_ARGUMENT);
+    assert_int_equal(mspring_network_is_asleep(NULL), 0);
+    const float bad[][2] = {{-1, 1}, {NAN, 1}, {INFINITY, 1}, {1, -1}, {1, NAN}, {1, 2e6f}};
+    recipe made = hanging_recipe(0);
+    mspring_builder *builder = recipe_builder(&made, NULL);
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        mspring_network_def def = def_of(bad[i][0]);
+        mspring_network *network = NULL;
+        def.sleep_time = bad[i][1];
+        check_error(mspring_network_create(builder, &def, &network), MSPRING_ERROR_ARGUMENT);
+        check_contains(mspring_builder_error(builder), "sleep");
+    }
+    mspring_builder_destroy(builder);
+    mspring_network *network = make(&made);
+    check_ok(support_add_hook(network, MSPRING_PHASE_BEFORE_STEP, try_in_hook, network, NULL));
+    support_steps(network, 1, DT);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+static void failed_allocations_leave_nothing_behind(void **state) {
+    (void)state;
+    recipe made = hanging_recipe(0);
+    mspring_builder *builder = recipe_builder(&made, NULL);
+    mspring_result result = MSPRING_ERROR_MEMORY;
+    for (size_t fail_at = 1; result != MSPRING_OK; fail_at++) {
+        watched_allocator watched = {.fail_at = fail_at};
+        mspring_allocator allocator = watched_interface(&watched);
+        mspring_network_def def = def_of(SLEEP_SPEED);
+        mspring_network *network = NULL;
+        def.allocator = &allocator;
+        result = mspring_network_create(builder, &def, &network);
+        if (result == MSPRING_OK) {
+            const size_t calls = watched.calls;
+            fall_asleep(network);
+            assert_int_equal(watched.calls, calls);
+            mspring_network_destroy(network);
+        } else {
+            check_error(result, MSPRING_ERROR_MEMORY);
+        }
+        check_watched_clean(&watched);
+    }
+    mspring_builder_destroy(builder);
+    recipe_free(&made);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(it_sleeps_once_it_has_been_slow_for_long_enough),
+        cmocka_unit_test(what_moves_does_not_sleep),
+        cmocka_unit_test(changes_wake_it),
+        cmocka_unit_test(restoring_wakes_it_and_a_ramp_keeps_it_awake),
+        cmocka_unit_test(what_stays_the_same_wakes_nothing),
+        cmocka_unit_test(relative_springs_follow_another_substep),
+        cmocka_unit_test(forces_that_stay_let_it_sleep),
+        cmocka_unit_test(hooks_are_called_and_wake_it),
+        cmocka_unit_test(a_step_that_goes_wrong_leaves_it_asleep),
+        cmocka_unit_test(bits_are_the_same_everywhere),
+        cmocka_unit_test(snapshots_and_clones_sleep_on),
+        cmocka_unit_test(misuse_is_refused),
+        cmocka_unit_test(failed_allocations_leave_nothing_behind),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
