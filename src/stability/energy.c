@@ -20,7 +20,7 @@ typedef struct outsiders {
     float lightest;                     ///< in units of A's masses
 } outsiders;
 
-static void look_at(const mspring_network *network, float h, uint32_t slot, outsiders *o) {
+static void look_at_slot(const mspring_network *network, float h, uint32_t slot, outsiders *o) {
     const mspringi_implicit *n = network->implicit;
     if (network->topology.particle_of_slot[slot] == MSPRING_NONE)
         return;
@@ -36,7 +36,7 @@ static void look_at(const mspring_network *network, float h, uint32_t slot, outs
 
 static void look_at_blocks(const mspring_network *network, float h, uint32_t first, uint32_t count, outsiders *o) {
     for (uint32_t slot = first * MSPRINGI_WIDTH; slot < (first + count) * MSPRINGI_WIDTH; ++slot)
-        look_at(network, h, slot, o);
+        look_at_slot(network, h, slot, o);
 }
 
 // The largest stiffness of a spring outside of lattices in A.
@@ -65,7 +65,7 @@ static double find_suspicious_way(const mspring_network *network, float h) {
     look_at_blocks(network, h, t->web_first, t->web_blocks, &o);
     for (uint32_t i = 0; i < t->web.attached_count; ++i)
         if (t->web.attached_slot[i] != MSPRING_NONE)
-            look_at(network, h, t->web.attached_slot[i], &o);
+            look_at_slot(network, h, t->web.attached_slot[i], &o);
     const double x = (double)o.high_x - (double)o.low_x, y = (double)o.high_y - (double)o.low_y;
     const double way = x * x + y * y;
     const double stiffness = (double)largest_stiffness(network) / (double)o.lightest;
