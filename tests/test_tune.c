@@ -558,6 +558,27 @@ static void nothing_happens_to_the_network(void **state) {
     mspring_network_destroy(untouched);
 }
 
+static void networks_that_may_sleep_stay_awake(void **state) {
+    (void)state;
+    mspring_network_def how = support_def(-9.8f, 12);
+    how.sleep_speed = 1e6f; // it sleeps whatever it does
+    how.sleep_time = 0;
+    mspring_network *network = bar(bar_stiffness, 0, 0, &how), *awake = bar(bar_stiffness, 0, 0, NULL);
+    support_steps(network, 1, 1e-6);
+    assert_true(mspring_network_is_asleep(network));
+    watch w = {.tick = 1e-3};
+    mspring_tune_def def = tune_def(&w);
+    const table out = tune(network, &def), expected = tune(awake, &def);
+    for (uint32_t i = 0; i < out.count; i++) {
+        // A millionth of a second has passed.
+        check_near(out.rows[i].trajectory_share, expected.rows[i].trajectory_share,
+                   0.01 * expected.rows[i].trajectory_share);
+    }
+    assert_true(mspring_network_is_asleep(network));
+    mspring_network_destroy(network);
+    mspring_network_destroy(awake);
+}
+
 static void every_allocation_may_fail(void **state) {
     (void)state;
     const mspring_solver_def settings[] = {setting(MSPRING_SOLVER_EXPLICIT, 9, 0),
@@ -765,6 +786,7 @@ int main(int count, char **arguments) {
         cmocka_unit_test(the_budget_and_the_watcher_are_heeded),
         cmocka_unit_test(the_systems_clock_does),
         cmocka_unit_test(nothing_happens_to_the_network),
+        cmocka_unit_test(networks_that_may_sleep_stay_awake),
         cmocka_unit_test(every_allocation_may_fail),
         cmocka_unit_test(bad_calls_are_refused),
     };

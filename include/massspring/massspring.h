@@ -284,7 +284,8 @@ enum {
     /// a cost that does not depend on them. Ropes and other springs outside of lattices have little stiffness
     /// across them; where they are so stiff, and move so far in a substep, that this would stretch them by energy
     /// that nothing has put in, the step is refused (see mspring_guard). Springs and dampers are linearised at x +
-    /// h v, with tiles of neighbouring particles turned on as rigid bodies (and with the stiffness across a spring clamped to 0 where it is compressed, so
+    /// h v, with tiles of neighbouring particles turned on as rigid bodies (and with the stiffness across a spring
+    /// clamped to 0 where it is compressed, so
     /// that the matrix is positive definite). The system is solved by a fixed number of conjugate gradient
     /// iterations with a two-level preconditioner: the blocks of the single particles, and the tiles. With eight
     /// of them a substep costs 20 to 65 explicit ones, least where vectors are short. It damps what oscillates
@@ -828,9 +829,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_tune_settings(mspring_netwo
 ///               goes on from it. Not for networks without an equilibrium.
 ///
 /// Have the network in a state as it is to be simulated: just made and falling, or moving. Hooks are not called,
-/// there is no floor, ramps stand still, and nothing breaks by strain. Forces given for the next step act in the
-/// first one. Relative springs follow the substep: each row is compared with a fine run, and an equilibrium, that
-/// have the stiffness of its own substeps, and bending says how firm that is.
+/// there is no floor, ramps stand still, nothing breaks by strain, and it does not sleep. Forces given for the next
+/// step act in the first one. Relative springs follow the substep: each row is compared with a fine run, and an
+/// equilibrium, that have the stiffness of its own substeps, and bending says how firm that is.
 ///
 /// Recommended is, if max_error is finite, the row of the least median cost among those within both bounds; else,
 /// of those within max_cost, the one of the least error; of equal ones the first. There may be none. When the

@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "edits/strain.h"
 #include "network/origin.h"
+#include "sleep/sleep.h"
 #include "tuning.h"
 
 #define MOST_SETTINGS 1000
@@ -97,6 +98,8 @@ static mspring_result make_base(mspringi_tuning *tuning) {
     result = mspring_network_set_floor(base, NULL);
     if (result != MSPRING_OK)
         return result;
+    mspringi_wake(base);
+    base->sleep.speed = 0.0f;
     base->ramps.count = 0;
     for (mspring_id spring = 0; base->strain.break_strain && spring < base->topology.spring_count; ++spring)
         mspringi_strain_store(base, spring, false, INFINITY);
