@@ -194,6 +194,16 @@ static mspring_result save(life *l) {
     return mspring_network_save(l->network, MSPRING_SNAPSHOT_ALL, l->snapshot, l->snapshot_size, NULL);
 }
 
+static mspring_result set_floor(life *l) {
+    static const double plane[4] = {0, -1, 0, 1};
+    static const float heights[3] = {-2, -1, -2};
+    mspring_floor_def def;
+    check_ok(mspring_floor_def_init(&def, sizeof def));
+    def.planes = plane, def.plane_count = 1;
+    def.heights = heights, def.height_count = 3;
+    return mspring_network_set_floor(l->network, &def);
+}
+
 static mspring_result compact(life *l) {
     return mspring_network_compact(l->network, 0, NULL);
 }
@@ -267,6 +277,8 @@ static const struct {
     {"step", step},
     {"restore", restore_springs},
     {"detach", detach},
+    {"floor", set_floor},
+    {"step", step},
     {"compact", compact},
     {"step", step},
     {"expand", expand},

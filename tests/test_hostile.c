@@ -158,6 +158,14 @@ static void make_tune_row(arguments *a) {
     memcpy(a->given_bytes, &made, sizeof made);
 }
 
+static void make_floor(arguments *a) {
+    static const double plane[4] = {0, -1, 0, 1};
+    mspring_floor_def made;
+    check_ok(mspring_floor_def_init(&made, sizeof made));
+    made.planes = plane, made.plane_count = 1;
+    memcpy(a->given_bytes, &made, sizeof made);
+}
+
 static void add_hook(arguments *a) {
     check_ok(support_add_hook(a->network, MSPRING_PHASE_BEFORE_STEP, no_hook, NULL, &a->id));
 }
@@ -330,6 +338,13 @@ static void add_hook(arguments *a) {
       mspring_network_save(a->network, a->kind, a->out[0], a->size, a->out[1]))                                    \
     X(mspring_network_load, "NZV", a->size = a->snapshot_size,                                                     \
       mspring_network_load(a->network, a->snapshot, a->size))                                                      \
+    X(mspring_floor_def_init, "Z0", a->size = sizeof(mspring_floor_def),                                           \
+      mspring_floor_def_init(a->out[0], a->size))                                                                  \
+    X(mspring_network_set_floor, "Ns", make_floor(a), mspring_network_set_floor(a->network, a->given))             \
+    X(mspring_network_get_floor_impulses, "nR01", NOTHING,                                                         \
+      mspring_network_get_floor_impulses(a->network, a->first, a->count, a->out[0], a->out[1]))                    \
+    X(mspring_network_is_asleep, "v", NOTHING, note_size(mspring_network_is_asleep(a->network)))                   \
+    X(mspring_network_wake, "N", NOTHING, mspring_network_wake(a->network))                                        \
     X(mspring_network_compact, "No", NOTHING, mspring_network_compact(a->network, 0, a->out[0]))                   \
     X(mspring_network_expand, "N", NOTHING, mspring_network_expand(a->network))                                    \
     X(mspring_network_plan, "nP", OUT_STRUCT(0, plan), mspring_network_plan(a->network, a->out[0]))
