@@ -11,10 +11,11 @@
 
 #include "modes.h"
 
-static const mspring_solver solvers[MAP_SOLVERS] = {MSPRING_SOLVER_EXPLICIT, MSPRING_SOLVER_IMPLICIT};
+static const mspring_solver solvers[MAP_SOLVERS] = {MSPRING_SOLVER_EXPLICIT, MSPRING_SOLVER_IMPLICIT,
+                                                    MSPRING_SOLVER_DIRECT};
 
 const char *map_solver_name(uint32_t solver) {
-    static const char *const names[MAP_SOLVERS] = {"explicit", "implicit"};
+    static const char *const names[MAP_SOLVERS] = {"explicit", "implicit", "direct"};
     return names[solver];
 }
 

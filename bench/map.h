@@ -8,7 +8,7 @@
 #include "draw/figure.h"
 #include "scenes/extremes.h"
 
-enum { MAP_SOLVERS = 2 };
+enum { MAP_SOLVERS = 3 };
 
 typedef struct map {
     uint32_t outcomes[EXTREME_SHAPES][MAP_SOLVERS][EXTREME_STIFFNESSES][EXTREME_STEPS][EXTREME_OUTCOMES];
