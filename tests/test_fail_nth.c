@@ -74,6 +74,7 @@ static mspring_result create(life *l) {
     mspring_network_def def = support_def(-9.8f, 2);
     def.allocator = &l->allocator;
     def.flags = MSPRING_NETWORK_RESERVE_DAMPING;
+    def.guard = MSPRING_GUARD_IMPLICIT;
     return mspring_network_create(l->builder, &def, &l->network);
 }
 

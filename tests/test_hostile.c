@@ -228,6 +228,7 @@ static void add_hook(arguments *a) {
     X(mspring_network_particle_count, "v", NOTHING, note_size(mspring_network_particle_count(a->network)))         \
     X(mspring_network_spring_count, "v", NOTHING, note_size(mspring_network_spring_count(a->network)))             \
     X(mspring_network_substeps, "v", NOTHING, note_size(mspring_network_substeps(a->network)))                     \
+    X(mspring_network_fallback_count, "v", NOTHING, note_size((size_t)mspring_network_fallback_count(a->network))) \
     X(mspring_network_simd_level, "v", NOTHING, note_size((size_t)mspring_network_simd_level(a->network)))         \
     X(mspring_network_worker_count, "v", NOTHING, note_size(mspring_network_worker_count(a->network)))             \
     X(mspring_network_memory_used, "v", NOTHING, note_size(mspring_network_memory_used(a->network)))               \

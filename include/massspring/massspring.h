@@ -374,7 +374,12 @@ enum {
     /// so on up to max_substeps. Later steps keep the number that was needed, until mspring_network_set_solver().
     /// Hooks are called again. Relative springs follow the substep, so more of them are no help there.
     MSPRING_GUARD_RETRY = 1,
-    MSPRING_GUARD_BOUNDS = 2 ///< look at nothing else
+    MSPRING_GUARD_BOUNDS = 2, ///< look at nothing else
+    /// As MSPRING_GUARD_GROWTH, but have the implicit solver take a step that would be refused, in one substep of
+    /// implicit Euler, and the 15 after it, before the explicit one is tried again: slower (20 to 65 explicit
+    /// substeps each) and softened, but at nearly any stiffness. Hooks are called again. Its memory is reserved
+    /// with the network. mspring_network_fallback_count() says how often that was.
+    MSPRING_GUARD_IMPLICIT = 3
 };
 
 /// A network's settings at the start. Fill with mspring_network_def_init() first.
@@ -634,6 +639,10 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_wake(mspring_networ
 /// the first. NULL gives 0.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_network_substeps(const mspring_network *network);
+
+/// Number of steps so far that the implicit solver took for the explicit one (MSPRING_GUARD_IMPLICIT). NULL gives 0.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API uint64_t mspring_network_fallback_count(const mspring_network *network);
 
 /* ---------------------------------------------------------------------------------------------- stability */
 

@@ -188,6 +188,7 @@ static void free_layout(const mspring_network *network, mspringi_memory *memory)
     mspringi_sleep_free(&network->sleep, memory);
     mspringi_floor_free_layout(network->floor, memory);
     mspringi_implicit_destroy(network->implicit, memory);
+    mspringi_implicit_destroy(network->fallback, memory);
 }
 
 // The network with its parts by slot and by place taken out, and this topology put in.
@@ -204,7 +205,7 @@ static mspring_network without_layout(const mspring_network *network, const mspr
     to.sleep.state = to.sleep.inverse_mass = NULL;
     to.sleep.force = (mspringi_field){NULL, NULL};
     mspringi_wake(&to);
-    to.implicit = NULL;
+    to.implicit = to.fallback = NULL;
     to.floor = NULL;
     return to;
 }
@@ -228,6 +229,8 @@ mspring_result mspringi_move(mspring_network *network, const mspringi_topology *
         move_particles(&to, network);
         move_springs(&to, network);
         result = make_implicit(&to, network, tile_size);
+        if (result == MSPRING_OK && network->fallback)
+            result = mspringi_fallback_reserve(&to);
     }
     if (result != MSPRING_OK) {
         free_layout(&to, &to.memory);

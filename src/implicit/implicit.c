@@ -135,7 +135,8 @@ static mspring_result reserve_carry(mspringi_implicit *n, mspring_network *netwo
 }
 
 mspring_result mspringi_implicit_reserve(mspring_network *network) {
-    return network->implicit ? reserve_carry(network->implicit, network) : MSPRING_OK;
+    mspring_result result = network->implicit ? reserve_carry(network->implicit, network) : MSPRING_OK;
+    return result == MSPRING_OK && network->fallback ? reserve_carry(network->fallback, network) : result;
 }
 
 // Cut into tiles of the size asked for or else, beginning at the default, of the first whose coarse matrix is cheap
@@ -195,6 +196,16 @@ void mspringi_implicit_adjust(mspringi_implicit *n, const mspring_solver_def *de
     n->iterations = !n->is_direct && def->iterations > 0 ? def->iterations : DEFAULT_ITERATIONS;
     n->coarse_period = !n->is_direct && def->coarse_period > 0 ? def->coarse_period : 1;
     n->age = 0;
+}
+
+mspring_result mspringi_fallback_reserve(mspring_network *network) {
+    if (network->fallback)
+        return MSPRING_OK;
+    mspring_solver_def def;
+    (void)mspring_solver_def_init(&def, sizeof def);
+    def.solver = MSPRING_SOLVER_IMPLICIT;
+    def.integrator = MSPRING_INTEGRATOR_EULER;
+    return mspringi_implicit_create(network, &def, &network->fallback);
 }
 
 void mspringi_implicit_destroy(mspringi_implicit *n, mspringi_memory *memory) {
@@ -263,13 +274,16 @@ void mspringi_implicit_follow(mspring_network *network) {
     n->seen = network->edits;
 }
 
+void mspringi_implicit_forget(mspringi_implicit *n) {
+    memset(n->history.low.x, 0, n->history_size * sizeof *n->history.low.x);
+    n->history.restarts = true;
+}
+
 // Forget the history if the host has begun a new motion; cut tiles anew where springs broke or pins changed.
 static void follow_edits(mspring_network *network) {
     mspringi_implicit *n = network->implicit;
-    if (n->seen.motion != network->edits.motion) {
-        memset(n->history.low.x, 0, n->history_size * sizeof *n->history.low.x);
-        n->history.restarts = true;
-    }
+    if (n->seen.motion != network->edits.motion)
+        mspringi_implicit_forget(n);
     mspringi_implicit_follow(network);
 }
 

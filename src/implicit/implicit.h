@@ -83,6 +83,11 @@ bool mspringi_implicit_fits(const mspringi_implicit *implicit, const mspring_sol
 void mspringi_implicit_adjust(mspringi_implicit *implicit, const mspring_solver_def *def);
 void mspringi_implicit_destroy(mspringi_implicit *implicit, mspringi_memory *memory);
 
+/// Make the solver that takes steps for the explicit one, if it is not there. It keeps nothing from step to step.
+mspring_result mspringi_fallback_reserve(mspring_network *network);
+/// Forget the history, as if a new motion began.
+void mspringi_implicit_forget(mspringi_implicit *implicit);
+
 /// Take count substeps of length h, all with the forces from outside that are in base (x NULL: none).
 void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count);
 

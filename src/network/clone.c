@@ -259,6 +259,9 @@ static void move_network(const moving *m, mspring_network *n) {
     MOVE(n->implicit);
     if (n->implicit)
         move_implicit(m, n->implicit);
+    MOVE(n->fallback);
+    if (n->fallback)
+        move_implicit(m, n->fallback);
 }
 
 /* ---------------------------------------------------------------------------------------------------- the clone */

@@ -45,7 +45,7 @@ static mspring_result check_def(const mspring_network_def *def, mspringi_message
     if (def->flags & ~(uint32_t)MSPRING_NETWORK_RESERVE_DAMPING)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "network flags %#x are unknown",
                              (unsigned)def->flags);
-    if (def->guard < MSPRING_GUARD_GROWTH || def->guard > MSPRING_GUARD_BOUNDS)
+    if (def->guard < MSPRING_GUARD_GROWTH || def->guard > MSPRING_GUARD_IMPLICIT)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "guard is %d, which is none", (int)def->guard);
     if (!(def->max_speed > 0.0f && def->max_speed <= 1e15f))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
@@ -254,7 +254,9 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     solver.solver = def->solver;
     solver.substeps = def->substeps;
     solver.max_substeps = def->max_substeps;
-    return mspring_network_set_solver(network, &solver);
+    result = mspring_network_set_solver(network, &solver);
+    return result == MSPRING_OK && def->guard == MSPRING_GUARD_IMPLICIT ? mspringi_fallback_reserve(network)
+                                                                        : result;
 }
 
 mspring_result mspring_network_create(mspring_builder *builder, const mspring_network_def *def,

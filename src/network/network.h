@@ -109,6 +109,7 @@ typedef struct mspringi_guard {
     float h, global_damping; ///< the border was looked at for these; h is 0 at first
     bool watches;            ///< this step's substeps are longer than what is stable in any shape
     bool suspicious;         ///< the last step changed a velocity more than usual
+    uint32_t lent;           ///< steps that the fallback still takes before the explicit solver is tried again
     float peak;              ///< largest change when the border was looked at last, fading, m/s
 } mspringi_guard;
 
@@ -184,6 +185,8 @@ struct mspring_network {
     uint32_t max_substeps;
     bool auto_substeps;
     struct mspringi_implicit *implicit; ///< NULL: the explicit solver
+    struct mspringi_implicit *fallback; ///< takes steps for the explicit one; NULL unless MSPRING_GUARD_IMPLICIT
+    uint64_t fallback_count;            ///< steps that it has taken
     struct mspringi_floor *floor;       ///< NULL: there is none
     mspring_guard guard_policy;
     mspringi_guard guard;

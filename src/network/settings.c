@@ -77,6 +77,7 @@ mspring_result mspring_network_set_solver(mspring_network *network, const msprin
     network->auto_substeps = automatic && !network->implicit;
     network->substeps = automatic ? 1 : def->substeps;
     network->max_substeps = def->max_substeps;
+    network->guard.lent = 0;
     return MSPRING_OK;
 }
 
@@ -107,4 +108,8 @@ mspring_result mspring_network_set_global_damping(mspring_network *network, floa
 
 uint32_t mspring_network_substeps(const mspring_network *network) {
     return network ? network->substeps : 0;
+}
+
+uint64_t mspring_network_fallback_count(const mspring_network *network) {
+    return network ? network->fallback_count : 0;
 }

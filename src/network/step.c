@@ -173,16 +173,54 @@ static mspring_result attempt(mspring_network *network, double dt) {
     return result;
 }
 
+/// Steps that follow one which the explicit solver could not take, and which it is not asked to: to find that it
+/// still cannot takes longer than they do.
+#define LENT_STEPS 15
+
+static bool has_fallback(const mspring_network *network) {
+    return network->guard_policy == MSPRING_GUARD_IMPLICIT && !network->implicit;
+}
+
+// Have the implicit solver take the step in one substep, or leave everything as it is. It starts without history
+// each time, so that there is none to keep.
+static mspring_result attempt_implicitly(mspring_network *network, double dt) {
+    const uint32_t substeps = network->substeps;
+    mspringi_implicit_forget(network->fallback);
+    network->implicit = network->fallback;
+    network->substeps = 1;
+    mspringi_sleep_begin(network, dt);
+    const mspring_result result = attempt(network, dt);
+    network->implicit = NULL;
+    network->substeps = substeps;
+    network->fallback_count += result == MSPRING_OK;
+    return result;
+}
+
+// Take the step that the explicit solver cannot take, or will not be asked to.
+static mspring_result fall_back(mspring_network *network, double dt) {
+    const uint32_t lent = network->guard.lent;
+    const mspring_result result = attempt_implicitly(network, dt);
+    network->guard.lent = result != MSPRING_OK ? lent : lent > 0 ? lent - 1 : LENT_STEPS;
+    return result;
+}
+
+static mspring_result attempt_explicitly(mspring_network *network, double dt) {
+    const mspring_result result = network->auto_substeps ? choose_substeps(network, dt) : MSPRING_OK;
+    if (result != MSPRING_OK)
+        return result;
+    mspringi_sleep_begin(network, dt);
+    return attempt(network, dt);
+}
+
 static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt) {
     if (!(dt > 0.0 && dt <= (double)FLT_MAX * MSPRING_MAX_SUBSTEPS))
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "dt is %g s, it must be finite and > 0",
                              dt);
     const uint32_t substeps = network->substeps;
-    mspring_result result = network->auto_substeps ? choose_substeps(network, dt) : MSPRING_OK;
-    if (result == MSPRING_OK) {
-        mspringi_sleep_begin(network, dt);
-        result = attempt(network, dt);
-    }
+    const bool lent = has_fallback(network) && network->guard.lent > 0;
+    mspring_result result = lent ? fall_back(network, dt) : attempt_explicitly(network, dt);
+    if (result == MSPRING_ERROR_UNSTABLE && has_fallback(network) && !lent)
+        result = fall_back(network, dt);
     while (result == MSPRING_ERROR_UNSTABLE && network->guard_policy == MSPRING_GUARD_RETRY &&
            network->substeps < network->max_substeps) {
         const uint32_t twice = 2 * network->substeps;

@@ -2,14 +2,15 @@
 #include <float.h>
 #include <math.h>
 
+#include "implicit/implicit.h"
 #include "sections.h"
 
 typedef struct guard_head {
     double dt; ///< what is stable in any shape, s, and for which spring
     float h, global_damping, peak;
-    uint32_t policy, suspicious, spring, state;
+    uint32_t policy, suspicious, spring, state, lent;
 } guard_head;
-#define HEAD_BYTES ((size_t)36)
+#define HEAD_BYTES ((size_t)40)
 
 /// Whether dt is known, and whether that was before the last edit.
 enum { UNKNOWN, OUTDATED, KNOWN };
@@ -31,7 +32,8 @@ static void guard_save(const mspring_network *network, mspringi_writer *to) {
     const uint32_t words[] = {(uint32_t)network->guard_policy, guard->suspicious, any_shape->spring,
                               !any_shape->is_known ? UNKNOWN
                               : outdated           ? OUTDATED
-                                                   : KNOWN};
+                                                   : KNOWN,
+                              guard->lent};
     mspringi_put(to, &any_shape->dt, 1, sizeof any_shape->dt);
     mspringi_put(to, floats, sizeof floats / sizeof floats[0], sizeof floats[0]);
     mspringi_put(to, words, sizeof words / sizeof words[0], sizeof words[0]);
@@ -47,7 +49,8 @@ static const uint8_t *read_head(const uint8_t *from, guard_head *head) {
     from = mspringi_get(from, &head->policy, 1, sizeof head->policy);
     from = mspringi_get(from, &head->suspicious, 1, sizeof head->suspicious);
     from = mspringi_get(from, &head->spring, 1, sizeof head->spring);
-    return mspringi_get(from, &head->state, 1, sizeof head->state);
+    from = mspringi_get(from, &head->state, 1, sizeof head->state);
+    return mspringi_get(from, &head->lent, 1, sizeof head->lent);
 }
 
 static mspring_result guard_check(mspring_network *network, const uint8_t *from, size_t size) {
@@ -63,21 +66,24 @@ static mspring_result guard_check(mspring_network *network, const uint8_t *from,
         return result;
     if (!(head.h >= 0.0f && head.h <= FLT_MAX && head.global_damping >= 0.0f && head.global_damping <= 1e6f &&
           head.peak >= 0.0f && head.peak <= FLT_MAX && head.dt >= 0.0) ||
-        head.policy > MSPRING_GUARD_BOUNDS || head.suspicious > 1 || head.state > KNOWN)
+        head.policy > MSPRING_GUARD_IMPLICIT || head.suspicious > 1 || head.state > KNOWN)
         return mspringi_section_fail(network, section, "for substeps of %g s, with a peak of %g m/s and policy %u",
                                      (double)head.h, (double)head.peak, (unsigned)head.policy);
     for (size_t i = 0; i < floats; ++i)
         if (!isfinite(mspringi_float_at(from, i)))
             return mspringi_section_fail(network, section, "the state before the last step is not finite");
-    return MSPRING_OK;
+    return head.policy == MSPRING_GUARD_IMPLICIT ? mspringi_fallback_reserve(network) : MSPRING_OK;
 }
 
 static void guard_load(mspring_network *network, const uint8_t *from, size_t size) {
     guard_head head;
     from = read_head(from, &head);
     network->guard_policy = (mspring_guard)head.policy;
-    network->guard = (mspringi_guard){
-        .h = head.h, .global_damping = head.global_damping, .peak = head.peak, .suspicious = head.suspicious};
+    network->guard = (mspringi_guard){.h = head.h,
+                                      .global_damping = head.global_damping,
+                                      .peak = head.peak,
+                                      .suspicious = head.suspicious,
+                                      .lent = head.lent};
     if (size > HEAD_BYTES)
         mspringi_get(from, network->backup.x, motion_floats(network), sizeof(float));
     // Edits of before and after are counted differently.

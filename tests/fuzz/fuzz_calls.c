@@ -110,7 +110,7 @@ static bool make_twins(twins *made, const recipe *from, fuzz_bytes *bytes) {
     const uint8_t settings = fuzz_byte(bytes);
     def.substeps = settings % 8 == 7 ? MSPRING_SUBSTEPS_AUTO : 1 + settings % 8 * 3u;
     def.max_substeps = 64;
-    def.guard = settings / 8 % 3;
+    def.guard = settings / 8 % 4;
     def.global_damping = settings & 32 ? 0.5f : 0;
     def.gravity_y = settings & 64 ? any_number(bytes) : -9.8f;
     const bool workers = settings & 128;
