@@ -114,6 +114,8 @@ static bool make_twins(twins *made, const recipe *from, fuzz_bytes *bytes) {
     def.global_damping = settings & 32 ? 0.5f : 0;
     def.gravity_y = settings & 64 ? any_number(bytes) : -9.8f;
     const bool workers = settings & 128;
+    def.sleep_speed = fuzz_byte(bytes) % 4 == 0 ? 0.1f : 0;
+    def.sleep_time = 0.01f;
     bool whole =
         mspring_builder_add_particles(builder, from->particles, from->particle_count, NULL) == MSPRING_OK &&
         mspring_builder_add_springs(builder, from->springs, from->spring_count, NULL) == MSPRING_OK;
@@ -174,13 +176,72 @@ typedef struct call {
     mspring_solver solver;
 } call;
 
+static mspring_result set_floor(mspring_network *network, const call *c) {
+    const double plane[4] = {(double)c->a, (double)c->b, c->particle % 3 - 1.0, 1};
+    const float heights[3] = {c->a, c->b, c->a};
+    mspring_floor_def def;
+    FUZZ_CHECK(mspring_floor_def_init(&def, sizeof def) == MSPRING_OK);
+    def.planes = plane;
+    def.plane_count = c->count % 2;
+    def.heights = heights;
+    def.height_count = c->spring % 2 ? 3 : 0;
+    def.heights_y = -30;
+    def.friction = c->b;
+    return mspring_network_set_floor(network, c->count == 2 ? NULL : &def);
+}
+
+static mspring_result settle(mspring_network *network) {
+    mspring_settle_def def;
+    FUZZ_CHECK(mspring_settle_def_init(&def, sizeof def) == MSPRING_OK);
+    def.flags = MSPRING_SETTLE_LEAVE_FLOATING;
+    def.max_iterations = 20;
+    return mspring_network_settle(network, &def, NULL);
+}
+
+// There and back: nothing may have changed.
+static mspring_result save_and_load(mspring_network *network) {
+    size_t size = 0;
+    const uint64_t before = hash_of(network);
+    FUZZ_CHECK(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_FRAME, &size) == MSPRING_OK);
+    void *snapshot = malloc(size);
+    FUZZ_CHECK(snapshot != NULL);
+    FUZZ_CHECK(mspring_network_save(network, MSPRING_SNAPSHOT_FRAME, snapshot, size, NULL) == MSPRING_OK);
+    const mspring_result result = mspring_network_load(network, snapshot, size);
+    FUZZ_CHECK(result == MSPRING_OK && hash_of(network) == before);
+    free(snapshot);
+    return result;
+}
+
+// What is read is a number, whatever the network has been through. (Energies and momenta may overflow.)
+static mspring_result measure(mspring_network *network) {
+    double box[4];
+    float strain = 0;
+    mspring_id spring = 0;
+    FUZZ_CHECK(mspring_network_bounds(network, &box[0], &box[1], &box[2], &box[3]) == MSPRING_OK);
+    FUZZ_CHECK(isfinite(box[0]) && isfinite(box[1]) && box[0] <= box[2] && box[1] <= box[3]);
+    FUZZ_CHECK(mspring_network_max_strain(network, &strain, &spring) == MSPRING_OK);
+    FUZZ_CHECK(!isnan(strain));
+    return mspring_network_get_extents(network, NULL, NULL, NULL, NULL);
+}
+
+// Go on with a copy.
+static mspring_result clone(const mspring_network *network) {
+    mspring_network *copy = NULL;
+    const mspring_result result = mspring_network_clone(network, NULL, &copy);
+    FUZZ_CHECK(result == MSPRING_OK && hash_of(copy) == hash_of(network));
+    const mspring_result stepped = mspring_network_step(copy, 1e-3);
+    FUZZ_CHECK(stepped == MSPRING_OK || stepped == MSPRING_ERROR_UNSTABLE);
+    mspring_network_destroy(copy);
+    return result;
+}
+
 static mspring_result make_call(mspring_network *network, const call *c) {
     const float pair[2] = {c->a, c->b}, other[2] = {c->b, c->a};
     const double place[2] = {(double)c->a, (double)c->b}, turned[2] = {(double)c->b, (double)c->a};
     double now = 0, any_shape = 0;
     mspring_solver_def solver;
     uint32_t number = 0;
-    switch (c->kind % 20) {
+    switch (c->kind % 36) {
     case 0:
         return mspring_network_apply_force(network, c->particle, c->a, c->b);
     case 1:
@@ -224,6 +285,26 @@ static mspring_result make_call(mspring_network *network, const call *c) {
         return mspring_network_update_components(network, &number, NULL);
     case 17:
         return mspring_network_renew_relative_springs(network);
+    case 18:
+        return set_floor(network, c);
+    case 19:
+        return mspring_network_compact(network, c->count, NULL);
+    case 20:
+        return mspring_network_expand(network);
+    case 21:
+        return mspring_network_detach_particles(network, &c->particle, 1);
+    case 22:
+        return mspring_network_set_stress_strains(network, c->spring, c->count, pair);
+    case 23:
+        return settle(network);
+    case 24:
+        return save_and_load(network);
+    case 25:
+        return measure(network);
+    case 26:
+        return clone(network);
+    case 27:
+        return mspring_network_wake(network);
     default:
         return mspring_network_step(network, c->dt);
     }
