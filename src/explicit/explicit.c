@@ -32,6 +32,7 @@ typedef struct job {
     mspringi_progress *progress; ///< [workers]; NULL for one
     uint32_t group;              ///< substeps in a pass (wave)
     uint32_t fronts;             ///< steps of a pass of that many (wave)
+    mspringi_sight *sights;      ///< [workers] if the substeps are a whole step; else NULL
 } job;
 
 /* ------------------------------------------------------------------------------------------------- the wave */
@@ -58,9 +59,10 @@ uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t par
 // How the substeps are divided: worker w makes the passes w, w + workers, ... over all strips, each pass some
 // strips behind the one before, so that what is computed, and in which order, is the same for any number of
 // workers. A pass must be short enough for each worker's next one to begin as soon as it is done with the last.
-static job plan_wave(const mspring_network *network, float h, mspringi_field base, uint32_t count) {
+static job plan_wave(const mspring_network *network, float h, mspringi_field base, uint32_t count,
+                     mspringi_sight *sights) {
     const mspringi_topology *t = &network->topology;
-    job made = {.network = network, .base = base, .h = h, .count = count};
+    job made = {.network = network, .base = base, .h = h, .count = count, .sights = sights};
     const bool shared = (uint64_t)mspringi_woven_count(t) * count >= SMALLEST_SHARED_WORK;
     made.workers = shared ? mspringi_tasks_concurrency(network->tasks) : 1;
     while (made.workers > 1 && made.workers * (t->lag + 2 + SLACK) > t->wave_strips)
@@ -89,6 +91,17 @@ static void wait_for_pass_before(const job *wave, uint32_t pass, uint32_t front)
                            (pass - 1) / wave->workers * wave->fronts + done);
 }
 
+// Take one substep of a strip and, if the substeps are a whole step, what belongs before its first and after its
+// last.
+static void sweep_strip(const job *wave, const mspringi_substep *substep, uint32_t number, uint32_t worker,
+                        const mspringi_strip *strip) {
+    if (wave->sights && number == 0)
+        mspringi_strip_keep(wave->network, strip);
+    mspringi_strip_sweep(wave->network, substep, strip);
+    if (wave->sights && number + 1 == wave->count)
+        wave->sights[worker] = mspringi_sight_join(wave->sights[worker], mspringi_strip_look(wave->network, strip));
+}
+
 // Make one pass: several substeps over all strips of the wave, each lag strips behind the one before, so that a
 // strip is in the cache for all of them. A strip's substep needs the one before of the strip itself, of the row
 // above, and of the other ends of leftover springs: all are done by then, and none is further.
@@ -105,7 +118,7 @@ static void make_pass(const job *wave, uint32_t pass, uint32_t worker) {
         wait_for_pass_before(wave, pass, front);
         for (uint32_t i = 0; i < count && i * t->lag <= front; ++i)
             if (front - i * t->lag < t->wave_strips)
-                mspringi_strip_sweep(network, &substeps[i], &t->strips[front - i * t->lag]);
+                sweep_strip(wave, &substeps[i], first + i, worker, &t->strips[front - i * t->lag]);
         if (wave->progress)
             mspringi_progress_advance(&wave->progress[worker], pass / wave->workers * wave->fronts + front + 1);
     }
@@ -118,11 +131,12 @@ static void make_passes(void *argument, uint32_t index, uint32_t worker) {
         make_pass(wave, pass, index);
 }
 
-static void sweep_wave(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+static void sweep_wave(mspring_network *network, float h, mspringi_field base, uint32_t count,
+                       mspringi_sight *sights) {
     const mspringi_topology *t = &network->topology;
     if (t->wave_strips == 0)
         return;
-    job wave = plan_wave(network, h, base, count);
+    job wave = plan_wave(network, h, base, count, sights);
     const mspringi_substep first = mspringi_substep_prepare(network, h, base, 0, count, 0);
     for (uint32_t s = 0; s < t->wave_strips; ++s)
         mspringi_strip_pack(network, &first, &t->strips[s]);
@@ -154,6 +168,18 @@ static void meet(const job *rest, uint32_t worker, uint32_t n) {
             mspringi_progress_wait(&rest->progress[other], n);
 }
 
+// What belongs before the first and after the last substep of a share of the web or of the loose particles, if the
+// substeps are a whole step.
+static void begin_share(const job *rest, const mspringi_span *share) {
+    if (rest->sights)
+        mspringi_span_keep(rest->network, share);
+}
+
+static void end_share(const job *rest, const mspringi_span *share, uint32_t worker) {
+    if (rest->sights)
+        rest->sights[worker] = mspringi_sight_join(rest->sights[worker], mspringi_span_look(rest->network, share));
+}
+
 // Take all substeps of a share of the loose particles: nothing else moves them but a floor that is near.
 static void sweep_loose(const job *rest, const mspringi_strip *strip, uint32_t index) {
     const mspring_network *network = rest->network;
@@ -161,10 +187,12 @@ static void sweep_loose(const job *rest, const mspringi_strip *strip, uint32_t i
     const mspringi_substep substep = mspringi_substep_prepare(network, rest->h, rest->base, 0, 1, 0);
     const mspringi_span share = share_of(&t->spans[t->rows[strip->first_row].first_span], index, rest->workers);
     const uint32_t at_once = mspringi_floor_is_near(network, strip) ? 1 : rest->count;
+    begin_share(rest, &share);
     for (uint32_t i = 0; i < rest->count; i += at_once) {
         network->kernels->loose[rest->base.x != NULL](&substep.sweep, &share, at_once);
         mspringi_floor_touch(network, strip, &share, 1, rest->h);
     }
+    end_share(rest, &share, index);
 }
 
 // Take one substep after the other: all workers pack and sweep the web, the first one everything else. Substeps
@@ -195,32 +223,50 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
         }
         meet(rest, index, i + 1);
         if (share.end_slot > share.first_slot) {
+            if (i == 0)
+                begin_share(rest, &share);
             mspringi_web_sweep(network, &substep, &share);
             mspringi_floor_touch(network, strip, &share, 1, substep.sweep.h);
+            if (i + 1 == rest->count)
+                end_share(rest, &share, index);
         }
         for (uint32_t s = t->wave_strips; index == 0 && s < t->strip_count; ++s)
             if (t->rows[t->strips[s].first_row].kind < MSPRINGI_ROW_WEB)
-                mspringi_strip_sweep(network, &substep, &t->strips[s]);
+                sweep_strip(rest, &substep, i, index, &t->strips[s]);
     }
 }
 
-static void sweep_rest(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+static void sweep_rest(mspring_network *network, float h, mspringi_field base, uint32_t count,
+                       mspringi_sight *sights) {
     const mspringi_topology *t = &network->topology;
     if (t->wave_strips == t->strip_count)
         return;
-    job rest = {.network = network, .base = base, .h = h, .count = count, .workers = 1};
+    job rest = {.network = network, .base = base, .h = h, .count = count, .workers = 1, .sights = sights};
     if ((uint64_t)t->leftover_count * count >= SMALLEST_SHARED_WORK)
         rest.workers = mspringi_tasks_concurrency(network->tasks);
     rest.progress = rest.workers > 1 ? mspringi_tasks_progress(network->tasks) : NULL;
     mspringi_tasks_run(rest.progress ? network->tasks : NULL, rest.workers, sweep_share, &rest);
 }
 
+// The wave's strips know nothing of the others, nor they of the wave's.
+static void sweep_all(mspring_network *network, float h, mspringi_field base, uint32_t count,
+                      mspringi_sight *sights) {
+    sweep_wave(network, h, base, count, sights);
+    sweep_rest(network, h, base, count, sights);
+}
+
+mspringi_sight mspringi_explicit_step(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+    mspringi_sight sights[MSPRING_MAX_WORKERS] = {0};
+    sweep_all(network, h, base, count, sights);
+    for (uint32_t worker = 1; worker < MSPRING_MAX_WORKERS; ++worker)
+        sights[0] = mspringi_sight_join(sights[0], sights[worker]);
+    return sights[0];
+}
+
 void mspringi_explicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
     if (network->floor)
         mspringi_floor_survey(network, (double)h * (double)count);
-    // The wave's strips know nothing of the others, nor they of the wave's.
-    sweep_wave(network, h, base, count);
-    sweep_rest(network, h, base, count);
+    sweep_all(network, h, base, count, NULL);
     if (network->floor)
         mspringi_floor_touch_far(network, h);
 }

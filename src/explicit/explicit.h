@@ -6,6 +6,7 @@
 #define MSPRINGI_EXPLICIT_H
 
 #include "network/network.h"
+#include "stability/guard.h"
 
 /// Deepest pass over the lattice rows that is worth it for this topology.
 uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t parts);
@@ -15,5 +16,10 @@ void mspringi_explicit_reset(mspring_network *network);
 
 /// Take count substeps of length h, all with the forces from outside that are in base (x NULL: none).
 void mspringi_explicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count);
+
+/// The same as a whole step that nothing interrupts: with the state of before copied into the backup, what creeps
+/// stopped, and the sight of the state that it ends in, each strip while it is in the cache anyway, by the worker
+/// that has it. Without a floor.
+mspringi_sight mspringi_explicit_step(mspring_network *network, float h, mspringi_field base, uint32_t count);
 
 #endif

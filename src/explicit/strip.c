@@ -1,7 +1,10 @@
 /// Sweeping a strip of rows, and what hangs on it.
 #include "strip.h"
 
+#include <string.h>
+
 #include "contact/floor.h"
+#include "creep.h"
 #include "decay.h"
 
 mspringi_substep mspringi_substep_prepare(const mspring_network *network, float h, mspringi_field base, uint32_t i,
@@ -157,4 +160,63 @@ void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep
     mspringi_floor_touch(network, strip, span, 1, substep->sweep.h);
     if (substep->next_packed)
         pack_span(network, &substep->sweep, span, substep->next_packed);
+}
+
+/* -------------------------------------------------------------------------------------- before and after a step */
+
+// Slots first to end - 1, in whole blocks.
+static void keep_slots(const mspring_network *network, size_t first, size_t end) {
+    const mspringi_state *from = &network->state, *to = &network->backup;
+    const size_t size = (end - first) * sizeof *from->x;
+    memcpy(to->x + first, from->x + first, size);
+    memcpy(to->y + first, from->y + first, size);
+    memcpy(to->vx + first, from->vx + first, size);
+    memcpy(to->vy + first, from->vy + first, size);
+}
+
+static mspringi_sight look_at_slots(const mspring_network *network, size_t first, size_t end) {
+    mspringi_creep_stop(network, first, end);
+    return mspringi_guard_look(network, first, end);
+}
+
+static size_t first_block_slot(const mspringi_span *span) {
+    return span->first_slot / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+}
+
+static size_t end_block_slot(const mspringi_span *span) {
+    return ((size_t)span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+}
+
+// The spans of rows that follow each other lie behind one another.
+static size_t first_row_slot(const mspring_network *network, const mspringi_strip *strip) {
+    const mspringi_topology *t = &network->topology;
+    return first_block_slot(&t->spans[t->rows[strip->first_row].first_span]);
+}
+
+static size_t end_row_slot(const mspring_network *network, const mspringi_strip *strip) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_row *last = &t->rows[strip->first_row + strip->row_count - 1];
+    return end_block_slot(&t->spans[last->first_span + last->span_count - 1]);
+}
+
+void mspringi_span_keep(const mspring_network *network, const mspringi_span *span) {
+    keep_slots(network, first_block_slot(span), end_block_slot(span));
+}
+
+mspringi_sight mspringi_span_look(const mspring_network *network, const mspringi_span *span) {
+    return look_at_slots(network, first_block_slot(span), end_block_slot(span));
+}
+
+void mspringi_strip_keep(const mspring_network *network, const mspringi_strip *strip) {
+    keep_slots(network, first_row_slot(network, strip), end_row_slot(network, strip));
+    if (strip->home_span != MSPRING_NONE)
+        mspringi_span_keep(network, &network->topology.spans[strip->home_span]);
+}
+
+mspringi_sight mspringi_strip_look(const mspring_network *network, const mspringi_strip *strip) {
+    const mspringi_sight sight =
+        look_at_slots(network, first_row_slot(network, strip), end_row_slot(network, strip));
+    if (strip->home_span == MSPRING_NONE)
+        return sight;
+    return mspringi_sight_join(sight, mspringi_span_look(network, &network->topology.spans[strip->home_span]));
 }

@@ -6,6 +6,7 @@
 #define MSPRINGI_STRIP_H
 
 #include "network/network.h"
+#include "stability/guard.h"
 
 /// What one substep works with.
 typedef struct mspringi_substep {
@@ -26,6 +27,15 @@ void mspringi_strip_pack(const mspring_network *network, const mspringi_substep 
 /// Sweep a strip with everything that hangs on it.
 void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep *substep,
                           const mspringi_strip *strip);
+
+/// Before a strip's first substep, and after its last, while it is in the cache anyway: copy its state into the
+/// backup; stop what creeps and look at it.
+void mspringi_strip_keep(const mspring_network *network, const mspringi_strip *strip);
+mspringi_sight mspringi_strip_look(const mspring_network *network, const mspringi_strip *strip);
+
+/// The same for some blocks of a row.
+void mspringi_span_keep(const mspring_network *network, const mspringi_span *span);
+mspringi_sight mspringi_span_look(const mspring_network *network, const mspringi_span *span);
 
 /// Pack the web's nodes of some of a web row's blocks, or sweep them.
 void mspringi_web_pack(const mspring_network *network, const mspringi_substep *substep, const mspringi_span *span);

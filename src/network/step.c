@@ -7,6 +7,7 @@
 #include "contact/floor.h"
 #include "edits/ramps.h"
 #include "edits/strain.h"
+#include "explicit/creep.h"
 #include "explicit/explicit.h"
 #include "hooks.h"
 #include "implicit/implicit.h"
@@ -96,6 +97,26 @@ static void run_substeps(mspring_network *network, double dt, float h) {
     }
 }
 
+// Keep the state in the backup, run all substeps, and look at what they have led to.
+static mspringi_sight run(mspring_network *network, double dt, float h) {
+    if (network->is_open)
+        mspringi_clear_empty_slots(network);
+    if (!network->implicit && network->hook_count == 0 && !network->floor && !network->sleep.is_asleep) {
+        network->sleep.in_force = prepare_base(network, dt);
+        return mspringi_explicit_step(network, h, network->sleep.in_force, network->substeps);
+    }
+    copy_state(network, &network->state, &network->backup);
+    mspringi_implicit_keep(network);
+    mspringi_floor_begin(network->floor);
+    run_substeps(network, dt, h);
+    if (network->is_open)
+        mspringi_clear_empty_slots(network);
+    const size_t slots = mspringi_slot_count(network);
+    if (!network->implicit)
+        mspringi_creep_stop(network, 0, slots);
+    return mspringi_guard_look(network, 0, slots);
+}
+
 /* ------------------------------------------------------------------------------------------------- the step */
 
 void mspringi_clear_empty_slots(const mspring_network *network) {
@@ -121,18 +142,12 @@ static mspring_result choose_substeps(mspring_network *network, double dt) {
     return MSPRING_OK;
 }
 
-/// Speed that is none, m/s: far below what moves a position, and far above denormal numbers.
-#define NO_SPEED 1e-30f
-
-// Stop what is no motion any more. Velocities that are damped approach 0 without end, and on most processors
-// arithmetic with denormal numbers, below 1e-38, takes many times as long: loose particles 2.4 times, a lattice
-// that is damped as a whole 1.6 times.
-static void stop_creeping(float *velocity, size_t count) {
-    uint32_t creeping = 0;
-    for (size_t i = 0; i < count; ++i)
-        creeping |= (uint32_t)(velocity[i] != 0.0f) & (uint32_t)(fabsf(velocity[i]) < NO_SPEED);
-    for (size_t i = 0; creeping && i < count; ++i)
-        velocity[i] = fabsf(velocity[i]) < NO_SPEED ? 0.0f : velocity[i];
+// To the state of before the step.
+static void go_back(mspring_network *network) {
+    copy_state(network, &network->backup, &network->state);
+    mspringi_explicit_reset(network);
+    mspringi_implicit_restore(network);
+    mspringi_clear_empty_slots(network);
 }
 
 // Take the step in network->substeps substeps, or leave everything as it is.
@@ -149,26 +164,17 @@ static mspring_result attempt(mspring_network *network, double dt) {
     mspringi_derive_relative(network, h);
     mspringi_ramps_apply(network, dt);
     mspring_result result = mspringi_guard_begin(network, dt, h);
-    copy_state(network, &network->state, &network->backup);
-    mspringi_implicit_keep(network);
-    mspringi_floor_begin(network->floor);
     if (result == MSPRING_OK) {
-        run_substeps(network, dt, h);
-        if (network->is_open)
-            mspringi_clear_empty_slots(network);
-        result = mspringi_guard_end(network, dt, h);
+        result = mspringi_guard_end(network, dt, h, run(network, dt, h));
         if (result == MSPRING_OK)
             result = mspringi_energy_verdict(network, dt);
+        if (result != MSPRING_OK)
+            go_back(network);
     }
     if (result != MSPRING_OK) {
         network->sleep.in_force = (mspringi_field){NULL, NULL};
-        copy_state(network, &network->backup, &network->state);
-        mspringi_explicit_reset(network);
-        mspringi_implicit_restore(network);
         mspringi_derive_relative(network, relative_h);
         mspringi_ramps_apply(network, 0.0);
-        if (network->is_open)
-            mspringi_clear_empty_slots(network);
     }
     return result;
 }
@@ -233,8 +239,6 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
     }
     if (mspringi_sleep_is_idle(network))
         return MSPRING_OK;
-    if (!network->implicit && (network->global_damping > 0.0f || network->parts > MSPRINGI_DAMPING))
-        stop_creeping(network->state.vx, 2 * mspringi_slot_count(network)); // vy lies behind vx
     mspringi_ramps_pass(network, dt);
     mspringi_strain_pass(network);
     mspringi_origin_follow(network);

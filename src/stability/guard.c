@@ -229,20 +229,39 @@ mspring_result mspringi_guard_begin(mspring_network *network, double dt, float h
     return MSPRING_OK;
 }
 
-mspring_result mspringi_guard_end(mspring_network *network, double dt, float h) {
+// NaN, if there is one, counts as the largest, as in the kernels.
+static float larger(float a, float b) {
+    return b > a || b != b ? b : a;
+}
+
+static mspringi_largest largest_of(mspringi_largest a, mspringi_largest b) {
+    return (mspringi_largest){larger(a.value, b.value), larger(a.change, b.change)};
+}
+
+mspringi_sight mspringi_sight_join(mspringi_sight a, mspringi_sight b) {
+    return (mspringi_sight){largest_of(a.place, b.place), largest_of(a.speed, b.speed)};
+}
+
+mspringi_sight mspringi_guard_look(const mspring_network *network, size_t first, size_t end) {
+    const mspringi_largest_fn largest = network->kernels->largest;
+    const mspringi_state *s = &network->state, *before = &network->backup;
+    const bool watches = network->guard.watches;
+    const mspringi_largest x = largest(s->x + first, NULL, end - first);
+    const mspringi_largest y = largest(s->y + first, NULL, end - first);
+    const mspringi_largest vx = largest(s->vx + first, watches ? before->vx + first : NULL, end - first);
+    const mspringi_largest vy = largest(s->vy + first, watches ? before->vy + first : NULL, end - first);
+    return (mspringi_sight){largest_of(x, y), largest_of(vx, vy)};
+}
+
+mspring_result mspringi_guard_end(mspring_network *network, double dt, float h, mspringi_sight sight) {
     mspringi_guard *guard = &network->guard;
-    const mspringi_kernels *kernels = network->kernels;
-    const mspringi_state *s = &network->state;
-    const size_t both = 2 * mspringi_slot_count(network); // y lies behind x, vy behind vx
-    const mspringi_largest place = kernels->largest(s->x, NULL, both);
-    const mspringi_largest speed = kernels->largest(s->vx, guard->watches ? network->backup.vx : NULL, both);
-    if (!(place.value <= (float)MSPRING_MAX_COORDINATE && speed.value <= network->max_speed))
+    if (!(sight.place.value <= (float)MSPRING_MAX_COORDINATE && sight.speed.value <= network->max_speed))
         return explain_bounds(network, dt);
     if (guard->watches) {
         const double harmless = HARMLESS * network->shortest / (double)h;
         const float calm = harmless < 1e15 ? (float)harmless : 1e15f;
-        guard->suspicious = speed.change > SUSPICIOUS * fmaxf(guard->peak, calm);
-        guard->peak = guard->suspicious ? speed.change : guard->peak * FADING;
+        guard->suspicious = sight.speed.change > SUSPICIOUS * fmaxf(guard->peak, calm);
+        guard->peak = guard->suspicious ? sight.speed.change : guard->peak * FADING;
     }
     return MSPRING_OK;
 }

@@ -11,7 +11,19 @@
 /// border. Works in the backup of the state, which has to be that of the step before.
 mspring_result mspringi_guard_begin(mspring_network *network, double dt, float h);
 
-/// Judge the state that the substeps have led to.
-mspring_result mspringi_guard_end(mspring_network *network, double dt, float h);
+/// What there is to see of a state: the largest coordinates, the largest speeds and, if the guard watches, changes
+/// of speed since the state in the backup.
+typedef struct mspringi_sight {
+    mspringi_largest place, speed;
+} mspringi_sight;
+
+/// Look at the slots first to end - 1, multiples of MSPRINGI_WIDTH. May be called by several threads at once.
+mspringi_sight mspringi_guard_look(const mspring_network *network, size_t first, size_t end);
+
+/// The sight of both, in whatever order they are joined.
+mspringi_sight mspringi_sight_join(mspringi_sight a, mspringi_sight b);
+
+/// Judge the state that the substeps have led to by the sight of all slots.
+mspring_result mspringi_guard_end(mspring_network *network, double dt, float h, mspringi_sight sight);
 
 #endif
