@@ -11,8 +11,7 @@
 #include "lab/app.h"
 #include "support.h"
 
-/* -------------------------------------------------------------------------------------------------------- helpers
- */
+/* ----------------------------------------------------------------------------------------------------- helpers */
 
 static void must_do(lab_model *model, const char *line) {
     lab_action action;
@@ -49,8 +48,7 @@ static void play(lab_model *model, const lab_script *script) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- actions as text
- */
+/* ---------------------------------------------------------------------------------------------- actions as text */
 
 static void actions_that_are_written_are_read_as_they_were(void **state) {
     (void)state;
@@ -119,8 +117,7 @@ static void mistakes_in_scripts_are_told_with_line_and_column(void **state) {
     }
 }
 
-/* -------------------------------------------------------------------------------------------------- what they do
- */
+/* ----------------------------------------------------------------------------------------------- what they do */
 
 static void a_pulled_particle_comes_along_and_a_pinned_one_does_not(void **state) {
     (void)state;
@@ -222,8 +219,7 @@ static void a_scene_that_cannot_be_opened_changes_nothing(void **state) {
     model_end(&model);
 }
 
-/* ----------------------------------------------------------------------------------------------- scripts,
- * recordings */
+/* ---------------------------------------------------------------------------------- scripts, recordings */
 
 static const char small_script[] =
     "0 solver both explicit\n0 scene bar\n0.1 grab 79 4 2\n0.2 pull 85 9\n0.5 drop\n0.6 cut 60 -1 61 6\n"
@@ -304,8 +300,7 @@ static void a_recording_of_the_mouse_plays_to_the_same_state(void **state) {
     free(text);
 }
 
-/* --------------------------------------------------------------------------------------------------- what is drawn
- */
+/* ------------------------------------------------------------------------------------------------ what is drawn */
 
 static void squares_side_by_side_leave_no_seam(void **state) {
     (void)state;

@@ -281,8 +281,7 @@ lab_action action_rounded(const lab_action *action) {
     return action_read(line, strlen(line), 1, &again, &error) ? again : made;
 }
 
-/* ---------------------------------------------------------------------------------------------------- describing
- */
+/* ------------------------------------------------------------------------------------------------- describing */
 
 const char *action_usage(action_kind kind, char buffer[ACTION_LINE]) {
     int length = snprintf(buffer, ACTION_LINE, "%s", defs[kind].name);

@@ -80,8 +80,7 @@ bool app_script_done(const lab_app *app) {
     return app->script_at == app->script.count || app->model.ended;
 }
 
-/* --------------------------------------------------------------------------------------------------------- frames
- */
+/* ------------------------------------------------------------------------------------------------------ frames */
 
 // What a thread does in a frame.
 typedef struct side_job {
@@ -130,6 +129,10 @@ bool app_frame(lab_app *app, bool show_pointer) {
         helper_run_both(app->helper, play_side, &jobs[0], &jobs[1]);
     else
         play_side(&jobs[0]);
+    for (int i = 0; i < app->model.side_count; i++) {
+        app->total_stepped[i] += jobs[i].stepped;
+        app->total_drawn[i] += jobs[i].drawn;
+    }
     model_end_frame(&app->model, steps);
     lab_pointer pointer = {.kind = POINTER_NONE};
     if (show_pointer)
@@ -164,6 +167,10 @@ void app_report(const lab_app *app) {
         printf("frames %llu, %.2f ms on average, longest %.2f ms, over %.1f ms: %u\n",
                (unsigned long long)app->frames, 1e3 * app->total_frame / (double)app->frames,
                1e3 * app->longest_frame, 1e3 / FRAMES_PER_SECOND, app->slow_frames);
+    for (int i = 0; i < model->side_count && !app->options->no_clock && app->frames > 0; i++)
+        printf("%-5s of a frame: %.2f ms for steps and measurements, %.2f ms for its picture\n",
+               i == 0 ? "left" : "right", 1e3 * app->total_stepped[i] / (double)app->frames,
+               1e3 * app->total_drawn[i] / (double)app->frames);
     printf("state after %llu frames: %016llx\n", (unsigned long long)model->frame,
            (unsigned long long)model_hash(model));
 }

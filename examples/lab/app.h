@@ -24,6 +24,7 @@ typedef struct lab_app {
     bool script_failed;
     uint32_t slow_frames; ///< frames that took longer than the budget
     double total_frame, longest_frame;
+    double total_stepped[2], total_drawn[2]; ///< of each side's thread
     uint64_t frames;
 } lab_app;
 

@@ -61,8 +61,7 @@ static double place(const lab_controller *controller, const lab_model *model, co
     return camera.scale;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- keys
- */
+/* -------------------------------------------------------------------------------------------------------- keys */
 
 static void toggle_pin(lab_controller *controller, const lab_model *model, double x, double y, double radius) {
     const lab_side *side = &model->sides[controller->side];
@@ -192,8 +191,7 @@ static void press_key(lab_controller *controller, const lab_model *model, const 
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------------- mouse
- */
+/* ------------------------------------------------------------------------------------------------------- mouse */
 
 static void move_slider(lab_controller *controller) {
     const lab_box track = control_track(&controller->slider);

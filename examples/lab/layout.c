@@ -20,8 +20,7 @@ enum {
     SLIDER = 31,
 };
 
-/* ------------------------------------------------------------------------------------------------------- controls
- */
+/* ---------------------------------------------------------------------------------------------------- controls */
 
 // Controls are put one below the other.
 typedef struct control_stack {
@@ -175,8 +174,7 @@ static void add_colours(control_stack *stack, const lab_model *model) {
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------------- boxes
- */
+/* ------------------------------------------------------------------------------------------------------- boxes */
 
 static double fit(double width, double height, const lab_stage *stage) {
     const double across = stage->max_x - stage->min_x + stage->spacing;

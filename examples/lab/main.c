@@ -13,6 +13,8 @@ int main(int count, char **arguments) {
     int exit_code;
     if (!options_read(&options, count, arguments, &exit_code))
         return exit_code;
+    if (options.can_show)
+        return window_can_show() ? EXIT_SUCCESS : EXIT_FAILURE;
     if (!app_start(&app, &options))
         return EXIT_FAILURE;
     exit_code = options.headless ? headless_run(&app) : window_run(&app);

@@ -30,8 +30,7 @@ static void remember(lab_model *model, action_kind kind, bool joins) {
         snprintf(model->message, sizeof model->message, "no memory to undo this");
 }
 
-/* --------------------------------------------------------------------------------------------------------- scenes
- */
+/* ------------------------------------------------------------------------------------------------------ scenes */
 
 static void free_sides(lab_side sides[2], int count) {
     for (int i = 0; i < count; i++)
@@ -139,8 +138,7 @@ void model_end(lab_model *unwanted) {
     stage_free(&unwanted->stage);
 }
 
-/* ------------------------------------------------------------------------------------------------------- settings
- */
+/* ---------------------------------------------------------------------------------------------------- settings */
 
 // Tries settings on all sides; where one refuses, all go back.
 static bool set_settings(lab_model *model, const lab_settings *settings, scene_error *error) {
@@ -208,8 +206,7 @@ static bool change_solver(lab_model *model, const lab_action *action, scene_erro
     return true;
 }
 
-/* ---------------------------------------------------------------------------------------------------------- edits
- */
+/* ------------------------------------------------------------------------------------------------------- edits */
 
 static bool edit(lab_model *model, const lab_action *action, scene_error *error) {
     const double *at = action->values;
@@ -294,8 +291,7 @@ static bool undo(lab_model *model) {
     return true;
 }
 
-/* -------------------------------------------------------------------------------------------------------- actions
- */
+/* ----------------------------------------------------------------------------------------------------- actions */
 
 static void look(lab_model *model, const lab_action *action) {
     lab_look *look = &model->look;
@@ -395,8 +391,7 @@ bool model_do(lab_model *model, const lab_action *action, scene_error *error) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------------------- frames
- */
+/* ------------------------------------------------------------------------------------------------------ frames */
 
 uint32_t model_begin_frame(lab_model *model) {
     if (model->playing)

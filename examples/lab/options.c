@@ -24,6 +24,7 @@ static void print_help(const char *program) {
            "  --size WxH         of the window and of pictures (1280x720)\n"
            "  --no-clock         show nothing that differs from run to run\n"
            "  --stop-after N     frames, then end\n"
+           "  --can-show         only say, by the exit status, whether there can be a window\n"
            "  --actions          list what scripts can do\n\n",
            program);
     for (int i = 0; i < keys_help_count; i++)
@@ -107,6 +108,8 @@ bool options_read(lab_options *made, int count, char **arguments, int *exit_code
         }
         if (strcmp(option, "--headless") == 0) {
             made->headless = true;
+        } else if (strcmp(option, "--can-show") == 0) {
+            made->can_show = true;
         } else if (strcmp(option, "--no-clock") == 0) {
             made->no_clock = true;
         } else if (strncmp(option, "--", 2) != 0) {

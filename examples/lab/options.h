@@ -15,6 +15,7 @@ typedef struct lab_options {
     const char *frames;    ///< folder for pictures; default "out"
     const char *animation; ///< file for a moving picture, or NULL
     bool headless;
+    bool can_show;        ///< only tell whether there can be a window
     bool every_frame;     ///< write numbered frames
     bool no_clock;        ///< show nothing that differs from run to run
     int width, height;    ///< default 1280 x 720

@@ -28,8 +28,7 @@ static bool accepted(lab_side *side, mspring_result result) {
     return false;
 }
 
-/* ------------------------------------------------------------------------------------------------------ settings
- */
+/* --------------------------------------------------------------------------------------------------- settings */
 
 static mspring_solver_def solver_def(const lab_solver *solver) {
     mspring_solver_def def;
@@ -190,8 +189,7 @@ void side_free(lab_side *unwanted) {
     memset(unwanted, 0, sizeof *unwanted);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- steps
- */
+/* ------------------------------------------------------------------------------------------------------- steps */
 
 // A soft spring and a damper between each held particle and where it is wanted. Given once a step, such a force is
 // stable as long as rate * dt is well below 1.
@@ -229,8 +227,7 @@ void side_step(lab_side *side, const lab_settings *settings) {
     *mean = *mean > 0 ? *mean + 0.06 * (seconds - *mean) : seconds;
 }
 
-/* -------------------------------------------------------------------------------------------------- measurements
- */
+/* ----------------------------------------------------------------------------------------------- measurements */
 
 void side_find_broken(lab_side *side) {
     side->broken_count = 0;

@@ -79,8 +79,7 @@ static const char *whole_number(uint32_t value, char buffer[32]) {
     return buffer;
 }
 
-/* --------------------------------------------------------------------------------------------------------- camera
- */
+/* ------------------------------------------------------------------------------------------------------ camera */
 
 void camera_to_world(const lab_camera *camera, double pixel_x, double pixel_y, double *x, double *y) {
     *x = camera->x + (pixel_x - camera->pixel_x) / camera->scale;
@@ -131,8 +130,7 @@ static void see(lab_view *view, const lab_model *model) {
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------------- scales
- */
+/* ------------------------------------------------------------------------------------------------------- scales */
 
 // The end of a scale: a round number above what is wanted; it comes down only when far too large.
 static void adapt(double *limit, double wanted) {
@@ -204,8 +202,7 @@ bool view_begin(lab_view *view, const lab_model *model) {
     return make_room(view, model);
 }
 
-/* ----------------------------------------------------------------------------------------------------------- sides
- */
+/* -------------------------------------------------------------------------------------------------------- sides */
 
 static void describe_solver(const lab_side *side, char *text, size_t size) {
     static const char *const integrators[] = {"ga0", "bdf2", "Euler"};
@@ -300,11 +297,10 @@ void view_draw_side(lab_view *view, const lab_model *model, int side) {
     draw_head(view, model, side);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ rest
- */
+/* --------------------------------------------------------------------------------------------------------- rest */
 
 static void draw_cost(lab_view *view, const lab_costs *costs, lab_box box) {
-    enum { WIDTH = 180 };
+    enum { WIDTH = 140 };
     const double budget = 1.0 / FRAMES_PER_SECOND;
     const int left = box.x + box.width - WIDTH - 12, top = box.y + 15;
     char text[96];
@@ -313,8 +309,9 @@ static void draw_cost(lab_view *view, const lab_costs *costs, lab_box box) {
     raster_fill(&view->target, box, (lab_box){left, top, used, 7},
                 costs->frame <= budget ? TINT_GOOD : TINT_WARNING, 256);
     raster_fill(&view->target, box, (lab_box){left + WIDTH * 2 / 3, top - 3, 1, 13}, TINT_TEXT, 256);
-    snprintf(text, sizeof text, "frame %.1f of %.1f ms, %.0f a second", 1e3 * costs->frame, 1e3 * budget,
-             costs->per_second);
+    snprintf(text, sizeof text,
+             box.width >= 1000 ? "frame %.1f of %.1f ms, %.0f a second" : "frame %.1f of %.1f ms",
+             1e3 * costs->frame, 1e3 * budget, costs->per_second);
     text_draw(&view->target, box, &view->normal, left - 12, top + 8, TEXT_RIGHT,
               costs->frame <= budget ? TINT_TEXT : TINT_WARNING, text);
 }
@@ -331,6 +328,8 @@ static void draw_top(lab_view *view, const lab_model *model, const lab_costs *co
     snprintf(text, sizeof text, "%s particles   %s springs   %.2f s",
              whole_number(model->stage.particle_count, particles), whole_number(model->stage.spring_count, springs),
              model->time);
+    if (box.width < 1000) // all of it leaves no room for the costs
+        snprintf(text, sizeof text, "%.2f s", model->time);
     text_draw(&view->target, box, &view->normal, after, 24, TEXT_LEFT, TINT_FAINT, text);
     const int state = after + text_width(&view->normal, text) + 16;
     if (broken) {
@@ -343,17 +342,19 @@ static void draw_top(lab_view *view, const lab_model *model, const lab_costs *co
         snprintf(text, sizeof text, "%u x", model->speed);
         text_draw(&view->target, box, &view->normal, state + (broken ? 100 : 0), 24, TEXT_LEFT, TINT_PIN, text);
     }
-    if (costs && view->shows_costs)
+    if (costs && view->shows_costs && box.width >= 640)
         draw_cost(view, costs, box);
 }
 
 static void draw_status(lab_view *view, const lab_model *model) {
     const lab_box box = view->layout.status;
     raster_fill(&view->target, box, box, TINT_WINDOW, 256);
-    const char *text = model->message[0]
-                           ? model->message
-                           : "drag: pull   X drag: cut   P: pin   B: blast   U: undo   space: pause   "
-                             "C: colours   wheel: zoom   right drag: move   H: all keys";
+    const char *usual =
+        "drag: pull   X drag: cut   P: pin   B: blast   U: undo   space: pause   C: colours   wheel: zoom   "
+        "right drag: move   H: all keys";
+    if (box.width < 1000)
+        usual = "drag: pull   X drag: cut   space: pause   H: all keys";
+    const char *text = model->message[0] ? model->message : usual;
     text_draw(&view->target, box, &view->normal, 18, box.y + 16, TEXT_LEFT,
               model->message[0] ? TINT_PIN : TINT_FAINT, text);
 }

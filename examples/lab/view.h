@@ -16,11 +16,9 @@ typedef struct lab_pointer {
     lab_colour colour;
 } lab_pointer;
 
-/// How long a frame's parts took, seconds; negative: not shown.
+/// What frames take.
 typedef struct lab_costs {
-    double frame;      ///< from its beginning to its end, without waiting
-    double steps[2];   ///< of that, stepping,
-    double drawing;    ///< and drawing
+    double frame;      ///< seconds from its beginning to its end, without waiting
     double per_second; ///< frames
 } lab_costs;
 

@@ -15,8 +15,7 @@ static const double lines_from = 3.5;
 // And from this many, particles are seen as well.
 static const double dots_from = 9;
 
-/* -------------------------------------------------------------------------------------------------------- colours
- */
+/* ----------------------------------------------------------------------------------------------------- colours */
 
 static uint8_t step_of(double part) {
     return (uint8_t)(part <= 0 ? 0 : part >= 1 ? TINT_STEPS - 1 : (int)(part * (TINT_STEPS - 1) + 0.5));
@@ -126,8 +125,7 @@ static lab_colour particle_colour(const lab_model *model, const view_side *kept,
     }
 }
 
-/* --------------------------------------------------------------------------------------------------------- pieces
- */
+/* ------------------------------------------------------------------------------------------------------ pieces */
 
 static void place_particles(view_side *kept, const lab_side *side, const lab_camera *camera) {
     const double offset_x = camera->pixel_x + (side->view.origin_x - camera->x) * camera->scale;

@@ -7,6 +7,9 @@
 
 #include "lab/app.h"
 
+/// Whether there can be one here.
+bool window_can_show(void);
+
 /// Run until somebody quits. Returns the exit code.
 int window_run(lab_app *app);
 

@@ -8,6 +8,15 @@
 #include <SDL.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+bool window_can_show(void) {
+    // Without a display SDL may still draw into memory, which nobody sees.
+    const bool can = SDL_Init(SDL_INIT_VIDEO) == 0 && strcmp(SDL_GetCurrentVideoDriver(), "offscreen") != 0 &&
+                     strcmp(SDL_GetCurrentVideoDriver(), "dummy") != 0;
+    SDL_Quit();
+    return can;
+}
 
 typedef struct sdl_window {
     SDL_Window *window;
