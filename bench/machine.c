@@ -25,6 +25,16 @@ double bench_seconds(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+double bench_thread_seconds(void) {
+#ifdef CLOCK_THREAD_CPUTIME_ID
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+#else
+    return bench_seconds();
+#endif
+}
+
 const char *bench_cpu_name(char *text, size_t size) {
     const char *name = "unknown processor";
 #if defined(__x86_64__) || defined(__i386__)

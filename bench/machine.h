@@ -10,6 +10,9 @@
 /// Seconds on a clock that only goes forward.
 double bench_seconds(void);
 
+/// Time of this thread alone: for what is told against something else, whatever other programs do meanwhile.
+double bench_thread_seconds(void);
+
 /// Name of the processor; "unknown processor" where it does not tell. Fills text and returns it.
 const char *bench_cpu_name(char *text, size_t size);
 

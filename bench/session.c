@@ -343,14 +343,33 @@ static bool measure_sleep(session *with, const bench_options *options, const ben
     return ok;
 }
 
+/// Take steps of two networks in turn: times of the first, and behind them those of the second, each sorted.
+static bool measure_steps(const bench_runner *first, const bench_runner *second, uint32_t repeat, double *times,
+                          scene_error *error) {
+    if (!first->reset(first->self, error) || !second->reset(second->self, error)) {
+        return false;
+    }
+    for (uint32_t i = 0; i < 2 * repeat; i++) {
+        const bench_runner *runner = i % 2 == 0 ? first : second;
+        const double start = bench_thread_seconds();
+        if (!runner->run(runner->self, 1, error)) {
+            return false;
+        }
+        times[i % 2 * repeat + i / 2] = bench_thread_seconds() - start;
+    }
+    bench_median(times, repeat); // sorts
+    bench_median(times + repeat, repeat);
+    return true;
+}
+
 /// Compact a network, and say how long all of it took and its longest piece.
 static bool compact(mspring_network *network, double *all, double *longest, scene_error *error) {
     uint32_t left = 1;
     *all = *longest = 0;
     while (left > 0) {
-        const double start = bench_seconds();
+        const double start = bench_thread_seconds();
         mspring_result result = mspring_network_compact(network, 1, &left);
-        const double seconds = bench_seconds() - start;
+        const double seconds = bench_thread_seconds() - start;
         if (result != MSPRING_OK) {
             bench_library_error(error, "compacting", result, mspring_network_error(network));
             return false;
@@ -373,24 +392,22 @@ static bool measure_wreck(session *with, const bench_options *options, const ben
         return false;
     }
     bench_runner whole = bench_network_runner(with->step), broken = bench_network_runner(&wreck);
-    bench_turns turns;
-    double *seconds = times, *pieces = times + COMPACTIONS;
-    bool ok = bench_wreck_make(&wreck, kind, error) && bench_turns_measure(&whole, &broken, repeat, &turns, error);
+    double seconds[COMPACTIONS], pieces[COMPACTIONS], *const of_wreck = times + repeat;
+    bool ok = bench_wreck_make(&wreck, kind, error) && measure_steps(&whole, &broken, repeat, times, error);
     if (ok) {
         snprintf(text, sizeof text, "%s", bench_wreck_name(kind));
-        print_row(options, subject, with->step, text, turns.second_min, turns.second_median, turns.first_min);
+        print_row(options, subject, with->step, text, of_wreck[0], of_wreck[repeat / 2], times[0]);
     }
     for (uint32_t i = 0; ok && i < COMPACTIONS; i++) {
         ok = mspring_network_expand(wreck.network) == MSPRING_OK &&
              compact(wreck.network, &seconds[i], &pieces[i], error);
     }
-    if (ok && bench_turns_measure(&whole, &broken, repeat, &turns, error)) {
+    if (ok && measure_steps(&whole, &broken, repeat, times, error)) {
         const double median = bench_median(seconds, COMPACTIONS), median_piece = bench_median(pieces, COMPACTIONS);
         snprintf(text, sizeof text, "%s, compact", bench_wreck_name(kind));
-        print_row(options, subject, with->step, text, turns.second_min, turns.second_median, turns.first_min);
-        print_row(options, subject, with->step, "  to compact it", seconds[0], median, turns.first_min);
-        print_row(options, subject, with->step, "  the longest piece of that", pieces[0], median_piece,
-                  turns.first_min);
+        print_row(options, subject, with->step, text, of_wreck[0], of_wreck[repeat / 2], times[0]);
+        print_row(options, subject, with->step, "  to compact it", seconds[0], median, times[0]);
+        print_row(options, subject, with->step, "  the longest piece of that", pieces[0], median_piece, times[0]);
     } else {
         ok = false;
     }
@@ -498,7 +515,7 @@ static bool measure_level(const bench_scene *subject, const bench_options *optio
     for (int viewed = 0; ok && viewed < 2; viewed++) {
         ok = measure_sleep(&with, options, subject, level, viewed == 1, repeat, &error);
     }
-    for (bench_wreck kind = 0; ok && repeat >= 5 && kind < BENCH_WRECKS; kind++) {
+    for (bench_wreck kind = 0; ok && kind < BENCH_WRECKS; kind++) {
         ok = measure_wreck(&with, options, subject, level, kind, repeat, times, &error);
     }
     if (!ok) {
