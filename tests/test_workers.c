@@ -11,6 +11,7 @@
 
 #include "allocator.h"
 #include "hosts.h"
+#include "implicit/implicit.h"
 #include "recipe.h"
 #include "support.h"
 
@@ -80,6 +81,18 @@ static void any_host_gives_the_same_bits(void **state) {
     recipe_free(&made);
 }
 
+/// Steps that are shared even where workers share a core, which else one worker takes alone.
+static uint64_t hash_of_shared_steps(mspring_network *network) {
+    uint64_t hash = support_hash(network);
+    for (int step = 0; step < 3; step++) {
+        check_ok(mspring_network_apply_force(network, 1000, 50, 100));
+        network->implicit->alone = 0;
+        support_steps(network, 1, 0.02);
+        hash = hash * 31 + support_hash(network);
+    }
+    return hash;
+}
+
 /// Steps of an implicit network, some of its springs broken on the way.
 static uint64_t run_implicit(const recipe *made, const mspring_solver_def *solver, uint32_t worker_count,
                              const mspring_tasks *tasks) {
@@ -88,11 +101,11 @@ static uint64_t run_implicit(const recipe *made, const mspring_solver_def *solve
     def.tasks = tasks;
     mspring_network *network = recipe_network(made, &def);
     check_ok(mspring_network_set_solver(network, solver));
-    uint64_t hash = hash_of_steps(network);
+    uint64_t hash = hash_of_shared_steps(network);
     for (mspring_id spring = 100; spring < 2000; spring += 100) {
         check_ok(mspring_network_break_springs(network, &spring, 1));
     }
-    hash = hash * 31 + hash_of_steps(network);
+    hash = hash * 31 + hash_of_shared_steps(network);
     mspring_network_destroy(network);
     return hash;
 }
@@ -105,7 +118,6 @@ static void any_number_of_workers_gives_the_same_implicit_bits(void **state) {
     solver.solver = MSPRING_SOLVER_IMPLICIT;
     for (mspring_integrator i = MSPRING_INTEGRATOR_GA0; i <= MSPRING_INTEGRATOR_EULER; i++) {
         solver.integrator = i;
-        solver.substeps = 1 + (uint32_t)i;
         solver.coarse_period = 1 + (uint32_t)i;
         const uint64_t expected = run_implicit(&made, &solver, 1, NULL);
         for (size_t w = 0; w < COUNT_OF(worker_counts); w++) {
@@ -118,6 +130,27 @@ static void any_number_of_workers_gives_the_same_implicit_bits(void **state) {
     // The direct solver shares what is around its factorisation.
     solver.solver = MSPRING_SOLVER_DIRECT;
     assert_int_equal(run_implicit(&made, &solver, 3, NULL), run_implicit(&made, &solver, 1, NULL));
+    recipe_free(&made);
+}
+
+/// Whoever had to sleep often takes the next substeps alone, with the same bits.
+static void workers_without_cores_are_left_alone(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    mspring_network_def def = support_def(-9.8f, 1);
+    def.solver = MSPRING_SOLVER_IMPLICIT;
+    mspring_network *alone = recipe_network(&made, &def);
+    def.worker_count = 2;
+    mspring_network *shared = recipe_network(&made, &def);
+    for (int step = 0; step < 4; step++) {
+        shared->implicit->alone = step % 2 == 0 ? 0 : 3;
+        support_steps(alone, 1, 0.02);
+        support_steps(shared, 1, 0.02);
+        assert_int_equal(support_hash(shared), support_hash(alone));
+        assert_true(step % 2 == 0 || shared->implicit->alone == 2);
+    }
+    mspring_network_destroy(shared);
+    mspring_network_destroy(alone);
     recipe_free(&made);
 }
 
@@ -275,6 +308,7 @@ int main(void) {
         cmocka_unit_test(any_number_of_workers_gives_the_same_bits),
         cmocka_unit_test(any_host_gives_the_same_bits),
         cmocka_unit_test(any_number_of_workers_gives_the_same_implicit_bits),
+        cmocka_unit_test(workers_without_cores_are_left_alone),
         cmocka_unit_test(a_clone_has_room_for_its_workers),
         cmocka_unit_test(networks_with_workers_live_side_by_side),
         cmocka_unit_test(bad_workers_are_refused),

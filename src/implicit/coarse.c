@@ -48,12 +48,10 @@ mspring_result mspringi_coarse_create(mspringi_coarse *coarse, const mspringi_ti
     *coarse = (mspringi_coarse){0};
     coarse->first = mspringi_alloc(memory, tiles->capacity, sizeof *coarse->first);
     coarse->row = mspringi_alloc(memory, tiles->capacity, sizeof *coarse->row);
-    coarse->unknowns = mspringi_alloc(memory, tiles->capacity, sizeof *coarse->unknowns);
     coarse->restricted = mspringi_alloc(memory, tiles->capacity, sizeof *coarse->restricted);
     coarse->values = mspringi_alloc(memory, tiles->value_capacity, sizeof *coarse->values);
     coarse->far_turns = mspringi_alloc(memory, tiles->value_capacity / BLOCK_VALUES + 1, sizeof *coarse->far_turns);
-    if (coarse->first && coarse->row && coarse->unknowns && coarse->restricted && coarse->values &&
-        coarse->far_turns) {
+    if (coarse->first && coarse->row && coarse->restricted && coarse->values && coarse->far_turns) {
         mspringi_coarse_shape(coarse, tiles);
         return MSPRING_OK;
     }
@@ -67,7 +65,6 @@ void mspringi_coarse_destroy(mspringi_coarse *coarse, mspringi_memory *memory) {
     mspringi_free(memory, coarse->row);
     mspringi_free(memory, coarse->values);
     mspringi_free(memory, coarse->far_turns);
-    mspringi_free(memory, coarse->unknowns);
     mspringi_free(memory, coarse->restricted);
     *coarse = (mspringi_coarse){0};
 }
@@ -298,11 +295,11 @@ void mspringi_coarse_factor(mspringi_coarse *coarse) {
 }
 
 // Subtract from a tile's right-hand side what the earlier ones make of it.
-static void solve_forward(const mspringi_coarse *coarse, uint32_t t) {
+static void solve_forward(const mspringi_coarse *coarse, double (*unknowns)[MSPRINGI_RIGID], uint32_t t) {
     const uint32_t first = coarse->first[t];
     const block_rows rows = rows_of(coarse, t, first);
-    const double *before = coarse->unknowns[first];
-    double *x = coarse->unknowns[t];
+    const double *before = unknowns[first];
+    double *x = unknowns[t];
     const size_t count = (size_t)MSPRINGI_RIGID * (t - first);
     // Three sums in each row, so that they do not wait for each other.
     for (int i = 0; i < MSPRINGI_RIGID; ++i) {
@@ -316,31 +313,31 @@ static void solve_forward(const mspringi_coarse *coarse, uint32_t t) {
 }
 
 // Have a tile's unknowns, now that they are known, count in the earlier ones'.
-static void solve_backward(const mspringi_coarse *coarse, uint32_t t) {
+static void solve_backward(const mspringi_coarse *coarse, double (*unknowns)[MSPRINGI_RIGID], uint32_t t) {
     const uint32_t first = coarse->first[t];
     const block_rows rows = rows_of(coarse, t, first);
-    double *before = coarse->unknowns[first];
-    const double *x = coarse->unknowns[t], x0 = x[0], x1 = x[1], x2 = x[2];
+    double *before = unknowns[first];
+    const double *x = unknowns[t], x0 = x[0], x1 = x[1], x2 = x[2];
     const size_t count = (size_t)MSPRINGI_RIGID * (t - first);
     for (size_t k = 0; k < count; ++k)
         before[k] -= (rows.row[0][k] * x0 + rows.row[1][k] * x1) + rows.row[2][k] * x2;
 }
 
-double mspringi_coarse_solve(mspringi_coarse *coarse) {
+double mspringi_coarse_solve(const mspringi_coarse *coarse, double (*unknowns)[MSPRINGI_RIGID]) {
     double sum = 0.0;
     for (uint32_t t = 0; t < coarse->count; ++t)
-        solve_forward(coarse, t);
+        solve_forward(coarse, unknowns, t);
     for (uint32_t t = 0; t < coarse->count; ++t) {
         const block_rows inverse = rows_of(coarse, t, t);
-        double *x = coarse->unknowns[t];
+        double *x = unknowns[t];
         const double y0 = x[0], y1 = x[1], y2 = x[2];
         for (int i = 0; i < MSPRINGI_RIGID; ++i)
             x[i] = (inverse.row[i][0] * y0 + inverse.row[i][1] * y1) + inverse.row[i][2] * y2;
     }
     for (uint32_t t = coarse->count; t-- > 0;)
-        solve_backward(coarse, t);
+        solve_backward(coarse, unknowns, t);
     for (uint32_t t = 0; t < coarse->count; ++t)
         for (int i = 0; i < MSPRINGI_RIGID; ++i)
-            sum += coarse->restricted[t][i] * coarse->unknowns[t][i];
+            sum += coarse->restricted[t][i] * unknowns[t][i];
     return sum;
 }

@@ -19,7 +19,6 @@ typedef struct mspringi_coarse {
     double *values;  ///< the lower triangle, then its factor with reciprocals on the diagonal
     size_t value_count;
     double *far_turns; ///< [blocks] what each block's springs resist a turn of the earlier of its tiles with
-    double (*unknowns)[MSPRINGI_RIGID];   ///< [tiles]
     double (*restricted)[MSPRINGI_RIGID]; ///< [tiles] the right-hand side
 } mspringi_coarse;
 
@@ -53,6 +52,6 @@ void mspringi_coarse_complete(mspringi_coarse *coarse, const mspringi_tiles *til
 void mspringi_coarse_factor(mspringi_coarse *coarse);
 
 /// Solve for restricted. Returns restricted . unknowns.
-double mspringi_coarse_solve(mspringi_coarse *coarse);
+double mspringi_coarse_solve(const mspringi_coarse *coarse, double (*unknowns)[MSPRINGI_RIGID]);
 
 #endif

@@ -15,6 +15,14 @@
 /// Slots from which more than one worker is worth it.
 #define SMALLEST_SHARED_SLOTS 4096
 
+/// Workers meet some forty times in a substep. Where they have to share cores, these become sleeps, and one worker
+/// is faster alone (two workers on cores with a load of 10: 2.3 times, 1800x5). So after a substep with more than
+/// so many sleeps the next ones are taken alone: so many, and twice as many each time, up to so many. The bits are
+/// the same.
+#define BEARABLE_SLEEPS 6
+#define SHORTEST_PATIENCE 64
+#define LONGEST_PATIENCE 1024
+
 /* ----------------------------------------------------------------------------------------------------- creation */
 
 static bool reserve_field(mspringi_memory *memory, mspringi_field *field, size_t slots) {
@@ -112,31 +120,36 @@ static mspring_result allocate_iterate(mspringi_implicit *n, mspring_network *ne
     return MSPRING_OK;
 }
 
-// Carry rows for the workers that there are now.
-static mspring_result reserve_carry(mspringi_implicit *n, mspring_network *network) {
+// What each of the workers that there are now has for itself.
+static mspring_result reserve_crew(mspringi_implicit *n, mspring_network *network) {
     mspringi_memory *memory = &network->memory;
-    const uint32_t rows = mspringi_tasks_concurrency(network->tasks);
+    const uint32_t crew = mspringi_tasks_concurrency(network->tasks);
     const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH;
-    if (n->carry_rows >= rows)
+    if (n->crew >= crew)
         return MSPRING_OK;
-    double *forces = mspringi_alloc(memory, 2 * carry * rows, sizeof *forces);
-    float *others = mspringi_alloc(memory, 3 * carry * rows, sizeof *others);
-    if (!forces || !others) {
+    double *forces = mspringi_alloc(memory, 2 * carry * crew, sizeof *forces);
+    float *others = mspringi_alloc(memory, 3 * carry * crew, sizeof *others);
+    double(*unknowns)[MSPRINGI_RIGID] = mspringi_alloc(memory, (size_t)n->tiles.capacity * crew, sizeof *unknowns);
+    if (!forces || !others || !unknowns) {
         mspringi_free(memory, forces);
         mspringi_free(memory, others);
-        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for what rows hand on to rows");
+        mspringi_free(memory, unknowns);
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for what %u workers compute",
+                             (unsigned)crew);
     }
     mspringi_free(memory, n->force_carry);
     mspringi_free(memory, n->carry);
+    mspringi_free(memory, n->unknowns);
     n->force_carry = forces;
     n->carry = others;
-    n->carry_rows = rows;
+    n->unknowns = unknowns;
+    n->crew = crew;
     return MSPRING_OK;
 }
 
 mspring_result mspringi_implicit_reserve(mspring_network *network) {
-    mspring_result result = network->implicit ? reserve_carry(network->implicit, network) : MSPRING_OK;
-    return result == MSPRING_OK && network->fallback ? reserve_carry(network->fallback, network) : result;
+    mspring_result result = network->implicit ? reserve_crew(network->implicit, network) : MSPRING_OK;
+    return result == MSPRING_OK && network->fallback ? reserve_crew(network->fallback, network) : result;
 }
 
 // Cut into tiles of the size asked for or else, beginning at the default, of the first whose coarse matrix is cheap
@@ -179,7 +192,7 @@ mspring_result mspringi_implicit_create(mspring_network *network, const mspring_
     if (result == MSPRING_OK)
         result = n->is_direct ? mspringi_direct_create(&n->direct, network) : make_two_level(n, network);
     if (result == MSPRING_OK)
-        result = reserve_carry(n, network);
+        result = reserve_crew(n, network);
     if (result == MSPRING_OK)
         *implicit = n;
     else
@@ -218,7 +231,7 @@ void mspringi_implicit_destroy(mspringi_implicit *n, mspringi_memory *memory) {
     void *const blocks[] = {n->history.low.x,  n->backup.low.x, n->x,         n->velocity.x,  n->residual.x,
                             n->displacement.x, n->direction.x,  n->product.x, n->scaled.x,    n->arm.x,
                             n->mass,           n->diagonal,     n->factors,   n->force_carry, n->carry,
-                            n->sums,           n->flights};
+                            n->sums,           n->flights,      n->unknowns};
     for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; ++i)
         mspringi_free(memory, blocks[i]);
     mspringi_free(memory, n);
@@ -256,7 +269,7 @@ void mspringi_implicit_restore(mspring_network *network) {
     // The factor is one of the failed step's. The others are zero between steps, or where there is no tile, unless
     // numbers overflowed.
     n->age = 0;
-    const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH * n->carry_rows;
+    const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH * n->crew;
     memset(n->force_carry, 0, 2 * carry * sizeof *n->force_carry);
     memset(n->carry, 0, 3 * carry * sizeof *n->carry);
     if (!n->is_direct)
@@ -362,17 +375,38 @@ static void run_substep(void *argument, uint32_t index, uint32_t worker) {
     mspringi_land(substep, &mate, alpha);
 }
 
+static void choose_crew(mspringi_substep_of *substep) {
+    const mspring_network *network = substep->network;
+    mspringi_implicit *n = network->implicit;
+    const bool shared = mspringi_slot_count(network) >= SMALLEST_SHARED_SLOTS && n->alone == 0;
+    n->alone -= n->alone > 0;
+    substep->workers = shared ? mspringi_tasks_concurrency(network->tasks) : 1;
+    substep->progress = substep->workers > 1 ? mspringi_tasks_progress(network->tasks) : NULL;
+}
+
+// Whether the workers had a core each.
+static void judge_crew(mspringi_implicit *n, uint32_t sleeps) {
+    if (sleeps <= BEARABLE_SLEEPS) {
+        n->patience = 0;
+        return;
+    }
+    const uint32_t longer = n->patience > 0 ? 2 * n->patience : SHORTEST_PATIENCE;
+    n->patience = longer < LONGEST_PATIENCE ? longer : LONGEST_PATIENCE;
+    n->alone = n->patience;
+}
+
 void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
     mspringi_implicit *n = network->implicit;
     follow_edits(network);
-    const bool shared = mspringi_slot_count(network) >= SMALLEST_SHARED_SLOTS;
     mspringi_substep_of substep = {.network = network, .base = base, .h = h};
-    substep.workers = shared ? mspringi_tasks_concurrency(network->tasks) : 1;
-    substep.progress = substep.workers > 1 ? mspringi_tasks_progress(network->tasks) : NULL;
     for (; count > 0; --count) {
+        choose_crew(&substep);
         mspringi_scheme_prepare(&substep);
+        const uint32_t sleeps = mspringi_tasks_sleeps(network->tasks);
         mspringi_tasks_run(substep.progress ? network->tasks : NULL, substep.workers, run_substep, &substep);
         mspringi_scheme_close(&substep);
         n->age = n->age + 1 < n->coarse_period ? n->age + 1 : 0;
+        if (substep.progress)
+            judge_crew(n, mspringi_tasks_sleeps(network->tasks) - sleeps);
     }
 }

@@ -51,18 +51,20 @@ typedef struct mspringi_implicit {
     double *x, *y;           ///< [slots] predicted positions, in one block
     mspringi_field velocity; ///< after the substep, if d were 0
     mspringi_field residual, displacement, direction, product, scaled;
-    mspringi_field arm;            ///< from the mass centre of its tile to each particle, m
-    float *mass;                   ///< [slots] scaled; 0 if pinned or empty
-    float *diagonal;               ///< [slots] xx, then xy, then yy of A's blocks, then of their inverses
-    float *factors;                ///< of lattices, chains and leftover springs, one behind the other
-    float *leftover_factors;       ///< where those of the leftover springs begin: [block][factor][lane]
-    double *force_carry;           ///< carry rows, one for each worker: see mspringi_system
-    float *carry;                  ///< likewise
-    uint32_t carry_rows;           ///< workers that there are some for
-    float *sums;                   ///< [chunks]
-    mspringi_tile_flight *flights; ///< [tiles]
-    double coarse_product;         ///< r . Z Ac^-1 Z^T r
-    double leftover_product;       ///< what leftover springs add to p . A p
+    mspringi_field arm;                 ///< from the mass centre of its tile to each particle, m
+    float *mass;                        ///< [slots] scaled; 0 if pinned or empty
+    float *diagonal;                    ///< [slots] xx, then xy, then yy of A's blocks, then of their inverses
+    float *factors;                     ///< of lattices, chains and leftover springs, one behind the other
+    float *leftover_factors;            ///< where those of the leftover springs begin: [block][factor][lane]
+    double *force_carry;                ///< carry rows, one for each worker: see mspringi_system
+    float *carry;                       ///< likewise
+    double (*unknowns)[MSPRINGI_RIGID]; ///< [workers][tiles] of the coarse matrix; each worker solves for them
+    uint32_t crew;                      ///< workers that there are carry rows and unknowns for
+    uint32_t alone;                     ///< substeps to come that one worker takes, as others had no core
+    uint32_t patience;                  ///< how many these were to be
+    float *sums;                        ///< [chunks]
+    mspringi_tile_flight *flights;      ///< [tiles]
+    double leftover_product;            ///< what leftover springs add to p . A p
     mspringi_system system;
     mspringi_iterate iterate;
     mspringi_edits seen; ///< the edits that it has followed

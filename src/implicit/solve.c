@@ -55,23 +55,24 @@ static void factor_coarse(const mspring_network *network) {
 
 /* --------------------------------------------------------------------------------------------------- iteration */
 
-// Apply Ac^-1 to Z^T r, into the coarse unknowns. Returns r . Z Ac^-1 Z^T r.
+static double (*unknowns_of(const mspringi_implicit *n, const mspringi_mate *mate))[MSPRINGI_RIGID] {
+    return n->unknowns + (size_t)mate->index * n->tiles.capacity;
+}
+
+// Apply Ac^-1 to Z^T r, into the mate's own coarse unknowns: to compute them takes each of them less than to wait
+// for another. Returns r . Z Ac^-1 Z^T r.
 static double correct(const substep_of *substep, mspringi_mate *mate, bool is_first) {
     const mspring_network *network = substep->network;
     mspringi_implicit *n = network->implicit;
     const mspringi_tiles *tiles = &n->tiles;
+    if (is_first && mate->index == 0)
+        factor_coarse(network);
     for (size_t t = mspringi_share_of(mate, tiles->count); t < mspringi_share_end(mate, tiles->count); ++t)
         network->kernels->system.restrict_to_tile(&n->iterate, tiles->parts + tiles->first_part[t],
                                                   tiles->first_part[t + 1] - tiles->first_part[t],
                                                   n->coarse.restricted[t]);
     mspringi_meet(mate);
-    if (mate->index == 0) {
-        if (is_first)
-            factor_coarse(network);
-        n->coarse_product = mspringi_coarse_solve(&n->coarse);
-    }
-    mspringi_meet(mate);
-    return n->coarse_product;
+    return mspringi_coarse_solve(&n->coarse, unknowns_of(n, mate));
 }
 
 // direction = z + beta direction, or what of it there is to be.
@@ -81,7 +82,7 @@ static void turn(const substep_of *substep, mspringi_mate *mate, mspringi_turn w
     const mspringi_slots slots = mspringi_slots_of(network, mate);
     const mspringi_part_range parts = mspringi_tiles_parts(&n->tiles, slots.first, slots.end);
     network->kernels->system.turn[what](&n->iterate, parts.parts, parts.count,
-                                        (const double(*)[MSPRINGI_RIGID])n->coarse.unknowns, beta);
+                                        (const double(*)[MSPRINGI_RIGID])unknowns_of(n, mate), beta);
     mspringi_meet(mate);
 }
 

@@ -56,6 +56,10 @@ void mspringi_progress_reset(mspringi_progress *progress, uint32_t value) {
     atomic_store_explicit(&progress->value, value, memory_order_relaxed);
 }
 
+uint32_t mspringi_progress_sleeps(const mspringi_progress *progress) {
+    return progress->sleeps;
+}
+
 // Value and sleepers are written by different threads, each of which then reads the other: sequentially consistent,
 // so at least one of the two sees what the other wrote (Dekker).
 void mspringi_progress_advance(mspringi_progress *progress, uint32_t value) {
@@ -112,6 +116,11 @@ void mspringi_progress_destroy(mspringi_progress *progress) {
 
 void mspringi_progress_reset(mspringi_progress *progress, uint32_t value) {
     progress->value = value;
+}
+
+uint32_t mspringi_progress_sleeps(const mspringi_progress *progress) {
+    (void)progress;
+    return 0;
 }
 
 void mspringi_progress_advance(mspringi_progress *progress, uint32_t value) {

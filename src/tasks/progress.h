@@ -45,6 +45,9 @@ void mspringi_progress_destroy(mspringi_progress *progress);
 /// Set a counter while nobody waits on it.
 void mspringi_progress_reset(mspringi_progress *progress, uint32_t value);
 
+/// How many waits have ended up asleep so far. Nobody may be waiting.
+uint32_t mspringi_progress_sleeps(const mspringi_progress *progress);
+
 /// Say how far this thread is. What it has written before is seen by those who waited for it. Only one thread
 /// advances a counter; values grow, and go on from 0 after the largest.
 void mspringi_progress_advance(mspringi_progress *progress, uint32_t value);

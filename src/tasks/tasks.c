@@ -111,6 +111,13 @@ mspringi_progress *mspringi_tasks_progress(mspringi_tasks *tasks) {
     return tasks ? tasks->counters : NULL;
 }
 
+uint32_t mspringi_tasks_sleeps(const mspringi_tasks *tasks) {
+    uint32_t sleeps = 0;
+    for (uint32_t i = 0; tasks && i < tasks->counter_count; ++i)
+        sleeps += mspringi_progress_sleeps(&tasks->counters[i]);
+    return sleeps;
+}
+
 void mspringi_tasks_run(mspringi_tasks *tasks, uint32_t count, mspring_task_fn fn, void *argument) {
     job of = {fn, argument};
     if (!tasks || count <= 1) {

@@ -45,6 +45,9 @@ typedef void (*mspringi_range_fn)(void *argument, size_t first, size_t end);
 void mspringi_tasks_run_ranges(mspringi_tasks *tasks, size_t count, size_t grain, mspringi_range_fn fn,
                                void *argument);
 
+/// How often a body that waited has had to sleep, in all runs: between runs only. 0 for NULL.
+uint32_t mspringi_tasks_sleeps(const mspringi_tasks *tasks);
+
 /// Counters for bodies that wait for each other: [mspringi_tasks_concurrency()], all 0 when a run begins. NULL if
 /// tasks is.
 mspringi_progress *mspringi_tasks_progress(mspringi_tasks *tasks);
