@@ -18,12 +18,23 @@ double clock_seconds(void) {
     QueryPerformanceFrequency(&per_second);
     return (double)now.QuadPart / (double)per_second.QuadPart;
 }
+
+double clock_processor_seconds(void) {
+    return clock_seconds();
+}
 #else
 #include <time.h>
 
 double clock_seconds(void) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+double clock_processor_seconds(void) {
+    struct timespec now;
+    if (clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now) != 0)
+        return clock_seconds();
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 #endif

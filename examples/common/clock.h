@@ -8,4 +8,8 @@
 /// Seconds since some moment in the past.
 double clock_seconds(void);
 
+/// Seconds that this thread has had a processor for, where the system tells; else clock_seconds(). What others do
+/// on the machine hardly matters to it.
+double clock_processor_seconds(void);
+
 #endif

@@ -1,0 +1,199 @@
+/// @file scatter.c
+/// Frame, ticks of decades, marks, and the front.
+///
+/// SPDX-License-Identifier: MIT
+#include "draw/scatter.h"
+#include "draw/internal.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const draw_colour ink = 0x26262e;
+static const draw_colour pale_ink = 0x6b6c76;
+static const draw_colour strong_grid = 0xd3d5dc;
+static const draw_colour weak_grid = 0xf0f1f4;
+static const draw_colour front_colour = 0xb9bcc8;
+static const draw_colour paper = 0xffffff;
+
+enum { LEFT = 62, RIGHT = 18, TOP = 76, BOTTOM = 52 };
+enum { MARK_RADIUS = 5 };
+
+// One direction: the powers of ten it spans, and the pixels.
+typedef struct decade_axis {
+    double low, high;
+    double start, end;
+} decade_axis;
+
+static double axis_place(const decade_axis *axis, double value) {
+    return axis->start + (log10(value) - axis->low) / (axis->high - axis->low) * (axis->end - axis->start);
+}
+
+static bool is_drawn(const scatter_point *point) {
+    return point->x > 0 && point->y > 0;
+}
+
+// Room for all points and a little around them.
+static void span(const scatter *drawn, decade_axis *across, decade_axis *up) {
+    across->low = up->low = INFINITY;
+    across->high = up->high = -INFINITY;
+    for (size_t s = 0; s < drawn->series_count; s++) {
+        for (size_t i = 0; i < drawn->series[s].count; i++) {
+            const scatter_point *point = &drawn->series[s].points[i];
+            if (!is_drawn(point))
+                continue;
+            across->low = fmin(across->low, log10(point->x));
+            across->high = fmax(across->high, log10(point->x));
+            up->low = fmin(up->low, log10(point->y));
+            up->high = fmax(up->high, log10(point->y));
+        }
+    }
+    if (!(across->low <= across->high))
+        across->low = across->high = up->low = up->high = 0;
+    const double margin_x = 0.08 * fmax(across->high - across->low, 1);
+    const double margin_y = 0.08 * fmax(up->high - up->low, 1);
+    across->low -= margin_x;
+    across->high += 1.5 * margin_x; // for labels
+    up->low -= margin_y;
+    up->high += margin_y;
+}
+
+static void format_tick(char *text, size_t size, double value, bool percent) {
+    const double shown = percent ? 100 * value : value;
+    if (shown >= 999999)
+        snprintf(text, size, "%.0fe%.0f", shown / pow(10, floor(log10(shown) + 1e-9)), floor(log10(shown) + 1e-9));
+    else
+        snprintf(text, size, "%.6g%s", shown, percent ? " %" : "");
+}
+
+// Lines at 1, 2 ... 9 of each power of ten; numbers at 1, and at 2 and 5 where there are few powers.
+static void draw_ticks(figure *target, const decade_axis *axis, const decade_axis *other, bool vertical,
+                       bool percent) {
+    char text[32];
+    const bool few = axis->high - axis->low < 2.2;
+    for (int power = (int)floor(axis->low); power <= (int)ceil(axis->high); power++) {
+        for (int digit = 1; digit <= 9; digit++) {
+            const double value = digit * pow(10, power);
+            if (log10(value) < axis->low || log10(value) > axis->high)
+                continue;
+            const double at = axis_place(axis, value);
+            const draw_colour colour = digit == 1 ? strong_grid : weak_grid;
+            if (vertical)
+                figure_line(target, other->start, at, other->end, at, 1, colour);
+            else
+                figure_line(target, at, other->start, at, other->end, 1, colour);
+            if (digit != 1 && !(few && (digit == 2 || digit == 5)))
+                continue;
+            format_tick(text, sizeof text, value, percent);
+            if (vertical)
+                figure_text(target, other->start - 8, at + 4, 8.5, FIGURE_RIGHT, ink, text);
+            else
+                figure_text(target, at, other->start + 18, 8.5, FIGURE_CENTRE, ink, text);
+        }
+    }
+}
+
+static void draw_diamond(figure *target, double x, double y, double radius, draw_colour colour) {
+    // Filled by strokes that lie close.
+    for (double r = radius; r > 0; r -= 1) {
+        figure_line(target, x - r, y, x, y - r, 1.6, colour);
+        figure_line(target, x, y - r, x + r, y, 1.6, colour);
+        figure_line(target, x + r, y, x, y + r, 1.6, colour);
+        figure_line(target, x, y + r, x - r, y, 1.6, colour);
+    }
+}
+
+static void draw_shape(figure *target, scatter_mark mark, double x, double y, double radius, draw_colour colour) {
+    const double half = 0.88 * radius;
+    switch (mark) {
+    case SCATTER_DISC:
+        figure_disc(target, x, y, radius, colour);
+        break;
+    case SCATTER_SQUARE:
+        figure_rectangle(target, x - half, y - half, 2 * half, 2 * half, colour);
+        break;
+    case SCATTER_DIAMOND:
+        draw_diamond(target, x, y, 1.15 * radius, colour);
+        break;
+    }
+}
+
+// With an edge of paper, so that marks that overlap can be told apart.
+static void draw_mark(figure *target, scatter_mark mark, double x, double y, draw_colour colour) {
+    draw_shape(target, mark, x, y, MARK_RADIUS + 1.3, paper);
+    draw_shape(target, mark, x, y, MARK_RADIUS, colour);
+}
+
+static void draw_series(figure *target, const scatter_series *series, const decade_axis *across,
+                        const decade_axis *up) {
+    for (size_t i = 0; i < series->count; i++) {
+        const scatter_point *point = &series->points[i];
+        if (!is_drawn(point))
+            continue;
+        const double x = axis_place(across, point->x), y = axis_place(up, point->y);
+        if (point->ringed) {
+            figure_disc(target, x, y, MARK_RADIUS + 6, ink);
+            figure_disc(target, x, y, MARK_RADIUS + 4.4, paper);
+        }
+        draw_mark(target, series->mark, x, y, series->colour);
+    }
+}
+
+// Labels go over all marks.
+static void draw_labels(figure *target, const scatter_series *series, const decade_axis *across,
+                        const decade_axis *up) {
+    for (size_t i = 0; i < series->count; i++) {
+        const scatter_point *point = &series->points[i];
+        if (!is_drawn(point) || !point->label[0])
+            continue;
+        const double away = MARK_RADIUS + (point->ringed ? 9 : 4);
+        const double x = axis_place(across, point->x) + (series->labels_below ? -away : away);
+        const double y = axis_place(up, point->y) + (series->labels_below ? away + 5 : -away + 2);
+        figure_text(target, x, y, 7, series->labels_below ? FIGURE_RIGHT : FIGURE_LEFT, pale_ink, point->label);
+    }
+}
+
+// From each point of the front straight on at its error, down where the next one costs as much.
+static void draw_front(figure *target, const scatter *drawn, const decade_axis *across, const decade_axis *up) {
+    for (size_t i = 0; i < drawn->front_count; i++) {
+        const scatter_point *point = &drawn->front[i];
+        const double x = axis_place(across, point->x), y = axis_place(up, point->y);
+        const bool last = i + 1 == drawn->front_count;
+        const double next = last ? across->end : axis_place(across, drawn->front[i + 1].x);
+        figure_line(target, x, y, next, y, 3, front_colour);
+        if (!last)
+            figure_line(target, next, y, next, axis_place(up, drawn->front[i + 1].y), 3, front_colour);
+    }
+}
+
+// The series' names, in a row above the frame.
+static void draw_legend(figure *target, const scatter *drawn, double x, double y) {
+    for (size_t s = 0; s < drawn->series_count; s++) {
+        const scatter_series *series = &drawn->series[s];
+        if (!series->name)
+            continue;
+        draw_mark(target, series->mark, x + MARK_RADIUS, y - 4, series->colour);
+        figure_text(target, x + 2 * MARK_RADIUS + 6, y, 8.5, FIGURE_LEFT, ink, series->name);
+        x += 2 * MARK_RADIUS + 6 + stroke_font_width(8.5, series->name) + 20;
+    }
+    if (drawn->front_count > 0) {
+        figure_line(target, x, y - 4, x + 20, y - 4, 3, front_colour);
+        figure_text(target, x + 26, y, 8.5, FIGURE_LEFT, ink, "front");
+    }
+}
+
+void scatter_draw(figure *target, const scatter *drawn, double left, double top, double width, double height) {
+    decade_axis across = {.start = left + LEFT, .end = left + width - RIGHT};
+    decade_axis up = {.start = top + height - BOTTOM, .end = top + TOP};
+    span(drawn, &across, &up);
+    draw_ticks(target, &across, &up, false, false);
+    draw_ticks(target, &up, &across, true, drawn->percent);
+    draw_front(target, drawn, &across, &up);
+    for (size_t s = 0; s < drawn->series_count; s++)
+        draw_series(target, &drawn->series[s], &across, &up);
+    for (size_t s = 0; s < drawn->series_count; s++)
+        draw_labels(target, &drawn->series[s], &across, &up);
+    figure_text(target, (across.start + across.end) / 2, up.start + 40, 9.5, FIGURE_CENTRE, ink, drawn->x_label);
+    figure_text(target, left + 14, up.end - 14, 9.5, FIGURE_LEFT, ink, drawn->y_label);
+    figure_text(target, left + 14, top + 20, 11.5, FIGURE_LEFT, ink, drawn->title);
+    draw_legend(target, drawn, left + 14, top + 42);
+}
