@@ -294,8 +294,8 @@ enum {
     MSPRING_SOLVER_IMPLICIT = 1,
     /// The same system, solved by a factorisation (block Cholesky) that is computed anew in each substep: exact but
     /// for rounding, so that there is nothing to choose. Springs and dampers are linearised at x + h v itself. The
-    /// cost for each particle grows with how wide the network is: a substep costs 30 to 100 explicit ones where it
-    /// is thin (a bar of 5 rows of any length), 200 to 600 for 70 rows. The order of elimination is found, and all
+    /// cost for each particle grows with how wide the network is: a substep costs 15 to 120 explicit ones where it
+    /// is thin (a bar of 5 rows of any length), 400 to 800 for 70 rows. The order of elimination is found, and all
     /// memory taken, when the solver is chosen; broken springs and pins need no new one.
     /// The factor is in single precision as long as springs, seen over a substep, are not over some thousand times
     /// as stiff as their particles are heavy (4 to 8 k h^2 / m beyond 16384; 1e9 N/m between masses of 73 kg at
