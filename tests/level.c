@@ -10,7 +10,7 @@
 #include "support.h"
 
 mspring_simd level_from_arguments(int argc, char **argv) {
-    for (mspring_simd level = MSPRING_SIMD_SCALAR; argc > 1 && level <= MSPRING_SIMD_NEON; level++) {
+    for (mspring_simd level = MSPRING_SIMD_SCALAR; argc > 1 && level <= MSPRING_SIMD_WASM; level++) {
         if (strcmp(argv[1], mspring_simd_name(level)) != 0) {
             continue;
         }

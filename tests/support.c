@@ -174,7 +174,7 @@ uint64_t support_hash(const mspring_network *network) {
 
 uint32_t support_levels(mspring_simd levels[MSPRING_SIMD_AVX512]) {
     uint32_t count = 0;
-    for (mspring_simd level = MSPRING_SIMD_SCALAR; level <= MSPRING_SIMD_NEON; level++) {
+    for (mspring_simd level = MSPRING_SIMD_SCALAR; level <= MSPRING_SIMD_WASM; level++) {
         if (mspring_simd_available(level)) {
             levels[count++] = level;
         }

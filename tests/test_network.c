@@ -126,7 +126,7 @@ static void bad_settings_are_refused(void **state) {
     REFUSED(guard, MSPRING_GUARD_BOUNDS + 1, MSPRING_ERROR_ARGUMENT, "guard");
     REFUSED(max_substeps, 1000001, MSPRING_ERROR_ARGUMENT, "max_substeps");
     REFUSED(simd_level, -1, MSPRING_ERROR_ARGUMENT, "simd_level");
-    REFUSED(simd_level, MSPRING_SIMD_NEON + 1, MSPRING_ERROR_ARGUMENT, "simd_level");
+    REFUSED(simd_level, MSPRING_SIMD_WASM + 1, MSPRING_ERROR_ARGUMENT, "simd_level");
     REFUSED(struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_network_def");
     REFUSED(struct_size, sizeof good - 8, MSPRING_ERROR_STRUCT, "mspring_network_def");
     REFUSED(struct_size, sizeof good + 8, MSPRING_ERROR_STRUCT, "mspring_network_def");

@@ -28,10 +28,10 @@ static mspring_simd lower(mspring_simd level, mspring_simd limit) {
 static void each_lowers_and_neither_raises(void **state) {
     (void)state;
     const mspring_simd best = mspring_simd_supported();
-    for (mspring_simd setting = MSPRING_SIMD_AUTO; setting <= MSPRING_SIMD_NEON; setting++) {
+    for (mspring_simd setting = MSPRING_SIMD_AUTO; setting <= MSPRING_SIMD_WASM; setting++) {
         mspring_simd alone = lower(best, setting);
         assert_int_equal(level_with(NULL, setting), alone);
-        for (mspring_simd variable = MSPRING_SIMD_SCALAR; variable <= MSPRING_SIMD_NEON; variable++) {
+        for (mspring_simd variable = MSPRING_SIMD_SCALAR; variable <= MSPRING_SIMD_WASM; variable++) {
             assert_int_equal(level_with(mspring_simd_name(variable), setting), lower(alone, variable));
         }
     }

@@ -343,7 +343,7 @@ typedef struct mspring_solver_def {
 } mspring_solver_def;
 
 /// Instruction sets. All give the same bits. Those of one kind of CPU stand in order, scalar below all of them:
-/// scalar < SSE2 < AVX2 < AVX-512 on x86, scalar < NEON on 64-bit ARM, scalar alone elsewhere. Between kinds there
+/// scalar < SSE2 < AVX2 < AVX-512 on x86, scalar < NEON on 64-bit ARM, scalar < WASM in a browser, scalar alone elsewhere. Between kinds there
 /// is no order.
 typedef int32_t mspring_simd;
 enum {
@@ -352,7 +352,8 @@ enum {
     MSPRING_SIMD_SSE2 = 2,
     MSPRING_SIMD_AVX2 = 3,
     MSPRING_SIMD_AVX512 = 4,
-    MSPRING_SIMD_NEON = 5
+    MSPRING_SIMD_NEON = 5,
+    MSPRING_SIMD_WASM = 6 ///< SIMD128 of WebAssembly, in modules that were built with it
 };
 
 /// Flags of networks.
@@ -388,7 +389,7 @@ typedef struct mspring_network_def {
     mspring_simd simd_level; ///< highest level to use; default MSPRING_SIMD_AUTO. A level that this machine lacks,
                              ///< such as one of another kind of CPU, is no limit, so one program may ask for
                              ///< at most AVX2 on x86 and run on ARM, too. The environment variable MSPRING_SIMD
-                             ///< (scalar, sse2, avx2, avx512, neon) can lower it further, never raise.
+                             ///< (scalar, sse2, avx2, avx512, neon, wasm) can lower it further, never raise.
     float gravity_x;         ///< m/s^2, finite; default 0
     float gravity_y;         ///< m/s^2, finite; default -9.8
     float global_damping;    ///< 1/s, 0 to 1e6; velocities decay by exp(-global_damping t); default 0
@@ -1574,7 +1575,8 @@ MSPRING_API mspring_simd mspring_simd_supported(void);
 /// @threads any   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_simd_available(mspring_simd level);
 
-/// Name of a level as in MSPRING_SIMD: "scalar", "sse2", "avx2", "avx512", "neon", "auto"; "unknown" for others.
+/// Name of a level as in MSPRING_SIMD: "scalar", "sse2", "avx2", "avx512", "neon", "wasm", "auto"; "unknown" for
+/// others.
 /// @threads any   @allocates never   @since 0.1
 MSPRING_API const char *mspring_simd_name(mspring_simd level);
 

@@ -15,7 +15,7 @@
 #else
 #include <cpuid.h>
 #endif
-#else
+#elif !defined(__wasm__)
 #include <fenv.h>
 #endif
 
@@ -77,6 +77,8 @@ uint32_t mspring_simd_available(mspring_simd level) {
 mspring_simd mspring_simd_supported(void) {
 #if defined(MSPRINGI_AARCH64)
     return MSPRING_SIMD_NEON;
+#elif defined(MSPRINGI_WASM)
+    return MSPRING_SIMD_WASM;
 #else
     return MSPRING_SIMD_SCALAR;
 #endif
@@ -89,8 +91,8 @@ uint32_t mspring_simd_available(mspring_simd level) {
 #endif
 
 const char *mspring_simd_name(mspring_simd level) {
-    static const char *const names[] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon"};
-    return level >= MSPRING_SIMD_AUTO && level <= MSPRING_SIMD_NEON ? names[level] : "unknown";
+    static const char *const names[] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon", "wasm"};
+    return level >= MSPRING_SIMD_AUTO && level <= MSPRING_SIMD_WASM ? names[level] : "unknown";
 }
 
 mspring_simd mspringi_cpu_choose(mspring_simd wanted) {
@@ -146,6 +148,17 @@ mspringi_fp_state mspringi_fp_enter(void) {
 
 void mspringi_fp_leave(mspringi_fp_state before) {
     __asm__ volatile("vmsr fpscr, %0" : : "r"((uint32_t)before));
+}
+
+#elif defined(__wasm__)
+
+// There is one mode, the right one.
+mspringi_fp_state mspringi_fp_enter(void) {
+    return 0;
+}
+
+void mspringi_fp_leave(mspringi_fp_state before) {
+    (void)before;
 }
 
 #else

@@ -17,6 +17,8 @@
 #define MSPRINGI_X86 1
 #elif defined(__aarch64__) || defined(_M_ARM64)
 #define MSPRINGI_AARCH64 1
+#elif defined(__wasm_simd128__)
+#define MSPRINGI_WASM 1
 #endif
 
 #endif

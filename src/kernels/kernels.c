@@ -21,6 +21,9 @@ const mspringi_kernels *mspringi_kernels_of(mspring_simd level) {
 #elif defined(MSPRINGI_AARCH64)
     case MSPRING_SIMD_NEON:
         return &mspringi_kernels_neon;
+#elif defined(MSPRINGI_WASM)
+    case MSPRING_SIMD_WASM:
+        return &mspringi_kernels_wasm;
 #endif
     default:
         return &mspringi_kernels_scalar;

@@ -116,6 +116,8 @@ extern const mspringi_kernels mspringi_kernels_avx2;
 extern const mspringi_kernels mspringi_kernels_avx512;
 #elif defined(MSPRINGI_AARCH64)
 extern const mspringi_kernels mspringi_kernels_neon;
+#elif defined(MSPRINGI_WASM)
+extern const mspringi_kernels mspringi_kernels_wasm;
 #endif
 
 /// The table of a level that mspringi_cpu_choose() has given.

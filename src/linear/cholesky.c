@@ -16,6 +16,9 @@ const mspringi_cholesky_kernels *mspringi_cholesky_kernels_of(mspring_simd level
 #elif defined(MSPRINGI_AARCH64)
     case MSPRING_SIMD_NEON:
         return &mspringi_cholesky_neon;
+#elif defined(MSPRINGI_WASM)
+    case MSPRING_SIMD_WASM:
+        return &mspringi_cholesky_wasm;
 #endif
     default:
         return &mspringi_cholesky_scalar;

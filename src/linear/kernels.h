@@ -27,6 +27,8 @@ extern const mspringi_cholesky_kernels mspringi_cholesky_avx2;
 extern const mspringi_cholesky_kernels mspringi_cholesky_avx512;
 #elif defined(MSPRINGI_AARCH64)
 extern const mspringi_cholesky_kernels mspringi_cholesky_neon;
+#elif defined(MSPRINGI_WASM)
+extern const mspringi_cholesky_kernels mspringi_cholesky_wasm;
 #endif
 
 /// The table of a level that mspringi_cpu_choose() has given.

@@ -39,7 +39,7 @@ static mspring_result check_def(const mspring_network_def *def, mspringi_message
         mspringi_check_struct(message, "mspring_network_def", def->struct_size, sizeof *def, sizeof *def);
     if (result != MSPRING_OK)
         return result;
-    if (def->simd_level < MSPRING_SIMD_AUTO || def->simd_level > MSPRING_SIMD_NEON)
+    if (def->simd_level < MSPRING_SIMD_AUTO || def->simd_level > MSPRING_SIMD_WASM)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "simd_level is %d, which is no level",
                              (int)def->simd_level);
     if (def->flags & ~(uint32_t)MSPRING_NETWORK_RESERVE_DAMPING)

@@ -28,10 +28,13 @@ struct CMUnitTest {
 #define cmocka_unit_test_setup_teardown(test, setup, teardown)                                                     \
     { #test, test, setup, teardown }
 #define cmocka_unit_test(test) cmocka_unit_test_setup_teardown(test, NULL, NULL)
+#define cmocka_unit_test_setup(test, setup) cmocka_unit_test_setup_teardown(test, setup, NULL)
 
 /// Run all tests and print what came of them; returns the number that failed.
 #define cmocka_run_group_tests_name(name, tests, group_setup, group_teardown)                                      \
     cmocka_run(name, tests, sizeof(tests) / sizeof((tests)[0]), group_setup, group_teardown)
+#define cmocka_run_group_tests(tests, group_setup, group_teardown)                                                 \
+    cmocka_run_group_tests_name(#tests, tests, group_setup, group_teardown)
 int cmocka_run(const char *name, const struct CMUnitTest *tests, size_t count, CMFixtureFunction group_setup,
                CMFixtureFunction group_teardown);
 
@@ -45,6 +48,15 @@ void print_error(const char *format, ...) CMOCKA_PRINTF;
 /// End the running test as failed.
 _Noreturn void _fail(const char *file, int line);
 #define fail() _fail(__FILE__, __LINE__)
+#define fail_msg(...)                                                                                              \
+    do {                                                                                                           \
+        print_error(__VA_ARGS__);                                                                                  \
+        _fail(__FILE__, __LINE__);                                                                                 \
+    } while (0)
+
+/// End the running test as one that this machine has no need of.
+_Noreturn void _skip(const char *file, int line);
+#define skip() _skip(__FILE__, __LINE__)
 
 /// A value as cmocka passes it: by its bits, whatever its type.
 #define CMOCKA_VALUE(value) ((uintmax_t)(value))

@@ -1,0 +1,104 @@
+/// WebAssembly SIMD: four lanes. Part of every module that was built for it: there is no asking at run time.
+#include "kernels.h"
+
+#if defined(MSPRINGI_WASM)
+
+#include <wasm_simd128.h>
+
+#define LANES 4
+typedef v128_t vec;
+
+static inline vec zero(void) {
+    return wasm_f32x4_splat(0.0f);
+}
+static inline vec set(float value) {
+    return wasm_f32x4_splat(value);
+}
+static inline vec load(const float *from) {
+    return wasm_v128_load(from);
+}
+static inline vec load_unaligned(const float *from) {
+    return wasm_v128_load(from);
+}
+static inline void store(float *to, vec a) {
+    wasm_v128_store(to, a);
+}
+static inline vec add(vec a, vec b) {
+    return wasm_f32x4_add(a, b);
+}
+static inline vec sub(vec a, vec b) {
+    return wasm_f32x4_sub(a, b);
+}
+static inline vec mul(vec a, vec b) {
+    return wasm_f32x4_mul(a, b);
+}
+static inline vec square_root(vec a) {
+    return wasm_f32x4_sqrt(a);
+}
+// 1 / length, or 0 where length is 0.
+static inline vec inverse_or_zero(vec length) {
+    return wasm_v128_and(wasm_f32x4_div(wasm_f32x4_splat(1.0f), length),
+                         wasm_f32x4_gt(length, wasm_f32x4_splat(0.0f)));
+}
+// a where selector > 0, b elsewhere.
+static inline vec choose_positive(vec selector, vec a, vec b) {
+    return wasm_v128_bitselect(a, b, wasm_f32x4_gt(selector, wasm_f32x4_splat(0.0f)));
+}
+// A bit for each lane: 1 where a > b.
+static inline uint32_t bits_greater(vec a, vec b) {
+    return (uint32_t)wasm_i32x4_bitmask(wasm_f32x4_gt(a, b));
+}
+// The last lane of before, then all lanes of a but its last.
+static inline vec shift_in(vec before, vec a) {
+    return wasm_i32x4_shuffle(before, a, 3, 4, 5, 6);
+}
+
+static inline void transpose(vec *a, vec *b, vec *c, vec *d) {
+    const vec ab_low = wasm_i32x4_shuffle(*a, *b, 0, 4, 1, 5), ab_high = wasm_i32x4_shuffle(*a, *b, 2, 6, 3, 7);
+    const vec cd_low = wasm_i32x4_shuffle(*c, *d, 0, 4, 1, 5), cd_high = wasm_i32x4_shuffle(*c, *d, 2, 6, 3, 7);
+    *a = wasm_i32x4_shuffle(ab_low, cd_low, 0, 1, 4, 5);
+    *b = wasm_i32x4_shuffle(ab_low, cd_low, 2, 3, 6, 7);
+    *c = wasm_i32x4_shuffle(ab_high, cd_high, 0, 1, 4, 5);
+    *d = wasm_i32x4_shuffle(ab_high, cd_high, 2, 3, 6, 7);
+}
+// Four values of each of LANES nodes, from [node][4].
+static inline void load_packed(const float *packed, const uint32_t *nodes, vec *x, vec *y, vec *vx, vec *vy) {
+    *x = wasm_v128_load(packed + 4 * (size_t)nodes[0]);
+    *y = wasm_v128_load(packed + 4 * (size_t)nodes[1]);
+    *vx = wasm_v128_load(packed + 4 * (size_t)nodes[2]);
+    *vy = wasm_v128_load(packed + 4 * (size_t)nodes[3]);
+    transpose(x, y, vx, vy);
+}
+static inline void store_packed(float *packed, vec x, vec y, vec vx, vec vy) {
+    transpose(&x, &y, &vx, &vy);
+    wasm_v128_store(packed, x);
+    wasm_v128_store(packed + 4, y);
+    wasm_v128_store(packed + 8, vx);
+    wasm_v128_store(packed + 12, vy);
+}
+
+// As integers: NaN is above infinity, as floats it would be whatever the host's processor makes of it.
+static inline float largest_lane(vec a) {
+    a = wasm_i32x4_max(a, wasm_i32x4_shuffle(a, a, 2, 3, 0, 1));
+    a = wasm_i32x4_max(a, wasm_i32x4_shuffle(a, a, 1, 0, 3, 2));
+    return wasm_f32x4_extract_lane(a, 0);
+}
+
+static mspringi_largest largest(const float *now, const float *before, size_t count) {
+    vec value = zero(), change = value;
+    for (size_t i = 0; i < count; i += LANES) {
+        const vec v = load(now + i);
+        value = wasm_i32x4_max(value, wasm_f32x4_abs(v));
+        if (before)
+            change = wasm_i32x4_max(change, wasm_f32x4_abs(sub(v, load(before + i))));
+    }
+    return (mspringi_largest){largest_lane(value), largest_lane(change)};
+}
+
+#include "sweep.h"
+
+#define MSPRINGI_TABLE mspringi_kernels_wasm
+#define MSPRINGI_LEVEL MSPRING_SIMD_WASM
+#include "table.h"
+
+#endif

@@ -1,0 +1,15 @@
+# WebAssembly with SIMD: clang and wasi-libc, run by node.
+set(CMAKE_SYSTEM_NAME Generic)
+set(CMAKE_SYSTEM_PROCESSOR wasm32)
+set(CMAKE_C_COMPILER clang)
+set(CMAKE_C_COMPILER_TARGET wasm32-wasi)
+find_program(CMAKE_AR NAMES llvm-ar llvm-ar-14)
+find_program(CMAKE_RANLIB NAMES llvm-ranlib llvm-ranlib-14)
+set(CMAKE_CROSSCOMPILING_EMULATOR ${CMAKE_CURRENT_LIST_DIR}/wasi/run)
+# A page of a browser is where these modules are at home: no threads, no floating-point modes, no way back.
+set(CMAKE_C_FLAGS_INIT "-msimd128 -mbulk-memory -ftls-model=local-exec -D_WASI_EMULATED_SIGNAL -isystem ${CMAKE_CURRENT_LIST_DIR}/wasi")
+set(CMAKE_EXE_LINKER_FLAGS_INIT "-Wl,-z,stack-size=1048576 -lwasi-emulated-signal")
+set(MASSSPRING_THREADS OFF)
+set(CMAKE_FIND_ROOT_PATH /usr/lib/wasm32-wasi)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
