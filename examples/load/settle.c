@@ -13,30 +13,16 @@
 #include <string.h>
 
 enum {
-    IMPLICIT_SUBSTEPS = 4, // in a frame: the floor is met once in each
+    IMPLICIT_SUBSTEPS = 16, // in a frame
     MOST_WIDTH = 1200,
     MOST_HEIGHT = 700
 };
 
 static const double frame = 1.0 / 64;
-static const double safety = 0.7;    // of the longest stable substep
-static const float drag = 0.5f;      // 1/s
-static const float friction = 20.0f; // 1/s, of what touches the floor
-static const double burst = 1.5;     // times its size: a structure that has flown apart
-
-// After each substep: nothing falls through the floor, and what lies on it slides to a halt.
-static void floor_hook(const mspring_hook_args *args, void *user) {
-    const double *height = user;
-    const float floor_y = (float)(*height - args->origin_y);
-    const float keep = fmaxf(0, 1 - friction * (float)args->dt);
-    for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
-        if (args->y[slot] >= floor_y || args->inverse_mass[slot] == 0)
-            continue;
-        args->y[slot] = floor_y;
-        args->vy[slot] = args->vy[slot] < 0 ? 0 : args->vy[slot];
-        args->vx[slot] *= keep;
-    }
-}
+static const double safety = 0.7; // of the longest stable substep
+static const float drag = 0.5f;   // 1/s
+static const float friction = 0.5f;
+static const double burst = 1.5; // times its size: a structure that has flown apart
 
 static bool fail(mspring_network *network, mspring_result result, const char *what, scene_error *error) {
     return scene_fail(error, "%s: %s: %s", what, mspring_result_string(result), mspring_network_error(network));
@@ -108,18 +94,19 @@ static box bounds_of(const mspring_network *network) {
     return b;
 }
 
-static bool start(mspring_network *network, mspring_solver solver, double *floor_height, scene_error *error) {
-    mspring_hook_def hook;
+static bool start(mspring_network *network, mspring_solver solver, scene_error *error) {
+    const double plane[4] = {0, bounds_of(network).bottom, 0, 1};
+    mspring_floor_def ground;
     mspring_solver_def def;
-    mspring_hook_def_init(&hook, sizeof hook);
+    mspring_floor_def_init(&ground, sizeof ground);
     mspring_solver_def_init(&def, sizeof def);
-    hook.phase = MSPRING_PHASE_AFTER_SUBSTEP;
-    hook.fn = floor_hook;
-    hook.user = floor_height;
-    hook.flags = MSPRING_HOOK_CONCURRENT;
+    ground.plane_count = 1;
+    ground.planes = plane;
+    ground.friction = friction;
     def.solver = solver;
     def.substeps = IMPLICIT_SUBSTEPS;
-    mspring_result result = mspring_network_add_hook(network, &hook, NULL);
+    def.integrator = MSPRING_INTEGRATOR_EULER; // those of second order do not lie still on a floor
+    mspring_result result = mspring_network_set_floor(network, &ground);
     if (result == MSPRING_OK && solver == MSPRING_SOLVER_EXPLICIT)
         result = mspring_network_suggest_substeps(network, frame, safety, &def.substeps);
     if (result == MSPRING_OK)
@@ -165,10 +152,9 @@ bool settle_run(scene *settled, mspring_solver solver, const settle_request *req
     mspring_result result = mspring_network_create(settled->builder, &def, &network);
     if (result != MSPRING_OK)
         return scene_fail_builder(error, "cannot make the network", settled->builder, result);
-    double floor_height = bounds_of(network).bottom;
     bool ok = shape_of(network, &shape, error);
     if (ok) {
-        ok = start(network, solver, &floor_height, error) && let_down(network, name, request, error);
+        ok = start(network, solver, error) && let_down(network, name, request, error);
         if (ok && request->picture) {
             char path[1024];
             char title[128];

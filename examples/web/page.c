@@ -1,0 +1,382 @@
+/// @file page.c
+/// Making a network of a picture's cells, stepping it, looking at it.
+///
+/// SPDX-License-Identifier: MIT
+#include "internal.h"
+
+#include <string.h>
+
+#if defined(__wasm__)
+#include "environment.h"
+#define ALLOCATOR &environment_allocator
+#else
+#include <stdlib.h>
+#define ALLOCATOR NULL
+#endif
+
+enum { EVENTS = 4096 };
+
+page_state page;
+
+static uint8_t *input;
+static uint32_t input_size;
+static const char *last_error = "";
+
+/* ----------------------------------------------------------------------------------------------------- memory */
+
+void *page_take(size_t size) {
+    if (size == 0)
+        size = 1;
+#if defined(__wasm__)
+    void *memory = environment_allocator.alloc(size, 64, NULL);
+#else
+    void *memory = malloc(size);
+#endif
+    if (memory)
+        memset(memory, 0, size);
+    return memory;
+}
+
+void page_leave(void *memory, size_t size) {
+#if defined(__wasm__)
+    environment_allocator.free(memory, size ? size : 1, NULL);
+#else
+    (void)size;
+    free(memory);
+#endif
+}
+
+uint8_t *page_prepare(uint32_t size) {
+    page_leave(input, input_size);
+    input_size = size;
+    input = page_take(size);
+    return input;
+}
+
+/* ------------------------------------------------------------------------------------------------------ errors */
+
+static mspring_result failed(mspring_result result, const char *message) {
+    last_error = message && *message ? message : mspring_result_string(result);
+    return result;
+}
+
+// The result of a call on the network.
+static mspring_result done(mspring_result result) {
+    return result == MSPRING_OK ? MSPRING_OK : failed(result, mspring_network_error(page.network));
+}
+
+const char *page_error(void) {
+    return last_error;
+}
+
+/* ------------------------------------------------------------------------------------------------------- making */
+
+static void drop_page(void) {
+    mspring_network_destroy(page.network);
+    page_leave(page.springs, page.spring_count * sizeof *page.springs);
+    page_leave(page.ends, 2 * page.spring_count * sizeof *page.ends);
+    page_leave(page.values, page.spring_count * sizeof *page.values);
+    page_leave(page.base_stiffness, page.spring_count * sizeof *page.base_stiffness);
+    page_leave(page.break_strain, page.spring_count * sizeof *page.break_strain);
+    page_leave(page.rest_length, page.spring_count * sizeof *page.rest_length);
+    page_leave(page.list, page.list_capacity * sizeof *page.list);
+    page_leave(page.events, EVENTS * sizeof *page.events);
+    page_leave(page.held, page.particle_count * sizeof *page.held);
+    page_leave(page.held_mass, page.particle_count * sizeof *page.held_mass);
+    page_leave(page.force_x, page.particle_count * sizeof *page.force_x);
+    page_leave(page.force_y, page.particle_count * sizeof *page.force_y);
+    memset(&page, 0, sizeof page);
+}
+
+static bool take_arrays(void) {
+    page.particle_count = mspring_network_particle_count(page.network);
+    page.spring_count = mspring_network_spring_count(page.network);
+    page.list_capacity = page.particle_count > page.spring_count ? page.particle_count : page.spring_count;
+    page.springs = page_take(page.spring_count * sizeof *page.springs);
+    page.ends = page_take(2 * page.spring_count * sizeof *page.ends);
+    page.values = page_take(page.spring_count * sizeof *page.values);
+    page.base_stiffness = page_take(page.spring_count * sizeof *page.base_stiffness);
+    page.break_strain = page_take(page.spring_count * sizeof *page.break_strain);
+    page.rest_length = page_take(page.spring_count * sizeof *page.rest_length);
+    page.list = page_take(page.list_capacity * sizeof *page.list);
+    page.events = page_take(EVENTS * sizeof *page.events);
+    page.held = page_take(page.particle_count * sizeof *page.held);
+    page.held_mass = page_take(page.particle_count * sizeof *page.held_mass);
+    page.force_x = page_take(page.particle_count * sizeof *page.force_x);
+    page.force_y = page_take(page.particle_count * sizeof *page.force_y);
+    return page.springs && page.ends && page.values && page.base_stiffness && page.break_strain &&
+           page.rest_length && page.list && page.events && page.held && page.held_mass && page.force_x &&
+           page.force_y;
+}
+
+static mspring_result describe_springs(void) {
+    for (uint32_t i = 0; i < page.spring_count; i++) {
+        mspring_spring_info info = {.struct_size = sizeof info};
+        mspring_result result = mspring_network_get_spring(page.network, i, &info);
+        if (result != MSPRING_OK)
+            return done(result);
+        page.ends[2 * i] = info.a;
+        page.ends[2 * i + 1] = info.b;
+        page.springs[i].a = page.view.slot_of_particle[info.a];
+        page.springs[i].b = page.view.slot_of_particle[info.b];
+        page.springs[i].rest_length = page.rest_length[i] = info.rest_length;
+        page.base_stiffness[i] = info.nominal_stiffness;
+    }
+    for (uint32_t slot = 0; slot < page.view.slot_count; slot++)
+        page.total_mass += page.view.inverse_mass[slot] > 0 ? 1 / (double)page.view.inverse_mass[slot] : 0;
+    return MSPRING_OK;
+}
+
+static float weaker(float a, float b) {
+    return a == 0 ? b : b == 0 ? a : a < b ? a : b;
+}
+
+// Springs follow the particles in the order of cells, each with its right, lower left, lower, lower right
+// neighbour.
+static void find_break_strains(const mspring_lattice_def *def, const page_material *materials) {
+    static const int steps[4][2] = {{1, 0}, {-1, 1}, {0, 1}, {1, 1}};
+    uint32_t spring = 0;
+    for (uint32_t row = 0; row < def->height; row++) {
+        for (uint32_t column = 0; column < def->width; column++) {
+            const uint16_t cell = def->cells[row * def->width + column];
+            for (int i = 0; cell != MSPRING_CELL_EMPTY && i < 4; i++) {
+                const int64_t x = (int64_t)column + steps[i][0], y = (int64_t)row + steps[i][1];
+                if (x < 0 || x >= def->width || y >= def->height)
+                    continue;
+                const uint16_t other = def->cells[y * def->width + x];
+                if (other != MSPRING_CELL_EMPTY && spring < page.spring_count)
+                    page.break_strain[spring++] =
+                        weaker(materials[cell].break_strain, materials[other].break_strain);
+            }
+        }
+    }
+}
+
+static mspring_result add_ropes(mspring_builder *builder, const page_rope *ropes, uint32_t count,
+                                const mspring_id *ids) {
+    for (uint32_t i = 0; i < count; i++) {
+        mspring_rope_def def;
+        mspring_result result = mspring_rope_def_init(&def, sizeof def);
+        if (result != MSPRING_OK)
+            return result;
+        def.from = ids[ropes[i].from];
+        def.to = ids[ropes[i].to];
+        def.segment_count = ropes[i].segments;
+        def.mass = ropes[i].mass;
+        def.stiffness = ropes[i].stiffness;
+        def.damping = ropes[i].damping;
+        def.slack = ropes[i].slack;
+        result = mspring_builder_add_rope(builder, &def, NULL, NULL);
+        if (result != MSPRING_OK)
+            return failed(result, mspring_builder_error(builder));
+    }
+    return MSPRING_OK;
+}
+
+static mspring_result build(mspring_builder *builder, mspring_lattice_def *def, const page_material *given,
+                            const page_rope *ropes, uint32_t rope_count, mspring_material *materials,
+                            mspring_id *ids) {
+    for (uint32_t i = 0; i < def->material_count; i++) {
+        mspring_result result = mspring_material_init(&materials[i], sizeof materials[i]);
+        if (result != MSPRING_OK)
+            return failed(result, NULL);
+        materials[i].mass = given[i].mass;
+        materials[i].stiffness = given[i].stiffness;
+        materials[i].damping = given[i].damping;
+        materials[i].particle_flags = given[i].pinned > 0 ? MSPRING_PARTICLE_PINNED : 0;
+    }
+    def->materials = materials;
+    mspring_result result = mspring_builder_add_lattice(builder, def, ids);
+    if (result == MSPRING_OK)
+        result = add_ropes(builder, ropes, rope_count, ids);
+    return result == MSPRING_OK ? MSPRING_OK : failed(result, mspring_builder_error(builder));
+}
+
+static mspring_result make_network(mspring_builder *builder) {
+    mspring_network_def def;
+    mspring_result result = mspring_network_def_init(&def, sizeof def);
+    def.allocator = ALLOCATOR;
+    def.flags = MSPRING_NETWORK_RESERVE_DAMPING;
+    def.substeps = MSPRING_SUBSTEPS_AUTO;
+    if (result == MSPRING_OK)
+        result = mspring_network_create(builder, &def, &page.network);
+    if (result != MSPRING_OK)
+        return failed(result, mspring_builder_error(builder));
+    page.view.struct_size = sizeof page.view;
+    result = mspring_network_view(page.network, &page.view);
+    if (result == MSPRING_OK)
+        result = mspring_network_reserve_events(page.network, EVENTS);
+    if (result != MSPRING_OK)
+        return done(result);
+    return take_arrays() ? describe_springs() : failed(MSPRING_ERROR_MEMORY, NULL);
+}
+
+mspring_result page_make(uint32_t width, uint32_t height, uint32_t material_count, uint32_t rope_count) {
+    const uint64_t cells = (uint64_t)width * height, at_materials = (2 * cells + 15) / 16 * 16;
+    const uint64_t at_ropes = at_materials + (uint64_t)material_count * sizeof(page_material);
+    if (!input || at_ropes + (uint64_t)rope_count * sizeof(page_rope) > input_size)
+        return failed(MSPRING_ERROR_ARGUMENT, "less was prepared than is to be read");
+    const page_material *given = (const page_material *)(const void *)(input + at_materials);
+    const page_rope *ropes = (const page_rope *)(const void *)(input + at_ropes);
+    for (uint32_t i = 0; i < rope_count; i++)
+        if (ropes[i].from >= cells || ropes[i].to >= cells)
+            return failed(MSPRING_ERROR_ID, "a rope ends in no cell");
+    drop_page();
+    mspring_builder *builder = NULL;
+    mspring_lattice_def def;
+    mspring_result result = mspring_lattice_def_init(&def, sizeof def);
+    def.width = width;
+    def.height = height;
+    def.cells = (const uint16_t *)(const void *)input;
+    def.material_count = material_count;
+    mspring_material *materials = page_take(material_count * sizeof *materials);
+    mspring_id *ids = page_take((size_t)cells * sizeof *ids);
+    if (!materials || !ids)
+        result = failed(MSPRING_ERROR_MEMORY, NULL);
+    if (result == MSPRING_OK)
+        result = mspring_builder_create(ALLOCATOR, &builder);
+    if (result == MSPRING_OK)
+        result = build(builder, &def, given, ropes, rope_count, materials, ids);
+    if (result == MSPRING_OK)
+        result = make_network(builder);
+    if (result == MSPRING_OK)
+        find_break_strains(&def, given);
+    else
+        drop_page();
+    mspring_builder_destroy(builder);
+    page_leave(materials, material_count * sizeof *materials);
+    page_leave(ids, (size_t)cells * sizeof *ids);
+    return result;
+}
+
+/* ------------------------------------------------------------------------------------------------ stepping */
+
+// Springs that broke are drawn no more.
+static void follow_events(void) {
+    uint32_t count = 0;
+    do {
+        if (mspring_network_read_events(page.network, page.events, EVENTS, &count, NULL) != MSPRING_OK)
+            return;
+        for (uint32_t i = 0; i < count; i++) {
+            const mspring_event *event = &page.events[i];
+            if (event->kind == MSPRING_EVENT_BROKEN)
+                page.springs[event->id].rest_length = 0;
+            else if (event->kind == MSPRING_EVENT_RESTORED)
+                page.springs[event->id].rest_length = page.rest_length[event->id];
+        }
+        page.changes += count > 0;
+    } while (count == EVENTS);
+}
+
+mspring_result page_step(double dt) {
+    page_pull(dt);
+    const mspring_result result = done(mspring_network_step(page.network, dt));
+    if (result == MSPRING_OK)
+        follow_events();
+    page.view.struct_size = sizeof page.view;
+    const mspring_result seen = mspring_network_view(page.network, &page.view);
+    return result != MSPRING_OK ? result : done(seen);
+}
+
+mspring_result page_set_solver(uint32_t solver, uint32_t substeps, uint32_t iterations) {
+    mspring_solver_def def;
+    const mspring_result result = mspring_solver_def_init(&def, sizeof def);
+    if (result != MSPRING_OK)
+        return done(result);
+    def.solver = (mspring_solver)solver;
+    def.substeps = substeps ? substeps : MSPRING_SUBSTEPS_AUTO;
+    def.iterations = iterations;
+    return done(mspring_network_set_solver(page.network, &def));
+}
+
+mspring_result page_set_gravity(float y) {
+    return done(mspring_network_set_gravity(page.network, 0, y));
+}
+
+mspring_result page_set_damping(float rate) {
+    return done(mspring_network_set_global_damping(page.network, rate));
+}
+
+mspring_result page_set_stiffness(float factor) {
+    for (uint32_t i = 0; i < page.spring_count; i++)
+        page.values[i] = factor * page.base_stiffness[i];
+    return done(mspring_network_set_stiffnesses(page.network, 0, page.spring_count, page.values));
+}
+
+mspring_result page_set_breaking(uint32_t on) {
+    for (uint32_t i = 0; i < page.spring_count; i++)
+        page.values[i] = on && page.break_strain[i] > 0 ? page.break_strain[i] : __builtin_inff();
+    return done(mspring_network_set_break_strains(page.network, 0, page.spring_count, page.values));
+}
+
+/* -------------------------------------------------------------------------------------------------- looking */
+
+uint32_t page_particle_count(void) {
+    return page.particle_count;
+}
+
+uint32_t page_slot_count(void) {
+    return page.view.slot_count;
+}
+
+const float *page_x(void) {
+    return page.view.x;
+}
+
+const float *page_y(void) {
+    return page.view.y;
+}
+
+const float *page_inverse_mass(void) {
+    return page.view.inverse_mass;
+}
+
+double page_origin_x(void) {
+    return page.view.origin_x;
+}
+
+double page_origin_y(void) {
+    return page.view.origin_y;
+}
+
+uint32_t page_spring_count(void) {
+    return page.spring_count;
+}
+
+const page_spring *page_springs(void) {
+    return page.springs;
+}
+
+uint32_t page_changes(void) {
+    return page.changes;
+}
+
+uint32_t page_substeps(void) {
+    return mspring_network_substeps(page.network);
+}
+
+const char *page_level(void) {
+    return mspring_simd_name(mspring_network_simd_level(page.network));
+}
+
+double page_kinetic_energy(void) {
+    double kinetic = 0;
+    return mspring_network_energy(page.network, &kinetic, NULL, NULL) == MSPRING_OK ? kinetic : 0;
+}
+
+double page_elastic_energy(void) {
+    double elastic = 0;
+    return mspring_network_energy(page.network, NULL, &elastic, NULL) == MSPRING_OK ? elastic : 0;
+}
+
+double page_max_strain(void) {
+    float strain = 0;
+    return mspring_network_max_strain(page.network, &strain, NULL) == MSPRING_OK ? (double)strain : 0;
+}
+
+uint32_t page_hash(uint32_t upper) {
+    uint64_t hash = 0;
+    if (mspring_network_state_hash(page.network, &hash) != MSPRING_OK)
+        return 0;
+    return (uint32_t)(upper ? hash >> 32 : hash);
+}

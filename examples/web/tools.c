@@ -1,0 +1,186 @@
+/// @file tools.c
+/// Dragging, pinning, cutting, blasting, a floor.
+///
+/// SPDX-License-Identifier: MIT
+#include "internal.h"
+
+#include <math.h>
+
+// What is held is drawn to its goal as if all of the network hung on a critically damped spring of this angular
+// frequency (rad/s); in one step it is never pulled or slowed by more than these parts of what would get it there.
+static const double pull_frequency = 4;
+static const double most_pull = 0.2;
+static const double most_slowing = 0.5;
+static const double most_distance = 60; // m
+
+typedef struct point {
+    double x, y;
+} point;
+
+static point place_of(mspring_id particle) {
+    const uint32_t slot = page.view.slot_of_particle[particle];
+    const point place = {page.view.origin_x + (double)page.view.x[slot],
+                         page.view.origin_y + (double)page.view.y[slot]};
+    return place;
+}
+
+static double square(double a) {
+    return a * a;
+}
+
+// Particles within radius of a point, into page.list; at least the nearest. Returns how many.
+static uint32_t list_near(double x, double y, double radius) {
+    uint32_t count = 0;
+    mspring_id nearest = 0;
+    double least = INFINITY;
+    for (mspring_id p = 0; p < page.particle_count; p++) {
+        const point at = place_of(p);
+        const double distance = square(at.x - x) + square(at.y - y);
+        if (distance < least) {
+            least = distance;
+            nearest = p;
+        }
+        if (distance <= square(radius))
+            page.list[count++] = p;
+    }
+    if (count == 0 && page.particle_count > 0)
+        page.list[count++] = nearest;
+    return count;
+}
+
+/* ----------------------------------------------------------------------------------------------------- dragging */
+
+uint32_t page_hold(double x, double y, double radius) {
+    const uint32_t count = list_near(x, y, radius);
+    page_let_go();
+    for (uint32_t i = 0; i < count; i++) {
+        const float inverse = page.view.inverse_mass[page.view.slot_of_particle[page.list[i]]];
+        if (inverse == 0)
+            continue;
+        page.held[page.held_count] = page.list[i];
+        page.held_mass[page.held_count++] = 1 / inverse;
+        page.hold_mass += 1 / (double)inverse;
+    }
+    page_hold_to(x, y);
+    return page.held_count;
+}
+
+void page_hold_to(double x, double y) {
+    page.hold_x = x;
+    page.hold_y = y;
+}
+
+void page_let_go(void) {
+    page.held_count = 0;
+    page.hold_mass = 0;
+}
+
+static double limit(double value, double most) {
+    return value > most ? most : value < -most ? -most : value;
+}
+
+void page_pull(double dt) {
+    double x = 0, y = 0, vx = 0, vy = 0;
+    if (page.held_count == 0)
+        return;
+    for (uint32_t i = 0; i < page.held_count; i++) {
+        const uint32_t slot = page.view.slot_of_particle[page.held[i]];
+        const double share = (double)page.held_mass[i] / page.hold_mass;
+        x += share * (page.view.origin_x + (double)page.view.x[slot]);
+        y += share * (page.view.origin_y + (double)page.view.y[slot]);
+        vx += share * (double)page.view.vx[slot];
+        vy += share * (double)page.view.vy[slot];
+    }
+    const double times = page.total_mass / page.hold_mass;
+    const double pull = fmin(square(pull_frequency) * times, most_pull / square(dt));
+    const double slowing = fmin(2 * pull_frequency * times, most_slowing / dt);
+    const double ax = pull * limit(page.hold_x - x, most_distance) - slowing * vx;
+    const double ay = pull * limit(page.hold_y - y, most_distance) - slowing * vy;
+    for (uint32_t i = 0; i < page.held_count; i++) {
+        const float fx = (float)(ax * (double)page.held_mass[i]), fy = (float)(ay * (double)page.held_mass[i]);
+        if (mspring_network_apply_force(page.network, page.held[i], fx, fy) != MSPRING_OK)
+            return;
+    }
+}
+
+/* -------------------------------------------------------------------------------------------- pins, cuts, blasts
+ */
+
+mspring_result page_pin(double x, double y, double radius) {
+    const uint32_t count = list_near(x, y, radius);
+    double least = INFINITY;
+    float scale = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const point at = place_of(page.list[i]);
+        const double distance = square(at.x - x) + square(at.y - y);
+        if (distance < least) {
+            least = distance;
+            scale = page.view.inverse_mass[page.view.slot_of_particle[page.list[i]]] == 0 ? 1 : 0;
+        }
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        const mspring_result result =
+            mspring_network_set_inverse_mass_scales(page.network, page.list[i], 1, &scale);
+        if (result != MSPRING_OK)
+            return result;
+    }
+    page.changes++;
+    return MSPRING_OK;
+}
+
+static double side_of(point from, point to, point at) {
+    return (to.x - from.x) * (at.y - from.y) - (to.y - from.y) * (at.x - from.x);
+}
+
+static bool cross(point a, point b, point c, point d) {
+    return (side_of(a, b, c) > 0) != (side_of(a, b, d) > 0) && (side_of(c, d, a) > 0) != (side_of(c, d, b) > 0);
+}
+
+// Those that are restored or broken are told as events, which are read behind the next step.
+mspring_result page_cut(double x, double y, double x2, double y2) {
+    const point from = {x, y}, to = {x2, y2};
+    uint32_t count = 0;
+    for (mspring_id spring = 0; spring < page.spring_count; spring++)
+        if (page.springs[spring].rest_length > 0 &&
+            cross(from, to, place_of(page.ends[2 * spring]), place_of(page.ends[2 * spring + 1])))
+            page.list[count++] = spring;
+    return mspring_network_break_springs(page.network, page.list, count);
+}
+
+mspring_result page_repair(void) {
+    uint32_t count = 0;
+    for (mspring_id spring = 0; spring < page.spring_count; spring++)
+        if (page.springs[spring].rest_length == 0)
+            page.list[count++] = spring;
+    return mspring_network_restore_springs(page.network, page.list, count, 1);
+}
+
+mspring_result page_blast(double x, double y, double radius, double speed) {
+    const uint32_t count = list_near(x, y, radius);
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t slot = page.view.slot_of_particle[page.list[i]];
+        const point at = place_of(page.list[i]);
+        const double distance = sqrt(square(at.x - x) + square(at.y - y));
+        if (page.view.inverse_mass[slot] == 0 || !(distance > 0) || distance > radius)
+            continue;
+        const double change = speed * (1 - distance / radius) / distance;
+        page.view.vx[slot] += (float)(change * (at.x - x));
+        page.view.vy[slot] += (float)(change * (at.y - y));
+    }
+    return MSPRING_OK;
+}
+
+/* --------------------------------------------------------------------------------------------------------- floor
+ */
+
+mspring_result page_set_floor(double height) {
+    if (!(height > -1e11))
+        return mspring_network_set_floor(page.network, NULL);
+    const double plane[4] = {0, height, 0, 1};
+    mspring_floor_def def;
+    const mspring_result result = mspring_floor_def_init(&def, sizeof def);
+    def.plane_count = 1;
+    def.planes = plane;
+    def.friction = 0.5f;
+    return result == MSPRING_OK ? mspring_network_set_floor(page.network, &def) : result;
+}
