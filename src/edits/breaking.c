@@ -122,8 +122,10 @@ mspring_result mspring_network_detach_particles(mspring_network *network, const 
         mspringi_select_list(network, "particle", total, particles, count, particles, particles, &at);
     if (result == MSPRING_OK && count > 0)
         result = mspringi_breaking_reserve(network);
+    if (result != MSPRING_OK)
+        return result;
     const mspringi_incidence *incidence = &network->incidence;
-    if (result == MSPRING_OK && count > 0 && !incidence->first)
+    if (count > 0 && !incidence->first)
         result =
             mspringi_incidence_create(&network->incidence, &network->topology, &network->memory, &network->message);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
