@@ -994,15 +994,21 @@ MSPRING_API mspring_result mspring_floor_def_init(mspring_floor_def *def, size_t
 /// Give the network a floor instead of the one it has. It acts on every particle that is not pinned, in every
 /// substep: a particle that was above it at the beginning is not below it at the end, whatever its speed and
 /// however long the substep, but for some last places of its coordinates (a millionth of its distance from the
-/// local origin); one that was below is put onto it. Contact takes energy and never gives any. Peaks of the heights
-/// that are narrower than the way of a particle in a substep are met, too.
+/// local origin); one that was below is put onto it. Contact takes energy and gives none. Peaks of the heights that
+/// are narrower than the way of a particle in a substep are met, too.
+///
+/// Explicit substeps treat each particle after it has moved. In implicit ones the floor is part of the linear
+/// system: a substep is solved up to four times to find which particles it holds and which of them slide, with
+/// twice the iterations; one in which particles hit it is one of implicit Euler, and where they would come deeper
+/// than a fifth of the shortest spring it is taken in up to 40 pieces. There only particles without springs bounce
+/// by restitution: a structure is thrown back by its springs.
 ///
 /// The floor is a setting, as gravity is, but too large for snapshots, which leave it as it is; state hashes do not
 /// count it. Static equilibria (mspring_network_settle()) do not know of it.
 /// @param def  copied with all that it points to; NULL: no floor
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY. On
 ///         error the floor is the one of before.
-/// @threads exclusive access to network   @allocates yes; 20 to 24 bytes for a height and 16 for a particle
+/// @threads exclusive access to network   @allocates yes; 20 to 24 bytes for a height and 40 for a particle
 /// @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_floor(mspring_network *network,
                                                                        const mspring_floor_def *def);

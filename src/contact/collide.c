@@ -26,7 +26,7 @@ static bool touch(const mspringi_floor *floor, const mspringi_line *line, msprin
     const bool approaches = across < 0.0;
     if (approaches) {
         const double before = line->nx * b->start_x + line->ny * b->start_y + line->offset;
-        const double given = (before > 2.0 * slop ? -floor->restitution * across : 0.0) - across;
+        const double given = (before > 2.0 * slop ? -b->restitution * across : 0.0) - across;
         const double along = line->nx * b->vy - line->ny * b->vx, most = floor->friction * given;
         const double taken = along > most ? most : along < -most ? -most : along;
         b->vx += given * line->nx + taken * line->ny;
@@ -93,7 +93,7 @@ void mspringi_floor_collide(const mspringi_floor *floor, mspringi_body *b, doubl
     if (!(mspringi_floor_distance(floor, b->x, b->y) < -slop))
         return;
     // A narrow corner: the particle stays where it came from, if that was outside.
-    if (mspringi_floor_distance(floor, b->start_x, b->start_y) >= -slop) {
+    if (mspringi_floor_distance(floor, b->start_x, b->start_y) >= -8.0 * slop) {
         b->x = b->start_x;
         b->y = b->start_y;
     } else {
@@ -110,6 +110,9 @@ static void collide_slot(const mspring_network *network, const mspringi_field *s
     mspringi_floor *floor = network->floor;
     const double vx = (double)s->vx[slot], vy = (double)s->vy[slot];
     mspringi_body b = {.x = (double)s->x[slot], .y = (double)s->y[slot], .vx = vx, .vy = vy};
+    // After implicit substeps it is the springs that throw a structure back, and not the speed of a particle of it.
+    const bool bounces = !start || slot >= (size_t)network->topology.loose_first * MSPRINGI_WIDTH;
+    b.restitution = bounces ? floor->restitution : 0.0;
     b.start_x = start ? (double)start->x[slot] : b.x - h * vx;
     b.start_y = start ? (double)start->y[slot] : b.y - h * vy;
     mspringi_floor_collide(floor, &b, h);
@@ -183,11 +186,21 @@ void mspringi_floor_touch_far(const mspring_network *network, float h) {
             touch_strip(network, NULL, i, h);
 }
 
-void mspringi_floor_keep(const mspring_network *network) {
-    const mspringi_field *start = &network->floor->start;
-    const size_t size = mspringi_slot_count(network) * sizeof *start->x;
-    memcpy(start->x, network->state.x, size);
-    memcpy(start->y, network->state.y, size);
+void mspringi_floor_keep(mspring_network *network, float h) {
+    mspringi_floor *floor = network->floor;
+    const size_t size = mspringi_slot_count(network) * sizeof *floor->start.x;
+    memcpy(floor->start.x, network->state.x, size);
+    memcpy(floor->start.y, network->state.y, size);
+    // What is clear around all strips is clear around the network.
+    mspringi_floor_survey(network, (double)h);
+    floor->clear = floor->clearances[0].clear;
+    for (uint32_t i = 1; i < network->topology.strip_count; ++i) {
+        const mspringi_bounds *other = &floor->clearances[i].clear;
+        floor->clear.min_x = fminf(floor->clear.min_x, other->min_x);
+        floor->clear.max_x = fmaxf(floor->clear.max_x, other->max_x);
+        floor->clear.min_y = fmaxf(floor->clear.min_y, other->min_y);
+        floor->clear.max_y = fminf(floor->clear.max_y, other->max_y);
+    }
 }
 
 void mspringi_floor_touch_all(mspring_network *network, float h) {

@@ -141,6 +141,7 @@ void mspringi_floor_free_layout(mspringi_floor *floor, mspringi_memory *memory) 
     if (!floor)
         return;
     mspringi_free(memory, floor->clearances);
+    mspringi_free(memory, floor->contacts);
     mspringi_free(memory, floor->start.x);
     mspringi_free(memory, floor->impulse.x);
     mspringi_free(memory, floor);
@@ -166,8 +167,11 @@ static bool reserve_layout(mspringi_floor *floor, mspring_network *network) {
     mspringi_memory *memory = &network->memory;
     floor->slot_count = mspringi_slot_count(network);
     floor->clearances = mspringi_alloc(memory, network->topology.strip_count, sizeof *floor->clearances);
+    floor->contact_capacity = (uint32_t)(floor->slot_count / 4) + 64;
+    floor->contact_count = 0;
+    floor->contacts = mspringi_alloc(memory, floor->contact_capacity, sizeof *floor->contacts);
     floor->impulse = floor->start = (mspringi_field){NULL, NULL};
-    return floor->clearances && reserve_field(&floor->impulse, floor->slot_count, memory) &&
+    return floor->clearances && floor->contacts && reserve_field(&floor->impulse, floor->slot_count, memory) &&
            reserve_field(&floor->start, floor->slot_count, memory);
 }
 

@@ -3,6 +3,7 @@
 ///
 ///   floor.c      the definition, given by the host
 ///   surface.c    where the surface is, which way it faces, and which boxes are clear of it
+///   terms.c      what it does in the linear system of an implicit substep
 ///   collide.c    what it does to a particle after a substep
 ///
 /// SPDX-License-Identifier: MIT
@@ -41,6 +42,19 @@ typedef struct mspringi_clearance {
     bool is_far;           ///< the strip cannot come out of it in the substeps that this was made for
 } mspringi_clearance;
 
+/// A particle and a straight surface that it touches, or may touch, in an implicit substep.
+typedef struct mspringi_contact {
+    uint32_t slot;
+    bool is_active;   ///< it is held
+    double slip;      ///< it slides this way along the surface, 1 or -1; 0: it sticks
+    double nx, ny;    ///< across the surface
+    double gap;       ///< distance where it is predicted, m
+    double ahead;     ///< how far it is predicted to come along the surface, m
+    double stiffness; ///< of what holds it, in the units of the matrix
+    double normal;    ///< what holds it across the surface, in the units of the right-hand side
+    double along;     ///< what brakes it along the surface, likewise
+} mspringi_contact;
+
 typedef struct mspringi_floor {
     mspringi_half_plane planes[MSPRING_MAX_PLANES];
     mspringi_line lines[MSPRING_MAX_PLANES]; ///< the same, local
@@ -51,12 +65,18 @@ typedef struct mspringi_floor {
     mspringi_field start;           ///< [slot_count] positions before an implicit substep, m
     mspringi_field impulse;         ///< [slot_count] N s on each slot in the last step
     size_t slot_count;
-    bool has_impulse; ///< impulse is not all zero
+    mspringi_bounds clear;      ///< where no surface is, around the network as it was before an implicit substep
+    mspringi_contact *contacts; ///< of an implicit substep
+    uint32_t contact_count, contact_capacity;
+    bool is_in_coarse; ///< some are in the coarse matrix
+    bool again;        ///< the substep is to be solved again
+    bool has_hit;      ///< it is to be begun again, as one of implicit Euler
+    bool has_impulse;  ///< impulse is not all zero
 } mspringi_floor;
 
 /// A particle that has moved from its start in a substep, local coordinates.
 typedef struct mspringi_body {
-    double start_x, start_y, x, y, vx, vy;
+    double start_x, start_y, x, y, vx, vy, restitution;
 } mspringi_body;
 
 void mspringi_floor_destroy(mspringi_floor *floor, mspringi_memory *memory);
@@ -114,8 +134,29 @@ void mspringi_floor_touch(const mspring_network *network, const mspringi_strip *
 /// Look once at the strips that were left out.
 void mspringi_floor_touch_far(const mspring_network *network, float h);
 
-/// Keep the positions before an implicit substep, and let the surface act after it.
-void mspringi_floor_keep(const mspring_network *network);
+/* terms.c: of a network with an implicit solver; those that take a const network do nothing without a floor */
+
+/// How many substeps an implicit one of h is better divided into, after mspringi_floor_keep().
+uint32_t mspringi_floor_pieces(const mspring_network *network, float h);
+
+/// Add what holds particles to the matrix and the right-hand side of a substep of h that has been assembled for the
+/// pass-th time. Returns false if particles hit the floor and the substep should be one of implicit Euler.
+bool mspringi_floor_add_terms(mspring_network *network, float h, uint32_t pass);
+
+/// Add it to a product, to the coarse matrix, to the blocks on the diagonal in double precision.
+/// @return mspringi_floor_multiply(): what it adds to from . to
+double mspringi_floor_multiply(const mspring_network *network, mspringi_field from, mspringi_field to);
+void mspringi_floor_stiffen(const mspring_network *network);
+void mspringi_floor_add_nodes(const mspring_network *network, double *xx, double *xy, double *yy);
+
+/// Look at the solution, displacement + alpha direction. Returns whether other particles are to be held than were.
+bool mspringi_floor_review(mspring_network *network, float alpha, uint32_t pass);
+
+/// Count what held particles in a substep of h among the impulses.
+void mspringi_floor_bear(const mspring_network *network, float h);
+
+/// Keep the positions before an implicit substep of h, and let the surface act after it.
+void mspringi_floor_keep(mspring_network *network, float h);
 void mspringi_floor_touch_all(mspring_network *network, float h);
 
 #endif

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "contact/floor.h"
 #include "implicit/implicit.h"
 
 /// The largest stiffness at a particle, in the units of its mass in A, that goes with single precision. Rounding is
@@ -235,6 +236,7 @@ static void fill_twice(const mspring_network *network, double added) {
         node.xy[b] += xy;
         node.yy[b] += yy;
     }
+    mspringi_floor_add_nodes(network, node.xx, node.xy, node.yy);
     for (size_t i = 0; i < slots; ++i) {
         const double mass = n->mass[i] > 0.0f ? (double)n->mass[i] : PINNED_MASS;
         const double on_top = mass + added * (node.xx[i] + node.yy[i]);

@@ -1,4 +1,5 @@
 /// The linear system of a substep.
+#include "contact/floor.h"
 #include "implicit.h"
 
 #include <math.h>
@@ -204,12 +205,16 @@ double mspringi_multiply(const mspringi_substep_of *substep, mspringi_mate *mate
     mspringi_implicit *n = network->implicit;
     multiply_panels(network, mate);
     mspringi_meet(mate);
-    if (network->topology.web_blocks > 0 || network->topology.leftover_count > 0) {
+    const bool has_contacts = network->floor && network->floor->contact_count > 0;
+    const bool has_others =
+        network->topology.web_blocks > 0 || network->topology.leftover_count > 0 || has_contacts;
+    if (has_others) {
         if (mate->index == 0)
-            n->leftover_product = multiply_leftover(network, n->direction, n->product);
+            n->leftover_product = multiply_leftover(network, n->direction, n->product) +
+                                  mspringi_floor_multiply(network, n->direction, n->product);
         mspringi_meet(mate);
     }
-    double sum = n->leftover_product;
+    double sum = has_others ? n->leftover_product : 0.0;
     for (uint32_t p = 0; p < n->panels.count; ++p)
         sum += (double)n->panels.sums[p];
     return sum;

@@ -48,6 +48,10 @@ void mspringi_coarse_assemble(mspringi_coarse *coarse, const mspringi_tiles *til
 void mspringi_coarse_complete(mspringi_coarse *coarse, const mspringi_tiles *tiles,
                               const mspringi_coarse_parts *parts);
 
+/// Add what holds a particle at (x, y) from its tile's mass centre to the tile's block on the diagonal.
+void mspringi_coarse_add(mspringi_coarse *coarse, uint32_t tile, double xx, double xy, double yy, double x,
+                         double y);
+
 /// Factor in place. Never fails: a pivot that rounding has made too small is replaced.
 void mspringi_coarse_factor(mspringi_coarse *coarse);
 

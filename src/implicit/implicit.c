@@ -1,5 +1,6 @@
 /// Making an implicit solver, and its substep.
 #include "implicit.h"
+#include "contact/floor.h"
 
 #include <math.h>
 #include <string.h>
@@ -358,6 +359,35 @@ static void look_at_energy(const mspringi_substep_of *substep, float alpha) {
     mspringi_energy_look(substep->network, substep->h, substep->base);
 }
 
+// Most times that a substep is solved to find out which particles the floor holds.
+#define MOST_PASSES 4
+
+// Solve with what the floor adds. Returns false if the substep is to be begun anew.
+static bool solve_with_floor(const mspringi_substep_of *substep, mspringi_mate *mate, float *alpha) {
+    mspring_network *network = substep->network;
+    mspringi_floor *floor = network->floor;
+    for (uint32_t pass = 0; pass < MOST_PASSES; ++pass) {
+        if (pass > 0) {
+            mspringi_predict(substep, mate);
+            mspringi_assemble(substep, mate);
+        }
+        mspringi_meet(mate);
+        if (mate->index == 0)
+            floor->has_hit = !mspringi_floor_add_terms(network, substep->h, pass);
+        mspringi_meet(mate);
+        if (floor->has_hit)
+            return false;
+        *alpha = solve(substep, mate);
+        mspringi_meet(mate);
+        if (mate->index == 0)
+            floor->again = mspringi_floor_review(network, *alpha, pass);
+        mspringi_meet(mate);
+        if (!floor->again)
+            break;
+    }
+    return true;
+}
+
 // A worker's part of a substep.
 static void run_substep(void *argument, uint32_t index, uint32_t worker) {
     const mspringi_substep_of *substep = argument;
@@ -365,7 +395,11 @@ static void run_substep(void *argument, uint32_t index, uint32_t worker) {
     (void)worker;
     mspringi_predict(substep, &mate);
     mspringi_assemble(substep, &mate);
-    const float alpha = solve(substep, &mate);
+    float alpha = 0.0f;
+    if (!substep->network->floor)
+        alpha = solve(substep, &mate);
+    else if (!solve_with_floor(substep, &mate, &alpha))
+        return;
     if (mspringi_energy_is_watched(substep->network)) {
         mspringi_meet(&mate);
         if (mate.index == 0)
@@ -404,6 +438,13 @@ void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_fiel
         mspringi_scheme_prepare(&substep);
         const uint32_t sleeps = mspringi_tasks_sleeps(network->tasks);
         mspringi_tasks_run(substep.progress ? network->tasks : NULL, substep.workers, run_substep, &substep);
+        if (network->floor && network->floor->has_hit) {
+            n->is_hit = true;
+            mspringi_scheme_prepare(&substep);
+            mspringi_tasks_run(substep.progress ? network->tasks : NULL, substep.workers, run_substep, &substep);
+        }
+        if (network->floor)
+            mspringi_floor_bear(network, h);
         mspringi_scheme_close(&substep);
         n->age = n->age + 1 < n->coarse_period ? n->age + 1 : 0;
         if (substep.progress)

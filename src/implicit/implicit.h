@@ -64,7 +64,8 @@ typedef struct mspringi_implicit {
     uint32_t patience;                  ///< how many these were to be
     float *sums;                        ///< [chunks]
     mspringi_tile_flight *flights;      ///< [tiles]
-    double leftover_product;            ///< what leftover springs add to p . A p
+    double leftover_product;            ///< what leftover springs and contacts add to p . A p
+    bool is_hit;                        ///< the present substep is one of implicit Euler: particles hit the floor
     mspringi_system system;
     mspringi_iterate iterate;
     mspringi_edits seen; ///< the edits that it has followed

@@ -37,15 +37,20 @@ mspringi_scheme mspringi_scheme_of(mspring_integrator integrator) {
     }
 }
 
+// Whether the substep is one of implicit Euler, whatever the integrator.
+static bool starts_anew(const mspringi_implicit *n) {
+    return n->history.restarts || n->is_hit;
+}
+
 static mspring_integrator integrator_now(const mspringi_implicit *n) {
-    return n->history.restarts ? MSPRING_INTEGRATOR_EULER : n->integrator;
+    return starts_anew(n) ? MSPRING_INTEGRATOR_EULER : n->integrator;
 }
 
 /* ------------------------------------------------------------------------------------------------- preparation */
 
 // What a history of another substep is multiplied with: of a smooth motion, E grows as h^2 and G as h.
 static float rescaling(const mspringi_implicit *n, float h) {
-    const bool other = n->integrator == MSPRING_INTEGRATOR_BDF2 && !n->history.restarts && n->history.h != h;
+    const bool other = n->integrator == MSPRING_INTEGRATOR_BDF2 && !starts_anew(n) && n->history.h != h;
     return other ? h / n->history.h : 1.0f;
 }
 
@@ -85,7 +90,7 @@ static mspringi_flight prepare_flight(const mspringi_substep_of *substep, msprin
 static void prepare_outside(mspringi_substep_of *substep, double c, double heavier) {
     const mspring_network *network = substep->network;
     const mspringi_implicit *n = network->implicit;
-    const bool two = n->integrator == MSPRING_INTEGRATOR_BDF2 && !n->history.restarts;
+    const bool two = n->integrator == MSPRING_INTEGRATOR_BDF2 && !starts_anew(n);
     const float h = substep->h, ratio = rescaling(n, h);
     const double damping = (double)network->global_damping;
     mspringi_outside o = {
@@ -115,7 +120,7 @@ static void prepare_outside(mspringi_substep_of *substep, double c, double heavi
 static mspringi_memory_of choose_memory(const mspringi_implicit *n) {
     switch (n->integrator) {
     case MSPRING_INTEGRATOR_GA0:
-        return n->history.restarts ? MSPRINGI_REMEMBER_CHANGE : MSPRINGI_REMEMBER_ACCELERATION;
+        return starts_anew(n) ? MSPRINGI_REMEMBER_CHANGE : MSPRINGI_REMEMBER_ACCELERATION;
     case MSPRING_INTEGRATOR_BDF2:
         return MSPRINGI_REMEMBER_BOTH;
     default:
@@ -237,5 +242,6 @@ void mspringi_scheme_close(const mspringi_substep_of *substep) {
         n->has_changed = true;
     }
     n->history.h = substep->h;
-    n->history.restarts = false;
+    n->history.restarts = n->is_hit; // a blow is no acceleration that lasts
+    n->is_hit = false;
 }

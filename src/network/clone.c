@@ -190,6 +190,7 @@ static void move_floor(const moving *m, mspringi_floor *floor) {
     for (uint32_t i = 0; i < MSPRINGI_HEIGHT_LEVELS; ++i)
         MOVE(floor->heights.highest[i]);
     MOVE(floor->clearances);
+    MOVE(floor->contacts);
     move_field(m, &floor->start);
     move_field(m, &floor->impulse);
 }

@@ -60,11 +60,18 @@ static mspringi_field prepare_base(mspring_network *network, double dt) {
 
 /* -------------------------------------------------------------------------------------------------- substeps */
 
+// Substeps of an implicit solver with a floor; those with heavy blows in pieces.
 static void take_implicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
     for (; count > 0; --count) {
-        mspringi_floor_keep(network);
-        mspringi_implicit_substeps(network, h, base, 1);
-        mspringi_floor_touch_all(network, h);
+        mspringi_floor_keep(network, h);
+        const uint32_t pieces = mspringi_floor_pieces(network, h);
+        const float piece = h / (float)pieces;
+        for (uint32_t i = 0; i < pieces; ++i) {
+            if (pieces > 1)
+                mspringi_floor_keep(network, piece);
+            mspringi_implicit_substeps(network, piece, base, 1);
+            mspringi_floor_touch_all(network, piece);
+        }
     }
 }
 
