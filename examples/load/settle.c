@@ -13,7 +13,7 @@
 #include <string.h>
 
 enum {
-    IMPLICIT_SUBSTEPS = 16, // in a frame
+    IMPLICIT_SUBSTEPS = 4, // in a frame
     MOST_WIDTH = 1200,
     MOST_HEIGHT = 700
 };
@@ -105,7 +105,6 @@ static bool start(mspring_network *network, mspring_solver solver, scene_error *
     ground.friction = friction;
     def.solver = solver;
     def.substeps = IMPLICIT_SUBSTEPS;
-    def.integrator = MSPRING_INTEGRATOR_EULER; // those of second order do not lie still on a floor
     mspring_result result = mspring_network_set_floor(network, &ground);
     if (result == MSPRING_OK && solver == MSPRING_SOLVER_EXPLICIT)
         result = mspring_network_suggest_substeps(network, frame, safety, &def.substeps);
