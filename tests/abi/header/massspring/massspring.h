@@ -91,6 +91,19 @@ MSPRING_API uint32_t mspring_version(void);
 /// @threads any   @allocates never   @since 0.1
 MSPRING_API const char *mspring_version_string(void);
 
+/// What a build of the library has beside what all have.
+enum {
+    MSPRING_FEATURE_THREADS = 1u << 0, ///< networks may have several workers; without, they have one
+    MSPRING_FEATURE_HOSTED = 1u << 1,  ///< there is a default allocator, error messages have their numbers, and the
+                                       ///< environment variable MSPRING_SIMD is read
+    MSPRING_FEATURE_SHARED = 1u << 2   ///< this is the shared library
+};
+
+/// Features of the library that runs: bits of MSPRING_FEATURE_. (When compiling, MSPRING_VERSION tells what the
+/// header has: `#if MSPRING_VERSION >= 1000` is true from 0.1.0 on.)
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API uint32_t mspring_features(void);
+
 /* ------------------------------------------------------------------------------------------- result codes */
 
 /// What a call came to: MSPRING_OK or one of the negative errors below.
@@ -267,16 +280,33 @@ enum {
     /// number of substeps. Stable while omega_max * h < 2: on a full lattice of equal springs and masses,
     /// stiffness < mass / (2 h^2). See mspring_network_stable_dt().
     MSPRING_SOLVER_EXPLICIT = 0,
-    /// One linear system in each substep, whatever the stiffness: stable for any dt and any springs, at a cost that
-    /// does not depend on them. Springs and dampers are linearised at x + h v (their stiffness across their
-    /// direction clamped to 0 where they are compressed, so that the matrix is positive definite) and the system is
-    /// solved by a fixed number of conjugate gradient iterations with a two-level preconditioner: the blocks of the
-    /// single particles, and tiles of neighbouring particles that move as rigid bodies. A substep costs 30 to 60
-    /// explicit ones. It damps what oscillates with less than about ten substeps a period.
-    MSPRING_SOLVER_IMPLICIT = 1
+    /// One linear system in each substep, whatever the stiffness: stable on lattices for any dt and any springs, at
+    /// a cost that does not depend on them. Ropes and other springs outside of lattices have little stiffness
+    /// across them; where they are so stiff, and move so far in a substep, that this would stretch them by energy
+    /// that nothing has put in, the step is refused (see mspring_guard). Springs and dampers are linearised at x +
+    /// h v, with tiles of neighbouring particles turned on as rigid bodies (and with the stiffness across a spring
+    /// clamped to 0 where it is compressed, so
+    /// that the matrix is positive definite). The system is solved by a fixed number of conjugate gradient
+    /// iterations with a two-level preconditioner: the blocks of the single particles, and the tiles. With eight
+    /// of them a substep costs 20 to 65 explicit ones, least where vectors are short. It damps what oscillates
+    /// with less than about ten substeps a period. Global damping, which explicit steps apply exactly, is as
+    /// accurate as its integrator.
+    MSPRING_SOLVER_IMPLICIT = 1,
+    /// The same system, solved by a factorisation (block Cholesky) that is computed anew in each substep: exact but
+    /// for rounding, so that there is nothing to choose. Springs and dampers are linearised at x + h v itself. The
+    /// cost for each particle grows with how wide the network is: a substep costs 15 to 120 explicit ones where it
+    /// is thin (a bar of 5 rows of any length), 400 to 800 for 70 rows. The order of elimination is found, and all
+    /// memory taken, when the solver is chosen; broken springs and pins need no new one.
+    /// The factor is in single precision as long as springs, seen over a substep, are not over some thousand times
+    /// as stiff as their particles are heavy (4 to 8 k h^2 / m beyond 16384; 1e9 N/m between masses of 73 kg at
+    /// 1/64 s are below), and in double precision, which costs 1.3 to 2.5 times as much, beyond that. Should even
+    /// that not do (k h^2 / m of about 1e14 and more), particles are made heavier for this substep by the least
+    /// that helps: 1.4e-14 of the stiffness at them, or 64 times that, and so on up to a thousandth; then the step
+    /// is refused.
+    MSPRING_SOLVER_DIRECT = 2
 };
 
-/// How the implicit solver goes from t to t + h. All are stable for any h and damp the fastest oscillations out in
+/// How the implicit solvers go from t to t + h. All are stable for any h and damp the fastest oscillations out in
 /// a few steps. The two of second order remember the substep before; the first substep after a change of the
 /// solver, and after the positions of all particles were set, is one of implicit Euler.
 typedef int32_t mspring_integrator;
@@ -291,7 +321,7 @@ enum {
 
 /// substeps for "as few as are stable in whatever shape the network may get into" (see
 /// mspring_network_stable_dt()), chosen at every step. mspring_network_substeps() says how many they were. For the
-/// implicit solver 1.
+/// implicit and the direct solver 1.
 #define MSPRING_SUBSTEPS_AUTO UINT32_MAX
 
 /// Solver and its settings. Fill with mspring_solver_def_init() first. What a solver does not use is not looked at.
@@ -302,7 +332,7 @@ typedef struct mspring_solver_def {
     uint32_t max_substeps; ///< most that MSPRING_SUBSTEPS_AUTO or MSPRING_GUARD_RETRY may choose, 1 to
                            ///< MSPRING_MAX_SUBSTEPS: a step that needs more is refused with
                            ///< MSPRING_ERROR_UNSTABLE; default 1000
-    mspring_integrator integrator; ///< of the implicit solver; default MSPRING_INTEGRATOR_GA0
+    mspring_integrator integrator; ///< of the implicit and the direct solver; default MSPRING_INTEGRATOR_GA0
     uint32_t iterations;           ///< of conjugate gradients in a substep, at most 10000; 0, the default: 8
     uint32_t tile_size;     ///< rows and columns of the cells that a lattice is cut into for its tiles: 8, 16,
                             ///< 32, 64, 128 or 256; 0, the default: by plan, the smallest whose matrix is
@@ -313,7 +343,7 @@ typedef struct mspring_solver_def {
 } mspring_solver_def;
 
 /// Instruction sets. All give the same bits. Those of one kind of CPU stand in order, scalar below all of them:
-/// scalar < SSE2 < AVX2 < AVX-512 on x86, scalar < NEON on 64-bit ARM, scalar alone elsewhere. Between kinds there
+/// scalar < SSE2 < AVX2 < AVX-512 on x86, scalar < NEON on 64-bit ARM, scalar < WASM in a browser, scalar alone elsewhere. Between kinds there
 /// is no order.
 typedef int32_t mspring_simd;
 enum {
@@ -322,7 +352,8 @@ enum {
     MSPRING_SIMD_SSE2 = 2,
     MSPRING_SIMD_AVX2 = 3,
     MSPRING_SIMD_AVX512 = 4,
-    MSPRING_SIMD_NEON = 5
+    MSPRING_SIMD_NEON = 5,
+    MSPRING_SIMD_WASM = 6 ///< SIMD128 of WebAssembly, in modules that were built with it
 };
 
 /// Flags of networks.
@@ -334,18 +365,22 @@ enum {
 typedef int32_t mspring_guard;
 enum {
     /// Refuse a step whose substeps are above the border of mspring_network_stable_dt(): motion would turn round
-    /// and
-    /// grow in each. The border is looked at when the substep changes, and when a step changes a velocity twice as
-    /// much as one did at the last look; not at all where substeps are stable in any shape. Steps below the border
-    /// are never refused.
+    /// and grow in each. The border is looked at when the substep changes, and when a step changes a velocity twice
+    /// as much as one did at the last look; not at all where substeps are stable in any shape. Steps below the
+    /// border are never refused. With the implicit and the direct solver, refuse instead a step in which springs
+    /// outside of lattices get more than twice the energy that there was, kinetic and elastic, with what gravity,
+    /// forces and moving pins can have added.
     MSPRING_GUARD_GROWTH = 0,
     /// The same, but take a step that would be refused again with twice as many substeps, four times as many, and
-    /// so
-    /// on up to max_substeps. Later steps keep the number that was needed, until mspring_network_set_solver().
-    /// Hooks
-    /// are called again. Relative springs follow the substep, so more of them are no help there.
+    /// so on up to max_substeps. Later steps keep the number that was needed, until mspring_network_set_solver().
+    /// Hooks are called again. Relative springs follow the substep, so more of them are no help there.
     MSPRING_GUARD_RETRY = 1,
-    MSPRING_GUARD_BOUNDS = 2 ///< look at nothing else
+    MSPRING_GUARD_BOUNDS = 2, ///< look at nothing else
+    /// As MSPRING_GUARD_GROWTH, but have the implicit solver take a step that would be refused, in one substep of
+    /// implicit Euler, and the 15 after it, before the explicit one is tried again: slower (20 to 65 explicit
+    /// substeps each) and softened, but at nearly any stiffness. Hooks are called again. Its memory is reserved
+    /// with the network. mspring_network_fallback_count() says how often that was.
+    MSPRING_GUARD_IMPLICIT = 3
 };
 
 /// A network's settings at the start. Fill with mspring_network_def_init() first.
@@ -354,7 +389,7 @@ typedef struct mspring_network_def {
     mspring_simd simd_level; ///< highest level to use; default MSPRING_SIMD_AUTO. A level that this machine lacks,
                              ///< such as one of another kind of CPU, is no limit, so one program may ask for
                              ///< at most AVX2 on x86 and run on ARM, too. The environment variable MSPRING_SIMD
-                             ///< (scalar, sse2, avx2, avx512, neon) can lower it further, never raise.
+                             ///< (scalar, sse2, avx2, avx512, neon, wasm) can lower it further, never raise.
     float gravity_x;         ///< m/s^2, finite; default 0
     float gravity_y;         ///< m/s^2, finite; default -9.8
     float global_damping;    ///< 1/s, 0 to 1e6; velocities decay by exp(-global_damping t); default 0
@@ -372,6 +407,9 @@ typedef struct mspring_network_def {
     uint32_t flags;        ///< MSPRING_NETWORK_RESERVE_DAMPING or 0; default 0
     uint32_t max_substeps; ///< as in mspring_solver_def; default 1000
     mspring_guard guard;   ///< default MSPRING_GUARD_GROWTH
+    float sleep_speed; ///< m/s, 0 to 1e15: a network sleeps once none of its particles has been faster in x or y
+                       ///< at the end of a step for sleep_time, see mspring_network_is_asleep(); default 0: never
+    float sleep_time;  ///< s of simulated time, 0 to 1e6; default 0.5
 } mspring_network_def;
 
 /// Fill a definition with its defaults. Pass the size that your header gives it: sizeof *def.
@@ -488,6 +526,47 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_create(mspring_buil
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_API void mspring_network_destroy(mspring_network *network);
 
+/// Flags of mspring_clone_def.
+enum {
+    /// The clone has the original's hooks, too, with their user pointers and storage, so what these point to is
+    /// shared by both.
+    MSPRING_CLONE_HOOKS = 1u << 0
+};
+
+/// What a clone is to have of its own. Fill with mspring_clone_def_init() first.
+typedef struct mspring_clone_def {
+    uint32_t struct_size;
+    uint32_t flags;                     ///< MSPRING_CLONE_HOOKS or 0; default 0: no hooks
+    const mspring_allocator *allocator; ///< default NULL: as the original's, with the same user
+    const mspring_tasks *tasks;         ///< as in mspring_network_def; default NULL
+    uint32_t worker_count;              ///< as in mspring_network_def; default 1, whatever the original has
+    uint32_t reserved;                  ///< 0
+} mspring_clone_def;
+
+/// Fill a definition with its defaults, as mspring_network_def_init().
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API mspring_result mspring_clone_def_init(mspring_clone_def *def, size_t size);
+
+/// Make a network that is as this one is now, and independent of it: to try out what would happen, to go back to,
+/// or to be stepped by another thread. It holds everything that the following steps depend on (solver with its
+/// history, settings, edits, ramps, forces given for the next step) and what is measured of them (thresholds,
+/// components, events not read yet), so the same calls on both give the same bits. Workers it has its own, hooks
+/// none, unless def says otherwise.
+///
+/// Takes as long as copying mspring_network_memory_used() bytes into memory that is new, which most systems hand
+/// out more slowly than it is copied. Where a state is to be kept and brought back often, mspring_network_save()
+/// and mspring_network_load() need less.
+/// @param def    NULL for the defaults
+/// @param clone  receives the clone, to be freed by mspring_network_destroy()
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL, unknown flags, workers that are out of range, or more
+/// workers
+///         than the original has for hooks that have storage; MSPRING_ERROR_STRUCT; MSPRING_ERROR_MEMORY;
+///         MSPRING_ERROR_THREAD if a worker cannot be started; MSPRING_ERROR_BUSY in a hook.
+/// @threads shared   @allocates yes, with the clone's allocator   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_clone(const mspring_network *network,
+                                                                   const mspring_clone_def *def,
+                                                                   mspring_network **clone);
+
 /// What was wrong with the last call on this network that failed; as mspring_builder_error(). Functions marked
 /// shared report by their result alone, so that several threads may call them.
 /// @threads shared   @allocates never   @since 0.1
@@ -499,10 +578,11 @@ MSPRING_API uint32_t mspring_network_particle_count(const mspring_network *netwo
 MSPRING_API uint32_t mspring_network_spring_count(const mspring_network *network);
 
 /// Choose how the following steps are made. The state goes on from where it is.
-/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY or MSPRING_ERROR_BUSY. On
-///         error the solver is the one of before.
-/// @threads exclusive access to network   @allocates for an implicit solver, unless only substeps, iterations or
-///         coarse_period differ from the one of before   @since 0.1
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY or MSPRING_ERROR_BUSY;
+///         MSPRING_ERROR_LIMIT if the direct solver's factor would have over 2^31 numbers. On error the solver is
+///         the one of before.
+/// @threads exclusive access to network   @allocates for an implicit or direct solver, unless only substeps,
+///         iterations or coarse_period differ from the one of before   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_solver(mspring_network *network,
                                                                         const mspring_solver_def *def);
 
@@ -531,10 +611,39 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_global_damping(
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_step(mspring_network *network, double dt);
 
+/// Whether the network sleeps: 1 or 0. NULL gives 0.
+///
+/// A network that may sleep (mspring_network_def.sleep_speed) falls asleep at the end of a step, as a whole: once
+/// every particle has been slow for long enough, no pinned one moves and no spring is on a ramp. Its velocities are
+/// set to 0 then, so what was left of its kinetic energy is gone. While it sleeps steps change nothing, and cost
+/// next to nothing if there are no hooks and no forces.
+///
+/// It wakes before or in the step that finds something changed: a position, velocity, mass or pin that is another
+/// one (set by a call or through a view, or by a hook in the step before); a stiffness, damping, rest length or
+/// threshold that was set, a spring that was broken or restored; gravity, solver or floor; the length of the
+/// substep where springs are relative; a force from outside that differs from the one under which it fell asleep,
+/// so much that it would bring its particle to sleep_speed within sleep_time. It also wakes when it is compacted or
+/// expanded. Hooks are called as ever; the forces of those before substeps are looked at in the first of a step. A
+/// network of the implicit solver wakes as to a new motion.
+///
+/// To have parts that come to rest sleep while others move, make them networks of their own.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API uint32_t mspring_network_is_asleep(const mspring_network *network);
+
+/// Wake a network. It has to be still for sleep_time again before it sleeps. Nothing happens to one that is awake
+/// but that.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL; MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_wake(mspring_network *network);
+
 /// Number of substeps of the last step, or of the one to come before the first; with MSPRING_SUBSTEPS_AUTO 1 before
 /// the first. NULL gives 0.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_network_substeps(const mspring_network *network);
+
+/// Number of steps so far that the implicit solver took for the explicit one (MSPRING_GUARD_IMPLICIT). NULL gives 0.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API uint64_t mspring_network_fallback_count(const mspring_network *network);
 
 /* ---------------------------------------------------------------------------------------------- stability */
 
@@ -548,8 +657,7 @@ MSPRING_API uint32_t mspring_network_substeps(const mspring_network *network);
 /// (sqrt(1 + zeta^2) - zeta).) The eigenvalue is found by iteration (Lanczos 1950). Relative springs follow h; a
 /// network of relative springs alone is stable at every h (infinite) or at none (0).
 /// @param now        for the shape of now, to about 0.3 % and rather below than above; stretching a network
-/// stiffens
-///                   it across and lowers this. May be NULL.
+///                   stiffens it across and lowers this. May be NULL.
 /// @param any_shape  for any shape that the network can get into, tangles included: at most now; of a full lattice
 ///                   at rest 0.71 of it, or 0.49 with dampers alone. It depends on springs (broken ones count as
 ///                   whole), masses and pins only. May be NULL.
@@ -582,8 +690,8 @@ typedef struct mspring_settle_def {
     uint32_t max_iterations; ///< 1 to 1000000; default 1000
     uint32_t reserved;       ///< 0
     double tolerance; ///< force (N) that may be left on a particle, as a part of the largest that any spring or
-                      ///< anything outside exerts; 1e-15 to 1; default 1e-9. Where rounding does not allow that, what
-                      ///< it allows.
+                      ///< anything outside exerts; 1e-15 to 1; default 1e-9. Where rounding does not allow that,
+                      ///< what it allows.
     double relative_substep; ///< substep (s) that the stiffness of relative springs follows; default 0: the one of
                              ///< the last step, before which they have none
 } mspring_settle_def;
@@ -627,6 +735,136 @@ MSPRING_API mspring_result mspring_settle_def_init(mspring_settle_def *def, size
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_settle(mspring_network *network,
                                                                     const mspring_settle_def *def,
                                                                     mspring_settle_result *result);
+
+/* ------------------------------------------------------------------------------------------ tuning: the trade */
+
+/// Which error settings are compared by.
+typedef int32_t mspring_tune_measure;
+enum {
+    MSPRING_TUNE_BY_TRAJECTORY = 0, ///< mspring_tune_row.trajectory_share
+    MSPRING_TUNE_BY_REST = 1,       ///< mspring_tune_row.rest_share
+    MSPRING_TUNE_BY_BENDING = 2 ///< mspring_tune_row.bending, m: for networks with relative springs, which are as
+                                ///< firm as their substeps allow
+};
+
+/// Flags of mspring_tune_def.
+enum {
+    MSPRING_TUNE_NOTHING_ELSE = 1u << 0 ///< measure the costs and what measure asks for, and no other error
+};
+
+/// Told how far a long run has come, 0 to 1, between steps. Returns 1 to go on, 0 to stop: what has been measured
+/// so far is the result then.
+typedef uint32_t (*mspring_progress_fn)(double done, void *user);
+
+/// Seconds since some moment, never going back.
+typedef double (*mspring_clock_fn)(void *user);
+
+/// What is to be tried, and what is wanted. Fill with mspring_tune_def_init() first.
+typedef struct mspring_tune_def {
+    uint32_t struct_size;
+    uint32_t setting_count;             ///< at most 1000
+    const mspring_solver_def *settings; ///< [setting_count]; default NULL: those of mspring_tune_settings()
+    double dt;                          ///< length of a step, s, as in mspring_network_step(); default 1/64
+    double duration; ///< simulated time that trajectories are compared for, s, up to 100000 steps; rounded up to
+                     ///< whole steps, at least four; default 0.25
+    double budget;   ///< s that the call may take, by the clock; default 10. It is looked at between steps, and
+                     ///< between iterations of the search for an equilibrium.
+    mspring_tune_measure measure; ///< default MSPRING_TUNE_BY_TRAJECTORY
+    uint32_t flags;               ///< MSPRING_TUNE_NOTHING_ELSE or 0; default 0
+    double max_error;       ///< a row with more is not recommended; > 0; default 0.01. INFINITY: none is too much
+    double max_cost;        ///< likewise, s for a step; > 0; default INFINITY
+    mspring_clock_fn clock; ///< default NULL: the system's. A build without one (MASSSPRING_FREESTANDING) needs it.
+    mspring_progress_fn progress; ///< default NULL
+    void *user;                   ///< handed to both
+} mspring_tune_def;
+
+/// Flags of mspring_tune_row.
+enum {
+    MSPRING_TUNE_HAS_COST = 1u << 0,
+    MSPRING_TUNE_HAS_TRAJECTORY = 1u << 1, ///< trajectory_error, trajectory_share and energy_drift are measured
+    MSPRING_TUNE_HAS_REST = 1u << 2,       ///< bending, rest_error and rest_share are measured
+    MSPRING_TUNE_REFUSED = 1u << 3, ///< a step was refused as unstable, or the solver cannot have this network
+    MSPRING_TUNE_PARETO = 1u << 4,  ///< no other row has both less cost and less error
+    MSPRING_TUNE_RECOMMENDED = 1u << 5
+};
+
+/// A setting, and what came of it. Numbers that are not measured are 0. Set struct_size first.
+typedef struct mspring_tune_row {
+    uint32_t struct_size;
+    uint32_t flags;
+    uint32_t setting;      ///< its index in the list of settings
+    mspring_solver solver; ///< this and what follows: as in mspring_solver_def, by mspring_tune_row_solver()
+    mspring_integrator integrator;
+    uint32_t substeps; ///< that a step took
+    uint32_t iterations, tile_size, coarse_period;
+    uint32_t step_count;          ///< steps whose time was taken
+    double min_cost, median_cost; ///< s for a step
+    double trajectory_error; ///< m, root of the mean square over the particles that are not pinned and over four
+                             ///< moments, from where a fine run has them
+    double trajectory_share; ///< the same as a share of how far they have gone in the fine run
+    double energy_drift;     ///< energy at the end beyond that of the fine run, as a share of the largest sum of
+                             ///< kinetic and elastic energy that the fine run had at those moments
+    double bending;          ///< m, farthest that a particle is from here when the network is at rest
+    double rest_error;       ///< m, farthest that the mean position of a particle, over the steps from rest on, is
+                             ///< from its place at rest
+    double rest_share;       ///< the same as a share of bending
+} mspring_tune_row;
+
+/// Fill a definition with its defaults, as mspring_network_def_init().
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API mspring_result mspring_tune_def_init(mspring_tune_def *def, size_t size);
+
+/// The settings that are tried where none are given: explicit with some numbers of substeps from the least that is
+/// stable on (none above 1000), implicit with 4, 8 and 15 iterations in one, two and four substeps, and up to 20000
+/// particles direct in one and two.
+/// @param dt        seconds, finite, > 0
+/// @param settings  [capacity]; may be NULL with capacity 0, to ask how many there are
+/// @param count     receives how many there are, also if that is more than capacity
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, also for too little capacity unless that is 0; MSPRING_ERROR_MEMORY,
+///         MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates yes, and frees it   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_tune_settings(mspring_network *network, double dt,
+                                                                   mspring_solver_def *settings, uint32_t capacity,
+                                                                   uint32_t *count);
+
+/// Measure what speed costs in accuracy: run settings of the solver on clones of this network, on this machine,
+/// from the state it has now, and say what a step takes and how good it is.
+///
+///   cost        of every step taken with a setting, by the clock, with the workers that the network has
+///   trajectory  against a run in double precision with fine substeps (symplectic, of second order). Shares are of
+///   at
+///               least a millionth of the network's size.
+///   rest        where the network comes to rest (mspring_network_settle()), and how it stays there when the
+///   setting
+///               goes on from it. Not for networks without an equilibrium.
+///
+/// Have the network in a state as it is to be simulated: just made and falling, or moving. Hooks are not called,
+/// there is no floor, ramps stand still, nothing breaks by strain, and it does not sleep. Forces given for the next
+/// step act in the first one. Relative springs follow the substep: each row is compared with a fine run, and an
+/// equilibrium, that have the stiffness of its own substeps, and bending says how firm that is.
+///
+/// Recommended is, if max_error is finite, the row of the least median cost among those within both bounds; else,
+/// of those within max_cost, the one of the least error; of equal ones the first. There may be none. When the
+/// budget is used up, what is not measured is not flagged as measured: first the costs of all are taken, then what
+/// measure asks for, then the rest. All but the costs is the same whenever it is measured, and on any machine.
+/// @param def       NULL for the defaults
+/// @param rows      [capacity], struct_size set in each; one for each setting, in their order
+/// @param capacity  at least as many as there are settings
+/// @param count     receives how many there are
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT (the message says what, or names the setting), MSPRING_ERROR_STRUCT,
+///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY. On error nothing is written, and the network is as it was.
+/// @threads exclusive access to network   @allocates yes, and frees it   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_tune(mspring_network *network,
+                                                                  const mspring_tune_def *def,
+                                                                  mspring_tune_row *rows, uint32_t capacity,
+                                                                  uint32_t *count);
+
+/// The setting of a row, to be given to mspring_network_set_solver(): with as many substeps as its steps took.
+/// @param solver  struct_size need not be set
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL, MSPRING_ERROR_STRUCT.
+/// @threads any   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_tune_row_solver(const mspring_tune_row *row,
+                                                                     mspring_solver_def *solver);
 
 /* --------------------------------------------------------------------------------------- forces and hooks */
 
@@ -682,8 +920,7 @@ typedef void (*mspring_hook_fn)(const mspring_hook_args *args, void *user);
 enum {
     /// The slots are divided into ranges, and the hook is called for each of them, perhaps for several at the same
     /// time on different workers, in any order. It must read and write only its range's slots, and what is written
-    /// by
-    /// none. If what it does to a slot depends on nothing but that slot and what is the same for all calls, the
+    /// by none. If what it does to a slot depends on nothing but that slot and what is the same for all calls, the
     /// network's state is the same, bit for bit, for any number of workers and any range.
     MSPRING_HOOK_CONCURRENT = 1u << 0
 };
@@ -724,11 +961,72 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_add_hook(mspring_ne
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_remove_hook(mspring_network *network, uint32_t hook);
 
+/* -------------------------------------------------------------------------------------------------- floor */
+
+/// Most half-planes of a floor, and most heights.
+#define MSPRING_MAX_PLANES 8u
+#define MSPRING_MAX_HEIGHTS ((uint32_t)1 << 26)
+
+/// What particles cannot get through: half-planes, such as the sides of a box, and a field of heights, such as a
+/// sea floor. Fill with mspring_floor_def_init() first.
+typedef struct mspring_floor_def {
+    uint32_t struct_size;
+    uint32_t plane_count; ///< half-planes, at most MSPRING_MAX_PLANES; default 0
+    const double *planes; ///< [plane_count][4]: x and y of a point on the border (m, world coordinates), then x and
+                          ///< y of a vector of any length across it, towards where particles may be
+    double heights_x;     ///< of the first height, m, world coordinates; default 0
+    double heights_y;     ///< of height 0, m, world coordinates; default 0
+    double spacing;       ///< m from one height to the next, 1e-9 to 1e9; default 1
+    const float *heights; ///< [height_count], m above heights_y: joined by straight lines, level beyond both ends;
+                          ///< particles may be above
+    uint32_t height_count; ///< 0, the default: no field of heights; else 2 to MSPRING_MAX_HEIGHTS
+    float friction;        ///< of particles that slide (Coulomb): force along the surface over that across it, 0 to
+                           ///< 1e6; default 0
+    float restitution;     ///< of particles that come from afar: speed across the surface after contact over that
+                           ///< before, 0 to 1; default 0. Below about 0.02 m/s they do not bounce.
+    uint32_t reserved;     ///< 0
+} mspring_floor_def;
+
+/// Fill a definition with its defaults, as mspring_network_def_init().
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API mspring_result mspring_floor_def_init(mspring_floor_def *def, size_t size);
+
+/// Give the network a floor instead of the one it has. It acts on every particle that is not pinned, in every
+/// substep: a particle that was above it at the beginning is not below it at the end, whatever its speed and
+/// however long the substep, but for some last places of its coordinates (a millionth of its distance from the
+/// local origin); one that was below is put onto it. Contact takes energy and gives none. Peaks of the heights that
+/// are narrower than the way of a particle in a substep are met, too.
+///
+/// Explicit substeps treat each particle after it has moved. In implicit ones the floor is part of the linear
+/// system: a substep is solved up to four times to find which particles it holds and which of them slide, with
+/// twice the iterations; one in which particles hit it is one of implicit Euler, and where they would come deeper
+/// than a fifth of the shortest spring it is taken in up to 40 pieces. There only particles without springs bounce
+/// by restitution: a structure is thrown back by its springs.
+///
+/// The floor is a setting, as gravity is, but too large for snapshots, which leave it as it is; state hashes do not
+/// count it. Static equilibria (mspring_network_settle()) do not know of it.
+/// @param def  copied with all that it points to; NULL: no floor
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY. On
+///         error the floor is the one of before.
+/// @threads exclusive access to network   @allocates yes; 20 to 24 bytes for a height and 40 for a particle
+/// @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_floor(mspring_network *network,
+                                                                       const mspring_floor_def *def);
+
+/// Copy out what momentum (N s) the floor gave to the particles first ... first + count - 1 in the last step: over
+/// its length, the mean force. 0 without a floor.
+/// @param x, y  [count]
+/// @return MSPRING_OK; MSPRING_ERROR_ID or MSPRING_ERROR_ARGUMENT.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_floor_impulses(const mspring_network *network,
+                                                                                mspring_id first, uint32_t count,
+                                                                                float *x, float *y);
+
 /* -------------------------------------------------------------------------------------------------- views */
 
 /// The state as it lies in memory: arrays by slot. The pointers stay valid, and their contents follow the
-/// steps, until the network is destroyed; origin_x and origin_y are as of the call. Positions and velocities
-/// may be written between steps; finite values only.
+/// steps, until the network is compacted, expanded or destroyed; origin_x and origin_y are as of the call.
+/// Positions and velocities may be written between steps; finite values only.
 typedef struct mspring_view {
     uint32_t struct_size;
     uint32_t slot_count;              ///< length of the arrays by slot; some slots hold no particle
@@ -926,6 +1224,41 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_detach_particles(ms
                                                                               const mspring_id *particles,
                                                                               uint32_t count);
 
+/* ------------------------------------------------------------------------------------------- compaction */
+
+/// Leave springs that are broken out of the plan, so that a wreck costs what is left of it: lattices are swept
+/// where squares are left, strands as chains, single springs as web, and particles without spring as loose ones.
+/// Until then a broken spring costs as much as a whole one. Worth it where a quarter of the springs or more has
+/// broken.
+///
+/// Ids, values and thresholds of all springs stay as they are and can be read and set as before. **Slots change**:
+/// a view that was taken before is not valid any more, and hooks see other slots. Positions and velocities are
+/// moved bit for bit; but forces are summed in another order from then on, so the steps that follow differ in
+/// rounding from those of a network that was not compacted. They are the same on every machine, at every level and
+/// for any number of workers, as long as the same calls come between the same steps.
+///
+/// Restoring a spring that was left out takes all springs in again, as mspring_network_expand() does; then the
+/// network can be compacted anew.
+///
+/// The work comes in about a dozen pieces, so that it can be done over several frames; each looks at particles or
+/// springs a few times. Between them the network may be stepped and edited: springs that break meanwhile stay in
+/// the plan, and if one is restored that the plan would leave out, the work begins anew. The network moves in the
+/// last piece, until when nothing is to be seen of it.
+/// @param pieces  how many of them to do at most; 0 for all
+/// @param left    receives how many are left; 0: the network is compact. May be NULL.
+/// @return MSPRING_OK; MSPRING_ERROR_MEMORY, after which the network is as it was and the work begins anew;
+///         MSPRING_ERROR_LIMIT, MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates yes, and frees most   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_compact(mspring_network *network, uint32_t pieces,
+                                                                     uint32_t *left);
+
+/// Take all springs into the plan again, as it was when the network was created: the way back from
+/// mspring_network_compact(), with the same consequences for slots and bits. A compaction that has begun is
+/// dropped.
+/// @return MSPRING_OK; MSPRING_ERROR_MEMORY, MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates yes, and frees most   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_expand(mspring_network *network);
+
 /* ------------------------------------------------------------------------------------- strain and events */
 
 /// Have springs break by themselves: one whose absolute strain, |length - rest_length| / rest_length, is over its
@@ -1111,8 +1444,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_strains(const m
 /// it lies in memory. Each array is filled if it is not NULL.
 /// @param length       [spring count], m
 /// @param direction_x, direction_y  [spring count] the unit vector along the spring from the end with the lower id
-/// to
-///                     the other; (0, 0) for a spring of length 0; both or none
+///                     to the other; (0, 0) for a spring of length 0; both or none
 /// @param strain       [spring count], as mspring_network_get_strains(), to the last bit or so
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network   @allocates the first time   @since 0.1
@@ -1158,15 +1490,14 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_snapshot_size(const
 
 /// Save a snapshot into the caller's memory. It is the same on every machine, for any SIMD level and number of
 /// workers, but only of use to networks made of the same particles and springs by a library that lays them out
-/// alike (another refuses it): meant for rollback, replay and network play, not for archives. Of the implicit
-/// solver it holds settings and history, but it can be loaded only where that solver is, with the same integrator
-/// and tiles. Hooks and unread events are not in it.
+/// alike (another refuses it): meant for rollback, replay and network play, not for archives. Of the implicit or
+/// direct solver it holds settings and history, but it can be loaded only where that solver is, with the same
+/// integrator and tiles. Hooks and unread events are not in it.
 /// @param snapshot  [capacity] bytes, of any alignment
 /// @param capacity  at least mspring_network_snapshot_size()
 /// @param size      receives the bytes written; may be NULL
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL, unknown contents or too little room; MSPRING_ERROR_BUSY in
-/// a
-///         hook.
+///         a hook.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_save(const mspring_network *network,
                                                                   mspring_snapshot_contents contents,
@@ -1216,12 +1547,14 @@ typedef struct mspring_plan {
     uint32_t has_relative;   ///< 1: some spring is relative, and a change of substep costs a pass over all
     mspring_simd simd_level; ///< what runs
     mspring_solver solver;
-    mspring_integrator integrator; ///< this and what follows: of the implicit solver, else 0
-    uint32_t iterations;
-    uint32_t tile_size;     ///< rows and columns of the cells of wide lattices
-    uint32_t tile_count;    ///< tiles, each of three unknowns in the coarse matrix
-    uint32_t coarse_values; ///< numbers in that matrix's factor
+    mspring_integrator integrator; ///< of the implicit or direct solver; this and what follows are 0 for others
+    uint32_t iterations;           ///< this and the next four: of the implicit solver
+    uint32_t tile_size;            ///< rows and columns of the cells of wide lattices
+    uint32_t tile_count;           ///< tiles, each of three unknowns in the coarse matrix
+    uint32_t coarse_values;        ///< numbers in that matrix's factor
     uint32_t coarse_period;
+    uint64_t factor_values; ///< of the direct solver: numbers in its factor, which is there in both precisions,
+    double factor_products; ///< and products that computing it takes
 } mspring_plan;
 
 /// Get the plan. Set struct_size first.
@@ -1248,7 +1581,8 @@ MSPRING_API mspring_simd mspring_simd_supported(void);
 /// @threads any   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_simd_available(mspring_simd level);
 
-/// Name of a level as in MSPRING_SIMD: "scalar", "sse2", "avx2", "avx512", "neon", "auto"; "unknown" for others.
+/// Name of a level as in MSPRING_SIMD: "scalar", "sse2", "avx2", "avx512", "neon", "wasm", "auto"; "unknown" for
+/// others.
 /// @threads any   @allocates never   @since 0.1
 MSPRING_API const char *mspring_simd_name(mspring_simd level);
 
