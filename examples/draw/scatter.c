@@ -16,7 +16,8 @@ static const draw_colour front_colour = 0xb9bcc8;
 static const draw_colour paper = 0xffffff;
 
 enum { LEFT = 62, RIGHT = 18, TOP = 76, BOTTOM = 52 };
-enum { MARK_RADIUS = 5 };
+enum { MARK_RADIUS = 5, JOIN_WIDTH = 2 };
+enum { LEGEND_SAMPLE = 26, LEGEND_GAP = 20, LEGEND_LINE = 18 };
 
 // One direction: the powers of ten it spans, and the pixels.
 typedef struct decade_axis {
@@ -114,6 +115,8 @@ static void draw_shape(figure *target, scatter_mark mark, double x, double y, do
     case SCATTER_DIAMOND:
         draw_diamond(target, x, y, 1.15 * radius, colour);
         break;
+    case SCATTER_NO_MARK:
+        break;
     }
 }
 
@@ -121,6 +124,16 @@ static void draw_shape(figure *target, scatter_mark mark, double x, double y, do
 static void draw_mark(figure *target, scatter_mark mark, double x, double y, draw_colour colour) {
     draw_shape(target, mark, x, y, MARK_RADIUS + 1.3, paper);
     draw_shape(target, mark, x, y, MARK_RADIUS, colour);
+}
+
+static void draw_joins(figure *target, const scatter_series *series, const decade_axis *across,
+                       const decade_axis *up) {
+    for (size_t i = 1; series->joined && i < series->count; i++) {
+        const scatter_point *from = &series->points[i - 1], *to = &series->points[i];
+        if (is_drawn(from) && is_drawn(to))
+            figure_line(target, axis_place(across, from->x), axis_place(up, from->y), axis_place(across, to->x),
+                        axis_place(up, to->y), JOIN_WIDTH, series->colour);
+    }
 }
 
 static void draw_series(figure *target, const scatter_series *series, const decade_axis *across,
@@ -165,29 +178,51 @@ static void draw_front(figure *target, const scatter *drawn, const decade_axis *
     }
 }
 
-// The series' names, in a row above the frame.
-static void draw_legend(figure *target, const scatter *drawn, double x, double y) {
+// What stands before a series' name.
+static double sample_width(const scatter_series *series) {
+    return series->joined ? LEGEND_SAMPLE : 2 * MARK_RADIUS;
+}
+
+// The series' names, in rows above the frame. Returns the height of the rows after the first; draws nothing on
+// target NULL.
+static double draw_legend(figure *target, const scatter *drawn, double left, double top, double width) {
+    double x = left, y = top;
     for (size_t s = 0; s < drawn->series_count; s++) {
         const scatter_series *series = &drawn->series[s];
         if (!series->name)
             continue;
-        draw_mark(target, series->mark, x + MARK_RADIUS, y - 4, series->colour);
-        figure_text(target, x + 2 * MARK_RADIUS + 6, y, 8.5, FIGURE_LEFT, ink, series->name);
-        x += 2 * MARK_RADIUS + 6 + stroke_font_width(8.5, series->name) + 20;
+        const double sample = sample_width(series);
+        const double needed = sample + 6 + stroke_font_width(8.5, series->name);
+        if (x > left && x + needed > left + width) {
+            x = left;
+            y += LEGEND_LINE;
+        }
+        if (target) {
+            if (series->joined)
+                figure_line(target, x, y - 4, x + sample, y - 4, JOIN_WIDTH, series->colour);
+            draw_mark(target, series->mark, x + sample / 2, y - 4, series->colour);
+            figure_text(target, x + sample + 6, y, 8.5, FIGURE_LEFT, ink, series->name);
+        }
+        x += needed + LEGEND_GAP;
     }
-    if (drawn->front_count > 0) {
+    if (target && drawn->front_count > 0) {
         figure_line(target, x, y - 4, x + 20, y - 4, 3, front_colour);
         figure_text(target, x + 26, y, 8.5, FIGURE_LEFT, ink, "front");
     }
+    return y - top;
 }
 
 void scatter_draw(figure *target, const scatter *drawn, double left, double top, double width, double height) {
     decade_axis across = {.start = left + LEFT, .end = left + width - RIGHT};
-    decade_axis up = {.start = top + height - BOTTOM, .end = top + TOP};
+    const double legend_width = width - 14 - RIGHT;
+    const double more_legend = draw_legend(NULL, drawn, left + 14, top + 42, legend_width);
+    decade_axis up = {.start = top + height - BOTTOM, .end = top + TOP + more_legend};
     span(drawn, &across, &up);
     draw_ticks(target, &across, &up, false, false);
     draw_ticks(target, &up, &across, true, drawn->percent);
     draw_front(target, drawn, &across, &up);
+    for (size_t s = 0; s < drawn->series_count; s++)
+        draw_joins(target, &drawn->series[s], &across, &up);
     for (size_t s = 0; s < drawn->series_count; s++)
         draw_series(target, &drawn->series[s], &across, &up);
     for (size_t s = 0; s < drawn->series_count; s++)
@@ -195,5 +230,5 @@ void scatter_draw(figure *target, const scatter *drawn, double left, double top,
     figure_text(target, (across.start + across.end) / 2, up.start + 40, 9.5, FIGURE_CENTRE, ink, drawn->x_label);
     figure_text(target, left + 14, up.end - 14, 9.5, FIGURE_LEFT, ink, drawn->y_label);
     figure_text(target, left + 14, top + 20, 11.5, FIGURE_LEFT, ink, drawn->title);
-    draw_legend(target, drawn, left + 14, top + 42);
+    draw_legend(target, drawn, left + 14, top + 42, legend_width);
 }

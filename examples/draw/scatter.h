@@ -1,5 +1,5 @@
 /// @file scatter.h
-/// Marks in a frame whose axes are in powers of ten.
+/// Marks, alone or joined by lines, in a frame whose axes are in powers of ten.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef DRAW_SCATTER_H
@@ -7,7 +7,7 @@
 
 #include "draw/figure.h"
 
-typedef enum scatter_mark { SCATTER_DISC, SCATTER_SQUARE, SCATTER_DIAMOND } scatter_mark;
+typedef enum scatter_mark { SCATTER_DISC, SCATTER_SQUARE, SCATTER_DIAMOND, SCATTER_NO_MARK } scatter_mark;
 
 typedef struct scatter_point {
     double x, y;    ///< > 0; others are left out
@@ -22,6 +22,7 @@ typedef struct scatter_series {
     draw_colour colour;
     bool labels_below;
     const char *name; ///< in the legend; NULL: as the series before
+    bool joined;      ///< a line from each point to the next, behind the marks
 } scatter_series;
 
 typedef struct scatter {
