@@ -309,6 +309,11 @@ enum {
 /// How the implicit solvers go from t to t + h. All are stable for any h and damp the fastest oscillations out in
 /// a few steps. The two of second order remember the substep before; the first substep after a change of the
 /// solver, and after the positions of all particles were set, is one of implicit Euler.
+///
+/// Stiff ropes that hang slack, and are pulled taut within a substep, are what the two of second order follow least
+/// well: such a substep is refused (see mspring_guard). Our ship falling under its own weight, with its rigging, in
+/// one substep of 1/64 s, goes through with implicit Euler, or in two substeps; or have MSPRING_GUARD_RETRY divide
+/// just the steps that need it.
 typedef int32_t mspring_integrator;
 enum {
     MSPRING_INTEGRATOR_GA0 = 0,  ///< generalised-alpha with rho_inf = 0 (Chung and Hulbert, 1993): second order
@@ -343,8 +348,8 @@ typedef struct mspring_solver_def {
 } mspring_solver_def;
 
 /// Instruction sets. All give the same bits. Those of one kind of CPU stand in order, scalar below all of them:
-/// scalar < SSE2 < AVX2 < AVX-512 on x86, scalar < NEON on 64-bit ARM, scalar < WASM in a browser, scalar alone elsewhere. Between kinds there
-/// is no order.
+/// scalar < SSE2 < AVX2 < AVX-512 on x86, scalar < NEON on 64-bit ARM, scalar < WASM in a browser, scalar alone
+/// elsewhere. Between kinds there is no order.
 typedef int32_t mspring_simd;
 enum {
     MSPRING_SIMD_AUTO = 0, ///< the best that CPU and operating system offer
@@ -641,7 +646,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_wake(mspring_networ
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_network_substeps(const mspring_network *network);
 
-/// Number of steps so far that the implicit solver took for the explicit one (MSPRING_GUARD_IMPLICIT). NULL gives 0.
+/// Number of steps so far that the implicit solver took for the explicit one (MSPRING_GUARD_IMPLICIT). NULL gives
+/// 0.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint64_t mspring_network_fallback_count(const mspring_network *network);
 
