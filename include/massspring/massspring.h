@@ -564,8 +564,7 @@ MSPRING_API mspring_result mspring_clone_def_init(mspring_clone_def *def, size_t
 /// @param def    NULL for the defaults
 /// @param clone  receives the clone, to be freed by mspring_network_destroy()
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL, unknown flags, workers that are out of range, or more
-/// workers
-///         than the original has for hooks that have storage; MSPRING_ERROR_STRUCT; MSPRING_ERROR_MEMORY;
+///         workers than the original has where hooks have storage; MSPRING_ERROR_STRUCT; MSPRING_ERROR_MEMORY;
 ///         MSPRING_ERROR_THREAD if a worker cannot be started; MSPRING_ERROR_BUSY in a hook.
 /// @threads shared   @allocates yes, with the clone's allocator   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_clone(const mspring_network *network,
@@ -635,8 +634,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_step(mspring_networ
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_network_is_asleep(const mspring_network *network);
 
-/// Wake a network. It has to be still for sleep_time again before it sleeps. Nothing happens to one that is awake
-/// but that.
+/// Wake a network. It has to be still for sleep_time again before it sleeps, and so has one that is awake already.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL; MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_wake(mspring_network *network);
@@ -646,8 +644,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_wake(mspring_networ
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_network_substeps(const mspring_network *network);
 
-/// Number of steps so far that the implicit solver took for the explicit one (MSPRING_GUARD_IMPLICIT). NULL gives
-/// 0.
+/// Number of steps so far that the implicit solver took for the explicit one (MSPRING_GUARD_IMPLICIT). NULL: 0.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint64_t mspring_network_fallback_count(const mspring_network *network);
 
@@ -837,12 +834,10 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_tune_settings(mspring_netwo
 /// from the state it has now, and say what a step takes and how good it is.
 ///
 ///   cost        of every step taken with a setting, by the clock, with the workers that the network has
-///   trajectory  against a run in double precision with fine substeps (symplectic, of second order). Shares are of
-///   at
-///               least a millionth of the network's size.
+///   trajectory  against a run in double precision with fine substeps (symplectic, of second order). Shares are
+///               of at least a millionth of the network's size.
 ///   rest        where the network comes to rest (mspring_network_settle()), and how it stays there when the
-///   setting
-///               goes on from it. Not for networks without an equilibrium.
+///               setting goes on from it. Not for networks without an equilibrium.
 ///
 /// Have the network in a state as it is to be simulated: just made and falling, or moving. Hooks are not called,
 /// there is no floor, ramps stand still, nothing breaks by strain, and it does not sleep. Forces given for the next
