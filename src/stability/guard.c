@@ -9,6 +9,7 @@
 #include "guard.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "explicit/decay.h"
 #include "pencil.h"
@@ -193,6 +194,8 @@ static mspring_result look_at_border(mspring_network *network, double dt, float 
     const displacement start = from_motion ? start_from_motion(network) : start_from_noise(network);
     const double largest =
         largest_eigenvalue(network, (double)h, start, bound, from_motion ? ITERATIONS_FROM_MOTION : ITERATIONS);
+    // A step keeps the state here strip by strip, which leaves what lies between strips as it is.
+    memset(network->backup.x, 0, 4 * mspringi_slot_count(network) * sizeof *network->backup.x);
     if (!(largest > bound))
         return MSPRING_OK;
     return explain_border(network, dt, h);
