@@ -624,6 +624,60 @@ static void far_floors_change_nothing(void **state) {
     mspring_network_destroy(without);
 }
 
+/* ------------------------------------------------------------------------------------------------ taking back */
+
+/// A step that is refused leaves the impulses of the one before.
+static void refused_steps_leave_impulses(void **state) {
+    (void)state;
+    const way ways[] = {{MSPRING_SOLVER_EXPLICIT, 0, 40}, {MSPRING_SOLVER_IMPLICIT, 0, 1}};
+    for (size_t i = 0; i < COUNT_OF(ways); i++) {
+        mspring_network *network = bar(0.01, 1, MSPRING_SIMD_AUTO);
+        mspring_floor_def def = level_floor(0.5f, 0);
+        static float before[800], after[800];
+        float sum = 0;
+        set_way(network, &ways[i]);
+        check_ok(mspring_network_set_floor(network, &def));
+        support_steps(network, 100, 1.0 / 64);
+        check_ok(mspring_network_get_floor_impulses(network, 0, 400, before, before + 400));
+        for (int p = 0; p < 400; p++) {
+            sum += before[400 + p];
+        }
+        assert_true(sum > 0);
+        check_ok(mspring_network_apply_force(network, 3, 0, 1e15f));
+        check_error(mspring_network_step(network, 1.0 / 64), MSPRING_ERROR_UNSTABLE);
+        check_ok(mspring_network_get_floor_impulses(network, 0, 400, after, after + 400));
+        assert_memory_equal(before, after, sizeof before);
+        mspring_network_destroy(network);
+    }
+}
+
+/// Whether the coarse matrix has contacts in it goes by the snapshot, and not by what came after it.
+static void snapshots_do_not_see_later_contacts(void **state) {
+    (void)state;
+    mspring_network *network = bar(3, 1, MSPRING_SIMD_AUTO);
+    mspring_solver_def solver;
+    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    solver.solver = MSPRING_SOLVER_IMPLICIT;
+    solver.coarse_period = 8;
+    check_ok(mspring_network_set_solver(network, &solver));
+    mspring_floor_def def = level_floor(0.3f, 0);
+    check_ok(mspring_network_set_floor(network, &def));
+    support_steps(network, 5, 1.0 / 64);
+    size_t size;
+    check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &size));
+    void *snapshot = malloc(size);
+    assert_non_null(snapshot);
+    check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_ALL, snapshot, size, NULL));
+    support_steps(network, 3, 1.0 / 64);
+    const uint64_t hash = support_hash(network);
+    support_steps(network, 300, 1.0 / 64);
+    check_ok(mspring_network_load(network, snapshot, size));
+    support_steps(network, 3, 1.0 / 64);
+    assert_true(support_hash(network) == hash);
+    free(snapshot);
+    mspring_network_destroy(network);
+}
+
 /* -------------------------------------------------------------------------------------------------------- errors
  */
 
@@ -702,6 +756,8 @@ int main(void) {
         cmocka_unit_test(compaction_keeps_the_floor),
         cmocka_unit_test(levels_and_workers_agree),
         cmocka_unit_test(far_floors_change_nothing),
+        cmocka_unit_test(refused_steps_leave_impulses),
+        cmocka_unit_test(snapshots_do_not_see_later_contacts),
         cmocka_unit_test(errors_name_the_culprit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

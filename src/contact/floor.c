@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/cpu.h"
+#include "implicit/implicit.h"
 #include "sleep/sleep.h"
 
 #define SHORTEST_SPACING 1e-9
@@ -144,6 +145,7 @@ void mspringi_floor_free_layout(mspringi_floor *floor, mspringi_memory *memory) 
     mspringi_free(memory, floor->contacts);
     mspringi_free(memory, floor->start.x);
     mspringi_free(memory, floor->impulse.x);
+    mspringi_free(memory, floor->former.x);
     mspringi_free(memory, floor);
 }
 
@@ -170,8 +172,10 @@ static bool reserve_layout(mspringi_floor *floor, mspring_network *network) {
     floor->contact_capacity = (uint32_t)(floor->slot_count / 4) + 64;
     floor->contact_count = 0;
     floor->contacts = mspringi_alloc(memory, floor->contact_capacity, sizeof *floor->contacts);
-    floor->impulse = floor->start = (mspringi_field){NULL, NULL};
+    floor->impulse = floor->former = floor->start = (mspringi_field){NULL, NULL};
+    floor->had_impulse = false;
     return floor->clearances && floor->contacts && reserve_field(&floor->impulse, floor->slot_count, memory) &&
+           reserve_field(&floor->former, floor->slot_count, memory) &&
            reserve_field(&floor->start, floor->slot_count, memory);
 }
 
@@ -224,17 +228,35 @@ mspring_result mspring_network_set_floor(mspring_network *network, const mspring
     }
     mspringi_floor_destroy(network->floor, &network->memory);
     network->floor = made;
+    if (network->implicit)
+        network->implicit->age = 0; // its coarse matrix may have contacts with the floor that was
     mspringi_wake(network);
     return MSPRING_OK;
 }
 
 /* ---------------------------------------------------------------------------------------------------- impulses */
 
+static void exchange_impulses(mspringi_floor *floor) {
+    const mspringi_field impulse = floor->impulse;
+    const bool has_impulse = floor->has_impulse;
+    floor->impulse = floor->former;
+    floor->has_impulse = floor->had_impulse;
+    floor->former = impulse;
+    floor->had_impulse = has_impulse;
+}
+
 void mspringi_floor_begin(mspringi_floor *floor) {
-    if (!floor || !floor->has_impulse)
+    if (!floor)
         return;
-    memset(floor->impulse.x, 0, 2 * floor->slot_count * sizeof *floor->impulse.x);
+    exchange_impulses(floor);
+    if (floor->has_impulse)
+        memset(floor->impulse.x, 0, 2 * floor->slot_count * sizeof *floor->impulse.x);
     floor->has_impulse = false;
+}
+
+void mspringi_floor_take_back(mspringi_floor *floor) {
+    if (floor)
+        exchange_impulses(floor);
 }
 
 mspring_result mspring_network_get_floor_impulses(const mspring_network *network, mspring_id first, uint32_t count,

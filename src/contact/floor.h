@@ -64,6 +64,7 @@ typedef struct mspringi_floor {
     mspringi_clearance *clearances; ///< [strip_count]
     mspringi_field start;           ///< [slot_count] positions before an implicit substep, m
     mspringi_field impulse;         ///< [slot_count] N s on each slot in the last step
+    mspringi_field former;          ///< [slot_count] in the step before it, as long as one is made
     size_t slot_count;
     mspringi_bounds clear;      ///< where no surface is, around the network as it was before an implicit substep
     mspringi_contact *contacts; ///< of an implicit substep
@@ -72,6 +73,7 @@ typedef struct mspringi_floor {
     bool again;        ///< the substep is to be solved again
     bool has_hit;      ///< it is to be begun again, as one of implicit Euler
     bool has_impulse;  ///< impulse is not all zero
+    bool had_impulse;  ///< former is not all zero
 } mspringi_floor;
 
 /// A particle that has moved from its start in a substep, local coordinates.
@@ -88,8 +90,11 @@ mspringi_floor *mspringi_floor_move(mspring_network *to, const mspring_network *
 /// Free a floor that shares its definition with another. NULL is allowed.
 void mspringi_floor_free_layout(mspringi_floor *floor, mspringi_memory *memory);
 
-/// Forget the impulses of the step before. NULL is allowed, as in all that follow.
+/// Begin a step without impulses. NULL is allowed, as in all that follow.
 void mspringi_floor_begin(mspringi_floor *floor);
+
+/// Go back to the impulses of the step before the one that was begun last.
+void mspringi_floor_take_back(mspringi_floor *floor);
 
 /* surface.c */
 

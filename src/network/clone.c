@@ -193,6 +193,7 @@ static void move_floor(const moving *m, mspringi_floor *floor) {
     MOVE(floor->contacts);
     move_field(m, &floor->start);
     move_field(m, &floor->impulse);
+    move_field(m, &floor->former);
 }
 
 static void move_parameters(const moving *m, mspring_network *n) {

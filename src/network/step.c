@@ -97,6 +97,8 @@ static void run_substeps(mspring_network *network, double dt, float h) {
             mspringi_hooks_before_substep(network, substep, (double)h, base);
         if (substep == 0)
             mspringi_sleep_feel(network, field);
+        if (substep == 0 && !network->sleep.is_asleep)
+            mspringi_floor_begin(network->floor);
         if (!network->sleep.is_asleep)
             take_substeps(network, h, field, count);
         if (hooks_after)
@@ -114,7 +116,6 @@ static mspringi_sight run(mspring_network *network, double dt, float h) {
     }
     copy_state(network, &network->state, &network->backup);
     mspringi_implicit_keep(network);
-    mspringi_floor_begin(network->floor);
     run_substeps(network, dt, h);
     if (network->is_open)
         mspringi_clear_empty_slots(network);
@@ -154,6 +155,8 @@ static void go_back(mspring_network *network) {
     copy_state(network, &network->backup, &network->state);
     mspringi_explicit_reset(network);
     mspringi_implicit_restore(network);
+    if (!network->sleep.is_asleep)
+        mspringi_floor_take_back(network->floor);
     mspringi_clear_empty_slots(network);
 }
 
@@ -230,6 +233,8 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "dt is %g s, it must be finite and > 0",
                              dt);
     const uint32_t substeps = network->substeps;
+    const bool was_asleep = network->sleep.is_asleep;
+    const double still = network->sleep.still;
     const bool lent = has_fallback(network) && network->guard.lent > 0;
     mspring_result result = lent ? fall_back(network, dt) : attempt_explicitly(network, dt);
     if (result == MSPRING_ERROR_UNSTABLE && has_fallback(network) && !lent)
@@ -242,6 +247,8 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
     }
     if (result != MSPRING_OK) {
         network->substeps = substeps;
+        network->sleep.is_asleep = was_asleep;
+        network->sleep.still = still;
         return result;
     }
     if (mspringi_sleep_is_idle(network))

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "contact/floor.h"
 #include "implicit/implicit.h"
 #include "sections.h"
 
@@ -20,10 +21,12 @@ static size_t implicit_size_of(const mspringi_implicit *n, size_t coarse_values)
     return HEAD_BYTES + n->history_size * sizeof(float) + coarse_values * sizeof(double);
 }
 
-// The age of the coarse matrix that the next substep finds.
+// The age of the coarse matrix that the next substep finds. One that has contacts in it is not used again.
 static uint32_t age_of(const mspring_network *network) {
     const mspringi_implicit *n = network->implicit;
-    return n->is_direct || mspringi_tiles_are_outdated(&n->tiles, network, &n->seen) ? 0 : n->age;
+    if (n->is_direct || (network->floor && network->floor->is_in_coarse))
+        return 0;
+    return mspringi_tiles_are_outdated(&n->tiles, network, &n->seen) ? 0 : n->age;
 }
 
 static size_t coarse_values(const mspring_network *network) {
@@ -139,6 +142,8 @@ static void implicit_load(mspring_network *network, const uint8_t *from, size_t 
     n->age = size == implicit_size_of(n, n->coarse.value_count) ? head.age : 0;
     if (n->age > 0)
         mspringi_get(from, n->coarse.values, n->coarse.value_count, sizeof(double));
+    if (network->floor)
+        network->floor->is_in_coarse = false;
 }
 
 const mspringi_section mspringi_section_implicit = {"impl",        "implicit solver", false,        implicit_size,
