@@ -487,6 +487,130 @@ static void failed_allocations_leave_nothing_behind(void **state) {
     recipe_free(&made);
 }
 
+/* -------------------------------------------------------------------------------------------------- on a floor */
+
+static double floor_impulse(const mspring_network *network) {
+    enum { COUNT = 21 };
+    float x[COUNT], y[COUNT];
+    double sum = 0;
+    check_ok(mspring_network_get_floor_impulses(network, 0, COUNT, x, y));
+    for (int i = 0; i < COUNT; i++) {
+        sum += (double)y[i];
+    }
+    return sum;
+}
+
+/// 7 by 3 particles that sleep on a floor at height 0.
+static mspring_network *make_lying(uint32_t spring_flags) {
+    uint64_t seed = 5;
+    const bool relative = spring_flags & MSPRING_SPRING_RELATIVE;
+    const recipe_stuff stuff = {.mass = {1, 1},
+                                .stiffness = {relative ? 0.2 : 2000, relative ? 0.2 : 2000},
+                                .damping = {relative ? 0.05 : 20, relative ? 0.05 : 20},
+                                .spring_flags = spring_flags};
+    recipe made = {0};
+    recipe_lattice(&made, 7, 3, 0, 0.25, 1, &stuff, &seed);
+    mspring_network *network = make(&made);
+    recipe_free(&made);
+    mspring_floor_def def;
+    const double level[4] = {0, 0, 0, 1};
+    check_ok(mspring_floor_def_init(&def, sizeof def));
+    def.planes = level;
+    def.plane_count = 1;
+    def.friction = 1;
+    check_ok(mspring_network_set_floor(network, &def));
+    fall_asleep(network);
+    return network;
+}
+
+/// By whole metres, so that it is where it was relative to the local origin.
+static void it_wakes_where_it_is_put(void **state) {
+    (void)state;
+    mspring_network *network = make_lying(0);
+    double x[21], y[21], up[21];
+    check_ok(mspring_network_get_positions(network, 0, 21, x, y));
+    for (int i = 0; i < 21; i++) {
+        up[i] = y[i] + 10;
+    }
+    check_ok(mspring_network_set_positions(network, 0, 21, x, up));
+    assert_int_equal(mspring_network_is_asleep(network), 0);
+    fall_asleep(network);
+    for (mspring_id p = 0; p < 21; p++) {
+        check_near(support_position(network, p).y, y[p], 0.01);
+    }
+    mspring_network_destroy(network);
+}
+
+static void call_nothing(const mspring_hook_args *args, void *user) {
+    (void)args;
+    (void)user;
+}
+
+/// The floor goes on bearing what sleeps on it, whether its steps have something to do or not.
+static void the_floor_bears_what_sleeps(void **state) {
+    (void)state;
+    for (int hooked = 0; hooked < 2; hooked++) {
+        mspring_network *network = make_lying(0);
+        const double before = floor_impulse(network);
+        check_near(before, 21 * 9.8 * DT, 0.05 * before);
+        if (hooked) {
+            check_ok(support_add_hook(network, MSPRING_PHASE_BEFORE_STEP, call_nothing, NULL, NULL));
+        }
+        support_steps(network, 3, DT);
+        assert_int_equal(mspring_network_is_asleep(network), 1);
+        check_near(floor_impulse(network), before, 0);
+        mspring_network_destroy(network);
+    }
+}
+
+/// Refused for the length of its substeps, which relative springs would follow, or for where a force would throw
+/// it.
+static void refused_steps_wake_nothing(void **state) {
+    (void)state;
+    mspring_network *network = make_lying(MSPRING_SPRING_RELATIVE);
+    check_error(mspring_network_step(network, 1e-40), MSPRING_ERROR_ARGUMENT);
+    assert_int_equal(mspring_network_is_asleep(network), 1);
+    mspring_network_destroy(network);
+    network = make_lying(0);
+    const double before = floor_impulse(network);
+    check_ok(mspring_network_apply_force(network, 3, 0, 1e9f));
+    check_error(mspring_network_step(network, DT), MSPRING_ERROR_UNSTABLE);
+    assert_int_equal(mspring_network_is_asleep(network), 1);
+    check_near(floor_impulse(network), before, 0);
+    // Taken back, it leaves nothing behind.
+    check_ok(mspring_network_apply_force(network, 3, 0, -1e9f));
+    const uint64_t hash = support_hash(network);
+    support_steps(network, 10, DT);
+    assert_int_equal(support_hash(network), hash);
+    mspring_network_destroy(network);
+}
+
+static void another_relax_fraction_wakes_it(void **state) {
+    (void)state;
+    recipe made = hanging_recipe(0);
+    mspring_network *network = make(&made);
+    const uint32_t count = mspring_network_spring_count(network);
+    check_ok(mspring_network_reserve_events(network, 1000));
+    for (mspring_id s = 0; s < count; s++) {
+        const float strain = 0.01f;
+        check_ok(mspring_network_set_stress_strains(network, s, 1, &strain));
+    }
+    check_ok(mspring_network_set_relax_fraction(network, 0));
+    const float kick = 20;
+    check_ok(mspring_network_set_velocities(network, 50, 1, &kick, &kick));
+    fall_asleep(network);
+    mspring_event events[1000];
+    uint32_t events_read;
+    check_ok(mspring_network_read_events(network, events, COUNT_OF(events), &events_read, NULL));
+    // Springs that were stressed only on the way relax.
+    check_ok(mspring_network_set_relax_fraction(network, 1));
+    support_steps(network, 1, DT);
+    check_ok(mspring_network_read_events(network, events, COUNT_OF(events), &events_read, NULL));
+    assert_true(events_read > 0);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_sleeps_once_it_has_been_slow_for_long_enough),
@@ -502,6 +626,10 @@ int main(void) {
         cmocka_unit_test(snapshots_and_clones_sleep_on),
         cmocka_unit_test(misuse_is_refused),
         cmocka_unit_test(failed_allocations_leave_nothing_behind),
+        cmocka_unit_test(it_wakes_where_it_is_put),
+        cmocka_unit_test(the_floor_bears_what_sleeps),
+        cmocka_unit_test(refused_steps_wake_nothing),
+        cmocka_unit_test(another_relax_fraction_wakes_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -623,12 +623,12 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_step(mspring_networ
 /// next to nothing if there are no hooks and no forces.
 ///
 /// It wakes before or in the step that finds something changed: a position, velocity, mass or pin that is another
-/// one (set by a call or through a view, or by a hook in the step before); a stiffness, damping, rest length or
-/// threshold that was set, a spring that was broken or restored; gravity, solver or floor; the length of the
-/// substep where springs are relative; a force from outside that differs from the one under which it fell asleep,
-/// so much that it would bring its particle to sleep_speed within sleep_time. It also wakes when it is compacted or
-/// expanded. Hooks are called as ever; the forces of those before substeps are looked at in the first of a step. A
-/// network of the implicit solver wakes as to a new motion.
+/// one (set by a call or through a view, or by a hook in the step before); a stiffness, damping, rest length,
+/// threshold or relax fraction that was set, a spring that was broken or restored; gravity, solver or floor; the
+/// length of the substep where springs are relative; a force from outside that differs from the one under which it
+/// fell asleep, so much that it would bring its particle to sleep_speed within sleep_time. It also wakes when it is
+/// compacted or expanded. Hooks are called as ever; the forces of those before substeps are looked at in the first
+/// of a step. A network of the implicit solver wakes as to a new motion.
 ///
 /// To have parts that come to rest sleep while others move, make them networks of their own.
 /// @threads shared   @allocates never   @since 0.1
@@ -1009,7 +1009,7 @@ MSPRING_API mspring_result mspring_floor_def_init(mspring_floor_def *def, size_t
 /// @param def  copied with all that it points to; NULL: no floor
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY. On
 ///         error the floor is the one of before.
-/// @threads exclusive access to network   @allocates yes; 20 to 24 bytes for a height and 40 for a particle
+/// @threads exclusive access to network   @allocates yes; 20 to 24 bytes for a height and 50 for a particle
 /// @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_floor(mspring_network *network,
                                                                        const mspring_floor_def *def);

@@ -229,6 +229,8 @@ mspring_result mspring_network_set_relax_fraction(mspring_network *network, floa
     if (!(fraction >= 0.0f && fraction <= 1.0f))
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                              "the relax fraction is %g, it must be 0 to 1", (double)fraction);
+    if (fraction != network->strain.relax)
+        mspringi_wake(network);
     network->strain.relax = fraction;
     return MSPRING_OK;
 }

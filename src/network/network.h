@@ -126,6 +126,7 @@ typedef struct mspringi_sleep {
     double still;      ///< for how long it has been, s
     bool is_asleep;
     bool has_force;                        ///< force is not all zero
+    double origin_x, origin_y;             ///< that state is relative to, m
     float *state;                          ///< [4][slots]
     float *inverse_mass;                   ///< [slots]
     mspringi_field force;                  ///< from outside

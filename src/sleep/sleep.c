@@ -33,8 +33,10 @@ void mspringi_wake(mspring_network *network) {
 /* -------------------------------------------------------------------------------------------------- waking */
 
 static bool has_moved(const mspring_network *network) {
+    const mspringi_sleep *sleep = &network->sleep;
     const size_t slots = mspringi_slot_count(network);
-    return memcmp(network->state.x, network->sleep.state, 4 * slots * sizeof *network->sleep.state) != 0;
+    return network->origin_x != sleep->origin_x || network->origin_y != sleep->origin_y ||
+           memcmp(network->state.x, sleep->state, 4 * slots * sizeof *sleep->state) != 0;
 }
 
 bool mspringi_sleep_is_disturbed(const mspring_network *network) {
@@ -97,6 +99,8 @@ void mspringi_sleep_fall(mspring_network *network, mspringi_field force) {
     mspringi_sleep *sleep = &network->sleep;
     const size_t slots = mspringi_slot_count(network);
     memset(network->state.vx, 0, 2 * slots * sizeof *network->state.vx); // vy lies behind vx
+    sleep->origin_x = network->origin_x;
+    sleep->origin_y = network->origin_y;
     memcpy(sleep->state, network->state.x, 4 * slots * sizeof *sleep->state);
     memcpy(sleep->inverse_mass, network->inverse_mass, slots * sizeof *sleep->inverse_mass);
     sleep->has_force = force.x != NULL;
