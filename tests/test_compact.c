@@ -530,6 +530,47 @@ static void snapshots_are_of_one_plan(void **state) {
     recipe_free(&made);
 }
 
+/// The solver that takes steps for the explicit one is as it was made, too: it goes by the first rest lengths.
+static void steps_taken_for_the_explicit_solver_stay_the_same(void **state) {
+    (void)state;
+    uint64_t seed = 5;
+    const recipe_stuff stiff = {.mass = {1, 1}, .stiffness = {1e7, 1e7}, .damping = {20, 20}};
+    recipe made = {0};
+    recipe_lattice(&made, 24, 8, 0, 0, 1, &stiff, &seed);
+    mspring_network_def def = support_def(-9.8f, 1);
+    def.guard = MSPRING_GUARD_IMPLICIT;
+    mspring_network *network = recipe_network(&made, &def);
+    const mspring_id some = 100;
+    check_ok(mspring_network_break_springs(network, &some, 1));
+    check_ok(mspring_network_restore_springs(network, &some, 1, 0));
+    recipe_disturb(&made, 0.05, 0.5, &seed);
+    for (mspring_id p = 0; p < made.particle_count; p++) {
+        const mspring_particle_def *particle = &made.particles[p];
+        check_ok(mspring_network_set_positions(network, p, 1, &particle->x, &particle->y));
+    }
+    size_t size;
+    check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &size));
+    void *snapshot = malloc(size);
+    assert_non_null(snapshot);
+    check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_ALL, snapshot, size, NULL));
+    support_steps(network, 5, 1.0 / 64);
+    assert_true(mspring_network_fallback_count(network) > 0);
+    const uint64_t hash = support_hash(network);
+    for (mspring_id s = 0; s < made.spring_count; s++) {
+        const float rest_length = 3;
+        check_ok(mspring_network_set_rest_lengths(network, s, 1, &rest_length));
+    }
+    check_ok(mspring_network_break_springs(network, &some, 1));
+    compact(network);
+    check_ok(mspring_network_expand(network));
+    check_ok(mspring_network_load(network, snapshot, size));
+    support_steps(network, 5, 1.0 / 64);
+    assert_int_equal(support_hash(network), hash);
+    free(snapshot);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
 /* ----------------------------------------------------------------------------------------------------- clones */
 
 static void clones_are_compact_too(void **state) {
@@ -669,6 +710,7 @@ int main(void) {
         cmocka_unit_test(springs_that_are_left_out_can_be_edited_and_restored),
         cmocka_unit_test(strains_are_watched_as_before),
         cmocka_unit_test(snapshots_are_of_one_plan),
+        cmocka_unit_test(steps_taken_for_the_explicit_solver_stay_the_same),
         cmocka_unit_test(clones_are_compact_too),
         cmocka_unit_test(every_failure_leaves_the_network_as_it_was),
         cmocka_unit_test(a_compaction_may_stay_unfinished),

@@ -141,9 +141,13 @@ static void move_springs(mspring_network *to, const mspring_network *from) {
 static void move_implicit(mspring_network *to, const mspring_network *from) {
     const mspringi_implicit *had = from->implicit;
     mspringi_implicit *n = to->implicit;
+    const size_t slots = mspringi_slot_count(from), made_slots = mspringi_slot_count(to);
+    if (from->fallback) {
+        mspringi_tiles_take_inertia(&to->fallback->tiles, &from->fallback->tiles, made_slots);
+        to->fallback->scale = from->fallback->scale;
+    }
     if (!had)
         return;
-    const size_t slots = mspringi_slot_count(from), made_slots = mspringi_slot_count(to);
     if (!n->is_direct)
         mspringi_tiles_take_inertia(&n->tiles, &had->tiles, made_slots);
     n->scale = had->scale;
