@@ -556,7 +556,7 @@ MSPRING_API mspring_result mspring_clone_def_init(mspring_clone_def *def, size_t
 /// or to be stepped by another thread. It holds everything that the following steps depend on (solver with its
 /// history, settings, edits, ramps, forces given for the next step) and what is measured of them (thresholds,
 /// components, events not read yet), so the same calls on both give the same bits. Workers it has its own, hooks
-/// none, unless def says otherwise.
+/// none, unless def says otherwise; and a compaction that has begun is not in it.
 ///
 /// Takes as long as copying mspring_network_memory_used() bytes into memory that is new, which most systems hand
 /// out more slowly than it is copied. Where a state is to be kept and brought back often, mspring_network_save()
