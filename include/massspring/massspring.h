@@ -840,9 +840,10 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_tune_settings(mspring_netwo
 ///               setting goes on from it. Not for networks without an equilibrium.
 ///
 /// Have the network in a state as it is to be simulated: just made and falling, or moving. Hooks are not called,
-/// there is no floor, ramps stand still, nothing breaks by strain, and it does not sleep. Forces given for the next
-/// step act in the first one. Relative springs follow the substep: each row is compared with a fine run, and an
-/// equilibrium, that have the stiffness of its own substeps, and bending says how firm that is.
+/// there is no floor, ramps stand still, nothing breaks by strain, it does not sleep, and no solver stands in for
+/// another (MSPRING_GUARD_IMPLICIT). Forces given for the next step act in the first one. Relative springs follow
+/// the substep: each row is compared with a fine run, and an equilibrium, that have the stiffness of its own
+/// substeps, and bending says how firm that is.
 ///
 /// Recommended is, if max_error is finite, the row of the least median cost among those within both bounds; else,
 /// of those within max_cost, the one of the least error; of equal ones the first. There may be none. When the

@@ -309,6 +309,11 @@ enum {
 /// How the implicit solvers go from t to t + h. All are stable for any h and damp the fastest oscillations out in
 /// a few steps. The two of second order remember the substep before; the first substep after a change of the
 /// solver, and after the positions of all particles were set, is one of implicit Euler.
+///
+/// Stiff ropes that hang slack, and are pulled taut within a substep, are what the two of second order follow least
+/// well: such a substep is refused (see mspring_guard). Our ship falling under its own weight, with its rigging, in
+/// one substep of 1/64 s, goes through with implicit Euler, or in two substeps; or have MSPRING_GUARD_RETRY divide
+/// just the steps that need it.
 typedef int32_t mspring_integrator;
 enum {
     MSPRING_INTEGRATOR_GA0 = 0,  ///< generalised-alpha with rho_inf = 0 (Chung and Hulbert, 1993): second order
@@ -343,8 +348,8 @@ typedef struct mspring_solver_def {
 } mspring_solver_def;
 
 /// Instruction sets. All give the same bits. Those of one kind of CPU stand in order, scalar below all of them:
-/// scalar < SSE2 < AVX2 < AVX-512 on x86, scalar < NEON on 64-bit ARM, scalar < WASM in a browser, scalar alone elsewhere. Between kinds there
-/// is no order.
+/// scalar < SSE2 < AVX2 < AVX-512 on x86, scalar < NEON on 64-bit ARM, scalar < WASM in a browser, scalar alone
+/// elsewhere. Between kinds there is no order.
 typedef int32_t mspring_simd;
 enum {
     MSPRING_SIMD_AUTO = 0, ///< the best that CPU and operating system offer
@@ -551,7 +556,7 @@ MSPRING_API mspring_result mspring_clone_def_init(mspring_clone_def *def, size_t
 /// or to be stepped by another thread. It holds everything that the following steps depend on (solver with its
 /// history, settings, edits, ramps, forces given for the next step) and what is measured of them (thresholds,
 /// components, events not read yet), so the same calls on both give the same bits. Workers it has its own, hooks
-/// none, unless def says otherwise.
+/// none, unless def says otherwise; and a compaction that has begun is not in it.
 ///
 /// Takes as long as copying mspring_network_memory_used() bytes into memory that is new, which most systems hand
 /// out more slowly than it is copied. Where a state is to be kept and brought back often, mspring_network_save()
@@ -559,8 +564,7 @@ MSPRING_API mspring_result mspring_clone_def_init(mspring_clone_def *def, size_t
 /// @param def    NULL for the defaults
 /// @param clone  receives the clone, to be freed by mspring_network_destroy()
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL, unknown flags, workers that are out of range, or more
-/// workers
-///         than the original has for hooks that have storage; MSPRING_ERROR_STRUCT; MSPRING_ERROR_MEMORY;
+///         workers than the original has where hooks have storage; MSPRING_ERROR_STRUCT; MSPRING_ERROR_MEMORY;
 ///         MSPRING_ERROR_THREAD if a worker cannot be started; MSPRING_ERROR_BUSY in a hook.
 /// @threads shared   @allocates yes, with the clone's allocator   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_clone(const mspring_network *network,
@@ -619,19 +623,18 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_step(mspring_networ
 /// next to nothing if there are no hooks and no forces.
 ///
 /// It wakes before or in the step that finds something changed: a position, velocity, mass or pin that is another
-/// one (set by a call or through a view, or by a hook in the step before); a stiffness, damping, rest length or
-/// threshold that was set, a spring that was broken or restored; gravity, solver or floor; the length of the
-/// substep where springs are relative; a force from outside that differs from the one under which it fell asleep,
-/// so much that it would bring its particle to sleep_speed within sleep_time. It also wakes when it is compacted or
-/// expanded. Hooks are called as ever; the forces of those before substeps are looked at in the first of a step. A
-/// network of the implicit solver wakes as to a new motion.
+/// one (set by a call or through a view, or by a hook in the step before); a stiffness, damping, rest length,
+/// threshold or relax fraction that was set, a spring that was broken or restored; gravity, solver or floor; the
+/// length of the substep where springs are relative; a force from outside that differs from the one under which it
+/// fell asleep, so much that it would bring its particle to sleep_speed within sleep_time. It also wakes when it is
+/// compacted or expanded. Hooks are called as ever; the forces of those before substeps are looked at in the first
+/// of a step. A network of the implicit solver wakes as to a new motion.
 ///
 /// To have parts that come to rest sleep while others move, make them networks of their own.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_network_is_asleep(const mspring_network *network);
 
-/// Wake a network. It has to be still for sleep_time again before it sleeps. Nothing happens to one that is awake
-/// but that.
+/// Wake a network. It has to be still for sleep_time again before it sleeps, and so has one that is awake already.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL; MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_wake(mspring_network *network);
@@ -641,7 +644,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_wake(mspring_networ
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_network_substeps(const mspring_network *network);
 
-/// Number of steps so far that the implicit solver took for the explicit one (MSPRING_GUARD_IMPLICIT). NULL gives 0.
+/// Number of steps so far that the implicit solver took for the explicit one (MSPRING_GUARD_IMPLICIT). NULL: 0.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint64_t mspring_network_fallback_count(const mspring_network *network);
 
@@ -831,17 +834,16 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_tune_settings(mspring_netwo
 /// from the state it has now, and say what a step takes and how good it is.
 ///
 ///   cost        of every step taken with a setting, by the clock, with the workers that the network has
-///   trajectory  against a run in double precision with fine substeps (symplectic, of second order). Shares are of
-///   at
-///               least a millionth of the network's size.
+///   trajectory  against a run in double precision with fine substeps (symplectic, of second order). Shares are
+///               of at least a millionth of the network's size.
 ///   rest        where the network comes to rest (mspring_network_settle()), and how it stays there when the
-///   setting
-///               goes on from it. Not for networks without an equilibrium.
+///               setting goes on from it. Not for networks without an equilibrium.
 ///
 /// Have the network in a state as it is to be simulated: just made and falling, or moving. Hooks are not called,
-/// there is no floor, ramps stand still, nothing breaks by strain, and it does not sleep. Forces given for the next
-/// step act in the first one. Relative springs follow the substep: each row is compared with a fine run, and an
-/// equilibrium, that have the stiffness of its own substeps, and bending says how firm that is.
+/// there is no floor, ramps stand still, nothing breaks by strain, it does not sleep, and no solver stands in for
+/// another (MSPRING_GUARD_IMPLICIT). Forces given for the next step act in the first one. Relative springs follow
+/// the substep: each row is compared with a fine run, and an equilibrium, that have the stiffness of its own
+/// substeps, and bending says how firm that is.
 ///
 /// Recommended is, if max_error is finite, the row of the least median cost among those within both bounds; else,
 /// of those within max_cost, the one of the least error; of equal ones the first. There may be none. When the
@@ -1008,7 +1010,7 @@ MSPRING_API mspring_result mspring_floor_def_init(mspring_floor_def *def, size_t
 /// @param def  copied with all that it points to; NULL: no floor
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY. On
 ///         error the floor is the one of before.
-/// @threads exclusive access to network   @allocates yes; 20 to 24 bytes for a height and 40 for a particle
+/// @threads exclusive access to network   @allocates yes; 20 to 24 bytes for a height and 50 for a particle
 /// @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_floor(mspring_network *network,
                                                                        const mspring_floor_def *def);
