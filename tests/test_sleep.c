@@ -611,6 +611,31 @@ static void another_relax_fraction_wakes_it(void **state) {
     recipe_free(&made);
 }
 
+/// A network that the explicit solver cannot take falls asleep in steps that the implicit one takes for it.
+static void idle_steps_are_taken_by_nobody(void **state) {
+    (void)state;
+    uint64_t seed = 5;
+    const recipe_stuff stiff = {.mass = {1, 1}, .stiffness = {1e7, 1e7}, .damping = {20, 20}};
+    recipe made = {0};
+    recipe_lattice(&made, 24, 8, 0, 0, 1, &stiff, &seed);
+    for (mspring_id p = 0; p < 24; p++) {
+        made.particles[p].flags = MSPRING_PARTICLE_PINNED;
+    }
+    mspring_network_def def = support_def(-9.8f, 1);
+    def.guard = MSPRING_GUARD_IMPLICIT;
+    def.global_damping = 20;
+    def.sleep_speed = 0.5f;
+    def.sleep_time = 0.05f;
+    mspring_network *network = recipe_network(&made, &def);
+    fall_asleep(network);
+    const uint64_t count = mspring_network_fallback_count(network);
+    assert_true(count > 0);
+    support_steps(network, 40, DT);
+    assert_int_equal(mspring_network_fallback_count(network), count);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_sleeps_once_it_has_been_slow_for_long_enough),
@@ -630,6 +655,7 @@ int main(void) {
         cmocka_unit_test(the_floor_bears_what_sleeps),
         cmocka_unit_test(refused_steps_wake_nothing),
         cmocka_unit_test(another_relax_fraction_wakes_it),
+        cmocka_unit_test(idle_steps_are_taken_by_nobody),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -208,7 +208,6 @@ static mspring_result attempt_implicitly(mspring_network *network, double dt) {
     const mspring_result result = attempt(network, dt);
     network->implicit = NULL;
     network->substeps = substeps;
-    network->fallback_count += result == MSPRING_OK;
     return result;
 }
 
@@ -216,7 +215,9 @@ static mspring_result attempt_implicitly(mspring_network *network, double dt) {
 static mspring_result fall_back(mspring_network *network, double dt) {
     const uint32_t lent = network->guard.lent;
     const mspring_result result = attempt_implicitly(network, dt);
-    network->guard.lent = result != MSPRING_OK ? lent : lent > 0 ? lent - 1 : LENT_STEPS;
+    const bool took_it = result == MSPRING_OK && !mspringi_sleep_is_idle(network);
+    network->guard.lent = !took_it ? lent : lent > 0 ? lent - 1 : LENT_STEPS;
+    network->fallback_count += took_it;
     return result;
 }
 
