@@ -282,8 +282,9 @@ enum {
     MSPRING_SOLVER_EXPLICIT = 0,
     /// One linear system in each substep, whatever the stiffness: stable on lattices for any dt and any springs, at
     /// a cost that does not depend on them. Ropes and other springs outside of lattices have little stiffness
-    /// across them; where they are so stiff, and move so far in a substep, that this would stretch them by energy
-    /// that nothing has put in, the step is refused (see mspring_guard). Springs and dampers are linearised at x +
+    /// across them; where they are so stiff, and move so far in a substep, that this would stretch them by more
+    /// energy than there was, the step is refused (see mspring_guard, and mspring_integrator for less than that).
+    /// Springs and dampers are linearised at x +
     /// h v, with tiles of neighbouring particles turned on as rigid bodies (and with the stiffness across a spring
     /// clamped to 0 where it is compressed, so
     /// that the matrix is positive definite). The system is solved by a fixed number of conjugate gradient
@@ -311,9 +312,9 @@ enum {
 /// solver, and after the positions of all particles were set, is one of implicit Euler.
 ///
 /// Stiff ropes that hang slack, and are pulled taut within a substep, are what the two of second order follow least
-/// well: such a substep is refused (see mspring_guard). Our ship falling under its own weight, with its rigging, in
-/// one substep of 1/64 s, goes through with implicit Euler, or in two substeps; or have MSPRING_GUARD_RETRY divide
-/// just the steps that need it.
+/// well: they gain energy there, and mspring_guard refuses only a substep in which it more than doubles. Our ship
+/// falling under its own weight, with its rigging, does so in one substep of 1/64 s, before and after steps that
+/// are refused, so MSPRING_GUARD_RETRY is no cure. Implicit Euler, or two substeps from the start, go through.
 typedef int32_t mspring_integrator;
 enum {
     MSPRING_INTEGRATOR_GA0 = 0,  ///< generalised-alpha with rho_inf = 0 (Chung and Hulbert, 1993): second order
