@@ -284,7 +284,8 @@ enum {
     /// a cost that does not depend on them. Ropes and other springs outside of lattices have little stiffness
     /// across them; where they are so stiff, and move so far in a substep, that this would stretch them by more
     /// energy than there was, the step is refused (see mspring_guard, and mspring_integrator for less than that).
-    /// Springs and dampers are linearised at x + h v, with tiles of neighbouring particles turned on as rigid bodies
+    /// Springs and dampers are linearised at x + h v, with tiles of neighbouring particles turned on as rigid
+    /// bodies
     /// (and with the stiffness across a spring clamped to 0 where it is compressed, so that the matrix is positive
     /// definite). The system is solved by a fixed number of conjugate gradient iterations with a two-level
     /// preconditioner: the blocks of the single particles, and the tiles. With eight
