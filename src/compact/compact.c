@@ -12,8 +12,9 @@ static mspring_result exchange(mspring_network *network, mspringi_topology *topo
     const bool was_compact = network->is_compact;
     const uint64_t print = network->topology_print;
     const uint32_t tile_size = network->implicit ? network->implicit->tiles.cells.size : 0;
+    const uint32_t fallback_size = network->fallback ? network->fallback->tiles.cells.size : 0;
     mspringi_topology before = network->topology;
-    mspring_result result = mspringi_move(network, topology, 0);
+    mspring_result result = mspringi_move(network, topology, 0, 0);
     if (result != MSPRING_OK)
         return result;
     if (was_compact) {
@@ -22,6 +23,7 @@ static mspring_result exchange(mspring_network *network, mspringi_topology *topo
         network->whole = before;
         network->whole_print = print;
         network->whole_tile_size = tile_size;
+        network->whole_fallback_size = fallback_size;
         network->is_compact = true;
     }
     return MSPRING_OK;
@@ -29,7 +31,8 @@ static mspring_result exchange(mspring_network *network, mspringi_topology *topo
 
 static MSPRINGI_NOINLINE mspring_result expand(mspring_network *network) {
     mspringi_topology compact = network->topology;
-    mspring_result result = mspringi_move(network, &network->whole, network->whole_tile_size);
+    mspring_result result =
+        mspringi_move(network, &network->whole, network->whole_tile_size, network->whole_fallback_size);
     if (result != MSPRING_OK)
         return result;
     mspringi_topology_destroy(&compact, &network->memory);

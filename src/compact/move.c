@@ -143,13 +143,13 @@ static void move_implicit(mspring_network *to, const mspring_network *from) {
     mspringi_implicit *n = to->implicit;
     const size_t slots = mspringi_slot_count(from), made_slots = mspringi_slot_count(to);
     if (from->fallback) {
-        mspringi_tiles_take_inertia(&to->fallback->tiles, &from->fallback->tiles, made_slots);
+        mspringi_tiles_set_inertia(&to->fallback->tiles, from->fallback->tiles.turn_inertia, made_slots);
         to->fallback->scale = from->fallback->scale;
     }
     if (!had)
         return;
     if (!n->is_direct)
-        mspringi_tiles_take_inertia(&n->tiles, &had->tiles, made_slots);
+        mspringi_tiles_set_inertia(&n->tiles, had->tiles.turn_inertia, made_slots);
     n->scale = had->scale;
     n->history.h = had->history.h;
     n->history.restarts = had->history.restarts;
@@ -214,7 +214,8 @@ static mspring_network without_layout(const mspring_network *network, const mspr
     return to;
 }
 
-mspring_result mspringi_move(mspring_network *network, const mspringi_topology *topology, uint32_t tile_size) {
+mspring_result mspringi_move(mspring_network *network, const mspringi_topology *topology, uint32_t tile_size,
+                             uint32_t fallback_size) {
     mspring_network to = without_layout(network, topology);
     mspring_result result = mspringi_layout_reserve(&to);
     if (result == MSPRING_OK)
@@ -234,7 +235,7 @@ mspring_result mspringi_move(mspring_network *network, const mspringi_topology *
         move_springs(&to, network);
         result = make_implicit(&to, network, tile_size);
         if (result == MSPRING_OK && network->fallback)
-            result = mspringi_fallback_reserve(&to);
+            result = mspringi_fallback_reserve(&to, fallback_size);
     }
     if (result != MSPRING_OK) {
         free_layout(&to, &to.memory);

@@ -18,6 +18,10 @@ typedef struct mspringi_joint {
     uint32_t factors; ///< where in the factors
 } mspringi_joint;
 
+/// Rows and columns of a cell: a power of two.
+#define MSPRINGI_LEAST_TILE_SIZE 8u
+#define MSPRINGI_LARGEST_TILE_SIZE 256u
+
 typedef struct mspringi_cells {
     uint32_t count, size;   ///< size: rows and columns of a cell in wide grids
     uint32_t *of_slot;      ///< [slots] MSPRING_NONE: none

@@ -6,8 +6,6 @@
 #include <string.h>
 
 #define DEFAULT_ITERATIONS 8
-#define DEFAULT_TILE_SIZE 8
-#define LARGEST_TILE_SIZE 256
 
 /// Most multiply-adds that factoring the coarse matrix may take, for each slot: about as long as one product with A
 /// takes.
@@ -157,11 +155,11 @@ mspring_result mspringi_implicit_reserve(mspring_network *network) {
 // to factor.
 static mspring_result cut_tiles(mspringi_implicit *n, mspring_network *network, uint32_t asked) {
     const double most = COARSE_COST_PER_SLOT * (double)mspringi_slot_count(network);
-    uint32_t size = asked > 0 ? asked : DEFAULT_TILE_SIZE;
+    uint32_t size = asked > 0 ? asked : MSPRINGI_LEAST_TILE_SIZE;
     for (;;) {
         mspring_result result =
             mspringi_tiles_create(&n->tiles, network, size, &network->memory, &network->message);
-        if (result != MSPRING_OK || asked > 0 || size >= LARGEST_TILE_SIZE ||
+        if (result != MSPRING_OK || asked > 0 || size >= MSPRINGI_LARGEST_TILE_SIZE ||
             mspringi_coarse_cost(&n->tiles) <= most)
             return result;
         mspringi_tiles_destroy(&n->tiles, &network->memory);
@@ -212,13 +210,14 @@ void mspringi_implicit_adjust(mspringi_implicit *n, const mspring_solver_def *de
     n->age = 0;
 }
 
-mspring_result mspringi_fallback_reserve(mspring_network *network) {
+mspring_result mspringi_fallback_reserve(mspring_network *network, uint32_t tile_size) {
     if (network->fallback)
         return MSPRING_OK;
     mspring_solver_def def;
     (void)mspring_solver_def_init(&def, sizeof def);
     def.solver = MSPRING_SOLVER_IMPLICIT;
     def.integrator = MSPRING_INTEGRATOR_EULER;
+    def.tile_size = tile_size;
     return mspringi_implicit_create(network, &def, &network->fallback);
 }
 

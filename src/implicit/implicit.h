@@ -86,8 +86,9 @@ bool mspringi_implicit_fits(const mspringi_implicit *implicit, const mspring_sol
 void mspringi_implicit_adjust(mspringi_implicit *implicit, const mspring_solver_def *def);
 void mspringi_implicit_destroy(mspringi_implicit *implicit, mspringi_memory *memory);
 
-/// Make the solver that takes steps for the explicit one, if it is not there. It keeps nothing from step to step.
-mspring_result mspringi_fallback_reserve(mspring_network *network);
+/// Make the solver that takes steps for the explicit one, if it is not there, with tiles of that size (0: by plan).
+/// It keeps nothing from step to step.
+mspring_result mspringi_fallback_reserve(mspring_network *network, uint32_t tile_size);
 /// Forget the history, as if a new motion began.
 void mspringi_implicit_forget(mspringi_implicit *implicit);
 

@@ -292,8 +292,8 @@ mspring_result mspringi_tiles_create(mspringi_tiles *tiles, const mspring_networ
                          (unsigned)network->topology.particle_count);
 }
 
-void mspringi_tiles_take_inertia(mspringi_tiles *tiles, const mspringi_tiles *from, size_t slots) {
-    tiles->turn_inertia = from->turn_inertia;
+void mspringi_tiles_set_inertia(mspringi_tiles *tiles, float turn_inertia, size_t slots) {
+    tiles->turn_inertia = turn_inertia;
     take_print(tiles, slots);
 }
 

@@ -36,7 +36,7 @@ mspring_result mspringi_tiles_create(mspringi_tiles *tiles, const mspring_networ
                                      mspringi_memory *memory, mspringi_message *message);
 /// Have the bodies turn as hard as those of other tiles of the same network, in which rest lengths may have been
 /// others.
-void mspringi_tiles_take_inertia(mspringi_tiles *tiles, const mspringi_tiles *from, size_t slots);
+void mspringi_tiles_set_inertia(mspringi_tiles *tiles, float turn_inertia, size_t slots);
 void mspringi_tiles_destroy(mspringi_tiles *tiles, mspringi_memory *memory);
 
 /// Parts by slot.

@@ -255,7 +255,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     solver.substeps = def->substeps;
     solver.max_substeps = def->max_substeps;
     result = mspring_network_set_solver(network, &solver);
-    return result == MSPRING_OK && def->guard == MSPRING_GUARD_IMPLICIT ? mspringi_fallback_reserve(network)
+    return result == MSPRING_OK && def->guard == MSPRING_GUARD_IMPLICIT ? mspringi_fallback_reserve(network, 0)
                                                                         : result;
 }
 

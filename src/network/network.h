@@ -151,6 +151,7 @@ struct mspring_network {
     bool is_compact;
     uint64_t whole_print;           ///< topology_print of whole
     uint32_t whole_tile_size;       ///< of the implicit solver that whole had; 0 if there was none
+    uint32_t whole_fallback_size;   ///< the same of the fallback's
     struct mspringi_replan *replan; ///< a compaction that is under way, or NULL
     uint64_t topology_print;        ///< hash of which particles the springs join, and of where they lie
     uint64_t parameter_print;       ///< hash of what the springs are like, and of all edits of that

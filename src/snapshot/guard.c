@@ -12,6 +12,15 @@ typedef struct guard_head {
 } guard_head;
 #define HEAD_BYTES ((size_t)40)
 
+/// What the solver that takes steps for the explicit one was made for: masses, rest lengths and springs at that
+/// time, which edits do not change.
+typedef struct fallback_head {
+    double scale;
+    float turn_inertia;
+    uint32_t tile_size;
+} fallback_head;
+#define FALLBACK_BYTES ((size_t)16)
+
 /// Whether dt is known, and whether that was before the last edit.
 enum { UNKNOWN, OUTDATED, KNOWN };
 
@@ -21,7 +30,14 @@ static size_t motion_floats(const mspring_network *network) {
 
 // A guard that has become suspicious compares with the state before the last step.
 static size_t guard_size(const mspring_network *network) {
-    return HEAD_BYTES + (network->guard.suspicious ? motion_floats(network) * sizeof(float) : 0);
+    return HEAD_BYTES + (network->guard_policy == MSPRING_GUARD_IMPLICIT ? FALLBACK_BYTES : 0) +
+           (network->guard.suspicious ? motion_floats(network) * sizeof(float) : 0);
+}
+
+static void fallback_save(const mspringi_implicit *n, mspringi_writer *to) {
+    mspringi_put(to, &n->scale, 1, sizeof n->scale);
+    mspringi_put(to, &n->tiles.turn_inertia, 1, sizeof n->tiles.turn_inertia);
+    mspringi_put(to, &n->tiles.cells.size, 1, sizeof n->tiles.cells.size);
 }
 
 static void guard_save(const mspring_network *network, mspringi_writer *to) {
@@ -37,6 +53,8 @@ static void guard_save(const mspring_network *network, mspringi_writer *to) {
     mspringi_put(to, &any_shape->dt, 1, sizeof any_shape->dt);
     mspringi_put(to, floats, sizeof floats / sizeof floats[0], sizeof floats[0]);
     mspringi_put(to, words, sizeof words / sizeof words[0], sizeof words[0]);
+    if (network->guard_policy == MSPRING_GUARD_IMPLICIT)
+        fallback_save(network->fallback, to);
     if (guard->suspicious)
         mspringi_put(to, network->backup.x, motion_floats(network), sizeof(float));
 }
@@ -53,15 +71,41 @@ static const uint8_t *read_head(const uint8_t *from, guard_head *head) {
     return mspringi_get(from, &head->lent, 1, sizeof head->lent);
 }
 
+static const uint8_t *read_fallback(const uint8_t *from, fallback_head *head) {
+    from = mspringi_get(from, &head->scale, 1, sizeof head->scale);
+    from = mspringi_get(from, &head->turn_inertia, 1, sizeof head->turn_inertia);
+    return mspringi_get(from, &head->tile_size, 1, sizeof head->tile_size);
+}
+
+// See that there is a fallback with such tiles. One that is in use is not touched.
+static mspring_result check_fallback(mspring_network *network, const fallback_head *head) {
+    const uint32_t size = head->tile_size;
+    const mspringi_implicit *here = network->fallback;
+    if (!(head->scale >= DBL_MIN && head->scale <= DBL_MAX && head->turn_inertia >= 0.0f &&
+          head->turn_inertia <= FLT_MAX) ||
+        size < MSPRINGI_LEAST_TILE_SIZE || size > MSPRINGI_LARGEST_TILE_SIZE || (size & (size - 1)) != 0 ||
+        (here && network->guard_policy == MSPRING_GUARD_IMPLICIT && here->tiles.cells.size != size))
+        return mspringi_section_fail(
+            network, &mspringi_section_guard,
+            "the implicit solver that takes steps has tiles of size %u, scale %g and inertia %g m^2",
+            (unsigned)size, head->scale, (double)head->turn_inertia);
+    if (here && here->tiles.cells.size != size) {
+        mspringi_implicit_destroy(network->fallback, &network->memory);
+        network->fallback = NULL;
+    }
+    return mspringi_fallback_reserve(network, size);
+}
+
 static mspring_result guard_check(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_section *section = &mspringi_section_guard;
     guard_head head = {0};
     if (size < HEAD_BYTES)
         return mspringi_section_check_size(network, section, size, HEAD_BYTES);
     from = read_head(from, &head);
+    const bool falls_back = head.policy == MSPRING_GUARD_IMPLICIT;
     const size_t floats = head.suspicious ? motion_floats(network) : 0;
-    mspring_result result =
-        mspringi_section_check_size(network, section, size, HEAD_BYTES + floats * sizeof(float));
+    mspring_result result = mspringi_section_check_size(
+        network, section, size, HEAD_BYTES + (falls_back ? FALLBACK_BYTES : 0) + floats * sizeof(float));
     if (result != MSPRING_OK)
         return result;
     if (!(head.h >= 0.0f && head.h <= FLT_MAX && head.global_damping >= 0.0f && head.global_damping <= 1e6f &&
@@ -69,14 +113,27 @@ static mspring_result guard_check(mspring_network *network, const uint8_t *from,
         head.policy > MSPRING_GUARD_IMPLICIT || head.suspicious > 1 || head.state > KNOWN)
         return mspringi_section_fail(network, section, "for substeps of %g s, with a peak of %g m/s and policy %u",
                                      (double)head.h, (double)head.peak, (unsigned)head.policy);
+    fallback_head fallback = {0};
+    if (falls_back)
+        from = read_fallback(from, &fallback);
     for (size_t i = 0; i < floats; ++i)
         if (!isfinite(mspringi_float_at(from, i)))
             return mspringi_section_fail(network, section, "the state before the last step is not finite");
-    return head.policy == MSPRING_GUARD_IMPLICIT ? mspringi_fallback_reserve(network) : MSPRING_OK;
+    return falls_back ? check_fallback(network, &fallback) : MSPRING_OK;
+}
+
+static const uint8_t *fallback_load(mspring_network *network, const uint8_t *from) {
+    mspringi_implicit *n = network->fallback;
+    fallback_head head;
+    from = read_fallback(from, &head);
+    n->scale = head.scale;
+    mspringi_tiles_set_inertia(&n->tiles, head.turn_inertia, mspringi_slot_count(network));
+    return from;
 }
 
 static void guard_load(mspring_network *network, const uint8_t *from, size_t size) {
     guard_head head;
+    (void)size;
     from = read_head(from, &head);
     network->guard_policy = (mspring_guard)head.policy;
     network->guard = (mspringi_guard){.h = head.h,
@@ -84,7 +141,9 @@ static void guard_load(mspring_network *network, const uint8_t *from, size_t siz
                                       .peak = head.peak,
                                       .suspicious = head.suspicious,
                                       .lent = head.lent};
-    if (size > HEAD_BYTES)
+    if (head.policy == MSPRING_GUARD_IMPLICIT)
+        from = fallback_load(network, from);
+    if (head.suspicious)
         mspringi_get(from, network->backup.x, motion_floats(network), sizeof(float));
     // Edits of before and after are counted differently.
     mspringi_any_shape *any_shape = &network->any_shape;
