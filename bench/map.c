@@ -11,14 +11,6 @@
 
 #include "modes.h"
 
-static const mspring_solver solvers[MAP_SOLVERS] = {MSPRING_SOLVER_EXPLICIT, MSPRING_SOLVER_IMPLICIT,
-                                                    MSPRING_SOLVER_DIRECT};
-
-const char *map_solver_name(uint32_t solver) {
-    static const char *const names[MAP_SOLVERS] = {"explicit", "implicit", "direct"};
-    return names[solver];
-}
-
 /// Cases that must not be, each of which is told.
 static uint32_t wrong_of(const uint32_t *outcomes) {
     return outcomes[EXTREME_NOT_FINITE] + outcomes[EXTREME_DIVERGED] + outcomes[EXTREME_FAILED];
@@ -26,23 +18,23 @@ static uint32_t wrong_of(const uint32_t *outcomes) {
 
 /* ---------------------------------------------------------------------------------------------------- running */
 
-static void complain(const extreme_network *network, uint32_t solver, uint32_t dt, const char *text) {
+static void complain(const extreme_network *network, uint32_t way, uint32_t dt, const char *text) {
     fprintf(stderr, "%s, %s, %g N/m, %g s, ratio %u, damper %u, spacing %u, place %u: %s\n",
-            extreme_shape_name(network->shape), map_solver_name(solver), extreme_stiffness(network->stiffness),
+            extreme_shape_name(network->shape), extreme_way_of(way).name, extreme_stiffness(network->stiffness),
             extreme_dt(dt), network->ratio, network->damper, network->spacing, network->place, text);
 }
 
 static void run_all(map *all) {
     for (uint32_t number = 0; number < EXTREME_NETWORKS; number++) {
         const extreme_network network = extreme_network_of(number);
-        for (uint32_t solver = 0; solver < MAP_SOLVERS; solver++) {
+        for (uint32_t way = 0; way < EXTREME_WAYS; way++) {
             for (uint32_t dt = 0; dt < EXTREME_STEPS; dt++) {
                 char text[512] = "";
                 const extreme_outcome outcome =
-                    extreme_run(&network, solvers[solver], extreme_dt(dt), text, sizeof text);
-                all->outcomes[network.shape][solver][network.stiffness][dt][outcome]++;
+                    extreme_run(&network, extreme_way_of(way), extreme_dt(dt), text, sizeof text);
+                all->outcomes[network.shape][way][network.stiffness][dt][outcome]++;
                 if (outcome > EXTREME_REFUSED)
-                    complain(&network, solver, dt, text);
+                    complain(&network, way, dt, text);
             }
         }
         all->border[number] = extreme_border(&network);
@@ -86,12 +78,12 @@ static uint32_t print_all_outcomes(bench_format format, const map *all) {
     uint32_t whole[EXTREME_OUTCOMES] = {0};
     bench_table_head(format, outcome_columns, OUTCOME_COLUMNS);
     for (int shape = 0; shape < EXTREME_SHAPES; shape++) {
-        for (uint32_t solver = 0; solver < MAP_SOLVERS; solver++) {
+        for (uint32_t way = 0; way < EXTREME_WAYS; way++) {
             uint32_t sum[EXTREME_OUTCOMES] = {0};
             for (int k = 0; k < EXTREME_STIFFNESSES; k++)
                 for (int dt = 0; dt < EXTREME_STEPS; dt++)
-                    add(sum, all->outcomes[shape][solver][k][dt]);
-            print_outcomes(format, extreme_shape_name((extreme_shape)shape), map_solver_name(solver), sum);
+                    add(sum, all->outcomes[shape][way][k][dt]);
+            print_outcomes(format, extreme_shape_name((extreme_shape)shape), extreme_way_of(way).name, sum);
             add(whole, sum);
         }
     }

@@ -8,14 +8,10 @@
 #include "draw/figure.h"
 #include "scenes/extremes.h"
 
-enum { MAP_SOLVERS = 3 };
-
 typedef struct map {
-    uint32_t outcomes[EXTREME_SHAPES][MAP_SOLVERS][EXTREME_STIFFNESSES][EXTREME_STEPS][EXTREME_OUTCOMES];
+    uint32_t outcomes[EXTREME_SHAPES][EXTREME_WAYS][EXTREME_STIFFNESSES][EXTREME_STEPS][EXTREME_OUTCOMES];
     double border[EXTREME_NETWORKS]; ///< measured over predicted; 0: there is no such network
 } map;
-
-const char *map_solver_name(uint32_t solver);
 
 /// Draw what became of the cases, by stiffness and dt.
 bool map_draw_outcomes(const map *drawn, const char *path, draw_error *error);

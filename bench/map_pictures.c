@@ -85,15 +85,15 @@ static void draw_cell(figure *target, double left, double top, const panels *p, 
 }
 
 bool map_draw_outcomes(const map *drawn, const char *path, draw_error *error) {
-    const panels p = {17, 17, EXTREME_STEPS, MAP_SOLVERS};
+    const panels p = {17, 17, EXTREME_STEPS, EXTREME_WAYS};
     figure made;
     begin(&made, &p, "What becomes of networks at the extremes, by stiffness and step");
     for (uint32_t shape = 0; shape < EXTREME_SHAPES; shape++) {
-        for (uint32_t solver = 0; solver < MAP_SOLVERS; solver++) {
-            const double left = panel_left(&p, shape), top = panel_top(&p, solver);
+        for (uint32_t way = 0; way < EXTREME_WAYS; way++) {
+            const double left = panel_left(&p, shape), top = panel_top(&p, way);
             char title[80];
             snprintf(title, sizeof title, "%s, %s", extreme_shape_name((extreme_shape)shape),
-                     map_solver_name(solver));
+                     extreme_way_of(way).name);
             figure_text(&made, left, top - 7, 12, FIGURE_LEFT, ink, title);
             for (uint32_t dt = 0; dt < EXTREME_STEPS; dt++) {
                 const double y = top + (EXTREME_STEPS - 1 - dt) * p.cell_height;
@@ -102,7 +102,7 @@ bool map_draw_outcomes(const map *drawn, const char *path, draw_error *error) {
                 if (shape == 0)
                     figure_text(&made, LEFT - 8, y + 12, 10, FIGURE_RIGHT, quiet, text);
                 for (uint32_t k = 0; k < EXTREME_STIFFNESSES; k++)
-                    draw_cell(&made, left + k * p.cell_width, y, &p, drawn->outcomes[shape][solver][k][dt]);
+                    draw_cell(&made, left + k * p.cell_width, y, &p, drawn->outcomes[shape][way][k][dt]);
             }
         }
         label_stiffness(&made, &p, shape);

@@ -1,7 +1,8 @@
 /// @file test_map.c
-/// The map of stability (scenes/extremes.h): networks of four shapes at the extremes of every setting, each solver.
-/// Each case either stays within the energy that it may have, or is refused with a cause; nothing that is not
-/// finite comes out; and the explicit border is where it is said to be. The bench's --map runs every case of it.
+/// The map of stability (scenes/extremes.h): networks of four shapes at the extremes of every setting, each solver,
+/// and the explicit one with clamped steps. Each case either stays within the energy that it may have, or is
+/// refused with a cause; nothing that is not finite comes out; and the explicit border is where it is said to be.
+/// The bench's --map runs every case of it.
 ///
 ///   test_map [EVERY]     runs every EVERYth case; default 29
 ///
@@ -12,24 +13,22 @@
 #include "scenes/extremes.h"
 #include "support.h"
 
-enum { SOLVERS = MSPRING_SOLVER_DIRECT + 1 };
-
 static uint32_t every = 29;
 
 static void every_case_is_stable_or_refused(void **state) {
     (void)state;
     uint32_t counts[EXTREME_OUTCOMES] = {0};
-    for (uint32_t number = 0; number < EXTREME_NETWORKS * SOLVERS * EXTREME_STEPS; number += every) {
+    for (uint32_t number = 0; number < EXTREME_NETWORKS * EXTREME_WAYS * EXTREME_STEPS; number += every) {
         const uint32_t rest = number / EXTREME_NETWORKS;
         const extreme_network network = extreme_network_of(number % EXTREME_NETWORKS);
-        const mspring_solver solver = (mspring_solver)(rest % SOLVERS);
-        const double dt = extreme_dt(rest / SOLVERS);
+        const extreme_way way = extreme_way_of(rest % EXTREME_WAYS);
+        const double dt = extreme_dt(rest / EXTREME_WAYS);
         char text[512] = "";
-        const extreme_outcome outcome = extreme_run(&network, solver, dt, text, sizeof text);
+        const extreme_outcome outcome = extreme_run(&network, way, dt, text, sizeof text);
         counts[outcome]++;
         if (outcome > EXTREME_REFUSED) {
-            print_message("%s, solver %d, %g N/m, %g s, ratio %u, damper %u, spacing %u, place %u: %s\n",
-                          extreme_shape_name(network.shape), (int)solver, extreme_stiffness(network.stiffness), dt,
+            print_message("%s, %s, %g N/m, %g s, ratio %u, damper %u, spacing %u, place %u: %s\n",
+                          extreme_shape_name(network.shape), way.name, extreme_stiffness(network.stiffness), dt,
                           network.ratio, network.damper, network.spacing, network.place, text);
         }
     }

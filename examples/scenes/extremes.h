@@ -38,6 +38,18 @@ const char *extreme_shape_name(extreme_shape shape);
 double extreme_stiffness(uint32_t index);
 double extreme_dt(uint32_t index);
 
+/// How it is stepped.
+typedef struct extreme_way {
+    const char *name;
+    mspring_solver solver;
+    mspring_guard guard;
+} extreme_way;
+
+enum { EXTREME_WAYS = 4 };
+
+/// The way of a number below EXTREME_WAYS: the solvers, and the explicit one with what it would refuse clamped.
+extreme_way extreme_way_of(uint32_t number);
+
 typedef enum extreme_outcome {
     EXTREME_STABLE,
     EXTREME_GUARDED,    ///< a step was refused with MSPRING_ERROR_UNSTABLE and a reason
@@ -50,8 +62,7 @@ typedef enum extreme_outcome {
 
 /// Step a network under gravity, a little out of its shape, 20 times by dt, with one substep each.
 /// @param text  [size] receives what went wrong, if anything did
-extreme_outcome extreme_run(const extreme_network *network, mspring_solver solver, double dt, char *text,
-                            size_t size);
+extreme_outcome extreme_run(const extreme_network *network, extreme_way way, double dt, char *text, size_t size);
 
 /// Find the explicit border by trying: the longest substep in which small motion does not grow, within 5 % of what
 /// mspring_network_stable_dt() says.

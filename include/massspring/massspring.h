@@ -386,7 +386,21 @@ enum {
     /// implicit Euler, and the 15 after it, before the explicit one is tried again: slower (20 to 65 explicit
     /// substeps each) and softened, but at nearly any stiffness. Hooks are called again. Its memory is reserved
     /// with the network. mspring_network_fallback_count() says how often that was.
-    MSPRING_GUARD_IMPLICIT = 3
+    MSPRING_GUARD_IMPLICIT = 3,
+    /// As MSPRING_GUARD_GROWTH, but take a step that would be refused with strain rates clamped and, unless the
+    /// solver is an implicit one, the 15 after it: in as many substeps (with MSPRING_SUBSTEPS_AUTO max_substeps),
+    /// in each of which springs act one after another in the order of their ids, and back again, by impulses along
+    /// them. None changes the rate at which its spring is strained by more than what takes it to its rest length by
+    /// the end of the substep, or its damper's by more than what brings it to rest.
+    ///
+    /// Unphysical: a spring is as stiff as its ends and the substep allow and not more (about mu / h^2, see
+    /// MSPRING_SPRING_RELATIVE), so what is stiff turns soft, the more so the more springs stand in line; motion
+    /// along springs is damped as by implicit Euler; and which spring has which id makes a difference. Small motion
+    /// about any shape does not grow, however stiff, damped or unequal springs and masses are; momentum is
+    /// conserved but for rounding, angular momentum only about. A step that ends out of bounds all the same is
+    /// refused. Works on one thread, at 30 to 160 explicit substeps for each substep; needs no memory. Hooks are
+    /// called again. mspring_network_fallback_count() says how often that was.
+    MSPRING_GUARD_CLAMP = 4
 };
 
 /// A network's settings at the start. Fill with mspring_network_def_init() first.
@@ -645,7 +659,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_wake(mspring_networ
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_network_substeps(const mspring_network *network);
 
-/// Number of steps so far that the implicit solver took for the explicit one (MSPRING_GUARD_IMPLICIT). NULL: 0.
+/// Number of steps so far that the implicit solver took for the explicit one (MSPRING_GUARD_IMPLICIT), or that were
+/// taken with strain rates clamped (MSPRING_GUARD_CLAMP). NULL: 0.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint64_t mspring_network_fallback_count(const mspring_network *network);
 
@@ -842,9 +857,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_tune_settings(mspring_netwo
 ///
 /// Have the network in a state as it is to be simulated: just made and falling, or moving. Hooks are not called,
 /// there is no floor, ramps stand still, nothing breaks by strain, it does not sleep, and no solver stands in for
-/// another (MSPRING_GUARD_IMPLICIT). Forces given for the next step act in the first one. Relative springs follow
-/// the substep: each row is compared with a fine run, and an equilibrium, that have the stiffness of its own
-/// substeps, and bending says how firm that is.
+/// another (MSPRING_GUARD_IMPLICIT), and nothing is clamped. Forces given for the next step act in the first one.
+/// Relative springs follow the substep: each row is compared with a fine run, and an equilibrium, that have the
+/// stiffness of its own substeps, and bending says how firm that is.
 ///
 /// Recommended is, if max_error is finite, the row of the least median cost among those within both bounds; else,
 /// of those within max_cost, the one of the least error; of equal ones the first. There may be none. When the

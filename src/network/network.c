@@ -45,7 +45,7 @@ static mspring_result check_def(const mspring_network_def *def, mspringi_message
     if (def->flags & ~(uint32_t)MSPRING_NETWORK_RESERVE_DAMPING)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "network flags %#x are unknown",
                              (unsigned)def->flags);
-    if (def->guard < MSPRING_GUARD_GROWTH || def->guard > MSPRING_GUARD_IMPLICIT)
+    if (def->guard < MSPRING_GUARD_GROWTH || def->guard > MSPRING_GUARD_CLAMP)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "guard is %d, which is none", (int)def->guard);
     if (!(def->max_speed > 0.0f && def->max_speed <= 1e15f))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,

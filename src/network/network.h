@@ -191,6 +191,7 @@ struct mspring_network {
     uint64_t fallback_count;            ///< steps that it has taken
     struct mspringi_floor *floor;       ///< NULL: there is none
     mspring_guard guard_policy;
+    bool is_clamped; ///< the step that is being made has its strain rates clamped
     mspringi_guard guard;
     double shortest; ///< smallest rest length at first, m
 

@@ -15,6 +15,7 @@
 #include "origin.h"
 #include "sleep/sleep.h"
 #include "springs.h"
+#include "stability/clamp.h"
 #include "stability/guard.h"
 #include "stability/stability.h"
 
@@ -76,7 +77,9 @@ static void take_implicit_substeps(mspring_network *network, float h, mspringi_f
 }
 
 static void take_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
-    if (network->implicit && network->floor)
+    if (network->is_clamped)
+        mspringi_clamp_substeps(network, h, base, count);
+    else if (network->implicit && network->floor)
         take_implicit_substeps(network, h, base, count);
     else if (network->implicit)
         mspringi_implicit_substeps(network, h, base, count);
@@ -110,7 +113,8 @@ static void run_substeps(mspring_network *network, double dt, float h) {
 static mspringi_sight run(mspring_network *network, double dt, float h) {
     if (network->is_open)
         mspringi_clear_empty_slots(network);
-    if (!network->implicit && network->hook_count == 0 && !network->floor && !network->sleep.is_asleep) {
+    if (!network->implicit && !network->is_clamped && network->hook_count == 0 && !network->floor &&
+        !network->sleep.is_asleep) {
         network->sleep.in_force = prepare_base(network, dt);
         return mspringi_explicit_step(network, h, network->sleep.in_force, network->substeps);
     }
@@ -194,7 +198,8 @@ static mspring_result attempt(mspring_network *network, double dt) {
 #define LENT_STEPS 15
 
 static bool has_fallback(const mspring_network *network) {
-    return network->guard_policy == MSPRING_GUARD_IMPLICIT && !network->implicit;
+    return (network->guard_policy == MSPRING_GUARD_IMPLICIT && !network->implicit) ||
+           network->guard_policy == MSPRING_GUARD_CLAMP;
 }
 
 // Have the implicit solver take the step in one substep, or leave everything as it is. It starts without history
@@ -211,12 +216,33 @@ static mspring_result attempt_implicitly(mspring_network *network, double dt) {
     return result;
 }
 
-// Take the step that the explicit solver cannot take, or will not be asked to.
+// Take the step with strain rates clamped, whatever the solver, or leave everything as it is. To an implicit one a
+// new motion begins after it.
+static mspring_result attempt_clamped(mspring_network *network, double dt) {
+    struct mspringi_implicit *const implicit = network->implicit;
+    const uint32_t substeps = network->substeps;
+    network->implicit = NULL;
+    network->is_clamped = true;
+    if (network->auto_substeps && !implicit)
+        network->substeps = network->max_substeps;
+    mspringi_sleep_begin(network, dt);
+    const mspring_result result = attempt(network, dt);
+    network->is_clamped = false;
+    network->implicit = implicit;
+    if (result != MSPRING_OK)
+        network->substeps = substeps;
+    else if (implicit)
+        mspringi_implicit_forget(implicit);
+    return result;
+}
+
+// Take the step that the solver cannot take, or will not be asked to.
 static mspring_result fall_back(mspring_network *network, double dt) {
-    const uint32_t lent = network->guard.lent;
-    const mspring_result result = attempt_implicitly(network, dt);
+    const uint32_t lent = network->guard.lent, next = network->implicit ? 0 : LENT_STEPS;
+    const bool clamps = network->guard_policy == MSPRING_GUARD_CLAMP;
+    const mspring_result result = clamps ? attempt_clamped(network, dt) : attempt_implicitly(network, dt);
     const bool took_it = result == MSPRING_OK && !mspringi_sleep_is_idle(network);
-    network->guard.lent = !took_it ? lent : lent > 0 ? lent - 1 : LENT_STEPS;
+    network->guard.lent = !took_it ? lent : lent > 0 ? lent - 1 : next;
     network->fallback_count += took_it;
     return result;
 }
@@ -236,7 +262,7 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
     const uint32_t substeps = network->substeps;
     const bool was_asleep = network->sleep.is_asleep;
     const double still = network->sleep.still;
-    const bool lent = has_fallback(network) && network->guard.lent > 0;
+    const bool lent = has_fallback(network) && !network->implicit && network->guard.lent > 0;
     mspring_result result = lent ? fall_back(network, dt) : attempt_explicitly(network, dt);
     if (result == MSPRING_ERROR_UNSTABLE && has_fallback(network) && !lent)
         result = fall_back(network, dt);

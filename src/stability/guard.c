@@ -208,7 +208,7 @@ mspring_result mspringi_guard_begin(mspring_network *network, double dt, float h
     const bool same = guard->h == h && guard->global_damping == network->global_damping;
     const bool suspicious = guard->suspicious;
     guard->watches = guard->suspicious = false;
-    if (network->guard_policy == MSPRING_GUARD_BOUNDS || network->implicit)
+    if (network->guard_policy == MSPRING_GUARD_BOUNDS || network->implicit || network->is_clamped)
         return MSPRING_OK;
     const mspringi_any_shape *any_shape = &network->any_shape;
     if (same && !suspicious &&

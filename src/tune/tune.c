@@ -101,7 +101,7 @@ static mspring_result make_base(mspringi_tuning *tuning) {
     mspringi_wake(base);
     base->sleep.speed = 0.0f;
     // A setting is to be measured, not what would stand in for it.
-    if (base->guard_policy == MSPRING_GUARD_IMPLICIT)
+    if (base->guard_policy == MSPRING_GUARD_IMPLICIT || base->guard_policy == MSPRING_GUARD_CLAMP)
         base->guard_policy = MSPRING_GUARD_GROWTH;
     base->ramps.count = 0;
     for (mspring_id spring = 0; base->strain.break_strain && spring < base->topology.spring_count; ++spring)
