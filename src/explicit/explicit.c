@@ -256,9 +256,11 @@ static void sweep_all(mspring_network *network, float h, mspringi_field base, ui
 }
 
 mspringi_sight mspringi_explicit_step(mspring_network *network, float h, mspringi_field base, uint32_t count) {
-    mspringi_sight sights[MSPRING_MAX_WORKERS] = {0};
+    mspringi_sight sights[MSPRING_MAX_WORKERS];
+    const uint32_t workers = mspringi_tasks_concurrency(network->tasks);
+    memset(sights, 0, workers * sizeof *sights);
     sweep_all(network, h, base, count, sights);
-    for (uint32_t worker = 1; worker < MSPRING_MAX_WORKERS; ++worker)
+    for (uint32_t worker = 1; worker < workers; ++worker)
         sights[0] = mspringi_sight_join(sights[0], sights[worker]);
     return sights[0];
 }

@@ -110,11 +110,12 @@ static bool make_twins(twins *made, const recipe *from, fuzz_bytes *bytes) {
     const uint8_t settings = fuzz_byte(bytes);
     def.substeps = settings % 8 == 7 ? MSPRING_SUBSTEPS_AUTO : 1 + settings % 8 * 3u;
     def.max_substeps = 64;
-    def.guard = settings / 8 % 4;
     def.global_damping = settings & 32 ? 0.5f : 0;
     def.gravity_y = settings & 64 ? any_number(bytes) : -9.8f;
     const bool workers = settings & 128;
-    def.sleep_speed = fuzz_byte(bytes) % 4 == 0 ? 0.1f : 0;
+    const uint8_t more = fuzz_byte(bytes);
+    def.guard = more % 32 < 8 ? MSPRING_GUARD_CLAMP : settings / 8 % 4;
+    def.sleep_speed = more % 4 == 0 ? 0.1f : 0;
     def.sleep_time = 0.01f;
     bool whole =
         mspring_builder_add_particles(builder, from->particles, from->particle_count, NULL) == MSPRING_OK &&

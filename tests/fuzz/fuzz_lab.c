@@ -1,6 +1,6 @@
 /// @file fuzz_lab.c
-/// Scripts of the lab: they are refused with line and column, or read; nothing that their lines do to small scenes goes
-/// wrong.
+/// Scripts of the lab: they are refused with line and column, or read; nothing that their lines do to small scenes
+/// goes wrong.
 ///
 /// SPDX-License-Identifier: MIT
 #include "fuzz.h"

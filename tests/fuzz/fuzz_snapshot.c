@@ -76,6 +76,9 @@ static subject make_subject(int kind) {
     subject made = {.network = NULL};
     recipe from = make_recipe(kind);
     mspring_network_def def = support_def(-9.8f, 2);
+    static const mspring_guard guards[KINDS] = {MSPRING_GUARD_CLAMP, MSPRING_GUARD_IMPLICIT, MSPRING_GUARD_GROWTH,
+                                                MSPRING_GUARD_GROWTH};
+    def.guard = guards[kind];
     FUZZ_CHECK(mspring_solver_def_init(&made.solver, sizeof made.solver) == MSPRING_OK);
     made.solver.substeps = 2;
     made.solver.solver = kind & 2 ? MSPRING_SOLVER_IMPLICIT : MSPRING_SOLVER_EXPLICIT;
