@@ -310,6 +310,11 @@ function draw() {
   drawing.draw(floats(core.x(), slots), floats(core.y(), slots), bytes, springs, core.changes(), relative);
 }
 
+function joules(energy) {
+  const [unit, name] = energy < 1e6 ? [1e3, 'kJ'] : energy < 1e9 ? [1e6, 'MJ'] : [1e9, 'GJ'];
+  return Number((energy / unit).toPrecision(3)) + ' ' + name;
+}
+
 function showFigures(now) {
   if (now - cost.shown < 250) return;
   if (cost.count) {
@@ -321,7 +326,7 @@ function showFigures(now) {
   }
   byId('taken').textContent = core.substeps();
   byId('strain').textContent = (100 * core.max_strain()).toPrecision(3) + ' %';
-  byId('kinetic').textContent = (core.kinetic_energy() / 1000).toPrecision(3) + ' kJ';
+  byId('kinetic').textContent = joules(core.kinetic_energy());
   byId('frames').textContent = Math.round((1000 * state.seconds) / (now - cost.shown)) + ' /s';
   Object.assign(cost, { sum: 0, count: 0, shown: now });
   state.seconds = 0;
@@ -372,9 +377,8 @@ function runFrames(count) {
   resize();
   fit();
   draw();
-  cost.shown = -1000;
+  Object.assign(cost, { sum: times[count >> 1], count: 1, shown: -1000 });
   showFigures(performance.now());
-  byId('milliseconds').textContent = times[count >> 1].toFixed(2) + ' ms';
   byId('frames').textContent = count;
   write([`frames ${count} least ${times[0].toFixed(3)} median ${times[count >> 1].toFixed(3)} ms`,
     `particles ${core.particles()} springs ${core.spring_count()} substeps ${core.substeps()}`,
