@@ -128,8 +128,8 @@ static uint32_t print_borders(bench_format format, const map *all) {
 static bool draw(const map *all, const char *folder) {
     char outcomes[1024], borders[1024];
     draw_error error = {""};
-    snprintf(outcomes, sizeof outcomes, "%s/stability_outcomes.png", folder);
-    snprintf(borders, sizeof borders, "%s/stability_borders.png", folder);
+    snprintf(outcomes, sizeof outcomes, "%s/stability_outcomes.svg", folder);
+    snprintf(borders, sizeof borders, "%s/stability_borders.svg", folder);
     const bool drawn = map_draw_outcomes(all, outcomes, &error) && map_draw_borders(all, borders, &error);
     if (!drawn)
         fprintf(stderr, "massspring-bench: %s\n", error.text);

@@ -246,6 +246,7 @@ png() {
 }
 svg() {
   same "$(grep -c '<svg' "$1")" 1 "$1"
+  same "$(grep -c 'prefers-color-scheme:dark' "$1")" 1 "$1"
   same "$(tail -n 1 "$1")" '</svg>' "$1"
 }
 

@@ -7,6 +7,11 @@
 // Half the pixel size of text is what browsers give its capitals a little less than.
 static const double font_size_of_height = 1.38;
 
+// On dark pages light and dark change places, and hues stay what they are. Viewers that know no filters show a
+// light picture, which can be read there too.
+static const char *const dark_style =
+    "<style>@media(prefers-color-scheme:dark){g{filter:invert(.95)hue-rotate(180deg)}}</style>\n";
+
 // One path for a run of lines of the same colour and width: networks have hundreds of thousands of lines.
 static size_t write_lines(FILE *stream, const figure *source, size_t first) {
     const figure_item *start = &source->items[first];
@@ -61,7 +66,7 @@ static size_t write_item(FILE *stream, const figure *source, size_t index) {
                 item->size, (unsigned)item->colour);
         break;
     case FIGURE_RECTANGLE:
-        fprintf(stream, "<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\" fill=\"#%06x\"/>\n", item->x,
+        fprintf(stream, "<rect x=\"%.6g\" y=\"%.6g\" width=\"%.6g\" height=\"%.6g\" fill=\"#%06x\"/>\n", item->x,
                 item->y, item->x2, item->y2, (unsigned)item->colour);
         break;
     case FIGURE_TEXT:
@@ -80,9 +85,9 @@ bool figure_write_svg(const figure *source, const char *path, draw_error *error)
     fprintf(stream,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%u\" height=\"%u\" viewBox=\"0 0 %u %u\" "
             "font-family=\"Helvetica, Arial, sans-serif\">\n"
-            "<rect width=\"%u\" height=\"%u\" fill=\"#%06x\"/>\n"
-            "<g fill=\"none\" stroke-linecap=\"round\">\n",
-            source->width, source->height, source->width, source->height, source->width, source->height,
+            "%s<g fill=\"none\" stroke-linecap=\"round\">\n"
+            "<rect width=\"%u\" height=\"%u\" fill=\"#%06x\"/>\n",
+            source->width, source->height, source->width, source->height, dark_style, source->width, source->height,
             (unsigned)source->background);
     for (size_t i = 0; i < source->item_count;)
         i = write_item(stream, source, i);

@@ -12,7 +12,7 @@
 static const draw_colour ink = 0x26262e;
 static const draw_colour grid_colour = 0xe2e3e8;
 
-enum { LEFT = 84, RIGHT = 28, TOP = 48, BOTTOM = 60, TICKS = 6 };
+enum { LEFT = 84, RIGHT = 28, TOP = 56, BOTTOM = 60, TICKS = 6 };
 
 // One direction: the values it spans and the pixels they span.
 typedef struct plot_axis {
@@ -86,7 +86,7 @@ static void draw_frame(figure *target, const plot *drawn, const plot_axis *acros
     }
     figure_text(target, (across->start + across->end) / 2, up->start + 42, 10, FIGURE_CENTRE, ink, drawn->x_label);
     figure_text(target, across->start, up->end - 10, 10, FIGURE_LEFT, ink, drawn->y_label);
-    figure_text(target, across->start, 20, 12, FIGURE_LEFT, ink, drawn->title);
+    figure_text(target, across->start, 22, 12, FIGURE_LEFT, ink, drawn->title);
 }
 
 static void draw_curve(figure *target, const plot *drawn, const plot_curve *curve, const plot_axis *across,
@@ -104,7 +104,7 @@ static void draw_names(figure *target, const plot *drawn, const plot_axis *acros
     double x = across->end;
     for (size_t c = drawn->curve_count; c-- > 0;) {
         figure_text(target, x, up->end - 10, height, FIGURE_RIGHT, ink, drawn->curves[c].name);
-        x -= stroke_font_width(height, drawn->curves[c].name) + 10;
+        x -= stroke_font_width(height, drawn->curves[c].name) + 14; // browsers' letters are wider
         figure_line(target, x - sample, up->end - 15, x, up->end - 15, 2.5, drawn->curves[c].colour);
         x -= sample + 20;
     }

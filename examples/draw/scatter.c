@@ -16,7 +16,7 @@ static const draw_colour front_colour = 0xb9bcc8;
 static const draw_colour paper = 0xffffff;
 
 enum { LEFT = 62, RIGHT = 18, TOP = 76, BOTTOM = 52 };
-enum { MARK_RADIUS = 5, JOIN_WIDTH = 2 };
+enum { MARK_RADIUS = 5, JOIN_WIDTH = 2, LABEL_SIZE = 8, MOST_BOXES = 512 };
 enum { LEGEND_SAMPLE = 26, LEGEND_GAP = 20, LEGEND_LINE = 18 };
 
 // One direction: the powers of ten it spans, and the pixels.
@@ -151,17 +151,67 @@ static void draw_series(figure *target, const scatter_series *series, const deca
     }
 }
 
-// Labels go over all marks.
-static void draw_labels(figure *target, const scatter_series *series, const decade_axis *across,
+// What labels keep clear of: marks, and labels that are there already.
+typedef struct crowd {
+    struct {
+        double left, top, right, bottom;
+    } boxes[MOST_BOXES];
+    size_t count;
+} crowd;
+
+static bool crowd_overlaps(const crowd *all, double left, double top, double right, double bottom) {
+    for (size_t i = 0; i < all->count; i++)
+        if (left < all->boxes[i].right && all->boxes[i].left < right && top < all->boxes[i].bottom &&
+            all->boxes[i].top < bottom)
+            return true;
+    return false;
+}
+
+static void crowd_add(crowd *all, double left, double top, double right, double bottom) {
+    if (all->count == MOST_BOXES)
+        return;
+    all->boxes[all->count].left = left, all->boxes[all->count].top = top;
+    all->boxes[all->count].right = right, all->boxes[all->count].bottom = bottom;
+    all->count++;
+}
+
+static void add_marks(crowd *all, const scatter *drawn, const decade_axis *across, const decade_axis *up) {
+    for (size_t s = 0; s < drawn->series_count; s++) {
+        for (size_t i = 0; i < drawn->series[s].count; i++) {
+            const scatter_point *point = &drawn->series[s].points[i];
+            const double radius = MARK_RADIUS + (point->ringed ? 6 : 0);
+            if (!is_drawn(point) || drawn->series[s].mark == SCATTER_NO_MARK)
+                continue;
+            const double x = axis_place(across, point->x), y = axis_place(up, point->y);
+            crowd_add(all, x - radius, y - radius, x + radius, y + radius);
+        }
+    }
+}
+
+// Labels go over all marks, in the first corner of theirs that is free and within the frame; where none is, they
+// are left out.
+static void draw_labels(figure *target, const scatter_series *series, crowd *taken, const decade_axis *across,
                         const decade_axis *up) {
     for (size_t i = 0; i < series->count; i++) {
         const scatter_point *point = &series->points[i];
         if (!is_drawn(point) || !point->label[0])
             continue;
-        const double away = MARK_RADIUS + (point->ringed ? 9 : 4);
-        const double x = axis_place(across, point->x) + (series->labels_below ? -away : away);
-        const double y = axis_place(up, point->y) + (series->labels_below ? away + 5 : -away + 2);
-        figure_text(target, x, y, 7, series->labels_below ? FIGURE_RIGHT : FIGURE_LEFT, pale_ink, point->label);
+        const double away = MARK_RADIUS + (point->ringed ? 7 : 1);
+        const double x = axis_place(across, point->x), y = axis_place(up, point->y);
+        const double width = stroke_font_width(LABEL_SIZE, point->label);
+        for (int corner = 0; corner < 4; corner++) {
+            const bool below = series->labels_below != (corner == 1 || corner == 3);
+            const bool before = series->labels_below != (corner >= 2);
+            const double left = before ? x - away - width : x + away;
+            const double bottom = below ? y + away + LABEL_SIZE : y - away;
+            if (left < across->start || left + width > across->end || bottom - LABEL_SIZE < up->end ||
+                bottom > up->start || crowd_overlaps(taken, left, bottom - LABEL_SIZE, left + width, bottom))
+                continue;
+            figure_text(target, before ? left + width : left, bottom, LABEL_SIZE,
+                        before ? FIGURE_RIGHT : FIGURE_LEFT, pale_ink, point->label);
+            crowd_add(taken, left, bottom - LABEL_SIZE, left + width, bottom);
+            break;
+        }
     }
 }
 
@@ -225,8 +275,10 @@ void scatter_draw(figure *target, const scatter *drawn, double left, double top,
         draw_joins(target, &drawn->series[s], &across, &up);
     for (size_t s = 0; s < drawn->series_count; s++)
         draw_series(target, &drawn->series[s], &across, &up);
+    crowd taken = {.count = 0};
+    add_marks(&taken, drawn, &across, &up);
     for (size_t s = 0; s < drawn->series_count; s++)
-        draw_labels(target, &drawn->series[s], &across, &up);
+        draw_labels(target, &drawn->series[s], &taken, &across, &up);
     figure_text(target, (across.start + across.end) / 2, up.start + 40, 9.5, FIGURE_CENTRE, ink, drawn->x_label);
     figure_text(target, left + 14, up.end - 14, 9.5, FIGURE_LEFT, ink, drawn->y_label);
     figure_text(target, left + 14, top + 20, 11.5, FIGURE_LEFT, ink, drawn->title);
