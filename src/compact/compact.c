@@ -69,9 +69,13 @@ mspring_result mspring_network_expand(mspring_network *network) {
 // Whether some spring that is swept is broken.
 static bool has_broken(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
-    for (mspring_id s = 0; s < t->spring_count; ++s)
-        if (!mspringi_spring_is_live(network, s) && !mspringi_spring_is_parked(network, s))
+    mspringi_place_reader reader;
+    mspringi_places_begin(&reader, &t->places, 0);
+    for (mspring_id s = 0; s < t->spring_count; ++s) {
+        const mspringi_place place = mspringi_places_next(&reader);
+        if (!mspringi_place_is_live(network, place) && !mspringi_place_is_parked(t, place))
             return true;
+    }
     return false;
 }
 

@@ -10,7 +10,7 @@
 /// Whether no step sweeps this spring until the network is expanded.
 static inline bool mspringi_spring_is_parked(const mspring_network *network, mspring_id spring) {
     const mspringi_topology *t = &network->topology;
-    return mspringi_place_is_parked(t, t->place_of_spring[spring]);
+    return mspringi_place_is_parked(t, mspringi_place_of(t, spring));
 }
 
 /// Go back to the plan that the network was created with. On error nothing has changed.

@@ -25,9 +25,14 @@ static mspring_result make_rests(mspring_network *to, const mspring_network *fro
     if (!lengths.springs)
         return mspringi_fail(&to->message, MSPRING_ERROR_MEMORY, "no memory for the rest lengths of %u springs",
                              (unsigned)springs);
-    for (mspring_id s = 0; s < springs; ++s)
-        if (to->topology.place_of_spring[s] < to->topology.lattice_places)
-            lengths.springs[s].rest_length = mspringi_spring_get(from, s).rest_length;
+    mspringi_place_reader places, old_places;
+    mspringi_places_begin(&places, &to->topology.places, 0);
+    mspringi_places_begin(&old_places, &from->topology.places, 0);
+    for (mspring_id s = 0; s < springs; ++s) {
+        const mspringi_place place = mspringi_places_next(&places), before = mspringi_places_next(&old_places);
+        if (place < to->topology.lattice_places)
+            lengths.springs[s].rest_length = mspringi_place_get(from, before).rest_length;
+    }
     mspring_result result = mspringi_rests_create(&to->rests, &to->topology, &lengths, &to->memory, &to->message);
     if (result == MSPRING_OK && from->rests.shared_count == 0)
         result = mspringi_rests_separate(to);
@@ -122,18 +127,21 @@ static void move_particles(mspring_network *to, const mspring_network *from) {
 
 static void move_springs(mspring_network *to, const mspring_network *from) {
     const mspringi_topology *t = &to->topology, *old = &from->topology;
+    mspringi_place_reader places, old_places;
+    mspringi_places_begin(&places, &t->places, 0);
+    mspringi_places_begin(&old_places, &old->places, 0);
     for (mspring_id s = 0; s < t->spring_count; ++s) {
-        const mspringi_place place = t->place_of_spring[s], before = old->place_of_spring[s];
+        const mspringi_place place = mspringi_places_next(&places), before = mspringi_places_next(&old_places);
         const uint16_t bit = (uint16_t)(1u << place % MSPRINGI_WIDTH);
-        mspringi_spring_copy(from, to, s);
-        if (mspringi_spring_is_live(from, s))
+        mspringi_place_copy(from, before, to, place);
+        if (mspringi_place_is_live(from, before))
             to->live[place / MSPRINGI_WIDTH] |= bit;
-        if (mspringi_spring_is_stressed(from, s))
+        if (mspringi_place_is_stressed(from, before))
             to->strain.stressed[place / MSPRINGI_WIDTH] |= bit;
         if (from->strain.break_strain)
-            mspringi_strain_store(to, s, false, from->strain.break_strain[before]);
+            mspringi_strain_store(to, place, false, from->strain.break_strain[before]);
         if (from->strain.stress_strain)
-            mspringi_strain_store(to, s, true, from->strain.stress_strain[before]);
+            mspringi_strain_store(to, place, true, from->strain.stress_strain[before]);
     }
 }
 
@@ -162,8 +170,10 @@ static void take_print(mspring_network *to, uint64_t print) {
     const mspringi_topology *t = &to->topology;
     for (mspring_id p = 0; p < t->particle_count; ++p)
         print = mspringi_mix(print, t->slot_of_particle[p]);
+    mspringi_place_reader reader;
+    mspringi_places_begin(&reader, &t->places, 0);
     for (mspring_id s = 0; s < t->spring_count; ++s)
-        print = mspringi_mix(print, t->place_of_spring[s]);
+        print = mspringi_mix(print, mspringi_places_next(&reader));
     to->topology_print = print;
 }
 

@@ -45,10 +45,12 @@ static void place_particles(const mspringi_topology *first, mspringi_particle *p
 static mspring_result list_what_is_left(mspringi_replan *replan, mspring_network *network) {
     const mspringi_topology *first = first_topology(network);
     struct mspring_builder *left = &replan->left;
+    mspringi_place_reader places, first_places;
     size_t live = 0;
     replan->links = network->edits.links;
+    mspringi_places_begin(&places, &network->topology.places, 0);
     for (mspring_id s = 0; s < first->spring_count; ++s)
-        live += mspringi_spring_is_live(network, s);
+        live += mspringi_place_is_live(network, mspringi_places_next(&places));
     left->particles = mspringi_alloc(&network->plan_memory, first->particle_count, sizeof *left->particles);
     left->springs = mspringi_alloc(&network->plan_memory, live, sizeof *left->springs);
     replan->ids = mspringi_alloc(&network->plan_memory, live, sizeof *replan->ids);
@@ -57,11 +59,15 @@ static mspring_result list_what_is_left(mspringi_replan *replan, mspring_network
                              live);
     place_particles(first, left->particles);
     left->particle_count = first->particle_count;
+    mspringi_places_begin(&places, &network->topology.places, 0);
+    mspringi_places_begin(&first_places, &first->places, 0);
     for (mspring_id s = 0; s < first->spring_count; ++s) {
+        const mspringi_place place = mspringi_places_next(&places),
+                             first_place = mspringi_places_next(&first_places);
         uint32_t base, tip;
-        if (!mspringi_spring_is_live(network, s))
+        if (!mspringi_place_is_live(network, place))
             continue;
-        mspringi_topology_ends(first, first->place_of_spring[s], &base, &tip);
+        mspringi_topology_ends(first, first_place, &base, &tip);
         replan->ids[left->spring_count] = s;
         left->springs[left->spring_count++] =
             (mspringi_spring){.a = first->particle_of_slot[base], .b = first->particle_of_slot[tip]};
@@ -72,9 +78,13 @@ static mspring_result list_what_is_left(mspringi_replan *replan, mspring_network
 
 /* ------------------------------------------------------------------------------------------------- parking */
 
+static mspring_result no_memory_to_park(mspring_network *network, uint32_t parked) {
+    return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to park %u springs", (unsigned)parked);
+}
+
 // Give the springs that are not left places behind those that are, with records behind the web's rungs, of which
-// one serves both ends.
-static mspring_result park(mspringi_replan *replan, mspring_network *network) {
+// one serves both ends. Who asked for the replan frees all of it if this fails.
+static mspring_result park(mspringi_replan *replan, mspring_network *network, mspringi_place *woven_places) {
     const mspringi_topology *first = first_topology(network);
     mspringi_topology *t = &replan->topology;
     const uint32_t all = first->spring_count, woven = t->spring_count, parked = all - woven;
@@ -88,36 +98,35 @@ static mspring_result park(mspringi_replan *replan, mspring_network *network) {
     uint32_t *a = mspringi_alloc(&network->plan_memory, leftover, sizeof *a);
     uint32_t *b = mspringi_alloc(&network->plan_memory, leftover, sizeof *b);
     uint32_t *entry = mspringi_alloc(&network->plan_memory, 2 * leftover, sizeof *entry);
-    if (!places || !a || !b || !entry) {
-        mspringi_free(&network->plan_memory, places);
-        mspringi_free(&network->plan_memory, a);
-        mspringi_free(&network->plan_memory, b);
-        mspringi_free(&network->plan_memory, entry);
-        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to park %u springs",
-                             (unsigned)parked);
-    }
+    if (!places || !a || !b || !entry)
+        return no_memory_to_park(network, parked);
     memcpy(a, t->leftover_a, t->leftover_count * sizeof *a);
     memcpy(b, t->leftover_b, t->leftover_count * sizeof *b);
     if (t->leftover_count > 0)
         memcpy(entry, t->web.entry, 2 * (size_t)t->leftover_count * sizeof *entry);
+    mspringi_place_reader first_places;
+    mspringi_places_begin(&first_places, &first->places, 0);
     for (mspring_id s = 0, next_woven = 0, next_parked = 0; s < all; ++s) {
+        const mspringi_place first_place = mspringi_places_next(&first_places);
         if (next_woven < woven && replan->ids[next_woven] == s) {
-            places[s] = t->place_of_spring[next_woven++];
+            places[s] = woven_places[next_woven++];
             continue;
         }
         const uint32_t i = t->leftover_count + next_parked;
         uint32_t base, tip;
-        mspringi_topology_ends(first, first->place_of_spring[s], &base, &tip);
+        mspringi_topology_ends(first, first_place, &base, &tip);
         places[s] = t->chain_places + i;
         a[i] = t->slot_of_particle[first->particle_of_slot[base]];
         b[i] = t->slot_of_particle[first->particle_of_slot[tip]];
         entry[2 * i] = entry[2 * i + 1] = rungs * MSPRINGI_WIDTH + next_parked++;
     }
-    mspringi_free(&network->plan_memory, t->place_of_spring);
+    if (!mspringi_places_create(&t->places, places, all, t->lattice_places, &network->plan_memory))
+        return no_memory_to_park(network, parked);
+    mspringi_free(&network->plan_memory, places);
+    mspringi_free(&network->plan_memory, woven_places);
     mspringi_free(&network->plan_memory, t->leftover_a);
     mspringi_free(&network->plan_memory, t->leftover_b);
     mspringi_free(&network->plan_memory, t->web.entry);
-    t->place_of_spring = places;
     t->leftover_a = a;
     t->leftover_b = b;
     t->web.entry = entry;
@@ -127,9 +136,10 @@ static mspring_result park(mspringi_replan *replan, mspring_network *network) {
 }
 
 static mspring_result finish(mspringi_replan *replan, mspring_network *network) {
-    mspringi_topology_finish(replan->assembly, &network->plan_memory, &replan->topology);
+    mspringi_place *places;
+    mspringi_topology_finish(replan->assembly, &network->plan_memory, &replan->topology, &places);
     replan->assembly = NULL;
-    return park(replan, network);
+    return park(replan, network, places);
 }
 
 /* ------------------------------------------------------------------------------------------------ piece by piece
@@ -155,10 +165,15 @@ uint32_t mspringi_replan_pieces_left(const mspringi_replan *replan) {
 }
 
 bool mspringi_replan_is_valid(const mspringi_replan *replan, const mspring_network *network) {
-    for (mspring_id s = 0; replan->links != network->edits.links && s < network->topology.spring_count; ++s)
-        if (mspringi_place_is_parked(&replan->topology, replan->topology.place_of_spring[s]) &&
-            mspringi_spring_is_live(network, s))
+    const mspringi_topology *t = &replan->topology;
+    mspringi_place_reader places, planned;
+    mspringi_places_begin(&places, &network->topology.places, 0);
+    mspringi_places_begin(&planned, &t->places, 0);
+    for (mspring_id s = 0; replan->links != network->edits.links && s < t->spring_count; ++s) {
+        const bool live = mspringi_place_is_live(network, mspringi_places_next(&places));
+        if (mspringi_place_is_parked(t, mspringi_places_next(&planned)) && live)
             return false;
+    }
     return true;
 }
 

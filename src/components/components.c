@@ -170,7 +170,7 @@ typedef struct pair {
 static pair ends_of(const mspring_network *network, mspring_id spring) {
     const mspringi_topology *t = &network->topology;
     uint32_t base, tip;
-    mspringi_topology_ends(t, t->place_of_spring[spring], &base, &tip);
+    mspringi_topology_ends(t, mspringi_place_of(t, spring), &base, &tip);
     return (pair){t->particle_of_slot[base], t->particle_of_slot[tip]};
 }
 

@@ -33,34 +33,33 @@ mspring_result mspringi_breaking_reserve(mspring_network *network) {
     return MSPRING_OK;
 }
 
-static void toggle(mspring_network *network, mspring_id spring) {
-    const mspringi_place place = network->topology.place_of_spring[spring];
+static void toggle(mspring_network *network, mspring_id spring, mspringi_place place) {
     network->live[place / MSPRINGI_WIDTH] ^= (uint16_t)(1u << place % MSPRINGI_WIDTH);
     network->edits.link_log[network->edits.links++ & network->edits.link_mask] = spring;
 }
 
 bool mspringi_spring_break(mspring_network *network, mspring_id spring) {
-    if (!mspringi_spring_is_live(network, spring))
+    const mspringi_place place = mspringi_place_of(&network->topology, spring);
+    if (!mspringi_place_is_live(network, place))
         return false;
     mspringi_ramp_drop(network, spring);
-    const mspringi_spring_values values = mspringi_spring_get(network, spring);
+    const mspringi_spring_values values = mspringi_place_get(network, place);
     if (!mspringi_spring_is_relative(network, spring))
         network->kept[spring] = (mspringi_relative){values.stiffness, values.damping};
-    mspringi_spring_set(network, spring, 0.0f, 0.0f);
-    toggle(network, spring);
-    if (network->strain.stressed) {
-        const mspringi_place place = network->topology.place_of_spring[spring];
+    mspringi_place_set(network, place, 0.0f, 0.0f);
+    toggle(network, spring, place);
+    if (network->strain.stressed)
         network->strain.stressed[place / MSPRINGI_WIDTH] &= (uint16_t) ~(1u << place % MSPRINGI_WIDTH);
-    }
     return true;
 }
 
 bool mspringi_spring_restore(mspring_network *network, mspring_id spring) {
-    if (mspringi_spring_is_live(network, spring))
+    const mspringi_place place = mspringi_place_of(&network->topology, spring);
+    if (mspringi_place_is_live(network, place))
         return false;
-    const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring);
-    toggle(network, spring);
-    mspringi_spring_set_nominal(network, spring, nominal);
+    const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, place);
+    toggle(network, spring, place);
+    mspringi_spring_set_nominal(network, spring, place, nominal);
     return true;
 }
 

@@ -34,7 +34,7 @@ void mspringi_ramp_begin(mspring_network *network, mspring_id spring, double sec
                                 .to = values.rest_length,
                                 .seconds = seconds};
     network->ramps.list[network->ramps.count++] = ramp;
-    mspringi_spring_set_rest_length(network, spring, (float)ramp.from);
+    mspringi_place_set_rest_length(network, mspringi_place_of(&network->topology, spring), (float)ramp.from);
 }
 
 void mspringi_ramp_drop(mspring_network *network, mspring_id spring) {
@@ -42,7 +42,7 @@ void mspringi_ramp_drop(mspring_network *network, mspring_id spring) {
     for (size_t i = 0; i < ramps->count; ++i) {
         if (ramps->list[i].spring != spring)
             continue;
-        mspringi_spring_set_rest_length(network, spring, ramps->list[i].to);
+        mspringi_place_set_rest_length(network, mspringi_place_of(&network->topology, spring), ramps->list[i].to);
         ramps->list[i] = ramps->list[--ramps->count];
         return;
     }
@@ -51,7 +51,8 @@ void mspringi_ramp_drop(mspring_network *network, mspring_id spring) {
 void mspringi_ramps_clear(mspring_network *network) {
     mspringi_ramps *ramps = &network->ramps;
     for (size_t i = 0; i < ramps->count; ++i)
-        mspringi_spring_set_rest_length(network, ramps->list[i].spring, ramps->list[i].to);
+        mspringi_place_set_rest_length(network, mspringi_place_of(&network->topology, ramps->list[i].spring),
+                                       ramps->list[i].to);
     ramps->count = 0;
 }
 
@@ -60,7 +61,8 @@ void mspringi_ramps_apply(mspring_network *network, double dt) {
         const mspringi_ramp *ramp = &network->ramps.list[i];
         const double passed = (ramp->passed + dt) / ramp->seconds;
         const double rest_length = ramp->from + ((double)ramp->to - ramp->from) * passed;
-        mspringi_spring_set_rest_length(network, ramp->spring, passed < 1.0 ? (float)rest_length : ramp->to);
+        mspringi_place_set_rest_length(network, mspringi_place_of(&network->topology, ramp->spring),
+                                       passed < 1.0 ? (float)rest_length : ramp->to);
     }
 }
 

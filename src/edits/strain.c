@@ -153,9 +153,8 @@ mspring_result mspringi_strain_reserve_stress(mspring_network *network) {
     return MSPRING_OK;
 }
 
-void mspringi_strain_store(mspring_network *network, mspring_id spring, bool stress, float value) {
+void mspringi_strain_store(mspring_network *network, mspringi_place place, bool stress, float value) {
     mspringi_strain *strain = &network->strain;
-    const mspringi_place place = network->topology.place_of_spring[spring];
     if (stress)
         strain->stress_strain[place] = value;
     else
@@ -181,7 +180,7 @@ static mspring_result set_thresholds(mspring_network *network, bool stress, cons
         network->parameter_print =
             mspringi_mix(network->parameter_print, (uint64_t)(stress ? 9 : 8) << 32 | spring);
         network->parameter_print = mspringi_mix_floats(network->parameter_print, strain[i], 0.0f);
-        mspringi_strain_store(network, spring, stress, strain[i]);
+        mspringi_strain_store(network, mspringi_place_of(&network->topology, spring), stress, strain[i]);
     }
     return result;
 }

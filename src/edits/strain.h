@@ -15,6 +15,6 @@ mspring_result mspringi_strain_reserve(mspring_network *network);
 mspring_result mspringi_strain_reserve_stress(mspring_network *network);
 
 /// Set what a spring breaks or is stressed at; after these.
-void mspringi_strain_store(mspring_network *network, mspring_id spring, bool stress, float value);
+void mspringi_strain_store(mspring_network *network, mspringi_place place, bool stress, float value);
 
 #endif

@@ -39,19 +39,20 @@ static MSPRINGI_NOINLINE void store_values(mspring_network *network, mspringi_pa
                                            const mspringi_selection *at, const float *values) {
     for (uint32_t i = 0; i < at->count; ++i) {
         const mspring_id spring = mspringi_selected(at, i);
+        const mspringi_place place = mspringi_place_of(&network->topology, spring);
         network->parameter_print = mspringi_mix(network->parameter_print, (uint64_t)part << 32 | spring);
         network->parameter_print = mspringi_mix_floats(network->parameter_print, values[i], 0.0f);
         if (part == MSPRINGI_REST_LENGTH) {
             mspringi_ramp_drop(network, spring);
-            mspringi_spring_set_rest_length(network, spring, values[i]);
+            mspringi_place_set_rest_length(network, place, values[i]);
             continue;
         }
-        mspringi_relative nominal = mspringi_spring_get_nominal(network, spring);
+        mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, place);
         if (part == MSPRINGI_STIFFNESS)
             nominal.stiffness = values[i];
         else
             nominal.damping = values[i];
-        mspringi_spring_set_nominal(network, spring, nominal);
+        mspringi_spring_set_nominal(network, spring, place, nominal);
     }
 }
 

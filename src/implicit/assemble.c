@@ -115,19 +115,13 @@ static float *leftover_factors(const mspringi_implicit *n, uint32_t i) {
            i % MSPRINGI_WIDTH;
 }
 
-// Their values are found by spring, so the springs are gone through.
 static void assemble_leftover(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const mspringi_system *s = &network->implicit->system;
-    if (t->leftover_count == 0)
-        return;
-    for (mspring_id spring = 0; spring < t->spring_count; ++spring) {
-        const mspringi_place place = t->place_of_spring[spring];
-        if (place < t->chain_places || mspringi_place_is_parked(t, place))
-            continue;
-        const mspringi_spring_values values = mspringi_spring_get(network, spring);
+    for (uint32_t i = 0; i < t->leftover_count; ++i) {
+        const mspringi_spring_values values = mspringi_place_get(network, t->chain_places + i);
         const leftover l = compute_leftover(s, values.base, values.tip, &values);
-        float *factors = leftover_factors(network->implicit, place - t->chain_places);
+        float *factors = leftover_factors(network->implicit, i);
         factors[MSPRINGI_PULL_X * MSPRINGI_WIDTH] = l.pull_x;
         factors[MSPRINGI_PULL_Y * MSPRINGI_WIDTH] = l.pull_y;
         factors[MSPRINGI_SWING * MSPRINGI_WIDTH] = l.swing;

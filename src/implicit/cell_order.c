@@ -8,12 +8,12 @@ typedef struct cell_graph {
     uint32_t *neighbour; ///< [2 * springs between cells]
 } cell_graph;
 
-static bool ends_of(const mspringi_cells *cells, const mspring_network *network, mspring_id spring, uint32_t *a,
+static bool ends_of(const mspringi_cells *cells, const mspring_network *network, mspringi_place place, uint32_t *a,
                     uint32_t *b) {
     const mspringi_topology *t = &network->topology;
-    if (mspringi_place_is_parked(t, t->place_of_spring[spring]))
+    if (mspringi_place_is_parked(t, place))
         return false;
-    mspringi_topology_ends(t, t->place_of_spring[spring], a, b);
+    mspringi_topology_ends(t, place, a, b);
     *a = cells->of_slot[*a];
     *b = cells->of_slot[*b];
     return *a != *b;
@@ -22,13 +22,15 @@ static bool ends_of(const mspringi_cells *cells, const mspring_network *network,
 static bool make_graph(cell_graph *graph, const mspringi_cells *cells, const mspring_network *network,
                        mspringi_memory *memory) {
     const uint32_t springs = network->topology.spring_count;
+    mspringi_place_reader reader;
     uint32_t a, b, total = 0;
     graph->count = cells->count;
     graph->first = mspringi_alloc(memory, (size_t)graph->count + 2, sizeof *graph->first);
     if (!graph->first)
         return false;
+    mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id s = 0; s < springs; ++s) {
-        if (!ends_of(cells, network, s, &a, &b))
+        if (!ends_of(cells, network, mspringi_places_next(&reader), &a, &b))
             continue;
         graph->first[a + 2]++;
         graph->first[b + 2]++;
@@ -39,8 +41,9 @@ static bool make_graph(cell_graph *graph, const mspringi_cells *cells, const msp
         return false;
     for (uint32_t i = 2; i < graph->count + 2; ++i)
         graph->first[i] += graph->first[i - 1];
+    mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id s = 0; s < springs; ++s) {
-        if (!ends_of(cells, network, s, &a, &b))
+        if (!ends_of(cells, network, mspringi_places_next(&reader), &a, &b))
             continue;
         graph->neighbour[graph->first[a + 1]++] = b;
         graph->neighbour[graph->first[b + 1]++] = a;

@@ -185,10 +185,13 @@ static bool list_inner(cutting *g) {
     if (!cells->first_inner)
         return false;
     for (int pass = 0; pass < 2; ++pass) { // first count, then fill
+        mspringi_place_reader reader;
+        mspringi_places_begin(&reader, &t->places, 0);
         for (mspring_id s = 0; s < t->spring_count; ++s) {
-            if (mspringi_place_is_parked(t, t->place_of_spring[s]))
+            const mspringi_place place = mspringi_places_next(&reader);
+            if (mspringi_place_is_parked(t, place))
                 continue;
-            mspringi_topology_ends(t, t->place_of_spring[s], &a, &b);
+            mspringi_topology_ends(t, place, &a, &b);
             const uint32_t cell = cells->of_slot[a];
             if (cell != cells->of_slot[b])
                 cells->joint_count += pass == 0;
@@ -229,16 +232,18 @@ static bool list_joints(cutting *g) {
     uint32_t *first = mspringi_alloc(g->memory, (size_t)cells->count + 2, sizeof *first);
     const bool ok = cells->joints && scratch && first;
     uint32_t count = 0, a, b;
+    mspringi_place_reader reader;
+    mspringi_places_begin(&reader, &t->places, 0);
     for (mspring_id s = 0; ok && s < t->spring_count; ++s) {
-        if (mspringi_place_is_parked(t, t->place_of_spring[s]))
+        const mspringi_place place = mspringi_places_next(&reader);
+        if (mspringi_place_is_parked(t, place))
             continue;
-        mspringi_topology_ends(t, t->place_of_spring[s], &a, &b);
+        mspringi_topology_ends(t, place, &a, &b);
         if (cells->of_slot[a] == cells->of_slot[b])
             continue;
         const bool a_later = cells->of_slot[a] > cells->of_slot[b];
-        cells->joints[count++] = (mspringi_joint){.slot = a_later ? a : b,
-                                                  .other_slot = a_later ? b : a,
-                                                  .factors = mspringi_factors_of_place(t->place_of_spring[s])};
+        cells->joints[count++] = (mspringi_joint){
+            .slot = a_later ? a : b, .other_slot = a_later ? b : a, .factors = mspringi_factors_of_place(place)};
     }
     if (ok) {
         sort_joints(cells, cells->joints, scratch, first, true);

@@ -14,9 +14,9 @@
 #define SPARE_ANCHORS 1024u
 
 // Whether a spring can pull.
-static bool is_live(const mspring_network *network, mspring_id spring) {
-    return mspringi_spring_is_live(network, spring) &&
-           mspringi_spring_get_nominal(network, spring).stiffness > 0.0f;
+static bool is_live(const mspring_network *network, mspring_id spring, mspringi_place place) {
+    return mspringi_place_is_live(network, place) &&
+           mspringi_spring_get_nominal(network, spring, place).stiffness > 0.0f;
 }
 
 static bool is_free(const mspring_network *network, uint32_t slot) {
@@ -33,9 +33,10 @@ static void find_components(mspringi_tiles *tiles, const mspring_network *networ
         tiles->parent[cells->slots[i]] = cells->slots[i];
     for (uint32_t i = cells->first_inner[cell]; i < cells->first_inner[cell + 1]; ++i) {
         const mspring_id spring = cells->inner[i];
+        const mspringi_place place = mspringi_place_of(t, spring);
         uint32_t a, b;
-        mspringi_topology_ends(t, t->place_of_spring[spring], &a, &b);
-        if (!is_free(network, a) || !is_free(network, b) || !is_live(network, spring))
+        mspringi_topology_ends(t, place, &a, &b);
+        if (!is_free(network, a) || !is_free(network, b) || !is_live(network, spring, place))
             continue;
         mspringi_forest_join(tiles->parent, a, b);
     }
@@ -155,7 +156,7 @@ static void list_anchors(mspringi_tiles *tiles, const mspring_network *network) 
     const mspringi_topology *t = &network->topology;
     tiles->anchor_count = 0;
     for (uint32_t i = 0; i < cells->first_inner[cells->count]; ++i) {
-        const mspringi_place place = t->place_of_spring[cells->inner[i]];
+        const mspringi_place place = mspringi_place_of(t, cells->inner[i]);
         uint32_t a, b;
         mspringi_topology_ends(t, place, &a, &b);
         add_anchor(tiles, network, a, b, mspringi_factors_of_place(place));
@@ -177,7 +178,7 @@ static void mark_changed_links(mspringi_tiles *tiles, const mspring_network *net
     const mspringi_topology *t = &network->topology;
     for (uint64_t n = seen; n < network->edits.links; ++n) {
         uint32_t a, b;
-        mspringi_topology_ends(t, t->place_of_spring[mspringi_edits_link(&network->edits, n)], &a, &b);
+        mspringi_topology_ends(t, mspringi_place_of(t, mspringi_edits_link(&network->edits, n)), &a, &b);
         if (tiles->cells.of_slot[a] == tiles->cells.of_slot[b])
             mark_dirty(tiles, tiles->cells.of_slot[a]);
     }

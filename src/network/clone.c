@@ -29,7 +29,9 @@ static void move_state(const moving *m, mspringi_state *state) {
 static void move_topology(const moving *m, mspringi_topology *t) {
     MOVE(t->slot_of_particle);
     MOVE(t->particle_of_slot);
-    MOVE(t->place_of_spring);
+    MOVE(t->places.runs);
+    MOVE(t->places.run_of_page);
+    MOVE(t->places.listed);
     MOVE(t->up_of_block);
     MOVE(t->grid_of_row);
     MOVE(t->empty_runs);

@@ -9,6 +9,9 @@
 #include "base/cpu.h"
 #include "springs.h"
 
+/// Springs whose places are asked for at once.
+enum { TOGETHER = 256 };
+
 /// What is computed in one pass.
 typedef enum measure { LENGTH, DIRECTION_X, DIRECTION_Y, STRAIN } measure;
 
@@ -25,9 +28,11 @@ static mspring_result reserve(mspring_network *network) {
     if (!made->reversed)
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to measure %u springs at once",
                              (unsigned)t->spring_count);
+    mspringi_place_reader reader;
+    mspringi_places_begin(&reader, &t->places, 0);
     for (mspring_id s = 0; s < t->spring_count; ++s) {
         uint32_t base, tip;
-        mspringi_topology_ends(t, t->place_of_spring[s], &base, &tip);
+        mspringi_topology_ends(t, mspringi_places_next(&reader), &base, &tip);
         if (t->particle_of_slot[base] > t->particle_of_slot[tip])
             made->reversed[s / 8] |= (uint8_t)(1u << s % 8);
     }
@@ -93,16 +98,21 @@ static inline void compute(const mspring_network *network, measure what) {
 }
 
 static void read_out(const mspring_network *network, float *to) {
-    const mspringi_place *places = network->topology.place_of_spring;
-    for (mspring_id s = 0; s < network->topology.spring_count; ++s)
-        to[s] = network->extents.scratch[places[s]];
+    mspringi_place places[TOGETHER];
+    const uint32_t springs = network->topology.spring_count;
+    for (mspring_id first = 0; first < springs; first += TOGETHER) {
+        const uint32_t count = springs - first < TOGETHER ? springs - first : TOGETHER;
+        mspringi_places_read(&network->topology.places, first, count, places);
+        for (uint32_t i = 0; i < count; ++i)
+            to[first + i] = network->extents.scratch[places[i]];
+    }
 }
 
 static void read_out_directions(const mspring_network *network, float *to) {
-    const mspringi_place *places = network->topology.place_of_spring;
+    read_out(network, to);
     for (mspring_id s = 0; s < network->topology.spring_count; ++s) {
         const int reversed = network->extents.reversed[s / 8] >> s % 8 & 1;
-        to[s] = network->extents.scratch[places[s]] * (float)(1 - 2 * reversed) + 0.0f; // never -0
+        to[s] = to[s] * (float)(1 - 2 * reversed) + 0.0f; // never -0
     }
 }
 

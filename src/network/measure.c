@@ -20,9 +20,10 @@ static double spring_length(const mspring_network *network, const mspringi_sprin
 }
 
 float mspringi_spring_strain(const mspring_network *network, mspring_id spring) {
-    if (!mspringi_spring_is_live(network, spring))
+    const mspringi_place place = mspringi_place_of(&network->topology, spring);
+    if (!mspringi_place_is_live(network, place))
         return 0.0f;
-    const mspringi_spring_values r = mspringi_spring_get(network, spring);
+    const mspringi_spring_values r = mspringi_place_get(network, place);
     const double rest_length = (double)r.rest_length;
     double rate;
     return (float)((spring_length(network, &r, &rate) - rest_length) / rest_length);
@@ -115,18 +116,19 @@ mspring_result mspring_network_get_spring(const mspring_network *network, msprin
     const mspringi_topology *t = &network->topology;
     if (spring >= t->spring_count)
         return MSPRING_ERROR_ID;
-    const mspringi_spring_values r = mspringi_spring_get(network, spring);
+    const mspringi_place place = mspringi_place_of(t, spring);
+    const mspringi_spring_values r = mspringi_place_get(network, place);
     const mspring_id a = t->particle_of_slot[r.base], b = t->particle_of_slot[r.tip];
     double rate;
     const double length = spring_length(network, &r, &rate), rest_length = (double)r.rest_length;
-    const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring);
+    const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, place);
     const double stiffness = (double)r.stiffness, damping = (double)r.damping;
     const double force = length > 0.0 ? (length - rest_length) * stiffness + rate * damping : 0.0;
     *info = (mspring_spring_info){
         .struct_size = sizeof *info,
         .flags = (mspringi_spring_is_relative(network, spring) ? MSPRING_SPRING_RELATIVE : 0u) |
-                 (mspringi_spring_is_live(network, spring) ? 0u : MSPRING_SPRING_BROKEN) |
-                 (mspringi_spring_is_stressed(network, spring) ? MSPRING_SPRING_STRESSED : 0u),
+                 (mspringi_place_is_live(network, place) ? 0u : MSPRING_SPRING_BROKEN) |
+                 (mspringi_place_is_stressed(network, place) ? MSPRING_SPRING_STRESSED : 0u),
         .a = a < b ? a : b,
         .b = a < b ? b : a,
         .stiffness = r.stiffness,

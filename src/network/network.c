@@ -179,11 +179,10 @@ static void fill_particles(mspring_network *network, const mspring_builder *buil
 }
 
 // What tells this network's snapshots from those of others.
-static void take_prints(mspring_network *network, const mspringi_spring *spring, mspring_id s) {
-    const mspringi_topology *t = &network->topology;
+static void take_prints(mspring_network *network, const mspringi_spring *spring, mspringi_place place) {
     uint64_t print = network->topology_print;
     print = mspringi_mix(print, (uint64_t)spring->a << 32 | spring->b);
-    print = mspringi_mix(print, (uint64_t)t->place_of_spring[s] << 32 | spring->flags);
+    print = mspringi_mix(print, (uint64_t)place << 32 | spring->flags);
     network->topology_print = print;
     print = mspringi_mix_floats(network->parameter_print, spring->stiffness, spring->damping);
     network->parameter_print = mspringi_mix_floats(print, spring->rest_length, 0.0f);
@@ -195,14 +194,16 @@ static void fill_springs(mspring_network *network, const mspring_builder *builde
     network->topology_print = network->parameter_print = MSPRINGI_MIX_START;
     for (mspring_id p = 0; p < t->particle_count; ++p)
         network->topology_print = mspringi_mix(network->topology_print, t->slot_of_particle[p]);
+    mspringi_place_reader reader;
+    mspringi_places_begin(&reader, &t->places, 0);
     for (mspring_id s = 0; s < t->spring_count; ++s) {
         const mspringi_spring *spring = &builder->springs[s];
         network->shortest = fmin(network->shortest, (double)spring->rest_length);
-        const mspringi_place place = t->place_of_spring[s];
+        const mspringi_place place = mspringi_places_next(&reader);
         const bool relative = spring->flags & MSPRING_SPRING_RELATIVE;
-        mspringi_spring_set_rest_length(network, s, spring->rest_length);
-        mspringi_spring_set(network, s, relative ? 0.0f : spring->stiffness, relative ? 0.0f : spring->damping);
-        take_prints(network, spring, s);
+        mspringi_place_set_rest_length(network, place, spring->rest_length);
+        mspringi_place_set(network, place, relative ? 0.0f : spring->stiffness, relative ? 0.0f : spring->damping);
+        take_prints(network, spring, place);
         network->live[place / MSPRINGI_WIDTH] |= (uint16_t)(1u << place % MSPRINGI_WIDTH);
         if (network->relative)
             network->relative[s] = relative ? (mspringi_relative){spring->stiffness, spring->damping}

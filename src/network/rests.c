@@ -17,8 +17,10 @@ typedef struct pattern {
 
 // What the springs of each block have in common.
 static void find_patterns(pattern *of_block, const mspringi_topology *t, const mspring_builder *builder) {
+    mspringi_place_reader reader;
+    mspringi_places_begin(&reader, &t->places, 0);
     for (uint32_t s = 0; s < t->spring_count; ++s) {
-        const mspringi_place place = t->place_of_spring[s];
+        const mspringi_place place = mspringi_places_next(&reader);
         if (place >= t->lattice_places)
             continue;
         pattern *block = &of_block[place / BLOCK_PLACES];
@@ -59,8 +61,10 @@ static void fill(mspringi_rests *rests, const mspringi_topology *t, const msprin
                  const pattern *shared) {
     for (uint32_t i = 0; i < rests->shared_count * BLOCK_PLACES; ++i)
         rests->lengths[i] = shared[i / BLOCK_PLACES].length[i / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS];
+    mspringi_place_reader reader;
+    mspringi_places_begin(&reader, &t->places, 0);
     for (uint32_t s = 0; s < t->spring_count; ++s) {
-        const mspringi_place place = t->place_of_spring[s];
+        const mspringi_place place = mspringi_places_next(&reader);
         if (place < t->lattice_places)
             *mspringi_rests_at(rests, place) = builder->springs[s].rest_length;
     }

@@ -55,11 +55,11 @@ mspringi_spring_values mspringi_place_get(const mspring_network *network, msprin
 }
 
 mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspring_id spring) {
-    return mspringi_place_get(network, network->topology.place_of_spring[spring]);
+    return mspringi_place_get(network, mspringi_place_of(&network->topology, spring));
 }
 
-void mspringi_spring_set(mspring_network *network, mspring_id spring, float stiffness, float damping) {
-    const spring_records records = find_records(network, network->topology.place_of_spring[spring]);
+void mspringi_place_set(mspring_network *network, mspringi_place place, float stiffness, float damping) {
+    const spring_records records = find_records(network, place);
     for (int i = 0; i < records.count; ++i) {
         *records.ends[i].stiffness = stiffness;
         if (records.ends[i].damping)
@@ -67,15 +67,16 @@ void mspringi_spring_set(mspring_network *network, mspring_id spring, float stif
     }
 }
 
-void mspringi_spring_set_rest_length(mspring_network *network, mspring_id spring, float rest_length) {
-    const spring_records records = find_records(network, network->topology.place_of_spring[spring]);
+void mspringi_place_set_rest_length(mspring_network *network, mspringi_place place, float rest_length) {
+    const spring_records records = find_records(network, place);
     for (int i = 0; i < records.count; ++i)
         *records.ends[i].rest_length = rest_length;
 }
 
-void mspringi_spring_copy(const mspring_network *from, mspring_network *to, mspring_id spring) {
-    const spring_record had = find_records(from, from->topology.place_of_spring[spring]).ends[0];
-    const spring_records records = find_records(to, to->topology.place_of_spring[spring]);
+void mspringi_place_copy(const mspring_network *from, mspringi_place had_place, mspring_network *to,
+                         mspringi_place place) {
+    const spring_record had = find_records(from, had_place).ends[0];
+    const spring_records records = find_records(to, place);
     for (int i = 0; i < records.count; ++i) {
         const spring_record *record = &records.ends[i];
         *record->rest_length = *had.rest_length;
@@ -98,34 +99,40 @@ static mspringi_relative derive(const mspring_network *network, const mspringi_s
                                (float)((double)fractions.damping * reduced_mass * rate)};
 }
 
-mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, mspring_id spring) {
+mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, mspring_id spring,
+                                              mspringi_place place) {
     if (mspringi_spring_is_relative(network, spring))
         return network->relative[spring];
-    if (!mspringi_spring_is_live(network, spring))
+    if (!mspringi_place_is_live(network, place))
         return network->kept[spring];
-    const mspringi_spring_values values = mspringi_spring_get(network, spring);
+    const mspringi_spring_values values = mspringi_place_get(network, place);
     return (mspringi_relative){values.stiffness, values.damping};
 }
 
-void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, mspringi_relative nominal) {
+void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, mspringi_place place,
+                                 mspringi_relative nominal) {
     const bool relative = mspringi_spring_is_relative(network, spring);
     if (relative)
         network->relative[spring] = nominal;
-    if (!mspringi_spring_is_live(network, spring)) {
+    if (!mspringi_place_is_live(network, place)) {
         if (!relative)
             network->kept[spring] = nominal;
         return;
     }
-    const mspringi_spring_values values = mspringi_spring_get(network, spring);
+    const mspringi_spring_values values = mspringi_place_get(network, place);
     if (relative)
         nominal = derive(network, &values, nominal);
-    mspringi_spring_set(network, spring, nominal.stiffness, nominal.damping);
+    mspringi_place_set(network, place, nominal.stiffness, nominal.damping);
 }
 
 void mspringi_renew_relative(mspring_network *network) {
-    for (mspring_id s = 0; s < network->topology.spring_count; ++s)
-        if (mspringi_spring_is_relative(network, s) && mspringi_spring_is_live(network, s))
-            mspringi_spring_set_nominal(network, s, network->relative[s]);
+    mspringi_place_reader reader;
+    mspringi_places_begin(&reader, &network->topology.places, 0);
+    for (mspring_id s = 0; s < network->topology.spring_count; ++s) {
+        const mspringi_place place = mspringi_places_next(&reader);
+        if (mspringi_spring_is_relative(network, s) && mspringi_place_is_live(network, place))
+            mspringi_spring_set_nominal(network, s, place, network->relative[s]);
+    }
 }
 
 void mspringi_derive_relative(mspring_network *network, float h) {

@@ -15,21 +15,24 @@ typedef struct mspringi_spring_values {
 mspringi_spring_values mspringi_place_get(const mspring_network *network, mspringi_place place);
 mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspring_id spring);
 /// Set stiffness and damping in force, wherever the spring has records.
-void mspringi_spring_set(mspring_network *network, mspring_id spring, float stiffness, float damping);
+void mspringi_place_set(mspring_network *network, mspringi_place place, float stiffness, float damping);
 
-/// Give a spring of another network of the same springs what it has in this one.
-void mspringi_spring_copy(const mspring_network *from, mspring_network *to, mspring_id spring);
+/// Give the spring in a place of another network what the one in a place of this one has.
+void mspringi_place_copy(const mspring_network *from, mspringi_place had, mspring_network *to,
+                         mspringi_place place);
 
 /// (length - rest_length) / rest_length, now; of a broken spring 0.
 float mspringi_spring_strain(const mspring_network *network, mspring_id spring);
 
-static inline bool mspringi_spring_is_live(const mspring_network *network, mspring_id spring) {
-    const mspringi_place place = network->topology.place_of_spring[spring];
+static inline bool mspringi_place_is_live(const mspring_network *network, mspringi_place place) {
     return network->live[place / MSPRINGI_WIDTH] >> place % MSPRINGI_WIDTH & 1;
 }
 
-static inline bool mspringi_spring_is_stressed(const mspring_network *network, mspring_id spring) {
-    const mspringi_place place = network->topology.place_of_spring[spring];
+static inline bool mspringi_spring_is_live(const mspring_network *network, mspring_id spring) {
+    return mspringi_place_is_live(network, mspringi_place_of(&network->topology, spring));
+}
+
+static inline bool mspringi_place_is_stressed(const mspring_network *network, mspringi_place place) {
     const uint16_t *stressed = network->strain.stressed;
     return stressed && stressed[place / MSPRINGI_WIDTH] >> place % MSPRINGI_WIDTH & 1;
 }
@@ -43,14 +46,17 @@ static inline const float *mspringi_spring_masses(const mspring_network *network
     return network->spring_mass ? network->spring_mass : network->mass;
 }
 
-/// Stiffness and damping that a spring has while it is not broken; fractions if it is relative.
-mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, mspring_id spring);
+/// Stiffness and damping that a spring, which lies in this place, has while it is not broken; fractions if it is
+/// relative.
+mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, mspring_id spring,
+                                              mspringi_place place);
 /// Set these. What a broken spring exerts stays 0.
-void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, mspringi_relative nominal);
+void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, mspringi_place place,
+                                 mspringi_relative nominal);
 
 /// Set the rest length in force: a ramp of the spring goes on from its own. After mspringi_rests_separate() only,
 /// unless it is what the spring has.
-void mspringi_spring_set_rest_length(mspring_network *network, mspring_id spring, float rest_length);
+void mspringi_place_set_rest_length(mspring_network *network, mspringi_place place, float rest_length);
 
 /// Derive stiffness and damping of the relative springs for a substep; 0: as before the first one, both 0.
 void mspringi_derive_relative(mspring_network *network, float h);

@@ -50,9 +50,12 @@ static void broken_load(mspring_network *network, const uint8_t *from, size_t si
     const mspringi_topology *t = &network->topology;
     if (size == 0 && !network->edits.link_log)
         return;
+    mspringi_place_reader reader;
+    mspringi_places_begin(&reader, &t->places, 0);
     for (mspring_id s = 0; s < t->spring_count; ++s) {
-        const bool live = size == 0 || bit_at(from, t->place_of_spring[s]);
-        if (live == mspringi_spring_is_live(network, s))
+        const mspringi_place place = mspringi_places_next(&reader);
+        const bool live = size == 0 || bit_at(from, place);
+        if (live == mspringi_place_is_live(network, place))
             continue;
         if (live)
             (void)mspringi_spring_restore(network, s);
@@ -78,19 +81,21 @@ typedef struct spring_values {
     float stiffness, damping, rest_length;
 } spring_values;
 
-static spring_values values_of(const mspring_network *network, mspring_id spring) {
-    const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring);
-    return (spring_values){nominal.stiffness, nominal.damping, mspringi_spring_get(network, spring).rest_length};
+static spring_values values_of(const mspring_network *network, mspring_id spring, mspringi_place place) {
+    const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, place);
+    return (spring_values){nominal.stiffness, nominal.damping, mspringi_place_get(network, place).rest_length};
 }
 
 static void values_save(const mspring_network *network, mspringi_writer *to) {
     enum { TOGETHER = 64 };
     spring_values values[TOGETHER];
     const uint32_t springs = network->topology.spring_count;
+    mspringi_place_reader reader;
+    mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id first = 0; first < springs; first += TOGETHER) {
         const uint32_t count = springs - first < TOGETHER ? springs - first : TOGETHER;
         for (uint32_t i = 0; i < count; ++i)
-            values[i] = values_of(network, first + i);
+            values[i] = values_of(network, first + i, mspringi_places_next(&reader));
         mspringi_put(to, values, (size_t)count * VALUES, sizeof(float));
     }
 }
@@ -99,6 +104,8 @@ static mspring_result values_check(mspring_network *network, const uint8_t *from
     const mspringi_section *section = &mspringi_section_values;
     mspring_result result = mspringi_section_check_size(network, section, size, values_size(network));
     bool other_rest_lengths = false;
+    mspringi_place_reader reader;
+    mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id s = 0; result == MSPRING_OK && s < network->topology.spring_count; ++s) {
         spring_values values;
         from = mspringi_get(from, &values, VALUES, sizeof(float));
@@ -109,8 +116,9 @@ static mspring_result values_check(mspring_network *network, const uint8_t *from
             result = mspringi_section_fail(
                 network, section, "spring %u has stiffness %g, damping %g, rest length %g m", (unsigned)s,
                 (double)values.stiffness, (double)values.damping, (double)values.rest_length);
+        const mspringi_place place = mspringi_places_next(&reader);
         other_rest_lengths =
-            other_rest_lengths || values.rest_length != mspringi_spring_get(network, s).rest_length;
+            other_rest_lengths || values.rest_length != mspringi_place_get(network, place).rest_length;
     }
     return result == MSPRING_OK && other_rest_lengths ? mspringi_rests_separate(network) : result;
 }
@@ -118,14 +126,17 @@ static mspring_result values_check(mspring_network *network, const uint8_t *from
 static void values_load(mspring_network *network, const uint8_t *from, size_t size) {
     if (size == 0)
         return;
+    mspringi_place_reader reader;
+    mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id s = 0; s < network->topology.spring_count; ++s) {
         spring_values values;
-        const spring_values present = values_of(network, s);
+        const mspringi_place place = mspringi_places_next(&reader);
+        const spring_values present = values_of(network, s, place);
         from = mspringi_get(from, &values, VALUES, sizeof(float));
         if (values.rest_length != present.rest_length)
-            mspringi_spring_set_rest_length(network, s, values.rest_length);
+            mspringi_place_set_rest_length(network, place, values.rest_length);
         if (values.stiffness != present.stiffness || values.damping != present.damping)
-            mspringi_spring_set_nominal(network, s, (mspringi_relative){values.stiffness, values.damping});
+            mspringi_spring_set_nominal(network, s, place, (mspringi_relative){values.stiffness, values.damping});
     }
     network->edits.values++;
 }
@@ -140,8 +151,10 @@ static size_t thresholds_size(const mspring_network *network, const float *thres
 }
 
 static void thresholds_save(const mspring_network *network, const float *thresholds, mspringi_writer *to) {
+    mspringi_place_reader reader;
+    mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id s = 0; s < network->topology.spring_count; ++s)
-        mspringi_put(to, &thresholds[network->topology.place_of_spring[s]], 1, sizeof *thresholds);
+        mspringi_put(to, &thresholds[mspringi_places_next(&reader)], 1, sizeof *thresholds);
 }
 
 static mspring_result thresholds_check(mspring_network *network, const mspringi_section *section,
@@ -156,8 +169,11 @@ static mspring_result thresholds_check(mspring_network *network, const mspringi_
 }
 
 static void thresholds_load(mspring_network *network, bool stress, const uint8_t *from, size_t size) {
+    mspringi_place_reader reader;
+    mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id s = 0; s < network->topology.spring_count; ++s)
-        mspringi_strain_store(network, s, stress, size > 0 ? mspringi_float_at(from, s) : INFINITY);
+        mspringi_strain_store(network, mspringi_places_next(&reader), stress,
+                              size > 0 ? mspringi_float_at(from, s) : INFINITY);
 }
 
 static size_t break_strains_size(const mspring_network *network) {

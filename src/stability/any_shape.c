@@ -13,14 +13,14 @@
 #include "network/springs.h"
 #include "pencil.h"
 
-mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring) {
-    const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring);
+mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring, mspringi_place place) {
+    const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, place);
     const double stiffness = (double)nominal.stiffness, damping = (double)nominal.damping;
     if (!mspringi_spring_is_relative(network, spring))
         return (mspringi_strength){.stiffness = stiffness, .damping = damping};
     const mspringi_topology *t = &network->topology;
     uint32_t base, tip;
-    mspringi_topology_ends(t, t->place_of_spring[spring], &base, &tip);
+    mspringi_topology_ends(t, place, &base, &tip);
     const float *mass = mspringi_spring_masses(network);
     const double ma = (double)mass[t->particle_of_slot[base]];
     const double mb = (double)mass[t->particle_of_slot[tip]];
@@ -33,10 +33,13 @@ mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_i
 // backup.
 static void sum_up(const mspring_network *network, const mspringi_state *sums) {
     memset(sums->x, 0, 4 * mspringi_slot_count(network) * sizeof *sums->x);
+    mspringi_place_reader reader;
+    mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
-        const mspringi_strength strength = mspringi_strength_of(network, i);
+        const mspringi_place place = mspringi_places_next(&reader);
+        const mspringi_strength strength = mspringi_strength_of(network, i, place);
         uint32_t ends[2];
-        mspringi_topology_ends(&network->topology, network->topology.place_of_spring[i], &ends[0], &ends[1]);
+        mspringi_topology_ends(&network->topology, place, &ends[0], &ends[1]);
         for (int end = 0; end < 2; ++end) {
             const double inverse_mass = (double)network->inverse_mass[ends[end]];
             sums->x[ends[end]] += (float)strength.stiffness;
@@ -54,9 +57,11 @@ static double find(mspring_network *network, mspring_id *spring) {
     double smallest = INFINITY;
     sum_up(network, sums);
     *spring = MSPRING_NONE;
+    mspringi_place_reader reader;
+    mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
         uint32_t a, b;
-        mspringi_topology_ends(&network->topology, network->topology.place_of_spring[i], &a, &b);
+        mspringi_topology_ends(&network->topology, mspringi_places_next(&reader), &a, &b);
         const double per_a = (double)network->inverse_mass[a], per_b = (double)network->inverse_mass[b];
         const mspringi_quotient quotient = {
             .stiffness = (double)sums->x[a] * per_a + (double)sums->x[b] * per_b,

@@ -193,8 +193,10 @@ void mspringi_energy_look(mspring_network *network, float h, mspringi_field base
 
 // The spring that lies at a place.
 static mspring_id find_spring(const mspringi_topology *t, mspringi_place place) {
+    mspringi_place_reader reader;
     mspring_id spring = 0;
-    while (spring + 1 < t->spring_count && t->place_of_spring[spring] != place)
+    mspringi_places_begin(&reader, &t->places, 0);
+    while (spring + 1 < t->spring_count && mspringi_places_next(&reader) != place)
         ++spring;
     return spring;
 }

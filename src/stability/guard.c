@@ -175,7 +175,7 @@ static mspring_result explain_border(mspring_network *network, double dt, float 
     const mspringi_topology *t = &network->topology;
     const mspring_id spring = network->any_shape.spring;
     uint32_t base, tip;
-    mspringi_topology_ends(t, t->place_of_spring[spring], &base, &tip);
+    mspringi_topology_ends(t, mspringi_place_of(t, spring), &base, &tip);
     const float at_base = network->inverse_mass[base], at_tip = network->inverse_mass[tip];
     const mspring_id a = t->particle_of_slot[base], b = t->particle_of_slot[tip];
     const mspring_id moved = at_base > at_tip || (at_base == at_tip && a < b) ? a : b;

@@ -30,14 +30,15 @@ double mspringi_quotient_limit(const mspringi_quotient *q, float global_damping)
 mspringi_seen mspringi_see_spring(const mspring_network *network, mspring_id spring) {
     const mspringi_topology *t = &network->topology;
     const mspringi_state *s = &network->state;
-    const mspringi_spring_values values = mspringi_spring_get(network, spring);
+    const mspringi_place place = mspringi_place_of(t, spring);
+    const mspringi_spring_values values = mspringi_place_get(network, place);
     const double dx = (double)s->x[values.tip] - (double)s->x[values.base];
     const double dy = (double)s->y[values.tip] - (double)s->y[values.base];
     const double length = sqrt(dx * dx + dy * dy);
     mspringi_seen seen = {
         .a = t->particle_of_slot[values.base], .b = t->particle_of_slot[values.tip], .directed = length > 0.0};
-    if (mspringi_spring_is_live(network, spring))
-        seen.strength = mspringi_strength_of(network, spring);
+    if (mspringi_place_is_live(network, place))
+        seen.strength = mspringi_strength_of(network, spring, place);
     if (seen.directed) {
         seen.nx = dx / length;
         seen.ny = dy / length;

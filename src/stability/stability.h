@@ -13,7 +13,7 @@ typedef struct mspringi_strength {
     double stiffness, damping;
     double relative_stiffness, relative_damping;
 } mspringi_strength;
-mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring);
+mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring, mspringi_place place);
 
 /// The longest substep that is stable in whatever shape the network gets into, and the spring that sets it
 /// (MSPRING_NONE: none does, and it is infinite). Broken springs count as whole, as they may be restored. Kept

@@ -1,9 +1,9 @@
 /// Listing springs by particle.
 #include "incidence.h"
 
-static void find_ends(const mspringi_topology *t, mspring_id spring, mspring_id ends[2]) {
+static void find_ends(const mspringi_topology *t, mspringi_place place, mspring_id ends[2]) {
     uint32_t base, tip;
-    mspringi_topology_ends(t, t->place_of_spring[spring], &base, &tip);
+    mspringi_topology_ends(t, place, &base, &tip);
     ends[0] = t->particle_of_slot[base];
     ends[1] = t->particle_of_slot[tip];
 }
@@ -18,9 +18,11 @@ mspring_result mspringi_incidence_create(mspringi_incidence *incidence, const ms
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to list %u springs by particle",
                              (unsigned)springs);
     }
+    mspringi_place_reader reader;
     mspring_id ends[2];
+    mspringi_places_begin(&reader, &topology->places, 0);
     for (mspring_id s = 0; s < springs; ++s) {
-        find_ends(topology, s, ends);
+        find_ends(topology, mspringi_places_next(&reader), ends);
         made.first[ends[0]]++;
         made.first[ends[1]]++;
     }
@@ -28,7 +30,7 @@ mspring_result mspringi_incidence_create(mspringi_incidence *incidence, const ms
         made.first[p + 1] += made.first[p];
     // From behind, so that each particle's first is where it belongs at the end, and ids rise.
     for (mspring_id s = springs; s-- > 0;) {
-        find_ends(topology, s, ends);
+        find_ends(topology, mspringi_place_of(topology, s), ends);
         made.springs[--made.first[ends[0]]] = s;
         made.springs[--made.first[ends[1]]] = s;
     }
@@ -45,7 +47,7 @@ void mspringi_incidence_destroy(mspringi_incidence *incidence, mspringi_memory *
 mspring_id mspringi_incidence_find(const mspringi_incidence *incidence, const mspringi_topology *topology,
                                    mspring_id particle, mspringi_place place) {
     uint32_t i = incidence->first[particle];
-    while (topology->place_of_spring[incidence->springs[i]] != place)
+    while (mspringi_place_of(topology, incidence->springs[i]) != place)
         ++i;
     return incidence->springs[i];
 }

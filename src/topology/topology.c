@@ -38,10 +38,11 @@ typedef struct mspringi_assembly {
     mspringi_web_list web;
     block_key *blocks; ///< of all grids, grid after grid in the order of their rows, each sorted
     size_t block_count, block_capacity;
-    size_t grid_begin;     ///< where the blocks of the grid that is being listed begin
-    uint32_t *first_block; ///< [grids] in blocks
-    uint32_t *end_block;   ///< [grids] in blocks
-    uint32_t home_blocks;  ///< blocks of the web that have been given to rows
+    size_t grid_begin;      ///< where the blocks of the grid that is being listed begin
+    uint32_t *first_block;  ///< [grids] in blocks
+    uint32_t *end_block;    ///< [grids] in blocks
+    mspringi_place *places; ///< [springs]
+    uint32_t home_blocks;   ///< blocks of the web that have been given to rows
     size_t row_capacity, span_capacity;
     uint32_t done; ///< pieces of the work
 } assembly;
@@ -203,38 +204,46 @@ static void assign_slots(assembly *a) {
     }
 }
 
-static mspring_result assign_places(assembly *a) {
+// Give each spring a place, in an array.
+static void spread_places(assembly *a, mspringi_place *places) {
     mspringi_topology *t = a->topology;
     t->lattice_places = t->lattice_blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
     t->chain_places = t->lattice_places + t->chain_blocks * MSPRINGI_WIDTH;
     for (uint32_t s = 0; s < t->spring_count; ++s)
-        t->place_of_spring[s] = MSPRING_NONE;
+        places[s] = MSPRING_NONE;
     for (uint32_t i = 0; i < a->strands.count; ++i)
         if (a->strands.springs[i] != MSPRING_NONE)
-            t->place_of_spring[a->strands.springs[i]] = t->lattice_places + i;
+            places[a->strands.springs[i]] = t->lattice_places + i;
     for (uint32_t s = 0; s < t->spring_count; ++s) {
         mspringi_lattice_spring found;
-        if (t->place_of_spring[s] != MSPRING_NONE)
+        if (places[s] != MSPRING_NONE)
             continue;
         if (!mspringi_grids_place(&a->grids, &a->builder->springs[s], &found)) {
-            t->place_of_spring[s] = t->chain_places + t->leftover_count++;
+            places[s] = t->chain_places + t->leftover_count++;
             continue;
         }
         const uint32_t grid = a->grids.grid_of[a->builder->springs[s].a];
         const uint32_t block = find_block(a, grid, found.row, found.column / MSPRINGI_WIDTH);
-        t->place_of_spring[s] = (block * MSPRINGI_DIRECTIONS + (uint32_t)found.direction) * MSPRINGI_WIDTH +
-                                found.column % MSPRINGI_WIDTH;
+        places[s] = (block * MSPRINGI_DIRECTIONS + (uint32_t)found.direction) * MSPRINGI_WIDTH +
+                    found.column % MSPRINGI_WIDTH;
         t->lattice_springs++;
     }
+}
 
+static mspring_result assign_places(assembly *a) {
+    mspringi_topology *t = a->topology;
+    mspringi_place *places = a->places = mspringi_alloc(a->memory, t->spring_count, sizeof *places);
+    if (!places)
+        return out_of_memory(a);
+    spread_places(a, places);
     t->leftover_a = mspringi_alloc(a->memory, t->leftover_count, sizeof *t->leftover_a);
     t->leftover_b = mspringi_alloc(a->memory, t->leftover_count, sizeof *t->leftover_b);
     if (!t->leftover_a || !t->leftover_b)
         return out_of_memory(a);
     for (uint32_t s = 0; s < t->spring_count; ++s) {
-        if (t->place_of_spring[s] < t->chain_places)
+        if (places[s] < t->chain_places)
             continue;
-        const uint32_t i = t->place_of_spring[s] - t->chain_places;
+        const uint32_t i = places[s] - t->chain_places;
         t->leftover_a[i] = t->slot_of_particle[a->builder->springs[s].a];
         t->leftover_b[i] = t->slot_of_particle[a->builder->springs[s].b];
     }
@@ -475,7 +484,7 @@ static bool trim_spans(assembly *a) {
         if (t->particle_of_slot[slot] != MSPRING_NONE)
             mark_busy(busy, slot);
     for (uint32_t s = 0; s < t->spring_count; ++s) {
-        const mspringi_place place = t->place_of_spring[s];
+        const mspringi_place place = a->places[s];
         if (place >= t->lattice_places)
             continue;
         const uint32_t block = place / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH);
@@ -552,8 +561,7 @@ static mspring_result allocate_maps(assembly *a) {
     const size_t slots = (size_t)t->block_count * MSPRINGI_WIDTH;
     t->slot_of_particle = mspringi_alloc(a->memory, t->particle_count, sizeof *t->slot_of_particle);
     t->particle_of_slot = mspringi_alloc(a->memory, slots, sizeof *t->particle_of_slot);
-    t->place_of_spring = mspringi_alloc(a->memory, t->spring_count, sizeof *t->place_of_spring);
-    return t->slot_of_particle && t->particle_of_slot && t->place_of_spring ? MSPRING_OK : out_of_memory(a);
+    return t->slot_of_particle && t->particle_of_slot ? MSPRING_OK : out_of_memory(a);
 }
 
 /* The pieces: each goes over particles or springs a few times at most. */
@@ -633,6 +641,7 @@ void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory
         return;
     mspringi_topology_destroy(&begun->made, memory);
     mspringi_free(memory, begun->kinds);
+    mspringi_free(memory, begun->places);
     mspringi_free(memory, begun->blocks);
     mspringi_free(memory, begun->first_block);
     mspringi_free(memory, begun->end_block);
@@ -644,7 +653,8 @@ void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory
     mspringi_free(memory, begun);
 }
 
-void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory, mspringi_topology *topology) {
+void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory, mspringi_topology *topology,
+                              mspringi_place **places) {
     begun->made.lattice_count = begun->grids.count;
     begun->made.lattice_particles = begun->grids.member_count;
     begun->made.chain_count = begun->strands.strand_count;
@@ -652,6 +662,8 @@ void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory,
     begun->made.chain_springs = begun->strands.spring_count;
     begun->made.web_particles = begun->web.count;
     *topology = begun->made;
+    *places = begun->places;
+    begun->places = NULL;
     begun->made = (mspringi_topology){0};
     mspringi_topology_abandon(begun, memory);
 }
@@ -662,17 +674,26 @@ mspring_result mspringi_topology_create(mspringi_topology *topology, const mspri
     mspring_result result = mspringi_topology_begin(builder, workers, memory, message, &begun);
     for (int piece = 0; result == MSPRING_OK && piece < MSPRINGI_TOPOLOGY_PIECES; ++piece)
         result = mspringi_topology_go_on(begun);
-    if (result == MSPRING_OK)
-        mspringi_topology_finish(begun, memory, topology);
-    else
+    if (result != MSPRING_OK) {
         mspringi_topology_abandon(begun, memory);
+        return result;
+    }
+    mspringi_place *places;
+    mspringi_topology_finish(begun, memory, topology, &places);
+    if (!mspringi_places_create(&topology->places, places, topology->spring_count, topology->lattice_places,
+                                memory))
+        result = mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the places of %u springs",
+                               (unsigned)topology->spring_count);
+    mspringi_free(memory, places);
+    if (result != MSPRING_OK)
+        mspringi_topology_destroy(topology, memory);
     return result;
 }
 
 void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *memory) {
     mspringi_free(memory, topology->slot_of_particle);
     mspringi_free(memory, topology->particle_of_slot);
-    mspringi_free(memory, topology->place_of_spring);
+    mspringi_places_destroy(&topology->places, memory);
     mspringi_free(memory, topology->up_of_block);
     mspringi_free(memory, topology->grid_of_row);
     mspringi_web_destroy(&topology->web, memory);

@@ -18,21 +18,11 @@
 #define MSPRINGI_TOPOLOGY_H
 
 #include "builder/builder.h"
+#include "places.h"
 #include "web.h"
 
 /// Lanes of the narrowest vector register.
 #define MSPRINGI_QUARTER 4
-
-/// The springs of a lattice slot in column c of row r. East, north and north-east start at the slot; south-east
-/// starts one row up, at (c, r + 1), so that all of them reach one column to the right at most and every load is
-/// contiguous.
-typedef enum mspringi_direction {
-    MSPRINGI_EAST = 0,       ///< (c, r)     to (c + 1, r)
-    MSPRINGI_NORTH = 1,      ///< (c, r)     to (c, r + 1)
-    MSPRINGI_NORTH_EAST = 2, ///< (c, r)     to (c + 1, r + 1)
-    MSPRINGI_SOUTH_EAST = 3, ///< (c, r + 1) to (c + 1, r)
-    MSPRINGI_DIRECTIONS = 4
-} mspringi_direction;
 
 typedef enum mspringi_row_kind {
     MSPRINGI_ROW_LATTICE, ///< all four springs
@@ -63,12 +53,6 @@ typedef struct mspringi_strip {
     uint32_t home_span; ///< span of the web's particles that are swept with it, or MSPRING_NONE
 } mspringi_strip;
 
-/// Where a spring lies: below lattice_places a lattice record, (block * MSPRINGI_DIRECTIONS + direction) *
-/// MSPRINGI_WIDTH + lane; below chain_places a chain record, lattice_places + block * MSPRINGI_WIDTH + lane; above
-/// that, chain_places + number among the leftover springs, behind which are the parked ones. Block counts from the
-/// first of its kind.
-typedef uint32_t mspringi_place;
-
 typedef struct mspringi_empty_run {
     uint32_t first_slot, slot_count;
 } mspringi_empty_run;
@@ -81,10 +65,10 @@ typedef struct mspringi_topology {
     uint32_t web_first, web_blocks;
     uint32_t loose_first, loose_blocks;
 
-    uint32_t *slot_of_particle;      ///< [particle_count]
-    uint32_t *particle_of_slot;      ///< [block_count * MSPRINGI_WIDTH], MSPRING_NONE where there is none
-    mspringi_place *place_of_spring; ///< [spring_count]
-    uint32_t *up_of_block;           ///< [lattice_blocks] block above each lattice block; itself if there is none
+    uint32_t *slot_of_particle; ///< [particle_count]
+    uint32_t *particle_of_slot; ///< [block_count * MSPRINGI_WIDTH], MSPRING_NONE where there is none
+    mspringi_places places;     ///< of springs: mspringi_place_of()
+    uint32_t *up_of_block;      ///< [lattice_blocks] block above each lattice block; itself if there is none
 
     uint32_t *grid_of_row; ///< [lattice_rows] number of the grid of each of the first rows
 
@@ -121,6 +105,11 @@ static inline size_t mspringi_place_words(const mspringi_topology *topology) {
            MSPRINGI_WIDTH;
 }
 
+/// Where a spring lies.
+static inline mspringi_place mspringi_place_of(const mspringi_topology *topology, mspring_id spring) {
+    return mspringi_places_at(&topology->places, spring);
+}
+
 /// Whether the spring in this place is parked.
 static inline bool mspringi_place_is_parked(const mspringi_topology *topology, mspringi_place place) {
     return place - topology->chain_places >= topology->leftover_count && place >= topology->chain_places;
@@ -135,13 +124,15 @@ static inline uint32_t mspringi_woven_count(const mspringi_topology *topology) {
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
                                         uint32_t workers, mspringi_memory *memory, mspringi_message *message);
 /// The same in pieces: begin, go on so many times unless one fails, then finish; or abandon at any time, which
-/// allows NULL. The builder and what memory and message point to must stay.
+/// allows NULL. The builder and what memory and message point to must stay. What is finished has its places not in
+/// itself yet but in an array of their own, for whoever asked to pack and free.
 #define MSPRINGI_TOPOLOGY_PIECES 9
 typedef struct mspringi_assembly mspringi_assembly;
 mspring_result mspringi_topology_begin(const mspring_builder *builder, uint32_t workers, mspringi_memory *memory,
                                        mspringi_message *message, mspringi_assembly **begun);
 mspring_result mspringi_topology_go_on(mspringi_assembly *begun);
-void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory, mspringi_topology *topology);
+void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory, mspringi_topology *topology,
+                              mspringi_place **places);
 void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory);
 
 void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *memory);

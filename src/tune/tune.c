@@ -105,7 +105,7 @@ static mspring_result make_base(mspringi_tuning *tuning) {
         base->guard_policy = MSPRING_GUARD_GROWTH;
     base->ramps.count = 0;
     for (mspring_id spring = 0; base->strain.break_strain && spring < base->topology.spring_count; ++spring)
-        mspringi_strain_store(base, spring, false, INFINITY);
+        mspringi_strain_store(base, mspringi_place_of(&base->topology, spring), false, INFINITY);
     mspringi_box box = mspringi_box_empty();
     for (mspring_id p = 0; p < base->topology.particle_count; ++p) {
         const uint32_t slot = base->topology.slot_of_particle[p];

@@ -1,0 +1,197 @@
+/// Finding the patterns that springs lie in.
+#include "places.h"
+
+#include <string.h>
+
+/// Springs that a run has at least, unless they are listed: with fewer, a list of them is no longer.
+#define SHORTEST_RUN 16
+
+/// What is being gone through, and what is made of it, in arrays that grow.
+typedef struct packing {
+    const mspringi_place *of_spring;
+    uint32_t count;
+    mspringi_place lattice_places;
+    mspringi_memory *memory;
+    mspringi_place_run *runs;
+    mspringi_place *listed;
+    size_t run_count, listed_count;
+    size_t run_capacity, listed_capacity;
+} packing;
+
+static uint32_t slot_of(mspringi_place place) {
+    return place / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH) * MSPRINGI_WIDTH + place % MSPRINGI_WIDTH;
+}
+
+static uint32_t direction_of(mspringi_place place) {
+    return place / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS;
+}
+
+// The spring behind those from first on whose places are equally spaced.
+static mspring_id end_of_spaced(const packing *p, mspring_id first, uint32_t step) {
+    mspring_id s = first + 1;
+    while (s < p->count && p->of_spring[s] - p->of_spring[s - 1] == step)
+        ++s;
+    return s;
+}
+
+// The spring behind those from first on that go on with the pattern of the first ones; first if there is none.
+static mspring_id end_of_pattern(const packing *p, mspring_id first, uint32_t period, uint32_t step) {
+    const mspringi_place *of = p->of_spring;
+    mspring_id s = first + period;
+    while (s < p->count && of[s] < p->lattice_places && direction_of(of[s]) == direction_of(of[s - period]) &&
+           slot_of(of[s]) - slot_of(of[s - period]) == step)
+        ++s;
+    for (uint32_t i = 0; i < period; ++i)
+        if (of[first + i] >= p->lattice_places)
+            return first;
+    return s;
+}
+
+// Find the kind of run that gets furthest from first on. Returns its end.
+static mspring_id find_run(const packing *p, mspring_id first, mspringi_place_run *run) {
+    const mspringi_place *of = p->of_spring;
+    const uint32_t left = p->count - first;
+    mspring_id furthest = first;
+    if (left < SHORTEST_RUN)
+        return first;
+    const uint32_t spacing = of[first + 1] - of[first];
+    furthest = end_of_spaced(p, first, spacing);
+    *run = (mspringi_place_run){
+        .first = first, .kind = MSPRINGI_RUN_SPACED, .period = 1, .step = spacing, .start = {of[first]}};
+    for (uint32_t period = 1; period <= MSPRINGI_DIRECTIONS; ++period) {
+        const uint32_t step = slot_of(of[first + period]) - slot_of(of[first]);
+        const mspring_id end = end_of_pattern(p, first, period, step);
+        if (end <= furthest || end - first < 2 * period)
+            continue;
+        furthest = end;
+        *run = (mspringi_place_run){
+            .first = first, .kind = MSPRINGI_RUN_PATTERN, .period = (uint16_t)period, .step = step};
+        for (uint32_t i = 0; i < period; ++i)
+            run->start[i] = slot_of(of[first + i]) * MSPRINGI_DIRECTIONS + direction_of(of[first + i]);
+    }
+    return furthest;
+}
+
+static bool append_run(packing *p, const mspringi_place_run *run) {
+    void *runs = p->runs;
+    const bool grown = mspringi_grow(p->memory, &runs, &p->run_capacity, p->run_count + 1, sizeof *p->runs);
+    p->runs = runs;
+    if (grown)
+        p->runs[p->run_count++] = *run;
+    return grown;
+}
+
+static bool append_listed(packing *p, mspring_id spring, bool begins) {
+    const mspringi_place_run run = {
+        .first = spring, .kind = MSPRINGI_RUN_LISTED, .period = 1, .start = {(uint32_t)p->listed_count}};
+    void *listed = p->listed;
+    if (begins && !append_run(p, &run))
+        return false;
+    const bool grown =
+        mspringi_grow(p->memory, &listed, &p->listed_capacity, p->listed_count + 1, sizeof *p->listed);
+    p->listed = listed;
+    if (grown)
+        p->listed[p->listed_count++] = p->of_spring[spring];
+    return grown;
+}
+
+static bool pack(packing *p) {
+    bool ok = true, in_list = false;
+    for (mspring_id s = 0; ok && s < p->count;) {
+        mspringi_place_run run = {0};
+        const mspring_id end = find_run(p, s, &run);
+        const bool is_run = end - s >= SHORTEST_RUN;
+        ok = is_run ? append_run(p, &run) : append_listed(p, s, !in_list);
+        in_list = !is_run;
+        s = is_run ? end : s + 1;
+    }
+    return ok;
+}
+
+// Copy what has been packed to arrays that are as long as it.
+static bool keep(const packing *p, mspringi_places *to) {
+    const uint32_t pages = (p->count + MSPRINGI_PLACES_PAGE - 1) / MSPRINGI_PLACES_PAGE;
+    to->runs = mspringi_alloc(p->memory, p->run_count + 1, sizeof *to->runs);
+    to->listed = mspringi_alloc(p->memory, p->listed_count, sizeof *to->listed);
+    to->run_of_page = mspringi_alloc(p->memory, pages, sizeof *to->run_of_page);
+    if (!to->runs || !to->listed || !to->run_of_page)
+        return false;
+    to->run_count = (uint32_t)p->run_count;
+    if (p->run_count > 0)
+        memcpy(to->runs, p->runs, p->run_count * sizeof *to->runs);
+    if (p->listed_count > 0)
+        memcpy(to->listed, p->listed, p->listed_count * sizeof *to->listed);
+    to->runs[p->run_count].first = p->count;
+    for (uint32_t page = 0, run = 0; page < pages; ++page) {
+        while (page * MSPRINGI_PLACES_PAGE >= to->runs[run + 1].first)
+            ++run;
+        to->run_of_page[page] = run;
+    }
+    return true;
+}
+
+bool mspringi_places_create(mspringi_places *places, const mspringi_place *of_spring, uint32_t count,
+                            mspringi_place lattice_places, mspringi_memory *memory) {
+    mspringi_places made = {0};
+    packing p = {.of_spring = of_spring, .count = count, .lattice_places = lattice_places, .memory = memory};
+    const bool ok = pack(&p) && keep(&p, &made);
+    mspringi_free(memory, p.runs);
+    mspringi_free(memory, p.listed);
+    if (ok)
+        *places = made;
+    else
+        mspringi_places_destroy(&made, memory);
+    return ok;
+}
+
+void mspringi_places_destroy(mspringi_places *places, mspringi_memory *memory) {
+    mspringi_free(memory, places->runs);
+    mspringi_free(memory, places->run_of_page);
+    mspringi_free(memory, places->listed);
+    *places = (mspringi_places){0};
+}
+
+// Those of a run's springs first ... first + count - 1, counted from its own first.
+static void read_run(const mspringi_places *places, const mspringi_place_run *run, uint32_t first, uint32_t count,
+                     mspringi_place *out) {
+    if (run->kind == MSPRINGI_RUN_LISTED) {
+        for (uint32_t i = 0; i < count; ++i)
+            out[i] = places->listed[run->start[0] + first + i];
+        return;
+    }
+    if (run->kind == MSPRINGI_RUN_SPACED) {
+        for (uint32_t i = 0; i < count; ++i)
+            out[i] = run->start[0] + (first + i) * run->step;
+        return;
+    }
+    uint32_t turn = mspringi_turn_of(first, run->period), member = first - turn * run->period;
+    for (uint32_t i = 0; i < count; ++i) {
+        const uint32_t code = run->start[member];
+        out[i] = mspringi_lattice_place(code / MSPRINGI_DIRECTIONS + turn * run->step, code % MSPRINGI_DIRECTIONS);
+        member = member + 1 < run->period ? member + 1 : 0;
+        turn += member == 0;
+    }
+}
+
+void mspringi_places_read(const mspringi_places *places, mspring_id first, uint32_t count, mspringi_place *out) {
+    if (count == 0)
+        return;
+    const mspringi_place_run *run = &places->runs[places->run_of_page[first / MSPRINGI_PLACES_PAGE]];
+    while (first >= run[1].first)
+        ++run;
+    for (uint32_t done = 0; done < count; ++run) {
+        const uint32_t i = first + done - run->first, here = run[1].first - run->first - i;
+        const uint32_t now = here < count - done ? here : count - done;
+        read_run(places, run, i, now, out + done);
+        done += now;
+    }
+}
+
+void mspringi_places_refill(mspringi_place_reader *reader) {
+    const uint32_t room = sizeof reader->buffer / sizeof reader->buffer[0];
+    const uint32_t left = reader->places->runs[reader->places->run_count].first - reader->next;
+    reader->at = 0;
+    reader->filled = left < room ? left : room;
+    mspringi_places_read(reader->places, reader->next, reader->filled, reader->buffer);
+    reader->next += reader->filled;
+}
