@@ -7,6 +7,8 @@
 #   examples.sh memory   BENDING SOURCE   the same, with more than fits into memory
 #   examples.sh results  BENDING SOURCE   `bending` given what is right: the numbers that it must print
 #   examples.sh programs BENDING SOURCE   the small programs beside it: what they print and draw
+#   examples.sh load     BENDING SOURCE   `load`: structures of each format, what it says of them, and that they come to
+#                                         rest on a floor with each solver; damaged ones refused with line and column
 #   examples.sh game     BENDING SOURCE [MINUTES]   the game, ten minutes long: its books close, and it ends in the same
 #                                         state at every level and with any threads
 set -eu
@@ -360,6 +362,120 @@ programs() {
   same "$(echo "$line" | tr -s ' ' | cut -d' ' -f1-3)" "truss $(head -n 20 "$source/examples/data/truss.msn" |
     awk '!/^#/ && NF == 2 { print; exit }')" 'scene, particles, springs'
   refused 1 'nowhere.png' nowhere.png
+}
+
+# A structure comes to rest on a floor, with each solver: its kinetic energy ends far below the most that it had, it is
+# and it is lower by less than METRES.
+settles() {
+  metres=$1
+  shift
+  succeed "$@" --settle --picture "$scratch/settled.png"
+  for solver in explicit implicit; do
+    awk -v solver="$solver" -v metres="$metres" '$1 == solver {
+      for (i = 1; i < NF; i++) {
+        if ($i == "top") lower = $(i + 1)
+        if ($i == "kinetic") energy = $(i + 2)
+        if ($i == "(most") most = $(i + 1)
+      }
+      rest = energy <= 0.02 * most && lower > 0 && lower < metres
+    } END { exit !rest }' "$scratch/out" || {
+      cp "$scratch/out" "$scratch/err"
+      complain "no rest, $solver: $*"
+    }
+    png "$scratch/settled_$solver.png"
+  done
+  png "$scratch/settled.png"
+}
+
+# What the report of the last run says.
+reports() {
+  cases=$((cases + 1))
+  grep -qF -e "$1" "$scratch/out" || {
+    cp "$scratch/out" "$scratch/err"
+    complain "the report does not say \"$1\""
+  }
+}
+
+load() {
+  bending=$(cd "$(dirname "$bending")" && pwd)/load
+
+  # A cart with two axles, the same on both sides; one beam lies across and has no length from the side.
+  cart=$scratch/cart.truck
+  printf '%s\n' 'A cart' '; with a comment' globals '800, 100, tracks/box' nodes \
+    '0, 0.0, 1.0, 0.0, l' '1, 2.0, 1.0, 0.0, l' '2, 4.0, 1.0, 0.0, l' '3, 0.5, 0.4, 0.0' '4, 3.5, 0.4, 0.0' \
+    '5, 0.0, 1.0, 1.0, l' '6, 2.0, 1.0, 1.0, l' '7, 4.0, 1.0, 1.0, l' '8, 0.5, 0.4, 1.0' '9, 3.5, 0.4, 1.0' \
+    'set_beam_defaults 600000, 8000, 400000, 1000000' beams \
+    '0, 1' '1, 2' '0, 3' '1, 3' '1, 4' '2, 4' '3, 4' '5, 6' '6, 7' '5, 8' '6, 8' '6, 9' '7, 9' '8, 9' '0, 5' \
+    wheels '0.4, 0.2, 10, 3, 8, 9999, 1, 1, 0, 60, 200000, 2000, a b' \
+    '0.4, 0.2, 10, 4, 9, 9999, 1, 1, 0, 60, 200000, 2000, a b' flares '0, 1, 2' 'props' end >"$cart"
+  settles 0.3 "$cart"
+  reports 'cart.truck, seen in xy'
+  reports 'beams      195, dropped 21, merged 127: 47 springs'
+  reports 'nodes 10, set_beam_defaults 1, beams 15, wheels 2'
+  reports 'flares 1'
+  succeed "$cart" --no-wheels --write "$scratch/cart.msn"
+  same "$(awk '!/^#/ && NF == 2 { print; exit }' "$scratch/cart.msn")" '5 7' 'particles and springs of the text network'
+  reports 'nodes      10, merged 5: 5 particles'
+  reports 'beams      15, dropped 1, merged 7: 7 springs'
+  sed 's/^1, 4$/1, 44/' "$cart" >"$scratch/broken.truck"
+  refused 1 "broken.truck:22:4: there is no node '44'" "$scratch/broken.truck"
+  sed 's/^4, 3.5,/4, 3.x5,/' "$cart" >"$scratch/broken.truck"
+  refused 1 "broken.truck:10:4: '3.x5' is no coordinate" "$scratch/broken.truck"
+
+  # A frame of two cells, with a comma too many and one too few.
+  frame=$scratch/frame.jbeam
+  printf '%s\n' '{"frame": { // two cells' ' "nodes": [["id","posX","posY","posZ"],' \
+    '  {"nodeWeight":20} ["a",0,0,0], ["b",0,1,0], ["c",0,2,0], ["d",0,0,1], ["e",0,1,1], ["f",0,2,1],],' \
+    ' "beams": [["id1:","id2:"], {"beamSpring":200000,"beamDamp":300},' \
+    '  ["a","b"], ["b","c"], ["d","e"], ["e","f"] ["a","d"], ["b","e"], ["c","f"],' \
+    '  ["a","e"], ["b","d"], ["b","f"], ["c","e"],],' ' "triangles": [["id1:","id2:","id3:"], ["a","b","d"]],' \
+    '}}' >"$frame"
+  settles 0.2 "$frame"
+  reports 'nodes      6, merged 0: 6 particles, 120 kg'
+  reports 'beams      11, dropped 0, merged 0: 11 springs'
+  reports 'triangles 1'
+  sed 's/"c","f"/"c","g"/' "$frame" >"$scratch/broken.jbeam"
+  refused 1 "broken.jbeam:5:74: 'g' is no node" "$scratch/broken.jbeam"
+  sed '8d' "$frame" >"$scratch/broken.jbeam"
+  refused 1 'broken.jbeam:1:11|never closed' "$scratch/broken.jbeam"
+
+  # A crossed square of lines.
+  square=$scratch/square.obj
+  printf '%s\n' '# a square' 'v 0 0 0' 'v 1 0 0' 'v 1 1 0' 'v 0 1 0' 'l 1 2 3 4 1' 'l 1 3' 'l 2 4' 'f 1 2 3' >"$square"
+  settles 0.2 "$square" --mass 10 --stiffness 20000 --damping 50
+  reports '4 particles, 40 kg'
+  reports '6 springs'
+  sed 's/^l 2 4$/l 2 5/' "$square" >"$scratch/broken.obj"
+  refused 1 "broken.obj:8:5: there is no vertex '5'" "$scratch/broken.obj"
+
+  # A raft in a game's materials.
+  raft=$scratch/raft.ppm
+  json=$scratch/materials.json
+  printf '%s\n' '{"materials": [' ' {"name": "Plank", "color_key": "#8A5A2B", "strength": 0.05,' \
+    '  "mass": {"nominal_mass": 600, "density": 1}}' ']}' >"$json"
+  {
+    echo 'P3 8 3 255'
+    awk 'BEGIN { for (i = 0; i < 24; i++) print i == 0 || i == 7 ? "255 255 255" : "138 90 43" }'
+  } >"$raft"
+  if "$bending" "$raft" --materials "$json" 2>&1 | grep -q 'without cJSON'; then
+    echo 'skipped: ships, which this build does not read'
+  else
+    settles 0.5 "$raft" --materials "$json"
+    refused 1 'relative springs' "$raft" --materials "$json" --write "$scratch/raft.msn"
+    reports '22 particles, 13200 kg'
+    sed 's/138 90 43/139 90 43/' "$raft" >"$scratch/odd.ppm"
+    refused 1 '#8B5A2B (22 pixels, first in column 1 of row 0)' "$scratch/odd.ppm" --materials "$json"
+    sed 's/"strength": 0.05,/"strength" 0.05,/' "$json" >"$scratch/broken.json"
+    refused 1 'broken.json:2:|no JSON' "$raft" --materials "$scratch/broken.json"
+  fi
+
+  # How it is called.
+  refused 2 'no file'
+  refused 2 '--plane' "$cart" --plane zz
+  refused 2 '--wobble' "$cart" --wobble 1
+  refused 2 '--merge' "$cart" --merge x
+  refused 1 'missing.truck|No such file' "$scratch/missing.truck"
+  refused 1 'nowhere' "$cart" --write "$scratch/nowhere/x.msn"
 }
 
 # The game keeps books of water, momentum and energy, and fails if they do not close.
