@@ -8,11 +8,15 @@
 #include <immintrin.h>
 #endif
 
-/// Most and fewest looks before going to sleep, 30 and 3 microseconds on a Zen 5. Two threads that have to share
-/// one core then hand on 48 sweeps of 68 rows in 1.5 times the time of one thread, where always the most takes 2.6
-/// times.
-#define MOST_SPINS 1000
+/// Most and fewest looks before going to sleep, 100 and 3 microseconds on a Zen 4: the most is longer than what one
+/// thread of an implicit step does alone while the others wait, as waking up costs them as much again (544 x 68 with
+/// two workers: 1.4 times as fast as one, with a quarter of that 0.95).
+#define MOST_SPINS 4000
 #define FEWEST_SPINS 100
+
+/// Looks with which to try again. Two threads that have to share one core then hand on 40 sweeps of 96 rows in 1.1
+/// times the time of one thread.
+#define TRIAL_SPINS 1000
 
 /// Of so many sleeps, one makes the next wait spin for long again: the other may have got a core of its own.
 #define SLEEPS_BEFORE_TRIAL 16
@@ -76,7 +80,7 @@ void mspringi_progress_advance(mspringi_progress *progress, uint32_t value) {
 static uint32_t sleep_until(mspringi_progress *progress, uint32_t target, uint32_t spins) {
     uint32_t value;
     mspringi_mutex_lock(&progress->mutex);
-    spins = ++progress->sleeps % SLEEPS_BEFORE_TRIAL == 0 ? MOST_SPINS : spins / 2;
+    spins = ++progress->sleeps % SLEEPS_BEFORE_TRIAL == 0 ? TRIAL_SPINS : spins / 2;
     set_spins(progress, spins > FEWEST_SPINS ? spins : FEWEST_SPINS);
     atomic_fetch_add(&progress->sleepers, 1);
     while (!is_reached(value = atomic_load(&progress->value), target))
