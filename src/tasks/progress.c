@@ -9,8 +9,8 @@
 #endif
 
 /// Most and fewest looks before going to sleep, 100 and 3 microseconds on a Zen 4: the most is longer than what one
-/// thread of an implicit step does alone while the others wait, as waking up costs them as much again (544 x 68 with
-/// two workers: 1.4 times as fast as one, with a quarter of that 0.95).
+/// thread of an implicit step does alone while the others wait, as waking up costs them as much again (544 x 68
+/// with two workers: 1.4 times as fast as one, with a quarter of that 0.95).
 #define MOST_SPINS 4000
 #define FEWEST_SPINS 100
 
