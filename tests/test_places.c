@@ -49,7 +49,7 @@ static size_t check_kept(const given *from) {
     mspringi_message message;
     mspringi_places places;
     check_ok(mspringi_memory_init(&memory, &allocator, &message));
-    assert_true(mspringi_places_create(&places, from->places, from->count, LATTICE, &memory));
+    assert_true(mspringi_places_create(&places, from->places, from->count, from->count, LATTICE, &memory));
     const size_t used = memory.used;
     for (uint32_t s = 0; s < from->count; s++) {
         assert_int_equal(mspringi_places_at(&places, s), from->places[s]);
@@ -149,6 +149,32 @@ static void patterns_end_where_lattices_do(void **state) {
     (void)check_kept(&pattern);
 }
 
+/// Springs that are not fixed can be set, and the others stay as they are.
+static void some_can_be_set(void **state) {
+    (void)state;
+    enum { SPRINGS = 1000 };
+    const uint32_t fixed[] = {0, 1, 128, 500, 999};
+    for (size_t i = 0; i < COUNT_OF(fixed); i++) {
+        mspringi_memory memory;
+        mspringi_message message;
+        mspringi_places places;
+        mspringi_place expected[SPRINGS];
+        for (uint32_t s = 0; s < SPRINGS; s++) {
+            expected[s] = mspringi_lattice_place(s, MSPRINGI_EAST);
+        }
+        check_ok(mspringi_memory_init(&memory, NULL, &message));
+        assert_true(mspringi_places_create(&places, expected, SPRINGS, fixed[i], LATTICE, &memory));
+        for (uint32_t s = fixed[i]; s < SPRINGS; s += 7) {
+            expected[s] = 3 * s;
+            mspringi_places_set(&places, s, expected[s]);
+        }
+        for (uint32_t s = 0; s < SPRINGS; s++) {
+            assert_int_equal(mspringi_places_at(&places, s), expected[s]);
+        }
+        mspringi_places_destroy(&places, &memory);
+    }
+}
+
 static void failed_allocations_leave_nothing(void **state) {
     (void)state;
     const mspringi_place few[] = {3, 1, 4};
@@ -159,7 +185,7 @@ static void failed_allocations_leave_nothing(void **state) {
         mspringi_message message;
         mspringi_places places;
         check_ok(mspringi_memory_init(&memory, &allocator, &message));
-        assert_false(mspringi_places_create(&places, few, 3, LATTICE, &memory));
+        assert_false(mspringi_places_create(&places, few, 3, 3, LATTICE, &memory));
         check_watched_clean(&watched);
     }
 }
@@ -171,6 +197,7 @@ int main(void) {
         cmocka_unit_test(every_period_and_step_is_a_run),
         cmocka_unit_test(disorder_costs_little_more_than_an_array),
         cmocka_unit_test(patterns_end_where_lattices_do),
+        cmocka_unit_test(some_can_be_set),
         cmocka_unit_test(failed_allocations_leave_nothing),
     };
     return cmocka_run_group_tests_name("places", tests, NULL, NULL);

@@ -120,7 +120,7 @@ static mspring_result park(mspringi_replan *replan, mspring_network *network, ms
         b[i] = t->slot_of_particle[first->particle_of_slot[tip]];
         entry[2 * i] = entry[2 * i + 1] = rungs * MSPRINGI_WIDTH + next_parked++;
     }
-    if (!mspringi_places_create(&t->places, places, all, t->lattice_places, &network->plan_memory))
+    if (!mspringi_places_create(&t->places, places, all, all, t->lattice_places, &network->plan_memory))
         return no_memory_to_park(network, parked);
     mspringi_free(&network->plan_memory, places);
     mspringi_free(&network->plan_memory, woven_places);

@@ -9,7 +9,7 @@
 /// What is being gone through, and what is made of it, in arrays that grow.
 typedef struct packing {
     const mspringi_place *of_spring;
-    uint32_t count;
+    uint32_t count; ///< of those that patterns are looked for in
     mspringi_place lattice_places;
     mspringi_memory *memory;
     mspringi_place_run *runs;
@@ -95,7 +95,7 @@ static bool append_listed(packing *p, mspring_id spring, bool begins) {
     return grown;
 }
 
-static bool pack(packing *p) {
+static bool pack(packing *p, uint32_t all) {
     bool ok = true, in_list = false;
     for (mspring_id s = 0; ok && s < p->count;) {
         mspringi_place_run run = {0};
@@ -105,12 +105,14 @@ static bool pack(packing *p) {
         in_list = !is_run;
         s = is_run ? end : s + 1;
     }
+    for (mspring_id s = p->count; ok && s < all; ++s)
+        ok = append_listed(p, s, s == p->count);
     return ok;
 }
 
 // Copy what has been packed to arrays that are as long as it.
-static bool keep(const packing *p, mspringi_places *to) {
-    const uint32_t pages = (p->count + MSPRINGI_PLACES_PAGE - 1) / MSPRINGI_PLACES_PAGE;
+static bool keep(const packing *p, uint32_t all, mspringi_places *to) {
+    const uint32_t pages = (all + MSPRINGI_PLACES_PAGE - 1) / MSPRINGI_PLACES_PAGE;
     to->runs = mspringi_alloc(p->memory, p->run_count + 1, sizeof *to->runs);
     to->listed = mspringi_alloc(p->memory, p->listed_count, sizeof *to->listed);
     to->run_of_page = mspringi_alloc(p->memory, pages, sizeof *to->run_of_page);
@@ -121,7 +123,7 @@ static bool keep(const packing *p, mspringi_places *to) {
         memcpy(to->runs, p->runs, p->run_count * sizeof *to->runs);
     if (p->listed_count > 0)
         memcpy(to->listed, p->listed, p->listed_count * sizeof *to->listed);
-    to->runs[p->run_count].first = p->count;
+    to->runs[p->run_count].first = all;
     for (uint32_t page = 0, run = 0; page < pages; ++page) {
         while (page * MSPRINGI_PLACES_PAGE >= to->runs[run + 1].first)
             ++run;
@@ -131,10 +133,10 @@ static bool keep(const packing *p, mspringi_places *to) {
 }
 
 bool mspringi_places_create(mspringi_places *places, const mspringi_place *of_spring, uint32_t count,
-                            mspringi_place lattice_places, mspringi_memory *memory) {
+                            uint32_t fixed, mspringi_place lattice_places, mspringi_memory *memory) {
     mspringi_places made = {0};
-    packing p = {.of_spring = of_spring, .count = count, .lattice_places = lattice_places, .memory = memory};
-    const bool ok = pack(&p) && keep(&p, &made);
+    packing p = {.of_spring = of_spring, .count = fixed, .lattice_places = lattice_places, .memory = memory};
+    const bool ok = pack(&p, count) && keep(&p, count, &made);
     mspringi_free(memory, p.runs);
     mspringi_free(memory, p.listed);
     if (ok)
@@ -149,6 +151,11 @@ void mspringi_places_destroy(mspringi_places *places, mspringi_memory *memory) {
     mspringi_free(memory, places->run_of_page);
     mspringi_free(memory, places->listed);
     *places = (mspringi_places){0};
+}
+
+void mspringi_places_set(const mspringi_places *places, mspring_id spring, mspringi_place place) {
+    const mspringi_place_run *run = &places->runs[places->run_count - 1];
+    places->listed[run->start[0] + (spring - run->first)] = place;
 }
 
 // Those of a run's springs first ... first + count - 1, counted from its own first.

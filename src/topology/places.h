@@ -54,10 +54,14 @@ typedef struct mspringi_places {
     uint32_t run_count;
 } mspringi_places;
 
-/// Keep what of_spring tells of count springs. False: no memory.
+/// Keep what of_spring tells of count springs, of which the first so many stay where they are and the others are
+/// listed, so that they can be set. False: no memory.
 bool mspringi_places_create(mspringi_places *places, const mspringi_place *of_spring, uint32_t count,
-                            mspringi_place lattice_places, mspringi_memory *memory);
+                            uint32_t fixed, mspringi_place lattice_places, mspringi_memory *memory);
 void mspringi_places_destroy(mspringi_places *places, mspringi_memory *memory);
+
+/// Give another place to a spring that is not fixed.
+void mspringi_places_set(const mspringi_places *places, mspring_id spring, mspringi_place place);
 
 /// The places of springs first ... first + count - 1: less work for many springs than one by one.
 void mspringi_places_read(const mspringi_places *places, mspring_id first, uint32_t count, mspringi_place *out);

@@ -680,8 +680,8 @@ mspring_result mspringi_topology_create(mspringi_topology *topology, const mspri
     }
     mspringi_place *places;
     mspringi_topology_finish(begun, memory, topology, &places);
-    if (!mspringi_places_create(&topology->places, places, topology->spring_count, topology->lattice_places,
-                                memory))
+    if (!mspringi_places_create(&topology->places, places, topology->spring_count, topology->spring_count,
+                                topology->lattice_places, memory))
         result = mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the places of %u springs",
                                (unsigned)topology->spring_count);
     mspringi_free(memory, places);
