@@ -415,6 +415,86 @@ static bool measure_wreck(session *with, const bench_options *options, const ben
     return ok;
 }
 
+/// Parts that a network is cut into, of which one stays awake.
+#define PARTS 10
+
+/// Make a network of parts; one that may sleep has one part awake.
+static bool make_parts(session *with, const bench_scene *subject, mspring_simd level, bool sleeps, bool implicit,
+                       bool is_compact, bench_network *parts, scene_error *error) {
+    mspring_network_def def;
+    mspring_solver_def solver;
+    mspring_id first;
+    if (!bench_network_create(subject->made.builder, level, 1, with->step->substeps, parts, error)) {
+        return false;
+    }
+    mspring_network_destroy(parts->network);
+    parts->network = NULL;
+    const float pinned = 0.0f, none = 0.0f, slowly = 1e-4f;
+    mspring_result result = mspring_network_def_init(&def, sizeof def);
+    def.simd_level = level;
+    def.sleep_speed = sleeps ? OUT_OF_REACH : 0.0f; // what is awake is so by a pin that moves
+    def.sleep_time = 0;
+    def.substeps = with->step->substeps;
+    if (result == MSPRING_OK) {
+        result = mspring_network_create(subject->made.builder, &def, &parts->network);
+    }
+    if (result == MSPRING_OK) {
+        result = mspring_solver_def_init(&solver, sizeof solver);
+    }
+    solver.solver = implicit ? MSPRING_SOLVER_IMPLICIT : MSPRING_SOLVER_EXPLICIT;
+    solver.substeps = implicit ? 1 : def.substeps;
+    if (result == MSPRING_OK) {
+        result = mspring_network_set_solver(parts->network, &solver);
+    }
+    if (result == MSPRING_OK && !bench_wreck_slice(parts, PARTS, &first, error)) {
+        return false;
+    }
+    if (result == MSPRING_OK && is_compact) {
+        result = mspring_network_compact(parts->network, 0, NULL);
+    }
+    if (result == MSPRING_OK) {
+        result = mspring_network_set_inverse_mass_scales(parts->network, first, 1, &pinned);
+    }
+    if (result == MSPRING_OK) {
+        result = mspring_network_set_velocities(parts->network, first, 1, &none, &slowly);
+    }
+    if (result != MSPRING_OK) {
+        bench_library_error(error, "making parts", result, mspring_network_error(parts->network));
+    }
+    return result == MSPRING_OK;
+}
+
+/// Time steps of a network in ten parts of which nine sleep in turn with those of one of which none does.
+static bool measure_parts(session *with, const bench_options *options, const bench_scene *subject,
+                          mspring_simd level, bool implicit, bool is_compact, uint32_t repeat, double *times,
+                          scene_error *error) {
+    bench_network all[2] = {{0}, {0}};
+    bool ok = make_parts(with, subject, level, false, implicit, is_compact, &all[0], error) &&
+              make_parts(with, subject, level, true, implicit, is_compact, &all[1], error);
+    for (uint32_t i = 0; ok && i < 2 * repeat + 2; i++) {
+        const double start = bench_thread_seconds();
+        mspring_result result = mspring_network_step(all[i % 2].network, BENCH_DT);
+        const double seconds = bench_thread_seconds() - start;
+        if (result != MSPRING_OK) {
+            bench_library_error(error, "stepping parts", result, mspring_network_error(all[i % 2].network));
+            ok = false;
+        } else if (i >= 2) { // in the first all fall asleep that do
+            times[i % 2 * repeat + (i - 2) / 2] = seconds;
+        }
+    }
+    if (ok) {
+        char text[64];
+        bench_median(times, repeat);
+        const double median = bench_median(times + repeat, repeat);
+        snprintf(text, sizeof text, "nine tenths asleep%s%s", implicit ? ", implicit" : "",
+                 is_compact ? "" : ", not compact");
+        print_row(options, subject, with->step, text, times[repeat], median, times[0]);
+    }
+    bench_network_free(&all[0]);
+    bench_network_free(&all[1]);
+    return ok;
+}
+
 /// Time steps with a floor against steps without, the same network falling in both.
 /// @param drop  m from the lowest particle down to the floor
 static bool measure_floor(session *with, const bench_options *options, const bench_scene *subject,
@@ -514,6 +594,9 @@ static bool measure_level(const bench_scene *subject, const bench_options *optio
     }
     for (int viewed = 0; ok && viewed < 2; viewed++) {
         ok = measure_sleep(&with, options, subject, level, viewed == 1, repeat, &error);
+    }
+    for (int way = 0; ok && way < 4; way++) {
+        ok = measure_parts(&with, options, subject, level, way / 2 == 1, way % 2 == 1, repeat, times, &error);
     }
     for (bench_wreck kind = 0; ok && kind < BENCH_WRECKS; kind++) {
         ok = measure_wreck(&with, options, subject, level, kind, repeat, times, &error);

@@ -104,6 +104,21 @@ static bool list_ends(const bench_network *n, wreckage *all, scene_error *error)
     return true;
 }
 
+static bool break_all(const bench_network *network, const wreckage *all, scene_error *error) {
+    mspring_result result = mspring_network_break_springs(network->network, all->broken, all->count);
+    if (result != MSPRING_OK) {
+        bench_library_error(error, "making a wreck", result, mspring_network_error(network->network));
+    }
+    return result == MSPRING_OK;
+}
+
+static void free_wreckage(wreckage *all) {
+    free(all->a);
+    free(all->b);
+    free(all->broken);
+    free(all->is_broken);
+}
+
 bool bench_wreck_make(const bench_network *network, bench_wreck kind, scene_error *error) {
     wreckage all = {0};
     bool ok = list_ends(network, &all, error);
@@ -117,16 +132,39 @@ bool bench_wreck_make(const bench_network *network, bench_wreck kind, scene_erro
             break_spring(&all, s);
         }
     }
+    ok = ok && break_all(network, &all, error);
+    free_wreckage(&all);
+    return ok;
+}
+
+static int compare_doubles(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+bool bench_wreck_slice(const bench_network *network, uint32_t parts, mspring_id *first, scene_error *error) {
+    wreckage all = {0};
+    double *sorted = bench_allocate(network->particle_count, sizeof *sorted, error);
+    bool ok = sorted != NULL && list_ends(network, &all, error);
     if (ok) {
-        mspring_result result = mspring_network_break_springs(network->network, all.broken, all.count);
-        if (result != MSPRING_OK) {
-            bench_library_error(error, "making a wreck", result, mspring_network_error(network->network));
-            ok = false;
+        for (mspring_id p = 0; p < network->particle_count; p++) {
+            sorted[p] = network->start_x[p];
+        }
+        qsort(sorted, network->particle_count, sizeof *sorted, compare_doubles);
+        for (*first = 0; network->start_x[*first] > sorted[0];) {
+            ++*first;
         }
     }
-    free(all.a);
-    free(all.b);
-    free(all.broken);
-    free(all.is_broken);
+    for (uint32_t part = 1; ok && part < parts; part++) {
+        const double cut = sorted[(uint64_t)network->particle_count * part / parts];
+        for (mspring_id s = 0; s < network->spring_count; s++) {
+            if ((network->start_x[all.a[s]] < cut) != (network->start_x[all.b[s]] < cut)) {
+                break_spring(&all, s);
+            }
+        }
+    }
+    ok = ok && break_all(network, &all, error);
+    free_wreckage(&all);
+    free(sorted);
     return ok;
 }

@@ -18,4 +18,8 @@ typedef enum bench_wreck {
 bool bench_wreck_make(const bench_network *network, bench_wreck kind, scene_error *error);
 const char *bench_wreck_name(bench_wreck kind);
 
+/// Cut a network at its start from top to bottom into so many parts of as many particles each.
+/// @param first  receives a particle of the first part, the leftmost of all
+bool bench_wreck_slice(const bench_network *network, uint32_t parts, mspring_id *first, scene_error *error);
+
 #endif

@@ -344,6 +344,8 @@ static void add_hook(arguments *a) {
     X(mspring_network_set_floor, "Ns", make_floor(a), mspring_network_set_floor(a->network, a->given))             \
     X(mspring_network_get_floor_impulses, "nR01", NOTHING,                                                         \
       mspring_network_get_floor_impulses(a->network, a->first, a->count, a->out[0], a->out[1]))                    \
+    X(mspring_network_get_sleepers, "nR0", NOTHING,                                                                \
+      mspring_network_get_sleepers(a->network, a->first, a->count, a->out[0]))                                     \
     X(mspring_network_is_asleep, "v", NOTHING, note_size(mspring_network_is_asleep(a->network)))                   \
     X(mspring_network_wake, "N", NOTHING, mspring_network_wake(a->network))                                        \
     X(mspring_network_compact, "No", NOTHING, mspring_network_compact(a->network, 0, a->out[0]))                   \

@@ -427,7 +427,7 @@ typedef struct mspring_network_def {
     uint32_t flags;        ///< MSPRING_NETWORK_RESERVE_DAMPING or 0; default 0
     uint32_t max_substeps; ///< as in mspring_solver_def; default 1000
     mspring_guard guard;   ///< default MSPRING_GUARD_GROWTH
-    float sleep_speed; ///< m/s, 0 to 1e15: a network sleeps once none of its particles has been faster in x or y
+    float sleep_speed; ///< m/s, 0 to 1e15: an island sleeps once none of its particles has been faster in x or y
                        ///< at the end of a step for sleep_time, see mspring_network_is_asleep(); default 0: never
     float sleep_time;  ///< s of simulated time, 0 to 1e6; default 0.5
 } mspring_network_def;
@@ -630,26 +630,41 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_global_damping(
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_step(mspring_network *network, double dt);
 
-/// Whether the network sleeps: 1 or 0. NULL gives 0.
+/// Whether the network sleeps, all of it: 1 or 0. NULL gives 0.
 ///
-/// A network that may sleep (mspring_network_def.sleep_speed) falls asleep at the end of a step, as a whole: once
-/// every particle has been slow for long enough, no pinned one moves and no spring is on a ramp. Its velocities are
-/// set to 0 then, so what was left of its kinetic energy is gone. While it sleeps steps change nothing, and cost
-/// next to nothing if there are no hooks and no forces.
+/// In a network that may sleep (mspring_network_def.sleep_speed) every island does so by itself: particles that
+/// hang together by springs that are not broken (mspring_network_update_components()), or one without springs. It
+/// falls asleep at the end of a step, once every particle of it has been slow for long enough, no pinned one moves
+/// and none of its springs is on a ramp. Its velocities are set to 0 then, so what was left of its kinetic energy
+/// is gone. While it sleeps steps do not move it, and cost what is awake: blocks of 16 slots without a particle
+/// that is awake are left out, so islands that share their rows with others, as the pieces of one lattice do, save
+/// most after mspring_network_compact(). If all sleep, with no hooks and no forces, a step costs next to nothing.
+/// The explicit solver moves what is awake, bit by bit, as if nothing slept; the implicit one leaves sleepers out
+/// of its system, which changes the last digits; the direct one holds them, but saves no time.
 ///
-/// It wakes before or in the step that finds something changed: a position, velocity, mass or pin that is another
-/// one (set by a call or through a view, or by a hook in the step before); a stiffness, damping, rest length,
-/// threshold or relax fraction that was set, a spring that was broken or restored; gravity, solver or floor; the
-/// length of the substep where springs are relative; a force from outside that differs from the one under which it
-/// fell asleep, so much that it would bring its particle to sleep_speed within sleep_time. It also wakes when it is
-/// compacted or expanded. Hooks are called as ever; the forces of those before substeps are looked at in the first
-/// of a step. A network of the implicit solver wakes as to a new motion.
-///
-/// To have parts that come to rest sleep while others move, make them networks of their own.
+/// An island wakes before or in the step that finds something changed: a position, velocity, mass or pin of its
+/// that is another one (set by a call or through a view; by a hook, which wakes it at the end of the step); a
+/// stiffness, damping, rest length or threshold of its that was set, a spring of its that was broken, or one that
+/// joins it to another island restored; a force from outside that differs from the one under which it fell asleep,
+/// so much that it would bring its particle to sleep_speed within sleep_time. All wake when gravity, solver, floor
+/// or relax fraction change, with the length of the substep where springs are relative, with
+/// mspring_network_renew_relative_springs(), and when the host sets positions that move the local origin. Hooks are
+/// called as ever; the forces of those before substeps are looked at in the first of a step. The implicit solver's
+/// history of an island is that of one at rest; of a network that slept as a whole, none.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_network_is_asleep(const mspring_network *network);
 
-/// Wake a network. It has to be still for sleep_time again before it sleeps, and so has one that is awake already.
+/// Which of the particles first ... first + count - 1 sleep. Those whose positions, velocities or masses were set
+/// since, or written through a view, still do until the next step.
+/// @param asleep  [count], receives 1 or 0
+/// @return MSPRING_OK; MSPRING_ERROR_ID if there are not so many; MSPRING_ERROR_ARGUMENT for NULL.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_sleepers(const mspring_network *network,
+                                                                          mspring_id first, uint32_t count,
+                                                                          uint8_t *asleep);
+
+/// Wake all of a network. It has to be still for sleep_time again before it sleeps, and so has what is awake
+/// already.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL; MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_wake(mspring_network *network);

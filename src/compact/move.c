@@ -216,9 +216,7 @@ static mspring_network without_layout(const mspring_network *network, const mspr
     to.strain = (mspringi_strain){.relax = network->strain.relax};
     to.components.root = NULL;
     to.extents = (mspringi_extents){0};
-    to.sleep.state = to.sleep.inverse_mass = NULL;
-    to.sleep.force = (mspringi_field){NULL, NULL};
-    mspringi_wake(&to);
+    mspringi_sleep_forget(&to.sleep);
     to.implicit = to.fallback = NULL;
     to.floor = NULL;
     return to;
@@ -243,6 +241,7 @@ mspring_result mspringi_move(mspring_network *network, const mspringi_topology *
     if (result == MSPRING_OK) {
         move_particles(&to, network);
         move_springs(&to, network);
+        mspringi_sleep_move(&to, network);
         result = make_implicit(&to, network, tile_size);
         if (result == MSPRING_OK && network->fallback)
             result = mspringi_fallback_reserve(&to, fallback_size);

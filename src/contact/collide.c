@@ -14,6 +14,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "sleep/sleep.h"
+
 /// Times that all surfaces are gone through for one particle: corners need more than one.
 #define ROUNDS 4
 
@@ -133,7 +135,7 @@ static void collide_block(const mspring_network *network, const mspringi_field *
     for (size_t slot = first; slot < first + MSPRINGI_WIDTH; ++slot) {
         const bool is_clear = s->x[slot] >= clear->min_x && s->x[slot] <= clear->max_x &&
                               s->y[slot] >= clear->min_y && s->y[slot] <= clear->max_y;
-        if (!is_clear && network->inverse_mass[slot] > 0.0f)
+        if (!is_clear && mspringi_free_mass(network)[slot] > 0.0f)
             collide_slot(network, start, slot, h);
     }
 }
@@ -180,9 +182,13 @@ static void touch_strip(const mspring_network *network, const mspringi_field *st
     network->floor->has_impulse |= any;
 }
 
+static bool is_asleep(const mspring_network *network, uint32_t number) {
+    return mspringi_share_of_strip(network, &network->topology.strips[number]) == MSPRINGI_ASLEEP;
+}
+
 void mspringi_floor_touch_far(const mspring_network *network, float h) {
     for (uint32_t i = 0; i < network->topology.strip_count; ++i)
-        if (network->floor->clearances[i].is_far)
+        if (network->floor->clearances[i].is_far && !is_asleep(network, i))
             touch_strip(network, NULL, i, h);
 }
 
@@ -193,8 +199,10 @@ void mspringi_floor_keep(mspring_network *network, float h) {
     memcpy(floor->start.y, network->state.y, size);
     // What is clear around all strips is clear around the network.
     mspringi_floor_survey(network, (double)h);
-    floor->clear = floor->clearances[0].clear;
-    for (uint32_t i = 1; i < network->topology.strip_count; ++i) {
+    floor->clear = (mspringi_bounds){INFINITY, -INFINITY, -INFINITY, INFINITY};
+    for (uint32_t i = 0; i < network->topology.strip_count; ++i) {
+        if (is_asleep(network, i))
+            continue;
         const mspringi_bounds *other = &floor->clearances[i].clear;
         floor->clear.min_x = fminf(floor->clear.min_x, other->min_x);
         floor->clear.max_x = fmaxf(floor->clear.max_x, other->max_x);
@@ -206,5 +214,6 @@ void mspringi_floor_keep(mspring_network *network, float h) {
 void mspringi_floor_touch_all(mspring_network *network, float h) {
     mspringi_floor_survey(network, (double)h);
     for (uint32_t i = 0; i < network->topology.strip_count; ++i)
-        touch_strip(network, &network->floor->start, i, h);
+        if (!is_asleep(network, i))
+            touch_strip(network, &network->floor->start, i, h);
 }

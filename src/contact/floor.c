@@ -245,13 +245,28 @@ static void exchange_impulses(mspringi_floor *floor) {
     floor->had_impulse = has_impulse;
 }
 
-void mspringi_floor_begin(mspringi_floor *floor) {
+// The floor goes on bearing what sleeps on it.
+static void keep_impulses(const mspring_network *network) {
+    mspringi_floor *floor = network->floor;
+    for (size_t slot = 0; slot < floor->slot_count; ++slot) {
+        if (!mspringi_slot_is_asleep(network, slot))
+            continue;
+        floor->impulse.x[slot] = floor->former.x[slot];
+        floor->impulse.y[slot] = floor->former.y[slot];
+    }
+    floor->has_impulse = true;
+}
+
+void mspringi_floor_begin(mspring_network *network) {
+    mspringi_floor *floor = network->floor;
     if (!floor)
         return;
     exchange_impulses(floor);
     if (floor->has_impulse)
         memset(floor->impulse.x, 0, 2 * floor->slot_count * sizeof *floor->impulse.x);
     floor->has_impulse = false;
+    if (network->sleep.sleeping > 0 && floor->had_impulse)
+        keep_impulses(network);
 }
 
 void mspringi_floor_take_back(mspringi_floor *floor) {

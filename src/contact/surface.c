@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "sleep/sleep.h"
+
 /// Most straight parts of a field of heights that are looked at on the way of one particle in one substep.
 #define MOST_PARTS 4096
 
@@ -200,6 +202,8 @@ void mspringi_floor_survey(mspring_network *network, double seconds) {
     float fastest = 0.0f;
     mspringi_floor_follow(floor, network->origin_x, network->origin_y);
     for (uint32_t i = 0; i < t->strip_count; ++i) {
+        if (mspringi_share_of_strip(network, &t->strips[i]) == MSPRINGI_ASLEEP)
+            continue;
         const box all = cover_strip(network, &t->strips[i], &fastest);
         floor->clearances[i].clear =
             (mspringi_bounds){(float)all.min_x, (float)all.max_x, (float)all.min_y, (float)all.max_y};
@@ -208,6 +212,8 @@ void mspringi_floor_survey(mspring_network *network, double seconds) {
     const double gravity = fabs((double)network->gravity_x) + fabs((double)network->gravity_y);
     const double reach = 4.0 * seconds * ((double)fastest + gravity * seconds) + 1e-6;
     for (uint32_t i = 0; i < t->strip_count; ++i) {
+        if (mspringi_share_of_strip(network, &t->strips[i]) == MSPRINGI_ASLEEP)
+            continue;
         const mspringi_bounds *b = &floor->clearances[i].clear;
         const box strip = {(double)b->min_x, (double)b->max_x, (double)b->min_y, (double)b->max_y};
         floor->clearances[i] = look_around(floor, &strip, reach);

@@ -105,11 +105,14 @@ static size_t count_slots(const mspring_network *network) {
 // List the contacts that may come about. Returns whether any particle hits the floor.
 static bool find_contacts(mspring_network *network, double h, double fall) {
     mspringi_floor *floor = network->floor;
+    const float *inverse_mass = mspringi_free_mass(network);
     bool hits = false;
     floor->contact_count = 0;
     for (size_t i = 0; i < count_slots(network); ++i) {
+        if (!(inverse_mass[i] > 0.0f))
+            continue;
         const mover m = mover_of(network, i, h);
-        if (!is_clear(&floor->clear, &m) && network->inverse_mass[i] > 0.0f)
+        if (!is_clear(&floor->clear, &m))
             hits |= consider_all(network, &m, fall);
     }
     return hits;
@@ -117,10 +120,13 @@ static bool find_contacts(mspring_network *network, double h, double fall) {
 
 uint32_t mspringi_floor_pieces(const mspring_network *network, float h) {
     const mspringi_floor *floor = network->floor;
+    const float *inverse_mass = mspringi_free_mass(network);
     double deepest = 0.0;
     for (size_t i = 0; i < count_slots(network); ++i) {
+        if (!(inverse_mass[i] > 0.0f))
+            continue;
         const mover m = mover_of(network, i, (double)h);
-        if (is_clear(&floor->clear, &m) || !(network->inverse_mass[i] > 0.0f))
+        if (is_clear(&floor->clear, &m))
             continue;
         const double before = fmin(mspringi_floor_distance(floor, m.start_x, m.start_y), 0.0);
         deepest = fmax(deepest, before - mspringi_floor_distance(floor, m.straight_x, m.straight_y));

@@ -7,6 +7,7 @@
 #include "network/springs.h"
 #include "ramps.h"
 #include "selection.h"
+#include "sleep/sleep.h"
 
 /// Longest log of broken and restored springs: more than a burst of them in one frame.
 #define LONGEST_LOG 4096
@@ -36,6 +37,7 @@ mspring_result mspringi_breaking_reserve(mspring_network *network) {
 static void toggle(mspring_network *network, mspring_id spring, mspringi_place place) {
     network->live[place / MSPRINGI_WIDTH] ^= (uint16_t)(1u << place % MSPRINGI_WIDTH);
     network->edits.link_log[network->edits.links++ & network->edits.link_mask] = spring;
+    mspringi_wake_spring(network, spring);
 }
 
 bool mspringi_spring_break(mspring_network *network, mspring_id spring) {

@@ -6,6 +6,7 @@
 #include "base/cpu.h"
 #include "network/springs.h"
 #include "selection.h"
+#include "sleep/sleep.h"
 
 #define SMALLEST_MASS 1e-30f
 #define LARGEST_MASS 1e30f
@@ -103,6 +104,7 @@ mspring_result mspring_network_renew_relative_springs(mspring_network *network) 
     const mspringi_fp_state before = mspringi_fp_enter();
     mspringi_renew_relative(network);
     mspringi_fp_leave(before);
+    mspringi_wake(network);
     network->edits.values++;
     return MSPRING_OK;
 }

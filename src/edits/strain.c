@@ -33,6 +33,8 @@ static uint32_t leftover_strain(const mspring_network *network, mspringi_strain_
         uint32_t bits = strain->stressed[word];
         for (uint32_t i = first; i < first + MSPRINGI_WIDTH && i < t->leftover_count; ++i) {
             const mspringi_place place = t->chain_places + i;
+            if (mspringi_slot_is_asleep(network, t->leftover_a[i]))
+                continue;
             const mspringi_spring_values values = mspringi_place_get(network, place);
             if (has_bit(network->live, place) &&
                 stretch_of(network, &values) > strain->least[place] * values.rest_length)
@@ -42,6 +44,22 @@ static uint32_t leftover_strain(const mspring_network *network, mspringi_strain_
             hits[count++] = (mspringi_strain_hit){word, bits};
     }
     return count;
+}
+
+// The next of so many blocks from one on that have to be looked at: *first to *end - 1, counted from base. What
+// sleeps was looked at when it fell asleep.
+static bool next_swept(const mspring_network *network, uint32_t base, uint32_t count, uint32_t *first,
+                       uint32_t *end) {
+    const mspringi_sleep *sleep = &network->sleep;
+    *end = count;
+    if (sleep->sleeping == 0)
+        return *first < count;
+    while (*first < count && !sleep->swept[base + *first])
+        ++*first;
+    *end = *first;
+    while (*end < count && sleep->swept[base + *end])
+        ++*end;
+    return *first < count;
 }
 
 // Break, stress or relax the spring in this place, if it is time for that.
@@ -91,8 +109,12 @@ void mspringi_strain_pass(mspring_network *network) {
         .stressed = strain->stressed,
     };
     mspringi_strain_hit *hits = strain->hits;
-    uint32_t count = network->kernels->lattice_strain(&sweep, 0, t->lattice_blocks, hits);
-    count += network->kernels->chain_strain(&sweep, 0, t->chain_blocks, hits + count);
+    uint32_t count = 0;
+    for (uint32_t first = 0, end; next_swept(network, t->lattice_first, t->lattice_blocks, &first, &end);
+         first = end)
+        count += network->kernels->lattice_strain(&sweep, first, end, hits + count);
+    for (uint32_t first = 0, end; next_swept(network, t->chain_first, t->chain_blocks, &first, &end); first = end)
+        count += network->kernels->chain_strain(&sweep, first, end, hits + count);
     count += leftover_strain(network, hits + count);
     for (const mspringi_strain_hit *hit = hits; hit < hits + count; ++hit)
         for (uint32_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
@@ -173,14 +195,13 @@ static mspring_result set_thresholds(mspring_network *network, bool stress, cons
     mspring_result result = at->count > 0 ? mspringi_strain_reserve(network) : MSPRING_OK;
     if (result == MSPRING_OK && stress && at->count > 0)
         result = mspringi_strain_reserve_stress(network);
-    if (result == MSPRING_OK && at->count > 0)
-        mspringi_wake(network);
     for (uint32_t i = 0; result == MSPRING_OK && i < at->count; ++i) {
         const mspring_id spring = mspringi_selected(at, i);
         network->parameter_print =
             mspringi_mix(network->parameter_print, (uint64_t)(stress ? 9 : 8) << 32 | spring);
         network->parameter_print = mspringi_mix_floats(network->parameter_print, strain[i], 0.0f);
         mspringi_strain_store(network, mspringi_place_of(&network->topology, spring), stress, strain[i]);
+        mspringi_wake_spring(network, spring);
     }
     return result;
 }

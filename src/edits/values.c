@@ -7,6 +7,7 @@
 #include "network/springs.h"
 #include "ramps.h"
 #include "selection.h"
+#include "sleep/sleep.h"
 
 #define LARGEST_VALUE 1e30f
 #define LARGEST_LENGTH 4e12f
@@ -42,6 +43,7 @@ static MSPRINGI_NOINLINE void store_values(mspring_network *network, mspringi_pa
         const mspringi_place place = mspringi_place_of(&network->topology, spring);
         network->parameter_print = mspringi_mix(network->parameter_print, (uint64_t)part << 32 | spring);
         network->parameter_print = mspringi_mix_floats(network->parameter_print, values[i], 0.0f);
+        mspringi_wake_spring(network, spring);
         if (part == MSPRINGI_REST_LENGTH) {
             mspringi_ramp_drop(network, spring);
             mspringi_place_set_rest_length(network, place, values[i]);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "contact/floor.h"
+#include "sleep/sleep.h"
 #include "strip.h"
 
 /// Strips that are swept several times in one pass should stay in the second-level cache: this much of it. Where
@@ -95,6 +96,8 @@ static void wait_for_pass_before(const job *wave, uint32_t pass, uint32_t front)
 // last.
 static void sweep_strip(const job *wave, const mspringi_substep *substep, uint32_t number, uint32_t worker,
                         const mspringi_strip *strip) {
+    if (mspringi_share_of_strip(wave->network, strip) == MSPRINGI_ASLEEP)
+        return;
     if (wave->sights && number == 0)
         mspringi_strip_keep(wave->network, strip);
     mspringi_strip_sweep(wave->network, substep, strip);
@@ -139,7 +142,8 @@ static void sweep_wave(mspring_network *network, float h, mspringi_field base, u
     job wave = plan_wave(network, h, base, count, sights);
     const mspringi_substep first = mspringi_substep_prepare(network, h, base, 0, count, 0);
     for (uint32_t s = 0; s < t->wave_strips; ++s)
-        mspringi_strip_pack(network, &first, &t->strips[s]);
+        if (mspringi_share_of_strip(network, &t->strips[s]) != MSPRINGI_ASLEEP)
+            mspringi_strip_pack(network, &first, &t->strips[s]);
     mspringi_tasks_run(wave.progress ? network->tasks : NULL, wave.workers, make_passes, &wave);
 }
 
@@ -180,6 +184,17 @@ static void end_share(const job *rest, const mspringi_span *share, uint32_t work
         rest->sights[worker] = mspringi_sight_join(rest->sights[worker], mspringi_span_look(rest->network, share));
 }
 
+static void move_loose(const mspring_network *network, const mspringi_substep *substep, const mspringi_span *span,
+                       uint32_t substeps) {
+    const mspringi_loose_fn loose = network->kernels->loose[substep->base.x != NULL];
+    mspringi_span run[2];
+    if (network->sleep.sleeping == 0)
+        loose(&substep->sweep, span, substeps);
+    else
+        for (uint32_t at = span->first_slot; mspringi_next_swept(network, span, &at, run);)
+            loose(&substep->sweep, run, substeps);
+}
+
 // Take all substeps of a share of the loose particles: nothing else moves them but a floor that is near.
 static void sweep_loose(const job *rest, const mspringi_strip *strip, uint32_t index) {
     const mspring_network *network = rest->network;
@@ -187,9 +202,11 @@ static void sweep_loose(const job *rest, const mspringi_strip *strip, uint32_t i
     const mspringi_substep substep = mspringi_substep_prepare(network, rest->h, rest->base, 0, 1, 0);
     const mspringi_span share = share_of(&t->spans[t->rows[strip->first_row].first_span], index, rest->workers);
     const uint32_t at_once = mspringi_floor_is_near(network, strip) ? 1 : rest->count;
+    if (mspringi_share_of_strip(network, strip) == MSPRINGI_ASLEEP)
+        return;
     begin_share(rest, &share);
     for (uint32_t i = 0; i < rest->count; i += at_once) {
-        network->kernels->loose[rest->base.x != NULL](&substep.sweep, &share, at_once);
+        move_loose(network, &substep, &share, at_once);
         mspringi_floor_touch(network, strip, &share, 1, rest->h);
     }
     end_share(rest, &share, index);

@@ -6,6 +6,7 @@
 #include "contact/floor.h"
 #include "creep.h"
 #include "decay.h"
+#include "partly.h"
 
 mspringi_substep mspringi_substep_prepare(const mspring_network *network, float h, mspringi_field base, uint32_t i,
                                           uint32_t count, uint32_t carry_number) {
@@ -23,7 +24,7 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
                 .y = network->state.y,
                 .vx = network->state.vx,
                 .vy = network->state.vy,
-                .inverse_mass = network->inverse_mass,
+                .inverse_mass = mspringi_free_mass(network),
                 .force_x = base.x,
                 .force_y = base.y,
                 .carry_x = carry,
@@ -95,26 +96,22 @@ static void pull_attached(const mspring_network *network, const mspringi_substep
 
 // Sweep rows that follow each other, all of one kind.
 static void sweep_rows(const mspring_network *network, const mspringi_substep *substep, const mspringi_row *rows,
-                       uint32_t row_count) {
+                       uint32_t row_count, bool is_partly) {
     const mspringi_kernels *kernels = network->kernels;
     const mspringi_span *spans = network->topology.spans + rows->first_span;
     const mspringi_row *last = &rows[row_count - 1];
     const uint32_t span_count = last->first_span + last->span_count - rows->first_span;
     const mspringi_sweep *sweep = &substep->sweep;
     const bool damped = network->parts > MSPRINGI_DAMPING, forced = substep->base.x != NULL;
-    switch (rows->kind) {
-    case MSPRINGI_ROW_LATTICE:
-        kernels->lattice[damped][forced](sweep, spans, span_count);
-        break;
-    case MSPRINGI_ROW_CHAIN:
-        kernels->chain[damped][forced](sweep, spans, span_count);
-        break;
-    case MSPRINGI_ROW_WEB:
-        kernels->web[damped][forced](sweep, spans, span_count);
-        break;
-    case MSPRINGI_ROW_LOOSE:
-        break; // moved apart, see explicit.c
-    }
+    if (rows->kind == MSPRINGI_ROW_LOOSE)
+        return; // moved apart, see explicit.c
+    const mspringi_row_fn sweep_spans = rows->kind == MSPRINGI_ROW_LATTICE ? kernels->lattice[damped][forced]
+                                        : rows->kind == MSPRINGI_ROW_CHAIN ? kernels->chain[damped][forced]
+                                                                           : kernels->web[damped][forced];
+    if (is_partly)
+        mspringi_partly_sweep(network, substep, sweep_spans, spans, span_count);
+    else
+        sweep_spans(sweep, spans, span_count);
 }
 
 void mspringi_web_pack(const mspring_network *network, const mspringi_substep *substep, const mspringi_span *span) {
@@ -123,7 +120,11 @@ void mspringi_web_pack(const mspring_network *network, const mspringi_substep *s
 
 void mspringi_web_sweep(const mspring_network *network, const mspringi_substep *substep,
                         const mspringi_span *span) {
-    network->kernels->web[network->parts > MSPRINGI_DAMPING][substep->base.x != NULL](&substep->sweep, span, 1);
+    const mspringi_row_fn web = network->kernels->web[network->parts > MSPRINGI_DAMPING][substep->base.x != NULL];
+    if (network->sleep.sleeping > 0)
+        mspringi_partly_sweep(network, substep, web, span, 1);
+    else
+        web(&substep->sweep, span, 1);
 }
 
 void mspringi_strip_pack(const mspring_network *network, const mspringi_substep *substep,
@@ -139,10 +140,11 @@ void mspringi_strip_pack(const mspring_network *network, const mspringi_substep 
 void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep *substep,
                           const mspringi_strip *strip) {
     const mspringi_row *rows = &network->topology.rows[strip->first_row];
+    const bool is_partly = mspringi_share_of_strip(network, strip) == MSPRINGI_PARTLY;
     for (uint32_t first = 0, count; first < strip->row_count; first += count) {
         for (count = 1; first + count < strip->row_count && rows[first + count].kind == rows[first].kind;)
             ++count;
-        sweep_rows(network, substep, &rows[first], count);
+        sweep_rows(network, substep, &rows[first], count, is_partly);
     }
     if (strip->attached_count > 0)
         pull_attached(network, substep, strip);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "network/springs.h"
+#include "sleep/sleep.h"
 
 /* ----------------------------------------------------------------------------------------------- matrix rows */
 
@@ -29,16 +30,31 @@ static panel_share share_panels(const mspring_network *network, const mspringi_m
     return share;
 }
 
-// Whether the first of a share's panels gets something from a row that is another's.
-static bool is_handed_on(const panel_share *share) {
-    return share->begin < share->end && share->begin->below_count > 0;
+// Whether nothing of a panel is swept.
+static bool is_asleep(const mspring_network *network, const mspringi_panel *panel) {
+    const mspringi_topology *t = &network->topology;
+    if (network->sleep.sleeping == 0 || network->implicit->is_direct)
+        return false;
+    for (uint32_t i = panel->first_span; i < panel->first_span + panel->span_count; ++i)
+        if (mspringi_is_any_swept(network, t->spans[i].first_slot / MSPRINGI_WIDTH,
+                                  (t->spans[i].end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH))
+            return false;
+    return true;
 }
 
-// Carry rows are 0 where grids end. Where a share ends inside of one, they are not.
-static void clear_carry(const mspring_network *network, const panel_share *share, bool forces) {
+// Whether the first of a share's panels gets something from a row that is another's.
+static bool is_handed_on(const mspring_network *network, const panel_share *share) {
+    return share->begin < share->end && share->begin->below_count > 0 && !is_asleep(network, share->begin);
+}
+
+// Carry rows are 0 where grids end. Where a share ends inside of one, or what follows on a panel is left out, they
+// are not.
+static void clear_carry(const mspring_network *network, const panel_share *share, const mspringi_panel *next,
+                        bool forces) {
     const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH;
     const mspringi_panels *panels = &network->implicit->panels;
-    if (share->begin == share->end || share->end == panels->list + panels->count || share->end->below_count == 0)
+    if (next == panels->list + panels->count || next->below_count == 0 ||
+        (next < share->end && !is_asleep(network, next)))
         return;
     if (forces)
         memset(share->system.force_carry_x, 0, 2 * carry * sizeof *share->system.force_carry_x);
@@ -50,15 +66,17 @@ static void assemble_panels(const mspring_network *network, const mspringi_mate 
     const mspringi_system_kernels *kernels = &network->kernels->system;
     const bool damped = network->parts > MSPRINGI_DAMPING;
     const panel_share share = share_panels(network, mate);
-    if (is_handed_on(&share))
+    if (is_handed_on(network, &share))
         kernels->hand_on_forces[damped](&share.system, t->spans + share.begin->below_first,
                                         share.begin->below_count);
     for (const mspringi_panel *panel = share.begin; panel < share.end; ++panel) {
+        if (is_asleep(network, panel))
+            continue;
         const mspringi_assemble_fn assemble =
             panel->is_lattice ? kernels->assemble_lattice[damped] : kernels->assemble_chain[damped];
         assemble(&share.system, t->spans + panel->first_span, panel->span_count);
+        clear_carry(network, &share, panel + 1, true);
     }
-    clear_carry(network, &share, true);
 }
 
 static void multiply_panels(const mspring_network *network, const mspringi_mate *mate) {
@@ -67,16 +85,19 @@ static void multiply_panels(const mspring_network *network, const mspringi_mate 
     const mspringi_system_kernels *kernels = &network->kernels->system;
     const mspringi_field from = n->direction, to = n->product;
     const panel_share share = share_panels(network, mate);
-    if (is_handed_on(&share))
+    if (is_handed_on(network, &share))
         kernels->hand_on_product(&share.system, t->spans + share.begin->below_first, share.begin->below_count,
                                  from.x, from.y);
     for (const mspringi_panel *panel = share.begin; panel < share.end; ++panel) {
+        n->panels.sums[panel - n->panels.list] = 0.0f;
+        if (is_asleep(network, panel))
+            continue;
         const mspringi_multiply_fn multiply =
             panel->is_lattice ? kernels->multiply_lattice : kernels->multiply_chain;
         n->panels.sums[panel - n->panels.list] =
             multiply(&share.system, t->spans + panel->first_span, panel->span_count, from.x, from.y, to.x, to.y);
+        clear_carry(network, &share, panel + 1, false);
     }
-    clear_carry(network, &share, false);
 }
 
 /* ------------------------------------------------------------------------------------------ leftover springs */
@@ -115,10 +136,18 @@ static float *leftover_factors(const mspringi_implicit *n, uint32_t i) {
            i % MSPRINGI_WIDTH;
 }
 
+// Whether a leftover spring has nobody to pull at.
+static bool sleeps(const mspring_network *network, uint32_t i) {
+    const mspringi_topology *t = &network->topology;
+    return mspringi_slot_is_asleep(network, t->leftover_a[i]) && mspringi_slot_is_asleep(network, t->leftover_b[i]);
+}
+
 static void assemble_leftover(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const mspringi_system *s = &network->implicit->system;
     for (uint32_t i = 0; i < t->leftover_count; ++i) {
+        if (sleeps(network, i))
+            continue;
         const mspringi_spring_values values = mspringi_place_get(network, t->chain_places + i);
         const leftover l = compute_leftover(s, values.base, values.tip, &values);
         float *factors = leftover_factors(network->implicit, i);
@@ -149,6 +178,8 @@ static double multiply_leftover(const mspring_network *network, mspringi_field f
     }
     for (uint32_t i = 0; i < t->leftover_count; ++i) {
         const uint32_t a = t->leftover_a[i], b = t->leftover_b[i];
+        if (sleeps(network, i))
+            continue;
         const float *factors = leftover_factors(n, i);
         const float pull_x = factors[MSPRINGI_PULL_X * MSPRINGI_WIDTH];
         const float pull_y = factors[MSPRINGI_PULL_Y * MSPRINGI_WIDTH];
@@ -181,6 +212,7 @@ void mspringi_assemble(const mspringi_substep_of *substep, mspringi_mate *mate) 
     const mspring_network *network = substep->network;
     const mspringi_implicit *n = network->implicit;
     const mspringi_slots slots = mspringi_slots_of(network, mate);
+    mspringi_slots run;
     mspringi_meet(mate);
     assemble_panels(network, mate);
     clear_others(network, slots);
@@ -190,8 +222,10 @@ void mspringi_assemble(const mspringi_substep_of *substep, mspringi_mate *mate) 
             assemble_leftover(network);
         mspringi_meet(mate);
     }
-    network->kernels->system.add_outside(&substep->outside[0], n->residual.x, slots.first, slots.end);
-    network->kernels->system.add_outside(&substep->outside[1], n->residual.y, slots.first, slots.end);
+    for (size_t at = slots.first; mspringi_next_slots(network, slots, &at, &run);) {
+        network->kernels->system.add_outside(&substep->outside[0], n->residual.x, run.first, run.end);
+        network->kernels->system.add_outside(&substep->outside[1], n->residual.y, run.first, run.end);
+    }
 }
 
 double mspringi_multiply(const mspringi_substep_of *substep, mspringi_mate *mate) {

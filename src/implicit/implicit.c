@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "sleep/sleep.h"
+
 #define DEFAULT_ITERATIONS 8
 
 /// Most multiply-adds that factoring the coarse matrix may take, for each slot: about as long as one product with A
@@ -276,8 +278,25 @@ void mspringi_implicit_restore(mspring_network *network) {
         clear_outside_of_tiles(network);
 }
 
+// What sleeps is left out of substeps: it is predicted where it is, and does not go on from there.
+static void rest_sleepers(const mspring_network *network) {
+    mspringi_implicit *n = network->implicit;
+    for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
+        if (!mspringi_slot_is_asleep(network, slot))
+            continue;
+        n->x[slot] = (double)network->state.x[slot];
+        n->y[slot] = (double)network->state.y[slot];
+        n->mass[slot] = 0.0f;
+        n->velocity.x[slot] = n->velocity.y[slot] = 0.0f;
+        n->displacement.x[slot] = n->displacement.y[slot] = 0.0f;
+    }
+    n->rested = network->edits.naps;
+}
+
 void mspringi_implicit_follow(mspring_network *network) {
     mspringi_implicit *n = network->implicit;
+    if (n->rested != network->edits.naps && network->sleep.sleeping > 0)
+        rest_sleepers(network);
     if (!n->is_direct && mspringi_tiles_are_outdated(&n->tiles, network, &n->seen)) {
         mspringi_tiles_follow(&n->tiles, network, &n->seen);
         mspringi_coarse_shape(&n->coarse, &n->tiles);
@@ -319,6 +338,29 @@ void mspringi_implicit_describe(const mspringi_implicit *n, mspring_plan *plan) 
 }
 
 /* ----------------------------------------------------------------------------------------------------- substeps */
+
+// The factorisation of the direct solver has places for all.
+bool mspringi_next_slots(const mspring_network *network, mspringi_slots slots, size_t *at, mspringi_slots *run) {
+    const size_t first = *at > slots.first ? *at : slots.first;
+    *run = (mspringi_slots){first, first};
+    *at = slots.end;
+    if (network->sleep.sleeping == 0 || network->implicit->is_direct) {
+        run->end = slots.end;
+        return run->first < run->end;
+    }
+    for (size_t chunk = first; chunk < slots.end; chunk += MSPRINGI_CHUNK) {
+        const size_t end = chunk + MSPRINGI_CHUNK < slots.end ? chunk + MSPRINGI_CHUNK : slots.end;
+        if (mspringi_is_any_swept(network, chunk / MSPRINGI_WIDTH, end / MSPRINGI_WIDTH)) {
+            run->end = end;
+        } else if (run->end > run->first) {
+            *at = chunk;
+            return true;
+        } else {
+            run->first = run->end = end;
+        }
+    }
+    return run->end > run->first;
+}
 
 // Find d = displacement + alpha direction. Returns alpha; NaN if numbers overflowed.
 static float solve(const mspringi_substep_of *substep, mspringi_mate *mate) {

@@ -69,6 +69,7 @@ typedef struct mspringi_implicit {
     mspringi_system system;
     mspringi_iterate iterate;
     mspringi_edits seen; ///< the edits that it has followed
+    uint64_t rested;     ///< edits.naps for which what sleeps is at rest in all that is kept by slot
 
     mspringi_gain gain; ///< of the present step
     mspringi_panels panels;
@@ -131,6 +132,10 @@ static inline mspringi_slots mspringi_slots_of(const mspring_network *network, c
     const size_t end = mspringi_share_end(mate, chunks) * MSPRINGI_CHUNK;
     return (mspringi_slots){mspringi_share_of(mate, chunks) * MSPRINGI_CHUNK, end < slots ? end : slots};
 }
+
+/// The next of these slots that are to be gone through, in whole chunks, from *at on, which goes behind them: all,
+/// but for chunks in which nothing is swept. Returns false if there are none.
+bool mspringi_next_slots(const mspring_network *network, mspringi_slots slots, size_t *at, mspringi_slots *run);
 
 /* scheme.c */
 

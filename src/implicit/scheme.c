@@ -70,7 +70,7 @@ static mspringi_flight prepare_flight(const mspringi_substep_of *substep, msprin
         .low_y = n->history.low.y,
         .first_x = n->history.first.x,
         .first_y = n->history.first.y,
-        .inverse_mass = network->inverse_mass,
+        .inverse_mass = mspringi_free_mass(network),
         .mass = n->mass,
         .h = h,
         .first_share = share,
@@ -138,7 +138,7 @@ static void prepare_landing(mspringi_substep_of *substep, float rate) {
     substep->memory = choose_memory(n);
     substep->landing[0] = (mspringi_landing){.predicted = n->x,
                                              .start = n->velocity.x,
-                                             .inverse_mass = network->inverse_mass,
+                                             .inverse_mass = mspringi_free_mass(network),
                                              .solution = n->displacement.x,
                                              .direction = direction.x,
                                              .low = from->low.x,
@@ -152,7 +152,7 @@ static void prepare_landing(mspringi_substep_of *substep, float rate) {
                                              .rate = rate};
     substep->landing[1] = (mspringi_landing){.predicted = n->y,
                                              .start = n->velocity.y,
-                                             .inverse_mass = network->inverse_mass,
+                                             .inverse_mass = mspringi_free_mass(network),
                                              .solution = n->displacement.y,
                                              .direction = direction.y,
                                              .low = from->low.y,
@@ -194,7 +194,9 @@ void mspringi_predict(const mspringi_substep_of *substep, mspringi_mate *mate) {
     const mspringi_system_kernels *kernels = &network->kernels->system;
     const mspringi_tiles *tiles = &n->tiles;
     const mspringi_slots slots = mspringi_slots_of(network, mate);
-    kernels->weigh(network->inverse_mass, substep->mass_scale, n->mass, slots.first, slots.end);
+    mspringi_slots run;
+    for (size_t at = slots.first; mspringi_next_slots(network, slots, &at, &run);)
+        kernels->weigh(mspringi_free_mass(network), substep->mass_scale, n->mass, run.first, run.end);
     mspringi_meet(mate);
     for (size_t t = mspringi_share_of(mate, tiles->count); t < mspringi_share_end(mate, tiles->count); ++t)
         kernels->aim_tile(&substep->flight, tiles->parts + tiles->first_part[t],
@@ -202,7 +204,8 @@ void mspringi_predict(const mspringi_substep_of *substep, mspringi_mate *mate) {
     mspringi_meet(mate);
     const mspringi_part_range parts = mspringi_tiles_parts(tiles, slots.first, slots.end);
     kernels->fly(&substep->flight, parts.parts, parts.count, n->flights);
-    kernels->predict(&substep->flight, slots.first, slots.end);
+    for (size_t at = slots.first; mspringi_next_slots(network, slots, &at, &run);)
+        kernels->predict(&substep->flight, run.first, run.end);
 }
 
 /* ------------------------------------------------------------------------------------------------------- landing
@@ -228,7 +231,9 @@ void mspringi_land(const mspringi_substep_of *substep, const mspringi_mate *mate
     for (int i = 0; i < 2; ++i) {
         mspringi_landing landing = substep->landing[i];
         landing.alpha = alpha;
-        network->kernels->system.land[substep->memory](&landing, slots.first, slots.end);
+        mspringi_slots run;
+        for (size_t at = slots.first; mspringi_next_slots(network, slots, &at, &run);)
+            network->kernels->system.land[substep->memory](&landing, run.first, run.end);
     }
 }
 

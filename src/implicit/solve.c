@@ -29,8 +29,10 @@ static void invert(const mspring_network *network, mspringi_slots slots) {
     const size_t loose = (size_t)network->topology.loose_first * MSPRINGI_WIDTH;
     const size_t end = slots.end < loose ? slots.end : loose;
     float *const blocks[] = {n->system.xx, n->system.xy, n->system.yy};
-    if (end > slots.first)
-        network->kernels->system.invert(&n->system, slots.first, end);
+    const mspringi_slots tied = {slots.first, end > slots.first ? end : slots.first};
+    mspringi_slots run;
+    for (size_t at = tied.first; mspringi_next_slots(network, tied, &at, &run);)
+        network->kernels->system.invert(&n->system, run.first, run.end);
     const size_t first = slots.first > loose ? slots.first : loose;
     for (size_t i = 0; i < 3 && first < slots.end; ++i)
         memset(blocks[i] + first, 0, (slots.end - first) * sizeof *blocks[i]);
@@ -94,7 +96,13 @@ static double advance(const substep_of *substep, mspringi_mate *mate, float alph
     const mspringi_implicit *n = network->implicit;
     const mspringi_slots slots = mspringi_slots_of(network, mate);
     const size_t chunks = (mspringi_slot_count(network) + MSPRINGI_CHUNK - 1) / MSPRINGI_CHUNK;
-    network->kernels->system.advance(&n->system, &n->iterate, alpha, is_first, slots.first, slots.end, n->sums);
+    const size_t first_chunk = slots.first / MSPRINGI_CHUNK;
+    const size_t end_chunk = (slots.end + MSPRINGI_CHUNK - 1) / MSPRINGI_CHUNK;
+    if (network->sleep.sleeping > 0)
+        memset(n->sums + first_chunk, 0, (end_chunk - first_chunk) * sizeof *n->sums);
+    mspringi_slots run;
+    for (size_t at = slots.first; mspringi_next_slots(network, slots, &at, &run);)
+        network->kernels->system.advance(&n->system, &n->iterate, alpha, is_first, run.first, run.end, n->sums);
     mspringi_meet(mate);
     double sum = 0.0;
     for (size_t i = 0; i < chunks; ++i)

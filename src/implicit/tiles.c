@@ -20,7 +20,7 @@ static bool is_live(const mspring_network *network, mspring_id spring, mspringi_
 }
 
 static bool is_free(const mspring_network *network, uint32_t slot) {
-    return network->inverse_mass[slot] > 0.0f;
+    return mspringi_free_mass(network)[slot] > 0.0f;
 }
 
 /* ------------------------------------------------------------------------------------------------- components */
@@ -184,12 +184,17 @@ static void mark_changed_links(mspringi_tiles *tiles, const mspring_network *net
     }
 }
 
-static bool pins_have_changed(const mspringi_tiles *tiles, const mspring_network *network) {
+// What sleeps is as good as pinned.
+static bool pins_have_changed(const mspringi_tiles *tiles, const mspring_network *network,
+                              const mspringi_edits *seen) {
+    if (seen->masses == network->edits.masses && seen->naps == network->edits.naps)
+        return false;
     const size_t slots = mspringi_slot_count(network);
+    const float *inverse_mass = mspringi_free_mass(network);
     size_t changed = 0;
     for (size_t slot = 0; slot < slots; ++slot)
         changed += tiles->cells.of_slot[slot] != MSPRING_NONE &&
-                   (network->inverse_mass[slot] > 0.0f) != (tiles->of_slot[slot] != MSPRING_NONE);
+                   (inverse_mass[slot] > 0.0f) != (tiles->of_slot[slot] != MSPRING_NONE);
     return changed > 0;
 }
 
@@ -216,13 +221,12 @@ static void renew(mspringi_tiles *tiles, const mspring_network *network) {
 bool mspringi_tiles_are_outdated(const mspringi_tiles *tiles, const mspring_network *network,
                                  const mspringi_edits *seen) {
     const mspringi_edits *edits = &network->edits;
-    return seen->links != edits->links || seen->values != edits->values ||
-           (seen->masses != edits->masses && pins_have_changed(tiles, network));
+    return seen->links != edits->links || seen->values != edits->values || pins_have_changed(tiles, network, seen);
 }
 
 void mspringi_tiles_follow(mspringi_tiles *tiles, const mspring_network *network, const mspringi_edits *seen) {
     const mspringi_edits *edits = &network->edits;
-    const bool pins = seen->masses != edits->masses && pins_have_changed(tiles, network);
+    const bool pins = pins_have_changed(tiles, network, seen);
     if (pins)
         list_anchors(tiles, network);
     if (pins || seen->values != edits->values || !mspringi_edits_have_link(edits, seen->links))

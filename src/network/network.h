@@ -58,6 +58,7 @@ typedef struct mspringi_edits {
     uint64_t masses; ///< calls that changed inverse masses
     uint64_t values; ///< calls that changed stiffness, damping or rest lengths
     uint64_t links;  ///< springs that were broken or restored, one by one
+    uint64_t naps;   ///< times that islands fell asleep or woke
     mspring_id
         *link_log; ///< the last of these springs: change n, counted from 0, is at n & link_mask; NULL before any
     uint32_t link_mask;
@@ -120,18 +121,33 @@ typedef struct mspringi_rests {
     uint32_t count, shared_count;
 } mspringi_rests;
 
-/// Whether the network sleeps, and what it was when it fell asleep; no arrays if it never does.
+/// Which islands sleep, and what they were when they fell asleep; no arrays if none ever does. An island is a
+/// component of live springs, numbered by its lowest slot.
 typedef struct mspringi_sleep {
     float speed, time; ///< still is what is no faster (0: nothing), asleep what has been so for that long; m/s, s
-    double still;      ///< for how long it has been, s
-    bool is_asleep;
-    bool has_force;                        ///< force is not all zero
-    double origin_x, origin_y;             ///< that state is relative to, m
-    float *state;                          ///< [4][slots]
-    float *inverse_mass;                   ///< [slots]
-    mspringi_field force;                  ///< from outside
-    mspringi_field in_force;               ///< of the step that is being made; else NULL
-    uint64_t masses, values, links, moved; ///< edits that it has seen; the last is edits.state
+    uint32_t count;    ///< islands; 0: not looked for yet
+    uint32_t sleeping; ///< of these asleep; what follows of slots and blocks is of no use as long as this is 0
+    uint32_t *island;  ///< [slots] of each slot, MSPRING_NONE if it has no particle
+    uint32_t *lowest;  ///< [particles] the lowest slot of each island
+    double *still;     ///< [particles] of each island, for how long it has been still, s; < 0: asleep
+    double *kept;      ///< [particles] still before the step, if it woke any
+    bool has_kept;
+    bool is_mapped;            ///< what follows is up to date
+    uint8_t *mark;             ///< [particles] of each island, while all are gone through
+    uint32_t *scratch;         ///< [slots]
+    uint32_t *block_island;    ///< [blocks] the island that all of a block is of, MSPRING_NONE if there are several
+    float *free_mass;          ///< [slots] inverse mass, 0 of what sleeps
+    uint16_t *sleepers;        ///< [blocks] a bit for each slot
+    uint8_t *swept;            ///< [blocks] 1 where a particle is awake, or springs are of one that is
+    uint8_t *share;            ///< [strips] mspringi_share
+    bool has_force;            ///< force is not all zero
+    double origin_x, origin_y; ///< that state is relative to, m
+    float *state;              ///< [4][slots]
+    float *inverse_mass;       ///< [slots]
+    float *held;               ///< [2][slots] positions, while substeps are taken
+    mspringi_field force;      ///< from outside
+    mspringi_field in_force;   ///< of the step that is being made; else NULL
+    uint64_t masses, links, moved; ///< edits that it has seen; the last is edits.state
 } mspringi_sleep;
 
 /// What is needed to measure all springs at once; NULL as long as that has not been done.
@@ -215,6 +231,11 @@ struct mspring_network {
 
 static inline size_t mspringi_slot_count(const mspring_network *network) {
     return (size_t)network->topology.block_count * MSPRINGI_WIDTH;
+}
+
+/// Inverse masses as a step sees them, 0 of what sleeps.
+static inline const float *mspringi_free_mass(const mspring_network *network) {
+    return network->sleep.sleeping > 0 ? network->sleep.free_mass : network->inverse_mass;
 }
 
 /// Whether the log still has everything from change number seen on; if not, any spring may have changed.

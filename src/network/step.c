@@ -100,10 +100,14 @@ static void run_substeps(mspring_network *network, double dt, float h) {
             mspringi_hooks_before_substep(network, substep, (double)h, base);
         if (substep == 0)
             mspringi_sleep_feel(network, field);
-        if (substep == 0 && !network->sleep.is_asleep)
-            mspringi_floor_begin(network->floor);
-        if (!network->sleep.is_asleep)
+        if (substep == 0 && !mspringi_sleep_is_whole(network))
+            mspringi_floor_begin(network);
+        if (hooks_after)
+            mspringi_sleep_hold(network);
+        if (!mspringi_sleep_is_whole(network))
             take_substeps(network, h, field, count);
+        if (hooks_after)
+            mspringi_sleep_put_back(network);
         if (hooks_after)
             mspringi_hooks_after_substep(network, substep + count - 1, (double)h);
     }
@@ -113,10 +117,13 @@ static void run_substeps(mspring_network *network, double dt, float h) {
 static mspringi_sight run(mspring_network *network, double dt, float h) {
     if (network->is_open)
         mspringi_clear_empty_slots(network);
-    if (!network->implicit && !network->is_clamped && network->hook_count == 0 && !network->floor &&
-        !network->sleep.is_asleep) {
-        network->sleep.in_force = prepare_base(network, dt);
-        return mspringi_explicit_step(network, h, network->sleep.in_force, network->substeps);
+    if (network->hook_count == 0) {
+        const mspringi_field base = network->sleep.in_force = prepare_base(network, dt);
+        mspringi_sleep_feel(network, base);
+        if (mspringi_sleep_is_whole(network))
+            return (mspringi_sight){{0.0f, 0.0f}, {0.0f, 0.0f}};
+        if (!network->implicit && !network->is_clamped && !network->floor)
+            return mspringi_explicit_step(network, h, base, network->substeps);
     }
     copy_state(network, &network->state, &network->backup);
     mspringi_implicit_keep(network);
@@ -157,9 +164,10 @@ static mspring_result choose_substeps(mspring_network *network, double dt) {
 // To the state of before the step.
 static void go_back(mspring_network *network) {
     copy_state(network, &network->backup, &network->state);
+    mspringi_sleep_restore(network);
     mspringi_explicit_reset(network);
     mspringi_implicit_restore(network);
-    if (!network->sleep.is_asleep)
+    if (!mspringi_sleep_is_whole(network))
         mspringi_floor_take_back(network->floor);
     mspringi_clear_empty_slots(network);
 }
@@ -260,9 +268,8 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "dt is %g s, it must be finite and > 0",
                              dt);
     const uint32_t substeps = network->substeps;
-    const bool was_asleep = network->sleep.is_asleep;
-    const double still = network->sleep.still;
-    const bool lent = has_fallback(network) && !network->implicit && network->guard.lent > 0;
+    network->sleep.has_kept = false;
+    const bool lent = has_fallback(network) && network->guard.lent > 0;
     mspring_result result = lent ? fall_back(network, dt) : attempt_explicitly(network, dt);
     if (result == MSPRING_ERROR_UNSTABLE && has_fallback(network) && !lent)
         result = fall_back(network, dt);
@@ -274,12 +281,12 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
     }
     if (result != MSPRING_OK) {
         network->substeps = substeps;
-        network->sleep.is_asleep = was_asleep;
-        network->sleep.still = still;
+        mspringi_sleep_undo(network);
         return result;
     }
     if (mspringi_sleep_is_idle(network))
         return MSPRING_OK;
+    mspringi_sleep_notice(network);
     mspringi_ramps_pass(network, dt);
     mspringi_strain_pass(network);
     mspringi_origin_follow(network);

@@ -1,141 +1,485 @@
-/// A network that lies still is left alone until something happens to it.
+/// When islands fall asleep, and what wakes them.
 ///
-/// What it was when it fell asleep is kept, and compared with what it is: views and hooks write to it without
-/// telling, and a game sets masses and forces in every frame that are mostly those of the frame before.
+/// What an island was when it fell asleep is kept, and compared with what it is: views and hooks write to it
+/// without telling, and a game sets masses and forces in every frame that are mostly those of the frame before.
+/// Edits of springs tell by themselves.
 #include "sleep.h"
 
 #include <math.h>
 #include <string.h>
 
+#include "implicit/implicit.h"
+
+/* ---------------------------------------------------------------------------------------------------- memory */
+
 mspring_result mspringi_sleep_reserve(mspring_network *network) {
-    mspringi_sleep *sleep = &network->sleep;
+    mspringi_sleep *s = &network->sleep;
+    mspringi_memory *memory = &network->memory;
+    const mspringi_topology *t = &network->topology;
+    const size_t slots = mspringi_slot_count(network), particles = t->particle_count;
+    if (s->state && s->share)
+        return MSPRING_OK;
+    mspringi_sleep_free(s, memory);
+    mspringi_sleep_forget(s);
+    s->island = mspringi_alloc(memory, slots, sizeof *s->island);
+    s->lowest = mspringi_alloc(memory, particles, sizeof *s->lowest);
+    s->still = mspringi_alloc(memory, particles, sizeof *s->still);
+    s->kept = mspringi_alloc(memory, particles, sizeof *s->kept);
+    s->mark = mspringi_alloc(memory, particles, sizeof *s->mark);
+    s->scratch = mspringi_alloc(memory, slots, sizeof *s->scratch);
+    s->block_island = mspringi_alloc(memory, t->block_count, sizeof *s->block_island);
+    s->free_mass = mspringi_alloc(memory, slots, sizeof *s->free_mass);
+    s->sleepers = mspringi_alloc(memory, t->block_count, sizeof *s->sleepers);
+    s->swept = mspringi_alloc(memory, t->block_count, sizeof *s->swept);
+    s->share = mspringi_alloc(memory, t->strip_count, sizeof *s->share);
+    s->state = mspringi_alloc(memory, 4 * slots, sizeof *s->state);
+    s->inverse_mass = mspringi_alloc(memory, slots, sizeof *s->inverse_mass);
+    s->held = mspringi_alloc(memory, 2 * slots, sizeof *s->held);
+    mspring_result result = mspringi_field_reserve(network, &s->force);
+    if (result == MSPRING_OK &&
+        !(s->island && s->lowest && s->still && s->kept && s->mark && s->scratch && s->block_island &&
+          s->free_mass && s->sleepers && s->swept && s->share && s->state && s->inverse_mass && s->held))
+        result =
+            mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for the sleep of %zu slots", slots);
+    if (result == MSPRING_OK && !network->incidence.first)
+        result = mspringi_incidence_create(&network->incidence, t, memory, &network->message);
+    if (result != MSPRING_OK) {
+        mspringi_sleep_free(s, memory);
+        mspringi_sleep_forget(s);
+    }
+    return result;
+}
+
+void mspringi_sleep_free(const mspringi_sleep *s, mspringi_memory *memory) {
+    void *const blocks[] = {s->island,  s->lowest,       s->still,        s->kept,     s->mark,
+                            s->scratch, s->block_island, s->free_mass,    s->sleepers, s->swept,
+                            s->share,   s->state,        s->inverse_mass, s->held,     s->force.x};
+    for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; ++i)
+        mspringi_free(memory, blocks[i]);
+}
+
+void mspringi_sleep_forget(mspringi_sleep *s) {
+    *s = (mspringi_sleep){.speed = s->speed, .time = s->time};
+}
+
+/* -------------------------------------------------------------------------------------------------- the state */
+
+static bool state_differs(const mspring_network *network, size_t slot) {
     const size_t slots = mspringi_slot_count(network);
-    if (!sleep->state)
-        sleep->state = mspringi_alloc(&network->memory, 4 * slots, sizeof *sleep->state);
-    if (!sleep->inverse_mass)
-        sleep->inverse_mass = mspringi_alloc(&network->memory, slots, sizeof *sleep->inverse_mass);
-    if (sleep->state && sleep->inverse_mass)
-        return mspringi_field_reserve(network, &sleep->force);
-    return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for the sleep of %zu slots", slots);
+    const float *now = network->state.x + slot, *kept = network->sleep.state + slot;
+    for (size_t i = 0; i < 4; ++i)
+        if (memcmp(now + i * slots, kept + i * slots, sizeof *now) != 0)
+            return true;
+    return false;
 }
 
-void mspringi_sleep_free(const mspringi_sleep *sleep, mspringi_memory *memory) {
-    mspringi_free(memory, sleep->state);
-    mspringi_free(memory, sleep->inverse_mass);
-    mspringi_free(memory, sleep->force.x);
+static bool mass_differs(const mspring_network *network, size_t slot) {
+    return network->inverse_mass[slot] != network->sleep.inverse_mass[slot];
 }
 
-void mspringi_wake(mspring_network *network) {
-    network->sleep.is_asleep = false;
-    network->sleep.still = 0.0;
+// Whether something of a block, all or the masses, is other than it was kept; whether or not it sleeps.
+static bool block_differs(const mspring_network *network, size_t block, bool state, bool masses) {
+    const size_t slots = mspringi_slot_count(network), first = block * MSPRINGI_WIDTH;
+    const mspringi_sleep *s = &network->sleep;
+    const size_t size = MSPRINGI_WIDTH * sizeof *s->state;
+    bool differs = masses && memcmp(network->inverse_mass + first, s->inverse_mass + first, size) != 0;
+    for (size_t i = 0; state && i < 4; ++i)
+        differs |= memcmp(network->state.x + i * slots + first, s->state + i * slots + first, size) != 0;
+    return differs;
+}
+
+bool mspringi_sleeper_is_disturbed(const mspring_network *network, size_t slot) {
+    const mspringi_sleep *s = &network->sleep;
+    return network->origin_x != s->origin_x || network->origin_y != s->origin_y || state_differs(network, slot) ||
+           mass_differs(network, slot);
+}
+
+// Whether positions, velocities or masses may have changed since they were looked at.
+static bool may_have_moved(const mspring_network *network) {
+    return network->is_open || network->sleep.moved != network->edits.state;
+}
+
+// The first slot that sleeps and has been disturbed, from one on; the number of slots if there is none.
+static size_t next_disturbed(const mspring_network *network, size_t slot, bool state, bool masses) {
+    const mspringi_sleep *s = &network->sleep;
+    const size_t slots = mspringi_slot_count(network);
+    while (slot < slots) {
+        const size_t block = slot / MSPRINGI_WIDTH, end = (block + 1) * MSPRINGI_WIDTH;
+        if (s->sleepers[block] != 0 && block_differs(network, block, state, masses))
+            for (; slot < end; ++slot)
+                if (s->sleepers[block] >> slot % MSPRINGI_WIDTH & 1 &&
+                    ((state && state_differs(network, slot)) || (masses && mass_differs(network, slot))))
+                    return slot;
+        slot = end;
+    }
+    return slots;
+}
+
+bool mspringi_sleep_is_disturbed(const mspring_network *network) {
+    const mspringi_sleep *s = &network->sleep;
+    if (s->sleeping == 0)
+        return false;
+    const bool state = may_have_moved(network), masses = s->masses != network->edits.masses;
+    if (!state && !masses)
+        return false;
+    return network->origin_x != s->origin_x || network->origin_y != s->origin_y ||
+           next_disturbed(network, 0, state, masses) < mspringi_slot_count(network);
 }
 
 /* -------------------------------------------------------------------------------------------------- waking */
 
-static bool has_moved(const mspring_network *network) {
-    const mspringi_sleep *sleep = &network->sleep;
-    const size_t slots = mspringi_slot_count(network);
-    return network->origin_x != sleep->origin_x || network->origin_y != sleep->origin_y ||
-           memcmp(network->state.x, sleep->state, 4 * slots * sizeof *sleep->state) != 0;
+static void keep_stillness(mspringi_sleep *s) {
+    if (!s->has_kept)
+        memcpy(s->kept, s->still, s->count * sizeof *s->kept);
+    s->has_kept = true;
 }
 
-bool mspringi_sleep_is_disturbed(const mspring_network *network) {
-    const mspringi_sleep *sleep = &network->sleep;
-    const mspringi_edits *edits = &network->edits;
-    if (sleep->values != edits->values || sleep->links != edits->links)
-        return true;
-    const size_t mass_bytes = mspringi_slot_count(network) * sizeof *sleep->inverse_mass;
-    if (sleep->masses != edits->masses && memcmp(network->inverse_mass, sleep->inverse_mass, mass_bytes) != 0)
-        return true;
-    return (network->is_open || sleep->moved != edits->state) && has_moved(network);
+// What sleeps has a past: it has been at rest.
+static void set_awake(mspring_network *network, uint32_t island) {
+    mspringi_sleep *s = &network->sleep;
+    const bool slept = s->still[island] < 0.0;
+    s->still[island] = 0.0;
+    s->sleeping -= slept;
+    network->edits.naps += slept;
+}
+
+static void set_all_awake(mspring_network *network) {
+    for (uint32_t i = 0; i < network->sleep.count; ++i)
+        set_awake(network, i);
+}
+
+void mspringi_wake(mspring_network *network) {
+    network->sleep.has_kept = false;
+    set_all_awake(network);
+}
+
+void mspringi_wake_slot(mspring_network *network, uint32_t slot) {
+    mspringi_sleep *s = &network->sleep;
+    if (s->count == 0 || s->island[slot] == MSPRING_NONE)
+        return;
+    const bool slept = s->still[s->island[slot]] < 0.0;
+    set_awake(network, s->island[slot]);
+    if (slept && s->sleeping > 0)
+        s->is_mapped = false;
+}
+
+void mspringi_wake_spring(mspring_network *network, mspring_id spring) {
+    const mspringi_topology *t = &network->topology;
+    uint32_t base, tip;
+    if (network->sleep.count == 0)
+        return;
+    mspringi_topology_ends(t, mspringi_place_of(t, spring), &base, &tip);
+    mspringi_wake_slot(network, base);
+    mspringi_wake_slot(network, tip);
+}
+
+static void map_if_changed(mspring_network *network, uint64_t naps) {
+    mspringi_sleep *s = &network->sleep;
+    if (s->sleeping > 0 && (!s->is_mapped || naps != network->edits.naps))
+        mspringi_islands_map(network);
+    else if (s->sleeping > 0 && s->masses != network->edits.masses)
+        mspringi_islands_weigh(network);
+}
+
+static void wake_disturbed(mspring_network *network, bool state, bool masses) {
+    mspringi_sleep *s = &network->sleep;
+    const size_t slots = mspringi_slot_count(network);
+    for (size_t slot = 0; (slot = next_disturbed(network, slot, state, masses)) < slots;) {
+        const size_t block = slot / MSPRINGI_WIDTH;
+        keep_stillness(s);
+        set_awake(network, s->island[slot]);
+        slot = s->block_island[block] != MSPRING_NONE ? (block + 1) * MSPRINGI_WIDTH : slot + 1;
+    }
 }
 
 void mspringi_sleep_begin(mspring_network *network, double dt) {
-    if (!network->sleep.is_asleep)
+    mspringi_sleep *s = &network->sleep;
+    if (s->sleeping == 0)
         return;
+    const uint64_t naps = network->edits.naps;
     // A substep of another length changes relative springs, and how many there are may change by itself.
     const bool same_h = !network->relative || (float)(dt / (double)network->substeps) == network->relative_h;
-    if (!same_h || network->ramps.count > 0 || mspringi_sleep_is_disturbed(network))
-        mspringi_wake(network);
+    if (!same_h || network->origin_x != s->origin_x || network->origin_y != s->origin_y) {
+        keep_stillness(s);
+        set_all_awake(network);
+        return;
+    }
+    const bool state = may_have_moved(network), masses = s->masses != network->edits.masses;
+    if (!s->is_mapped)
+        mspringi_islands_map(network);
+    if (state || masses)
+        wake_disturbed(network, state, masses);
+    if (!network->is_open && !s->has_kept)
+        s->moved = network->edits.state;
+    map_if_changed(network, naps);
 }
 
 bool mspringi_sleep_is_idle(const mspring_network *network) {
-    const mspringi_sleep *sleep = &network->sleep;
-    return sleep->is_asleep && !sleep->has_force && network->hook_count == 0 && !network->forces.held_any;
+    return mspringi_sleep_is_whole(network) && !network->sleep.has_force && network->hook_count == 0 &&
+           !network->forces.held_any;
 }
 
 // A change of force counts that would bring a particle to the speed that is no sleep any more within the time after
 // which it would have been asleep again.
+static uint32_t feel_block(const mspring_network *network, mspringi_field force, size_t first) {
+    const mspringi_sleep *s = &network->sleep;
+    static const float none[MSPRINGI_WIDTH];
+    const float *x = force.x ? force.x + first : none, *y = force.x ? force.y + first : none;
+    uint32_t felt[MSPRINGI_WIDTH], bits = 0;
+    for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
+        const float dx = fabsf(x[lane] - s->force.x[first + lane]), dy = fabsf(y[lane] - s->force.y[first + lane]);
+        const float inverse_mass = s->inverse_mass[first + lane];
+        felt[lane] = (uint32_t) !(dx * inverse_mass * s->time <= s->speed) |
+                     (uint32_t) !(dy * inverse_mass * s->time <= s->speed);
+    }
+    for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
+        bits |= felt[lane] << lane;
+    return bits & s->sleepers[first / MSPRINGI_WIDTH];
+}
+
 void mspringi_sleep_feel(mspring_network *network, mspringi_field force) {
-    const mspringi_sleep *sleep = &network->sleep;
-    const size_t slots = mspringi_slot_count(network);
-    if (!sleep->is_asleep || (!force.x && !sleep->has_force))
+    mspringi_sleep *s = &network->sleep;
+    if (s->sleeping == 0 || (!force.x && !s->has_force))
         return;
-    for (size_t slot = 0; slot < slots; ++slot) {
-        const float x = force.x ? force.x[slot] : 0.0f, y = force.x ? force.y[slot] : 0.0f;
-        const float change = fmaxf(fabsf(x - sleep->force.x[slot]), fabsf(y - sleep->force.y[slot]));
-        if (!(change * network->inverse_mass[slot] * sleep->time <= sleep->speed)) {
-            mspringi_wake(network);
-            return;
+    const uint64_t naps = network->edits.naps;
+    for (size_t block = 0; block < network->topology.block_count; ++block) {
+        if (s->sleepers[block] == 0)
+            continue;
+        const size_t first = block * MSPRINGI_WIDTH;
+        for (uint32_t bits = feel_block(network, force, first), lane = 0; bits >> lane != 0; ++lane) {
+            if (!(bits >> lane & 1))
+                continue;
+            keep_stillness(s);
+            set_awake(network, s->island[first + lane]);
+        }
+    }
+    map_if_changed(network, naps);
+}
+
+/* ------------------------------------------------------------------------------------------------- in a step */
+
+// The explicit solver leaves alone what is not swept; others go by larger pieces.
+static bool is_held(const mspring_network *network, size_t block) {
+    const mspringi_sleep *s = &network->sleep;
+    return s->sleepers[block] != 0 && (s->swept[block] || network->implicit || network->is_clamped);
+}
+
+void mspringi_sleep_hold(const mspring_network *network) {
+    const mspringi_sleep *s = &network->sleep;
+    const size_t slots = mspringi_slot_count(network), size = MSPRINGI_WIDTH * sizeof *s->held;
+    for (size_t block = 0; s->sleeping > 0 && block < network->topology.block_count; ++block) {
+        const size_t first = block * MSPRINGI_WIDTH;
+        if (!is_held(network, block))
+            continue;
+        memcpy(s->held + first, network->state.x + first, size);
+        memcpy(s->held + slots + first, network->state.y + first, size);
+    }
+}
+
+void mspringi_sleep_put_back(const mspring_network *network) {
+    const mspringi_sleep *s = &network->sleep;
+    const size_t slots = mspringi_slot_count(network);
+    for (size_t block = 0; s->sleeping > 0 && block < network->topology.block_count; ++block) {
+        for (size_t lane = 0; is_held(network, block) && lane < MSPRINGI_WIDTH; ++lane) {
+            const size_t slot = block * MSPRINGI_WIDTH + lane;
+            if (!(s->sleepers[block] >> lane & 1))
+                continue;
+            network->state.x[slot] = s->held[slot];
+            network->state.y[slot] = s->held[slots + slot];
         }
     }
 }
 
+void mspringi_sleep_notice(mspring_network *network) {
+    if (network->sleep.sleeping == 0 || network->hook_count == 0)
+        return;
+    const uint64_t naps = network->edits.naps;
+    wake_disturbed(network, true, false);
+    map_if_changed(network, naps);
+}
+
+void mspringi_sleep_restore(mspring_network *network) {
+    const mspringi_sleep *s = &network->sleep;
+    const size_t slots = mspringi_slot_count(network);
+    for (size_t slot = 0; s->sleeping > 0 && slot < slots; ++slot)
+        for (size_t i = 0; i < 4 && mspringi_slot_is_asleep(network, slot); ++i)
+            network->state.x[i * slots + slot] = s->state[i * slots + slot];
+}
+
+void mspringi_sleep_undo(mspring_network *network) {
+    mspringi_sleep *s = &network->sleep;
+    if (!s->has_kept)
+        return;
+    memcpy(s->still, s->kept, s->count * sizeof *s->still);
+    s->has_kept = false;
+    s->sleeping = 0;
+    for (uint32_t i = 0; i < s->count; ++i)
+        s->sleeping += s->still[i] < 0.0;
+    network->edits.naps++;
+    s->is_mapped = false;
+}
+
 /* ------------------------------------------------------------------------------------------- falling asleep */
 
-// Whether something moves that the host has sent on its way.
-static bool has_driven_pin(const mspring_network *network) {
-    const mspringi_topology *t = &network->topology;
-    for (mspring_id p = 0; p < t->particle_count; ++p) {
-        const uint32_t slot = t->slot_of_particle[p];
-        if (!(network->inverse_mass[slot] > 0.0f) &&
-            (network->state.vx[slot] != 0.0f || network->state.vy[slot] != 0.0f))
-            return true;
+// Slots of a block that are faster than what is still, or pinned and on their way.
+static uint32_t loud_in_block(const mspring_network *network, size_t first) {
+    const mspringi_state *state = &network->state;
+    const float speed = network->sleep.speed;
+    uint32_t loud[MSPRINGI_WIDTH], bits = 0;
+    for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
+        const float vx = state->vx[first + lane], vy = state->vy[first + lane];
+        const uint32_t is_fast = (uint32_t) !(fabsf(vx) <= speed) | (uint32_t) !(fabsf(vy) <= speed);
+        const uint32_t is_driven = (uint32_t) !(network->inverse_mass[first + lane] > 0.0f) &
+                                   ((uint32_t)(vx != 0.0f) | (uint32_t)(vy != 0.0f));
+        loud[lane] = is_fast | is_driven;
     }
-    return false;
+    for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
+        bits |= loud[lane] << lane;
+    return bits;
+}
+
+// Mark the islands that are not still.
+static void mark_loud(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_sleep *s = &network->sleep;
+    memset(s->mark, 0, s->count * sizeof *s->mark);
+    for (uint32_t block = 0; block < t->block_count; ++block) {
+        const uint32_t one = s->block_island[block], first = block * MSPRINGI_WIDTH;
+        if ((s->sleeping > 0 && !s->swept[block]) || (one != MSPRING_NONE && s->mark[one]))
+            continue;
+        const uint32_t bits = loud_in_block(network, first);
+        for (uint32_t lane = 0; bits >> lane != 0; ++lane)
+            if (bits >> lane & 1 && s->island[first + lane] != MSPRING_NONE)
+                s->mark[s->island[first + lane]] = 1;
+    }
+    for (size_t i = 0; i < network->ramps.count; ++i) {
+        uint32_t base, tip;
+        mspringi_topology_ends(t, mspringi_place_of(t, network->ramps.list[i].spring), &base, &tip);
+        s->mark[s->island[base]] = 1;
+    }
+}
+
+// Let dt pass, and mark those whose time has come instead. Returns whether there are any.
+static bool mark_sleepy(const mspring_network *network, double dt) {
+    const mspringi_sleep *s = &network->sleep;
+    bool any = false;
+    for (uint32_t i = 0; i < s->count; ++i) {
+        if (s->still[i] >= 0.0)
+            s->still[i] = s->mark[i] ? 0.0 : s->still[i] + dt;
+        s->mark[i] = s->still[i] > 0.0 && s->still[i] >= (double)s->time;
+        any |= s->mark[i];
+    }
+    return any;
+}
+
+// What an integrator remembers of the motion has come to its end.
+static void forget_motion(const mspring_network *network, size_t slot) {
+    const mspringi_implicit *n = network->implicit;
+    const size_t slots = mspringi_slot_count(network);
+    for (size_t i = 0; n && i < n->history_size; i += slots)
+        n->history.low.x[i + slot] = n->backup.low.x[i + slot] = 0.0f;
+}
+
+static void put_to_sleep(mspring_network *network, size_t slot, mspringi_field force) {
+    const mspringi_state *state = &network->state;
+    const mspringi_sleep *s = &network->sleep;
+    const size_t slots = mspringi_slot_count(network);
+    // A block that is swept for what else is in it adds 0 to the position: -0 would become +0.
+    state->x[slot] += 0.0f;
+    state->y[slot] += 0.0f;
+    state->vx[slot] = state->vy[slot] = 0.0f;
+    for (size_t i = 0; i < 4; ++i)
+        s->state[i * slots + slot] = state->x[i * slots + slot];
+    s->inverse_mass[slot] = network->inverse_mass[slot];
+    s->force.x[slot] = force.x ? force.x[slot] : 0.0f;
+    s->force.y[slot] = force.x ? force.y[slot] : 0.0f;
+    forget_motion(network, slot);
 }
 
 void mspringi_sleep_fall(mspring_network *network, mspringi_field force) {
-    mspringi_sleep *sleep = &network->sleep;
-    const size_t slots = mspringi_slot_count(network);
-    memset(network->state.vx, 0, 2 * slots * sizeof *network->state.vx); // vy lies behind vx
-    sleep->origin_x = network->origin_x;
-    sleep->origin_y = network->origin_y;
-    memcpy(sleep->state, network->state.x, 4 * slots * sizeof *sleep->state);
-    memcpy(sleep->inverse_mass, network->inverse_mass, slots * sizeof *sleep->inverse_mass);
-    sleep->has_force = force.x != NULL;
-    if (force.x)
-        memcpy(sleep->force.x, force.x, 2 * slots * sizeof *force.x);
-    else
-        memset(sleep->force.x, 0, 2 * slots * sizeof *sleep->force.x);
-    sleep->is_asleep = true;
-    sleep->masses = network->edits.masses;
-    sleep->values = network->edits.values;
-    sleep->links = network->edits.links;
-    sleep->moved = network->edits.state;
+    mspringi_sleep *s = &network->sleep;
+    const bool is_first = s->sleeping == 0;
+    for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot)
+        if (s->island[slot] != MSPRING_NONE && s->mark[s->island[slot]])
+            put_to_sleep(network, slot, force);
+    for (uint32_t i = 0; i < s->count; ++i) {
+        if (!s->mark[i])
+            continue;
+        s->still[i] = -1.0;
+        s->sleeping++;
+        network->edits.naps++;
+    }
+    s->has_force = (!is_first && s->has_force) || force.x;
+    s->origin_x = network->origin_x;
+    s->origin_y = network->origin_y;
+    if (is_first)
+        s->moved = network->edits.state;
+    mspringi_islands_map(network);
+}
+
+// The local origin has moved along: exactly, and with all there is.
+static void follow_origin(mspring_network *network) {
+    mspringi_sleep *s = &network->sleep;
+    if (s->sleeping == 0 || (s->origin_x == network->origin_x && s->origin_y == network->origin_y))
+        return;
+    memcpy(s->state, network->state.x, 2 * mspringi_slot_count(network) * sizeof *s->state);
+    s->origin_x = network->origin_x;
+    s->origin_y = network->origin_y;
 }
 
 void mspringi_sleep_end(mspring_network *network, double dt) {
-    mspringi_sleep *sleep = &network->sleep;
-    const mspringi_field force = sleep->in_force;
-    sleep->in_force = (mspringi_field){NULL, NULL};
-    if (!(sleep->speed > 0.0f))
+    mspringi_sleep *s = &network->sleep;
+    const mspringi_field force = s->in_force;
+    s->in_force = (mspringi_field){NULL, NULL};
+    if (!(s->speed > 0.0f))
         return;
-    if (sleep->is_asleep) {
-        if (network->is_open && has_moved(network))
-            mspringi_wake(network);
+    follow_origin(network);
+    if (mspringi_sleep_is_whole(network))
         return;
-    }
-    const size_t count = 2 * mspringi_slot_count(network);
-    const bool is_still = network->ramps.count == 0 &&
-                          network->kernels->largest(network->state.vx, NULL, count).value <= sleep->speed &&
-                          !has_driven_pin(network);
-    sleep->still = is_still ? sleep->still + dt : 0.0;
-    if (!is_still || sleep->still < (double)sleep->time)
+    mspringi_islands_find(network);
+    mark_loud(network);
+    if (!mark_sleepy(network, dt))
         return;
-    // What an integrator remembers of the motion has come to its end.
-    network->edits.motion++;
     mspringi_sleep_fall(network, force);
+    if (mspringi_sleep_is_whole(network))
+        network->edits.motion++;
+}
+
+/* ------------------------------------------------------------------------------------------------ moving along
+ */
+
+void mspringi_sleep_move(mspring_network *to, const mspring_network *from) {
+    mspringi_sleep *s = &to->sleep;
+    const mspringi_sleep *had = &from->sleep;
+    if (had->count == 0)
+        return;
+    mspringi_islands_find(to);
+    for (uint32_t i = 0; i < s->count; ++i)
+        s->still[i] = INFINITY;
+    const size_t slots = mspringi_slot_count(to), had_slots = mspringi_slot_count(from);
+    for (mspring_id p = 0; p < to->topology.particle_count; ++p) {
+        const uint32_t slot = to->topology.slot_of_particle[p], before = from->topology.slot_of_particle[p];
+        const double still = had->still[had->island[before]];
+        double *now = &s->still[s->island[slot]];
+        *now = still >= 0.0 && still < *now ? still : *now;
+        for (size_t i = 0; i < 4; ++i)
+            s->state[i * slots + slot] = had->state[i * had_slots + before];
+        s->inverse_mass[slot] = had->inverse_mass[before];
+        s->force.x[slot] = had->force.x[before];
+        s->force.y[slot] = had->force.y[before];
+    }
+    for (uint32_t i = 0; i < s->count; ++i) {
+        if (s->still[i] == INFINITY)
+            s->still[i] = -1.0;
+        s->sleeping += s->still[i] < 0.0;
+    }
+    s->has_force = had->has_force;
+    s->origin_x = had->origin_x;
+    s->origin_y = had->origin_y;
+    s->moved = had->moved;
+    if (s->sleeping > 0)
+        mspringi_islands_map(to);
+    s->masses = had->masses;
 }
 
 /* ---------------------------------------------------------------------------------------------------- the host */
@@ -147,6 +491,20 @@ mspring_result mspring_network_wake(mspring_network *network) {
     return result;
 }
 
+mspring_result mspring_network_get_sleepers(const mspring_network *network, mspring_id first, uint32_t count,
+                                            uint8_t *asleep) {
+    if (!network || (count > 0 && !asleep))
+        return MSPRING_ERROR_ARGUMENT;
+    const uint32_t total = network->topology.particle_count;
+    if (first > total || count > total - first)
+        return MSPRING_ERROR_ID;
+    const mspringi_sleep *s = &network->sleep;
+    for (uint32_t i = 0; i < count; ++i)
+        asleep[i] =
+            s->sleeping > 0 && s->still[s->island[network->topology.slot_of_particle[first + i]]] < 0.0 ? 1 : 0;
+    return MSPRING_OK;
+}
+
 uint32_t mspring_network_is_asleep(const mspring_network *network) {
-    return network && network->sleep.is_asleep && !mspringi_sleep_is_disturbed(network);
+    return network && mspringi_sleep_is_whole(network) && !mspringi_sleep_is_disturbed(network);
 }

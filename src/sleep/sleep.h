@@ -1,5 +1,8 @@
 /// @file sleep.h
-/// A network that lies still is left alone until something happens to it.
+/// Islands that lie still are left alone until something happens to them.
+///
+///   sleep.c      when islands fall asleep, and what wakes them
+///   islands.c    which they are, and what of the rows is swept while some sleep
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SLEEP_H
@@ -7,26 +10,93 @@
 
 #include "network/network.h"
 
+/// What is to be swept of a strip.
+typedef enum mspringi_share {
+    MSPRINGI_AWAKE,  ///< all of it, and nothing above it is left out
+    MSPRINGI_PARTLY, ///< the blocks that are marked as swept
+    MSPRINGI_ASLEEP  ///< none
+} mspringi_share;
+
 /// Allocate what a network that may sleep needs, unless it is there.
 mspring_result mspringi_sleep_reserve(mspring_network *network);
 void mspringi_sleep_free(const mspringi_sleep *sleep, mspringi_memory *memory);
+/// Forget what lies by slot, which was freed or is another's.
+void mspringi_sleep_forget(mspringi_sleep *sleep);
+/// Have what sleeps in another network of the same particles and springs sleep in this one, which has the same
+/// state.
+void mspringi_sleep_move(mspring_network *to, const mspring_network *from);
 
-/// It sleeps no more.
+/* ------------------------------------------------------------------------------------------------- what sleeps */
+
+/// All that there is, so that nothing is swept.
+static inline bool mspringi_sleep_is_whole(const mspring_network *network) {
+    return network->sleep.sleeping > 0 && network->sleep.sleeping == network->sleep.count;
+}
+
+/// Whether a slot's island sleeps.
+static inline bool mspringi_slot_is_asleep(const mspring_network *network, size_t slot) {
+    const mspringi_sleep *sleep = &network->sleep;
+    return sleep->sleeping > 0 && sleep->sleepers[slot / MSPRINGI_WIDTH] >> slot % MSPRINGI_WIDTH & 1;
+}
+
+static inline mspringi_share mspringi_share_of_strip(const mspring_network *network, const mspringi_strip *strip) {
+    const mspringi_sleep *sleep = &network->sleep;
+    return sleep->sleeping > 0 ? (mspringi_share)sleep->share[strip - network->topology.strips] : MSPRINGI_AWAKE;
+}
+
+/// Whether any of the blocks first to end - 1 is swept.
+bool mspringi_is_any_swept(const mspring_network *network, size_t first, size_t end);
+
+/// The next run of blocks that are swept, from slot *at of a span on, which goes behind it. part[1] is there to be
+/// read behind part[0]. Returns false if there is none.
+bool mspringi_next_swept(const mspring_network *network, const mspringi_span *span, uint32_t *at,
+                         mspringi_span part[2]);
+
+/* ---------------------------------------------------------------------------------------------------- waking */
+
+/// Nothing sleeps any more.
 void mspringi_wake(mspring_network *network);
+/// Something happens to the island of a slot, or to those of a spring's ends. Nothing for networks that never
+/// sleep.
+void mspringi_wake_slot(mspring_network *network, uint32_t slot);
+void mspringi_wake_spring(mspring_network *network, mspring_id spring);
 
-/// Whether something that is asleep has been changed since: its state, masses or springs.
+/// Whether a slot that is asleep has been changed since: its position, velocity or mass.
+bool mspringi_sleeper_is_disturbed(const mspring_network *network, size_t slot);
+/// Whether any has been.
 bool mspringi_sleep_is_disturbed(const mspring_network *network);
 
-/// Before a step: wake it if it has been disturbed, or if the step would change its springs.
+/* ------------------------------------------------------------------------------------------------------- a step */
+
+/// Before a step: wake what has been disturbed, or what the step would change springs of.
 void mspringi_sleep_begin(mspring_network *network, double dt);
-/// Whether a step has nothing to do at all: asleep, with no hook to call and no force to compare.
+/// Whether a step has nothing to do at all: all asleep, with no hook to call and no force to compare.
 bool mspringi_sleep_is_idle(const mspring_network *network);
-/// In a step, once the forces from outside are known: wake it if they are others than when it fell asleep.
+/// In a step, once the forces from outside are known: wake what feels others than when it fell asleep.
 void mspringi_sleep_feel(mspring_network *network, mspringi_field force);
-/// After a step: wake it if a hook has moved something, or see whether it falls asleep.
+/// Keep what sleeps from moving in substeps, where hooks have given it a velocity: hold it before them, and put it
+/// back after them.
+void mspringi_sleep_hold(const mspring_network *network);
+void mspringi_sleep_put_back(const mspring_network *network);
+/// After the substeps of a step: wake what hooks have moved.
+void mspringi_sleep_notice(mspring_network *network);
+/// At the end of a step: see what falls asleep.
 void mspringi_sleep_end(mspring_network *network, double dt);
 
-/// Have it sleep as it is now, under these forces (x NULL: none).
+/// After a step that failed, once the backup is the state: what slept before it sleeps.
+void mspringi_sleep_restore(mspring_network *network);
+void mspringi_sleep_undo(mspring_network *network);
+
+/// Have these islands, those that are marked, sleep as they are now, under these forces (x NULL: none).
 void mspringi_sleep_fall(mspring_network *network, mspringi_field force);
+
+/* -------------------------------------------------------------------------------------------------- islands.c */
+
+/// Find the islands, if links have changed them. What was still, or asleep, goes on to be.
+void mspringi_islands_find(mspring_network *network);
+/// Find out what is to be swept, when islands have fallen asleep or woken.
+void mspringi_islands_map(mspring_network *network);
+/// Only take over the masses of what is awake.
+void mspringi_islands_weigh(mspring_network *network);
 
 #endif

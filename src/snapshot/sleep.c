@@ -1,49 +1,113 @@
-/// Whether a network sleeps, or for how long it has been still, in a snapshot.
+/// Which islands sleep, and for how long the others have been still, in a snapshot.
+///
+/// Islands have no names that edits would leave alone: what sleeps is told by particle, and how long others have
+/// been still by their lowest slots. Edits of springs have woken those that they change, so the others are found
+/// again.
 #include <math.h>
+#include <string.h>
 
 #include "sections.h"
 #include "sleep/sleep.h"
 
 typedef struct sleep_head {
-    double still;
     float speed, time;
-    uint32_t is_asleep, has_force;
+    uint32_t still_count; ///< islands that are awake and have been still
+    uint32_t any_asleep, has_force;
 } sleep_head;
-#define HEAD_BYTES ((size_t)24)
+#define HEAD_BYTES ((size_t)20)
 
-// What has been disturbed wakes before the next step.
-static bool sleeps_on(const mspring_network *network) {
-    return network->sleep.is_asleep && !mspringi_sleep_is_disturbed(network);
+// A slot, and for how long its island has been still.
+#define STILL_BYTES (sizeof(uint32_t) + sizeof(double))
+
+static size_t words_of_particles(const mspring_network *network) {
+    return ((size_t)network->topology.particle_count + 31) / 32;
 }
 
-static size_t force_floats(const mspring_network *network, bool is_asleep, bool has_force) {
-    return is_asleep && has_force ? 2 * mspringi_slot_count(network) : 0;
+static size_t force_floats(const mspring_network *network, const sleep_head *head) {
+    return head->has_force ? 2 * mspringi_slot_count(network) : 0;
+}
+
+static size_t size_of(const mspring_network *network, const sleep_head *head) {
+    return HEAD_BYTES + head->still_count * STILL_BYTES +
+           (head->any_asleep ? words_of_particles(network) * sizeof(uint32_t) : 0) +
+           force_floats(network, head) * sizeof(float);
+}
+
+static bool is_listed(const mspringi_sleep *sleep, uint32_t island) {
+    return sleep->still[island] > 0.0;
+}
+
+static sleep_head make_head(const mspring_network *network) {
+    const mspringi_sleep *sleep = &network->sleep;
+    sleep_head head = {.speed = sleep->speed,
+                       .time = sleep->time,
+                       .any_asleep = sleep->sleeping > 0,
+                       .has_force = sleep->sleeping > 0 && sleep->has_force};
+    for (uint32_t i = 0; i < sleep->count; ++i)
+        head.still_count += is_listed(sleep, i);
+    return head;
 }
 
 static size_t sleep_size(const mspring_network *network) {
-    if (!(network->sleep.speed > 0.0f))
-        return 0;
-    return HEAD_BYTES + force_floats(network, sleeps_on(network), network->sleep.has_force) * sizeof(float);
+    const sleep_head head = make_head(network);
+    return network->sleep.speed > 0.0f ? size_of(network, &head) : 0;
+}
+
+// What has been disturbed wakes before the next step.
+static bool sleeps_on(const mspring_network *network, mspring_id particle) {
+    const mspringi_sleep *sleep = &network->sleep;
+    const uint32_t slot = network->topology.slot_of_particle[particle];
+    return sleep->still[sleep->island[slot]] < 0.0 && !mspringi_sleeper_is_disturbed(network, slot);
 }
 
 static void sleep_save(const mspring_network *network, mspringi_writer *to) {
     const mspringi_sleep *sleep = &network->sleep;
-    const bool is_asleep = sleeps_on(network);
-    const double still = sleep->is_asleep && !is_asleep ? 0.0 : sleep->still;
-    const float settings[] = {sleep->speed, sleep->time};
-    const uint32_t words[] = {is_asleep, is_asleep && sleep->has_force};
-    mspringi_put(to, &still, 1, sizeof still);
+    const sleep_head head = make_head(network);
+    const float settings[] = {head.speed, head.time};
+    const uint32_t words[] = {head.still_count, head.any_asleep, head.has_force};
     mspringi_put(to, settings, 2, sizeof settings[0]);
-    mspringi_put(to, words, 2, sizeof words[0]);
-    mspringi_put(to, sleep->force.x, force_floats(network, words[0], words[1]), sizeof *sleep->force.x);
+    mspringi_put(to, words, 3, sizeof words[0]);
+    for (uint32_t i = 0; i < sleep->count; ++i) {
+        if (!is_listed(sleep, i))
+            continue;
+        mspringi_put(to, &sleep->lowest[i], 1, sizeof sleep->lowest[i]);
+        mspringi_put(to, &sleep->still[i], 1, sizeof sleep->still[i]);
+    }
+    const uint32_t particles = network->topology.particle_count;
+    for (mspring_id first = 0; head.any_asleep && first < particles; first += 32) {
+        uint32_t bits = 0;
+        for (mspring_id p = first; p < first + 32 && p < particles; ++p)
+            bits |= (uint32_t)sleeps_on(network, p) << (p - first);
+        mspringi_put(to, &bits, 1, sizeof bits);
+    }
+    mspringi_put(to, sleep->force.x, force_floats(network, &head), sizeof *sleep->force.x);
 }
 
 static const uint8_t *read_head(const uint8_t *from, sleep_head *head) {
-    from = mspringi_get(from, &head->still, 1, sizeof head->still);
     from = mspringi_get(from, &head->speed, 1, sizeof head->speed);
     from = mspringi_get(from, &head->time, 1, sizeof head->time);
-    from = mspringi_get(from, &head->is_asleep, 1, sizeof head->is_asleep);
+    from = mspringi_get(from, &head->still_count, 1, sizeof head->still_count);
+    from = mspringi_get(from, &head->any_asleep, 1, sizeof head->any_asleep);
     return mspringi_get(from, &head->has_force, 1, sizeof head->has_force);
+}
+
+static const uint8_t *read_still(const uint8_t *from, uint32_t *slot, double *still) {
+    from = mspringi_get(from, slot, 1, sizeof *slot);
+    return mspringi_get(from, still, 1, sizeof *still);
+}
+
+static mspring_result check_still(mspring_network *network, const uint8_t *from, uint32_t count) {
+    const size_t slots = mspringi_slot_count(network);
+    for (uint32_t i = 0; i < count; ++i) {
+        uint32_t slot;
+        double still;
+        from = read_still(from, &slot, &still);
+        if (slot >= slots || network->topology.particle_of_slot[slot] == MSPRING_NONE ||
+            !(still > 0.0 && still <= 1e300))
+            return mspringi_section_fail(network, &mspringi_section_sleep, "slot %u has been still for %g s",
+                                         (unsigned)slot, still);
+    }
+    return MSPRING_OK;
 }
 
 static mspring_result sleep_check(mspring_network *network, const uint8_t *from, size_t size) {
@@ -54,18 +118,35 @@ static mspring_result sleep_check(mspring_network *network, const uint8_t *from,
     if (size < HEAD_BYTES)
         return mspringi_section_check_size(network, section, size, HEAD_BYTES);
     from = read_head(from, &head);
-    if (!(head.still >= 0.0 && head.still <= 1e300 && head.speed > 0.0f && head.speed <= 1e15f &&
-          head.time >= 0.0f && head.time <= 1e6f) ||
-        head.is_asleep > 1 || head.has_force > head.is_asleep)
-        return mspringi_section_fail(network, section, "below %g m/s, after %g s, for %g s", (double)head.speed,
-                                     (double)head.time, head.still);
-    const size_t floats = force_floats(network, head.is_asleep, head.has_force);
-    mspring_result result =
-        mspringi_section_check_size(network, section, size, HEAD_BYTES + floats * sizeof(float));
+    if (!(head.speed > 0.0f && head.speed <= 1e15f && head.time >= 0.0f && head.time <= 1e6f) ||
+        head.any_asleep > 1 || head.has_force > head.any_asleep ||
+        head.still_count > network->topology.particle_count)
+        return mspringi_section_fail(network, section, "%u islands below %g m/s for less than %g s",
+                                     (unsigned)head.still_count, (double)head.speed, (double)head.time);
+    mspring_result result = mspringi_section_check_size(network, section, size, size_of(network, &head));
+    if (result == MSPRING_OK)
+        result = check_still(network, from, head.still_count);
+    const size_t floats = force_floats(network, &head);
+    from += size - HEAD_BYTES - floats * sizeof(float);
     for (size_t i = 0; result == MSPRING_OK && i < floats; ++i)
         if (!isfinite(mspringi_float_at(from, i)))
             result = mspringi_section_fail(network, section, "a force is %g N", (double)mspringi_float_at(from, i));
     return result == MSPRING_OK ? mspringi_sleep_reserve(network) : result;
+}
+
+// Mark the islands all of whose particles sleep.
+static const uint8_t *mark_asleep(const mspring_network *network, const uint8_t *from) {
+    const mspringi_sleep *sleep = &network->sleep;
+    const uint32_t particles = network->topology.particle_count;
+    memset(sleep->mark, 1, sleep->count * sizeof *sleep->mark);
+    for (mspring_id first = 0; first < particles; first += 32) {
+        uint32_t bits;
+        from = mspringi_get(from, &bits, 1, sizeof bits);
+        for (mspring_id p = first; p < first + 32 && p < particles; ++p)
+            if (!(bits >> (p - first) & 1))
+                sleep->mark[sleep->island[network->topology.slot_of_particle[p]]] = 0;
+    }
+    return from;
 }
 
 // After all that could disturb it.
@@ -76,13 +157,23 @@ static void sleep_load(mspring_network *network, const uint8_t *from, size_t siz
         from = read_head(from, &head);
     sleep->speed = head.speed;
     sleep->time = head.time;
-    mspringi_wake(network);
-    if (head.is_asleep) {
-        mspringi_sleep_fall(network, (mspringi_field){NULL, NULL});
-        mspringi_get(from, sleep->force.x, force_floats(network, true, head.has_force), sizeof *sleep->force.x);
-        sleep->has_force = head.has_force;
+    sleep->count = sleep->sleeping = 0;
+    network->edits.naps++;
+    if (size == 0)
+        return;
+    mspringi_islands_find(network);
+    for (uint32_t i = 0; i < head.still_count; ++i) {
+        uint32_t slot;
+        double still;
+        from = read_still(from, &slot, &still);
+        sleep->still[sleep->island[slot]] = still;
     }
-    sleep->still = head.still;
+    if (!head.any_asleep)
+        return;
+    from = mark_asleep(network, from);
+    mspringi_sleep_fall(network, (mspringi_field){NULL, NULL});
+    mspringi_get(from, sleep->force.x, force_floats(network, &head), sizeof *sleep->force.x);
+    sleep->has_force = head.has_force;
 }
 
 const mspringi_section mspringi_section_sleep = {"slee",     "sleep",     false,     sleep_size,

@@ -6,14 +6,14 @@
 #include "edits/ramps.h"
 #include "sections.h"
 
-/// In the order in which they are loaded: ramps go by the springs' values, stressed springs by what is broken, a
-/// solver by what has been edited, and sleep by all of it.
+/// In the order in which they are loaded: ramps go by the springs' values, stressed springs by what is broken,
+/// sleep by what has been edited, and a solver's tiles by what sleeps.
 static const mspringi_section *const sections[] = {
     &mspringi_section_settings,      &mspringi_section_motion,         &mspringi_section_masses,
     &mspringi_section_forces,        &mspringi_section_broken,         &mspringi_section_values,
     &mspringi_section_break_strains, &mspringi_section_stress_strains, &mspringi_section_stressed,
-    &mspringi_section_ramps,         &mspringi_section_implicit,       &mspringi_section_guard,
-    &mspringi_section_sleep};
+    &mspringi_section_ramps,         &mspringi_section_sleep,          &mspringi_section_implicit,
+    &mspringi_section_guard};
 enum { SECTIONS = sizeof sections / sizeof sections[0] };
 
 /* --------------------------------------------------------------------------------------------------- messages */

@@ -17,15 +17,17 @@
 #include "contact/floor.h"
 #include "explicit/decay.h"
 #include "network/springs.h"
+#include "sleep/sleep.h"
 
 // What does not come from springs, as the explicit solver has it.
 static void push_from_outside(const mspring_network *network, float h, mspringi_field base) {
     const mspringi_state *s = &network->state;
+    const float *inverse_mass = mspringi_free_mass(network);
     const float decay = mspringi_decay(network->global_damping, h);
     const float gravity_h_x = network->gravity_x * h, gravity_h_y = network->gravity_y * h;
     for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
-        const float inverse_mass_h = network->inverse_mass[slot] * h;
-        if (!(network->inverse_mass[slot] > 0.0f))
+        const float inverse_mass_h = inverse_mass[slot] * h;
+        if (!(inverse_mass[slot] > 0.0f))
             continue;
         const float force_x = base.x ? base.x[slot] : 0.0f, force_y = base.x ? base.y[slot] : 0.0f;
         s->vx[slot] = (s->vx[slot] + (force_x * inverse_mass_h + gravity_h_x)) * decay;
@@ -38,7 +40,8 @@ static void take_turn(const mspring_network *network, double h, mspring_id sprin
     const mspringi_spring_values values = mspringi_spring_get(network, spring);
     const mspringi_state *s = &network->state;
     const uint32_t a = values.base, b = values.tip;
-    const double by_a = (double)network->inverse_mass[a], by_b = (double)network->inverse_mass[b], by = by_a + by_b;
+    const float *inverse_mass = mspringi_free_mass(network);
+    const double by_a = (double)inverse_mass[a], by_b = (double)inverse_mass[b], by = by_a + by_b;
     if (!(by > 0.0) || !(values.stiffness > 0.0f || values.damping > 0.0f))
         return;
     const double dvx = (double)s->vx[b] - (double)s->vx[a], dvy = (double)s->vy[b] - (double)s->vy[a];
@@ -63,6 +66,8 @@ static void take_turn(const mspring_network *network, double h, mspring_id sprin
 static void move_all(const mspring_network *network, float h) {
     const mspringi_state *s = &network->state;
     for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
+        if (mspringi_slot_is_asleep(network, slot))
+            continue;
         s->x[slot] += s->vx[slot] * h;
         s->y[slot] += s->vy[slot] * h;
     }

@@ -1,0 +1,632 @@
+/// @file test_islands.c
+/// Islands that sleep one by one: what is awake moves as if nothing slept, what sleeps does not move at all, and
+/// each wakes for itself.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "recipe.h"
+#include "support.h"
+
+#define DT (1.0 / 64)
+
+/// How a network is stepped.
+typedef struct way {
+    mspring_simd level;
+    uint32_t workers;
+    mspring_solver solver;
+    uint32_t substeps;
+} way;
+
+static mspring_network *make(const recipe *made, const way *how) {
+    mspring_network_def def = support_def(0, how->substeps);
+    def.simd_level = how->level;
+    def.worker_count = how->workers;
+    def.global_damping = 6;
+    def.sleep_speed = 0.02f;
+    def.sleep_time = 0.25f;
+    mspring_network *network = recipe_network(made, &def);
+    mspring_solver_def solver;
+    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    solver.solver = how->solver;
+    solver.substeps = how->substeps;
+    check_ok(mspring_network_set_solver(network, &solver));
+    return network;
+}
+
+static void fall_asleep(mspring_network *network) {
+    for (int i = 0; i < 3000 && !mspring_network_is_asleep(network); i++) {
+        support_steps(network, 1, DT);
+    }
+    assert_int_equal(mspring_network_is_asleep(network), 1);
+}
+
+static uint8_t sleeps(const mspring_network *network, mspring_id particle) {
+    uint8_t asleep = 2;
+    check_ok(mspring_network_get_sleepers(network, particle, 1, &asleep));
+    return asleep;
+}
+
+static void kick(mspring_network *network, mspring_id particle, float speed) {
+    const float along = 0.3f * speed;
+    check_ok(mspring_network_set_velocities(network, particle, 1, &speed, &along));
+}
+
+/* --------------------------------------------------------------------------------------------- in pieces */
+
+/// A lattice of which most springs will break, with ropes to and fro, a graph, strands and loose particles, all of
+/// them a little out of place.
+static recipe scattered(uint32_t width, uint32_t height, uint64_t *seed) {
+    const recipe_stuff stuff = {
+        .mass = {1, 3}, .stiffness = {500, 1500}, .damping = {1, 4}, .pinned = 0.01, .holes = 0.1};
+    const recipe_stuff rope = {.mass = {1, 2}, .stiffness = {500, 1500}, .damping = {1, 4}};
+    recipe made = {0};
+    recipe_lattice(&made, width, height, 0, 0, 1, &stuff, seed);
+    const uint32_t lattice = made.particle_count;
+    for (int i = 0; i < 12; i++) {
+        const mspring_id a = (mspring_id)(support_random(seed) % lattice);
+        const mspring_id b = (mspring_id)((a + 40) % lattice);
+        recipe_rope(&made, a, b, 5, &rope, seed);
+    }
+    for (int i = 0; i < 10; i++) {
+        const mspring_id a = recipe_particle(&made, 10.0 * i, -20, 1, 0);
+        const mspring_id b = recipe_particle(&made, 10.0 * i + 8, -21, 1, 0);
+        recipe_rope(&made, a, b, 8, &rope, seed);
+    }
+    for (int i = 0; i < 50; i++) {
+        recipe_particle(&made, 3.0 * i, -30, 1, 0);
+    }
+    recipe_disturb(&made, 0.1, 1, seed);
+    return made;
+}
+
+static void break_most(mspring_network *network, uint32_t percent, uint64_t *seed) {
+    const uint32_t springs = mspring_network_spring_count(network);
+    mspring_id *broken = malloc(springs * sizeof *broken);
+    assert_non_null(broken);
+    uint32_t count = 0;
+    for (mspring_id s = 0; s < springs; s++) {
+        broken[count] = s;
+        count += support_random(seed) % 100 < percent;
+    }
+    check_ok(mspring_network_break_springs(network, broken, count));
+    free(broken);
+}
+
+/// Both networks are in the same places, but for what sleeps in the first; that is where it was.
+static void check_places(const mspring_network *asleep, const mspring_network *awake, const double *x,
+                         const double *y) {
+    const uint32_t count = mspring_network_particle_count(asleep);
+    double *at[4];
+    for (int i = 0; i < 4; i++) {
+        at[i] = malloc(count * sizeof *at[i]);
+        assert_non_null(at[i]);
+    }
+    check_ok(mspring_network_get_positions(asleep, 0, count, at[0], at[1]));
+    check_ok(mspring_network_get_positions(awake, 0, count, at[2], at[3]));
+    for (mspring_id p = 0; p < count; p++) {
+        const bool still = sleeps(asleep, p);
+        check_near(at[0][p], still ? x[p] : at[2][p], 0);
+        check_near(at[1][p], still ? y[p] : at[3][p], 0);
+    }
+    for (int i = 0; i < 4; i++) {
+        free(at[i]);
+    }
+}
+
+/// Kick something, and see what moves beside a copy that is kept awake.
+static uint32_t kick_and_compare(mspring_network *network, mspring_id particle) {
+    const uint32_t count = mspring_network_particle_count(network);
+    mspring_network *awake = NULL;
+    check_ok(mspring_network_clone(network, NULL, &awake));
+    double *x = malloc(count * sizeof *x), *y = malloc(count * sizeof *y);
+    assert_true(x != NULL && y != NULL);
+    check_ok(mspring_network_get_positions(network, 0, count, x, y));
+    kick(network, particle, 3);
+    kick(awake, particle, 3);
+    uint32_t moving = 0;
+    for (int i = 0; i < 12; i++) {
+        check_ok(mspring_network_wake(awake));
+        support_steps(network, 1, DT);
+        support_steps(awake, 1, DT);
+        check_places(network, awake, x, y);
+    }
+    for (mspring_id p = 0; p < count; p++) {
+        moving += !sleeps(network, p);
+    }
+    mspring_network_destroy(awake);
+    free(x);
+    free(y);
+    return moving;
+}
+
+/// Whatever shares rows, blocks and vectors with what sleeps moves bit by bit as if that were awake.
+static void what_is_awake_moves_as_if_nothing_slept(void **state) {
+    (void)state;
+    uint64_t seed = 7;
+    recipe made = scattered(70, 20, &seed);
+    const way how = {MSPRING_SIMD_AUTO, 1, MSPRING_SOLVER_EXPLICIT, 5};
+    for (uint32_t percent = 40; percent <= 80; percent += 20) {
+        mspring_network *network = make(&made, &how);
+        break_most(network, percent, &seed);
+        for (int compact = 0; compact < 2; compact++) {
+            if (compact) {
+                check_ok(mspring_network_compact(network, 0, NULL));
+            }
+            uint32_t some = 0;
+            for (int i = 0; i < 8; i++) {
+                fall_asleep(network);
+                const uint32_t moving = kick_and_compare(
+                    network, (mspring_id)(support_random(&seed) % mspring_network_particle_count(network)));
+                some += moving > 0 && moving < mspring_network_particle_count(network);
+            }
+            assert_true(some > 0);
+        }
+        mspring_network_destroy(network);
+    }
+    recipe_free(&made);
+}
+
+/// A session of falling asleep, kicks, breaking, restoring, compacting; what of it can be seen.
+static uint64_t session(const recipe *made, const way *how, uint32_t kicks) {
+    uint64_t seed = 11, print = 0;
+    mspring_network *network = make(made, how);
+    const uint32_t particles = mspring_network_particle_count(network);
+    const uint32_t springs = mspring_network_spring_count(network);
+    break_most(network, 60, &seed);
+    for (uint32_t i = 0; i < kicks; i++) {
+        for (int frame = 0; frame < 40; frame++) {
+            support_steps(network, 1, DT);
+        }
+        kick(network, (mspring_id)(support_random(&seed) % particles), 2);
+        const mspring_id spring = (mspring_id)(support_random(&seed) % springs);
+        if (i % 3 == 1) {
+            check_ok(mspring_network_break_springs(network, &spring, 1));
+        } else if (i % 3 == 2) {
+            check_ok(mspring_network_restore_springs(network, &spring, 1, 0.2));
+        }
+        if (i == kicks / 2) {
+            check_ok(mspring_network_compact(network, 0, NULL));
+        }
+        for (mspring_id p = 0; p < particles; p++) {
+            print = print * 3 + sleeps(network, p);
+        }
+        print = print * 31 + support_hash(network);
+    }
+    mspring_network_destroy(network);
+    return print;
+}
+
+static void bits_are_the_same_everywhere(void **state) {
+    (void)state;
+    mspring_simd levels[MSPRING_SIMD_AVX512];
+    const uint32_t level_count = support_levels(levels);
+    uint64_t seed = 9;
+    // Large enough for workers to share it: 400000 springs times substeps, 4096 slots.
+    recipe made = scattered(180, 30, &seed);
+    for (mspring_solver solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_IMPLICIT; solver++) {
+        const uint32_t substeps = solver == MSPRING_SOLVER_EXPLICIT ? 20 : 1;
+        const way first = {MSPRING_SIMD_SCALAR, 1, solver, substeps};
+        const uint64_t expected = session(&made, &first, 6);
+        for (uint32_t i = 1; i < level_count; i++) {
+            const way how = {levels[i], 1, solver, substeps};
+            assert_int_equal(session(&made, &how, 6), expected);
+        }
+        const way shared = {MSPRING_SIMD_AUTO, 3, solver, substeps};
+        assert_int_equal(session(&made, &shared, 6), expected);
+    }
+    recipe_free(&made);
+}
+
+enum { COLUMNS = 40, ROWS = 100, CUT = 30, SECOND_CUT = 70 };
+
+/// A lattice that is cut into three, one above the other, each with a rope that hangs on it.
+static mspring_network *make_three(const way *how) {
+    uint64_t seed = 13;
+    const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {1000, 1000}, .damping = {3, 3}};
+    recipe made = {0};
+    recipe_lattice(&made, COLUMNS, ROWS, 0, 0, 1, &stuff, &seed);
+    for (uint32_t row = 15; row < ROWS; row += 35) {
+        const mspring_id end = recipe_particle(&made, 48, row, 1, 0);
+        recipe_rope(&made, row * COLUMNS + COLUMNS - 1, end, 8, &stuff, &seed);
+    }
+    mspring_id broken[10 * COLUMNS];
+    uint32_t count = 0;
+    for (mspring_id s = 0; s < made.spring_count; s++) {
+        const uint32_t a = made.springs[s].a / COLUMNS, b = made.springs[s].b / COLUMNS, low = a < b ? a : b;
+        if (made.springs[s].b < ROWS * COLUMNS && a != b && (low + 1 == CUT || low + 1 == SECOND_CUT)) {
+            broken[count++] = s;
+        }
+    }
+    mspring_network *network = make(&made, how);
+    check_ok(mspring_network_break_springs(network, broken, count));
+    recipe_free(&made);
+    fall_asleep(network);
+    return network;
+}
+
+/// What sleeps is to the others as if it were pinned, bit by bit, though whole rows of it are left out.
+static void to_others_sleepers_are_pinned(void **state) {
+    (void)state;
+    for (mspring_solver solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++) {
+        const way how = {MSPRING_SIMD_AUTO, 1, solver, solver == MSPRING_SOLVER_EXPLICIT ? 8 : 1};
+        mspring_network *network = make_three(&how), *pinned = NULL;
+        check_ok(mspring_network_clone(network, NULL, &pinned));
+        check_ok(mspring_network_wake(pinned));
+        const uint32_t particles = mspring_network_particle_count(network);
+        const float none = 0;
+        for (mspring_id p = 0; p < particles; p++) {
+            const double y = support_position(network, p).y;
+            if (y > CUT - 0.5 && y < SECOND_CUT - 0.5) {
+                check_ok(mspring_network_set_inverse_mass_scales(pinned, p, 1, &none));
+            }
+        }
+        mspring_network *const both[] = {network, pinned};
+        for (int i = 0; i < 2; i++) {
+            for (uint32_t column = 3; column < 20; column++) {
+                kick(both[i], 5 * COLUMNS + column, 5);
+                kick(both[i], (CUT - 1) * COLUMNS + column, -3);
+                kick(both[i], SECOND_CUT * COLUMNS + column, 4);
+            }
+        }
+        for (int frame = 0; frame < 10; frame++) {
+            support_steps(network, 1, DT);
+            check_ok(mspring_network_wake(pinned));
+            support_steps(pinned, 1, DT);
+            assert_int_equal(support_hash(network), support_hash(pinned));
+        }
+        assert_int_equal(sleeps(network, 50 * COLUMNS), 1);
+        assert_int_equal(sleeps(network, 10 * COLUMNS) + sleeps(network, 90 * COLUMNS), 0);
+        mspring_network_destroy(network);
+        mspring_network_destroy(pinned);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------- two and a rope */
+
+enum { IN_A = 12, IN_B = 80 + 12, ROPE = 160, LOOSE = 172 };
+
+/// Two lattices of 20 by 4, a rope from one to the other of which one spring is broken, and a loose particle.
+static mspring_network *make_two(mspring_solver solver, mspring_id *broken) {
+    uint64_t seed = 3;
+    const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {1000, 1000}, .damping = {3, 3}};
+    recipe made = {0};
+    recipe_lattice(&made, 20, 4, 0, 0, 1, &stuff, &seed);
+    recipe_lattice(&made, 20, 4, 30, 0, 1, &stuff, &seed);
+    *broken = made.spring_count + 5;
+    recipe_rope(&made, 19, 80, 13, &stuff, &seed);
+    assert_int_equal(recipe_particle(&made, 60, 10, 1, 0), LOOSE);
+    const way how = {MSPRING_SIMD_AUTO, 1, solver, solver == MSPRING_SOLVER_EXPLICIT ? 8 : 1};
+    mspring_network *network = make(&made, &how);
+    check_ok(mspring_network_break_springs(network, broken, 1));
+    recipe_free(&made);
+    fall_asleep(network);
+    return network;
+}
+
+typedef void (*change_fn)(mspring_network *network);
+
+static void push(mspring_network *network) {
+    check_ok(mspring_network_apply_force(network, IN_A, 10, 0));
+}
+static void shift(mspring_network *network) {
+    const support_point at = support_position(network, IN_A);
+    const double x = at.x + 0.01;
+    check_ok(mspring_network_set_positions(network, IN_A, 1, &x, &at.y));
+}
+static void kick_a(mspring_network *network) {
+    kick(network, IN_A, 1);
+}
+static void write_view(mspring_network *network) {
+    mspring_view view = {.struct_size = sizeof view};
+    check_ok(mspring_network_view(network, &view));
+    view.y[view.slot_of_particle[IN_A]] += 0.01f;
+}
+static void fill(mspring_network *network) {
+    const float mass = 5;
+    check_ok(mspring_network_set_masses(network, IN_A, 1, &mass));
+}
+static void pin(mspring_network *network) {
+    const float scale = 0;
+    check_ok(mspring_network_set_inverse_mass_scales(network, IN_A, 1, &scale));
+}
+static void soften(mspring_network *network) {
+    const float stiffness = 500;
+    check_ok(mspring_network_set_stiffnesses(network, 50, 1, &stiffness));
+}
+static void lengthen(mspring_network *network) {
+    const float rest_length = 1.1f;
+    check_ok(mspring_network_set_rest_lengths(network, 50, 1, &rest_length));
+}
+static void break_one(mspring_network *network) {
+    const mspring_id spring = 50;
+    check_ok(mspring_network_break_springs(network, &spring, 1));
+}
+static void detach(mspring_network *network) {
+    const mspring_id particle = IN_A;
+    check_ok(mspring_network_detach_particles(network, &particle, 1));
+}
+static void watch(mspring_network *network) {
+    const float strain = 0.5f;
+    check_ok(mspring_network_set_break_strains(network, 50, 1, &strain));
+}
+static uint32_t slot_of(const mspring_hook_args *args, mspring_id particle) {
+    uint32_t slot = 0;
+    while (args->particle_of_slot[slot] != particle) {
+        slot++;
+    }
+    return slot;
+}
+static void move_in_hook(const mspring_hook_args *args, void *user) {
+    (void)user;
+    args->x[slot_of(args, IN_A)] += 0.001f;
+    args->vx[slot_of(args, IN_A)] += 0.1f;
+}
+static void hook(mspring_network *network) {
+    check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, move_in_hook, NULL, NULL));
+}
+
+static void each_wakes_for_itself(void **state) {
+    (void)state;
+    static const change_fn changes[] = {push,   shift,    kick_a,    write_view, fill,  pin,
+                                        soften, lengthen, break_one, detach,     watch, hook};
+    for (mspring_solver solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++) {
+        for (size_t i = 0; i < COUNT_OF(changes); i++) {
+            mspring_id broken;
+            mspring_network *network = make_two(solver, &broken);
+            const support_point b = support_position(network, IN_B);
+            changes[i](network);
+            support_steps(network, 1, DT);
+            if (sleeps(network, IN_A) || !sleeps(network, IN_B) || !sleeps(network, LOOSE) ||
+                mspring_network_is_asleep(network)) {
+                print_error("change %zu\n", i);
+                fail();
+            }
+            support_steps(network, 3, DT);
+            check_near(support_position(network, IN_B).x, b.x, 0);
+            check_near(support_position(network, IN_B).y, b.y, 0);
+            assert_int_equal(sleeps(network, IN_B), 1);
+            mspring_network_destroy(network);
+        }
+    }
+}
+
+/// A spring that joins two islands wakes both; from then on they are one.
+static void joining_wakes_both(void **state) {
+    (void)state;
+    mspring_id broken;
+    mspring_network *network = make_two(MSPRING_SOLVER_EXPLICIT, &broken);
+    check_ok(mspring_network_restore_springs(network, &broken, 1, 0));
+    assert_int_equal(sleeps(network, IN_A) + sleeps(network, IN_B), 0);
+    assert_int_equal(sleeps(network, LOOSE), 1);
+    fall_asleep(network);
+    kick_a(network);
+    support_steps(network, 1, DT);
+    assert_int_equal(sleeps(network, IN_A) + sleeps(network, IN_B), 0);
+    // Parted again, each sleeps by itself.
+    check_ok(mspring_network_break_springs(network, &broken, 1));
+    fall_asleep(network);
+    kick(network, IN_B, 1);
+    support_steps(network, 1, DT);
+    assert_int_equal(sleeps(network, IN_A), 1);
+    assert_int_equal(sleeps(network, IN_B), 0);
+    mspring_network_destroy(network);
+}
+
+/// A hook that gives a sleeper a velocity moves it no further in this step, whatever else is in its vectors.
+static void push_in_hook(const mspring_hook_args *args, void *user) {
+    bool *once = user;
+    if (!*once) {
+        *once = true;
+        args->vx[slot_of(args, ROPE + 4)] = 5;
+    }
+}
+
+static void sleepers_stay_until_the_step_is_over(void **state) {
+    (void)state;
+    mspring_id broken;
+    mspring_network *network = make_two(MSPRING_SOLVER_EXPLICIT, &broken);
+    bool once = true;
+    check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, push_in_hook, &once, NULL));
+    // The rope's two halves share a vector: the one on B's side moves.
+    kick(network, ROPE + 5, 1);
+    support_steps(network, 1, DT);
+    assert_int_equal(sleeps(network, ROPE + 4), 1);
+    const support_point before = support_position(network, ROPE + 4);
+    once = false;
+    support_steps(network, 1, DT);
+    assert_int_equal(sleeps(network, ROPE + 4), 0);
+    check_near(support_position(network, ROPE + 4).x, before.x, 0);
+    support_steps(network, 1, DT);
+    assert_true(support_position(network, ROPE + 4).x > before.x + 0.01);
+    mspring_network_destroy(network);
+}
+
+/* ------------------------------------------------------------------------------------- going on elsewhere */
+
+/// Saved, cloned or compacted with one asleep, whatever is about to wake it, it goes on as it would have.
+static void snapshots_and_clones_go_on(void **state) {
+    (void)state;
+    static const change_fn changes[] = {NULL, push, shift, write_view, fill, break_one};
+    for (mspring_solver solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_IMPLICIT; solver++) {
+        for (size_t c = 0; c < COUNT_OF(changes); c++) {
+            mspring_id broken;
+            mspring_network *network = make_two(solver, &broken), *other = make_two(solver, &broken), *clone = NULL;
+            kick(network, IN_B, 4);
+            support_steps(network, 3, DT);
+            if (changes[c]) {
+                changes[c](network);
+            }
+            size_t size;
+            check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &size));
+            void *bytes = malloc(size);
+            assert_non_null(bytes);
+            check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_ALL, bytes, size, NULL));
+            check_ok(mspring_network_load(other, bytes, size));
+            check_ok(mspring_network_clone(network, NULL, &clone));
+            mspring_network *const all[] = {network, other, clone};
+            uint64_t prints[3] = {0};
+            for (int i = 0; i < 3; i++) {
+                for (int frame = 0; frame < 100; frame++) {
+                    support_steps(all[i], 1, DT);
+                    prints[i] = prints[i] * 31 + support_hash(all[i]) + (uint64_t)sleeps(all[i], IN_A) +
+                                (uint64_t)sleeps(all[i], IN_B) * 2;
+                }
+                mspring_network_destroy(all[i]);
+            }
+            assert_int_equal(prints[0], prints[1]);
+            assert_int_equal(prints[0], prints[2]);
+            free(bytes);
+        }
+    }
+}
+
+static void what_sleeps_sleeps_on_in_another_layout(void **state) {
+    (void)state;
+    for (mspring_solver solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_IMPLICIT; solver++) {
+        mspring_id broken;
+        mspring_network *network = make_two(solver, &broken);
+        kick(network, IN_B, 4);
+        support_steps(network, 1, DT);
+        const uint64_t before = support_hash(network);
+        check_ok(mspring_network_compact(network, 0, NULL));
+        assert_int_equal(support_hash(network), before);
+        assert_int_equal(sleeps(network, IN_A), 1);
+        assert_int_equal(sleeps(network, IN_B), 0);
+        const support_point a = support_position(network, IN_A), b = support_position(network, IN_B);
+        support_steps(network, 5, DT);
+        check_near(support_position(network, IN_A).x, a.x, 0);
+        assert_true(support_position(network, IN_B).x != b.x);
+        assert_int_equal(sleeps(network, IN_A), 1);
+        check_ok(mspring_network_expand(network));
+        support_steps(network, 1, DT);
+        assert_int_equal(sleeps(network, IN_A), 1);
+        fall_asleep(network);
+        mspring_network_destroy(network);
+    }
+}
+
+/// A step that goes wrong for one wakes nobody, and leaves all where they were.
+static void a_step_that_goes_wrong_wakes_nobody(void **state) {
+    (void)state;
+    for (int hooked = 0; hooked < 2; hooked++) {
+        mspring_id broken;
+        mspring_network *network = make_two(MSPRING_SOLVER_EXPLICIT, &broken);
+        bool once = true;
+        if (hooked) {
+            check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, push_in_hook, &once, NULL));
+        }
+        kick(network, IN_B, 1);
+        support_steps(network, 2, DT);
+        const uint64_t before = support_hash(network);
+        check_ok(mspring_network_apply_force(network, LOOSE, 0, 1e30f));
+        check_error(mspring_network_step(network, DT), MSPRING_ERROR_UNSTABLE);
+        assert_int_equal(support_hash(network), before);
+        assert_int_equal(sleeps(network, LOOSE) + sleeps(network, IN_A), 2);
+        check_ok(mspring_network_apply_force(network, LOOSE, 0, -1e30f));
+        support_steps(network, 1, DT);
+        assert_int_equal(sleeps(network, LOOSE) + sleeps(network, IN_A), 2);
+        mspring_network_destroy(network);
+    }
+}
+
+/// Strain of what sleeps is not looked at, and nothing is missed by that.
+static void events_are_those_of_what_is_awake(void **state) {
+    (void)state;
+    mspring_id broken;
+    mspring_network *network = make_two(MSPRING_SOLVER_EXPLICIT, &broken), *awake = NULL;
+    const uint32_t springs = mspring_network_spring_count(network);
+    check_ok(mspring_network_reserve_events(network, 1000));
+    for (mspring_id s = 0; s < springs; s++) {
+        const float stress = 0.02f, breaking = 0.3f;
+        check_ok(mspring_network_set_stress_strains(network, s, 1, &stress));
+        check_ok(mspring_network_set_break_strains(network, s, 1, &breaking));
+    }
+    fall_asleep(network);
+    check_ok(mspring_network_clone(network, NULL, &awake));
+    kick(network, IN_B, 30);
+    kick(awake, IN_B, 30);
+    uint32_t total = 0;
+    for (int i = 0; i < 60; i++) {
+        check_ok(mspring_network_wake(awake));
+        support_steps(network, 1, DT);
+        support_steps(awake, 1, DT);
+        mspring_event a[1000], b[1000];
+        uint32_t count_a, count_b;
+        check_ok(mspring_network_read_events(network, a, COUNT_OF(a), &count_a, NULL));
+        check_ok(mspring_network_read_events(awake, b, COUNT_OF(b), &count_b, NULL));
+        assert_int_equal(count_a, count_b);
+        for (uint32_t e = 0; e < count_a; e++) {
+            assert_int_equal(a[e].kind, b[e].kind);
+            assert_int_equal(a[e].id, b[e].id);
+        }
+        total += count_a;
+    }
+    assert_int_equal(sleeps(network, IN_A), 1);
+    assert_true(total > 0);
+    mspring_network_destroy(network);
+    mspring_network_destroy(awake);
+}
+
+/* ------------------------------------------------------------------------------------------------ the floor */
+
+/// Wrecks that sleep on a floor are borne by it while a stone falls beside them.
+static void the_floor_bears_sleepers(void **state) {
+    (void)state;
+    for (mspring_solver solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_IMPLICIT; solver++) {
+        mspring_id broken;
+        mspring_network *network = make_two(solver, &broken);
+        const double level[4] = {0, -0.5, 0, 1};
+        mspring_floor_def def;
+        check_ok(mspring_floor_def_init(&def, sizeof def));
+        def.planes = level;
+        def.plane_count = 1;
+        def.friction = 1;
+        check_ok(mspring_network_set_floor(network, &def));
+        check_ok(mspring_network_set_gravity(network, 0, -9.8f));
+        for (int i = 0; i < 1500 && !(sleeps(network, IN_A) && sleeps(network, IN_B)); i++) {
+            support_steps(network, 1, DT);
+        }
+        const double high = 100, there = 60;
+        check_ok(mspring_network_set_positions(network, LOOSE, 1, &there, &high));
+        support_steps(network, 1, DT);
+        float x[160], y[160];
+        double sum = 0, weight = 0;
+        for (int i = 0; i < 10; i++) {
+            support_steps(network, 1, DT);
+            assert_int_equal(sleeps(network, IN_A), 1);
+            assert_int_equal(sleeps(network, LOOSE), 0);
+            check_ok(mspring_network_get_floor_impulses(network, 0, 160, x, y));
+            sum = weight = 0;
+            for (mspring_id p = 0; p < 160; p++) {
+                float mass;
+                check_ok(mspring_network_get_masses(network, p, 1, &mass));
+                sum += (double)y[p];
+                weight += 9.8 * DT * (double)mass;
+            }
+            // The rope between them lies on it for itself, all but its ends.
+            check_near(sum, weight, 0.1 * weight);
+        }
+        mspring_network_destroy(network);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_awake_moves_as_if_nothing_slept),
+        cmocka_unit_test(bits_are_the_same_everywhere),
+        cmocka_unit_test(to_others_sleepers_are_pinned),
+        cmocka_unit_test(each_wakes_for_itself),
+        cmocka_unit_test(joining_wakes_both),
+        cmocka_unit_test(sleepers_stay_until_the_step_is_over),
+        cmocka_unit_test(snapshots_and_clones_go_on),
+        cmocka_unit_test(what_sleeps_sleeps_on_in_another_layout),
+        cmocka_unit_test(a_step_that_goes_wrong_wakes_nobody),
+        cmocka_unit_test(events_are_those_of_what_is_awake),
+        cmocka_unit_test(the_floor_bears_sleepers),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
