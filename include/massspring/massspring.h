@@ -1187,10 +1187,12 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_inverse_mass_sc
                                                                                      uint32_t count, float *scale);
 
 /// Set nominal stiffness: N/m, of relative springs the fraction. A broken spring stays broken and has the new
-/// stiffness when it is restored.
+/// stiffness when it is restored. Before the first call that gives a relative spring another fraction, a network
+/// keeps fractions once that many springs share.
 /// @param stiffness  [count], 0 to 1e30
-/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the spring), MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the spring), MSPRING_ERROR_BUSY,
+///         MSPRING_ERROR_MEMORY.
+/// @threads exclusive access to network   @allocates at the first other fraction of a relative spring   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_stiffnesses(mspring_network *network,
                                                                              mspring_id first, uint32_t count,
                                                                              const float *stiffness);
@@ -1203,7 +1205,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_stiffnesses_at(
 /// whose springs were all made without damping has no room for any (MSPRING_ERROR_ARGUMENT), unless it was created
 /// with MSPRING_NETWORK_RESERVE_DAMPING.
 /// @param damping  [count], 0 to 1e30
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// @threads exclusive access to network   @allocates at the first other fraction of a relative spring   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_dampings(mspring_network *network,
                                                                           mspring_id first, uint32_t count,
                                                                           const float *damping);
@@ -1211,7 +1213,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_dampings_at(msp
                                                                              const mspring_id *springs,
                                                                              uint32_t count, const float *damping);
 
-/// Set rest lengths (m); as mspring_network_set_stiffnesses(), and MSPRING_ERROR_MEMORY. Ends a ramp of the spring.
+/// Set rest lengths (m); as mspring_network_set_stiffnesses(). Ends a ramp of the spring.
 /// Before the first such call, lattices keep rest lengths once that many springs share.
 /// @param rest_length  [count], > 0 and at most 4e12
 /// @threads exclusive access to network   @allocates at the first rest length or ramp in a network   @since 0.1
@@ -1242,7 +1244,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_break_springs(mspri
 /// @param ramp_seconds  0 for no ramp, at most 1e6
 /// @return as mspring_network_break_springs()
 /// @threads exclusive access to network
-/// @allocates at the first rest length or ramp in a network, and for more ramps at once than there have been
+/// @allocates at the first rest length or ramp in a network, for more ramps at once than there have been, and to
+/// expand
+///            a compact network of which a spring is restored that its plan leaves out
 /// @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_restore_springs(mspring_network *network,
                                                                              const mspring_id *springs,

@@ -43,7 +43,7 @@ static mspring_result check_masses(mspring_network *network, const mspringi_sele
 }
 
 mspring_result mspringi_reserve_spring_masses(mspring_network *network) {
-    if (!network->relative || network->spring_mass)
+    if (!network->fractions.values || network->spring_mass)
         return MSPRING_OK;
     const size_t count = network->topology.particle_count;
     network->spring_mass = mspringi_alloc(&network->memory, count, sizeof *network->spring_mass);

@@ -36,6 +36,26 @@ static mspring_result check_values(mspring_network *network, mspringi_part part,
     return MSPRING_OK;
 }
 
+// Whether some relative spring gets other fractions than it has.
+static bool changes_fractions(const mspring_network *network, mspringi_part part, const mspringi_selection *at,
+                              const float *values) {
+    for (uint32_t i = 0; network->fractions.of_spring && i < at->count; ++i) {
+        const mspring_id spring = mspringi_selected(at, i);
+        const mspringi_relative had = mspringi_fractions_of(&network->fractions, spring);
+        if (mspringi_spring_is_relative(network, spring) &&
+            values[i] != (part == MSPRINGI_STIFFNESS ? had.stiffness : had.damping))
+            return true;
+    }
+    return false;
+}
+
+static mspring_result separate(mspring_network *network, mspringi_part part, const mspringi_selection *at,
+                               const float *values) {
+    if (part == MSPRINGI_REST_LENGTH)
+        return mspringi_rests_separate(network);
+    return changes_fractions(network, part, at, values) ? mspringi_fractions_separate(network) : MSPRING_OK;
+}
+
 static MSPRINGI_NOINLINE void store_values(mspring_network *network, mspringi_part part,
                                            const mspringi_selection *at, const float *values) {
     for (uint32_t i = 0; i < at->count; ++i) {
@@ -61,8 +81,8 @@ static MSPRINGI_NOINLINE void store_values(mspring_network *network, mspringi_pa
 static mspring_result set_values(mspring_network *network, mspringi_part part, const mspringi_selection *at,
                                  const float *values) {
     mspring_result result = check_values(network, part, at, values);
-    if (result == MSPRING_OK && part == MSPRINGI_REST_LENGTH)
-        result = mspringi_rests_separate(network);
+    if (result == MSPRING_OK)
+        result = separate(network, part, at, values);
     if (result != MSPRING_OK)
         return result;
     const mspringi_fp_state before = mspringi_fp_enter();

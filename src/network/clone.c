@@ -210,7 +210,8 @@ static void move_parameters(const moving *m, mspring_network *n) {
     MOVE(n->web_springs);
     MOVE(n->packed);
     MOVE(n->attached);
-    MOVE(n->relative);
+    MOVE(n->fractions.values);
+    MOVE(n->fractions.of_spring);
     MOVE(n->live);
     MOVE(n->kept);
     MOVE(n->carry);

@@ -6,6 +6,7 @@
 #include "base/cpu.h"
 #include "base/mix.h"
 #include "explicit/explicit.h"
+#include "fractions.h"
 #include "hooks.h"
 #include "implicit/implicit.h"
 #include "origin.h"
@@ -150,12 +151,10 @@ void mspringi_layout_forget(mspring_network *network) {
     network->live = NULL;
 }
 
-static mspring_result allocate(mspring_network *network, bool relative) {
+static mspring_result allocate(mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     network->mass = mspringi_alloc(&network->memory, t->particle_count, sizeof *network->mass);
-    if (relative)
-        network->relative = mspringi_alloc(&network->memory, t->spring_count, sizeof *network->relative);
-    if (!network->mass || (relative && !network->relative))
+    if (!network->mass)
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for %u particles and %u springs",
                              (unsigned)t->particle_count, (unsigned)t->spring_count);
     return mspringi_layout_reserve(network);
@@ -205,9 +204,6 @@ static void fill_springs(mspring_network *network, const mspring_builder *builde
         mspringi_place_set(network, place, relative ? 0.0f : spring->stiffness, relative ? 0.0f : spring->damping);
         take_prints(network, spring, place);
         network->live[place / MSPRINGI_WIDTH] |= (uint16_t)(1u << place % MSPRINGI_WIDTH);
-        if (network->relative)
-            network->relative[s] = relative ? (mspringi_relative){spring->stiffness, spring->damping}
-                                            : (mspringi_relative){-1.0f, 0.0f};
     }
 }
 
@@ -227,7 +223,9 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     look_at_springs(builder, &damped, &relative);
     damped = damped || (def->flags & MSPRING_NETWORK_RESERVE_DAMPING);
     network->parts = damped ? MSPRINGI_DAMPING + 1 : MSPRINGI_STIFFNESS + 1;
-    result = allocate(network, relative);
+    result = allocate(network);
+    if (result == MSPRING_OK && relative)
+        result = mspringi_fractions_create(&network->fractions, builder, &network->memory, &network->message);
     if (result == MSPRING_OK)
         result = mspringi_rests_create(&network->rests, &network->topology, builder, &network->memory,
                                        &network->message);

@@ -47,6 +47,12 @@ typedef struct mspringi_relative {
     float stiffness, damping;
 } mspringi_relative;
 
+/// Those of all springs; values is NULL if no spring is relative.
+typedef struct mspringi_fractions {
+    mspringi_relative *values;
+    uint8_t *of_spring; ///< [springs] which of values; NULL: values is [springs]
+} mspringi_fractions;
+
 /// What has been edited between steps, in counters that only ever grow. Whoever keeps something that follows from
 /// the edited (a solver its history or its tiles, a measurement its components) remembers the counters that it has
 /// seen and looks whether they are still the same: mspringi_edits_have_link() and mspringi_edits_link() then tell
@@ -188,15 +194,15 @@ struct mspring_network {
     mspringi_rests rests;      ///< of lattice_springs, whose records have stiffness and damping only
     float *lattice_springs, *chain_springs;
     float *web_springs;
-    float *packed;               ///< [2][nodes of the web][4] at the start of every other substep
-    float *attached;             ///< forces on the attached nodes, all x and then all y
-    mspringi_relative *relative; ///< [springs], or NULL if no spring is relative
-    float relative_h;            ///< the substep that relative springs were derived for; 0: not yet
-    uint16_t *live;              ///< [places / 16] a bit for each place: 1 where a spring is, and is not broken
-    mspringi_relative *kept;     ///< [springs] N/m, N s/m of broken springs that are not relative; NULL before any
-    uint32_t depth;              ///< substeps that may be swept in one pass over the lattice rows
-    uint32_t carry_rows;         ///< depth, for each worker
-    float *carry;                ///< [carry_rows] forces on the row above, all x and then all y of each
+    float *packed;   ///< [2][nodes of the web][4] at the start of every other substep
+    float *attached; ///< forces on the attached nodes, all x and then all y
+    mspringi_fractions fractions;
+    float relative_h;        ///< the substep that relative springs were derived for; 0: not yet
+    uint16_t *live;          ///< [places / 16] a bit for each place: 1 where a spring is, and is not broken
+    mspringi_relative *kept; ///< [springs] N/m, N s/m of broken springs that are not relative; NULL before any
+    uint32_t depth;          ///< substeps that may be swept in one pass over the lattice rows
+    uint32_t carry_rows;     ///< depth, for each worker
+    float *carry;            ///< [carry_rows] forces on the row above, all x and then all y of each
 
     float gravity_x, gravity_y, global_damping, max_speed;
     uint32_t substeps; ///< of the last step or, unless auto_substeps, of the next

@@ -53,7 +53,7 @@ mspring_result mspring_network_plan(const mspring_network *network, mspring_plan
         .slot_count = (uint32_t)mspringi_slot_count(network),
         .block_width = MSPRINGI_WIDTH,
         .has_damping = network->parts > MSPRINGI_DAMPING,
-        .has_relative = network->relative != NULL,
+        .has_relative = network->fractions.values != NULL,
         .simd_level = network->kernels->level,
     };
     mspringi_implicit_describe(network->implicit, plan);

@@ -102,7 +102,7 @@ static mspringi_relative derive(const mspring_network *network, const mspringi_s
 mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, mspring_id spring,
                                               mspringi_place place) {
     if (mspringi_spring_is_relative(network, spring))
-        return network->relative[spring];
+        return mspringi_fractions_of(&network->fractions, spring);
     if (!mspringi_place_is_live(network, place))
         return network->kept[spring];
     const mspringi_spring_values values = mspringi_place_get(network, place);
@@ -113,7 +113,7 @@ void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, ms
                                  mspringi_relative nominal) {
     const bool relative = mspringi_spring_is_relative(network, spring);
     if (relative)
-        network->relative[spring] = nominal;
+        mspringi_fractions_set(&network->fractions, spring, nominal);
     if (!mspringi_place_is_live(network, place)) {
         if (!relative)
             network->kept[spring] = nominal;
@@ -131,12 +131,12 @@ void mspringi_renew_relative(mspring_network *network) {
     for (mspring_id s = 0; s < network->topology.spring_count; ++s) {
         const mspringi_place place = mspringi_places_next(&reader);
         if (mspringi_spring_is_relative(network, s) && mspringi_place_is_live(network, place))
-            mspringi_spring_set_nominal(network, s, place, network->relative[s]);
+            mspringi_spring_set_nominal(network, s, place, mspringi_fractions_of(&network->fractions, s));
     }
 }
 
 void mspringi_derive_relative(mspring_network *network, float h) {
-    if (!network->relative || network->relative_h == h)
+    if (!network->fractions.values || network->relative_h == h)
         return;
     network->relative_h = h;
     mspringi_renew_relative(network);

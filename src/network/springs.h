@@ -5,7 +5,7 @@
 #ifndef MSPRINGI_SPRINGS_H
 #define MSPRINGI_SPRINGS_H
 
-#include "network.h"
+#include "fractions.h"
 
 /// What a spring is like, and the slots that it joins.
 typedef struct mspringi_spring_values {
@@ -38,7 +38,7 @@ static inline bool mspringi_place_is_stressed(const mspring_network *network, ms
 }
 
 static inline bool mspringi_spring_is_relative(const mspring_network *network, mspring_id spring) {
-    return network->relative && network->relative[spring].stiffness >= 0.0f;
+    return network->fractions.values && mspringi_fractions_of(&network->fractions, spring).stiffness >= 0.0f;
 }
 
 /// By particle, the masses that relative springs go by.
@@ -50,7 +50,8 @@ static inline const float *mspringi_spring_masses(const mspring_network *network
 /// relative.
 mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, mspring_id spring,
                                               mspringi_place place);
-/// Set these. What a broken spring exerts stays 0.
+/// Set these, of a relative spring after mspringi_fractions_separate() only, unless it is what it has. What a
+/// broken spring exerts stays 0.
 void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, mspringi_place place,
                                  mspringi_relative nominal);
 

@@ -198,7 +198,8 @@ void mspringi_sleep_begin(mspring_network *network, double dt) {
         return;
     const uint64_t naps = network->edits.naps;
     // A substep of another length changes relative springs, and how many there are may change by itself.
-    const bool same_h = !network->relative || (float)(dt / (double)network->substeps) == network->relative_h;
+    const bool same_h =
+        !network->fractions.values || (float)(dt / (double)network->substeps) == network->relative_h;
     if (!same_h || network->origin_x != s->origin_x || network->origin_y != s->origin_y) {
         keep_stillness(s);
         set_all_awake(network);

@@ -103,7 +103,7 @@ static void values_save(const mspring_network *network, mspringi_writer *to) {
 static mspring_result values_check(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_section *section = &mspringi_section_values;
     mspring_result result = mspringi_section_check_size(network, section, size, values_size(network));
-    bool other_rest_lengths = false;
+    bool other_rest_lengths = false, other_fractions = false;
     mspringi_place_reader reader;
     mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id s = 0; result == MSPRING_OK && s < network->topology.spring_count; ++s) {
@@ -119,8 +119,14 @@ static mspring_result values_check(mspring_network *network, const uint8_t *from
         const mspringi_place place = mspringi_places_next(&reader);
         other_rest_lengths =
             other_rest_lengths || values.rest_length != mspringi_place_get(network, place).rest_length;
+        if (mspringi_spring_is_relative(network, s)) {
+            const mspringi_relative had = mspringi_fractions_of(&network->fractions, s);
+            other_fractions = other_fractions || values.stiffness != had.stiffness || values.damping != had.damping;
+        }
     }
-    return result == MSPRING_OK && other_rest_lengths ? mspringi_rests_separate(network) : result;
+    if (result == MSPRING_OK && other_rest_lengths)
+        result = mspringi_rests_separate(network);
+    return result == MSPRING_OK && other_fractions ? mspringi_fractions_separate(network) : result;
 }
 
 static void values_load(mspring_network *network, const uint8_t *from, size_t size) {

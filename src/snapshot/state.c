@@ -197,7 +197,7 @@ static mspring_result masses_check(mspring_network *network, const uint8_t *from
     uint32_t kind = 0;
     if (size >= sizeof kind)
         mspringi_get(from, &kind, 1, sizeof kind);
-    if (kind > (SCALED | SPRING_MASSES) || (kind & SPRING_MASSES && !network->relative))
+    if (kind > (SCALED | SPRING_MASSES) || (kind & SPRING_MASSES && !network->fractions.values))
         return mspringi_section_fail(network, section, "they are of kind %u", (unsigned)kind);
     mspring_result result = mspringi_section_check_size(network, section, size, masses_size_of(network, kind));
     if (result != MSPRING_OK)

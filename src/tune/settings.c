@@ -33,7 +33,7 @@ static void add_explicit(settings *s, uint32_t substeps) {
 static void list_settings(settings *s, const mspring_network *network, uint32_t least) {
     static const uint32_t usual[] = {10, 20, 30, 40, 60, 80};
     static const uint32_t iterations[] = {4, 8, 15};
-    for (size_t i = 0; network->relative && i < sizeof usual / sizeof usual[0]; ++i)
+    for (size_t i = 0; network->fractions.values && i < sizeof usual / sizeof usual[0]; ++i)
         if (usual[i] >= least)
             add_explicit(s, usual[i]);
     if (s->count == 0) {

@@ -104,7 +104,7 @@ static mspring_result run(mspringi_tuning *tuning, mspringi_trial *trial, msprin
     }
     if (clone && done > 0) {
         trial->row.substeps = clone->substeps;
-        trial->relative_h = clone->relative ? clone->relative_h : 0.0f;
+        trial->relative_h = clone->fractions.values ? clone->relative_h : 0.0f;
     }
     mspringi_tune_dismiss(clone);
     trial->has_run = done == steps;
