@@ -110,6 +110,7 @@ static void note_costs(lab_app *app, double begin, double end) {
         costs->per_second = costs->per_second > 0
                                 ? 1 / (1 / costs->per_second + 0.1 * (between - 1 / costs->per_second))
                                 : 1 / between;
+    app->late_frames += !first && between > 1.0 / 60;
     app->last_begin = begin;
     app->frames++;
     app->total_frame += seconds;
@@ -167,6 +168,10 @@ void app_report(const lab_app *app) {
         printf("frames %llu, %.2f ms on average, longest %.2f ms, over %.1f ms: %u\n",
                (unsigned long long)app->frames, 1e3 * app->total_frame / (double)app->frames,
                1e3 * app->longest_frame, 1e3 / FRAMES_PER_SECOND, app->slow_frames);
+    if (!app->options->no_clock && !app->options->headless && app->frames > 1)
+        printf(
+            "shown in %.2f ms on average, %.1f a second at last; %u came more than 16.7 ms after the one before\n",
+            1e3 * app->total_shown / (double)app->frames, app->costs.per_second, app->late_frames);
     for (int i = 0; i < model->side_count && !app->options->no_clock && app->frames > 0; i++)
         printf("%-5s of a frame: %.2f ms for steps and measurements, %.2f ms for its picture\n",
                i == 0 ? "left" : "right", 1e3 * app->total_stepped[i] / (double)app->frames,

@@ -23,7 +23,9 @@ typedef struct lab_app {
     double last_begin;
     bool script_failed;
     uint32_t slow_frames; ///< frames that took longer than the budget
+    uint32_t late_frames; ///< frames that began more than 1/60 s after the one before
     double total_frame, longest_frame;
+    double total_shown; ///< seconds that the display took
     double total_stepped[2], total_drawn[2]; ///< of each side's thread
     uint64_t frames;
 } lab_app;

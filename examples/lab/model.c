@@ -124,8 +124,8 @@ static bool open_scene(lab_model *model, const char *name, bool relative, int si
 
 bool model_start(lab_model *made, const char *scene_name, scene_error *error) {
     memset(made, 0, sizeof *made);
-    made->solvers[0] = (lab_solver){MSPRING_SOLVER_EXPLICIT, MSPRING_INTEGRATOR_EULER, 30, 8};
-    made->solvers[1] = (lab_solver){MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_EULER, 1, 8};
+    made->solvers[0] = (lab_solver){MSPRING_SOLVER_EXPLICIT, MSPRING_INTEGRATOR_EULER, 30, 15};
+    made->solvers[1] = (lab_solver){MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_EULER, 1, 15};
     made->look = (lab_look){.plots = true, .panel = true};
     made->speed = 1;
     made->playing = true;

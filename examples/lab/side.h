@@ -13,6 +13,8 @@ typedef struct lab_settings {
     bool breaking, has_floor;
 } lab_settings;
 
+enum { LAB_COMPLAINT_SIZE = 256 };
+
 /// What each has for itself.
 typedef struct lab_solver {
     mspring_solver solver;
@@ -39,7 +41,7 @@ typedef struct lab_side {
     float *strain; ///< [springs] as of the last measurement; 0 of broken ones
     bool *broken;  ///< [springs]
     uint32_t broken_count;
-    char complaint[256]; ///< why the last step was refused, "" if it was not
+    char complaint[LAB_COMPLAINT_SIZE]; ///< why the last step was refused, "" if it was not
     // What is held by the mouse.
     mspring_id *held;        ///< [particles]
     double *held_x, *held_y; ///< [particles] where they were when they were grabbed

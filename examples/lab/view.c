@@ -276,15 +276,39 @@ static void draw_scale(lab_view *view, const lab_model *model, lab_box box) {
     text_draw(&view->target, box, &view->small, left + WIDTH / 2, top - 4, TEXT_CENTRE, TINT_TEXT, title);
 }
 
+// Takes the words from the front of a text that fit into a line; returns what is left of it.
+static const char *take_line(const lab_font *font, const char *text, int width, char *line, size_t size) {
+    size_t taken = 0;
+    for (size_t end = 1; end < size; end++) {
+        if (text[end] != ' ' && text[end] != 0)
+            continue;
+        snprintf(line, end + 1, "%s", text);
+        if (taken > 0 && text_width(font, line) > width)
+            break;
+        taken = end;
+        if (text[end] == 0)
+            break;
+    }
+    snprintf(line, taken + 1, "%s", text);
+    return text + taken + (text[taken] == ' ');
+}
+
 static void draw_complaint(lab_view *view, const lab_side *side, lab_box box) {
+    enum { LINES = 4, LINE_HEIGHT = 18 };
     if (!side->complaint[0])
         return;
-    const lab_box bar = {box.x + 12, box.y + box.height - 34, box.width - 160, 22};
-    char text[160];
-    snprintf(text, sizeof text, "refused: %.140s", side->complaint);
+    char text[LAB_COMPLAINT_SIZE + 16], lines[LINES][LAB_COMPLAINT_SIZE + 16];
+    snprintf(text, sizeof text, "refused: %s", side->complaint);
+    lab_box bar = {box.x + 12, 0, box.width - 160, 0};
+    int count = 0;
+    for (const char *rest = text; *rest && count < LINES; count++)
+        rest = take_line(&view->normal, rest, bar.width - 20, lines[count], sizeof lines[count]);
+    bar.height = LINE_HEIGHT * count + 6;
+    bar.y = box.y + box.height - 12 - bar.height;
     raster_round(&view->target, box, bar, 4, 0x3a1720, 230);
-    text_draw(&view->target, box_shrink(bar, 1), &view->normal, bar.x + 10, bar.y + 15, TEXT_LEFT, TINT_WARNING,
-              text);
+    for (int i = 0; i < count; i++)
+        text_draw(&view->target, box_shrink(bar, 1), &view->normal, bar.x + 10, bar.y + 16 + LINE_HEIGHT * i,
+                  TEXT_LEFT, TINT_WARNING, lines[i]);
 }
 
 void view_draw_side(lab_view *view, const lab_model *model, int side) {

@@ -18,49 +18,29 @@ bool window_can_show(void) {
     return can;
 }
 
-typedef struct sdl_window {
-    SDL_Window *window;
-    SDL_Renderer *renderer;
-    SDL_Texture *texture;
-    int width, height; ///< of the texture
-} sdl_window;
-
 static bool complain(const char *what) {
     fprintf(stderr, "lab: %s: %s\n", what, SDL_GetError());
     return false;
 }
 
-static bool make_texture(sdl_window *made, int width, int height) {
-    if (made->texture)
-        SDL_DestroyTexture(made->texture);
-    made->texture =
-        SDL_CreateTexture(made->renderer, SDL_PIXELFORMAT_RGB888, SDL_TEXTUREACCESS_STREAMING, width, height);
-    made->width = width;
-    made->height = height;
-    return made->texture || complain("no texture");
-}
-
-static bool open_window(sdl_window *made, const lab_options *options) {
+static SDL_Window *open_window(const lab_options *options) {
+    // Under X11 pixels go to the server through shared memory; by OpenGL they would take twice as long where
+    // software stands in for a graphics card, and hardly less where there is one.
+    SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
+    SDL_Window *made = NULL;
     if (SDL_Init(SDL_INIT_VIDEO) != 0)
-        return complain("no display for a window (--headless needs none)");
-    made->window = SDL_CreateWindow("massspring lab", SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED,
-                                    options->width, options->height, SDL_WINDOW_RESIZABLE);
-    if (!made->window)
-        return complain("no window");
-    SDL_SetWindowMinimumSize(made->window, LAYOUT_LEAST_WIDTH, LAYOUT_LEAST_HEIGHT);
-    made->renderer = SDL_CreateRenderer(made->window, -1, SDL_RENDERER_PRESENTVSYNC);
-    if (!made->renderer)
-        made->renderer = SDL_CreateRenderer(made->window, -1, SDL_RENDERER_SOFTWARE);
-    return made->renderer ? make_texture(made, options->width, options->height) : complain("no renderer");
+        complain("no display for a window (--headless needs none)");
+    else if (!(made = SDL_CreateWindow("massspring lab", SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED,
+                                       options->width, options->height, SDL_WINDOW_RESIZABLE)))
+        complain("no window");
+    else
+        SDL_SetWindowMinimumSize(made, LAYOUT_LEAST_WIDTH, LAYOUT_LEAST_HEIGHT);
+    return made;
 }
 
-static void close_window(sdl_window *unwanted) {
-    if (unwanted->texture)
-        SDL_DestroyTexture(unwanted->texture);
-    if (unwanted->renderer)
-        SDL_DestroyRenderer(unwanted->renderer);
-    if (unwanted->window)
-        SDL_DestroyWindow(unwanted->window);
+static void close_window(SDL_Window *unwanted) {
+    if (unwanted)
+        SDL_DestroyWindow(unwanted);
     SDL_Quit();
 }
 
@@ -121,42 +101,57 @@ static void take_events(lab_app *app, bool *quits) {
         controller_take(&app->controller, &app->model, &app->view, &moved);
 }
 
-static bool follow_size(sdl_window *window, lab_app *app) {
+static bool follow_size(SDL_Window *window, lab_app *app) {
     int width, height;
-    SDL_GetWindowSize(window->window, &width, &height);
-    if ((width == window->width && height == window->height) || width < LAYOUT_LEAST_WIDTH ||
+    SDL_GetWindowSize(window, &width, &height);
+    if ((width == app->view.target.width && height == app->view.target.height) || width < LAYOUT_LEAST_WIDTH ||
         height < LAYOUT_LEAST_HEIGHT)
         return true;
-    return make_texture(window, width, height) &&
-           (view_resize(&app->view, width, height) || complain("out of memory"));
+    if (view_resize(&app->view, width, height))
+        return true;
+    fputs("lab: out of memory\n", stderr);
+    return false;
 }
 
-static bool show(sdl_window *window, const lab_raster *picture) {
-    if (SDL_UpdateTexture(window->texture, NULL, picture->pixels, picture->width * (int)sizeof *picture->pixels) !=
-            0 ||
-        SDL_RenderCopy(window->renderer, window->texture, NULL, NULL) != 0)
+static bool show(SDL_Window *window, const lab_raster *picture) {
+    SDL_Surface *surface = SDL_GetWindowSurface(window);
+    if (!surface)
         return complain("cannot draw");
-    SDL_RenderPresent(window->renderer);
-    return true;
+    // The window may have been made smaller since the picture was begun.
+    const int width = surface->w < picture->width ? surface->w : picture->width;
+    const int height = surface->h < picture->height ? surface->h : picture->height;
+    if (SDL_LockSurface(surface) != 0 ||
+        SDL_ConvertPixels(width, height, SDL_PIXELFORMAT_RGB888, picture->pixels,
+                          picture->width * (int)sizeof *picture->pixels, surface->format->format, surface->pixels,
+                          surface->pitch) != 0)
+        return complain("cannot draw");
+    SDL_UnlockSurface(surface);
+    return SDL_UpdateWindowSurface(window) == 0 || complain("cannot draw");
 }
 
 int window_run(lab_app *app) {
-    sdl_window window = {0};
+    SDL_Window *window = open_window(app->options);
     const uint32_t most = app->options->most_frames;
-    bool ok = open_window(&window, app->options), quits = false;
+    bool ok = window != NULL, quits = false;
+    double due = clock_seconds();
     while (ok && !quits && !app->controller.quits && !(most && app->model.frame >= most)) {
-        const double begin = clock_seconds();
         // The mouse needs to know where things are.
         ok = app->frames > 0 || view_begin(&app->view, &app->model);
         if (ok)
             take_events(app, &quits);
-        ok = ok && follow_size(&window, app) && app_frame(app, true) && show(&window, &app->view.target);
-        // Where the display does not set the pace, this does.
-        const double left = 1.0 / FRAMES_PER_SECOND - (clock_seconds() - begin);
-        if (left > 0.002)
+        ok = ok && follow_size(window, app) && app_frame(app, true);
+        const double drawn = clock_seconds();
+        ok = ok && show(window, &app->view.target);
+        app->total_shown += clock_seconds() - drawn;
+        // Frames are due at equal distances; one that is late by a whole frame is not made up for.
+        due += 1.0 / FRAMES_PER_SECOND;
+        const double left = due - clock_seconds();
+        if (left < -1.0 / FRAMES_PER_SECOND)
+            due -= left;
+        else if (left > 0.001)
             SDL_Delay((Uint32)(1e3 * left));
     }
-    close_window(&window);
+    close_window(window);
     if (ok)
         app_report(app);
     return ok ? EXIT_SUCCESS : EXIT_FAILURE;
