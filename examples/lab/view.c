@@ -218,6 +218,17 @@ static void describe_solver(const lab_side *side, char *text, size_t size) {
                  substeps == 1 ? "" : "s", side->solver.iterations);
 }
 
+// A figure that ends at right, with its name before it; a usual one leaves the name where it is. Returns where the
+// next one ends.
+static int draw_figure(lab_view *view, lab_box head, int right, int base, const char *name, const char *text,
+                       const char *usual) {
+    text_draw(&view->target, head, &view->large, right, base, TEXT_RIGHT, TINT_TEXT, text);
+    const int kept = text_width(&view->large, usual), needed = text_width(&view->large, text);
+    right -= (needed > kept ? needed : kept) + 8;
+    text_draw(&view->target, head, &view->normal, right, base, TEXT_RIGHT, TINT_FAINT, name);
+    return right - text_width(&view->normal, name) - 18;
+}
+
 static void draw_head(lab_view *view, const lab_model *model, int index) {
     const lab_side *side = &model->sides[index];
     const lab_box box = view->layout.sides[index],
@@ -236,18 +247,12 @@ static void draw_head(lab_view *view, const lab_model *model, int index) {
     int right = head.x + head.width - 12;
     if (view->shows_costs) {
         snprintf(text, sizeof text, "%.2f ms", 1e3 * side->measured.seconds);
-        text_draw(&view->target, head, &view->large, right, base, TEXT_RIGHT, TINT_TEXT, text);
-        const int usual = text_width(&view->large, "00.00 ms"), needed = text_width(&view->large, text);
-        right -= (needed > usual ? needed : usual) + 8;
-        text_draw(&view->target, head, &view->normal, right, base, TEXT_RIGHT, TINT_FAINT, "a step");
-        right -= text_width(&view->normal, "a step") + 18;
+        right = draw_figure(view, head, right, base, "a step", text, "00.00 ms");
     }
     if (after + text_width(&view->normal, "implicit, 1 substep of 8 iterations") + 150 > right)
         return;
     snprintf(text, sizeof text, "%sm", view_number(side->measured.bending, digits));
-    text_draw(&view->target, head, &view->large, right, base, TEXT_RIGHT, TINT_TEXT, text);
-    right -= text_width(&view->large, "00.00 m") + 8;
-    text_draw(&view->target, head, &view->normal, right, base, TEXT_RIGHT, TINT_FAINT, "bending");
+    draw_figure(view, head, right, base, "bending", text, "00.00 m");
 }
 
 // What the colours mean, in the upper right corner.

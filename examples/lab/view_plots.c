@@ -70,8 +70,10 @@ static void draw_plot(lab_view *view, const lab_model *model, int kind, lab_box 
     raster_round(&view->target, box, box, 6, TINT_PANEL, 256);
     text_draw(&view->target, box, &view->normal, box.x + 10, box.y + 17, TEXT_LEFT, TINT_FAINT, plots[kind].title);
     find_range(series, kind, model->side_count, &low, &high);
-    text_draw(&view->target, box, &view->small, box.x + box.width - 10, box.y + 17, TEXT_RIGHT, TINT_FAINT,
-              value_text(kind, high, text));
+    value_text(kind, high, text);
+    if (text_width(&view->normal, plots[kind].title) + text_width(&view->small, text) + 28 <= box.width)
+        text_draw(&view->target, box, &view->small, box.x + box.width - 10, box.y + 17, TEXT_RIGHT, TINT_FAINT,
+                  text);
     const lab_box area = {box.x + 8, box.y + 24, box.width - 16, box.height - 48};
     raster_fill(&view->target, area, area, TINT_VIEW, 256);
     const int zero = area.y + area.height - 2 + (int)(low * (area.height - 3) / (high - low));
