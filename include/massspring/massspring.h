@@ -282,14 +282,14 @@ enum {
     MSPRING_SOLVER_EXPLICIT = 0,
     /// One linear system in each substep, whatever the stiffness: stable on lattices for any dt and any springs, at
     /// a cost that does not depend on them. Ropes and other springs outside of lattices have little stiffness
-    /// across them; where they are so stiff, and move so far in a substep, that this would stretch them by more
-    /// energy than there was, the step is refused (see mspring_guard, and mspring_integrator for less than that).
+    /// across them; where they are so stiff, and move so far in a substep, that energy would come from nowhere, the
+    /// substep is taken in pieces, and if that is not enough the step is refused (see mspring_guard).
     /// Springs and dampers are linearised at x + h v, with tiles of neighbouring particles turned on as rigid
     /// bodies
     /// (and with the stiffness across a spring clamped to 0 where it is compressed, so that the matrix is positive
     /// definite). The system is solved by a fixed number of conjugate gradient iterations with a two-level
     /// preconditioner: the blocks of the single particles, and the tiles. With eight
-    /// of them a substep costs 20 to 65 explicit ones, least where vectors are short. It damps what oscillates
+    /// of them a substep costs 24 to 41 explicit ones (massspring-bench --implicit). It damps what oscillates
     /// with less than about ten substeps a period. Global damping, which explicit steps apply exactly, is as
     /// accurate as its integrator.
     MSPRING_SOLVER_IMPLICIT = 1,
@@ -311,10 +311,10 @@ enum {
 /// a few steps. The two of second order remember the substep before; the first substep after a change of the
 /// solver, and after the positions of all particles were set, is one of implicit Euler.
 ///
-/// Stiff ropes that hang slack, and are pulled taut within a substep, are what the two of second order follow least
-/// well: they gain energy there, and mspring_guard refuses only a substep in which it more than doubles. Our ship
-/// falling under its own weight, with its rigging, does so in one substep of 1/64 s, before and after steps that
-/// are refused, so MSPRING_GUARD_RETRY is no cure. Implicit Euler, or two substeps from the start, go through.
+/// Stiff ropes that hang slack, and are pulled taut within a substep, are what no integrator can follow: a substep
+/// that would gain energy there is taken in pieces of implicit Euler, of a half to a 64th, with twice the iterations,
+/// and the 15 substeps after it are ones of implicit Euler, too (unless the guard is MSPRING_GUARD_BOUNDS). Our ship
+/// falling under its own weight, with its rigging, has some fifty such substeps in 10 s.
 typedef int32_t mspring_integrator;
 enum {
     MSPRING_INTEGRATOR_GA0 = 0,  ///< generalised-alpha with rho_inf = 0 (Chung and Hulbert, 1993): second order
@@ -373,9 +373,11 @@ enum {
     /// Refuse a step whose substeps are above the border of mspring_network_stable_dt(): motion would turn round
     /// and grow in each. The border is looked at when the substep changes, and when a step changes a velocity twice
     /// as much as one did at the last look; not at all where substeps are stable in any shape. Steps below the
-    /// border are never refused. With the implicit and the direct solver, refuse instead a step in which springs
-    /// outside of lattices get more than twice the energy that there was, kinetic and elastic, with what gravity,
-    /// forces and moving pins can have added.
+    /// border are never refused. The implicit and the direct solver count instead what energy gets beyond the work
+    /// of gravity, forces, moving pins and floor, in each substep, and less what it loses after that: where there
+    /// are ropes or other springs outside of lattices, or broken springs, more than a hundredth of the motion there
+    /// is (kinetic and elastic energy, less that of flying as a whole) is not let pass. A substep with which it
+    /// would come to that is taken in pieces (see mspring_integrator), and the step refused if 64 are not enough.
     MSPRING_GUARD_GROWTH = 0,
     /// The same, but take a step that would be refused again with twice as many substeps, four times as many, and
     /// so on up to max_substeps. Later steps keep the number that was needed, until mspring_network_set_solver().
@@ -383,7 +385,7 @@ enum {
     MSPRING_GUARD_RETRY = 1,
     MSPRING_GUARD_BOUNDS = 2, ///< look at nothing else
     /// As MSPRING_GUARD_GROWTH, but have the implicit solver take a step that would be refused, in one substep of
-    /// implicit Euler, and the 15 after it, before the explicit one is tried again: slower (20 to 65 explicit
+    /// implicit Euler, and the 15 after it, before the explicit one is tried again: slower (24 to 41 explicit
     /// substeps each) and softened, but at nearly any stiffness. Hooks are called again. Its memory is reserved
     /// with the network. mspring_network_fallback_count() says how often that was.
     MSPRING_GUARD_IMPLICIT = 3,

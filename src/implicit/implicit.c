@@ -191,6 +191,9 @@ mspring_result mspringi_implicit_create(mspring_network *network, const mspring_
     if (result == MSPRING_OK)
         result = mspringi_panels_create(&n->panels, &network->topology, &network->memory, &network->message);
     if (result == MSPRING_OK)
+        result =
+            mspringi_balance_create(&n->balance, network, n->panels.count, &network->memory, &network->message);
+    if (result == MSPRING_OK)
         result = n->is_direct ? mspringi_direct_create(&n->direct, network) : make_two_level(n, network);
     if (result == MSPRING_OK)
         result = reserve_crew(n, network);
@@ -228,6 +231,7 @@ void mspringi_implicit_destroy(mspringi_implicit *n, mspringi_memory *memory) {
         return;
     mspringi_direct_destroy(&n->direct, memory);
     mspringi_panels_destroy(&n->panels, memory);
+    mspringi_balance_destroy(&n->balance, memory);
     mspringi_tiles_destroy(&n->tiles, memory);
     mspringi_coarse_destroy(&n->coarse, memory);
     void *const blocks[] = {n->history.low.x,  n->backup.low.x, n->x,         n->velocity.x,  n->residual.x,
@@ -255,7 +259,8 @@ void mspringi_implicit_keep(mspring_network *network) {
         return;
     n->is_kept = true;
     n->has_changed = false;
-    n->gain.to = 0.0;
+    n->kept_ledger = n->ledger;
+    n->gain.energy = 0.0;
 }
 
 void mspringi_implicit_restore(mspring_network *network) {
@@ -268,6 +273,7 @@ void mspringi_implicit_restore(mspring_network *network) {
         n->backup = failed;
     }
     n->has_changed = n->is_kept = false;
+    n->ledger = n->kept_ledger;
     // The factor is one of the failed step's. The others are zero between steps, or where there is no tile, unless
     // numbers overflowed.
     n->age = 0;
@@ -303,12 +309,15 @@ void mspringi_implicit_follow(mspring_network *network) {
         clear_outside_of_tiles(network);
         n->age = 0;
     }
+    if (n->seen.links != network->edits.links)
+        n->balance.is_dead_known = false;
     n->seen = network->edits;
 }
 
 void mspringi_implicit_forget(mspringi_implicit *n) {
     memset(n->history.low.x, 0, n->history_size * sizeof *n->history.low.x);
     n->history.restarts = true;
+    n->ledger = (mspringi_ledger){0};
 }
 
 // Forget the history if the host has begun a new motion; cut tiles anew where springs broke or pins changed.
@@ -373,33 +382,6 @@ static float solve(const mspringi_substep_of *substep, mspringi_mate *mate) {
     return 0.0f;
 }
 
-static void complete_slot(const mspringi_implicit *n, float alpha, size_t slot) {
-    const float x = n->direction.x[slot], y = n->direction.y[slot];
-    n->direction.x[slot] = n->direction.y[slot] = 0.0f;
-    n->displacement.x[slot] = n->displacement.x[slot] + alpha * x;
-    n->displacement.y[slot] = n->displacement.y[slot] + alpha * y;
-}
-
-// Let displacement be d at slots that have springs outside of lattices.
-static void complete_outside(const mspring_network *network, float alpha) {
-    const mspringi_topology *t = &network->topology;
-    const mspringi_implicit *n = network->implicit;
-    const size_t chain = (size_t)t->chain_first * MSPRINGI_WIDTH, web = (size_t)t->web_first * MSPRINGI_WIDTH;
-    for (size_t i = 0; i < (size_t)t->chain_blocks * MSPRINGI_WIDTH; ++i)
-        complete_slot(n, alpha, chain + i);
-    for (size_t i = 0; i < (size_t)t->web_blocks * MSPRINGI_WIDTH; ++i)
-        complete_slot(n, alpha, web + i);
-    for (uint32_t i = 0; i < t->web.attached_count; ++i)
-        if (t->web.attached_slot[i] != MSPRING_NONE)
-            complete_slot(n, alpha, t->web.attached_slot[i]);
-}
-
-static void look_at_energy(const mspringi_substep_of *substep, float alpha) {
-    if (!substep->network->implicit->is_direct)
-        complete_outside(substep->network, alpha);
-    mspringi_energy_look(substep->network, substep->h, substep->base);
-}
-
 // Most times that a substep is solved to find out which particles the floor holds.
 #define MOST_PASSES 4
 
@@ -441,11 +423,10 @@ static void run_substep(void *argument, uint32_t index, uint32_t worker) {
         alpha = solve(substep, &mate);
     else if (!solve_with_floor(substep, &mate, &alpha))
         return;
-    if (mspringi_energy_is_watched(substep->network)) {
-        mspringi_meet(&mate);
+    if (substep->watches && !mspringi_energy_look(substep, &mate, alpha)) {
         if (mate.index == 0)
-            look_at_energy(substep, alpha);
-        mspringi_meet(&mate);
+            substep->network->implicit->alpha = alpha;
+        return;
     }
     mspringi_land(substep, &mate, alpha);
 }
@@ -470,25 +451,72 @@ static void judge_crew(mspringi_implicit *n, uint32_t sleeps) {
     n->alone = n->patience;
 }
 
+static void run_crew(mspringi_substep_of *substep) {
+    mspringi_tasks *tasks = substep->progress ? substep->network->tasks : NULL;
+    mspringi_scheme_prepare(substep);
+    mspringi_tasks_run(tasks, substep->workers, run_substep, substep);
+}
+
+// Take a substep of substep->h, by implicit Euler if that is asked for. Returns false if energy would come from
+// nowhere; then it is not taken.
+static bool try_substep(mspringi_substep_of *substep, bool by_euler) {
+    mspring_network *network = substep->network;
+    mspringi_implicit *n = network->implicit;
+    const uint32_t sleeps = mspringi_tasks_sleeps(network->tasks);
+    choose_crew(substep);
+    n->is_hit = by_euler && n->integrator != MSPRING_INTEGRATOR_EULER;
+    n->balance.fails = false;
+    run_crew(substep);
+    if (network->floor && network->floor->has_hit) {
+        n->is_hit = true;
+        run_crew(substep);
+    }
+    if (substep->progress)
+        judge_crew(n, mspringi_tasks_sleeps(network->tasks) - sleeps);
+    if (n->balance.fails) {
+        n->is_hit = false;
+        n->age = 0;
+        return false;
+    }
+    if (network->floor)
+        mspringi_floor_bear(network, substep->h);
+    mspringi_scheme_close(substep);
+    n->age = n->age + 1 < n->coarse_period ? n->age + 1 : 0;
+    return true;
+}
+
+// Take a substep that cannot be taken as it is, in pieces of implicit Euler: halves, or halves of what is left of
+// them where even that is too long. A whole substep of implicit Euler hardly ever does (ship in free fall: never).
+static void take_pieces(mspringi_substep_of *substep) {
+    mspringi_implicit *n = substep->network->implicit;
+    const float h = substep->h, smallest = h / (float)MSPRINGI_MOST_PIECES;
+    uint32_t left = MSPRINGI_MOST_PIECES, piece = left / 2;
+    n->is_piece = true;
+    while (left > 0 && piece > 0) {
+        substep->h = smallest * (float)piece;
+        if (try_substep(substep, true))
+            left -= piece;
+        else
+            piece /= 2;
+    }
+    n->is_piece = false;
+    if (left > 0)
+        mspringi_energy_give_up(substep);
+    n->age = 0; // the coarse matrix is one of a piece
+    substep->h = h;
+}
+
 void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
     mspringi_implicit *n = network->implicit;
     follow_edits(network);
-    mspringi_substep_of substep = {.network = network, .base = base, .h = h};
-    for (; count > 0; --count) {
-        choose_crew(&substep);
-        mspringi_scheme_prepare(&substep);
-        const uint32_t sleeps = mspringi_tasks_sleeps(network->tasks);
-        mspringi_tasks_run(substep.progress ? network->tasks : NULL, substep.workers, run_substep, &substep);
-        if (network->floor && network->floor->has_hit) {
-            n->is_hit = true;
-            mspringi_scheme_prepare(&substep);
-            mspringi_tasks_run(substep.progress ? network->tasks : NULL, substep.workers, run_substep, &substep);
-        }
-        if (network->floor)
-            mspringi_floor_bear(network, h);
-        mspringi_scheme_close(&substep);
-        n->age = n->age + 1 < n->coarse_period ? n->age + 1 : 0;
-        if (substep.progress)
-            judge_crew(n, mspringi_tasks_sleeps(network->tasks) - sleeps);
+    mspringi_substep_of substep = {
+        .network = network, .base = base, .h = h, .watches = mspringi_energy_is_watched(network)};
+    for (; count > 0 && !(n->gain.energy > 0.0); --count) {
+        const bool is_calm = n->ledger.calm > 0;
+        n->ledger.calm -= is_calm;
+        if (try_substep(&substep, is_calm))
+            continue;
+        n->ledger.calm = MSPRINGI_CALM_SUBSTEPS;
+        take_pieces(&substep);
     }
 }

@@ -65,13 +65,18 @@ typedef struct mspringi_implicit {
     float *sums;                        ///< [chunks]
     mspringi_tile_flight *flights;      ///< [tiles]
     double leftover_product;            ///< what leftover springs and contacts add to p . A p
-    bool is_hit;                        ///< the present substep is one of implicit Euler: particles hit the floor
+    bool is_hit;                        ///< the present substep is one of implicit Euler: particles hit the floor,
+                                        ///< or motion is not to be followed as the integrator would
+    bool is_piece;                      ///< it is a piece of one that made energy of nothing
     mspringi_system system;
     mspringi_iterate iterate;
     mspringi_edits seen; ///< the edits that it has followed
     uint64_t rested;     ///< edits.naps for which what sleeps is at rest in all that is kept by slot
 
-    mspringi_gain gain; ///< of the present step
+    mspringi_balance balance;
+    mspringi_ledger ledger, kept_ledger; ///< now, and before the step
+    mspringi_gain gain;                  ///< of the present step
+    float alpha;                         ///< of the last solution that energy was looked at for
     mspringi_panels panels;
     bool is_direct;
     mspringi_direct direct; ///< all there is of it unless is_direct: zero
@@ -115,6 +120,7 @@ typedef struct mspringi_substep_of {
     mspringi_field base;
     float h;
     float mass_scale;
+    bool watches; ///< energy is looked at
     uint32_t workers;
     mspringi_progress *progress;
     mspringi_flight flight;

@@ -8,6 +8,7 @@
 #include "bounds.h"
 #include "strain.h"
 #include "system_assemble.h"
+#include "system_energy.h"
 #include "system_iterate.h"
 #include "system_motion.h"
 #include "system_multiply.h"
@@ -79,5 +80,7 @@ const mspringi_kernels MSPRINGI_TABLE = {
                .land = {[MSPRINGI_REMEMBER_NOTHING] = land_nothing,
                         [MSPRINGI_REMEMBER_CHANGE] = land_change,
                         [MSPRINGI_REMEMBER_ACCELERATION] = land_acceleration,
-                        [MSPRINGI_REMEMBER_BOTH] = land_both}},
+                        [MSPRINGI_REMEMBER_BOTH] = land_both},
+               .move = sum_moves,
+               .stretch = sum_stretches},
 };

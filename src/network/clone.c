@@ -171,6 +171,8 @@ static void move_implicit(const moving *m, mspringi_implicit *n) {
     MOVE(n->flights);
     MOVE(n->panels.list);
     MOVE(n->panels.sums);
+    MOVE(n->balance.chunks);
+    MOVE(n->balance.panels);
     move_system(m, &n->system);
     move_iterate(m, &n->iterate);
     MOVE(n->seen.link_log);

@@ -13,9 +13,10 @@ typedef struct implicit_head {
     uint64_t tiles_print;
     double scale;
     float h;
-    uint32_t restarts, integrator, iterations, coarse_period, age;
+    uint32_t restarts, integrator, iterations, coarse_period, age, look, calm;
+    double gained, motion, risen;
 } implicit_head;
-#define HEAD_BYTES ((size_t)40)
+#define HEAD_BYTES ((size_t)72)
 
 static size_t implicit_size_of(const mspringi_implicit *n, size_t coarse_values) {
     return HEAD_BYTES + n->history_size * sizeof(float) + coarse_values * sizeof(double);
@@ -41,12 +42,20 @@ static void implicit_save(const mspring_network *network, mspringi_writer *to) {
     const mspringi_implicit *n = network->implicit;
     // A history of a motion that has ended is as good as none.
     const bool ended = n->seen.motion != network->edits.motion;
-    const uint32_t words[] = {n->history.restarts || ended, (uint32_t)n->integrator, n->iterations,
-                              n->coarse_period, age_of(network)};
+    const mspringi_ledger ledger = ended ? (mspringi_ledger){0} : n->ledger;
+    const uint32_t words[] = {n->history.restarts || ended,
+                              (uint32_t)n->integrator,
+                              n->iterations,
+                              n->coarse_period,
+                              age_of(network),
+                              ledger.look,
+                              ledger.calm};
+    const double energies[] = {ledger.gained, ledger.motion, ledger.risen};
     mspringi_put(to, &n->tiles.print, 1, sizeof n->tiles.print);
     mspringi_put(to, &n->scale, 1, sizeof n->scale);
     mspringi_put(to, &n->history.h, 1, sizeof n->history.h);
     mspringi_put(to, words, sizeof words / sizeof words[0], sizeof words[0]);
+    mspringi_put(to, energies, sizeof energies / sizeof energies[0], sizeof energies[0]);
     if (ended)
         mspringi_put_zeros(to, n->history_size * sizeof(float));
     else
@@ -62,7 +71,16 @@ static const uint8_t *read_head(const uint8_t *from, implicit_head *head) {
     from = mspringi_get(from, &head->integrator, 1, sizeof head->integrator);
     from = mspringi_get(from, &head->iterations, 1, sizeof head->iterations);
     from = mspringi_get(from, &head->coarse_period, 1, sizeof head->coarse_period);
-    return mspringi_get(from, &head->age, 1, sizeof head->age);
+    from = mspringi_get(from, &head->age, 1, sizeof head->age);
+    from = mspringi_get(from, &head->look, 1, sizeof head->look);
+    from = mspringi_get(from, &head->calm, 1, sizeof head->calm);
+    from = mspringi_get(from, &head->gained, 1, sizeof head->gained);
+    from = mspringi_get(from, &head->motion, 1, sizeof head->motion);
+    return mspringi_get(from, &head->risen, 1, sizeof head->risen);
+}
+
+static bool is_energy(double value) {
+    return value >= 0.0 && value <= DBL_MAX;
 }
 
 static mspring_result check_head(mspring_network *network, const implicit_head *head) {
@@ -80,6 +98,9 @@ static mspring_result check_head(mspring_network *network, const implicit_head *
         return mspringi_section_fail(
             network, section, "it has %u iterations, and a coarse matrix %u substeps old of %u",
             (unsigned)head->iterations, (unsigned)head->age, (unsigned)head->coarse_period);
+    if (!(is_energy(head->gained) && is_energy(head->motion) && is_energy(head->risen)) ||
+        head->look > MSPRINGI_LOOKS || head->calm > MSPRINGI_CALM_SUBSTEPS)
+        return mspringi_section_fail(network, section, "it has gained %g of %g J", head->gained, head->motion);
     return MSPRING_OK;
 }
 
@@ -135,6 +156,9 @@ static void implicit_load(mspring_network *network, const uint8_t *from, size_t 
     n->history.restarts = head.restarts;
     n->iterations = head.iterations;
     n->coarse_period = head.coarse_period;
+    n->ledger = (mspringi_ledger){
+        .gained = head.gained, .motion = head.motion, .risen = head.risen, .look = head.look, .calm = head.calm};
+    n->balance.is_dead_known = false;
     from = mspringi_get(from, n->history.low.x, n->history_size, sizeof(float));
     clear_history(network);
     mspringi_implicit_follow(network);

@@ -1,194 +1,386 @@
-/// Energy that comes from nowhere.
+/// The balance of energy of implicit substeps.
 #include "energy.h"
 
+#include <float.h>
 #include <math.h>
 
+#include "contact/floor.h"
 #include "implicit/implicit.h"
 #include "network/springs.h"
 
-/// What motion may gain is allowed this many times: integrators do not conserve energy in each single substep.
-#define TOLERATED 2.0
+/// Part of the motion that may come from nowhere.
+#define TOLERATED 0.01
 
-/// Rounding of displacements in single precision, as a part of them.
-#define ROUNDING 2e-6
+/// Parts of the motion: what springs outside of lattices may get before all energy is looked at, and what may come
+/// from nowhere in a substep before that goes on.
+#define UNSUSPICIOUS 0.001
+#define HARMLESS 1e-5
 
-/* --------------------------------------------------------------------------------------------------- suspicion */
+/// What is left of the most motion in each substep: half in 2839.
+#define FADING (4095.0 / 4096.0)
 
-/// What is known of the slots outside of lattices, and of those that they hang on.
-typedef struct outsiders {
-    float low_x, high_x, low_y, high_y; ///< displacements, m; the turning of tiles left out, which is less
-    float lightest;                     ///< in units of A's masses
-} outsiders;
+/// Rounding of displacements, as a part of the largest, and of lengths, as a part of them.
+#define DISPLACEMENT_ROUNDING 2e-7
+#define LENGTH_ROUNDING 1e-7
 
-static void look_at_slot(const mspring_network *network, float h, uint32_t slot, outsiders *o) {
-    const mspringi_implicit *n = network->implicit;
-    if (network->topology.particle_of_slot[slot] == MSPRING_NONE)
-        return;
-    const float x = h * network->state.vx[slot] + n->displacement.x[slot];
-    const float y = h * network->state.vy[slot] + n->displacement.y[slot];
-    const float mass = n->mass[slot] > 0.0f ? n->mass[slot] : o->lightest;
-    o->low_x = x < o->low_x ? x : o->low_x;
-    o->high_x = x > o->high_x ? x : o->high_x;
-    o->low_y = y < o->low_y ? y : o->low_y;
-    o->high_y = y > o->high_y ? y : o->high_y;
-    o->lightest = mass < o->lightest ? mass : o->lightest;
-}
+typedef mspringi_substep_of substep_of;
 
-static void look_at_blocks(const mspring_network *network, float h, uint32_t first, uint32_t count, outsiders *o) {
-    for (uint32_t slot = first * MSPRINGI_WIDTH; slot < (first + count) * MSPRINGI_WIDTH; ++slot)
-        look_at_slot(network, h, slot, o);
-}
-
-// The largest stiffness of a spring outside of lattices in A.
-static float largest_stiffness(const mspring_network *network) {
+mspring_result mspringi_balance_create(mspringi_balance *balance, const mspring_network *network, uint32_t panels,
+                                       mspringi_memory *memory, mspringi_message *message) {
     const mspringi_topology *t = &network->topology;
-    const size_t first = t->lattice_places / MSPRINGI_WIDTH;
-    const size_t end = (t->chain_places + (size_t)t->leftover_count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
-    float largest = 0.0f;
-    for (size_t block = first; block < end; ++block) {
-        const float *pull_x = network->implicit->factors + block * MSPRINGI_FACTORS * MSPRINGI_WIDTH;
-        const float *pull_y = pull_x + MSPRINGI_WIDTH, *swing = pull_y + MSPRINGI_WIDTH;
-        for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
-            const float stiffness = swing[i] + (pull_x[i] * pull_x[i] + pull_y[i] * pull_y[i]);
-            largest = stiffness > largest ? stiffness : largest;
-        }
+    const size_t slots = mspringi_slot_count(network), chunks = slots / MSPRINGI_CHUNK + 1;
+    *balance = (mspringi_balance){0};
+    balance->chunks = mspringi_alloc(memory, chunks * MSPRINGI_MOVE_SUMS, sizeof *balance->chunks);
+    balance->panels = mspringi_alloc(memory, (size_t)panels * MSPRINGI_STRETCH_SUMS, sizeof *balance->panels);
+    if (!balance->chunks || !balance->panels) {
+        mspringi_balance_destroy(balance, memory);
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the energy of %u particles",
+                             (unsigned)t->particle_count);
     }
-    return largest;
+    for (size_t slot = 0; slot < (size_t)t->loose_first * MSPRINGI_WIDTH; ++slot)
+        balance->movable += t->particle_of_slot[slot] != MSPRING_NONE;
+    return MSPRING_OK;
 }
 
-// Whether springs may have been stretched, by moving across their direction, by energies that count beside those of
-// the motion: with ends that moved apart by s, k s^4 / 8 L^2 beside m s^2 / 2h^2. Returns s, or 0: none.
-static double find_suspicious_way(const mspring_network *network, float h) {
+void mspringi_balance_destroy(mspringi_balance *balance, mspringi_memory *memory) {
+    mspringi_free(memory, balance->chunks);
+    mspringi_free(memory, balance->panels);
+    *balance = (mspringi_balance){0};
+}
+
+static bool has_others(const mspringi_topology *t) {
+    return t->lattice_places < t->chain_places + t->leftover_count;
+}
+
+// Broken lattice springs leave ropes in the lattice.
+static uint32_t count_dead(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
-    outsiders o = {INFINITY, -INFINITY, INFINITY, -INFINITY, INFINITY};
-    look_at_blocks(network, h, t->chain_first, t->chain_blocks, &o);
-    look_at_blocks(network, h, t->web_first, t->web_blocks, &o);
-    for (uint32_t i = 0; i < t->web.attached_count; ++i)
-        if (t->web.attached_slot[i] != MSPRING_NONE)
-            look_at_slot(network, h, t->web.attached_slot[i], &o);
-    const double x = (double)o.high_x - (double)o.low_x, y = (double)o.high_y - (double)o.low_y;
-    const double way = x * x + y * y;
-    const double stiffness = (double)largest_stiffness(network) / (double)o.lightest;
-    return 0.25 * stiffness * way > network->shortest * network->shortest ? sqrt(way) : 0.0;
+    uint32_t live = 0;
+    for (size_t word = 0; word < t->lattice_places / MSPRINGI_WIDTH; ++word)
+        for (uint32_t bits = network->live[word]; bits; bits &= bits - 1)
+            ++live;
+    return t->lattice_springs - live;
 }
 
-/* ------------------------------------------------------------------------------------------------------ energies
- */
-
-static double length_between(double ax, double ay, double bx, double by) {
-    return sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay));
-}
-
-static double elastic(const mspringi_spring_values *s, double length) {
-    const double extension = length - (double)s->rest_length;
-    return 0.5 * (double)s->stiffness * extension * extension;
-}
-
-static double energy_before(const mspring_network *network, const mspringi_spring_values *s) {
-    const mspringi_field low = network->implicit->history.low;
-    const float *x = network->state.x, *y = network->state.y;
-    return elastic(
-        s, length_between((double)x[s->base] + (double)low.x[s->base], (double)y[s->base] + (double)low.y[s->base],
-                          (double)x[s->tip] + (double)low.x[s->tip], (double)y[s->tip] + (double)low.y[s->tip]));
-}
-
-static double energy_after(const mspring_network *network, const mspringi_spring_values *s) {
-    const mspringi_implicit *n = network->implicit;
-    const mspringi_field d = n->displacement;
-    return elastic(s, length_between(n->x[s->base] + (double)d.x[s->base], n->y[s->base] + (double)d.y[s->base],
-                                     n->x[s->tip] + (double)d.x[s->tip], n->y[s->tip] + (double)d.y[s->tip]));
+bool mspringi_energy_is_watched(const mspring_network *network) {
+    mspringi_balance *balance = &network->implicit->balance;
+    if (network->guard_policy == MSPRING_GUARD_BOUNDS)
+        return false;
+    if (has_others(&network->topology))
+        return true;
+    if (!balance->is_dead_known)
+        balance->dead = count_dead(network);
+    balance->is_dead_known = true;
+    return balance->dead > 0;
 }
 
 static bool is_live(const mspring_network *network, mspringi_place place) {
     return network->live[place / MSPRINGI_WIDTH] >> place % MSPRINGI_WIDTH & 1;
 }
 
-// Elastic energy after the substep of the springs outside of lattices, J, and which of them has most.
-static double strained_to(const mspring_network *network, mspringi_place *most) {
+/* ------------------------------------------------------------------------------------------------------- motion */
+
+static mspringi_motion describe(const substep_of *substep, float alpha) {
+    const mspring_network *network = substep->network;
+    const mspringi_implicit *n = network->implicit;
+    const mspringi_landing *x = &substep->landing[0], *y = &substep->landing[1];
+    // What springs exert is of no use any more. (It is, to particles without springs, which are not looked at.)
+    return (mspringi_motion){
+        .axes = {{x->position, x->low, x->velocity, x->predicted, x->start, x->solution, x->direction,
+                  substep->base.x, n->residual.x},
+                 {y->position, y->low, y->velocity, y->predicted, y->start, y->solution, y->direction,
+                  substep->base.y, n->residual.y}},
+        .mass = n->mass,
+        .alpha = alpha,
+        .rate = x->rate,
+        .stiffness_scale = (float)n->scale,
+    };
+}
+
+/// Where a slot is before the substep and after it, in a coordinate, and how fast.
+typedef struct passage {
+    double from, to, slow, fast;
+} passage;
+
+static passage passage_of(const mspringi_motion *m, size_t axis, size_t slot) {
+    const mspringi_motion_axis *c = &m->axes[axis];
+    const float d = c->solution[slot] + m->alpha * c->direction[slot], before = c->velocity[slot];
+    return (passage){(double)c->position[slot] + (double)c->low[slot], c->predicted[slot] + (double)d,
+                     (double)before,
+                     m->mass[slot] > 0.0f ? (double)(c->start[slot] + m->rate * d) : (double)before};
+}
+
+/// A spring before the substep and after it.
+typedef struct stretched {
+    double stiffness, x, y, later_x, later_y; ///< from its base to its tip
+    double before, after;                     ///< longer than at rest
+} stretched;
+
+static stretched stretch_of(const mspringi_motion *m, const mspringi_spring_values *s) {
+    const passage ax = passage_of(m, 0, s->base), ay = passage_of(m, 1, s->base);
+    const passage bx = passage_of(m, 0, s->tip), by = passage_of(m, 1, s->tip);
+    const double x = bx.from - ax.from, y = by.from - ay.from, later_x = bx.to - ax.to, later_y = by.to - ay.to;
+    const double rest_length = (double)s->rest_length;
+    return (stretched){(double)s->stiffness,
+                       x,
+                       y,
+                       later_x,
+                       later_y,
+                       sqrt(x * x + y * y) - rest_length,
+                       sqrt(later_x * later_x + later_y * later_y) - rest_length};
+}
+
+static double gain_of(const stretched *s) {
+    return 0.5 * s->stiffness * ((s->after - s->before) * (s->after + s->before));
+}
+
+/* ---------------------------------------------------------------------------------------- springs of their own */
+
+// What the particles of some blocks get, less the work that is done on them, J.
+static double gain_of_blocks(const substep_of *substep, const mspringi_motion *m, uint32_t first, uint32_t count) {
+    const mspring_network *network = substep->network;
+    const double gravity[] = {(double)network->gravity_x, (double)network->gravity_y};
+    double sum = 0.0;
+    for (size_t slot = (size_t)first * MSPRINGI_WIDTH; slot < (size_t)(first + count) * MSPRINGI_WIDTH; ++slot) {
+        const float inverse_mass = network->inverse_mass[slot];
+        if (!(inverse_mass > 0.0f))
+            continue;
+        const double mass = 1.0 / (double)inverse_mass;
+        for (size_t axis = 0; axis < 2; ++axis) {
+            const passage p = passage_of(m, axis, slot);
+            const float *force = m->axes[axis].force;
+            const double work = (mass * gravity[axis] + (force ? (double)force[slot] : 0.0)) * (p.to - p.from);
+            sum += 0.5 * mass * ((p.fast - p.slow) * (p.fast + p.slow)) - work;
+        }
+    }
+    return sum;
+}
+
+// What springs and particles outside of lattices get, J.
+static double gain_outside(const substep_of *substep, const mspringi_motion *m) {
+    const mspring_network *network = substep->network;
     const mspringi_topology *t = &network->topology;
-    double sum = 0.0, largest = -1.0;
+    double sum = gain_of_blocks(substep, m, t->chain_first, t->chain_blocks) +
+                 gain_of_blocks(substep, m, t->web_first, t->web_blocks);
     for (mspringi_place place = t->lattice_places; place < t->chain_places + t->leftover_count; ++place) {
         if (!is_live(network, place))
             continue;
-        const mspringi_spring_values s = mspringi_place_get(network, place);
-        const double energy = energy_after(network, &s);
-        sum += energy;
-        *most = energy > largest ? place : *most;
-        largest = energy > largest ? energy : largest;
+        const mspringi_spring_values values = mspringi_place_get(network, place);
+        const stretched s = stretch_of(m, &values);
+        sum += gain_of(&s);
     }
     return sum;
 }
 
-/// Sums over all springs.
-typedef struct spring_sums {
-    double energy; ///< before the substep, J
-    double driven; ///< k v^2 of those that hang on moving pins
-    double noise;  ///< what rounding may be worth, J
-} spring_sums;
-
-static double speed_squared(const mspring_network *network, uint32_t slot) {
-    const double vx = (double)network->state.vx[slot], vy = (double)network->state.vy[slot];
-    return vx * vx + vy * vy;
+// Whether the whole has to be looked at.
+static bool is_suspicious(const substep_of *substep, const mspringi_motion *m) {
+    mspringi_implicit *n = substep->network->implicit;
+    mspringi_ledger *ledger = &n->ledger;
+    if (n->balance.dead > 0 || substep->network->topology.lattice_places == 0)
+        return true;
+    if (ledger->look == 0 && ledger->motion > 0.0) {
+        const double risen = ledger->risen + gain_outside(substep, m);
+        if (risen <= UNSUSPICIOUS * ledger->motion) {
+            ledger->risen = risen > 0.0 ? risen : 0.0;
+            return false;
+        }
+    }
+    ledger->look = ledger->look > 0 ? ledger->look - 1 : MSPRINGI_LOOKS;
+    ledger->risen = 0.0;
+    return true;
 }
 
-static spring_sums sum_springs(const mspring_network *network, double way) {
+/* ------------------------------------------------------------------------------------------------------ all sums
+ */
+
+// What pinned ends of a spring give it: force before the substep or after it, whatever is more, times their way.
+static double given_by_pins(const mspringi_motion *m, const mspringi_spring_values *values, const stretched *s) {
+    const double rest_length = (double)values->rest_length;
+    const double before = s->before + rest_length, after = s->after + rest_length;
+    const double per_before = before > 0.0 ? 1.0 / before : 0.0, per_after = after > 0.0 ? 1.0 / after : 0.0;
+    const double nx = s->x * per_before, ny = s->y * per_before;
+    const double later_nx = s->later_x * per_after, later_ny = s->later_y * per_after;
+    const passage ax = passage_of(m, 0, values->base), ay = passage_of(m, 1, values->base);
+    const passage bx = passage_of(m, 0, values->tip), by = passage_of(m, 1, values->tip);
+    const double rate = nx * (bx.slow - ax.slow) + ny * (by.slow - ay.slow);
+    const double later_rate = later_nx * (bx.fast - ax.fast) + later_ny * (by.fast - ay.fast);
+    const double base = m->mass[values->base] > 0.0f ? 0.0 : 1.0, tip = m->mass[values->tip] > 0.0f ? 0.0 : 1.0;
+    const double x = tip * (bx.to - bx.from) - base * (ax.to - ax.from);
+    const double y = tip * (by.to - by.from) - base * (ay.to - ay.from);
+    const double damping = (double)values->damping;
+    const double start = (s->stiffness * s->before + damping * rate) * (nx * x + ny * y);
+    const double end = (s->stiffness * s->after + damping * later_rate) * (later_nx * x + later_ny * y);
+    return start > end ? start : end;
+}
+
+// What leftover springs add to the sums over springs.
+static void add_leftover(const mspring_network *network, const mspringi_motion *m, bool driven, double *sums) {
     const mspringi_topology *t = &network->topology;
-    spring_sums sum = {0.0, 0.0, 0.0};
+    const double scale = network->implicit->scale;
+    for (mspringi_place place = t->chain_places; place < t->chain_places + t->leftover_count; ++place) {
+        const mspringi_spring_values values = mspringi_place_get(network, place);
+        const stretched s = stretch_of(m, &values);
+        const double k = scale * s.stiffness;
+        sums[MSPRINGI_STRETCH_GAIN] += scale * gain_of(&s);
+        sums[MSPRINGI_STRETCH_ENERGY] += k * s.after * s.after;
+        sums[MSPRINGI_STRETCH_PULL] += k * fabs(s.after);
+        sums[MSPRINGI_STRETCH_STIFFNESS] += s.stiffness;
+        if (!driven)
+            continue;
+        sums[MSPRINGI_STRETCH_GIVEN] += scale * given_by_pins(m, &values, &s);
+    }
+}
+
+static void add_sums(double *to, const double *from, size_t count) {
+    for (size_t i = 0; i < count; ++i)
+        to[i] += from[i];
+}
+
+// What the floor does work for, J, as far as it gives any.
+static double work_of_floor(const mspring_network *network, const mspringi_motion *m) {
+    const mspringi_floor *floor = network->floor;
+    double sum = 0.0;
+    for (uint32_t i = 0; floor && i < floor->contact_count; ++i) {
+        const mspringi_contact *c = &floor->contacts[i];
+        const double x = (double)m->axes[0].step[c->slot], y = (double)m->axes[1].step[c->slot];
+        const double work = c->normal * (c->nx * x + c->ny * y) + c->along * (c->ny * x - c->nx * y);
+        sum += c->is_active && work > 0.0 ? work : 0.0;
+    }
+    return sum / network->implicit->system.force_scale;
+}
+
+// Sum up the shares of all workers.
+static void gather(const substep_of *substep, const mspringi_motion *m, double *moves, double *stretches) {
+    const mspring_network *network = substep->network;
+    const mspringi_balance *balance = &network->implicit->balance;
+    const size_t slots = (size_t)network->topology.loose_first * MSPRINGI_WIDTH;
+    double largest = 0.0;
+    for (size_t i = 0; i < (slots + MSPRINGI_CHUNK - 1) / MSPRINGI_CHUNK; ++i) {
+        const double *chunk = balance->chunks + i * MSPRINGI_MOVE_SUMS;
+        add_sums(moves, chunk, MSPRINGI_MOVE_SUMS);
+        largest = chunk[MSPRINGI_MOVE_LARGEST] > largest ? chunk[MSPRINGI_MOVE_LARGEST] : largest;
+    }
+    moves[MSPRINGI_MOVE_LARGEST] = largest;
+    for (size_t i = 0; i < network->implicit->panels.count; ++i)
+        add_sums(stretches, balance->panels + i * MSPRINGI_STRETCH_SUMS, MSPRINGI_STRETCH_SUMS);
+    add_leftover(network, m, moves[MSPRINGI_MOVE_DRIVEN] > 0.0, stretches);
+}
+
+/// What a substep comes to, J.
+typedef struct result {
+    double gain, rounding, motion;
+} result;
+
+// All in the frame of the mass centre or, if there are pinned particles, which work is done on the network by, in
+// that of the world: so that flying does not count as motion that there is much of.
+static result sum_up(const substep_of *substep, const mspringi_motion *m) {
+    const mspring_network *network = substep->network;
+    const mspringi_implicit *n = network->implicit;
+    double moves[MSPRINGI_MOVE_SUMS] = {0.0}, stretches[MSPRINGI_STRETCH_SUMS] = {0.0};
+    gather(substep, m, moves, stretches);
+    const double mass = moves[MSPRINGI_MOVE_MASS], h = (double)substep->h;
+    const double per_mass = 1.0 / (double)substep->mass_scale, per_stiffness = 1.0 / n->scale;
+    const double gravity[] = {(double)network->gravity_x, (double)network->gravity_y};
+    const bool is_free = moves[MSPRINGI_MOVE_COUNT] == (double)n->balance.movable && mass > 0.0;
+    double before = 0.5 * per_mass * moves[MSPRINGI_MOVE_KINETIC];
+    double gain = 0.5 * per_mass * moves[MSPRINGI_MOVE_GAIN], work = moves[MSPRINGI_MOVE_WORK];
+    for (size_t i = 0; i < 2; ++i) {
+        const double momentum = per_mass * moves[MSPRINGI_MOVE_MOMENTUM + i];
+        const double frame = is_free ? moves[MSPRINGI_MOVE_MOMENTUM + i] / mass : 0.0;
+        before -= 0.5 * momentum * frame;
+        gain -= per_mass * moves[MSPRINGI_MOVE_PUSH + i] * frame;
+        work += gravity[i] * per_mass * (moves[MSPRINGI_MOVE_WAY + i] - mass * frame * h);
+        work -= moves[MSPRINGI_MOVE_FORCE + i] * frame * h;
+    }
+    const double kinetic = before + gain, energy = 0.5 * per_stiffness * stretches[MSPRINGI_STRETCH_ENERGY];
+    const double slip = DISPLACEMENT_ROUNDING * moves[MSPRINGI_MOVE_LARGEST];
+    work += work_of_floor(network, m) + per_stiffness * stretches[MSPRINGI_STRETCH_GIVEN];
+    gain += per_stiffness * stretches[MSPRINGI_STRETCH_GAIN];
+    return (result){
+        .gain = gain - work,
+        .rounding = per_stiffness * stretches[MSPRINGI_STRETCH_PULL] * slip +
+                    stretches[MSPRINGI_STRETCH_STIFFNESS] * slip * slip +
+                    4.0 * LENGTH_ROUNDING * per_stiffness * sqrt(stretches[MSPRINGI_STRETCH_ERROR]) +
+                    LENGTH_ROUNDING * (before + energy + fabs(work)),
+        .motion = kinetic + energy,
+    };
+}
+
+// Whether the substep may be taken; then it is in the ledger.
+static bool is_accepted(const substep_of *substep, const mspringi_motion *m) {
+    mspringi_ledger *ledger = &substep->network->implicit->ledger;
+    const result r = sum_up(substep, m);
+    const double faded = FADING * ledger->motion, motion = r.motion > faded ? r.motion : faded;
+    const double gained = ledger->gained + r.gain - r.rounding;
+    if (!(gained <= TOLERATED * motion && motion <= DBL_MAX))
+        return false;
+    ledger->gained = gained > 0.0 ? gained : 0.0;
+    ledger->motion = motion;
+    if (r.gain - r.rounding > HARMLESS * motion)
+        ledger->look = MSPRINGI_LOOKS;
+    return true;
+}
+
+bool mspringi_energy_look(const substep_of *substep, mspringi_mate *mate, float alpha) {
+    const mspring_network *network = substep->network;
+    mspringi_implicit *n = network->implicit;
+    mspringi_balance *balance = &n->balance;
+    const mspringi_system_kernels *kernels = &network->kernels->system;
+    const mspringi_motion motion = describe(substep, alpha);
+    mspringi_meet(mate);
+    if (mate->index == 0) {
+        balance->looks = is_suspicious(substep, &motion);
+        balance->fails = false;
+    }
+    mspringi_meet(mate);
+    if (!balance->looks)
+        return true;
+    const size_t end = (size_t)network->topology.loose_first * MSPRINGI_WIDTH;
+    const mspringi_slots slots = mspringi_slots_of(network, mate);
+    for (size_t first = slots.first; first < slots.end && first < end; first += MSPRINGI_CHUNK) {
+        const size_t chunk = first + MSPRINGI_CHUNK, least = chunk < slots.end ? chunk : slots.end;
+        kernels->move(&motion, first, least < end ? least : end,
+                      balance->chunks + first / MSPRINGI_CHUNK * MSPRINGI_MOVE_SUMS);
+    }
+    mspringi_meet(mate);
+    bool driven = false;
+    for (size_t i = 0; i < (end + MSPRINGI_CHUNK - 1) / MSPRINGI_CHUNK; ++i)
+        driven |= balance->chunks[i * MSPRINGI_MOVE_SUMS + MSPRINGI_MOVE_DRIVEN] > 0.0;
+    for (size_t i = mspringi_share_of(mate, n->panels.count); i < mspringi_share_end(mate, n->panels.count); ++i) {
+        const mspringi_panel *panel = &n->panels.list[i];
+        kernels->stretch(&n->system, &motion, network->topology.spans + panel->first_span, panel->span_count,
+                         panel->is_lattice, driven, balance->panels + i * MSPRINGI_STRETCH_SUMS);
+    }
+    mspringi_meet(mate);
+    if (mate->index == 0)
+        balance->fails = !is_accepted(substep, &motion);
+    mspringi_meet(mate);
+    return !balance->fails;
+}
+
+/* ------------------------------------------------------------------------------------------------------- giving up
+ */
+
+void mspringi_energy_give_up(const substep_of *substep) {
+    const mspring_network *network = substep->network;
+    const mspringi_topology *t = &network->topology;
+    mspringi_implicit *n = network->implicit;
+    const mspringi_motion motion = describe(substep, n->alpha);
+    const result r = sum_up(substep, &motion);
+    double most = -1.0;
+    n->gain = (mspringi_gain){.energy = n->ledger.gained + r.gain, .motion = n->ledger.motion};
     for (mspringi_place place = 0; place < t->chain_places + t->leftover_count; ++place) {
         if (!is_live(network, place))
             continue;
-        const mspringi_spring_values s = mspringi_place_get(network, place);
-        const uint32_t ends[] = {s.base, s.tip};
-        sum.energy += energy_before(network, &s);
-        sum.noise += 0.5 * (double)s.stiffness * (ROUNDING * way) * (ROUNDING * way);
-        for (int i = 0; i < 2; ++i)
-            if (network->inverse_mass[ends[i]] == 0.0f)
-                sum.driven += (double)s.stiffness * speed_squared(network, ends[i]);
+        const mspringi_spring_values values = mspringi_place_get(network, place);
+        const stretched s = stretch_of(&motion, &values);
+        const double energy = s.stiffness * s.after * s.after;
+        n->gain.place = energy > most ? place : n->gain.place;
+        most = energy > most ? energy : most;
     }
-    return sum;
-}
-
-/// Sums over all particles that are not pinned.
-typedef struct particle_sums {
-    double energy; ///< kinetic, before, J
-    double pushed; ///< f^2 / 2m
-} particle_sums;
-
-static particle_sums sum_particles(const mspring_network *network, mspringi_field base) {
-    particle_sums sum = {0.0, 0.0};
-    const size_t slots = mspringi_slot_count(network);
-    for (uint32_t slot = 0; slot < slots; ++slot) {
-        const double inverse = (double)network->inverse_mass[slot], mass = 1.0 / inverse;
-        if (!(inverse > 0.0))
-            continue;
-        const double ax = (double)network->gravity_x + (base.x ? (double)base.x[slot] * inverse : 0.0);
-        const double ay = (double)network->gravity_y + (base.x ? (double)base.y[slot] * inverse : 0.0);
-        sum.energy += 0.5 * mass * speed_squared(network, slot);
-        sum.pushed += 0.5 * mass * (ax * ax + ay * ay);
-    }
-    return sum;
-}
-
-/* --------------------------------------------------------------------------------------------------- the whole */
-
-void mspringi_energy_look(mspring_network *network, float h, mspringi_field base) {
-    const mspringi_topology *t = &network->topology;
-    mspringi_gain *gain = &network->implicit->gain;
-    if (!mspringi_energy_is_watched(network) || gain->to > 0.0)
-        return;
-    const double way = find_suspicious_way(network, h);
-    if (!(way > 0.0))
-        return;
-    mspringi_place place = t->lattice_places;
-    const double after = strained_to(network, &place);
-    const particle_sums particles = sum_particles(network, base);
-    if (!(after > particles.energy))
-        return;
-    const spring_sums springs = sum_springs(network, way);
-    const double root = sqrt(particles.energy + springs.energy + springs.noise) +
-                        (double)h * (sqrt(particles.pushed) + sqrt(0.5 * springs.driven));
-    if (after > TOLERATED * root * root)
-        *gain = (mspringi_gain){.to = after, .most = root * root, .place = place};
+    // Whatever it was, it was something.
+    if (!(n->gain.energy > 0.0))
+        n->gain.energy = INFINITY;
 }
 
 // The spring that lies at a place.
@@ -203,19 +395,18 @@ static mspring_id find_spring(const mspringi_topology *t, mspringi_place place) 
 
 mspring_result mspringi_energy_verdict(mspring_network *network, double dt) {
     const mspringi_topology *t = &network->topology;
-    if (!network->implicit || !(network->implicit->gain.to > 0.0))
+    if (!network->implicit || !(network->implicit->gain.energy > 0.0))
         return MSPRING_OK;
     const mspringi_gain gain = network->implicit->gain;
     uint32_t base, tip;
     mspringi_topology_ends(t, gain.place, &base, &tip);
     const mspring_id spring = find_spring(t, gain.place);
     const mspring_id a = t->particle_of_slot[base], b = t->particle_of_slot[tip];
-    return mspringi_fail(
-        &network->message, MSPRING_ERROR_UNSTABLE,
-        "a step of %g s (substeps: %u): springs would be stretched by %g J, of which only %g J were "
-        "there or can have been added; they are too stiff to be followed so far in one substep, as "
-        "is spring %u between particles %u and %u: take a shorter step, more substeps or less "
-        "stiffness",
-        dt, (unsigned)network->substeps, gain.to, gain.most, (unsigned)spring, (unsigned)(a < b ? a : b),
-        (unsigned)(a < b ? b : a));
+    return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
+                         "a step of %g s (substeps: %u): energy would grow by %g J that nothing has added, where "
+                         "motion and springs have up to %g J; springs are too stiff to be followed so far, "
+                         "even in %u pieces of a substep, as is spring %u between particles %u and %u: take a "
+                         "shorter step, more substeps or less stiffness",
+                         dt, (unsigned)network->substeps, gain.energy, gain.motion, (unsigned)MSPRINGI_MOST_PIECES,
+                         (unsigned)spring, (unsigned)(a < b ? a : b), (unsigned)(a < b ? b : a));
 }

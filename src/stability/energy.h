@@ -1,16 +1,20 @@
 /// @file energy.h
-/// Whether an implicit substep has made energy out of nothing.
+/// The balance of energy of implicit substeps.
 ///
 /// A substep linearises every spring once. What lies across its direction is stiff only as far as the spring is
-/// tense, so a taut rope without tension moves sideways as if there were no springs; and one that is stiff is then
-/// stretched by more than anything has done work for. On lattices, where others hold each spring's direction, that
-/// does not happen: only the springs outside of them, of strands and of the web, are looked at.
+/// tense, so a slack or untensed rope moves sideways as if there were no springs; and one that is stiff is then
+/// stretched by more than anything has done work for. So what a substep would make of kinetic and elastic energy is
+/// summed before it lands, and compared with the work of gravity, of forces from outside, of moving pins and of the
+/// floor. What cannot be explained so is added up; what is lost is taken off that, but never below nothing. If the
+/// sum comes to more than a hundredth of the motion that there is, the substep is not taken, but pieces of it by
+/// implicit Euler, as small as they have to be, and some of the following substeps by implicit Euler, too.
 ///
-/// What motion may gain: from d/dt (kinetic + elastic) <= sum of v . f, f being the forces from outside,
+/// (Methods of second order have a right to some of that hundredth: of an oscillator's energy GA0 takes and gives
+/// back 0.1 %.)
 ///
-///     sqrt(E(t + h)) <= sqrt(E(t)) + h sqrt(sum of f^2 / 2m) + h sqrt(sum of k v^2 / 2)
-///
-/// the last sum being over springs that hang on pinned particles, which move with v.
+/// In lattices springs hold each other's direction, which lets no energy come up. A network that is a lattice, with
+/// all its springs, is not looked at; one with ropes or other springs besides, as long as these springs, and the
+/// particles that have no others, get less than a thousandth of the motion, is not looked at but for them.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_ENERGY_H
@@ -18,24 +22,57 @@
 
 #include "network/network.h"
 
-/// A substep that gained too much, and the spring that has most of it.
+/// What is known of the energy from substep to substep, J.
+typedef struct mspringi_ledger {
+    double gained; ///< what has come from nowhere, less what was lost since
+    double motion; ///< most kinetic and elastic energy that there was, fading
+    double risen;  ///< what springs and particles outside of lattices got since all energy was looked at
+    uint32_t look; ///< substeps in which all is looked at, whatever they get
+    uint32_t calm; ///< substeps to come that are taken by implicit Euler
+} mspringi_ledger;
+
+/// What refuses a step.
 typedef struct mspringi_gain {
-    double to, most; ///< elastic energy after it, and what all energy might have been, J; to 0: there was none
-    mspringi_place place;
+    double energy, motion; ///< gain and what is known of motion, J; energy 0: there was none
+    mspringi_place place;  ///< of the spring outside of lattices, or anywhere, that would have most
 } mspringi_gain;
 
-/// Whether there is anything to look at.
-static inline bool mspringi_energy_is_watched(const mspring_network *network) {
-    const mspringi_topology *t = &network->topology;
-    return t->lattice_places < t->chain_places + t->leftover_count && network->guard_policy != MSPRING_GUARD_BOUNDS;
-}
+/// What is summed to know it.
+typedef struct mspringi_balance {
+    double *chunks;   ///< [chunks][MSPRINGI_MOVE_SUMS]
+    double *panels;   ///< [panels][MSPRINGI_STRETCH_SUMS]
+    uint32_t movable; ///< particles with springs
+    uint32_t dead;    ///< lattice springs that are broken
+    bool is_dead_known;
+    bool looks; ///< the present substep is looked at as a whole
+    bool fails; ///< it gains too much
+} mspringi_balance;
 
-/// Look at the substep of h that the network's implicit solver is about to finish: predicted positions and
-/// displacement, at the ends of springs outside of lattices, are there, the state is that of before. base: forces
-/// from outside (x NULL: none).
-void mspringi_energy_look(mspring_network *network, float h, mspringi_field base);
+/// Pieces of a substep at most, substeps of implicit Euler after one in pieces, and those in which all is looked
+/// at.
+#define MSPRINGI_MOST_PIECES 64u
+#define MSPRINGI_CALM_SUBSTEPS 15u
+#define MSPRINGI_LOOKS 64u
 
-/// Fail if a substep of the present step gained too much.
+struct mspringi_substep_of;
+struct mspringi_mate;
+
+/// Allocate what the implicit solver needs for it.
+mspring_result mspringi_balance_create(mspringi_balance *balance, const mspring_network *network, uint32_t panels,
+                                       mspringi_memory *memory, mspringi_message *message);
+void mspringi_balance_destroy(mspringi_balance *balance, mspringi_memory *memory);
+
+/// Whether there is anything to look at in the coming substeps.
+bool mspringi_energy_is_watched(const mspring_network *network);
+
+/// Look at what the substep is about to make of the network, by all workers: the state is that of before, d is
+/// displacement + alpha direction. Returns whether it may land.
+bool mspringi_energy_look(const struct mspringi_substep_of *substep, struct mspringi_mate *mate, float alpha);
+
+/// Refuse the step that is being taken: its last substep gains too much, in the smallest of pieces.
+void mspringi_energy_give_up(const struct mspringi_substep_of *substep);
+
+/// Fail if the present step was refused.
 mspring_result mspringi_energy_verdict(mspring_network *network, double dt);
 
 #endif
