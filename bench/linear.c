@@ -243,20 +243,8 @@ static bool measure_level(const bench_scene *subject, const bench_options *optio
     return ok;
 }
 
-static bool visit(const bench_scene *subject, const bench_options *options, void *user) {
-    (void)user;
-    mspring_simd levels[4];
-    scene_error error;
-    int count = bench_options_levels(options, levels, &error);
-    bool ok = true;
-    for (int i = 0; i < count; i++) {
-        ok = measure_level(subject, options, levels[i]) && ok;
-    }
-    return ok;
-}
-
 bool bench_run_linear(const bench_options *options) {
     bench_table_preamble(options->format);
     bench_table_head(options->format, columns, COLUMN_COUNT);
-    return bench_for_each_scene(options, default_scenes, visit, NULL);
+    return bench_for_each_level(options, default_scenes, measure_level);
 }

@@ -30,9 +30,6 @@ int main(int count, char **arguments) {
     case BENCH_LINEAR:
         ok = bench_run_linear(&options);
         break;
-    case BENCH_IMPLICIT:
-        ok = bench_run_implicit(&options);
-        break;
     case BENCH_SOLVERS:
         ok = bench_run_solvers(&options);
         break;

@@ -37,6 +37,28 @@ bool bench_for_each_scene(const bench_options *options, const char *const *other
     return ok;
 }
 
+// A function pointer does not fit into a void pointer everywhere.
+typedef struct level_visit {
+    bench_level_fn measure;
+} level_visit;
+
+static bool visit_levels(const bench_scene *subject, const bench_options *options, void *user) {
+    const level_visit *to = user;
+    mspring_simd levels[4];
+    scene_error error;
+    const int count = bench_options_levels(options, levels, &error);
+    bool ok = true;
+    for (int i = 0; i < count; i++) {
+        ok = to->measure(subject, options, levels[i]) && ok;
+    }
+    return ok;
+}
+
+bool bench_for_each_level(const bench_options *options, const char *const *otherwise, bench_level_fn measure) {
+    level_visit to = {measure};
+    return bench_for_each_scene(options, otherwise, visit_levels, &to);
+}
+
 bool bench_measure(const bench_scene *subject, const bench_options *options, mspring_simd level,
                    bench_measurement *out, scene_error *error) {
     uint32_t springs = mspring_builder_spring_count(subject->made.builder);

@@ -9,16 +9,15 @@
 #include "options.h"
 
 /// Measure scenes against the naive step (scenes.c), what features cost (features.c), what is done to a network
-/// between its steps (session.c), what the sparse direct solver costs (linear.c), what a step of the implicit
-/// solver costs (implicit.c) and of the direct one beside it (solvers.c), how far from the machine's bounds the
-/// scenes are (roofline.c), where networks are stable (map.c), whether the guard refuses ordinary steps (alarms.c),
-/// or compare positions with those of the naive step (check.c).
+/// between its steps (session.c), what the sparse direct solver costs (linear.c), what steps of the implicit
+/// and the direct solver cost (solvers.c), how far from the machine's bounds the scenes are (roofline.c), where
+/// networks are stable (map.c), whether the guard refuses ordinary steps (alarms.c), or compare positions with
+/// those of the naive step (check.c).
 /// @return false if anything failed; messages have gone to stderr
 bool bench_run_scenes(const bench_options *options);
 bool bench_run_features(const bench_options *options);
 bool bench_run_session(const bench_options *options);
 bool bench_run_linear(const bench_options *options);
-bool bench_run_implicit(const bench_options *options);
 bool bench_run_solvers(const bench_options *options);
 bool bench_run_roofline(const bench_options *options);
 bool bench_run_map(const bench_options *options);
@@ -45,6 +44,15 @@ typedef bool (*bench_visit_fn)(const bench_scene *subject, const bench_options *
 /// @return false if one could not be made or visit returned false for one; the others are visited all the same
 bool bench_for_each_scene(const bench_options *options, const char *const *otherwise, bench_visit_fn visit,
                           void *user);
+
+/// What is to be measured of one scene at one level. Prints its own messages.
+typedef bool (*bench_level_fn)(const bench_scene *subject, const bench_options *options, mspring_simd level);
+
+/// Go through the scenes likewise, and for each through the levels of the command line.
+bool bench_for_each_level(const bench_options *options, const char *const *otherwise, bench_level_fn measure);
+
+/// The table of implicit steps of any scene, a part of what solvers.c prints (implicit.c).
+bool bench_print_implicit(const bench_options *options);
 
 /// Print a message to stderr, after the program's name and what it is about.
 void bench_complain(const char *about, const scene_error *error);

@@ -20,7 +20,6 @@ void bench_options_help(void) {
          "  --features           what dampers, hooks, forces and ropes cost\n"
          "  --session            what a game's edits, events and measurements cost, next to its step\n"
          "  --linear             what the sparse direct solver costs, in explicit substeps\n"
-         "  --implicit           what a step of the implicit solver costs, and what --threads makes of it\n"
          "  --solvers            what steps of the implicit and the direct solver cost, in explicit substeps\n"
          "  --roofline           the bounds of this machine, and how near to them each scene comes\n"
          "  --map                where networks are stable, at the extremes of every setting; takes minutes\n"
@@ -105,10 +104,17 @@ static bool is_switch(const char *option, bench_options *out) {
     static const struct {
         const char *name;
         bench_mode mode;
-    } modes[] = {{"--features", BENCH_FEATURES}, {"--session", BENCH_SESSION}, {"--linear", BENCH_LINEAR},
-                 {"--implicit", BENCH_IMPLICIT}, {"--solvers", BENCH_SOLVERS}, {"--roofline", BENCH_ROOFLINE},
-                 {"--map", BENCH_MAP},           {"--alarms", BENCH_ALARMS},   {"--check", BENCH_CHECK},
-                 {"--list", BENCH_LIST},         {"--help", BENCH_HELP},       {"-h", BENCH_HELP}};
+    } modes[] = {{"--features", BENCH_FEATURES},
+                 {"--session", BENCH_SESSION},
+                 {"--linear", BENCH_LINEAR},
+                 {"--solvers", BENCH_SOLVERS},
+                 {"--roofline", BENCH_ROOFLINE},
+                 {"--map", BENCH_MAP},
+                 {"--alarms", BENCH_ALARMS},
+                 {"--check", BENCH_CHECK},
+                 {"--list", BENCH_LIST},
+                 {"--help", BENCH_HELP},
+                 {"-h", BENCH_HELP}};
     for (size_t i = 0; i < sizeof modes / sizeof *modes; i++) {
         if (strcmp(option, modes[i].name) == 0) {
             out->mode = modes[i].mode;

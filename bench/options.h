@@ -16,7 +16,6 @@ typedef enum bench_mode {
     BENCH_FEATURES,
     BENCH_SESSION,
     BENCH_LINEAR,
-    BENCH_IMPLICIT,
     BENCH_SOLVERS,
     BENCH_ROOFLINE,
     BENCH_MAP,

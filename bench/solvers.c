@@ -1,6 +1,7 @@
 /// @file solvers.c
-/// What a step of the implicit and of the direct solver costs, in substeps of the explicit one, each measured in
-/// turn with it; what that is worth for bars that bend alike; and what 50 breaks cost the step that follows.
+/// What steps of the implicit and the direct solver cost: implicit ones of any scene, with workers; those of bars,
+/// in substeps of the explicit solver, each measured in turn with it, and what that is worth for bars that bend
+/// alike; and what 50 breaks cost the step that follows.
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
@@ -227,15 +228,14 @@ static bool print_breaks(const solvers_bar *bar, const bench_options *options, m
     return ok;
 }
 
-/* ---------------------------------------------------------------------------------------------------- the tables
- */
+/* --------------------------------------------------------------------------------------------------- the tables */
 
 typedef bool (*print_fn)(const solvers_bar *bar, const bench_options *options, mspring_simd level,
                          scene_error *error);
 
 // Whether the command line asks for this bar: by its name, or by none.
 static bool is_wanted(const solvers_bar *bar, const bench_options *options) {
-    bool wanted = options->scene_count == 0;
+    bool wanted = options->scene_count == 0 && options->network == NULL;
     for (int i = 0; i < options->scene_count; i++) {
         wanted = wanted || strcmp(options->scenes[i], bar->name) == 0;
     }
@@ -263,8 +263,16 @@ static bool print_table(const bench_options *options, print_fn print, bool one_e
 
 bool bench_run_solvers(const bench_options *options) {
     bench_table_preamble(options->format);
+    bool ok = bench_print_implicit(options), any = false;
+    for (size_t i = 0; i < BAR_COUNT; i++) {
+        any = any || is_wanted(&bars[i], options);
+    }
+    if (!any) {
+        return ok;
+    }
+    putchar('\n');
     bench_table_head(options->format, step_columns, COUNT(step_columns));
-    bool ok = print_table(options, print_steps, false);
+    ok = print_table(options, print_steps, false) && ok;
     putchar('\n');
     bench_table_head(options->format, break_columns, COUNT(break_columns));
     return print_table(options, print_breaks, true) && ok;

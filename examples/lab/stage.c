@@ -5,6 +5,7 @@
 #include "lab/stage.h"
 #include "data/pixels.h"
 #include "data/ship.h"
+#include "draw/network_picture.h"
 #include "lab/ship_materials.h"
 #include "loaders/structure.h"
 #include "scenes/image.h"
@@ -258,14 +259,12 @@ static double typical_spacing(const lab_stage *made) {
 }
 
 static void find_bounds(lab_stage *made) {
-    made->min_x = made->max_x = made->x[0];
-    made->min_y = made->max_y = made->y[0];
-    for (uint32_t i = 1; i < made->particle_count; i++) {
-        made->min_x = made->x[i] < made->min_x ? made->x[i] : made->min_x;
-        made->max_x = made->x[i] > made->max_x ? made->x[i] : made->max_x;
-        made->min_y = made->y[i] < made->min_y ? made->y[i] : made->min_y;
-        made->max_y = made->y[i] > made->max_y ? made->y[i] : made->max_y;
-    }
+    const world_box first = {made->x[0], made->y[0], made->x[0], made->y[0]};
+    const world_box box = world_box_add(first, made->x, made->y, made->particle_count);
+    made->min_x = box.min_x;
+    made->max_x = box.max_x;
+    made->min_y = box.min_y;
+    made->max_y = box.max_y;
 }
 
 // The particle that is farthest from the nearest pin, of some hundred.
