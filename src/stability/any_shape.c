@@ -55,6 +55,7 @@ static double find(mspring_network *network, mspring_id *spring) {
     const double tight = 1.0 - 1e-5;
     const mspringi_state *sums = &network->backup;
     double smallest = INFINITY;
+    mspringi_quotient tightest = {0.0, 0.0, 0.0}; // whose limit is the smallest
     sum_up(network, sums);
     *spring = MSPRING_NONE;
     mspringi_place_reader reader;
@@ -68,9 +69,13 @@ static double find(mspring_network *network, mspring_id *spring) {
             .damping = (double)sums->y[a] * per_a + (double)sums->y[b] * per_b,
             .relative = ((double)sums->vx[a] + (double)sums->vx[b]) * tight,
         };
+        if (quotient.stiffness <= tightest.stiffness && quotient.damping <= tightest.damping &&
+            quotient.relative <= tightest.relative)
+            continue; // its limit is no smaller: most springs are alike
         const double limit = mspringi_quotient_limit(&quotient, 0.0f);
         if (limit < smallest) {
             smallest = limit;
+            tightest = quotient;
             *spring = i;
         }
     }

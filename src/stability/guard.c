@@ -2,10 +2,11 @@
 ///
 /// Up to the substep that is stable in any shape nothing needs to be looked at. Above it, the border of the shape
 /// that the network has is: when the substep is another one, and when a step has changed a particle's velocity
-/// twice as much as one had at the last look. The Lanczos iteration tells with certainty: what it finds is never
-/// above the largest eigenvalue, so a network that is below the border is never refused. After such a change it
-/// starts from the motion itself, velocities less their mean over the substeps before: of what moves smoothly next
-/// to nothing is left of that, of what turns round in each substep everything, and a few iterations are enough.
+/// twice as much as one had at the last look. A bound tells first whether it can be near at all (certificate.c). If
+/// it can, the Lanczos iteration tells with certainty: what it finds is never above the largest eigenvalue, so a
+/// network that is below the border is never refused. After such a change it starts from the motion itself,
+/// velocities less their mean over the substeps before: of what moves smoothly next to nothing is left of that, of
+/// what turns round in each substep everything, and a few iterations are enough.
 #include "guard.h"
 
 #include <math.h>
@@ -119,8 +120,10 @@ static void combine(const mspring_network *network, displacement a, double facto
 // out += (A + 2 D) in
 static void add_image(const mspring_network *network, double h, displacement in, displacement out) {
     const mspringi_topology *t = &network->topology;
+    mspringi_place_reader reader;
+    mspringi_places_begin(&reader, &t->places, 0);
     for (mspring_id i = 0; i < t->spring_count; ++i) {
-        const mspringi_seen s = mspringi_see_spring(network, i);
+        const mspringi_seen s = mspringi_see_spring(network, i, mspringi_places_next(&reader));
         const uint32_t a = t->slot_of_particle[s.a], b = t->slot_of_particle[s.b];
         const double root_a = sqrt((double)network->inverse_mass[a]);
         const double root_b = sqrt((double)network->inverse_mass[b]);
@@ -148,7 +151,8 @@ static double largest_eigenvalue(const mspring_network *network, double h, displ
     if (!(beside > 0.0 && beside < INFINITY))
         return 0.0;
     combine(network, here, 1.0 / beside, 0.0, here);
-    combine(network, next, 0.0, 0.0, here);
+    memset(next.x, 0, mspringi_slot_count(network) * sizeof *next.x);
+    memset(next.y, 0, mspringi_slot_count(network) * sizeof *next.y);
     for (;;) {
         const int j = t.size++;
         add_image(network, h, here, next);
@@ -190,10 +194,13 @@ static mspring_result explain_border(mspring_network *network, double dt, float 
 static mspring_result look_at_border(mspring_network *network, double dt, float h, bool from_motion) {
     const double decay = (double)mspringi_decay(network->global_damping, h);
     // Vectors are floats: room for their rounding.
-    const double bound = 2.0 * (1.0 + 1.0 / decay) * (1.0 + 1e-4);
+    const double sharp = 2.0 * (1.0 + 1.0 / decay), bound = sharp * (1.0 + 1e-4);
     const displacement start = from_motion ? start_from_motion(network) : start_from_noise(network);
-    const double largest =
-        largest_eigenvalue(network, (double)h, start, bound, from_motion ? ITERATIONS_FROM_MOTION : ITERATIONS);
+    const mspringi_state *b = &network->backup;
+    const double largest = mspringi_border_is_below(network, (double)h, sharp, b->vx, b->vy)
+                               ? 0.0
+                               : largest_eigenvalue(network, (double)h, start, bound,
+                                                    from_motion ? ITERATIONS_FROM_MOTION : ITERATIONS);
     // A step keeps the state here strip by strip, which leaves what lies between strips as it is.
     memset(network->backup.x, 0, 4 * mspringi_slot_count(network) * sizeof *network->backup.x);
     if (!(largest > bound))

@@ -27,10 +27,9 @@ double mspringi_quotient_limit(const mspringi_quotient *q, float global_damping)
     return h;
 }
 
-mspringi_seen mspringi_see_spring(const mspring_network *network, mspring_id spring) {
+mspringi_seen mspringi_see_spring(const mspring_network *network, mspring_id spring, mspringi_place place) {
     const mspringi_topology *t = &network->topology;
     const mspringi_state *s = &network->state;
-    const mspringi_place place = mspringi_place_of(t, spring);
     const mspringi_spring_values values = mspringi_place_get(network, place);
     const double dx = (double)s->x[values.tip] - (double)s->x[values.base];
     const double dy = (double)s->y[values.tip] - (double)s->y[values.base];
@@ -56,8 +55,8 @@ void mspringi_quotient_add(mspringi_quotient *quotient, const mspringi_seen *s, 
 }
 
 // The spring as the border takes it, on the safe side: see mspringi_pencil_set().
-static mspringi_seen see_safely(const mspring_network *network, mspring_id spring) {
-    mspringi_seen seen = mspringi_see_spring(network, spring);
+static mspringi_seen see_safely(const mspring_network *network, mspring_id spring, mspringi_place place) {
+    mspringi_seen seen = mspringi_see_spring(network, spring, place);
     if (!seen.directed)
         seen.across = 1.0;
     else if (!(seen.across > 0.0))
@@ -69,8 +68,10 @@ void mspringi_pencil_set(mspringi_pencil *pencil, double h) {
     const mspring_network *network = pencil->network;
     for (mspring_id p = 0; p < network->topology.particle_count; ++p)
         pencil->root[p] = sqrt((double)network->inverse_mass[network->topology.slot_of_particle[p]]);
+    mspringi_place_reader reader;
+    mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
-        const mspringi_seen s = see_safely(network, i);
+        const mspringi_seen s = see_safely(network, i, mspringi_places_next(&reader));
         const double stiffness = h * h * s.strength.stiffness + s.strength.relative_stiffness;
         const double damping = 2.0 * (h * s.strength.damping + s.strength.relative_damping);
         const double all = s.directed ? stiffness * s.across : stiffness + damping;
@@ -102,8 +103,10 @@ void mspringi_pencil_apply(const void *context, const double *in, double *out) {
 
 mspringi_quotient mspringi_pencil_quotient(const mspringi_pencil *pencil, const double *vector) {
     mspringi_quotient sum = {0.0, 0.0, 0.0};
+    mspringi_place_reader reader;
+    mspringi_places_begin(&reader, &pencil->network->topology.places, 0);
     for (mspring_id i = 0; i < pencil->network->topology.spring_count; ++i) {
-        mspringi_seen s = see_safely(pencil->network, i);
+        mspringi_seen s = see_safely(pencil->network, i, mspringi_places_next(&reader));
         const double *const at_a = vector + 2 * (size_t)s.a, *const at_b = vector + 2 * (size_t)s.b;
         const double dx = pencil->root[s.b] * at_b[0] - pencil->root[s.a] * at_a[0];
         const double dy = pencil->root[s.b] * at_b[1] - pencil->root[s.a] * at_a[1];

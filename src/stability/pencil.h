@@ -40,7 +40,7 @@ typedef struct mspringi_seen {
     double across; ///< tangent stiffness across its direction, as a part of that along it; below 0 if it is short
     mspringi_strength strength;
 } mspringi_seen;
-mspringi_seen mspringi_see_spring(const mspring_network *network, mspring_id spring);
+mspringi_seen mspringi_see_spring(const mspring_network *network, mspring_id spring, mspringi_place place);
 
 /// Add a spring's share for a displacement of b against a.
 void mspringi_quotient_add(mspringi_quotient *quotient, const mspringi_seen *seen, double dx, double dy);

@@ -20,6 +20,10 @@ mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_i
 /// until springs or masses are edited. Between steps only: it works in the backup of the state.
 double mspringi_stable_in_any_shape(mspring_network *network, mspring_id *spring);
 
+/// Whether no eigenvalue of A + 2 D (see pencil.h) for substeps of h, in the shape that the network has, can be
+/// above bound. False says nothing. first and second are room for a number by slot each.
+bool mspringi_border_is_below(const mspring_network *network, double h, double bound, float *first, float *second);
+
 /// The smallest number of substeps of dt for which each is at most limit. Above most: most + 1.
 uint32_t mspringi_substeps_within(double dt, double limit, uint32_t most);
 

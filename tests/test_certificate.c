@@ -1,0 +1,109 @@
+/// @file test_certificate.c
+/// The bound of the stability border that spares the guard its iteration: never above the border, and near it where
+/// games are.
+///
+/// SPDX-License-Identifier: MIT
+#include "network/network.h"
+#include "stability/stability.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+#include "recipe.h"
+#include "support.h"
+
+/// What mspring_network_stable_dt() may be below the border itself: its residuals (see SETTLED and TOLERANCE
+/// there).
+#define SHARPNESS 3e-3
+
+/// Whether the bound says that substeps of h are stable in the network's shape.
+static bool is_below(const mspring_network *network, double h) {
+    float *room = calloc(2 * mspringi_slot_count(network), sizeof *room);
+    assert_non_null(room);
+    const bool below = mspringi_border_is_below(network, h, 4.0, room, room + mspringi_slot_count(network));
+    free(room);
+    return below;
+}
+
+/// The longest substep that the bound allows, as a part of the border.
+static double reach(mspring_network *network) {
+    double border, low = 0.0, high = 2.0;
+    check_ok(mspring_network_stable_dt(network, &border, NULL));
+    for (int i = 0; i < 20; i++) {
+        const double middle = 0.5 * (low + high);
+        if (is_below(network, middle * border)) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+static void it_is_never_above_the_border(void **state) {
+    (void)state;
+    const recipe_stuff stuffs[] = {
+        {.mass = {1, 1}, .stiffness = {100, 100}},
+        {.mass = {1, 50}, .stiffness = {10, 2000}, .damping = {0, 5}, .pinned = 0.1},
+        {.mass = {0.01, 100}, .stiffness = {1, 1000}, .damping = {0, 1}, .holes = 0.3},
+    };
+    double worst = 1.0;
+    for (uint64_t seed = 1; seed <= 60; seed++) {
+        uint64_t random = seed;
+        const recipe_stuff *stuff = &stuffs[seed % COUNT_OF(stuffs)];
+        recipe made = {0};
+        recipe_lattice(&made, 3 + (uint32_t)(seed % 17), 2 + (uint32_t)(seed % 11), 0, 0, 1, stuff, &random);
+        recipe_rope(&made, 0, made.particle_count - 1, 10, stuff, &random);
+        if (seed % 4 == 0) {
+            recipe_random_springs(&made, 20, stuff, &random);
+        }
+        // At rest, crumpled, and stretched so far that springs are stiff across their direction, too.
+        recipe_disturb(&made, seed % 5 == 0 ? 0.0 : seed % 5 == 1 ? 3.0 : 0.3, 0, &random);
+        mspring_network *network = recipe_network(&made, NULL);
+        const double part = reach(network);
+        assert_true(part <= 1.0 + SHARPNESS);
+        assert_true(part >= 0.3); // else it is good for nothing
+        worst = fmin(worst, part);
+        mspring_network_destroy(network);
+        recipe_free(&made);
+    }
+    print_message("down to %.2f of the border\n", worst);
+}
+
+static void it_is_near_for_lattices(void **state) {
+    (void)state;
+    const recipe_stuff alike = {.mass = {1, 1}, .stiffness = {100, 100}, .damping = {0.5, 0.5}};
+    const recipe_stuff unlike = {.mass = {1, 1.3}, .stiffness = {100, 130}, .damping = {0.5, 0.6}, .holes = 0.05};
+    uint64_t seed = 3;
+    for (int i = 0; i < 2; i++) {
+        recipe made = {0};
+        recipe_lattice(&made, 60, 40, 0, 0, 1, i == 0 ? &alike : &unlike, &seed);
+        mspring_network *network = recipe_network(&made, NULL);
+        const double part = reach(network);
+        print_message("%.3f of the border\n", part);
+        assert_true(part >= (i == 0 ? 0.99 : 0.9));
+        mspring_network_destroy(network);
+        recipe_free(&made);
+    }
+}
+
+/// Numbers that overflow say nothing, rather than that all is well.
+static void it_does_not_vouch_for_overflows(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    const mspring_id a = support_particle(builder, 0, 0, 1e-30f), b = support_particle(builder, 1, 0, 1e-30f);
+    support_spring(builder, a, b, 1e30f, 0);
+    mspring_network *network = support_network(builder, NULL);
+    assert_false(is_below(network, 1.0));
+    mspring_network_destroy(network);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(it_is_never_above_the_border),
+        cmocka_unit_test(it_is_near_for_lattices),
+        cmocka_unit_test(it_does_not_vouch_for_overflows),
+    };
+    return cmocka_run_group_tests_name("certificate", tests, NULL, NULL);
+}
