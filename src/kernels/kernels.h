@@ -36,7 +36,7 @@ typedef struct mspringi_sweep {
 
 /// Compute the forces of the springs of one or more rows and move their particles, in place. In lattice rows and
 /// chains, forces from the row below are taken from the carry row, and those on the row above left there (0 where
-/// there is none). There is a span after the last of count that may be read.
+/// there is none).
 ///
 /// What the last spring of a span hands on is handed to the next span, whether or not that lies next to it: where
 /// it does not, there is no such spring, and the force is 0.

@@ -300,7 +300,7 @@ static bool append_row(assembly *a, mspringi_row_kind kind) {
 static bool store_span(assembly *a, const mspringi_span *span) {
     mspringi_topology *t = a->topology;
     void *spans = t->spans;
-    const bool grown = mspringi_grow(a->memory, &spans, &a->span_capacity, (size_t)t->span_count + 2, sizeof *span);
+    const bool grown = mspringi_grow(a->memory, &spans, &a->span_capacity, (size_t)t->span_count + 1, sizeof *span);
     t->spans = spans;
     if (grown)
         t->spans[t->span_count++] = *span;

@@ -81,7 +81,7 @@ typedef struct mspringi_topology {
     uint32_t *leftover_a, *leftover_b; ///< [leftover_count + parked_count] slots
     mspringi_web web;
 
-    mspringi_span *spans; ///< and one more, so that there is one after the last
+    mspringi_span *spans;
     uint32_t span_count;
     mspringi_row *rows; ///< lattice rows first
     uint32_t row_count;
