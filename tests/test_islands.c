@@ -19,12 +19,14 @@ typedef struct way {
     uint32_t workers;
     mspring_solver solver;
     uint32_t substeps;
+    mspring_guard guard;
 } way;
 
 static mspring_network *make(const recipe *made, const way *how) {
     mspring_network_def def = support_def(0, how->substeps);
     def.simd_level = how->level;
     def.worker_count = how->workers;
+    def.guard = how->guard;
     def.global_damping = 6;
     def.sleep_speed = 0.02f;
     def.sleep_time = 0.25f;
@@ -148,7 +150,7 @@ static void what_is_awake_moves_as_if_nothing_slept(void **state) {
     (void)state;
     uint64_t seed = 7;
     recipe made = scattered(70, 20, &seed);
-    const way how = {MSPRING_SIMD_AUTO, 1, MSPRING_SOLVER_EXPLICIT, 5};
+    const way how = {MSPRING_SIMD_AUTO, 1, MSPRING_SOLVER_EXPLICIT, 5, MSPRING_GUARD_GROWTH};
     for (uint32_t percent = 40; percent <= 80; percent += 20) {
         mspring_network *network = make(&made, &how);
         break_most(network, percent, &seed);
@@ -209,13 +211,13 @@ static void bits_are_the_same_everywhere(void **state) {
     recipe made = scattered(180, 30, &seed);
     for (mspring_solver solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_IMPLICIT; solver++) {
         const uint32_t substeps = solver == MSPRING_SOLVER_EXPLICIT ? 20 : 1;
-        const way first = {MSPRING_SIMD_SCALAR, 1, solver, substeps};
+        const way first = {MSPRING_SIMD_SCALAR, 1, solver, substeps, MSPRING_GUARD_GROWTH};
         const uint64_t expected = session(&made, &first, 6);
         for (uint32_t i = 1; i < level_count; i++) {
-            const way how = {levels[i], 1, solver, substeps};
+            const way how = {levels[i], 1, solver, substeps, MSPRING_GUARD_GROWTH};
             assert_int_equal(session(&made, &how, 6), expected);
         }
-        const way shared = {MSPRING_SIMD_AUTO, 3, solver, substeps};
+        const way shared = {MSPRING_SIMD_AUTO, 3, solver, substeps, MSPRING_GUARD_GROWTH};
         assert_int_equal(session(&made, &shared, 6), expected);
     }
     recipe_free(&made);
@@ -252,7 +254,8 @@ static mspring_network *make_three(const way *how) {
 static void to_others_sleepers_are_pinned(void **state) {
     (void)state;
     for (mspring_solver solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++) {
-        const way how = {MSPRING_SIMD_AUTO, 1, solver, solver == MSPRING_SOLVER_EXPLICIT ? 8 : 1};
+        const way how = {MSPRING_SIMD_AUTO, 1, solver, solver == MSPRING_SOLVER_EXPLICIT ? 8 : 1,
+                         MSPRING_GUARD_GROWTH};
         mspring_network *network = make_three(&how), *pinned = NULL;
         check_ok(mspring_network_clone(network, NULL, &pinned));
         check_ok(mspring_network_wake(pinned));
@@ -290,7 +293,7 @@ static void to_others_sleepers_are_pinned(void **state) {
 enum { IN_A = 12, IN_B = 80 + 12, ROPE = 160, LOOSE = 172 };
 
 /// Two lattices of 20 by 4, a rope from one to the other of which one spring is broken, and a loose particle.
-static mspring_network *make_two(mspring_solver solver, mspring_id *broken) {
+static mspring_network *make_two_guarded(mspring_solver solver, mspring_guard guard, mspring_id *broken) {
     uint64_t seed = 3;
     const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {1000, 1000}, .damping = {3, 3}};
     recipe made = {0};
@@ -299,12 +302,16 @@ static mspring_network *make_two(mspring_solver solver, mspring_id *broken) {
     *broken = made.spring_count + 5;
     recipe_rope(&made, 19, 80, 13, &stuff, &seed);
     assert_int_equal(recipe_particle(&made, 60, 10, 1, 0), LOOSE);
-    const way how = {MSPRING_SIMD_AUTO, 1, solver, solver == MSPRING_SOLVER_EXPLICIT ? 8 : 1};
+    const way how = {MSPRING_SIMD_AUTO, 1, solver, solver == MSPRING_SOLVER_EXPLICIT ? 8 : 1, guard};
     mspring_network *network = make(&made, &how);
     check_ok(mspring_network_break_springs(network, broken, 1));
     recipe_free(&made);
     fall_asleep(network);
     return network;
+}
+
+static mspring_network *make_two(mspring_solver solver, mspring_id *broken) {
+    return make_two_guarded(solver, MSPRING_GUARD_GROWTH, broken);
 }
 
 typedef void (*change_fn)(mspring_network *network);
@@ -578,7 +585,7 @@ static void the_floor_bears_sleepers(void **state) {
     (void)state;
     for (mspring_solver solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_IMPLICIT; solver++) {
         mspring_id broken;
-        mspring_network *network = make_two(solver, &broken);
+        mspring_network *network = make_two_guarded(solver, MSPRING_GUARD_BOUNDS, &broken);
         const double level[4] = {0, -0.5, 0, 1};
         mspring_floor_def def;
         check_ok(mspring_floor_def_init(&def, sizeof def));

@@ -92,6 +92,52 @@ static void several_lattices_are_found_side_by_side(void **state) {
     recipe_free(&made);
 }
 
+/// Ten columns fill ten lanes of sixteen: twelve such lattices of ten rows would take 120 blocks one above the
+/// other. Put side by side they move as each would by itself: all are alike.
+static void small_lattices_share_rows(void **state) {
+    (void)state;
+    enum { LATTICES = 12, EACH = 100 };
+    recipe made = {0};
+    for (uint32_t i = 0; i < LATTICES; i++) {
+        uint64_t seed = 5;
+        recipe one = {0};
+        recipe_lattice(&one, 10, 10, 0, 0, 1, &solid, &seed);
+        recipe_disturb(&one, 0.1, 2, &seed);
+        for (uint32_t p = 0; p < EACH; p++) {
+            const mspring_particle_def *from = &one.particles[p];
+            const mspring_id made_p = recipe_particle(&made, from->x + 64.0 * i, from->y, (double)from->mass, 0);
+            made.particles[made_p].vx = from->vx;
+            made.particles[made_p].vy = from->vy;
+        }
+        for (uint32_t s = 0; s < one.spring_count; s++) {
+            const mspring_spring_def *from = &one.springs[s];
+            recipe_spring(&made, from->a + EACH * i, from->b + EACH * i, 100, 0, 0);
+            made.springs[made.spring_count - 1].rest_length = from->rest_length;
+        }
+        recipe_free(&one);
+    }
+    const mspring_plan plan = plan_of(&made);
+    assert_int_equal(plan.lattice_count, LATTICES);
+    assert_int_equal(plan.lattice_particles, LATTICES * EACH);
+    assert_int_equal(plan.lattice_springs, made.spring_count);
+    assert_int_equal(plan.lattice_rows, 10);
+    assert_true(plan.lattice_blocks <= 80);
+    mspring_network_def def = support_def(0, 8);
+    mspring_network *network = recipe_network(&made, &def);
+    support_steps(network, 30, 1.0 / 64);
+    for (uint32_t p = 0; p < EACH; p++) {
+        const support_point first = support_position(network, p);
+        for (uint32_t i = 1; i < LATTICES; i++) {
+            // Single precision at some hundred metres, 240 substeps.
+            const support_point other = support_position(network, EACH * i + p);
+            check_near(other.x - 64.0 * i, first.x, 2e-3);
+            check_near(other.y, first.y, 2e-3);
+        }
+    }
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
 static void ropes_on_a_lattice_are_swept_with_it(void **state) {
     (void)state;
     uint64_t seed = 7;
@@ -248,6 +294,7 @@ int main(void) {
         cmocka_unit_test(holes_do_not_break_a_lattice_up),
         cmocka_unit_test(a_lattice_need_not_lie_on_whole_numbers),
         cmocka_unit_test(several_lattices_are_found_side_by_side),
+        cmocka_unit_test(small_lattices_share_rows),
         cmocka_unit_test(ropes_on_a_lattice_are_swept_with_it),
         cmocka_unit_test(more_rope_than_lattice_is_chains),
         cmocka_unit_test(a_strand_of_its_own_is_a_chain),

@@ -1558,6 +1558,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_load(mspring_networ
 /// springs). A spring between neighbours in lattice and chain rows is swept with them, without any index; the
 /// others, leftover springs, are the web's, and cost more each.
 ///
+/// Lattices of at most 64 by 64 particles share rows, side by side, whose blocks one alone would leave half empty.
+///
 /// Lattice rows are swept in strips of some rows, several substeps in one pass, so that a network larger than the
 /// cache is read once for all of them. What hangs on a lattice is swept with its strips, unless it joins strips
 /// more than 16 apart, or has more strand particles than the lattice has particles: then that lattice takes one

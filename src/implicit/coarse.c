@@ -178,7 +178,12 @@ void mspringi_coarse_assemble(mspringi_coarse *coarse, const mspringi_tiles *til
         add_diagonal(rows_of(coarse, t, t), sums[0], 0.0, sums[0], 0.0, 0.0,
                      sums[1] + sums[0] * (double)tiles->turn_inertia);
     }
-    add_joints(coarse, tiles, parts, tiles->cells.first_joint[first], tiles->cells.first_joint[end]);
+    // Joints are the later cell's. One without tiles, all pinned or asleep, has none that count.
+    for (uint32_t cell = first, behind; cell < end; cell = behind + (behind == cell)) {
+        for (behind = cell; behind < end && tiles->first_of_cell[behind] < tiles->first_of_cell[behind + 1];)
+            ++behind;
+        add_joints(coarse, tiles, parts, tiles->cells.first_joint[cell], tiles->cells.first_joint[behind]);
+    }
 }
 
 void mspringi_coarse_complete(mspringi_coarse *coarse, const mspringi_tiles *tiles,

@@ -28,6 +28,7 @@ typedef struct mspringi_grids {
     uint32_t *members;      ///< [member_count] particles, grid after grid
     uint32_t *first_member; ///< [count + 1]
     uint32_t count, member_count;
+    uint32_t found_count; ///< grids that were found, some of which may have been put side by side
 } mspringi_grids;
 
 static inline mspring_id mspringi_other_end(const mspringi_spring *spring, mspring_id particle) {
@@ -49,6 +50,9 @@ void mspringi_strands_destroy(mspringi_strands *strands, mspringi_memory *memory
 mspring_result mspringi_grids_find(mspringi_grids *grids, const mspringi_graph *graph, uint8_t *kinds,
                                    mspringi_memory *memory, mspringi_message *message);
 void mspringi_grids_destroy(mspringi_grids *grids, mspringi_memory *memory);
+
+/// Put small grids side by side in the same rows, as one grid. found_count stays.
+mspring_result mspringi_grids_shelve(mspringi_grids *grids, mspringi_memory *memory, mspringi_message *message);
 
 /// How a spring lies on a grid.
 typedef struct mspringi_lattice_spring {

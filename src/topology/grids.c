@@ -239,6 +239,7 @@ mspring_result mspringi_grids_find(mspringi_grids *grids, const mspringi_graph *
             grids->grid_of[p] = MSPRING_NONE;
         find_all(&f);
     }
+    grids->found_count = grids->count;
     mspringi_free(memory, f.given_up);
     mspringi_free(memory, f.column);
     mspringi_free(memory, f.row);

@@ -49,6 +49,10 @@ static void find_components(finder *f) {
         f->component[p] = p;
     for (size_t s = 0; s < builder->spring_count; ++s)
         mspringi_forest_join(f->component, builder->springs[s].a, builder->springs[s].b);
+    // What shares rows fits or fits not as one.
+    for (uint32_t g = 0; g < f->grids->count; ++g)
+        for (uint32_t m = f->grids->first_member[g] + 1; m < f->grids->first_member[g + 1]; ++m)
+            mspringi_forest_join(f->component, f->grids->members[m - 1], f->grids->members[m]);
 }
 
 static uint8_t *fitness_of(const finder *f, uint32_t particle) {

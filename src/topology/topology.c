@@ -580,7 +580,8 @@ static mspring_result look_for_strands(assembly *a) {
 }
 
 static mspring_result look_for_grids(assembly *a) {
-    return mspringi_grids_find(&a->grids, &a->graph, a->kinds, a->memory, a->message);
+    mspring_result result = mspringi_grids_find(&a->grids, &a->graph, a->kinds, a->memory, a->message);
+    return result == MSPRING_OK ? mspringi_grids_shelve(&a->grids, a->memory, a->message) : result;
 }
 
 static mspring_result look_for_homes(assembly *a) {
@@ -655,7 +656,7 @@ void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory
 
 void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory, mspringi_topology *topology,
                               mspringi_place **places) {
-    begun->made.lattice_count = begun->grids.count;
+    begun->made.lattice_count = begun->grids.found_count;
     begun->made.lattice_particles = begun->grids.member_count;
     begun->made.chain_count = begun->strands.strand_count;
     begun->made.chain_particles = begun->strands.count;
