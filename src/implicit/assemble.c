@@ -30,8 +30,7 @@ static panel_share share_panels(const mspring_network *network, const mspringi_m
     return share;
 }
 
-// Whether nothing of a panel is swept.
-static bool is_asleep(const mspring_network *network, const mspringi_panel *panel) {
+bool mspringi_panel_is_asleep(const mspring_network *network, const mspringi_panel *panel) {
     const mspringi_topology *t = &network->topology;
     if (network->sleep.sleeping == 0 || network->implicit->is_direct)
         return false;
@@ -44,7 +43,8 @@ static bool is_asleep(const mspring_network *network, const mspringi_panel *pane
 
 // Whether the first of a share's panels gets something from a row that is another's.
 static bool is_handed_on(const mspring_network *network, const panel_share *share) {
-    return share->begin < share->end && share->begin->below_count > 0 && !is_asleep(network, share->begin);
+    return share->begin < share->end && share->begin->below_count > 0 &&
+           !mspringi_panel_is_asleep(network, share->begin);
 }
 
 // Carry rows are 0 where grids end. Where a share ends inside of one, or what follows on a panel is left out, they
@@ -54,7 +54,7 @@ static void clear_carry(const mspring_network *network, const panel_share *share
     const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH;
     const mspringi_panels *panels = &network->implicit->panels;
     if (next == panels->list + panels->count || next->below_count == 0 ||
-        (next < share->end && !is_asleep(network, next)))
+        (next < share->end && !mspringi_panel_is_asleep(network, next)))
         return;
     if (forces)
         memset(share->system.force_carry_x, 0, 2 * carry * sizeof *share->system.force_carry_x);
@@ -70,7 +70,7 @@ static void assemble_panels(const mspring_network *network, const mspringi_mate 
         kernels->hand_on_forces[damped](&share.system, t->spans + share.begin->below_first,
                                         share.begin->below_count);
     for (const mspringi_panel *panel = share.begin; panel < share.end; ++panel) {
-        if (is_asleep(network, panel))
+        if (mspringi_panel_is_asleep(network, panel))
             continue;
         const mspringi_assemble_fn assemble =
             panel->is_lattice ? kernels->assemble_lattice[damped] : kernels->assemble_chain[damped];
@@ -90,7 +90,7 @@ static void multiply_panels(const mspring_network *network, const mspringi_mate 
                                  from.x, from.y);
     for (const mspringi_panel *panel = share.begin; panel < share.end; ++panel) {
         n->panels.sums[panel - n->panels.list] = 0.0f;
-        if (is_asleep(network, panel))
+        if (mspringi_panel_is_asleep(network, panel))
             continue;
         const mspringi_multiply_fn multiply =
             panel->is_lattice ? kernels->multiply_lattice : kernels->multiply_chain;

@@ -162,6 +162,9 @@ void mspringi_scheme_close(const mspringi_substep_of *substep);
 
 /* assemble.c */
 
+/// Whether nothing of a panel is to be swept.
+bool mspringi_panel_is_asleep(const mspring_network *network, const mspringi_panel *panel);
+
 void mspringi_assemble(const mspringi_substep_of *substep, mspringi_mate *mate);
 /// product = A direction. Returns their scalar product, when all have met.
 double mspringi_multiply(const mspringi_substep_of *substep, mspringi_mate *mate);

@@ -3,10 +3,12 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "contact/floor.h"
 #include "implicit/implicit.h"
 #include "network/springs.h"
+#include "sleep/sleep.h"
 
 /// Part of the motion that may come from nowhere.
 #define TOLERATED 0.01
@@ -218,6 +220,10 @@ static void add_leftover(const mspring_network *network, const mspringi_motion *
     const mspringi_topology *t = &network->topology;
     const double scale = network->implicit->scale;
     for (mspringi_place place = t->chain_places; place < t->chain_places + t->leftover_count; ++place) {
+        const uint32_t i = place - t->chain_places;
+        if (mspringi_slot_is_asleep(network, t->leftover_a[i]) &&
+            mspringi_slot_is_asleep(network, t->leftover_b[i]))
+            continue;
         const mspringi_spring_values values = mspringi_place_get(network, place);
         const stretched s = stretch_of(m, &values);
         const double k = scale * s.stiffness;
@@ -321,11 +327,37 @@ static bool is_accepted(const substep_of *substep, const mspringi_motion *m) {
     return true;
 }
 
+// Sum up the motion of a chunk. One in which all sleep has none, and the springs of panels that reach into it find
+// that its slots have made no step.
+static void look_at_chunk(const substep_of *substep, const mspringi_motion *m, size_t first, size_t end) {
+    const mspring_network *network = substep->network;
+    double *sums = network->implicit->balance.chunks + first / MSPRINGI_CHUNK * MSPRINGI_MOVE_SUMS;
+    if (mspringi_is_any_swept(network, first / MSPRINGI_WIDTH, end / MSPRINGI_WIDTH)) {
+        network->kernels->system.move(m, first, end, sums);
+        return;
+    }
+    memset(sums, 0, MSPRINGI_MOVE_SUMS * sizeof *sums);
+    for (size_t axis = 0; axis < 2; ++axis)
+        memset(m->axes[axis].step + first, 0, (end - first) * sizeof *m->axes[axis].step);
+}
+
+// The same of the springs of a panel.
+static void look_at_panel(const substep_of *substep, const mspringi_motion *m, size_t number, bool driven) {
+    const mspring_network *network = substep->network;
+    const mspringi_implicit *n = network->implicit;
+    const mspringi_panel *panel = &n->panels.list[number];
+    double *sums = n->balance.panels + number * MSPRINGI_STRETCH_SUMS;
+    if (mspringi_panel_is_asleep(network, panel))
+        memset(sums, 0, MSPRINGI_STRETCH_SUMS * sizeof *sums);
+    else
+        network->kernels->system.stretch(&n->system, m, network->topology.spans + panel->first_span,
+                                         panel->span_count, panel->is_lattice, driven, sums);
+}
+
 bool mspringi_energy_look(const substep_of *substep, mspringi_mate *mate, float alpha) {
     const mspring_network *network = substep->network;
     mspringi_implicit *n = network->implicit;
     mspringi_balance *balance = &n->balance;
-    const mspringi_system_kernels *kernels = &network->kernels->system;
     const mspringi_motion motion = describe(substep, alpha);
     mspringi_meet(mate);
     if (mate->index == 0) {
@@ -339,18 +371,14 @@ bool mspringi_energy_look(const substep_of *substep, mspringi_mate *mate, float 
     const mspringi_slots slots = mspringi_slots_of(network, mate);
     for (size_t first = slots.first; first < slots.end && first < end; first += MSPRINGI_CHUNK) {
         const size_t chunk = first + MSPRINGI_CHUNK, least = chunk < slots.end ? chunk : slots.end;
-        kernels->move(&motion, first, least < end ? least : end,
-                      balance->chunks + first / MSPRINGI_CHUNK * MSPRINGI_MOVE_SUMS);
+        look_at_chunk(substep, &motion, first, least < end ? least : end);
     }
     mspringi_meet(mate);
     bool driven = false;
     for (size_t i = 0; i < (end + MSPRINGI_CHUNK - 1) / MSPRINGI_CHUNK; ++i)
         driven |= balance->chunks[i * MSPRINGI_MOVE_SUMS + MSPRINGI_MOVE_DRIVEN] > 0.0;
-    for (size_t i = mspringi_share_of(mate, n->panels.count); i < mspringi_share_end(mate, n->panels.count); ++i) {
-        const mspringi_panel *panel = &n->panels.list[i];
-        kernels->stretch(&n->system, &motion, network->topology.spans + panel->first_span, panel->span_count,
-                         panel->is_lattice, driven, balance->panels + i * MSPRINGI_STRETCH_SUMS);
-    }
+    for (size_t i = mspringi_share_of(mate, n->panels.count); i < mspringi_share_end(mate, n->panels.count); ++i)
+        look_at_panel(substep, &motion, i, driven);
     mspringi_meet(mate);
     if (mate->index == 0)
         balance->fails = !is_accepted(substep, &motion);
