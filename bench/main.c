@@ -42,6 +42,9 @@ int main(int count, char **arguments) {
     case BENCH_ALARMS:
         ok = bench_run_alarms(&options);
         break;
+    case BENCH_GUARD:
+        ok = bench_run_guard(&options);
+        break;
     case BENCH_CHECK:
         ok = bench_run_check(&options);
         break;

@@ -20,6 +20,7 @@ typedef enum bench_mode {
     BENCH_ROOFLINE,
     BENCH_MAP,
     BENCH_ALARMS,
+    BENCH_GUARD,
     BENCH_CHECK,
     BENCH_LIST,
     BENCH_HELP

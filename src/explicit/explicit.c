@@ -92,17 +92,26 @@ static void wait_for_pass_before(const job *wave, uint32_t pass, uint32_t front)
                            (pass - 1) / wave->workers * wave->fronts + done);
 }
 
-// Take one substep of a strip and, if the substeps are a whole step, what belongs before its first and after its
-// last.
-static void sweep_strip(const job *wave, const mspringi_substep *substep, uint32_t number, uint32_t worker,
+// If the substeps are a whole step, have the first one keep the state and the last one look at it.
+static void mark_ends(const job *wave, mspringi_substep *substep, uint32_t number, mspringi_watch *watch) {
+    if (wave->sights && number == 0)
+        mspringi_substep_keep(wave->network, substep);
+    if (wave->sights && number + 1 == wave->count)
+        mspringi_substep_watch(substep, watch);
+}
+
+static void add_sight(const job *wave, uint32_t worker, mspringi_sight sight) {
+    wave->sights[worker] = mspringi_sight_join(wave->sights[worker], sight);
+}
+
+// Take one substep of a strip and, if it is the last of a whole step, what belongs after it.
+static void sweep_strip(const job *wave, const mspringi_substep *substep, uint32_t worker,
                         const mspringi_strip *strip) {
     if (mspringi_share_of_strip(wave->network, strip) == MSPRINGI_ASLEEP)
         return;
-    if (wave->sights && number == 0)
-        mspringi_strip_keep(wave->network, strip);
     mspringi_strip_sweep(wave->network, substep, strip);
-    if (wave->sights && number + 1 == wave->count)
-        wave->sights[worker] = mspringi_sight_join(wave->sights[worker], mspringi_strip_look(wave->network, strip));
+    if (substep->sweep.watch)
+        add_sight(wave, worker, mspringi_strip_end(wave->network, strip));
 }
 
 // Make one pass: several substeps over all strips of the wave, each lag strips behind the one before, so that a
@@ -114,17 +123,23 @@ static void make_pass(const job *wave, uint32_t pass, uint32_t worker) {
     const uint32_t first = pass * wave->group, left = wave->count - first;
     const uint32_t count = left < wave->group ? left : wave->group;
     mspringi_substep substeps[DEEPEST];
-    for (uint32_t i = 0; i < count; ++i)
+    mspringi_watch_room room = {{0.0f}};
+    mspringi_watch *const watch = mspringi_watch_in(&room);
+    for (uint32_t i = 0; i < count; ++i) {
         substeps[i] = mspringi_substep_prepare(network, wave->h, wave->base, first + i, wave->count,
                                                worker * network->depth + i);
+        mark_ends(wave, &substeps[i], first + i, watch);
+    }
     for (uint32_t front = 0; front < t->wave_strips + (count - 1) * t->lag; ++front) {
         wait_for_pass_before(wave, pass, front);
         for (uint32_t i = 0; i < count && i * t->lag <= front; ++i)
             if (front - i * t->lag < t->wave_strips)
-                sweep_strip(wave, &substeps[i], first + i, worker, &t->strips[front - i * t->lag]);
+                sweep_strip(wave, &substeps[i], worker, &t->strips[front - i * t->lag]);
         if (wave->progress)
             mspringi_progress_advance(&wave->progress[worker], pass / wave->workers * wave->fronts + front + 1);
     }
+    if (wave->sights)
+        add_sight(wave, worker, mspringi_watch_sight(wave->network, watch));
 }
 
 static void make_passes(void *argument, uint32_t index, uint32_t worker) {
@@ -181,7 +196,7 @@ static void begin_share(const job *rest, const mspringi_span *share) {
 
 static void end_share(const job *rest, const mspringi_span *share, uint32_t worker) {
     if (rest->sights)
-        rest->sights[worker] = mspringi_sight_join(rest->sights[worker], mspringi_span_look(rest->network, share));
+        add_sight(rest, worker, mspringi_span_look(rest->network, share));
 }
 
 static void move_loose(const mspring_network *network, const mspringi_substep *substep, const mspringi_span *span,
@@ -219,6 +234,8 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
     const job *rest = argument;
     const mspring_network *network = rest->network;
     const mspringi_topology *t = &network->topology;
+    mspringi_watch_room room = {{0.0f}};
+    mspringi_watch *const watch = mspringi_watch_in(&room);
     (void)worker;
     for (uint32_t i = 0; i < rest->count; ++i) {
         mspringi_substep substep = mspringi_substep_prepare(network, rest->h, rest->base, i, rest->count, 0);
@@ -247,10 +264,13 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
             if (i + 1 == rest->count)
                 end_share(rest, &share, index);
         }
+        mark_ends(rest, &substep, i, watch);
         for (uint32_t s = t->wave_strips; index == 0 && s < t->strip_count; ++s)
             if (t->rows[t->strips[s].first_row].kind < MSPRINGI_ROW_WEB)
-                sweep_strip(rest, &substep, i, index, &t->strips[s]);
+                sweep_strip(rest, &substep, index, &t->strips[s]);
     }
+    if (rest->sights)
+        add_sight(rest, index, mspringi_watch_sight(rest->network, watch));
 }
 
 static void sweep_rest(mspring_network *network, float h, mspringi_field base, uint32_t count,

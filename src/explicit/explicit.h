@@ -18,8 +18,8 @@ void mspringi_explicit_reset(mspring_network *network);
 void mspringi_explicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count);
 
 /// The same as a whole step that nothing interrupts: with the state of before copied into the backup, what creeps
-/// stopped, and the sight of the state that it ends in, each strip while it is in the cache anyway, by the worker
-/// that has it. Without a floor.
+/// stopped, and the sight of the state that it ends in, each strip as it is swept, by the worker that has it.
+/// Without a floor.
 mspringi_sight mspringi_explicit_step(mspring_network *network, float h, mspringi_field base, uint32_t count);
 
 #endif

@@ -1,6 +1,7 @@
 /// Sweeping a strip of rows, and what hangs on it.
 #include "strip.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "contact/floor.h"
@@ -209,16 +210,42 @@ mspringi_sight mspringi_span_look(const mspring_network *network, const mspringi
     return look_at_slots(network, first_block_slot(span), end_block_slot(span));
 }
 
-void mspringi_strip_keep(const mspring_network *network, const mspringi_strip *strip) {
-    keep_slots(network, first_row_slot(network, strip), end_row_slot(network, strip));
-    if (strip->home_span != MSPRING_NONE)
-        mspringi_span_keep(network, &network->topology.spans[strip->home_span]);
+void mspringi_substep_keep(const mspring_network *network, mspringi_substep *substep) {
+    substep->sweep.keep = network->backup.x;
 }
 
-mspringi_sight mspringi_strip_look(const mspring_network *network, const mspringi_strip *strip) {
-    const mspringi_sight sight =
-        look_at_slots(network, first_row_slot(network, strip), end_row_slot(network, strip));
-    if (strip->home_span == MSPRING_NONE)
-        return sight;
-    return mspringi_sight_join(sight, mspringi_span_look(network, &network->topology.spans[strip->home_span]));
+void mspringi_substep_watch(mspringi_substep *substep, mspringi_watch *watch) {
+    substep->sweep.watch = watch;
+}
+
+mspringi_watch *mspringi_watch_in(mspringi_watch_room *room) {
+    const size_t bytes = sizeof(float) * MSPRINGI_WIDTH, over = (uintptr_t)room->values % bytes;
+    return (mspringi_watch *)(void *)(room->values + (bytes - over) % bytes / sizeof(float));
+}
+
+mspringi_sight mspringi_watch_sight(const mspring_network *network, const mspringi_watch *watch) {
+    const mspringi_largest_fn largest = network->kernels->largest;
+    return (mspringi_sight){largest(watch->place, NULL, MSPRINGI_WIDTH).value,
+                            largest(watch->speed, NULL, MSPRINGI_WIDTH).value};
+}
+
+// What the web has pulled at after the slots of the strip were swept.
+static mspringi_sight look_at_attached(const mspring_network *network, const mspringi_strip *strip) {
+    const mspringi_state *s = &network->state;
+    const uint32_t *slots = network->topology.web.attached_slot + strip->first_attached;
+    mspringi_sight sight = {0.0f, 0.0f};
+    for (uint32_t i = 0; i < strip->attached_count; ++i) {
+        sight = mspringi_sight_join(sight, (mspringi_sight){fabsf(s->x[slots[i]]), fabsf(s->vx[slots[i]])});
+        sight = mspringi_sight_join(sight, (mspringi_sight){fabsf(s->y[slots[i]]), fabsf(s->vy[slots[i]])});
+    }
+    return sight;
+}
+
+mspringi_sight mspringi_strip_end(const mspring_network *network, const mspringi_strip *strip) {
+    mspringi_creep_stop(network, first_row_slot(network, strip), end_row_slot(network, strip));
+    if (strip->home_span != MSPRING_NONE) {
+        const mspringi_span *span = &network->topology.spans[strip->home_span];
+        mspringi_creep_stop(network, first_block_slot(span), end_block_slot(span));
+    }
+    return look_at_attached(network, strip);
 }

@@ -28,12 +28,24 @@ void mspringi_strip_pack(const mspring_network *network, const mspringi_substep 
 void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep *substep,
                           const mspringi_strip *strip);
 
-/// Before a strip's first substep, and after its last, while it is in the cache anyway: copy its state into the
-/// backup; stop what creeps and look at it.
-void mspringi_strip_keep(const mspring_network *network, const mspringi_strip *strip);
-mspringi_sight mspringi_strip_look(const mspring_network *network, const mspringi_strip *strip);
+/// Room for what is watched, aligned as vectors need it, wherever it lies.
+typedef struct mspringi_watch_room {
+    float values[3 * MSPRINGI_WIDTH];
+} mspringi_watch_room;
 
-/// The same for some blocks of a row.
+/// The watch in a room of zeros.
+mspringi_watch *mspringi_watch_in(mspringi_watch_room *room);
+
+/// Have the substep copy the state that it finds into the backup: the first of a step.
+void mspringi_substep_keep(const mspring_network *network, mspringi_substep *substep);
+/// Have it look at where what it moves comes to, and how fast: the last of a step.
+void mspringi_substep_watch(mspringi_substep *substep, mspringi_watch *watch);
+/// After the last substep of a strip, while it is in the cache: stop what creeps, and look at what has been moved
+/// again since it was swept.
+mspringi_sight mspringi_strip_end(const mspring_network *network, const mspringi_strip *strip);
+mspringi_sight mspringi_watch_sight(const mspring_network *network, const mspringi_watch *watch);
+
+/// Copy the state of some blocks of a row into the backup; stop what creeps there and look at it.
 void mspringi_span_keep(const mspring_network *network, const mspringi_span *span);
 mspringi_sight mspringi_span_look(const mspring_network *network, const mspringi_span *span);
 

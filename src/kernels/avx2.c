@@ -96,6 +96,11 @@ static inline float largest_lane(__m256i a) {
     return _mm_cvtss_f32(_mm_castsi128_ps(half));
 }
 
+// The larger of a and of the size of b.
+static inline vec larger_size(vec a, vec b) {
+    return _mm256_castsi256_ps(_mm256_max_epi32(_mm256_castps_si256(a), absolute(b)));
+}
+
 static mspringi_largest largest(const float *now, const float *before, size_t count) {
     __m256i value = _mm256_setzero_si256(), change = value;
     for (size_t i = 0; i < count; i += LANES) {

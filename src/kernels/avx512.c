@@ -98,6 +98,11 @@ static inline float largest_lane(__m512i a) {
     return _mm_cvtss_f32(_mm_castsi128_ps(_mm_cvtsi32_si128(bits)));
 }
 
+// The larger of a and of the size of b.
+static inline vec larger_size(vec a, vec b) {
+    return _mm512_castsi512_ps(_mm512_max_epi32(_mm512_castps_si512(a), absolute(b)));
+}
+
 static mspringi_largest largest(const float *now, const float *before, size_t count) {
     __m512i value = _mm512_setzero_si512(), change = value;
     for (size_t i = 0; i < count; i += LANES) {

@@ -15,6 +15,12 @@
 /// The parts of a spring record, each one value per slot; damping only if the network has any.
 typedef enum mspringi_part { MSPRINGI_REST_LENGTH = 0, MSPRINGI_STIFFNESS = 1, MSPRINGI_DAMPING = 2 } mspringi_part;
 
+/// Of each lane the largest absolute coordinate and speed of the slots that have been moved, as mspringi_largest
+/// has them.
+typedef struct mspringi_watch {
+    float place[MSPRINGI_WIDTH], speed[MSPRINGI_WIDTH];
+} mspringi_watch;
+
 /// What a sweep works on: arrays by slot, and what is the same for all of them.
 typedef struct mspringi_sweep {
     float *x, *y, *vx, *vy;
@@ -32,6 +38,8 @@ typedef struct mspringi_sweep {
     float h;                        ///< substep, s
     float decay;                    ///< what global damping leaves of a velocity
     float gravity_h_x, gravity_h_y; ///< gravity times h
+    float *keep;                    ///< [4][slots] where the state goes that is found, as x, y, vx, vy lie; or NULL
+    mspringi_watch *watch;          ///< what is seen of the state that is made, or NULL
 } mspringi_sweep;
 
 /// Compute the forces of the springs of one or more rows and move their particles, in place. In lattice rows and

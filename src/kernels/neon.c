@@ -76,7 +76,11 @@ static inline void store_packed(float *packed, vec x, vec y, vec vx, vec vy) {
     vst4q_f32(packed, nodes);
 }
 
-// The maximum of NaN and a number is NaN here.
+// The larger of a and of the size of b; the maximum of NaN and a number is NaN here.
+static inline vec larger_size(vec a, vec b) {
+    return vmaxq_f32(a, vabsq_f32(b));
+}
+
 static mspringi_largest largest(const float *now, const float *before, size_t count) {
     vec value = zero(), change = value;
     for (size_t i = 0; i < count; i += LANES) {

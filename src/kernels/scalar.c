@@ -34,12 +34,48 @@ static inline vector spring_force(motion base, motion tip, float rest_length, co
     return (vector){force * dx, force * dy};
 }
 
+static inline uint32_t absolute_bits(float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits & 0x7fffffffu;
+}
+
+static inline float float_of(uint32_t bits) {
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+// The larger of *a and of the size of b, to *a.
+static inline void enlarge(float *a, float b) {
+    const uint32_t size = absolute_bits(b);
+    *a = size > absolute_bits(*a) ? float_of(size) : *a;
+}
+
+static inline void keep_motion(const mspringi_sweep *s, size_t slot) {
+    const size_t slots = (size_t)(s->y - s->x);
+    s->keep[slot] = s->x[slot];
+    s->keep[slot + slots] = s->y[slot];
+    s->keep[slot + 2 * slots] = s->vx[slot];
+    s->keep[slot + 3 * slots] = s->vy[slot];
+}
+
+static inline void watch_motion(const mspringi_sweep *s, size_t slot) {
+    mspringi_watch *seen = s->watch;
+    enlarge(&seen->place[0], s->x[slot]);
+    enlarge(&seen->place[0], s->y[slot]);
+    enlarge(&seen->speed[0], s->vx[slot]);
+    enlarge(&seen->speed[0], s->vy[slot]);
+}
+
 // Symplectic Euler. A pinned particle keeps its velocity.
 static inline void move(const mspringi_sweep *s, size_t slot, vector force, bool forced) {
     if (forced) {
         force.x = force.x + s->force_x[slot];
         force.y = force.y + s->force_y[slot];
     }
+    if (s->keep)
+        keep_motion(s, slot);
     const float inverse_mass = s->inverse_mass[slot];
     if (inverse_mass > 0.0f) {
         const float inverse_mass_h = inverse_mass * s->h;
@@ -48,6 +84,8 @@ static inline void move(const mspringi_sweep *s, size_t slot, vector force, bool
     }
     s->x[slot] = s->x[slot] + s->vx[slot] * s->h;
     s->y[slot] = s->y[slot] + s->vy[slot] * s->h;
+    if (s->watch)
+        watch_motion(s, slot);
 }
 
 /// Forces that a slot's springs exert on the slot to the right and on the slot above that.
@@ -200,18 +238,6 @@ static inline void loose(const mspringi_sweep *s, const mspringi_span *span, uin
         s->vx[slot] = vx;
         s->vy[slot] = vy;
     }
-}
-
-static inline uint32_t absolute_bits(float value) {
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    return bits & 0x7fffffffu;
-}
-
-static inline float float_of(uint32_t bits) {
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
 }
 
 static mspringi_largest largest(const float *now, const float *before, size_t count) {

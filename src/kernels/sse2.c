@@ -84,6 +84,11 @@ static inline float largest_lane(__m128i a) {
     return _mm_cvtss_f32(_mm_castsi128_ps(a));
 }
 
+// The larger of a and of the size of b.
+static inline vec larger_size(vec a, vec b) {
+    return _mm_castsi128_ps(larger(_mm_castps_si128(a), absolute(b)));
+}
+
 static mspringi_largest largest(const float *now, const float *before, size_t count) {
     __m128i value = _mm_setzero_si128(), change = value;
     for (size_t i = 0; i < count; i += LANES) {

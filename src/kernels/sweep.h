@@ -72,6 +72,24 @@ MSPRINGI_INLINE vector spring_force(extent e, vec inverse, motion base, motion t
     return result;
 }
 
+// Before the first substep of a whole step, and after its last: half hidden behind the divisions, as reading and
+// writing the state for this alone is not (96 x 96 at AVX-512, one substep: 2.2 instead of 3.7 us, with 12.4 for
+// the rest. The same for changes of velocities takes 1.9 us, on its own 0.9).
+MSPRINGI_INLINE void keep_motion(const mspringi_sweep *s, size_t slot, vec x, vec y, vec vx, vec vy) {
+    const size_t slots = (size_t)(s->y - s->x);
+    float *to = s->keep + slot;
+    store(to, x);
+    store(to + slots, y);
+    store(to + 2 * slots, vx);
+    store(to + 3 * slots, vy);
+}
+
+MSPRINGI_INLINE void watch_motion(const mspringi_sweep *s, vec x, vec y, vec vx, vec vy) {
+    mspringi_watch *seen = s->watch;
+    store(seen->place, larger_size(larger_size(load(seen->place), x), y));
+    store(seen->speed, larger_size(larger_size(load(seen->speed), vx), vy));
+}
+
 MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, motion here, vector force, bool damped,
                           bool forced) {
     if (forced) {
@@ -83,14 +101,20 @@ MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, motion here, vec
     const vec inverse_mass_h = mul(inverse_mass, h);
     // Without dampers, velocities have not been read yet.
     vec vx = damped ? here.vx : load(s->vx + slot), vy = damped ? here.vy : load(s->vy + slot);
+    if (s->keep)
+        keep_motion(s, slot, here.x, here.y, vx, vy);
     vx = choose_positive(inverse_mass, mul(add(vx, add(mul(force.x, inverse_mass_h), set(s->gravity_h_x))), decay),
                          vx);
     vy = choose_positive(inverse_mass, mul(add(vy, add(mul(force.y, inverse_mass_h), set(s->gravity_h_y))), decay),
                          vy);
     store(s->vx + slot, vx);
     store(s->vy + slot, vy);
-    store(s->x + slot, add(here.x, mul(vx, h)));
-    store(s->y + slot, add(here.y, mul(vy, h)));
+    here.x = add(here.x, mul(vx, h));
+    here.y = add(here.y, mul(vy, h));
+    store(s->x + slot, here.x);
+    store(s->y + slot, here.y);
+    if (s->watch)
+        watch_motion(s, here.x, here.y, vx, vy);
 }
 
 /// Forces that LANES slots' springs exert on the slots to the right and on the slots above those. Of those of the

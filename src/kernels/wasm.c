@@ -84,6 +84,11 @@ static inline float largest_lane(vec a) {
     return wasm_f32x4_extract_lane(a, 0);
 }
 
+// The larger of a and of the size of b.
+static inline vec larger_size(vec a, vec b) {
+    return wasm_i32x4_max(a, wasm_f32x4_abs(b));
+}
+
 static mspringi_largest largest(const float *now, const float *before, size_t count) {
     vec value = zero(), change = value;
     for (size_t i = 0; i < count; i += LANES) {

@@ -244,34 +244,51 @@ static float larger(float a, float b) {
     return b > a || b != b ? b : a;
 }
 
-static mspringi_largest largest_of(mspringi_largest a, mspringi_largest b) {
-    return (mspringi_largest){larger(a.value, b.value), larger(a.change, b.change)};
+mspringi_sight mspringi_sight_join(mspringi_sight a, mspringi_sight b) {
+    return (mspringi_sight){larger(a.place, b.place), larger(a.speed, b.speed)};
 }
 
-mspringi_sight mspringi_sight_join(mspringi_sight a, mspringi_sight b) {
-    return (mspringi_sight){largest_of(a.place, b.place), largest_of(a.speed, b.speed)};
+static float largest_of(const mspring_network *network, const float *x, const float *y, size_t first, size_t end) {
+    const mspringi_largest_fn largest = network->kernels->largest;
+    return larger(largest(x + first, NULL, end - first).value, largest(y + first, NULL, end - first).value);
 }
 
 mspringi_sight mspringi_guard_look(const mspring_network *network, size_t first, size_t end) {
-    const mspringi_largest_fn largest = network->kernels->largest;
-    const mspringi_state *s = &network->state, *before = &network->backup;
-    const bool watches = network->guard.watches;
-    const mspringi_largest x = largest(s->x + first, NULL, end - first);
-    const mspringi_largest y = largest(s->y + first, NULL, end - first);
-    const mspringi_largest vx = largest(s->vx + first, watches ? before->vx + first : NULL, end - first);
-    const mspringi_largest vy = largest(s->vy + first, watches ? before->vy + first : NULL, end - first);
-    return (mspringi_sight){largest_of(x, y), largest_of(vx, vy)};
+    const mspringi_state *s = &network->state;
+    return (mspringi_sight){largest_of(network, s->x, s->y, first, end),
+                            largest_of(network, s->vx, s->vy, first, end)};
+}
+
+// Change that is as good as none, m/s.
+static float calm_change(const mspring_network *network, float h) {
+    const double harmless = HARMLESS * network->shortest / (double)h;
+    return harmless < 1e15 ? (float)harmless : 1e15f;
+}
+
+// Whether a step that has come to this speed changed a velocity more than usual. No change is larger than the
+// speeds before and after it are together: where these are low, which is known unless somebody outside may have
+// changed them, the changes need not be looked at, which takes as long as all else that the guard does in a step.
+static void look_for_growth(mspring_network *network, float h, float speed) {
+    mspringi_guard *guard = &network->guard;
+    const float bound = SUSPICIOUS * fmaxf(guard->peak, calm_change(network, h));
+    const bool is_known = guard->state == network->edits.state && !network->is_open;
+    guard->suspicious = false;
+    if (!(is_known && speed + guard->speed <= bound)) {
+        const size_t both = 2 * mspringi_slot_count(network); // vy lies behind vx
+        const float change = network->kernels->largest(network->state.vx, network->backup.vx, both).change;
+        guard->suspicious = change > bound;
+        guard->peak = guard->suspicious ? change : guard->peak;
+    }
+    if (!guard->suspicious)
+        guard->peak *= FADING;
 }
 
 mspring_result mspringi_guard_end(mspring_network *network, double dt, float h, mspringi_sight sight) {
-    mspringi_guard *guard = &network->guard;
-    if (!(sight.place.value <= (float)MSPRING_MAX_COORDINATE && sight.speed.value <= network->max_speed))
+    if (!(sight.place <= (float)MSPRING_MAX_COORDINATE && sight.speed <= network->max_speed))
         return explain_bounds(network, dt);
-    if (guard->watches) {
-        const double harmless = HARMLESS * network->shortest / (double)h;
-        const float calm = harmless < 1e15 ? (float)harmless : 1e15f;
-        guard->suspicious = sight.speed.change > SUSPICIOUS * fmaxf(guard->peak, calm);
-        guard->peak = guard->suspicious ? sight.speed.change : guard->peak * FADING;
-    }
+    if (network->guard.watches)
+        look_for_growth(network, h, sight.speed);
+    network->guard.speed = network->implicit ? INFINITY : sight.speed; // its steps may yet be refused
+    network->guard.state = network->edits.state;
     return MSPRING_OK;
 }

@@ -11,10 +11,9 @@
 /// border. Works in the backup of the state, which has to be that of the step before.
 mspring_result mspringi_guard_begin(mspring_network *network, double dt, float h);
 
-/// What there is to see of a state: the largest coordinates, the largest speeds and, if the guard watches, changes
-/// of speed since the state in the backup.
+/// What there is to see of a state: the largest coordinates and the largest speeds.
 typedef struct mspringi_sight {
-    mspringi_largest place, speed;
+    float place, speed;
 } mspringi_sight;
 
 /// Look at the slots first to end - 1, multiples of MSPRINGI_WIDTH. May be called by several threads at once.

@@ -1,0 +1,150 @@
+/// @file guard.c
+/// What the guard costs: steps with it, in turn with steps that only look at bounds (MSPRING_GUARD_BOUNDS), at 0.85
+/// of the border, where it watches every step, and at 0.4, where there is nothing to watch; of networks that
+/// tremble where they are, and of others that fly, so that it has to look at all changes of velocity. And what a
+/// step costs beyond its substeps: the copy of the state that it may have to go back to, and the look at bounds.
+///
+/// SPDX-License-Identifier: MIT
+#include <stdio.h>
+
+#include "modes.h"
+
+enum { REPEAT = 31, FEW = 1, MANY = 8 };
+
+static const bench_column columns[] = {
+    {"scene", "scene", -12},
+    {"substeps", "substeps", 8},
+    {"level", "level", -6},
+    {"us_per_step", "us/step", 8},
+    {"us_beyond", "beyond substeps", 15},
+    {"slow_watched_median", "slow, watched", 13},
+    {"fast_watched_median", "fast, watched", 13},
+    {"fast_unwatched_median", "fast, unwatched", 15},
+};
+enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
+
+/// A network and its step.
+typedef struct walker {
+    mspring_network *network;
+    double dt;
+} walker;
+
+static bool stay(void *self, scene_error *error) {
+    (void)self;
+    (void)error;
+    return true;
+}
+
+static bool walk(void *self, uint32_t steps, scene_error *error) {
+    const walker *w = self;
+    for (uint32_t i = 0; i < steps; i++) {
+        if (mspring_network_step(w->network, w->dt) != MSPRING_OK) {
+            snprintf(error->text, sizeof error->text, "%.400s", mspring_network_error(w->network));
+            return false;
+        }
+    }
+    return true;
+}
+
+/// What is to be measured.
+typedef struct course {
+    const scene *made;
+    mspring_simd level;
+    uint32_t substeps;
+    double share; ///< of the border
+    float speed;  ///< m/s, of all particles
+} course;
+
+// A square or bar that goes along, or stays, and trembles a little.
+static bool start(const course *c, mspring_guard guard, walker *out, scene_error *error) {
+    mspring_network_def def;
+    (void)mspring_network_def_init(&def, sizeof def);
+    def.simd_level = c->level;
+    def.guard = guard;
+    def.substeps = c->substeps;
+    def.gravity_y = 0;
+    double border = 0;
+    uint64_t seed = 1;
+    bool ok = mspring_network_create(c->made->builder, &def, &out->network) == MSPRING_OK &&
+              mspring_network_stable_dt(out->network, &border, NULL) == MSPRING_OK;
+    for (mspring_id p = 0; ok && p < mspring_network_particle_count(out->network); p++) {
+        seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+        const float x = c->speed + (float)(seed >> 40) * 1e-9f, y = 0;
+        ok = mspring_network_set_velocities(out->network, p, 1, &x, &y) == MSPRING_OK;
+    }
+    out->dt = c->share * border * c->substeps;
+    if (!ok)
+        snprintf(error->text, sizeof error->text, "%.200s%.200s", mspring_builder_error(c->made->builder),
+                 mspring_network_error(out->network));
+    return ok;
+}
+
+// Steps without and with the guard, in turn.
+static bool compare(const course *c, bench_turns *turns, scene_error *error) {
+    walker bounds = {NULL, 0}, growth = {NULL, 0};
+    const bench_runner without = {&bounds, stay, walk}, with = {&growth, stay, walk};
+    const bool ok = start(c, MSPRING_GUARD_BOUNDS, &bounds, error) &&
+                    start(c, MSPRING_GUARD_GROWTH, &growth, error) &&
+                    bench_turns_measure(&without, &with, REPEAT, turns, error);
+    mspring_network_destroy(bounds.network);
+    mspring_network_destroy(growth.network);
+    return ok;
+}
+
+static bench_cell cost(const bench_turns *turns) {
+    return bench_cell_of("%.1f %%", 100 * (turns->ratio_median - 1));
+}
+
+static bool measure(uint32_t width, uint32_t height, mspring_simd level, const bench_options *options,
+                    scene_error *error) {
+    enum { SLOW, FAST, UNWATCHED, COURSES };
+    static const double shares[COURSES] = {0.85, 0.85, 0.4};
+    static const float speeds[COURSES] = {0, 30, 30};
+    const uint32_t substeps[] = {FEW, MANY};
+    const scene_options plain = scene_options_default();
+    bench_turns turns[2][COURSES];
+    scene made;
+    if (!scene_bar(width, height, &plain, &made, error))
+        return false;
+    bool ok = true;
+    for (int i = 0; i < 2 * COURSES && ok; i++) {
+        const int kind = i % COURSES;
+        const course c = {&made, level, substeps[i / COURSES], shares[kind], speeds[kind]};
+        ok = compare(&c, &turns[i / COURSES][kind], error);
+    }
+    scene_free(&made);
+    const double few = ok ? turns[0][SLOW].first_min : 0, many = ok ? turns[1][SLOW].first_min : 0;
+    for (int i = 0; i < 2 && ok; i++) {
+        const bench_cell cells[COLUMN_COUNT] = {
+            bench_cell_of("%u x %u", width, height),
+            bench_cell_of("%u", substeps[i]),
+            bench_cell_of("%s", mspring_simd_name(level)),
+            bench_cell_of("%.2f", 1e6 * turns[i][SLOW].first_min),
+            bench_cell_of("%.2f", 1e6 * (few - (many - few) / (MANY - FEW) * FEW)),
+            cost(&turns[i][SLOW]),
+            cost(&turns[i][FAST]),
+            cost(&turns[i][UNWATCHED]),
+        };
+        bench_table_row(options->format, columns, COLUMN_COUNT, cells);
+    }
+    return ok;
+}
+
+bool bench_run_guard(const bench_options *options) {
+    static const uint32_t sizes[][2] = {{80, 5}, {96, 96}, {544, 68}};
+    mspring_simd levels[4];
+    scene_error error;
+    bool ok = true;
+    const int count = bench_options_levels(options, levels, &error);
+    bench_table_preamble(options->format);
+    bench_table_head(options->format, columns, COLUMN_COUNT);
+    for (int level = 0; level < count; level++) {
+        for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+            const bool measured = measure(sizes[i][0], sizes[i][1], levels[level], options, &error);
+            if (!measured)
+                bench_complain("guard", &error);
+            ok = ok && measured;
+        }
+    }
+    return ok;
+}
