@@ -247,5 +247,5 @@ mspringi_sight mspringi_strip_end(const mspring_network *network, const mspringi
         const mspringi_span *span = &network->topology.spans[strip->home_span];
         mspringi_creep_stop(network, first_block_slot(span), end_block_slot(span));
     }
-    return look_at_attached(network, strip);
+    return strip->attached_count > 0 ? look_at_attached(network, strip) : (mspringi_sight){0.0f, 0.0f};
 }
