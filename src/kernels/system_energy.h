@@ -8,6 +8,9 @@
 
 #include <math.h>
 
+#include "base/cpu.h"
+#include "system_iterate.h"
+
 /// Sums by lane.
 typedef struct lane_sums {
     double of[MSPRINGI_MOVE_SUMS][MSPRINGI_WIDTH]; ///< of springs there are fewer
@@ -35,32 +38,39 @@ static inline float velocity_after(const mspringi_motion *m, const mspringi_moti
     return m->mass[slot] > 0.0f ? moved : axis->velocity[slot];
 }
 
-static inline float larger_of(float a, float b) {
-    return b > a ? b : a;
+// A coordinate of a block of slots. The parameters are what compilers know to be apart from each other.
+static MSPRINGI_NOINLINE void
+move_coordinate(const float *restrict position, const float *restrict low, const float *restrict velocity,
+                const double *restrict predicted, const float *restrict start, const float *restrict solution,
+                const float *restrict direction, const float *restrict mass, float alpha, float rate,
+                float *restrict step, double *restrict kinetic, double *restrict gain, double *restrict momentum,
+                double *restrict push, double *restrict way, double *restrict largest, double *restrict driven) {
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
+        const float d = solution[i] + alpha * direction[i], before = velocity[i];
+        const float after = start[i] + rate * d; // whatever that is where there is no mass
+        const double from = (double)position[i] + (double)low[i];
+        const float stepped = (float)((predicted[i] + (double)d) - from);
+        const double m = (double)mass[i], v = (double)before, change = (double)after - v;
+        const double size = (double)fabsf(d), pinned = (double)fabsf(stepped) * (double)(mass[i] == 0.0f);
+        step[i] = stepped;
+        kinetic[i] += m * (v * v);
+        gain[i] += m * (change * ((double)after + v));
+        momentum[i] += m * v;
+        push[i] += m * change;
+        way[i] += m * (double)stepped;
+        largest[i] = size > largest[i] ? size : largest[i];
+        driven[i] = pinned > driven[i] ? pinned : driven[i];
+    }
 }
 
-// A coordinate of a block of slots.
-static inline void move_coordinate(const mspringi_motion *m, size_t axis, size_t slot, lane_sums *sums) {
+static inline void move_block(const mspringi_motion *m, size_t axis, size_t slot, lane_sums *sums) {
     const mspringi_motion_axis *const c = &m->axes[axis];
-    const float alpha = m->alpha, rate = m->rate;
-    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
-        const size_t at = slot + i;
-        const float d = c->solution[at] + alpha * c->direction[at], before = c->velocity[at], mass = m->mass[at];
-        const float moved = c->start[at] + rate * d, after = mass > 0.0f ? moved : before;
-        const double from = (double)c->position[at] + (double)c->low[at];
-        const float step = (float)((c->predicted[at] + (double)d) - from);
-        const double m_i = (double)mass, v = (double)before, change = (double)after - v;
-        c->step[at] = step;
-        sums->of[MSPRINGI_MOVE_KINETIC][i] += m_i * (v * v);
-        sums->of[MSPRINGI_MOVE_GAIN][i] += m_i * (change * ((double)after + v));
-        sums->of[MSPRINGI_MOVE_MOMENTUM + axis][i] += m_i * v;
-        sums->of[MSPRINGI_MOVE_PUSH + axis][i] += m_i * change;
-        sums->of[MSPRINGI_MOVE_WAY + axis][i] += m_i * (double)step;
-        const double largest = sums->of[MSPRINGI_MOVE_LARGEST][i], size = (double)fabsf(d);
-        sums->of[MSPRINGI_MOVE_LARGEST][i] = size > largest ? size : largest;
-        const double driven = sums->of[MSPRINGI_MOVE_DRIVEN][i], way = mass > 0.0f ? 0.0 : (double)fabsf(step);
-        sums->of[MSPRINGI_MOVE_DRIVEN][i] = way > driven ? way : driven;
-    }
+    move_coordinate(c->position + slot, c->low + slot, c->velocity + slot, c->predicted + slot, c->start + slot,
+                    c->solution + slot, c->direction + slot, m->mass + slot, m->alpha, m->rate, c->step + slot,
+                    sums->of[MSPRINGI_MOVE_KINETIC], sums->of[MSPRINGI_MOVE_GAIN],
+                    sums->of[MSPRINGI_MOVE_MOMENTUM + axis], sums->of[MSPRINGI_MOVE_PUSH + axis],
+                    sums->of[MSPRINGI_MOVE_WAY + axis], sums->of[MSPRINGI_MOVE_LARGEST],
+                    sums->of[MSPRINGI_MOVE_DRIVEN]);
     for (size_t i = 0; c->force && i < MSPRINGI_WIDTH; ++i) {
         const double force = m->mass[slot + i] > 0.0f ? (double)c->force[slot + i] : 0.0;
         sums->of[MSPRINGI_MOVE_WORK][i] += force * (double)c->step[slot + i];
@@ -72,8 +82,8 @@ static void sum_moves(const mspringi_motion *m, size_t first, size_t end, double
     lane_sums sums;
     clear_sums(&sums, MSPRINGI_MOVE_SUMS);
     for (size_t slot = first; slot < end; slot += MSPRINGI_WIDTH) {
-        move_coordinate(m, 0, slot, &sums);
-        move_coordinate(m, 1, slot, &sums);
+        move_block(m, 0, slot, &sums);
+        move_block(m, 1, slot, &sums);
         for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
             const double mass = (double)m->mass[slot + i];
             sums.of[MSPRINGI_MOVE_MASS][i] += mass;
@@ -90,60 +100,87 @@ static void sum_moves(const mspringi_motion *m, size_t first, size_t end, double
 
 // With e = l - L0: what a spring gains is k (l1 - l0) (e0 + e1) / 2, and l1 - l0 is the difference of the squares
 // over l0 + l1, which keeps its digits however small it is.
-static inline void stretch_springs(const mspringi_motion *m, size_t base, size_t tip, const float *rest_lengths,
-                                   const float *stiffnesses, lane_sums *sums, bool driven, bool damped) {
+MSPRINGI_PART_INLINE void stretch_lanes(const mspringi_motion *m, size_t base, size_t tip,
+                                        const float *restrict rest_lengths, const float *restrict stiffnesses,
+                                        double *restrict gain, double *restrict energy, double *restrict pull,
+                                        double *restrict error, double *restrict stiffness) {
     const mspringi_motion_axis *const cx = &m->axes[0], *const cy = &m->axes[1];
-    const float *const dampings = stiffnesses + MSPRINGI_WIDTH;
-    float gain[MSPRINGI_WIDTH], energy[MSPRINGI_WIDTH], pull[MSPRINGI_WIDTH], error[MSPRINGI_WIDTH];
-    float given[MSPRINGI_WIDTH];
+    const float *const ax = cx->position + base, *const ay = cy->position + base;
+    const float *const bx = cx->position + tip, *const by = cy->position + tip;
+    const float *const ax_low = cx->low + base, *const ay_low = cy->low + base;
+    const float *const bx_low = cx->low + tip, *const by_low = cy->low + tip;
+    const float *const ax_step = cx->step + base, *const ay_step = cy->step + base;
+    const float *const bx_step = cx->step + tip, *const by_step = cy->step + tip;
+    const float scale = m->stiffness_scale;
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
-        const size_t a = base + i, b = tip + i;
-        const float x = (cx->position[b] - cx->position[a]) + (cx->low[b] - cx->low[a]);
-        const float y = (cy->position[b] - cy->position[a]) + (cy->low[b] - cy->low[a]);
-        const float dx = cx->step[b] - cx->step[a], dy = cy->step[b] - cy->step[a];
-        const float square = x * x + y * y, added = (x + x + dx) * dx + (y + y + dy) * dy;
-        const float later = (x + dx) * (x + dx) + (y + dy) * (y + dy);
-        const float before = sqrtf(square), after = sqrtf(later), both = before + after;
-        const float per_both = 1.0f / both, longer = both > 0.0f ? added * per_both : 0.0f;
-        const float k = m->stiffness_scale * stiffnesses[i];
-        const float start = before - rest_lengths[i], stretch = start + longer;
-        gain[i] = k * longer * (start + 0.5f * longer);
-        energy[i] = k * stretch * stretch;
-        pull[i] = k * fabsf(stretch);
-        error[i] = k * longer * before;
-        given[i] = 0.0f;
-        if (driven) {
-            const float px = (m->mass[b] > 0.0f ? 0.0f : cx->step[b]) - (m->mass[a] > 0.0f ? 0.0f : cx->step[a]);
-            const float py = (m->mass[b] > 0.0f ? 0.0f : cy->step[b]) - (m->mass[a] > 0.0f ? 0.0f : cy->step[a]);
-            const float per_before = before > 0.0f ? 1.0f / before : 0.0f;
-            const float per_after = after > 0.0f ? 1.0f / after : 0.0f;
-            const float nx = x * per_before, ny = y * per_before;
-            const float later_nx = (x + dx) * per_after, later_ny = (y + dy) * per_after;
-            float pull_before = k * start, pull_after = k * stretch;
-            if (damped) {
-                const float c = m->stiffness_scale * dampings[i];
-                pull_before +=
-                    c * (nx * (cx->velocity[b] - cx->velocity[a]) + ny * (cy->velocity[b] - cy->velocity[a]));
-                pull_after += c * (later_nx * (velocity_after(m, cx, b) - velocity_after(m, cx, a)) +
-                                   later_ny * (velocity_after(m, cy, b) - velocity_after(m, cy, a)));
-            }
-            given[i] = larger_of(pull_before * (nx * px + ny * py), pull_after * (later_nx * px + later_ny * py));
-        }
-    }
-    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
-        const double e = (double)error[i];
-        sums->of[MSPRINGI_STRETCH_GAIN][i] += (double)gain[i];
-        sums->of[MSPRINGI_STRETCH_ENERGY][i] += (double)energy[i];
-        sums->of[MSPRINGI_STRETCH_PULL][i] += (double)pull[i];
-        sums->of[MSPRINGI_STRETCH_ERROR][i] += e * e;
-        sums->of[MSPRINGI_STRETCH_STIFFNESS][i] += (double)stiffnesses[i];
-        if (driven)
-            sums->of[MSPRINGI_STRETCH_GIVEN][i] += (double)given[i];
+        const float x = (bx[i] - ax[i]) + (bx_low[i] - ax_low[i]), y = (by[i] - ay[i]) + (by_low[i] - ay_low[i]);
+        const float dx = bx_step[i] - ax_step[i], dy = by_step[i] - ay_step[i];
+        const float later_x = x + dx, later_y = y + dy;
+        const float before = sqrtf(x * x + y * y), after = sqrtf(later_x * later_x + later_y * later_y);
+        const float both = before + after, added = (x + later_x) * dx + (y + later_y) * dy;
+        const float quotient = added / both, longer = both > 0.0f ? quotient : 0.0f;
+        const float k = scale * stiffnesses[i], start = before - rest_lengths[i], stretch = start + longer;
+        const float at_end = k * stretch, off = k * longer * before;
+        gain[i] += (double)(k * longer * (start + 0.5f * longer));
+        energy[i] += (double)(at_end * stretch);
+        pull[i] += (double)fabsf(at_end);
+        error[i] += (double)off * (double)off;
+        stiffness[i] += (double)stiffnesses[i];
     }
 }
 
+static void stretch_springs(const mspringi_motion *m, size_t base, size_t tip, const float *rest_lengths,
+                            const float *stiffnesses, lane_sums *sums) {
+    stretch_lanes(m, base, tip, rest_lengths, stiffnesses, sums->of[MSPRINGI_STRETCH_GAIN],
+                  sums->of[MSPRINGI_STRETCH_ENERGY], sums->of[MSPRINGI_STRETCH_PULL],
+                  sums->of[MSPRINGI_STRETCH_ERROR], sums->of[MSPRINGI_STRETCH_STIFFNESS]);
+}
+
+// The same, and what pinned ends that move give: the force before the substep or after it, whatever is more, times
+// their way.
+static inline void give_springs(const mspringi_motion *m, size_t base, size_t tip, const float *rest_lengths,
+                                const float *stiffnesses, lane_sums *sums, bool damped) {
+    const mspringi_motion_axis *const cx = &m->axes[0], *const cy = &m->axes[1];
+    const float *const dampings = stiffnesses + MSPRINGI_WIDTH;
+    stretch_springs(m, base, tip, rest_lengths, stiffnesses, sums);
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
+        const size_t a = base + i, b = tip + i;
+        const float a_pinned = m->mass[a] > 0.0f ? 0.0f : 1.0f, b_pinned = m->mass[b] > 0.0f ? 0.0f : 1.0f;
+        const float px = b_pinned * cx->step[b] - a_pinned * cx->step[a];
+        const float py = b_pinned * cy->step[b] - a_pinned * cy->step[a];
+        const float x = (cx->position[b] - cx->position[a]) + (cx->low[b] - cx->low[a]);
+        const float y = (cy->position[b] - cy->position[a]) + (cy->low[b] - cy->low[a]);
+        const float later_x = x + (cx->step[b] - cx->step[a]), later_y = y + (cy->step[b] - cy->step[a]);
+        const float before = sqrtf(x * x + y * y), after = sqrtf(later_x * later_x + later_y * later_y);
+        const float per_before = before > 0.0f ? 1.0f / before : 0.0f,
+                    per_after = after > 0.0f ? 1.0f / after : 0.0f;
+        const float nx = x * per_before, ny = y * per_before;
+        const float later_nx = later_x * per_after, later_ny = later_y * per_after;
+        const float k = m->stiffness_scale * stiffnesses[i], c = damped ? m->stiffness_scale * dampings[i] : 0.0f;
+        const float rate = nx * (cx->velocity[b] - cx->velocity[a]) + ny * (cy->velocity[b] - cy->velocity[a]);
+        const float later_rate = later_nx * (velocity_after(m, cx, b) - velocity_after(m, cx, a)) +
+                                 later_ny * (velocity_after(m, cy, b) - velocity_after(m, cy, a));
+        const float start = (k * (before - rest_lengths[i]) + c * rate) * (nx * px + ny * py);
+        const float end = (k * (after - rest_lengths[i]) + c * later_rate) * (later_nx * px + later_ny * py);
+        sums->of[MSPRINGI_STRETCH_GIVEN][i] += (double)(end > start ? end : start);
+    }
+}
+
+static void give_plain_springs(const mspringi_motion *m, size_t base, size_t tip, const float *rest_lengths,
+                               const float *stiffnesses, lane_sums *sums) {
+    give_springs(m, base, tip, rest_lengths, stiffnesses, sums, false);
+}
+
+static void give_damped_springs(const mspringi_motion *m, size_t base, size_t tip, const float *rest_lengths,
+                                const float *stiffnesses, lane_sums *sums) {
+    give_springs(m, base, tip, rest_lengths, stiffnesses, sums, true);
+}
+
+typedef void (*stretch_block_fn)(const mspringi_motion *m, size_t base, size_t tip, const float *rest_lengths,
+                                 const float *stiffnesses, lane_sums *sums);
+
 static inline void stretch_rows(const mspringi_system *system, const mspringi_motion *m, const mspringi_span *spans,
-                                uint32_t count, bool is_lattice, bool driven, bool damped, lane_sums *sums) {
+                                uint32_t count, bool is_lattice, stretch_block_fn stretch, lane_sums *sums) {
     const size_t parts = system->parts - 1, part = parts * MSPRINGI_WIDTH;
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
         const size_t first = span->first_slot / MSPRINGI_WIDTH;
@@ -152,22 +189,20 @@ static inline void stretch_rows(const mspringi_system *system, const mspringi_mo
             const size_t slot = block * MSPRINGI_WIDTH, index = span->first_record + (block - first);
             if (span->record_slots == MSPRINGI_WIDTH) {
                 const float *record = system->chain_springs + index * (part + MSPRINGI_WIDTH);
-                stretch_springs(m, slot, slot + 1, record, record + MSPRINGI_WIDTH, sums, driven, damped);
+                stretch(m, slot, slot + 1, record, record + MSPRINGI_WIDTH, sums);
                 continue;
             }
             const float *record = system->lattice_springs + index * MSPRINGI_DIRECTIONS * part;
             const float *rests = mspringi_system_rests(system, index);
-            stretch_springs(m, slot, slot + 1, rests + MSPRINGI_EAST * MSPRINGI_WIDTH,
-                            record + MSPRINGI_EAST * part, sums, driven, damped);
+            stretch(m, slot, slot + 1, rests + MSPRINGI_EAST * MSPRINGI_WIDTH, record + MSPRINGI_EAST * part, sums);
             if (!is_lattice)
                 continue;
             const size_t up = (size_t)((int64_t)slot + span->up);
-            stretch_springs(m, slot, up, rests + MSPRINGI_NORTH * MSPRINGI_WIDTH, record + MSPRINGI_NORTH * part,
-                            sums, driven, damped);
-            stretch_springs(m, slot, up + 1, rests + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH,
-                            record + MSPRINGI_NORTH_EAST * part, sums, driven, damped);
-            stretch_springs(m, up, slot + 1, rests + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH,
-                            record + MSPRINGI_SOUTH_EAST * part, sums, driven, damped);
+            stretch(m, slot, up, rests + MSPRINGI_NORTH * MSPRINGI_WIDTH, record + MSPRINGI_NORTH * part, sums);
+            stretch(m, slot, up + 1, rests + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH,
+                    record + MSPRINGI_NORTH_EAST * part, sums);
+            stretch(m, up, slot + 1, rests + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH,
+                    record + MSPRINGI_SOUTH_EAST * part, sums);
         }
     }
 }
@@ -176,12 +211,11 @@ static void sum_stretches(const mspringi_system *system, const mspringi_motion *
                           uint32_t count, bool is_lattice, bool driven, double *to) {
     lane_sums sums;
     clear_sums(&sums, MSPRINGI_STRETCH_SUMS);
-    if (!driven)
-        stretch_rows(system, m, spans, count, is_lattice, false, false, &sums);
-    else if (system->parts > MSPRINGI_DAMPING)
-        stretch_rows(system, m, spans, count, is_lattice, true, true, &sums);
-    else
-        stretch_rows(system, m, spans, count, is_lattice, true, false, &sums);
+    stretch_rows(system, m, spans, count, is_lattice,
+                 !driven                            ? stretch_springs
+                 : system->parts > MSPRINGI_DAMPING ? give_damped_springs
+                                                    : give_plain_springs,
+                 &sums);
     put_sums(&sums, MSPRINGI_STRETCH_SUMS, to);
 }
 

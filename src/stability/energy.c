@@ -15,7 +15,7 @@
 
 /// Parts of the motion: what springs outside of lattices may get before all energy is looked at, and what may come
 /// from nowhere in a substep before that goes on.
-#define UNSUSPICIOUS 0.001
+#define UNSUSPICIOUS 0.004
 #define HARMLESS 1e-5
 
 /// What is left of the most motion in each substep: half in 2839.
@@ -218,22 +218,32 @@ static double given_by_pins(const mspringi_motion *m, const mspringi_spring_valu
 // What leftover springs add to the sums over springs.
 static void add_leftover(const mspring_network *network, const mspringi_motion *m, bool driven, double *sums) {
     const mspringi_topology *t = &network->topology;
+    const mspringi_motion_axis *const cx = &m->axes[0], *const cy = &m->axes[1];
     const double scale = network->implicit->scale;
-    for (mspringi_place place = t->chain_places; place < t->chain_places + t->leftover_count; ++place) {
-        const uint32_t i = place - t->chain_places;
-        if (mspringi_slot_is_asleep(network, t->leftover_a[i]) &&
-            mspringi_slot_is_asleep(network, t->leftover_b[i]))
+    for (uint32_t i = 0; i < t->leftover_count; ++i) {
+        const uint32_t a = t->leftover_a[i], b = t->leftover_b[i];
+        const size_t entry = t->web.entry[2 * (size_t)i];
+        if (mspringi_slot_is_asleep(network, a) && mspringi_slot_is_asleep(network, b))
             continue;
-        const mspringi_spring_values values = mspringi_place_get(network, place);
-        const stretched s = stretch_of(m, &values);
-        const double k = scale * s.stiffness;
-        sums[MSPRINGI_STRETCH_GAIN] += scale * gain_of(&s);
-        sums[MSPRINGI_STRETCH_ENERGY] += k * s.after * s.after;
-        sums[MSPRINGI_STRETCH_PULL] += k * fabs(s.after);
-        sums[MSPRINGI_STRETCH_STIFFNESS] += s.stiffness;
-        if (!driven)
-            continue;
-        sums[MSPRINGI_STRETCH_GIVEN] += scale * given_by_pins(m, &values, &s);
+        const float *record = network->web_springs + entry / MSPRINGI_WIDTH * MSPRINGI_WIDTH * network->parts +
+                              entry % MSPRINGI_WIDTH;
+        const double rest_length = (double)record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH];
+        const double stiffness = (double)record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH], k = scale * stiffness;
+        const double x = (double)(cx->position[b] - cx->position[a]) + (double)(cx->low[b] - cx->low[a]);
+        const double y = (double)(cy->position[b] - cy->position[a]) + (double)(cy->low[b] - cy->low[a]);
+        const double later_x = x + (double)(cx->step[b] - cx->step[a]);
+        const double later_y = y + (double)(cy->step[b] - cy->step[a]);
+        const double before = sqrt(x * x + y * y) - rest_length;
+        const double after = sqrt(later_x * later_x + later_y * later_y) - rest_length;
+        sums[MSPRINGI_STRETCH_GAIN] += 0.5 * k * ((after - before) * (after + before));
+        sums[MSPRINGI_STRETCH_ENERGY] += k * after * after;
+        sums[MSPRINGI_STRETCH_PULL] += k * fabs(after);
+        sums[MSPRINGI_STRETCH_STIFFNESS] += stiffness;
+        if (driven && !(m->mass[a] > 0.0f && m->mass[b] > 0.0f)) {
+            const mspringi_spring_values values = mspringi_place_get(network, t->chain_places + i);
+            const stretched s = stretch_of(m, &values);
+            sums[MSPRINGI_STRETCH_GIVEN] += scale * given_by_pins(m, &values, &s);
+        }
     }
 }
 

@@ -14,7 +14,7 @@
 ///
 /// In lattices springs hold each other's direction, which lets no energy come up. A network that is a lattice, with
 /// all its springs, is not looked at; one with ropes or other springs besides, as long as these springs, and the
-/// particles that have no others, get less than a thousandth of the motion, is not looked at but for them.
+/// particles that have no others, get less than 0.4 % of the motion, is not looked at but for them.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_ENERGY_H
@@ -52,7 +52,7 @@ typedef struct mspringi_balance {
 /// at.
 #define MSPRINGI_MOST_PIECES 64u
 #define MSPRINGI_CALM_SUBSTEPS 15u
-#define MSPRINGI_LOOKS 64u
+#define MSPRINGI_LOOKS 15u
 
 struct mspringi_substep_of;
 struct mspringi_mate;
