@@ -129,7 +129,8 @@ mspring_result mspring_network_get_component_numbers(const mspring_network *netw
     const uint32_t total = network->topology.particle_count;
     if (first > total || count > total - first)
         return MSPRING_ERROR_ID;
-    memcpy(component, network->components.number + first, count * sizeof *component);
+    if (count > 0)
+        memcpy(component, network->components.number + first, count * sizeof *component);
     return MSPRING_OK;
 }
 
