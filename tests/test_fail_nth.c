@@ -75,6 +75,8 @@ static mspring_result create(life *l) {
     def.allocator = &l->allocator;
     def.flags = MSPRING_NETWORK_RESERVE_DAMPING;
     def.guard = MSPRING_GUARD_IMPLICIT;
+    def.spare_particles = 5;
+    def.spare_springs = 5;
     return mspring_network_create(l->builder, &def, &l->network);
 }
 
@@ -156,6 +158,30 @@ static mspring_result restore_springs(life *l) {
 static mspring_result detach(life *l) {
     const mspring_id particle = 8;
     return mspring_network_detach_particles(l->network, &particle, 1);
+}
+
+static mspring_result grow(life *l) {
+    mspring_particle_def particle;
+    mspring_spring_def spring;
+    mspring_id id, added;
+    check_ok(mspring_particle_def_init(&particle, sizeof particle));
+    check_ok(mspring_spring_def_init(&spring, sizeof spring));
+    particle.x = 3, particle.y = 10;
+    const mspring_result result = mspring_network_add_particles(l->network, &particle, 1, &added);
+    if (result != MSPRING_OK)
+        return result;
+    spring.a = 1, spring.b = added, spring.stiffness = 50;
+    return mspring_network_add_springs(l->network, &spring, 1, &id);
+}
+
+static mspring_result remove_particle(life *l) {
+    const mspring_id particle = 12;
+    return mspring_network_remove_particles(l->network, &particle, 1);
+}
+
+static mspring_result remove_springs(life *l) {
+    const mspring_id springs[2] = {80, 81};
+    return mspring_network_remove_springs(l->network, springs, 2);
 }
 
 static mspring_result set_break_strains(life *l) {
@@ -278,6 +304,9 @@ static const struct {
     {"step", step},
     {"restore", restore_springs},
     {"detach", detach},
+    {"grow", grow},
+    {"remove", remove_particle},
+    {"remove springs", remove_springs},
     {"floor", set_floor},
     {"step", step},
     {"compact", compact},

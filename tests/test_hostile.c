@@ -301,6 +301,16 @@ static void add_hook(arguments *a) {
       mspring_network_restore_springs(a->network, a->ids, a->count, a->ramp))                                      \
     X(mspring_network_detach_particles, "NA", NOTHING,                                                             \
       mspring_network_detach_particles(a->network, a->ids, a->count))                                              \
+    X(mspring_network_has_particle, "v", NOTHING, note_size(mspring_network_has_particle(a->network, a->id)))      \
+    X(mspring_network_has_spring, "v", NOTHING, note_size(mspring_network_has_spring(a->network, a->id)))          \
+    X(mspring_network_add_particles, "NSW0", FILL(particle_def),                                                   \
+      mspring_network_add_particles(a->network, a->given, 1, a->out[0]))                                           \
+    X(mspring_network_add_springs, "NSW0", make_spring(a),                                                         \
+      mspring_network_add_springs(a->network, a->given, 1, a->out[0]))                                             \
+    X(mspring_network_remove_particles, "NA", NOTHING,                                                             \
+      mspring_network_remove_particles(a->network, a->ids, a->count))                                              \
+    X(mspring_network_remove_springs, "NA", NOTHING, mspring_network_remove_springs(a->network, a->ids, a->count)) \
+    X(mspring_network_recycle, "N", NOTHING, mspring_network_recycle(a->network))                                  \
     X(mspring_network_set_break_strains, "NRf", NOTHING,                                                           \
       mspring_network_set_break_strains(a->network, a->first, a->count, a->f))                                     \
     X(mspring_network_set_break_strains_at, "NAf", NOTHING,                                                        \
@@ -563,6 +573,7 @@ static recipe small_recipe(void) {
 static void begin(arguments *a) {
     recipe made = small_recipe();
     mspring_network_def def = support_def(-9.8f, 2);
+    def.spare_particles = def.spare_springs = 2;
     memset(a, 0, sizeof *a);
     a->builder = recipe_builder(&made, NULL);
     a->network = recipe_network(&made, &def);

@@ -131,7 +131,9 @@ MSPRING_API const char *mspring_result_string(mspring_result result);
 /* -------------------------------------------------------------------------------------------- identifiers */
 
 /// Particles and springs are named by dense integers, 0, 1, 2 ... in the order in which they were added. They
-/// never change. (Slots, the places inside a view's arrays, are another numbering: see mspring_view.)
+/// never change; the ids of some that were removed may be given to others once the host allows it
+/// (mspring_network_recycle()). (Slots, the places inside a view's arrays, are another numbering: see
+/// mspring_view.)
 typedef uint32_t mspring_id;
 
 /// No particle, no spring.
@@ -312,9 +314,10 @@ enum {
 /// solver, and after the positions of all particles were set, is one of implicit Euler.
 ///
 /// Stiff ropes that hang slack, and are pulled taut within a substep, are what no integrator can follow: a substep
-/// that would gain energy there is taken in pieces of implicit Euler, of a half to a 64th, with twice the iterations,
-/// and the 15 substeps after it are ones of implicit Euler, too (unless the guard is MSPRING_GUARD_BOUNDS). Our ship
-/// falling under its own weight, with its rigging, has some fifty such substeps in 10 s.
+/// that would gain energy there is taken in pieces of implicit Euler, of a half to a 64th, with twice the
+/// iterations, and the 15 substeps after it are ones of implicit Euler, too (unless the guard is
+/// MSPRING_GUARD_BOUNDS). Our ship falling under its own weight, with its rigging, has some fifty such substeps in
+/// 10 s.
 typedef int32_t mspring_integrator;
 enum {
     MSPRING_INTEGRATOR_GA0 = 0,  ///< generalised-alpha with rho_inf = 0 (Chung and Hulbert, 1993): second order
@@ -364,7 +367,8 @@ enum {
 
 /// Flags of networks.
 enum {
-    MSPRING_NETWORK_RESERVE_DAMPING = 1u << 0 ///< springs may be given damping later, though none has any now
+    MSPRING_NETWORK_RESERVE_DAMPING = 1u << 0, ///< springs may be given damping later, though none has any now
+    MSPRING_NETWORK_RESERVE_RELATIVE = 1u << 1 ///< relative springs may be added later, though there is none now
 };
 
 /// What a step does beside refusing to end with a coordinate or speed that is not finite or out of bounds.
@@ -426,12 +430,16 @@ typedef struct mspring_network_def {
                            ///< MSPRING_MAX_WORKERS; default 1. The others are started with the network, end with
                            ///< it, take no signals, and sleep between steps. One for each core is the most that
                            ///< helps. With tasks, whose number counts, this is not looked at.
-    uint32_t flags;        ///< MSPRING_NETWORK_RESERVE_DAMPING or 0; default 0
+    uint32_t flags;        ///< bits of MSPRING_NETWORK_; default 0
     uint32_t max_substeps; ///< as in mspring_solver_def; default 1000
     mspring_guard guard;   ///< default MSPRING_GUARD_GROWTH
     float sleep_speed; ///< m/s, 0 to 1e15: an island sleeps once none of its particles has been faster in x or y
                        ///< at the end of a step for sleep_time, see mspring_network_is_asleep(); default 0: never
     float sleep_time;  ///< s of simulated time, 0 to 1e6; default 0.5
+    uint32_t spare_particles; ///< particles that may be added (mspring_network_add_particles()), with those that
+                              ///< the builder holds at most MSPRING_MAX_PARTICLES; default 0
+    uint32_t spare_springs;   ///< springs that may be added, likewise; default 0. Memory for both is reserved with
+                            ///< the network: some 150 bytes for each, and 9 for each spring that the builder holds.
 } mspring_network_def;
 
 /// Fill a definition with its defaults. Pass the size that your header gives it: sizeof *def.
@@ -529,7 +537,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_rope(mspring_bu
 
 /* ---------------------------------------------------------------------------------------------- lifecycle */
 
-/// A network: its topology, which is fixed, and its state.
+/// A network: its topology and its state.
 typedef struct mspring_network mspring_network;
 
 /// Make a network of what the builder holds. Reads the builder once, finds the lattices and chains in it from
@@ -593,7 +601,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_clone(const mspring
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API const char *mspring_network_error(const mspring_network *network);
 
-/// Number of particles and springs. NULL gives 0.
+/// Number of particles and springs, those that were removed still counted: all ids are below. NULL gives 0.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_network_particle_count(const mspring_network *network);
 MSPRING_API uint32_t mspring_network_spring_count(const mspring_network *network);
@@ -1263,12 +1271,80 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_detach_particles(ms
                                                                               const mspring_id *particles,
                                                                               uint32_t count);
 
+/* --------------------------------------------------------------------------------- adding and removing */
+
+/// Whether there is such a particle or spring: 1, or 0 if there has never been one or it has been removed. NULL: 0.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API uint32_t mspring_network_has_particle(const mspring_network *network, mspring_id particle);
+MSPRING_API uint32_t mspring_network_has_spring(const mspring_network *network, mspring_id spring);
+
+/// Add particles to a network that has room for them (mspring_network_def.spare_particles): all of them or, on
+/// error, none. They are loose ones until springs are added to them, and take the lowest ids that are free: those
+/// after the last or, after mspring_network_recycle(), of added particles that were removed.
+///
+/// A view that was taken before is still valid, but for its particle_count. Nothing else about the network changes.
+/// @param defs  [count], positions also within MSPRING_MAX_COORDINATE of the local origin
+/// @param ids   [count], receives their ids
+/// @return MSPRING_OK; MSPRING_ERROR_LIMIT if there is no room (the message says for how many there is);
+///         MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT (the message names the definition); MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_add_particles(mspring_network *network,
+                                                                           const mspring_particle_def *defs,
+                                                                           uint32_t count, mspring_id *ids);
+
+/// Add springs between any particles that there are, to a network that has room for them
+/// (mspring_network_def.spare_springs): all of them or, on error, none. MSPRING_REST_LENGTH_DISTANCE is the
+/// distance that the two have now. They are as all others from then on, and may break, be edited and be restored.
+///
+/// The plan does not know them. The explicit solver computes them apart, and takes one substep at a time, on one
+/// worker, as long as there are any that are not broken; the implicit solver needs some more iterations where they
+/// are stiff. mspring_network_compact() takes them into the plan. (Each spring is added in some tens of
+/// nanoseconds, so that any number of calls will do.)
+/// @param defs  [count]; relative ones and ones with damping only where the network has some, or was created with
+///              MSPRING_NETWORK_RESERVE_RELATIVE or MSPRING_NETWORK_RESERVE_DAMPING
+/// @param ids   [count], receives their ids: the lowest that are free
+/// @return as mspring_network_add_particles(); MSPRING_ERROR_ID for a particle that does not exist;
+///         MSPRING_ERROR_DUPLICATE if the two are joined by a spring already, broken or not; MSPRING_ERROR_ARGUMENT
+///         with the direct solver, which has to be chosen anew after springs were added.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_add_springs(mspring_network *network,
+                                                                         const mspring_spring_def *defs,
+                                                                         uint32_t count, mspring_id *ids);
+
+/// Remove particles with all their springs, whether added or there from the beginning. In lists their ids are
+/// refused from then on (MSPRING_ERROR_ID); functions on ranges leave them out, and give 0 for what they have no
+/// more (the local origin for a position, MSPRING_NONE for a component). Springs that were not broken are told as
+/// broken (MSPRING_EVENT_BROKEN, the particle in other).
+/// @param particles  [count]
+/// @return as mspring_network_break_springs()
+/// @threads exclusive access to network
+/// @allocates at the first break, detachment and removal in a network   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_remove_particles(mspring_network *network,
+                                                                              const mspring_id *particles,
+                                                                              uint32_t count);
+
+/// Remove springs, likewise: as breaking them, but for good.
+/// @param springs  [count]
+/// @return as mspring_network_break_springs()
+/// @threads exclusive access to network
+/// @allocates at the first break, detachment and removal in a network   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_remove_springs(mspring_network *network,
+                                                                            const mspring_id *springs,
+                                                                            uint32_t count);
+
+/// Allow that ids of particles and springs that were added and have been removed are given to others from now on:
+/// the host has forgotten them, too. Until then they count as used, and so does the room that they took. Ids of
+/// those that the network was created with are never given again.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL; MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_recycle(mspring_network *network);
+
 /* ------------------------------------------------------------------------------------------- compaction */
 
 /// Leave springs that are broken out of the plan, so that a wreck costs what is left of it: lattices are swept
 /// where squares are left, strands as chains, single springs as web, and particles without spring as loose ones.
 /// Until then a broken spring costs as much as a whole one. Worth it where a quarter of the springs or more has
-/// broken.
+/// broken. Springs that were added are taken into the plan, which is worth it where they are to stay.
 ///
 /// Ids, values and thresholds of all springs stay as they are and can be read and set as before. **Slots change**:
 /// a view that was taken before is not valid any more, and hooks see other slots. Positions and velocities are

@@ -89,11 +89,11 @@ static bool is_coordinate(double value) {
 }
 
 // A definition's struct_size, where it is one of several.
-static mspring_result check_struct_of(mspring_builder *builder, const char *what, size_t index, const char *name,
+static mspring_result check_struct_of(mspringi_message *message, const char *what, size_t index, const char *name,
                                       size_t given, size_t known) {
     if (given == known)
         return MSPRING_OK;
-    return mspringi_fail(&builder->message, MSPRING_ERROR_STRUCT,
+    return mspringi_fail(message, MSPRING_ERROR_STRUCT,
                          "%s %zu: %s.struct_size is %zu, this library knows %zu: fill the struct with its init "
                          "function",
                          what, index, name, given, known);
@@ -105,31 +105,31 @@ static mspring_result name_definition(mspring_builder *builder, mspring_result r
     return mspringi_fail(&builder->message, result, "definition %zu: %s", index, reason.text);
 }
 
-static mspring_result check_mass(mspring_builder *builder, const char *what, size_t index, float mass) {
+static mspring_result check_mass(mspringi_message *message, const char *what, size_t index, float mass) {
     if (in_range(mass, SMALLEST_MASS, LARGEST_VALUE))
         return MSPRING_OK;
-    return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT,
-                         "%s %zu: mass is %g kg, it must be 1e-30 to 1e30", what, index, (double)mass);
+    return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s %zu: mass is %g kg, it must be 1e-30 to 1e30", what,
+                         index, (double)mass);
 }
 
-static mspring_result check_coefficients(mspring_builder *builder, const char *what, size_t index, float stiffness,
+static mspring_result check_coefficients(mspringi_message *message, const char *what, size_t index, float stiffness,
                                          float damping, uint32_t flags) {
     if (!in_range(stiffness, 0.0f, LARGEST_VALUE))
-        return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT,
-                             "%s %zu: stiffness is %g, it must be 0 to 1e30", what, index, (double)stiffness);
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s %zu: stiffness is %g, it must be 0 to 1e30", what,
+                             index, (double)stiffness);
     if (!in_range(damping, 0.0f, LARGEST_VALUE))
-        return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT,
-                             "%s %zu: damping is %g, it must be 0 to 1e30", what, index, (double)damping);
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s %zu: damping is %g, it must be 0 to 1e30", what,
+                             index, (double)damping);
     if (flags & ~(uint32_t)MSPRING_SPRING_RELATIVE)
-        return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "%s %zu: unknown spring flags 0x%x", what,
-                             index, (unsigned)flags);
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s %zu: unknown spring flags 0x%x", what, index,
+                             (unsigned)flags);
     return MSPRING_OK;
 }
 
-static mspring_result check_particle(mspring_builder *builder, size_t index, const mspring_particle_def *def) {
-    mspringi_message *message = &builder->message;
+mspring_result mspringi_check_particle_def(mspringi_message *message, size_t index,
+                                           const mspring_particle_def *def) {
     mspring_result result =
-        check_struct_of(builder, "particle", index, "mspring_particle_def", def->struct_size, sizeof *def);
+        check_struct_of(message, "particle", index, "mspring_particle_def", def->struct_size, sizeof *def);
     if (result != MSPRING_OK)
         return result;
     if (!is_coordinate(def->x) || !is_coordinate(def->y))
@@ -141,32 +141,25 @@ static mspring_result check_particle(mspring_builder *builder, size_t index, con
     if (def->flags & ~(uint32_t)MSPRING_PARTICLE_PINNED)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "particle %zu: unknown particle flags 0x%x", index,
                              (unsigned)def->flags);
-    return check_mass(builder, "particle", index, def->mass);
+    return check_mass(message, "particle", index, def->mass);
 }
 
-// Check a spring and find its rest length.
-static mspring_result check_spring(mspring_builder *builder, size_t index, const mspring_spring_def *def,
-                                   float *rest_length) {
-    mspringi_message *message = &builder->message;
-    mspring_result result =
-        check_struct_of(builder, "spring", index, "mspring_spring_def", def->struct_size, sizeof *def);
-    if (result != MSPRING_OK)
-        return result;
-    if (def->a >= builder->particle_count || def->b >= builder->particle_count)
-        return mspringi_fail(message, MSPRING_ERROR_ID,
-                             "spring %zu joins particles %u and %u, but there are only %zu particles", index,
-                             (unsigned)def->a, (unsigned)def->b, builder->particle_count);
+mspring_result mspringi_check_spring_def(mspringi_message *message, size_t index, const mspring_spring_def *def) {
+    return check_struct_of(message, "spring", index, "mspring_spring_def", def->struct_size, sizeof *def);
+}
+
+mspring_result mspringi_check_spring_values(mspringi_message *message, size_t index,
+                                            const mspring_spring_def *def) {
     if (def->a == def->b)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "spring %zu joins particle %u to itself", index,
                              (unsigned)def->a);
-    result = check_coefficients(builder, "spring", index, def->stiffness, def->damping, def->flags);
-    if (result != MSPRING_OK)
-        return result;
+    return check_coefficients(message, "spring", index, def->stiffness, def->damping, def->flags);
+}
 
+mspring_result mspringi_find_rest_length(mspringi_message *message, size_t index, const mspring_spring_def *def,
+                                         double dx, double dy, float *rest_length) {
     float length = def->rest_length;
     if (length == MSPRING_REST_LENGTH_DISTANCE) {
-        const mspringi_particle *a = &builder->particles[def->a], *b = &builder->particles[def->b];
-        const double dx = b->x - a->x, dy = b->y - a->y;
         length = (float)sqrt(dx * dx + dy * dy);
         if (!(length > 0.0f))
             return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
@@ -180,6 +173,24 @@ static mspring_result check_spring(mspring_builder *builder, size_t index, const
                              (double)length);
     *rest_length = length;
     return MSPRING_OK;
+}
+
+// Check a spring and find its rest length.
+static mspring_result check_spring(mspring_builder *builder, size_t index, const mspring_spring_def *def,
+                                   float *rest_length) {
+    mspringi_message *message = &builder->message;
+    mspring_result result = mspringi_check_spring_def(message, index, def);
+    if (result != MSPRING_OK)
+        return result;
+    if (def->a >= builder->particle_count || def->b >= builder->particle_count)
+        return mspringi_fail(message, MSPRING_ERROR_ID,
+                             "spring %zu joins particles %u and %u, but there are only %zu particles", index,
+                             (unsigned)def->a, (unsigned)def->b, builder->particle_count);
+    result = mspringi_check_spring_values(message, index, def);
+    if (result != MSPRING_OK)
+        return result;
+    const mspringi_particle *a = &builder->particles[def->a], *b = &builder->particles[def->b];
+    return mspringi_find_rest_length(message, index, def, b->x - a->x, b->y - a->y, rest_length);
 }
 
 /* ------------------------------------------------------------------------------------ particles and springs */
@@ -207,7 +218,7 @@ mspring_result mspring_builder_add_particles(mspring_builder *builder, const msp
     const size_t before = builder->particle_count;
     mspring_result result = reserve_particles(builder, count);
     for (size_t i = 0; result == MSPRING_OK && i < count; ++i) {
-        result = check_particle(builder, before + i, &defs[i]);
+        result = mspringi_check_particle_def(&builder->message, before + i, &defs[i]);
         if (result == MSPRING_OK)
             append_particle(builder, &defs[i]);
         else if (count > 1)
@@ -271,12 +282,12 @@ static mspring_result check_materials(mspring_builder *builder, const mspring_la
                              (unsigned)def->material_count, (unsigned)MSPRING_CELL_EMPTY);
     for (uint32_t i = 0; i < def->material_count; ++i) {
         const mspring_material *material = &def->materials[i];
-        mspring_result result =
-            check_struct_of(builder, "material", i, "mspring_material", material->struct_size, sizeof *material);
+        mspring_result result = check_struct_of(&builder->message, "material", i, "mspring_material",
+                                                material->struct_size, sizeof *material);
         if (result == MSPRING_OK)
-            result = check_mass(builder, "material", i, material->mass);
+            result = check_mass(&builder->message, "material", i, material->mass);
         if (result == MSPRING_OK)
-            result = check_coefficients(builder, "material", i, material->stiffness, material->damping,
+            result = check_coefficients(&builder->message, "material", i, material->stiffness, material->damping,
                                         material->spring_flags);
         if (result != MSPRING_OK)
             return result;
@@ -446,10 +457,10 @@ static mspring_result check_rope(mspring_builder *builder, const mspring_rope_de
                              (unsigned)def->from);
     if (def->segment_count == 0)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "rope has no segment, it needs at least one");
-    result = check_mass(builder, "rope from particle", def->from, def->mass);
+    result = check_mass(&builder->message, "rope from particle", def->from, def->mass);
     if (result == MSPRING_OK)
-        result = check_coefficients(builder, "rope from particle", def->from, def->stiffness, def->damping,
-                                    def->spring_flags);
+        result = check_coefficients(&builder->message, "rope from particle", def->from, def->stiffness,
+                                    def->damping, def->spring_flags);
     if (result != MSPRING_OK)
         return result;
     if (!in_range(def->slack, 0.001f, 1000.0f))

@@ -6,6 +6,7 @@
 #include "move.h"
 #include "network/springs.h"
 #include "replan.h"
+#include "topology/spare.h"
 
 // Exchange the layout, and keep or free the one before.
 static mspring_result exchange(mspring_network *network, mspringi_topology *topology) {
@@ -66,14 +67,14 @@ mspring_result mspring_network_expand(mspring_network *network) {
 
 /* -------------------------------------------------------------------------------------------------- compaction */
 
-// Whether some spring that is swept is broken.
-static bool has_broken(const mspring_network *network) {
+// Whether some spring that is swept is broken, or one was added that the plan does not know.
+static bool has_something_to_do(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     mspringi_place_reader reader;
     mspringi_places_begin(&reader, &t->places, 0);
     for (mspring_id s = 0; s < t->spring_count; ++s) {
         const mspringi_place place = mspringi_places_next(&reader);
-        if (!mspringi_place_is_live(network, place) && !mspringi_place_is_parked(t, place))
+        if (mspringi_place_is_live(network, place) != mspringi_place_is_woven(t, place))
             return true;
     }
     return false;
@@ -106,7 +107,7 @@ static mspring_result go_on(mspring_network *network) {
 
 static MSPRINGI_NOINLINE mspring_result compact(mspring_network *network, uint32_t pieces) {
     mspring_result result = MSPRING_OK;
-    if (!network->replan && has_broken(network))
+    if (!network->replan && has_something_to_do(network))
         result = mspringi_replan_begin(network, &network->replan);
     for (uint32_t done = 0; result == MSPRING_OK && network->replan && (pieces == 0 || done < pieces); ++done)
         result = go_on(network);

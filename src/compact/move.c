@@ -254,6 +254,7 @@ mspring_result mspringi_move(mspring_network *network, const mspringi_topology *
         return result;
     }
     move_implicit(&to, network);
+    mspringi_graft_forget(&to.graft);
     take_print(&to, network->is_compact ? network->whole_print : network->topology_print);
     const mspring_network old = *network;
     *network = to;

@@ -1,16 +1,15 @@
 /// A topology of the springs that are left.
 #include "replan.h"
 
-#include <string.h>
-
 #include "network/springs.h"
+#include "topology/spare.h"
 
 struct mspringi_replan {
     struct mspring_builder left; ///< particles in the first topology's rows and columns, live springs
     mspring_id *ids;             ///< [left.spring_count] of the live springs, rising
     mspringi_assembly *assembly;
     mspringi_topology topology; ///< once the assembly has made it
-    uint64_t links;             ///< edits.links when live springs were listed
+    uint64_t links, growth;     ///< edits.links and edits.growth when live springs were listed
     uint32_t done;              ///< pieces of the work
 };
 
@@ -48,6 +47,7 @@ static mspring_result list_what_is_left(mspringi_replan *replan, mspring_network
     mspringi_place_reader places, first_places;
     size_t live = 0;
     replan->links = network->edits.links;
+    replan->growth = network->edits.growth;
     mspringi_places_begin(&places, &network->topology.places, 0);
     for (mspring_id s = 0; s < first->spring_count; ++s)
         live += mspringi_place_is_live(network, mspringi_places_next(&places));
@@ -58,6 +58,9 @@ static mspring_result list_what_is_left(mspringi_replan *replan, mspring_network
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to list %zu springs that are left",
                              live);
     place_particles(first, left->particles);
+    for (mspring_id p = 0; p < first->particle_count; ++p)
+        if (!mspringi_particle_exists(network, p))
+            left->particles[p].flags = MSPRINGI_PARTICLE_ABSENT;
     left->particle_count = first->particle_count;
     mspringi_places_begin(&places, &network->topology.places, 0);
     mspringi_places_begin(&first_places, &first->places, 0);
@@ -72,8 +75,8 @@ static mspring_result list_what_is_left(mspringi_replan *replan, mspring_network
         left->springs[left->spring_count++] =
             (mspringi_spring){.a = first->particle_of_slot[base], .b = first->particle_of_slot[tip]};
     }
-    return mspringi_topology_begin(left, mspringi_tasks_concurrency(network->tasks), &network->plan_memory,
-                                   &network->message, &replan->assembly);
+    return mspringi_topology_begin(left, &first->reserve, mspringi_tasks_concurrency(network->tasks),
+                                   &network->plan_memory, &network->message, &replan->assembly);
 }
 
 /* ------------------------------------------------------------------------------------------------- parking */
@@ -82,56 +85,57 @@ static mspring_result no_memory_to_park(mspring_network *network, uint32_t parke
     return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to park %u springs", (unsigned)parked);
 }
 
-// Give the springs that are not left places behind those that are, with records behind the web's rungs, of which
-// one serves both ends. Who asked for the replan frees all of it if this fails.
+// Give the springs that are not left places behind those that are: spare ones those that are kept for them, the
+// others behind these.
+static void number_places(const mspringi_replan *replan, const mspringi_topology *first, const mspringi_topology *t,
+                          const mspringi_place *woven_places, mspringi_place *places) {
+    const uint32_t woven = (uint32_t)replan->left.spring_count;
+    mspringi_place next_parked = t->chain_places + t->woven_count + mspringi_spare_springs(t);
+    for (mspring_id s = 0, next_woven = 0; s < first->spring_count; ++s) {
+        if (next_woven < woven && replan->ids[next_woven] == s)
+            places[s] = woven_places[next_woven++];
+        else
+            places[s] = s < t->reserve.first_spring ? next_parked++ : mspringi_spare_place(t, s);
+    }
+}
+
+// Write down what springs outside of the plan join. Those that have been removed keep whatever ends: their
+// particles may be gone, too.
+static void note_ends(const mspring_network *network, const mspringi_topology *first, mspringi_topology *t,
+                      const mspringi_place *places) {
+    mspringi_place_reader first_places;
+    mspringi_places_begin(&first_places, &first->places, 0);
+    for (mspring_id s = 0; s < t->spring_count; ++s) {
+        const mspringi_place first_place = mspringi_places_next(&first_places);
+        uint32_t base, tip;
+        if (mspringi_place_is_woven(t, places[s]) || !mspringi_spring_exists(network, s))
+            continue;
+        mspringi_topology_ends(first, first_place, &base, &tip);
+        t->leftover_a[places[s] - t->chain_places] = t->slot_of_particle[first->particle_of_slot[base]];
+        t->leftover_b[places[s] - t->chain_places] = t->slot_of_particle[first->particle_of_slot[tip]];
+    }
+}
+
+// Who asked for the replan frees all of it if this fails.
 static mspring_result park(mspringi_replan *replan, mspring_network *network, mspringi_place *woven_places) {
     const mspringi_topology *first = first_topology(network);
     mspringi_topology *t = &replan->topology;
-    const uint32_t all = first->spring_count, woven = t->spring_count, parked = all - woven;
-    const size_t leftover = (size_t)t->leftover_count + parked;
-    const uint32_t rungs = t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0;
-    if ((uint64_t)t->chain_places + leftover >= MSPRING_NONE ||
-        (uint64_t)rungs * MSPRINGI_WIDTH + parked >= MSPRING_NONE)
-        return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT, "%u springs are more than can be numbered",
-                             (unsigned)all);
-    mspringi_place *places = mspringi_alloc(&network->plan_memory, all, sizeof *places);
-    uint32_t *a = mspringi_alloc(&network->plan_memory, leftover, sizeof *a);
-    uint32_t *b = mspringi_alloc(&network->plan_memory, leftover, sizeof *b);
-    uint32_t *entry = mspringi_alloc(&network->plan_memory, 2 * leftover, sizeof *entry);
-    if (!places || !a || !b || !entry)
+    uint32_t woven = 0;
+    while (woven < replan->left.spring_count && replan->ids[woven] < t->reserve.first_spring)
+        ++woven;
+    const uint32_t parked = t->reserve.first_spring - woven;
+    mspringi_place *places = mspringi_alloc(&network->plan_memory, t->reserve.spring_end, sizeof *places);
+    if (!places)
         return no_memory_to_park(network, parked);
-    memcpy(a, t->leftover_a, t->leftover_count * sizeof *a);
-    memcpy(b, t->leftover_b, t->leftover_count * sizeof *b);
-    if (t->leftover_count > 0)
-        memcpy(entry, t->web.entry, 2 * (size_t)t->leftover_count * sizeof *entry);
-    mspringi_place_reader first_places;
-    mspringi_places_begin(&first_places, &first->places, 0);
-    for (mspring_id s = 0, next_woven = 0, next_parked = 0; s < all; ++s) {
-        const mspringi_place first_place = mspringi_places_next(&first_places);
-        if (next_woven < woven && replan->ids[next_woven] == s) {
-            places[s] = woven_places[next_woven++];
-            continue;
-        }
-        const uint32_t i = t->leftover_count + next_parked;
-        uint32_t base, tip;
-        mspringi_topology_ends(first, first_place, &base, &tip);
-        places[s] = t->chain_places + i;
-        a[i] = t->slot_of_particle[first->particle_of_slot[base]];
-        b[i] = t->slot_of_particle[first->particle_of_slot[tip]];
-        entry[2 * i] = entry[2 * i + 1] = rungs * MSPRINGI_WIDTH + next_parked++;
-    }
-    if (!mspringi_places_create(&t->places, places, all, all, t->lattice_places, &network->plan_memory))
-        return no_memory_to_park(network, parked);
+    number_places(replan, first, t, woven_places, places);
+    t->spring_count = first->spring_count;
+    mspring_result result = mspringi_spare_extend(t, places, parked, &network->plan_memory, &network->message);
+    if (result != MSPRING_OK)
+        return result;
+    note_ends(network, first, t, places);
+    mspringi_spare_count(t, t->particle_count, t->spring_count);
     mspringi_free(&network->plan_memory, places);
     mspringi_free(&network->plan_memory, woven_places);
-    mspringi_free(&network->plan_memory, t->leftover_a);
-    mspringi_free(&network->plan_memory, t->leftover_b);
-    mspringi_free(&network->plan_memory, t->web.entry);
-    t->leftover_a = a;
-    t->leftover_b = b;
-    t->web.entry = entry;
-    t->spring_count = all;
-    t->parked_count = parked;
     return MSPRING_OK;
 }
 
@@ -167,6 +171,8 @@ uint32_t mspringi_replan_pieces_left(const mspringi_replan *replan) {
 bool mspringi_replan_is_valid(const mspringi_replan *replan, const mspring_network *network) {
     const mspringi_topology *t = &replan->topology;
     mspringi_place_reader places, planned;
+    if (replan->growth != network->edits.growth)
+        return false;
     mspringi_places_begin(&places, &network->topology.places, 0);
     mspringi_places_begin(&planned, &t->places, 0);
     for (mspring_id s = 0; replan->links != network->edits.links && s < t->spring_count; ++s) {

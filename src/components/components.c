@@ -6,6 +6,7 @@
 
 #include "base/cpu.h"
 #include "edits/events.h"
+#include "edits/growth.h"
 #include "roots.h"
 
 void mspringi_components_destroy(mspringi_components *components, mspringi_memory *memory) {
@@ -22,7 +23,7 @@ static mspring_result reserve(mspring_network *network) {
     if (network->components.number)
         return MSPRING_OK;
     mspringi_memory *memory = &network->memory;
-    const size_t particles = network->topology.particle_count;
+    const size_t particles = network->topology.reserve.particle_end;
     mspringi_components made = {
         .number = mspringi_alloc(memory, particles, sizeof *made.number),
         .old = mspringi_alloc(memory, particles, sizeof *made.old),
@@ -35,8 +36,10 @@ static mspring_result reserve(mspring_network *network) {
     if (!made.number || !made.old || !made.head || !made.old_head || !made.size || !made.root)
         result = mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                                "no memory for the components of %zu particles", particles);
-    if (result == MSPRING_OK && !network->incidence.first)
-        result = mspringi_incidence_create(&network->incidence, &network->topology, memory, &network->message);
+    if (result == MSPRING_OK)
+        result = mspringi_incidence_reserve(network);
+    for (size_t p = 0; result == MSPRING_OK && p < particles; ++p)
+        made.number[p] = made.old[p] = MSPRING_NONE;
     if (result == MSPRING_OK)
         network->components = made;
     else
@@ -55,6 +58,10 @@ static void number_components(mspring_network *network) {
     mspringi_components *c = &network->components;
     c->count = 0;
     for (mspring_id p = 0; p < t->particle_count; ++p) {
+        if (!mspringi_particle_exists(network, p)) {
+            c->number[p] = MSPRING_NONE;
+            continue;
+        }
         const uint32_t slot = t->slot_of_particle[p];
         const uint32_t root = c->root[slot] & NUMBERED ? slot : c->root[slot];
         if (!(c->root[root] & NUMBERED)) {
@@ -76,6 +83,8 @@ static void push_event(mspring_network *network, mspring_event_kind kind, msprin
 static void compare_heads(mspring_network *network) {
     const mspringi_components *c = &network->components;
     for (mspring_id p = 0; p < network->topology.particle_count; ++p) {
+        if (c->number[p] == MSPRING_NONE || c->old[p] == MSPRING_NONE)
+            continue; // removed or added since
         const mspring_id head = c->head[c->number[p]], old_head = c->old_head[c->old[p]];
         if (head == p && old_head != p)
             push_event(network, MSPRING_EVENT_SPLIT, p, old_head);
@@ -101,7 +110,8 @@ mspring_result mspring_network_update_components(mspring_network *network, uint3
         return result;
     mspringi_components *c = &network->components;
     const bool is_first = c->count == 0,
-               unchanged = !is_first && mspringi_links_change_nothing(network, c->seen, c->number, NULL);
+               unchanged = !is_first && c->seen_growth == network->edits.growth &&
+                           mspringi_links_change_nothing(network, c->seen, c->number, NULL);
     if (!unchanged) {
         swap(&c->number, &c->old);
         swap(&c->head, &c->old_head);
@@ -111,6 +121,7 @@ mspring_result mspring_network_update_components(mspring_network *network, uint3
             compare_heads(network);
     }
     c->seen = network->edits.links;
+    c->seen_growth = network->edits.growth;
     if (count)
         *count = c->count;
     if (changed)
@@ -155,7 +166,7 @@ static MSPRINGI_NOINLINE void measure(const mspring_network *network, uint32_t f
         components[i] = (mspring_component){
             .struct_size = sizeof *components, .head = c->head[first + i], .particle_count = c->size[first + i]};
     for (mspring_id p = 0; p < network->topology.particle_count; ++p)
-        if (c->number[p] - first < count) // unsigned: numbers below first are not
+        if (c->number[p] - first < count && mspringi_particle_exists(network, p)) // unsigned: below first are not
             add_particle(network, p, &components[c->number[p] - first]);
     for (uint32_t i = 0; i < count; ++i) {
         components[i].x = network->origin_x + components[i].x / components[i].mass;

@@ -17,7 +17,7 @@ typedef struct mspringi_components {
     uint32_t *size; ///< [particles] of each component
     uint32_t *root; ///< [slots] while an update is made, the lowest slot that a slot hangs together with
     uint32_t count; ///< 0 before the first update
-    uint64_t seen;  ///< edits.links that they account for
+    uint64_t seen, seen_growth; ///< edits.links and edits.growth that they account for
 } mspringi_components;
 
 void mspringi_components_destroy(mspringi_components *components, mspringi_memory *memory);

@@ -7,6 +7,7 @@
 #include "roots.h"
 
 #include "base/forest.h"
+#include "edits/growth.h"
 #include "network/springs.h"
 
 /// So many changes are looked at one by one, before finding everything anew costs less.
@@ -90,16 +91,16 @@ static pair ends_of(const mspring_network *network, mspring_id spring) {
 }
 
 static bool have_common_neighbour(const mspring_network *network, pair ends) {
-    const mspringi_incidence *incidence = &network->incidence;
-    for (uint32_t i = incidence->first[ends.a]; i < incidence->first[ends.a + 1]; ++i) {
-        if (!mspringi_spring_is_live(network, incidence->springs[i]))
+    mspringi_around around_a = mspringi_around_begin(network, ends.a);
+    for (mspring_id s; (s = mspringi_around_next(network, &around_a)) != MSPRING_NONE;) {
+        if (!mspringi_spring_is_live(network, s))
             continue;
-        const pair first = ends_of(network, incidence->springs[i]);
+        const pair first = ends_of(network, s);
         const mspring_id between = first.a == ends.a ? first.b : first.a;
-        for (uint32_t j = incidence->first[between]; j < incidence->first[between + 1]; ++j) {
-            const pair second = ends_of(network, incidence->springs[j]);
-            if ((second.a == ends.b || second.b == ends.b) &&
-                mspringi_spring_is_live(network, incidence->springs[j]))
+        mspringi_around around_between = mspringi_around_begin(network, between);
+        for (mspring_id r; (r = mspringi_around_next(network, &around_between)) != MSPRING_NONE;) {
+            const pair second = ends_of(network, r);
+            if ((second.a == ends.b || second.b == ends.b) && mspringi_spring_is_live(network, r))
                 return true;
         }
     }

@@ -61,7 +61,7 @@ static void list_ends(const mspring_network *network, mspringi_direct *direct) {
     mspringi_places_begin(&reader, &t->places, 0);
     for (mspring_id spring = 0; spring < t->spring_count; ++spring) {
         const mspringi_place place = mspringi_places_next(&reader);
-        if (!mspringi_place_is_parked(t, place))
+        if (!mspringi_place_is_parked(t, place) && mspringi_spring_exists(network, spring))
             mspringi_topology_ends(t, place, &direct->end_a[place], &direct->end_b[place]);
     }
 }
@@ -286,7 +286,10 @@ void mspringi_direct_solve(mspring_network *network) {
     const bool is_soft = finish_diagonal(&n->system, slots);
     if (!(is_soft && solve_in_single(network)) && !solve_in_double(network)) {
         // Numbers overflowed: see to it that the step is refused.
-        n->x[network->topology.slot_of_particle[0]] = NAN;
+        mspring_id named = 0;
+        while (!mspringi_particle_exists(network, named))
+            ++named;
+        n->x[network->topology.slot_of_particle[named]] = NAN;
         return;
     }
     hold_pinned(n, slots);

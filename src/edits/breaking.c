@@ -4,6 +4,7 @@
 #include "base/cpu.h"
 #include "compact/compact.h"
 #include "events.h"
+#include "growth.h"
 #include "network/springs.h"
 #include "ramps.h"
 #include "selection.h"
@@ -12,32 +13,45 @@
 /// Longest log of broken and restored springs: more than a burst of them in one frame.
 #define LONGEST_LOG 4096
 
-mspring_result mspringi_breaking_reserve(mspring_network *network) {
+static mspring_result fail_for_memory(mspring_network *network) {
+    return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for breaking any of %u springs",
+                         (unsigned)network->topology.spring_count);
+}
+
+mspring_result mspringi_breaking_reserve_log(mspring_network *network) {
+    const uint32_t springs = network->topology.reserve.spring_end;
+    uint32_t log_size = 1;
     if (network->edits.link_log)
         return MSPRING_OK;
-    mspringi_memory *memory = &network->memory;
-    const uint32_t springs = network->topology.spring_count;
-    uint32_t log_size = 1;
     while (log_size < springs && log_size < LONGEST_LOG)
         log_size *= 2;
-    bool any_absolute = false;
-    for (mspring_id s = 0; s < springs && !any_absolute; ++s)
-        any_absolute = !mspringi_spring_is_relative(network, s);
-    if (any_absolute && !network->kept)
-        network->kept = mspringi_alloc(memory, springs, sizeof *network->kept);
-    if (network->kept || !any_absolute)
-        network->edits.link_log = mspringi_alloc(memory, log_size, sizeof *network->edits.link_log);
+    network->edits.link_log = mspringi_alloc(&network->memory, log_size, sizeof *network->edits.link_log);
     if (!network->edits.link_log)
-        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for breaking any of %u springs",
-                             (unsigned)springs);
+        return fail_for_memory(network);
     network->edits.link_mask = log_size - 1;
     return MSPRING_OK;
+}
+
+mspring_result mspringi_breaking_reserve(mspring_network *network) {
+    const mspringi_reserve *reserve = &network->topology.reserve;
+    bool any_absolute = reserve->spring_end > reserve->first_spring;
+    if (network->kept)
+        return mspringi_breaking_reserve_log(network);
+    for (mspring_id s = 0; s < reserve->first_spring && !any_absolute; ++s)
+        any_absolute = !mspringi_spring_is_relative(network, s);
+    if (any_absolute)
+        network->kept = mspringi_alloc(&network->memory, reserve->spring_end, sizeof *network->kept);
+    return network->kept || !any_absolute ? mspringi_breaking_reserve_log(network) : fail_for_memory(network);
 }
 
 static void toggle(mspring_network *network, mspring_id spring, mspringi_place place) {
     network->live[place / MSPRINGI_WIDTH] ^= (uint16_t)(1u << place % MSPRINGI_WIDTH);
     network->edits.link_log[network->edits.links++ & network->edits.link_mask] = spring;
     mspringi_wake_spring(network, spring);
+}
+
+void mspringi_spring_come_live(mspring_network *network, mspring_id spring) {
+    toggle(network, spring, mspringi_place_of(&network->topology, spring));
 }
 
 bool mspringi_spring_break(mspring_network *network, mspring_id spring) {
@@ -73,8 +87,7 @@ static void push_event(mspring_network *network, mspring_event_kind kind, msprin
 
 mspring_result mspring_network_break_springs(mspring_network *network, const mspring_id *springs, uint32_t count) {
     mspringi_selection at;
-    const uint32_t total = mspring_network_spring_count(network);
-    mspring_result result = mspringi_select_list(network, "spring", total, springs, count, springs, springs, &at);
+    mspring_result result = mspringi_select_list(network, MSPRINGI_SPRINGS, springs, count, springs, springs, &at);
     if (result == MSPRING_OK && count > 0)
         result = mspringi_breaking_reserve(network);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
@@ -97,8 +110,7 @@ static MSPRINGI_NOINLINE void restore_all(mspring_network *network, const msprin
 mspring_result mspring_network_restore_springs(mspring_network *network, const mspring_id *springs, uint32_t count,
                                                double ramp_seconds) {
     mspringi_selection at;
-    const uint32_t total = mspring_network_spring_count(network);
-    mspring_result result = mspringi_select_list(network, "spring", total, springs, count, springs, springs, &at);
+    mspring_result result = mspringi_select_list(network, MSPRINGI_SPRINGS, springs, count, springs, springs, &at);
     if (result == MSPRING_OK && !(ramp_seconds >= 0.0 && ramp_seconds <= MSPRINGI_LONGEST_RAMP))
         result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                                "the ramp is %g s long, it must be 0 to 1e6", ramp_seconds);
@@ -118,21 +130,19 @@ mspring_result mspring_network_restore_springs(mspring_network *network, const m
 mspring_result mspring_network_detach_particles(mspring_network *network, const mspring_id *particles,
                                                 uint32_t count) {
     mspringi_selection at;
-    const uint32_t total = mspring_network_particle_count(network);
     mspring_result result =
-        mspringi_select_list(network, "particle", total, particles, count, particles, particles, &at);
+        mspringi_select_list(network, MSPRINGI_PARTICLES, particles, count, particles, particles, &at);
     if (result == MSPRING_OK && count > 0)
         result = mspringi_breaking_reserve(network);
     if (result != MSPRING_OK)
         return result;
-    const mspringi_incidence *incidence = &network->incidence;
-    if (count > 0 && !incidence->first)
-        result =
-            mspringi_incidence_create(&network->incidence, &network->topology, &network->memory, &network->message);
+    if (count > 0)
+        result = mspringi_incidence_reserve(network);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
-        for (uint32_t j = incidence->first[particles[i]]; j < incidence->first[particles[i] + 1]; ++j)
-            if (mspringi_spring_break(network, incidence->springs[j]))
-                push_event(network, MSPRING_EVENT_BROKEN, incidence->springs[j], particles[i]);
+        mspringi_around around = mspringi_around_begin(network, particles[i]);
+        for (mspring_id s; (s = mspringi_around_next(network, &around)) != MSPRING_NONE;)
+            if (mspringi_spring_break(network, s))
+                push_event(network, MSPRING_EVENT_BROKEN, s, particles[i]);
         push_event(network, MSPRING_EVENT_DETACHED, particles[i], MSPRING_NONE);
     }
     return result;

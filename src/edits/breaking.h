@@ -13,6 +13,12 @@
 /// Allocate what breaking needs, if it is not there yet.
 mspring_result mspringi_breaking_reserve(mspring_network *network);
 
+/// The part of that which is needed to add springs.
+mspring_result mspringi_breaking_reserve_log(mspring_network *network);
+
+/// Let a spring that is not live be so. Its values are the caller's to set.
+void mspringi_spring_come_live(mspring_network *network, mspring_id spring);
+
 /// Break one spring; after mspringi_breaking_reserve(). False: it was broken.
 bool mspringi_spring_break(mspring_network *network, mspring_id spring);
 

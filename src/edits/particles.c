@@ -35,8 +35,11 @@ static mspring_result check_masses(mspring_network *network, const mspringi_sele
     if (all)
         return MSPRING_OK;
     uint32_t i = 0;
-    while (mspringi_is_mass(mass[i]))
+    while (i < at->count &&
+           (mspringi_is_mass(mass[i]) || !mspringi_particle_exists(network, mspringi_selected(at, i))))
         ++i;
+    if (i == at->count)
+        return MSPRING_OK;
     return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                          "particle %u: mass is %g kg, it must be 1e-30 to 1e30", (unsigned)mspringi_selected(at, i),
                          (double)mass[i]);
@@ -45,7 +48,7 @@ static mspring_result check_masses(mspring_network *network, const mspringi_sele
 mspring_result mspringi_reserve_spring_masses(mspring_network *network) {
     if (!network->fractions.values || network->spring_mass)
         return MSPRING_OK;
-    const size_t count = network->topology.particle_count;
+    const size_t count = network->topology.reserve.particle_end;
     network->spring_mass = mspringi_alloc(&network->memory, count, sizeof *network->spring_mass);
     if (!network->spring_mass)
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
@@ -58,6 +61,8 @@ static MSPRINGI_NOINLINE void store_masses(mspring_network *network, const mspri
                                            const float *mass) {
     for (uint32_t i = 0; i < at->count; ++i) {
         const mspring_id particle = mspringi_selected(at, i);
+        if (!mspringi_particle_exists(network, particle))
+            continue;
         float *inverse_mass = &network->inverse_mass[network->topology.slot_of_particle[particle]];
         network->mass[particle] = mass[i];
         if (network->inverse_mass_scale)
@@ -83,16 +88,14 @@ static mspring_result set_masses(mspring_network *network, const mspringi_select
 mspring_result mspring_network_set_masses(mspring_network *network, mspring_id first, uint32_t count,
                                           const float *mass) {
     mspringi_selection at;
-    const uint32_t total = mspring_network_particle_count(network);
-    mspring_result result = mspringi_select_range(network, "particle", total, first, count, mass, mass, &at);
+    mspring_result result = mspringi_select_range(network, MSPRINGI_PARTICLES, first, count, mass, mass, &at);
     return result == MSPRING_OK ? set_masses(network, &at, mass) : result;
 }
 
 mspring_result mspring_network_set_masses_at(mspring_network *network, const mspring_id *particles, uint32_t count,
                                              const float *mass) {
     mspringi_selection at;
-    const uint32_t total = mspring_network_particle_count(network);
-    mspring_result result = mspringi_select_list(network, "particle", total, particles, count, mass, mass, &at);
+    mspring_result result = mspringi_select_list(network, MSPRINGI_PARTICLES, particles, count, mass, mass, &at);
     return result == MSPRING_OK ? set_masses(network, &at, mass) : result;
 }
 
@@ -100,7 +103,7 @@ mspring_result mspring_network_renew_relative_springs(mspring_network *network) 
     mspring_result result = mspringi_enter(network);
     if (result != MSPRING_OK || !network->spring_mass)
         return result;
-    memcpy(network->spring_mass, network->mass, network->topology.particle_count * sizeof *network->mass);
+    memcpy(network->spring_mass, network->mass, network->topology.reserve.particle_end * sizeof *network->mass);
     const mspringi_fp_state before = mspringi_fp_enter();
     mspringi_renew_relative(network);
     mspringi_fp_leave(before);
@@ -127,7 +130,7 @@ static mspring_result check_scales(mspring_network *network, const mspringi_sele
 mspring_result mspringi_reserve_inverse_mass_scales(mspring_network *network) {
     if (network->inverse_mass_scale)
         return MSPRING_OK;
-    const uint32_t count = network->topology.particle_count;
+    const uint32_t count = network->topology.reserve.particle_end;
     float *scales = mspringi_alloc(&network->memory, count, sizeof *scales);
     if (!scales)
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
@@ -142,6 +145,8 @@ static MSPRINGI_NOINLINE void store_scales(mspring_network *network, const mspri
                                            const float *scale) {
     for (uint32_t i = 0; i < at->count; ++i) {
         const mspring_id particle = mspringi_selected(at, i);
+        if (!mspringi_particle_exists(network, particle))
+            continue;
         if (network->inverse_mass_scale)
             network->inverse_mass_scale[particle] = scale[i];
         network->inverse_mass[network->topology.slot_of_particle[particle]] = scale[i] / network->mass[particle];
@@ -165,16 +170,14 @@ static mspring_result set_scales(mspring_network *network, const mspringi_select
 mspring_result mspring_network_set_inverse_mass_scales(mspring_network *network, mspring_id first, uint32_t count,
                                                        const float *scale) {
     mspringi_selection at;
-    const uint32_t total = mspring_network_particle_count(network);
-    mspring_result result = mspringi_select_range(network, "particle", total, first, count, scale, scale, &at);
+    mspring_result result = mspringi_select_range(network, MSPRINGI_PARTICLES, first, count, scale, scale, &at);
     return result == MSPRING_OK ? set_scales(network, &at, scale) : result;
 }
 
 mspring_result mspring_network_set_inverse_mass_scales_at(mspring_network *network, const mspring_id *particles,
                                                           uint32_t count, const float *scale) {
     mspringi_selection at;
-    const uint32_t total = mspring_network_particle_count(network);
-    mspring_result result = mspringi_select_list(network, "particle", total, particles, count, scale, scale, &at);
+    mspring_result result = mspringi_select_list(network, MSPRINGI_PARTICLES, particles, count, scale, scale, &at);
     return result == MSPRING_OK ? set_scales(network, &at, scale) : result;
 }
 

@@ -7,6 +7,7 @@
 #include "base/mix.h"
 #include "breaking.h"
 #include "events.h"
+#include "growth.h"
 #include "network/springs.h"
 #include "selection.h"
 #include "sleep/sleep.h"
@@ -79,7 +80,7 @@ static void look_at(mspring_network *network, mspringi_place place) {
         event.kind = MSPRING_EVENT_RELAXED;
     else
         return;
-    event.id = mspringi_incidence_find(&network->incidence, t, t->particle_of_slot[values.base], place);
+    event.id = mspringi_around_find(network, t->particle_of_slot[values.base], place);
     event.strain = mspringi_spring_strain(network, event.id);
     if (event.kind == MSPRING_EVENT_BROKEN)
         (void)mspringi_spring_break(network, event.id);
@@ -139,9 +140,8 @@ mspring_result mspringi_strain_reserve(mspring_network *network) {
         return MSPRING_OK;
     const size_t words = mspringi_place_words(&network->topology);
     mspring_result result = mspringi_breaking_reserve(network);
-    if (result == MSPRING_OK && !network->incidence.first)
-        result =
-            mspringi_incidence_create(&network->incidence, &network->topology, &network->memory, &network->message);
+    if (result == MSPRING_OK)
+        result = mspringi_incidence_reserve(network);
     if (result != MSPRING_OK)
         return result;
     if (!strain->stressed)
@@ -185,6 +185,17 @@ void mspringi_strain_store(mspring_network *network, mspringi_place place, bool 
         strain->least[place] = fminf(strain->break_strain[place], strain->stress_strain[place]);
 }
 
+void mspringi_strain_forget(mspring_network *network, mspring_id spring) {
+    const mspringi_strain *strain = &network->strain;
+    const mspringi_place place = mspringi_place_of(&network->topology, spring);
+    if (strain->stressed)
+        strain->stressed[place / MSPRINGI_WIDTH] &= (uint16_t) ~(1u << place % MSPRINGI_WIDTH);
+    if (strain->break_strain)
+        mspringi_strain_store(network, place, false, INFINITY);
+    if (strain->stress_strain)
+        mspringi_strain_store(network, place, true, INFINITY);
+}
+
 static mspring_result set_thresholds(mspring_network *network, bool stress, const mspringi_selection *at,
                                      const float *strain) {
     for (uint32_t i = 0; i < at->count; ++i)
@@ -197,6 +208,8 @@ static mspring_result set_thresholds(mspring_network *network, bool stress, cons
         result = mspringi_strain_reserve_stress(network);
     for (uint32_t i = 0; result == MSPRING_OK && i < at->count; ++i) {
         const mspring_id spring = mspringi_selected(at, i);
+        if (!mspringi_spring_exists(network, spring))
+            continue;
         network->parameter_print =
             mspringi_mix(network->parameter_print, (uint64_t)(stress ? 9 : 8) << 32 | spring);
         network->parameter_print = mspringi_mix_floats(network->parameter_print, strain[i], 0.0f);
@@ -209,16 +222,14 @@ static mspring_result set_thresholds(mspring_network *network, bool stress, cons
 static mspring_result set_range(mspring_network *network, bool stress, mspring_id first, uint32_t count,
                                 const float *strain) {
     mspringi_selection at;
-    const uint32_t total = mspring_network_spring_count(network);
-    mspring_result result = mspringi_select_range(network, "spring", total, first, count, strain, strain, &at);
+    mspring_result result = mspringi_select_range(network, MSPRINGI_SPRINGS, first, count, strain, strain, &at);
     return result == MSPRING_OK ? set_thresholds(network, stress, &at, strain) : result;
 }
 
 static mspring_result set_list(mspring_network *network, bool stress, const mspring_id *springs, uint32_t count,
                                const float *strain) {
     mspringi_selection at;
-    const uint32_t total = mspring_network_spring_count(network);
-    mspring_result result = mspringi_select_list(network, "spring", total, springs, count, strain, strain, &at);
+    mspring_result result = mspringi_select_list(network, MSPRINGI_SPRINGS, springs, count, strain, strain, &at);
     return result == MSPRING_OK ? set_thresholds(network, stress, &at, strain) : result;
 }
 

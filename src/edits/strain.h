@@ -17,4 +17,7 @@ mspring_result mspringi_strain_reserve_stress(mspring_network *network);
 /// Set what a spring breaks or is stressed at; after these.
 void mspringi_strain_store(mspring_network *network, mspringi_place place, bool stress, float value);
 
+/// Let nothing happen to a spring by its strain.
+void mspringi_strain_forget(mspring_network *network, mspring_id spring);
+
 #endif

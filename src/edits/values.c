@@ -60,6 +60,8 @@ static MSPRINGI_NOINLINE void store_values(mspring_network *network, mspringi_pa
                                            const mspringi_selection *at, const float *values) {
     for (uint32_t i = 0; i < at->count; ++i) {
         const mspring_id spring = mspringi_selected(at, i);
+        if (!mspringi_spring_exists(network, spring))
+            continue;
         const mspringi_place place = mspringi_place_of(&network->topology, spring);
         network->parameter_print = mspringi_mix(network->parameter_print, (uint64_t)part << 32 | spring);
         network->parameter_print = mspringi_mix_floats(network->parameter_print, values[i], 0.0f);
@@ -95,16 +97,14 @@ static mspring_result set_values(mspring_network *network, mspringi_part part, c
 static mspring_result set_range(mspring_network *network, mspringi_part part, mspring_id first, uint32_t count,
                                 const float *values) {
     mspringi_selection at;
-    const uint32_t total = mspring_network_spring_count(network);
-    mspring_result result = mspringi_select_range(network, "spring", total, first, count, values, values, &at);
+    mspring_result result = mspringi_select_range(network, MSPRINGI_SPRINGS, first, count, values, values, &at);
     return result == MSPRING_OK ? set_values(network, part, &at, values) : result;
 }
 
 static mspring_result set_list(mspring_network *network, mspringi_part part, const mspring_id *springs,
                                uint32_t count, const float *values) {
     mspringi_selection at;
-    const uint32_t total = mspring_network_spring_count(network);
-    mspring_result result = mspringi_select_list(network, "spring", total, springs, count, values, values, &at);
+    mspring_result result = mspringi_select_list(network, MSPRINGI_SPRINGS, springs, count, values, values, &at);
     return result == MSPRING_OK ? set_values(network, part, &at, values) : result;
 }
 

@@ -64,7 +64,7 @@ static job plan_wave(const mspring_network *network, float h, mspringi_field bas
                      mspringi_sight *sights) {
     const mspringi_topology *t = &network->topology;
     job made = {.network = network, .base = base, .h = h, .count = count, .sights = sights};
-    const bool shared = (uint64_t)mspringi_woven_count(t) * count >= SMALLEST_SHARED_WORK;
+    const bool shared = (uint64_t)mspringi_swept_count(t) * count >= SMALLEST_SHARED_WORK;
     made.workers = shared ? mspringi_tasks_concurrency(network->tasks) : 1;
     while (made.workers > 1 && made.workers * (t->lag + 2 + SLACK) > t->wave_strips)
         made.workers--;
@@ -227,6 +227,30 @@ static void sweep_loose(const job *rest, const mspringi_strip *strip, uint32_t i
     end_share(rest, &share, index);
 }
 
+// The blocks of the loose row that added springs pull at take one substep, the others all of them at the first.
+static void sweep_grafted_loose(const job *rest, const mspringi_substep *substep, const mspringi_strip *strip,
+                                uint32_t number, uint32_t count) {
+    const mspring_network *network = rest->network;
+    const mspringi_topology *t = &network->topology;
+    const mspringi_span *all = &t->spans[t->rows[strip->first_row].first_span];
+    const uint32_t end = all->end_slot / MSPRINGI_WIDTH;
+    bool pulled = false;
+    for (uint32_t block = all->first_slot / MSPRINGI_WIDTH, next; block < end; block = next, pulled = !pulled) {
+        next = mspringi_graft_find_block(&network->graft, block, end, !pulled);
+        mspringi_span span = *all;
+        span.first_slot = block * MSPRINGI_WIDTH;
+        span.end_slot = next * MSPRINGI_WIDTH;
+        const uint32_t at_once = pulled || mspringi_floor_is_near(network, strip) ? 1 : count;
+        const uint32_t substeps = pulled ? 1 : number == 0 ? count : 0;
+        for (uint32_t i = 0; i < substeps && next > block; i += at_once) {
+            network->kernels->loose[rest->base.x != NULL](&substep->sweep, &span, at_once);
+            if (pulled)
+                mspringi_graft_pull(network, &substep->sweep, span.first_slot, span.end_slot);
+            mspringi_floor_touch(network, strip, &span, 1, rest->h);
+        }
+    }
+}
+
 // Take one substep after the other: all workers pack and sweep the web, the first one everything else. Substeps
 // have the packed nodes in two places in turn, so one meeting in each keeps the next from changing what this one
 // reads.
@@ -245,7 +269,7 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
         for (uint32_t s = t->wave_strips; s < t->strip_count; ++s) {
             const mspringi_row *row = &t->rows[t->strips[s].first_row];
             if (row->kind == MSPRINGI_ROW_LOOSE) {
-                if (i == 0)
+                if (i == 0 && network->graft.count == 0)
                     sweep_loose(rest, &t->strips[s], index);
             } else if (row->kind == MSPRINGI_ROW_WEB) {
                 strip = &t->strips[s];
@@ -260,6 +284,8 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
             if (i == 0)
                 begin_share(rest, &share);
             mspringi_web_sweep(network, &substep, &share);
+            if (network->graft.count > 0)
+                mspringi_graft_pull(network, &substep.sweep, share.first_slot, share.end_slot);
             mspringi_floor_touch(network, strip, &share, 1, substep.sweep.h);
             if (i + 1 == rest->count)
                 end_share(rest, &share, index);
@@ -279,15 +305,34 @@ static void sweep_rest(mspring_network *network, float h, mspringi_field base, u
     if (t->wave_strips == t->strip_count)
         return;
     job rest = {.network = network, .base = base, .h = h, .count = count, .workers = 1, .sights = sights};
-    if ((uint64_t)t->leftover_count * count >= SMALLEST_SHARED_WORK)
+    if ((uint64_t)t->leftover_count * count >= SMALLEST_SHARED_WORK && network->graft.count == 0)
         rest.workers = mspringi_tasks_concurrency(network->tasks);
     rest.progress = rest.workers > 1 ? mspringi_tasks_progress(network->tasks) : NULL;
     mspringi_tasks_run(rest.progress ? network->tasks : NULL, rest.workers, sweep_share, &rest);
 }
 
-// The wave's strips know nothing of the others, nor they of the wave's.
+// Take one substep after the other, since added springs may join anything.
+static void sweep_grafted(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+    const mspringi_topology *t = &network->topology;
+    const bool has_loose = t->row_count > 0 && t->rows[t->row_count - 1].kind == MSPRINGI_ROW_LOOSE;
+    const job loose = {.network = network, .base = base, .h = h};
+    const mspringi_substep substep = mspringi_substep_prepare(network, h, base, 0, 1, 0);
+    for (uint32_t i = 0; i < count; ++i) {
+        mspringi_graft_begin(network, &substep.sweep);
+        sweep_wave(network, h, base, 1, NULL);
+        sweep_rest(network, h, base, 1, NULL);
+        if (has_loose)
+            sweep_grafted_loose(&loose, &substep, &t->strips[t->strip_count - 1], i, count);
+    }
+}
+
+// The wave's strips know nothing of the others, nor they of the wave's, unless springs were added.
 static void sweep_all(mspring_network *network, float h, mspringi_field base, uint32_t count,
                       mspringi_sight *sights) {
+    if (network->graft.count > 0) {
+        sweep_grafted(network, h, base, count);
+        return;
+    }
     sweep_wave(network, h, base, count, sights);
     sweep_rest(network, h, base, count, sights);
 }

@@ -147,10 +147,13 @@ void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep
             ++count;
         sweep_rows(network, substep, &rows[first], count, is_partly);
     }
+    const mspringi_row *last = rows + strip->row_count - 1;
     if (strip->attached_count > 0)
         pull_attached(network, substep, strip);
+    if (network->graft.count > 0)
+        mspringi_graft_pull(network, &substep->sweep, network->topology.spans[rows->first_span].first_slot,
+                            network->topology.spans[last->first_span + last->span_count - 1].end_slot);
     if (network->floor) {
-        const mspringi_row *last = rows + strip->row_count - 1;
         mspringi_floor_touch(network, strip, &network->topology.spans[rows->first_span],
                              last->first_span + last->span_count - rows->first_span, substep->sweep.h);
     }
@@ -160,6 +163,8 @@ void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep
         return;
     const mspringi_span *span = &network->topology.spans[strip->home_span];
     mspringi_web_sweep(network, substep, span);
+    if (network->graft.count > 0)
+        mspringi_graft_pull(network, &substep->sweep, span->first_slot, span->end_slot);
     mspringi_floor_touch(network, strip, span, 1, substep->sweep.h);
     if (substep->next_packed)
         pack_span(network, &substep->sweep, span, substep->next_packed);

@@ -170,8 +170,17 @@ static double multiply_leftover(const mspring_network *network, mspringi_field f
     const mspringi_implicit *n = network->implicit;
     const size_t web = (size_t)t->web_first * MSPRINGI_WIDTH,
                  web_end = web + (size_t)t->web_blocks * MSPRINGI_WIDTH;
+    // Loose particles that nothing has been added to are not in the iteration.
+    const size_t added = (size_t)t->loose_first * MSPRINGI_WIDTH;
+    const size_t added_end =
+        t->leftover_count > t->woven_count ? (size_t)(t->block_count - 1) * MSPRINGI_WIDTH : added;
     double sum = 0.0;
     for (size_t i = web; i < web_end; ++i) {
+        to.x[i] = n->mass[i] * from.x[i];
+        to.y[i] = n->mass[i] * from.y[i];
+        sum += (double)(from.x[i] * to.x[i] + from.y[i] * to.y[i]);
+    }
+    for (size_t i = added; i < added_end; ++i) {
         to.x[i] = n->mass[i] * from.x[i];
         to.y[i] = n->mass[i] * from.y[i];
         sum += (double)(from.x[i] * to.x[i] + from.y[i] * to.y[i]);

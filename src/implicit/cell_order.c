@@ -11,7 +11,7 @@ typedef struct cell_graph {
 static bool ends_of(const mspringi_cells *cells, const mspring_network *network, mspringi_place place, uint32_t *a,
                     uint32_t *b) {
     const mspringi_topology *t = &network->topology;
-    if (mspringi_place_is_parked(t, place))
+    if (!mspringi_place_is_woven(t, place))
         return false;
     mspringi_topology_ends(t, place, a, b);
     *a = cells->of_slot[*a];

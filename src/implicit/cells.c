@@ -2,6 +2,7 @@
 #include "cells.h"
 
 #include "kernels/system.h"
+#include "topology/spare.h"
 
 /// Grids of at most this many rows are cut across only.
 #define SLENDER_ROWS 10
@@ -11,6 +12,7 @@ typedef struct cutting {
     const mspring_network *network;
     mspringi_memory *memory;
     mspringi_cells *cells;
+    bool *is_for_none; ///< [slots] no particle is there, nor was one that has been removed
 } cutting;
 
 uint32_t mspringi_factors_of_place(mspringi_place place) {
@@ -41,7 +43,7 @@ static uint32_t cut_rows(cutting *g, uint32_t first_row, uint32_t row_count, uin
             for (uint32_t slot = span->first_slot; slot < span->end_slot; ++slot) {
                 const uint32_t column = (uint32_t)((int64_t)slot + span->carry);
                 const uint32_t cell = first + column / width;
-                if (t->particle_of_slot[slot] != MSPRING_NONE)
+                if (!g->is_for_none[slot])
                     g->cells->of_slot[slot] = cell;
                 end = cell + 1 > end ? cell + 1 : end;
             }
@@ -70,7 +72,7 @@ static void cut_chains(cutting *g, uint32_t size) {
     const mspringi_topology *t = &g->network->topology;
     const uint32_t first = t->chain_first * MSPRINGI_WIDTH, count = t->chain_blocks * MSPRINGI_WIDTH;
     for (uint32_t i = 0; i < count; ++i)
-        if (t->particle_of_slot[first + i] != MSPRING_NONE)
+        if (!g->is_for_none[first + i])
             g->cells->of_slot[first + i] = g->cells->count + i / size;
     g->cells->count += (count + size - 1) / size;
 }
@@ -85,16 +87,16 @@ static bool list_neighbours(incidence *in, const cutting *g) {
     const mspringi_topology *t = &g->network->topology;
     const size_t slots = mspringi_slot_count(g->network);
     in->first = mspringi_alloc(g->memory, slots + 2, sizeof *in->first);
-    in->neighbour = mspringi_alloc(g->memory, (size_t)2 * t->leftover_count, sizeof *in->neighbour);
+    in->neighbour = mspringi_alloc(g->memory, (size_t)2 * t->woven_count, sizeof *in->neighbour);
     if (!in->first || !in->neighbour)
         return false;
-    for (uint32_t i = 0; i < t->leftover_count; ++i) {
+    for (uint32_t i = 0; i < t->woven_count; ++i) {
         in->first[t->leftover_a[i] + 2]++;
         in->first[t->leftover_b[i] + 2]++;
     }
     for (size_t slot = 2; slot < slots + 2; ++slot)
         in->first[slot] += in->first[slot - 1];
-    for (uint32_t i = 0; i < t->leftover_count; ++i) {
+    for (uint32_t i = 0; i < t->woven_count; ++i) {
         in->neighbour[in->first[t->leftover_a[i] + 1]++] = t->leftover_b[i];
         in->neighbour[in->first[t->leftover_b[i] + 1]++] = t->leftover_a[i];
     }
@@ -112,7 +114,7 @@ static bool cut_web(cutting *g, uint32_t size) {
     uint32_t *queue = mspringi_alloc(g->memory, most, sizeof *queue);
     const bool ok = list_neighbours(&in, g) && queue;
     for (uint32_t seed = first; ok && seed < end; ++seed) {
-        if (t->particle_of_slot[seed] == MSPRING_NONE || g->cells->of_slot[seed] != MSPRING_NONE)
+        if (g->is_for_none[seed] || g->cells->of_slot[seed] != MSPRING_NONE)
             continue;
         uint32_t count = 0;
         queue[count++] = seed;
@@ -120,8 +122,7 @@ static bool cut_web(cutting *g, uint32_t size) {
         for (uint32_t i = 0; i < count; ++i) {
             for (uint32_t n = in.first[queue[i]]; n < in.first[queue[i] + 1] && count < most; ++n) {
                 const uint32_t slot = in.neighbour[n];
-                if (slot < first || slot >= end || t->particle_of_slot[slot] == MSPRING_NONE ||
-                    g->cells->of_slot[slot] != MSPRING_NONE)
+                if (slot < first || slot >= end || g->is_for_none[slot] || g->cells->of_slot[slot] != MSPRING_NONE)
                     continue;
                 g->cells->of_slot[slot] = g->cells->count;
                 queue[count++] = slot;
@@ -133,6 +134,19 @@ static bool cut_web(cutting *g, uint32_t size) {
     mspringi_free(g->memory, in.neighbour);
     mspringi_free(g->memory, queue);
     return ok;
+}
+
+// Where springs may be added, each block of loose and spare particles is a cell, whose particles are in tiles while
+// springs pull at them.
+static void cut_loose(cutting *g) {
+    const mspringi_topology *t = &g->network->topology;
+    if (mspringi_spare_springs(t) == 0)
+        return;
+    for (uint32_t block = t->loose_first; block < t->spare_first + t->spare_blocks; ++block) {
+        for (uint32_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
+            g->cells->of_slot[block * MSPRINGI_WIDTH + lane] = g->cells->count;
+        g->cells->count++;
+    }
 }
 
 /* -------------------------------------------------------------------------------------------------------- lists */
@@ -162,14 +176,16 @@ static bool list_slots(cutting *g) {
     mspringi_cells *cells = g->cells;
     const uint32_t slots = (uint32_t)mspringi_slot_count(g->network);
     cells->first_slot = mspringi_alloc(g->memory, (size_t)cells->count + 2, sizeof *cells->first_slot);
-    cells->slots = mspringi_alloc(g->memory, g->network->topology.particle_count, sizeof *cells->slots);
-    if (!cells->first_slot || !cells->slots)
+    if (!cells->first_slot)
         return false;
     for (uint32_t slot = 0; slot < slots; ++slot)
         if (cells->of_slot[slot] != MSPRING_NONE)
             cells->first_slot[cells->of_slot[slot] + 2]++;
     for (uint32_t i = 2; i < cells->count + 2; ++i)
         cells->first_slot[i] += cells->first_slot[i - 1];
+    cells->slots = mspringi_alloc(g->memory, cells->first_slot[cells->count + 1], sizeof *cells->slots);
+    if (!cells->slots)
+        return false;
     for (uint32_t slot = 0; slot < slots; ++slot)
         if (cells->of_slot[slot] != MSPRING_NONE)
             cells->slots[cells->first_slot[cells->of_slot[slot] + 1]++] = slot;
@@ -189,7 +205,7 @@ static bool list_inner(cutting *g) {
         mspringi_places_begin(&reader, &t->places, 0);
         for (mspring_id s = 0; s < t->spring_count; ++s) {
             const mspringi_place place = mspringi_places_next(&reader);
-            if (mspringi_place_is_parked(t, place))
+            if (!mspringi_place_is_woven(t, place))
                 continue;
             mspringi_topology_ends(t, place, &a, &b);
             const uint32_t cell = cells->of_slot[a];
@@ -236,7 +252,7 @@ static bool list_joints(cutting *g) {
     mspringi_places_begin(&reader, &t->places, 0);
     for (mspring_id s = 0; ok && s < t->spring_count; ++s) {
         const mspringi_place place = mspringi_places_next(&reader);
-        if (mspringi_place_is_parked(t, place))
+        if (!mspringi_place_is_woven(t, place))
             continue;
         mspringi_topology_ends(t, place, &a, &b);
         if (cells->of_slot[a] == cells->of_slot[b])
@@ -275,24 +291,38 @@ static bool find_lowest(cutting *g) {
 
 /* ---------------------------------------------------------------------------------------------------- the whole */
 
+static bool find_empty(cutting *g) {
+    const mspringi_topology *t = &g->network->topology;
+    g->is_for_none = mspringi_alloc(g->memory, mspringi_slot_count(g->network), sizeof *g->is_for_none);
+    for (uint32_t i = 0; g->is_for_none && i < t->empty_run_count; ++i)
+        for (uint32_t j = 0; j < t->empty_runs[i].slot_count; ++j)
+            g->is_for_none[t->empty_runs[i].first_slot + j] = true;
+    return g->is_for_none != NULL;
+}
+
 static bool cut(cutting *g, uint32_t size) {
     const size_t slots = mspringi_slot_count(g->network);
     g->cells->of_slot = mspringi_alloc(g->memory, slots, sizeof *g->cells->of_slot);
-    if (!g->cells->of_slot)
+    if (!g->cells->of_slot || !find_empty(g))
         return false;
     for (size_t slot = 0; slot < slots; ++slot)
         g->cells->of_slot[slot] = MSPRING_NONE;
     cut_grids(g, size);
     cut_chains(g, size);
-    return cut_web(g, size) && drop_empty_cells(g) && mspringi_cells_order(g->cells, g->network, g->memory) &&
-           list_slots(g) && list_inner(g) && list_joints(g) && find_lowest(g);
+    if (!cut_web(g, size))
+        return false;
+    cut_loose(g);
+    return drop_empty_cells(g) && mspringi_cells_order(g->cells, g->network, g->memory) && list_slots(g) &&
+           list_inner(g) && list_joints(g) && find_lowest(g);
 }
 
 mspring_result mspringi_cells_create(mspringi_cells *cells, const mspring_network *network, uint32_t size,
                                      mspringi_memory *memory, mspringi_message *message) {
     *cells = (mspringi_cells){.size = size};
     cutting g = {.network = network, .memory = memory, .cells = cells};
-    if (cut(&g, size))
+    const bool is_cut = cut(&g, size);
+    mspringi_free(memory, g.is_for_none);
+    if (is_cut)
         return MSPRING_OK;
     mspringi_cells_destroy(cells, memory);
     return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to cut %u particles into cells",

@@ -3,7 +3,8 @@
 /// whichever particles are pinned.
 ///
 /// A cell is some rows by some columns of a grid, a piece of the chains, or a neighbourhood in the web. Loose
-/// particles are in none.
+/// particles are in none, unless springs may be added; then each block of them is one. Springs that were added are
+/// not among those of the cells.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_CELLS_H

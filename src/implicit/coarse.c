@@ -198,10 +198,10 @@ void mspringi_coarse_complete(mspringi_coarse *coarse, const mspringi_tiles *til
     for (uint32_t a = 0; a < tiles->anchor_count; ++a) {
         const uint32_t tile = tiles->of_slot[tiles->anchors[a].slot];
         joint_sum sum = {0};
+        if (tile == MSPRING_NONE || tile == tiles->of_slot[tiles->anchors[a].other_slot])
+            continue;
         add_joint(&sum, &tiles->anchors[a], parts);
-        if (tile != MSPRING_NONE)
-            add_diagonal(rows_of(coarse, tile, tile), sum.xx, sum.xy, sum.yy, sum.near_x, sum.near_y,
-                         sum.near_near);
+        add_diagonal(rows_of(coarse, tile, tile), sum.xx, sum.xy, sum.yy, sum.near_x, sum.near_y, sum.near_near);
     }
 }
 

@@ -60,8 +60,14 @@ static mspring_result allocate(mspringi_implicit *n, mspring_network *network) {
     mspringi_memory *memory = &network->memory;
     const mspringi_topology *t = &network->topology;
     const size_t slots = mspringi_slot_count(network);
-    const size_t leftover = ((size_t)t->leftover_count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+    const size_t leftover = ((size_t)t->leftover_capacity + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
     const bool two = n->integrator == MSPRING_INTEGRATOR_BDF2;
+    const size_t loose = ((size_t)t->loose_blocks + t->spare_blocks) * MSPRINGI_WIDTH;
+    if (t->leftover_capacity > t->woven_count) {
+        n->is_solved = mspringi_alloc(memory, loose, sizeof *n->is_solved);
+        if (!n->is_solved)
+            return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for added springs");
+    }
     n->history_size = (two ? 6 : 4) * slots;
     n->factors = mspringi_alloc(memory, (t->chain_places + leftover) * MSPRINGI_FACTORS, sizeof *n->factors);
     n->x = mspringi_alloc(memory, 2 * slots, sizeof *n->x);
@@ -176,6 +182,23 @@ static mspring_result make_two_level(mspringi_implicit *n, mspring_network *netw
     return result == MSPRING_OK ? allocate_iterate(n, network) : result;
 }
 
+// Mark the loose slots that are in tiles or, with the direct solver, that springs had been added to when it was
+// made.
+static void find_solved(mspringi_implicit *n, const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    const size_t loose = (size_t)t->loose_first * MSPRINGI_WIDTH;
+    const size_t count = ((size_t)t->loose_blocks + t->spare_blocks) * MSPRINGI_WIDTH;
+    for (size_t i = 0; n->is_solved && !n->is_direct && i < count; ++i)
+        n->is_solved[i] = n->tiles.of_slot[loose + i] != MSPRING_NONE;
+    for (uint32_t i = t->woven_count; n->is_direct && i < t->leftover_count; ++i) {
+        if (t->leftover_a[i] >= loose)
+            n->is_solved[t->leftover_a[i] - loose] = 1;
+        if (t->leftover_b[i] >= loose)
+            n->is_solved[t->leftover_b[i] - loose] = 1;
+    }
+    mspringi_balance_count(network, n);
+}
+
 mspring_result mspringi_implicit_create(mspring_network *network, const mspring_solver_def *def,
                                         mspringi_implicit **implicit) {
     mspringi_implicit *n = mspringi_alloc(&network->memory, 1, sizeof *n);
@@ -197,6 +220,8 @@ mspring_result mspringi_implicit_create(mspring_network *network, const mspring_
         result = n->is_direct ? mspringi_direct_create(&n->direct, network) : make_two_level(n, network);
     if (result == MSPRING_OK)
         result = reserve_crew(n, network);
+    if (result == MSPRING_OK)
+        find_solved(n, network);
     if (result == MSPRING_OK)
         *implicit = n;
     else
@@ -237,7 +262,7 @@ void mspringi_implicit_destroy(mspringi_implicit *n, mspringi_memory *memory) {
     void *const blocks[] = {n->history.low.x,  n->backup.low.x, n->x,         n->velocity.x,  n->residual.x,
                             n->displacement.x, n->direction.x,  n->product.x, n->scaled.x,    n->arm.x,
                             n->mass,           n->diagonal,     n->factors,   n->force_carry, n->carry,
-                            n->sums,           n->flights,      n->unknowns};
+                            n->sums,           n->flights,      n->unknowns,  n->is_solved};
     for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; ++i)
         mspringi_free(memory, blocks[i]);
     mspringi_free(memory, n);
@@ -306,9 +331,12 @@ void mspringi_implicit_follow(mspring_network *network) {
     if (!n->is_direct && mspringi_tiles_are_outdated(&n->tiles, network, &n->seen)) {
         mspringi_tiles_follow(&n->tiles, network, &n->seen);
         mspringi_coarse_shape(&n->coarse, &n->tiles);
+        find_solved(n, network);
         clear_outside_of_tiles(network);
         n->age = 0;
     }
+    if (n->is_direct && n->seen.growth != network->edits.growth)
+        mspringi_balance_count(network, n);
     if (n->seen.links != network->edits.links)
         n->balance.is_dead_known = false;
     n->seen = network->edits;
@@ -380,6 +408,11 @@ static float solve(const mspringi_substep_of *substep, mspringi_mate *mate) {
         mspringi_direct_solve(substep->network);
     mspringi_meet(mate);
     return 0.0f;
+}
+
+void mspringi_implicit_clear_place(mspringi_implicit *n, const mspringi_topology *t, mspringi_place place) {
+    for (uint32_t factor = 0; n && place >= t->chain_places && factor < MSPRINGI_FACTORS; ++factor)
+        n->factors[mspringi_factors_of_place(place) + factor * MSPRINGI_WIDTH] = 0.0f;
 }
 
 // Most times that a substep is solved to find out which particles the floor holds.

@@ -64,6 +64,8 @@ typedef struct mspringi_implicit {
     uint32_t patience;                  ///< how many these were to be
     float *sums;                        ///< [chunks]
     mspringi_tile_flight *flights;      ///< [tiles]
+    uint8_t *is_solved;                 ///< [loose and spare slots] 1 where springs were added, so that A is not
+                                        ///< diagonal there; NULL: nowhere
     double leftover_product;            ///< what leftover springs and contacts add to p . A p
     bool is_hit;                        ///< the present substep is one of implicit Euler: particles hit the floor,
                                         ///< or motion is not to be followed as the integrator would
@@ -104,6 +106,9 @@ void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_fiel
 /// Cut tiles anew where springs broke or were restored, or pins changed. Allocates nothing.
 void mspringi_implicit_follow(mspring_network *network);
 
+/// Let a place outside of rows in which no spring lies any more add nothing. NULL is allowed.
+void mspringi_implicit_clear_place(mspringi_implicit *n, const mspringi_topology *t, mspringi_place place);
+
 /// Keep the history for a step that fails, and get it back.
 void mspringi_implicit_keep(mspring_network *network);
 void mspringi_implicit_restore(mspring_network *network);
@@ -142,6 +147,17 @@ static inline mspringi_slots mspringi_slots_of(const mspring_network *network, c
 /// The next of these slots that are to be gone through, in whole chunks, from *at on, which goes behind them: all,
 /// but for chunks in which nothing is swept. Returns false if there are none.
 bool mspringi_next_slots(const mspring_network *network, mspringi_slots slots, size_t *at, mspringi_slots *run);
+
+/// Slots of loose particles, spare ones among them, and whether one of them is in the linear system.
+static inline mspringi_slots mspringi_loose_slots(const mspringi_topology *t, const mspringi_slots *within) {
+    const size_t loose = (size_t)t->loose_first * MSPRINGI_WIDTH;
+    const size_t loose_end = loose + ((size_t)t->loose_blocks + t->spare_blocks) * MSPRINGI_WIDTH;
+    return (mspringi_slots){within->first > loose ? within->first : loose,
+                            within->end < loose_end ? within->end : loose_end};
+}
+static inline bool mspringi_is_solved(const mspring_network *network, const mspringi_implicit *n, size_t slot) {
+    return n->is_solved && n->is_solved[slot - (size_t)network->topology.loose_first * MSPRINGI_WIDTH];
+}
 
 /* scheme.c */
 

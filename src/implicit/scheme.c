@@ -213,12 +213,11 @@ void mspringi_predict(const mspringi_substep_of *substep, mspringi_mate *mate) {
 
 // Particles without springs are in no tile and no factor: their rows of A are diagonal.
 static void land_loose(const mspring_network *network, mspringi_slots slots) {
-    const mspringi_topology *t = &network->topology;
     const mspringi_implicit *n = network->implicit;
-    const size_t loose = (size_t)t->loose_first * MSPRINGI_WIDTH;
-    const size_t loose_end = loose + (size_t)t->loose_blocks * MSPRINGI_WIDTH;
-    const size_t end = slots.end < loose_end ? slots.end : loose_end;
-    for (size_t i = slots.first > loose ? slots.first : loose; i < end; ++i) {
+    const mspringi_slots loose = mspringi_loose_slots(&network->topology, &slots);
+    for (size_t i = loose.first; i < loose.end; ++i) {
+        if (mspringi_is_solved(network, n, i))
+            continue;
         n->displacement.x[i] = n->mass[i] > 0.0f ? n->residual.x[i] / n->mass[i] : 0.0f;
         n->displacement.y[i] = n->mass[i] > 0.0f ? n->residual.y[i] / n->mass[i] : 0.0f;
     }

@@ -16,6 +16,11 @@
 
 typedef mspringi_substep_of substep_of;
 
+/// Product of residuals at which nothing is left to do, as a part of the first one: a last place squared is 1e-14,
+/// and what comes far below it are denormal numbers, whose quotients are noise that grows from iteration to
+/// iteration.
+#define LEAST_PRODUCT 1e-30
+
 /* ------------------------------------------------------------------------------------------------- coarse space */
 
 static mspringi_coarse_parts coarse_parts(const mspring_network *network) {
@@ -27,15 +32,19 @@ static mspringi_coarse_parts coarse_parts(const mspring_network *network) {
 static void invert(const mspring_network *network, mspringi_slots slots) {
     const mspringi_implicit *n = network->implicit;
     const size_t loose = (size_t)network->topology.loose_first * MSPRINGI_WIDTH;
-    const size_t end = slots.end < loose ? slots.end : loose;
+    const size_t end = slots.end < loose || n->is_solved ? slots.end : loose;
     float *const blocks[] = {n->system.xx, n->system.xy, n->system.yy};
     const mspringi_slots tied = {slots.first, end > slots.first ? end : slots.first};
     mspringi_slots run;
     for (size_t at = tied.first; mspringi_next_slots(network, tied, &at, &run);)
         network->kernels->system.invert(&n->system, run.first, run.end);
     const size_t first = slots.first > loose ? slots.first : loose;
-    for (size_t i = 0; i < 3 && first < slots.end; ++i)
+    for (size_t i = 0; i < 3 && first < slots.end && !n->is_solved; ++i)
         memset(blocks[i] + first, 0, (slots.end - first) * sizeof *blocks[i]);
+    const mspringi_slots added = mspringi_loose_slots(&network->topology, &slots);
+    for (size_t slot = added.first; n->is_solved && slot < added.end; ++slot)
+        if (!mspringi_is_solved(network, n, slot))
+            blocks[0][slot] = blocks[1][slot] = blocks[2][slot] = 0.0f;
 }
 
 static void assemble_coarse(const mspring_network *network, const mspringi_mate *mate) {
@@ -147,13 +156,14 @@ float mspringi_solve(const substep_of *substep, mspringi_mate *mate) {
     double product = tiles_first ? solve_tiles(substep, mate) : begin_anew(substep, mate);
     left -= tiles_first;
     product += correct(substep, mate, !tiles_first);
+    const double least = LEAST_PRODUCT * product;
     turn(substep, mate, MSPRINGI_TURN_AFRESH, 0.0f);
     for (;;) {
         const double curvature = mspringi_multiply(substep, mate);
         if (!(curvature < INFINITY && product < INFINITY))
             return NAN;
         // Nothing is left to do, or to be done in this precision.
-        if (curvature <= 0.0 || product <= 0.0)
+        if (curvature <= 0.0 || product <= least)
             return 0.0f;
         const float alpha = (float)(product / curvature);
         if (--left == 0)

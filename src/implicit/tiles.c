@@ -23,7 +23,53 @@ static bool is_free(const mspring_network *network, uint32_t slot) {
     return mspringi_free_mass(network)[slot] > 0.0f;
 }
 
+// The other end of the added spring number end / 2, if the spring can pull; else MSPRING_NONE.
+static uint32_t slot_pulled_at(const mspring_network *network, uint32_t end) {
+    const mspringi_topology *t = &network->topology;
+    const mspring_id spring = t->reserve.first_spring + end / 2;
+    const mspringi_place place = mspringi_place_of(t, spring);
+    if (mspringi_place_is_woven(t, place) || !is_live(network, spring, place))
+        return MSPRING_NONE;
+    return t->slot_of_particle[network->growth.particle_of_end[end ^ 1u]];
+}
+
+// The first of the added springs' ends at a slot.
+static uint32_t first_end_at(const mspring_network *network, uint32_t slot) {
+    const mspring_id particle = network->topology.particle_of_slot[slot];
+    return particle == MSPRING_NONE || !network->growth.first_end ? MSPRINGI_NO_END
+                                                                  : network->growth.first_end[particle];
+}
+
+static bool is_loose(const mspring_network *network, uint32_t slot) {
+    return slot >= network->topology.loose_first * MSPRINGI_WIDTH;
+}
+
+// Whether a slot's particle is in some tile: one that is loose only while an added spring pulls at it.
+static bool is_in_tile(const mspring_network *network, uint32_t slot) {
+    if (!is_free(network, slot) || !is_loose(network, slot))
+        return is_free(network, slot);
+    uint32_t end = first_end_at(network, slot);
+    while (end != MSPRINGI_NO_END && slot_pulled_at(network, end) == MSPRING_NONE)
+        end = network->growth.next_end[end];
+    return end != MSPRINGI_NO_END;
+}
+
 /* ------------------------------------------------------------------------------------------------- components */
+
+// Join the loose particles of a cell that added springs connect.
+static void join_loose(mspringi_tiles *tiles, const mspring_network *network, uint32_t cell) {
+    const mspringi_cells *cells = &tiles->cells;
+    for (uint32_t i = cells->first_slot[cell]; i < cells->first_slot[cell + 1]; ++i) {
+        const uint32_t slot = cells->slots[i];
+        for (uint32_t end = first_end_at(network, slot); end != MSPRINGI_NO_END;
+             end = network->growth.next_end[end]) {
+            const uint32_t other = slot_pulled_at(network, end);
+            if (other != MSPRING_NONE && cells->of_slot[other] == cell && is_free(network, slot) &&
+                is_free(network, other))
+                mspringi_forest_join(tiles->parent, slot, other);
+        }
+    }
+}
 
 // Join the free particles of a cell that live springs connect. The root of a component is its lowest slot.
 static void find_components(mspringi_tiles *tiles, const mspring_network *network, uint32_t cell) {
@@ -36,10 +82,14 @@ static void find_components(mspringi_tiles *tiles, const mspring_network *networ
         const mspringi_place place = mspringi_place_of(t, spring);
         uint32_t a, b;
         mspringi_topology_ends(t, place, &a, &b);
-        if (!is_free(network, a) || !is_free(network, b) || !is_live(network, spring, place))
+        // The id may be that of a spring that was added since, which lies elsewhere.
+        if (!mspringi_place_is_woven(t, place) || !is_free(network, a) || !is_free(network, b) ||
+            !is_live(network, spring, place))
             continue;
         mspringi_forest_join(tiles->parent, a, b);
     }
+    if (is_loose(network, cells->slots[cells->first_slot[cell]]))
+        join_loose(tiles, network, cell);
 }
 
 // Number the components of a cell, in the order of their lowest slots, from first on; all of them as one tile if
@@ -51,7 +101,7 @@ static uint32_t number_cell(mspringi_tiles *tiles, const mspring_network *networ
     for (uint32_t i = cells->first_slot[cell]; i < cells->first_slot[cell + 1]; ++i) {
         const uint32_t slot = cells->slots[i];
         tiles->of_slot[slot] = MSPRING_NONE;
-        if (!is_free(network, slot))
+        if (!is_in_tile(network, slot))
             continue;
         const uint32_t root = mspringi_forest_root(tiles->parent, slot);
         tiles->of_slot[slot] = root == slot ? end++ : tiles->of_slot[root];
@@ -150,7 +200,22 @@ static void add_anchor(mspringi_tiles *tiles, const mspring_network *network, ui
         (mspringi_joint){.slot = a_free ? a : b, .other_slot = a_free ? b : a, .factors = factors};
 }
 
-// List the springs to pinned particles, inside cells and between them.
+// Note both ends of an added spring, each as if the other were pinned: the coarse matrix has no room for what joins
+// any two tiles. Where the two are in one tile, they are left out of it.
+static void add_grafted(mspringi_tiles *tiles, const mspring_network *network, mspring_id spring) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_place place = mspringi_place_of(t, spring);
+    if (mspringi_place_is_woven(t, place) || !mspringi_spring_exists(network, spring) ||
+        tiles->anchor_count + 2 > tiles->anchor_capacity)
+        return;
+    const uint32_t factors = mspringi_factors_of_place(place);
+    uint32_t a, b;
+    mspringi_topology_ends(t, place, &a, &b);
+    tiles->anchors[tiles->anchor_count++] = (mspringi_joint){.slot = a, .other_slot = b, .factors = factors};
+    tiles->anchors[tiles->anchor_count++] = (mspringi_joint){.slot = b, .other_slot = a, .factors = factors};
+}
+
+// List the springs to pinned particles, inside cells and between them, and those that were added.
 static void list_anchors(mspringi_tiles *tiles, const mspring_network *network) {
     const mspringi_cells *cells = &tiles->cells;
     const mspringi_topology *t = &network->topology;
@@ -159,10 +224,14 @@ static void list_anchors(mspringi_tiles *tiles, const mspring_network *network) 
         const mspringi_place place = mspringi_place_of(t, cells->inner[i]);
         uint32_t a, b;
         mspringi_topology_ends(t, place, &a, &b);
+        if (!mspringi_place_is_woven(t, place))
+            continue;
         add_anchor(tiles, network, a, b, mspringi_factors_of_place(place));
     }
     for (const mspringi_joint *joint = cells->joints; joint < cells->joints + cells->joint_count; ++joint)
         add_anchor(tiles, network, joint->slot, joint->other_slot, joint->factors);
+    for (mspring_id s = t->reserve.first_spring; s < t->spring_count; ++s)
+        add_grafted(tiles, network, s);
 }
 
 /* ------------------------------------------------------------------------------------------------------- edits */
@@ -179,7 +248,7 @@ static void mark_changed_links(mspringi_tiles *tiles, const mspring_network *net
     for (uint64_t n = seen; n < network->edits.links; ++n) {
         uint32_t a, b;
         mspringi_topology_ends(t, mspringi_place_of(t, mspringi_edits_link(&network->edits, n)), &a, &b);
-        if (tiles->cells.of_slot[a] == tiles->cells.of_slot[b])
+        if (tiles->cells.of_slot[a] != MSPRING_NONE && tiles->cells.of_slot[a] == tiles->cells.of_slot[b])
             mark_dirty(tiles, tiles->cells.of_slot[a]);
     }
 }
@@ -190,12 +259,19 @@ static bool pins_have_changed(const mspringi_tiles *tiles, const mspring_network
     if (seen->masses == network->edits.masses && seen->naps == network->edits.naps)
         return false;
     const size_t slots = mspringi_slot_count(network);
-    const float *inverse_mass = mspringi_free_mass(network);
     size_t changed = 0;
     for (size_t slot = 0; slot < slots; ++slot)
         changed += tiles->cells.of_slot[slot] != MSPRING_NONE &&
-                   (inverse_mass[slot] > 0.0f) != (tiles->of_slot[slot] != MSPRING_NONE);
+                   is_in_tile(network, (uint32_t)slot) != (tiles->of_slot[slot] != MSPRING_NONE);
     return changed > 0;
+}
+
+// Cells whose particles are in tiles by what was added.
+static void mark_loose(mspringi_tiles *tiles, const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    for (uint32_t block = t->loose_first; block < t->spare_first + t->spare_blocks; ++block)
+        if (tiles->cells.of_slot[block * MSPRINGI_WIDTH] != MSPRING_NONE)
+            mark_dirty(tiles, tiles->cells.of_slot[block * MSPRINGI_WIDTH]);
 }
 
 static bool fits(const mspringi_tiles *tiles) {
@@ -221,15 +297,20 @@ static void renew(mspringi_tiles *tiles, const mspring_network *network) {
 bool mspringi_tiles_are_outdated(const mspringi_tiles *tiles, const mspring_network *network,
                                  const mspringi_edits *seen) {
     const mspringi_edits *edits = &network->edits;
-    return seen->links != edits->links || seen->values != edits->values || pins_have_changed(tiles, network, seen);
+    return seen->links != edits->links || seen->values != edits->values || seen->grafts != edits->grafts ||
+           pins_have_changed(tiles, network, seen);
 }
 
 void mspringi_tiles_follow(mspringi_tiles *tiles, const mspring_network *network, const mspringi_edits *seen) {
     const mspringi_edits *edits = &network->edits;
     const bool pins = pins_have_changed(tiles, network, seen);
-    if (pins)
+    const bool has_grafts = network->topology.spring_count > network->topology.reserve.first_spring;
+    if (pins || seen->grafts != edits->grafts)
         list_anchors(tiles, network);
-    if (pins || seen->values != edits->values || !mspringi_edits_have_link(edits, seen->links))
+    if (seen->grafts != edits->grafts || (has_grafts && seen->links != edits->links))
+        mark_loose(tiles, network);
+    const bool outdated = network->is_compact && seen->grafts != edits->grafts; // what the cells list may be gone
+    if (pins || outdated || seen->values != edits->values || !mspringi_edits_have_link(edits, seen->links))
         for (uint32_t cell = 0; cell < tiles->cells.count; ++cell)
             mark_dirty(tiles, cell);
     else
@@ -243,9 +324,13 @@ void mspringi_tiles_follow(mspringi_tiles *tiles, const mspring_network *network
 // As if each body were at least about as large as a spring.
 static float choose_turn_inertia(const mspring_network *network) {
     double sum = 0.0;
-    const uint32_t count = network->topology.spring_count;
-    for (mspring_id s = 0; s < count; ++s)
+    uint32_t count = 0;
+    for (mspring_id s = 0; s < network->topology.spring_count; ++s) {
+        if (!mspringi_spring_exists(network, s))
+            continue;
         sum += (double)mspringi_spring_get(network, s).rest_length;
+        ++count;
+    }
     const double mean = count > 0 ? sum / (double)count : 1.0;
     return (float)(0.02 * mean * mean);
 }
@@ -261,14 +346,16 @@ static bool find_tiles(mspringi_tiles *tiles, const mspring_network *network, ms
     const size_t slots = mspringi_slot_count(network), cells = tiles->cells.count;
     tiles->capacity = 2 * (uint32_t)cells + SPARE_TILES;
     tiles->value_capacity = 4 * values_of_cells(&tiles->cells) + SPARE_VALUES;
-    tiles->anchor_capacity = network->topology.spring_count / 4 + SPARE_ANCHORS;
+    tiles->anchor_capacity = network->topology.spring_count / 4 + SPARE_ANCHORS +
+                             2 * (network->topology.leftover_capacity - network->topology.woven_count);
     tiles->of_slot = mspringi_alloc(memory, slots, sizeof *tiles->of_slot);
     tiles->parent = mspringi_alloc(memory, slots, sizeof *tiles->parent);
     tiles->first_of_cell = mspringi_alloc(memory, cells + 1, sizeof *tiles->first_of_cell);
     tiles->dirty = mspringi_alloc(memory, cells, sizeof *tiles->dirty);
     tiles->is_dirty = mspringi_alloc(memory, cells, sizeof *tiles->is_dirty);
-    tiles->parts = mspringi_alloc(memory, network->topology.particle_count, sizeof *tiles->parts);
-    tiles->parts_by_slot = mspringi_alloc(memory, network->topology.particle_count, sizeof *tiles->parts_by_slot);
+    tiles->parts = mspringi_alloc(memory, network->topology.reserve.particle_end, sizeof *tiles->parts);
+    tiles->parts_by_slot =
+        mspringi_alloc(memory, network->topology.reserve.particle_end, sizeof *tiles->parts_by_slot);
     tiles->first_by_slot = mspringi_alloc(memory, slots / MSPRINGI_PART + 1, sizeof *tiles->first_by_slot);
     tiles->first_part = mspringi_alloc(memory, (size_t)tiles->capacity + 1, sizeof *tiles->first_part);
     tiles->anchors = mspringi_alloc(memory, tiles->anchor_capacity, sizeof *tiles->anchors);

@@ -130,15 +130,18 @@ static MSPRINGI_NOINLINE mspring_result set_positions(mspring_network *network, 
     const bool all = count == network->topology.particle_count;
     mspringi_box box = mspringi_box_empty();
     for (uint32_t i = 0; i < count; ++i) {
+        if (!mspringi_particle_exists(network, first + i))
+            continue;
         mspring_result result = check_position(network, first + i, x_of(to, i), y_of(to, i), !all);
         if (result != MSPRING_OK)
             return result;
         mspringi_box_include(&box, x_of(to, i), y_of(to, i));
     }
-    if (all)
+    if (all && box.min_x <= box.max_x)
         mspringi_origin_choose(network, &box);
     for (uint32_t i = 0; i < count; ++i)
-        mspringi_set_position(network, first + i, x_of(to, i), y_of(to, i));
+        if (mspringi_particle_exists(network, first + i))
+            mspringi_set_position(network, first + i, x_of(to, i), y_of(to, i));
     network->edits.state++;
     network->edits.motion += all;
     return MSPRING_OK;
@@ -174,7 +177,10 @@ static mspring_result set_velocities(mspring_network *network, const mspringi_se
                                  "particle %u: velocity (%g, %g) m/s is not finite",
                                  (unsigned)mspringi_selected(at, i), (double)vx[i], (double)vy[i]);
     for (uint32_t i = 0; i < at->count; ++i) {
-        const uint32_t slot = network->topology.slot_of_particle[mspringi_selected(at, i)];
+        const mspring_id particle = mspringi_selected(at, i);
+        const uint32_t slot = network->topology.slot_of_particle[particle];
+        if (!mspringi_particle_exists(network, particle))
+            continue;
         network->state.vx[slot] = vx[i];
         network->state.vy[slot] = vy[i];
     }
@@ -185,8 +191,7 @@ static mspring_result set_velocities(mspring_network *network, const mspringi_se
 mspring_result mspring_network_set_velocities(mspring_network *network, mspring_id first, uint32_t count,
                                               const float *vx, const float *vy) {
     mspringi_selection at;
-    const uint32_t total = mspring_network_particle_count(network);
-    mspring_result result = mspringi_select_range(network, "particle", total, first, count, vx, vy, &at);
+    mspring_result result = mspringi_select_range(network, MSPRINGI_PARTICLES, first, count, vx, vy, &at);
     return result == MSPRING_OK ? set_velocities(network, &at, vx, vy) : result;
 }
 
@@ -205,8 +210,7 @@ static MSPRINGI_NOINLINE mspring_result set_positions_at(mspring_network *networ
 mspring_result mspring_network_set_positions_at(mspring_network *network, const mspring_id *particles,
                                                 uint32_t count, const double *x, const double *y) {
     mspringi_selection at;
-    const uint32_t total = mspring_network_particle_count(network);
-    mspring_result result = mspringi_select_list(network, "particle", total, particles, count, x, y, &at);
+    mspring_result result = mspringi_select_list(network, MSPRINGI_PARTICLES, particles, count, x, y, &at);
     if (result != MSPRING_OK)
         return result;
     const mspringi_fp_state before = mspringi_fp_enter();
@@ -220,8 +224,7 @@ mspring_result mspring_network_set_positions_at(mspring_network *network, const 
 mspring_result mspring_network_set_velocities_at(mspring_network *network, const mspring_id *particles,
                                                  uint32_t count, const float *vx, const float *vy) {
     mspringi_selection at;
-    const uint32_t total = mspring_network_particle_count(network);
-    mspring_result result = mspringi_select_list(network, "particle", total, particles, count, vx, vy, &at);
+    mspring_result result = mspringi_select_list(network, MSPRINGI_PARTICLES, particles, count, vx, vy, &at);
     return result == MSPRING_OK ? set_velocities(network, &at, vx, vy) : result;
 }
 
@@ -237,6 +240,8 @@ static MSPRINGI_NOINLINE mspring_result add_held(mspring_network *network, mspri
                                  "particle %u: force (%g, %g) N is not finite, or not with what acts already",
                                  (unsigned)(first + i), (double)x[i], (double)y[i]);
     for (uint32_t i = 0; i < count; ++i) {
+        if (!mspringi_particle_exists(network, first + i))
+            continue;
         held.x[slots[i]] += x[i];
         held.y[slots[i]] += y[i];
     }
@@ -258,5 +263,7 @@ mspring_result mspring_network_apply_forces(mspring_network *network, mspring_id
 }
 
 mspring_result mspring_network_apply_force(mspring_network *network, mspring_id particle, float x, float y) {
-    return mspring_network_apply_forces(network, particle, 1, &x, &y);
+    mspringi_selection at;
+    mspring_result result = mspringi_select_list(network, MSPRINGI_PARTICLES, &particle, 1, &x, &y, &at);
+    return result == MSPRING_OK ? mspring_network_apply_forces(network, particle, 1, &x, &y) : result;
 }

@@ -37,6 +37,8 @@ static void move_topology(const moving *m, mspringi_topology *t) {
     MOVE(t->empty_runs);
     MOVE(t->leftover_a);
     MOVE(t->leftover_b);
+    MOVE(t->laid_slots);
+    MOVE(t->laid_places);
     MOVE(t->web.attached_slot);
     MOVE(t->web.first_rung);
     MOVE(t->web.neighbour);
@@ -169,6 +171,7 @@ static void move_implicit(const moving *m, mspringi_implicit *n) {
     MOVE(n->carry);
     MOVE(n->sums);
     MOVE(n->flights);
+    MOVE(n->is_solved);
     MOVE(n->panels.list);
     MOVE(n->panels.sums);
     MOVE(n->balance.chunks);
@@ -253,6 +256,21 @@ static void move_records(const moving *m, mspring_network *n) {
     MOVE(n->extents.reversed);
     MOVE(n->incidence.first);
     MOVE(n->incidence.springs);
+    MOVE(n->growth.particles);
+    MOVE(n->growth.springs);
+    MOVE(n->growth.first_end);
+    MOVE(n->growth.next_end);
+    MOVE(n->growth.particle_of_end);
+    MOVE(n->graft.web.attached_slot);
+    MOVE(n->graft.web.first_rung);
+    MOVE(n->graft.web.neighbour);
+    MOVE(n->graft.springs);
+    MOVE(n->graft.records);
+    MOVE(n->graft.packed);
+    MOVE(n->graft.pulls);
+    MOVE(n->graft.keys);
+    MOVE(n->graft.scratch);
+    MOVE(n->graft.node_of_end);
 }
 
 static void move_forces(const moving *m, mspring_network *n) {

@@ -15,6 +15,16 @@ enum { TOGETHER = 256 };
 /// What is computed in one pass.
 typedef enum measure { LENGTH, DIRECTION_X, DIRECTION_Y, STRAIN } measure;
 
+// Note whether the base of a spring, which lies in this place, is the end with the higher id.
+static void turn(mspring_network *network, mspring_id spring, mspringi_place place) {
+    const mspringi_topology *t = &network->topology;
+    uint8_t *bits = &network->extents.reversed[spring / 8];
+    const uint8_t bit = (uint8_t)(1u << spring % 8);
+    uint32_t base, tip;
+    mspringi_topology_ends(t, place, &base, &tip);
+    *bits = t->particle_of_slot[base] > t->particle_of_slot[tip] ? *bits | bit : *bits & (uint8_t)~bit;
+}
+
 static mspring_result reserve(mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     mspringi_extents *made = &network->extents;
@@ -24,19 +34,21 @@ static mspring_result reserve(mspring_network *network) {
         made->scratch =
             mspringi_alloc(&network->memory, mspringi_place_words(t) * MSPRINGI_WIDTH, sizeof *made->scratch);
     if (made->scratch)
-        made->reversed = mspringi_alloc(&network->memory, (size_t)t->spring_count / 8 + 1, sizeof *made->reversed);
+        made->reversed =
+            mspringi_alloc(&network->memory, (size_t)t->reserve.spring_end / 8 + 1, sizeof *made->reversed);
     if (!made->reversed)
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to measure %u springs at once",
                              (unsigned)t->spring_count);
     mspringi_place_reader reader;
     mspringi_places_begin(&reader, &t->places, 0);
-    for (mspring_id s = 0; s < t->spring_count; ++s) {
-        uint32_t base, tip;
-        mspringi_topology_ends(t, mspringi_places_next(&reader), &base, &tip);
-        if (t->particle_of_slot[base] > t->particle_of_slot[tip])
-            made->reversed[s / 8] |= (uint8_t)(1u << s % 8);
-    }
+    for (mspring_id s = 0; s < t->spring_count; ++s)
+        turn(network, s, mspringi_places_next(&reader));
     return MSPRING_OK;
+}
+
+void mspringi_extents_turn(mspring_network *network, mspring_id spring) {
+    if (network->extents.reversed)
+        turn(network, spring, mspringi_place_of(&network->topology, spring));
 }
 
 // The springs of one word, from the slots base ... on to the slots tip ... on.
@@ -55,7 +67,7 @@ static inline void compute_word(const float *x, const float *y, size_t base, siz
 // The springs of the web and the parked ones, gathered sixteen at a time.
 static inline void compute_leftovers(const mspring_network *network, measure what) {
     const mspringi_topology *t = &network->topology;
-    const uint32_t count = t->leftover_count + t->parked_count;
+    const uint32_t count = t->leftover_capacity + t->parked_count;
     const mspringi_state *s = &network->state;
     for (uint32_t first = 0; first < count; first += MSPRINGI_WIDTH) {
         float x[2 * MSPRINGI_WIDTH] = {0}, y[2 * MSPRINGI_WIDTH] = {0}, rest_lengths[MSPRINGI_WIDTH] = {0};

@@ -31,23 +31,27 @@ static uint32_t number(const mspring_builder *builder, mspringi_relative *shared
     return count;
 }
 
-mspring_result mspringi_fractions_create(mspringi_fractions *fractions, const mspring_builder *builder,
+mspring_result mspringi_fractions_create(mspringi_fractions *fractions, const mspring_builder *builder, size_t room,
                                          mspringi_memory *memory, mspringi_message *message) {
     mspringi_relative shared[MOST_SHARED];
-    fractions->of_spring = mspringi_alloc(memory, builder->spring_count, sizeof *fractions->of_spring);
+    const bool may_share = room == builder->spring_count;
+    if (may_share)
+        fractions->of_spring = mspringi_alloc(memory, builder->spring_count, sizeof *fractions->of_spring);
     const uint32_t count = fractions->of_spring ? number(builder, shared, fractions->of_spring) : 0;
-    const bool is_shared = count <= MOST_SHARED;
+    const bool is_shared = may_share && count <= MOST_SHARED;
     if (!is_shared) {
         mspringi_free(memory, fractions->of_spring);
         fractions->of_spring = NULL;
     }
-    const size_t kept = is_shared ? count : builder->spring_count;
+    const size_t kept = is_shared ? count : room;
     fractions->values = mspringi_alloc(memory, kept, sizeof *fractions->values);
     if (!fractions->values || (is_shared && !fractions->of_spring))
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for what %zu springs are like",
                              builder->spring_count);
     for (size_t i = 0; i < kept; ++i)
-        fractions->values[i] = is_shared ? shared[i] : fractions_of(&builder->springs[i]);
+        fractions->values[i] = is_shared                   ? shared[i]
+                               : i < builder->spring_count ? fractions_of(&builder->springs[i])
+                                                           : (mspringi_relative){-1.0f, 0.0f};
     return MSPRING_OK;
 }
 

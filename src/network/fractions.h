@@ -9,8 +9,9 @@
 
 #include "network.h"
 
-/// Keep the fractions of the builder's springs.
-mspring_result mspringi_fractions_create(mspringi_fractions *fractions, const mspring_builder *builder,
+/// Keep the fractions of the builder's springs, with room for so many in all: those of springs to come are their
+/// own.
+mspring_result mspringi_fractions_create(mspringi_fractions *fractions, const mspring_builder *builder, size_t room,
                                          mspringi_memory *memory, mspringi_message *message);
 
 /// Give every spring fractions of its own, which mspringi_fractions_set() may then set. Allocates, once.

@@ -93,13 +93,19 @@ mspring_result mspring_network_bounds(const mspring_network *network, double *mi
     const mspringi_topology *t = &network->topology;
     const mspringi_state *s = &network->state;
     float low_x = INFINITY, low_y = INFINITY, high_x = -INFINITY, high_y = -INFINITY;
+    bool any = false;
     for (mspring_id p = 0; p < t->particle_count; ++p) {
         const uint32_t slot = t->slot_of_particle[p];
+        if (!mspringi_particle_exists(network, p))
+            continue;
+        any = true;
         low_x = fminf(low_x, s->x[slot]);
         low_y = fminf(low_y, s->y[slot]);
         high_x = fmaxf(high_x, s->x[slot]);
         high_y = fmaxf(high_y, s->y[slot]);
     }
+    if (!any)
+        low_x = low_y = high_x = high_y = 0.0f;
     *min_x = network->origin_x + (double)low_x;
     *min_y = network->origin_y + (double)low_y;
     *max_x = network->origin_x + (double)high_x;
@@ -114,7 +120,7 @@ mspring_result mspring_network_get_spring(const mspring_network *network, msprin
     if (info->struct_size != sizeof *info)
         return MSPRING_ERROR_STRUCT;
     const mspringi_topology *t = &network->topology;
-    if (spring >= t->spring_count)
+    if (spring >= t->spring_count || !mspringi_spring_exists(network, spring))
         return MSPRING_ERROR_ID;
     const mspringi_place place = mspringi_place_of(t, spring);
     const mspringi_spring_values r = mspringi_place_get(network, place);

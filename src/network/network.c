@@ -5,6 +5,7 @@
 
 #include "base/cpu.h"
 #include "base/mix.h"
+#include "edits/growth.h"
 #include "explicit/explicit.h"
 #include "fractions.h"
 #include "hooks.h"
@@ -43,7 +44,7 @@ static mspring_result check_def(const mspring_network_def *def, mspringi_message
     if (def->simd_level < MSPRING_SIMD_AUTO || def->simd_level > MSPRING_SIMD_WASM)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "simd_level is %d, which is no level",
                              (int)def->simd_level);
-    if (def->flags & ~(uint32_t)MSPRING_NETWORK_RESERVE_DAMPING)
+    if (def->flags & ~(uint32_t)(MSPRING_NETWORK_RESERVE_DAMPING | MSPRING_NETWORK_RESERVE_RELATIVE))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "network flags %#x are unknown",
                              (unsigned)def->flags);
     if (def->guard < MSPRING_GUARD_GROWTH || def->guard > MSPRING_GUARD_CLAMP)
@@ -113,8 +114,9 @@ mspring_result mspringi_layout_reserve(mspring_network *network) {
         mspringi_alloc(memory, (parts - 1) * t->lattice_places, sizeof *network->lattice_springs);
     network->chain_springs =
         mspringi_alloc(memory, parts * (t->chain_places - t->lattice_places), sizeof *network->chain_springs);
-    const size_t rungs = (t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0) +
-                         ((size_t)t->parked_count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
+    const size_t rungs =
+        (t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0) +
+        ((size_t)(t->leftover_capacity - t->woven_count) + t->parked_count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
     network->web_springs = mspringi_alloc(memory, parts * rungs * MSPRINGI_WIDTH, sizeof *network->web_springs);
     network->packed =
         mspringi_alloc(memory, (size_t)8 * t->web.group_count * MSPRINGI_WIDTH, sizeof *network->packed);
@@ -151,9 +153,25 @@ void mspringi_layout_forget(mspring_network *network) {
     network->live = NULL;
 }
 
+static mspring_result make_reserve(mspringi_reserve *reserve, const mspring_builder *builder,
+                                   const mspring_network_def *def, mspringi_message *message) {
+    const uint64_t particles = (uint64_t)builder->particle_count + def->spare_particles;
+    const uint64_t springs = (uint64_t)builder->spring_count + def->spare_springs;
+    if (particles > MSPRING_MAX_PARTICLES || springs > MSPRING_MAX_SPRINGS)
+        return mspringi_fail(message, MSPRING_ERROR_LIMIT,
+                             "%u spare particles and %u spare springs are more than there may be besides what the "
+                             "builder holds",
+                             (unsigned)def->spare_particles, (unsigned)def->spare_springs);
+    *reserve = (mspringi_reserve){.first_particle = (uint32_t)builder->particle_count,
+                                  .first_spring = (uint32_t)builder->spring_count,
+                                  .particle_end = (uint32_t)particles,
+                                  .spring_end = (uint32_t)springs};
+    return MSPRING_OK;
+}
+
 static mspring_result allocate(mspring_network *network) {
     const mspringi_topology *t = &network->topology;
-    network->mass = mspringi_alloc(&network->memory, t->particle_count, sizeof *network->mass);
+    network->mass = mspringi_alloc(&network->memory, t->reserve.particle_end, sizeof *network->mass);
     if (!network->mass)
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for %u particles and %u springs",
                              (unsigned)t->particle_count, (unsigned)t->spring_count);
@@ -191,6 +209,9 @@ static void fill_springs(mspring_network *network, const mspring_builder *builde
     const mspringi_topology *t = &network->topology;
     network->shortest = INFINITY;
     network->topology_print = network->parameter_print = MSPRINGI_MIX_START;
+    if (t->reserve.particle_end > t->particle_count || t->reserve.spring_end > t->spring_count)
+        network->topology_print =
+            mspringi_mix(network->topology_print, (uint64_t)t->reserve.particle_end << 32 | t->reserve.spring_end);
     for (mspring_id p = 0; p < t->particle_count; ++p)
         network->topology_print = mspringi_mix(network->topology_print, t->slot_of_particle[p]);
     mspringi_place_reader reader;
@@ -213,19 +234,25 @@ static void fill_springs(mspring_network *network, const mspring_builder *builde
 static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const mspring_builder *builder,
                                              const mspring_network_def *def) {
     bool damped, relative;
+    mspringi_reserve reserve;
     mspring_result result = mspringi_tasks_create(def->worker_count, def->tasks, &network->tasks_memory,
                                                   &network->message, &network->tasks);
     if (result == MSPRING_OK)
-        result = mspringi_topology_create(&network->topology, builder, mspringi_tasks_concurrency(network->tasks),
-                                          &network->memory, &network->message);
+        result = make_reserve(&reserve, builder, def, &network->message);
+    if (result == MSPRING_OK)
+        result = mspringi_topology_create(&network->topology, builder, &reserve,
+                                          mspringi_tasks_concurrency(network->tasks), &network->memory,
+                                          &network->message);
     if (result != MSPRING_OK)
         return result;
     look_at_springs(builder, &damped, &relative);
     damped = damped || (def->flags & MSPRING_NETWORK_RESERVE_DAMPING);
+    relative = relative || (def->flags & MSPRING_NETWORK_RESERVE_RELATIVE);
     network->parts = damped ? MSPRINGI_DAMPING + 1 : MSPRINGI_STIFFNESS + 1;
     result = allocate(network);
     if (result == MSPRING_OK && relative)
-        result = mspringi_fractions_create(&network->fractions, builder, &network->memory, &network->message);
+        result = mspringi_fractions_create(&network->fractions, builder, reserve.spring_end, &network->memory,
+                                           &network->message);
     if (result == MSPRING_OK)
         result = mspringi_rests_create(&network->rests, &network->topology, builder, &network->memory,
                                        &network->message);
@@ -249,6 +276,12 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
         return result;
     fill_particles(network, builder);
     fill_springs(network, builder);
+    for (mspring_id p = network->topology.particle_count; p < network->topology.reserve.particle_end; ++p)
+        network->mass[p] = 1.0f;
+    if (def->spare_particles > 0 || def->spare_springs > 0)
+        result = mspringi_growth_reserve(network);
+    if (result != MSPRING_OK)
+        return result;
     mspring_solver_def solver;
     (void)mspring_solver_def_init(&solver, sizeof solver);
     solver.solver = def->solver;

@@ -6,6 +6,7 @@
 #define MSPRINGI_NETWORK_H
 
 #include "components/components.h"
+#include "explicit/graft.h"
 #include "kernels/kernels.h"
 #include "tasks/tasks.h"
 #include "topology/incidence.h"
@@ -63,7 +64,9 @@ typedef struct mspringi_edits {
     uint64_t motion; ///< calls that set the positions of all particles at once: a new motion begins
     uint64_t masses; ///< calls that changed inverse masses
     uint64_t values; ///< calls that changed stiffness, damping or rest lengths
-    uint64_t links;  ///< springs that were broken or restored, one by one
+    uint64_t growth; ///< calls that added or removed particles or springs
+    uint64_t grafts; ///< those among them in which springs were added or removed
+    uint64_t links;  ///< springs that were broken or restored, added or removed, one by one
     uint64_t naps;   ///< times that islands fell asleep or woke
     mspring_id
         *link_log; ///< the last of these springs: change n, counted from 0, is at n & link_mask; NULL before any
@@ -89,7 +92,7 @@ typedef struct mspringi_any_shape {
     double dt;
     mspring_id spring;
     bool is_known;
-    uint64_t masses, values;
+    uint64_t masses, values, growth;
 } mspringi_any_shape;
 
 /// The events that the host has not read yet: a ring, empty if the host has not asked for one.
@@ -157,6 +160,26 @@ typedef struct mspringi_sleep {
     mspringi_field in_force;   ///< of the step that is being made; else NULL
     uint64_t masses, links, moved; ///< edits that it has seen; the last is edits.state
 } mspringi_sleep;
+
+/// Whether an id names something.
+enum {
+    MSPRINGI_GONE = 0,  ///< it was removed
+    MSPRINGI_THERE = 1, ///< it does
+    MSPRINGI_SPARE = 2  ///< it can be given to what is added next
+};
+
+/// No end of a spring.
+#define MSPRINGI_NO_END UINT32_MAX
+
+/// What has been added and removed. End e of the spare springs is that of the spare spring number e / 2; those at a
+/// particle are linked.
+typedef struct mspringi_growth {
+    uint8_t *particles, *springs; ///< [reserve.particle_end], [reserve.spring_end] NULL: all ids so far are there
+    uint32_t *first_end;          ///< [reserve.particle_end] MSPRINGI_NO_END if there is none
+    uint32_t *next_end;           ///< [2 * spare springs]
+    mspring_id *particle_of_end;  ///< [2 * spare springs]
+    mspring_id lowest_particle, lowest_spring; ///< no id below is spare
+} mspringi_growth;
 
 /// What is needed to measure all springs at once; NULL as long as that has not been done.
 typedef struct mspringi_extents {
@@ -226,7 +249,9 @@ struct mspring_network {
     mspringi_components components;
     mspringi_extents extents;
     mspringi_sleep sleep;
-    mspringi_incidence incidence; ///< made when it is needed first
+    mspringi_incidence incidence; ///< made when it is needed first, of the springs that are not spare ones
+    mspringi_growth growth;
+    mspringi_graft graft;
     mspringi_any_shape any_shape;
 
     mspringi_forces forces;
@@ -254,6 +279,13 @@ static inline bool mspringi_edits_have_link(const mspringi_edits *edits, uint64_
 /// The spring that was broken or restored in change number n.
 static inline mspring_id mspringi_edits_link(const mspringi_edits *edits, uint64_t n) {
     return edits->link_log[n & edits->link_mask];
+}
+
+static inline bool mspringi_particle_exists(const mspring_network *network, mspring_id particle) {
+    return !network->growth.particles || network->growth.particles[particle] == MSPRINGI_THERE;
+}
+static inline bool mspringi_spring_exists(const mspring_network *network, mspring_id spring) {
+    return !network->growth.springs || network->growth.springs[spring] == MSPRINGI_THERE;
 }
 
 /// Refuse NULL, and calls from inside a hook.

@@ -47,20 +47,26 @@ static float exact_shift(double low, double high) {
 void mspringi_origin_follow(mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     mspringi_state *state = &network->state;
-    // The first particle stands for all of them until it is far away.
-    const uint32_t first = t->slot_of_particle[0];
+    // The first particle that there is stands for all of them until it is far away.
+    mspring_id stands = 0;
+    while (stands + 1 < t->particle_count && !mspringi_particle_exists(network, stands))
+        ++stands;
+    const uint32_t first = t->slot_of_particle[stands];
     if (fabsf(state->x[first]) < network->recentre_distance && fabsf(state->y[first]) < network->recentre_distance)
         return;
     mspringi_box box = mspringi_box_empty();
     for (uint32_t p = 0; p < t->particle_count; ++p)
-        mspringi_box_include(&box, (double)state->x[t->slot_of_particle[p]],
-                             (double)state->y[t->slot_of_particle[p]]);
+        if (mspringi_particle_exists(network, p))
+            mspringi_box_include(&box, (double)state->x[t->slot_of_particle[p]],
+                                 (double)state->y[t->slot_of_particle[p]]);
     const float shift_x = exact_shift(box.min_x, box.max_x), shift_y = exact_shift(box.min_y, box.max_y);
     if (shift_x == 0.0f && shift_y == 0.0f) {
         network->recentre_distance *= 2.0f; // as large as this or around the origin: look again further out
         return;
     }
     for (uint32_t p = 0; p < t->particle_count; ++p) {
+        if (!mspringi_particle_exists(network, p))
+            continue;
         state->x[t->slot_of_particle[p]] -= shift_x;
         state->y[t->slot_of_particle[p]] -= shift_y;
     }

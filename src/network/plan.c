@@ -1,4 +1,5 @@
 /// What a network says of itself: its sizes, its error, and how it was laid out.
+#include "edits/growth.h"
 #include "implicit/implicit.h"
 #include "network.h"
 
@@ -45,8 +46,8 @@ mspring_result mspring_network_plan(const mspring_network *network, mspring_plan
         .chain_particles = t->chain_particles,
         .chain_springs = t->chain_springs,
         .web_particles = t->web_particles,
-        .loose_particles = t->particle_count - t->lattice_particles - t->chain_particles - t->web_particles,
-        .leftover_springs = t->leftover_count,
+        .loose_particles = t->loose_particles + mspringi_growth_added_particles(network),
+        .leftover_springs = t->woven_count + mspringi_growth_added_springs(network),
         .pass_rows = t->wave_rows,
         .pass_lag = t->lag,
         .pass_substeps = network->depth,

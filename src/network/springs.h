@@ -21,6 +21,9 @@ void mspringi_place_set(mspring_network *network, mspringi_place place, float st
 void mspringi_place_copy(const mspring_network *from, mspringi_place had, mspring_network *to,
                          mspringi_place place);
 
+/// Let mspring_network_get_extents() know which end of a spring has the lower id, if it has been called before.
+void mspringi_extents_turn(mspring_network *network, mspring_id spring);
+
 /// (length - rest_length) / rest_length, now; of a broken spring 0.
 float mspringi_spring_strain(const mspring_network *network, mspring_id spring);
 

@@ -5,6 +5,7 @@
 
 #include "base/cpu.h"
 #include "contact/floor.h"
+#include "edits/growth.h"
 #include "edits/ramps.h"
 #include "edits/strain.h"
 #include "explicit/creep.h"
@@ -117,12 +118,14 @@ static void run_substeps(mspring_network *network, double dt, float h) {
 static mspringi_sight run(mspring_network *network, double dt, float h) {
     if (network->is_open)
         mspringi_clear_empty_slots(network);
+    if (!network->implicit)
+        mspringi_graft_follow(network);
     if (network->hook_count == 0) {
         const mspringi_field base = network->sleep.in_force = prepare_base(network, dt);
         mspringi_sleep_feel(network, base);
         if (mspringi_sleep_is_whole(network))
             return (mspringi_sight){0.0f, 0.0f};
-        if (!network->implicit && !network->is_clamped && !network->floor)
+        if (!network->implicit && !network->is_clamped && !network->floor && network->graft.count == 0)
             return mspringi_explicit_step(network, h, base, network->substeps);
     }
     copy_state(network, &network->state, &network->backup);
@@ -144,6 +147,8 @@ void mspringi_clear_empty_slots(const mspring_network *network) {
     for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
         for (uint32_t run = 0; run < t->empty_run_count; ++run)
             memset(arrays[i] + t->empty_runs[run].first_slot, 0, t->empty_runs[run].slot_count * sizeof *arrays[i]);
+    if (network->growth.particles)
+        mspringi_growth_clear_slots(network);
 }
 
 // Choose the substeps of a step where that is left to the library.

@@ -122,11 +122,12 @@ static mspring_result check_parts(mspringi_statics *statics, const mspring_settl
 /* ----------------------------------------------------------------------------------------------------- settling */
 
 // How far apart things are: the larger side of the box around the network, or its longest spring.
-static double extent_of(const mspringi_statics *statics) {
+static double extent_of(const mspringi_statics *statics, const mspring_network *network) {
     double extent = 0.0;
     mspringi_box box = mspringi_box_empty();
     for (uint32_t p = 0; p < statics->particle_count; ++p)
-        mspringi_box_include(&box, statics->start.x[p], statics->start.y[p]);
+        if (mspringi_particle_exists(network, p))
+            mspringi_box_include(&box, statics->start.x[p], statics->start.y[p]);
     for (uint32_t i = 0; i < statics->springs.count; ++i)
         extent = fmax(extent, statics->springs.rest_length[i]);
     return fmax(extent, fmax(box.max_x - box.min_x, box.max_y - box.min_y));
@@ -182,7 +183,7 @@ static mspring_result solve(mspringi_statics *statics, mspring_network *network,
     if (result != MSPRING_OK)
         return result;
     const mspringi_rest rest =
-        mspringi_statics_rest(statics, def->max_iterations, def->tolerance, extent_of(statics));
+        mspringi_statics_rest(statics, def->max_iterations, def->tolerance, extent_of(statics, network));
     result = check_rest(statics, &rest, network);
     if (result == MSPRING_OK)
         *out = (mspring_settle_result){

@@ -16,7 +16,7 @@ mspring_result mspringi_sleep_reserve(mspring_network *network) {
     mspringi_sleep *s = &network->sleep;
     mspringi_memory *memory = &network->memory;
     const mspringi_topology *t = &network->topology;
-    const size_t slots = mspringi_slot_count(network), particles = t->particle_count;
+    const size_t slots = mspringi_slot_count(network), particles = t->reserve.particle_end;
     if (s->state && s->share)
         return MSPRING_OK;
     mspringi_sleep_free(s, memory);
@@ -151,6 +151,11 @@ static void set_all_awake(mspring_network *network) {
 void mspringi_wake(mspring_network *network) {
     network->sleep.has_kept = false;
     set_all_awake(network);
+}
+
+void mspringi_sleep_anew(mspring_network *network) {
+    mspringi_wake(network);
+    network->sleep.count = 0;
 }
 
 void mspringi_wake_slot(mspring_network *network, uint32_t slot) {
@@ -460,6 +465,8 @@ void mspringi_sleep_move(mspring_network *to, const mspring_network *from) {
     const size_t slots = mspringi_slot_count(to), had_slots = mspringi_slot_count(from);
     for (mspring_id p = 0; p < to->topology.particle_count; ++p) {
         const uint32_t slot = to->topology.slot_of_particle[p], before = from->topology.slot_of_particle[p];
+        if (!mspringi_particle_exists(from, p))
+            continue;
         const double still = had->still[had->island[before]];
         double *now = &s->still[s->island[slot]];
         *now = still >= 0.0 && still < *now ? still : *now;
@@ -501,8 +508,10 @@ mspring_result mspring_network_get_sleepers(const mspring_network *network, mspr
         return MSPRING_ERROR_ID;
     const mspringi_sleep *s = &network->sleep;
     for (uint32_t i = 0; i < count; ++i)
-        asleep[i] =
-            s->sleeping > 0 && s->still[s->island[network->topology.slot_of_particle[first + i]]] < 0.0 ? 1 : 0;
+        asleep[i] = s->sleeping > 0 && mspringi_particle_exists(network, first + i) &&
+                            s->still[s->island[network->topology.slot_of_particle[first + i]]] < 0.0
+                        ? 1
+                        : 0;
     return MSPRING_OK;
 }
 

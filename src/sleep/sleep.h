@@ -56,6 +56,8 @@ bool mspringi_next_swept(const mspring_network *network, const mspringi_span *sp
 
 /// Nothing sleeps any more.
 void mspringi_wake(mspring_network *network);
+/// Nothing sleeps any more, and islands are to be looked for anew.
+void mspringi_sleep_anew(mspring_network *network);
 /// Something happens to the island of a slot, or to those of a spring's ends. Nothing for networks that never
 /// sleep.
 void mspringi_wake_slot(mspring_network *network, uint32_t slot);

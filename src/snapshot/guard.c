@@ -43,7 +43,8 @@ static void fallback_save(const mspringi_implicit *n, mspringi_writer *to) {
 static void guard_save(const mspring_network *network, mspringi_writer *to) {
     const mspringi_guard *guard = &network->guard;
     const mspringi_any_shape *any_shape = &network->any_shape;
-    const bool outdated = any_shape->masses != network->edits.masses || any_shape->values != network->edits.values;
+    const bool outdated = any_shape->masses != network->edits.masses ||
+                          any_shape->values != network->edits.values || any_shape->growth != network->edits.growth;
     const float floats[] = {guard->h, guard->global_damping, guard->peak};
     const uint32_t words[] = {(uint32_t)network->guard_policy, guard->suspicious, any_shape->spring,
                               !any_shape->is_known ? UNKNOWN
@@ -148,8 +149,9 @@ static void guard_load(mspring_network *network, const uint8_t *from, size_t siz
         mspringi_get(from, network->backup.x, motion_floats(network), sizeof(float));
     // Edits of before and after are counted differently.
     mspringi_any_shape *any_shape = &network->any_shape;
-    *any_shape = (mspringi_any_shape){.masses = network->edits.masses, .values = network->edits.values - 1};
-    if (head.state == UNKNOWN || head.spring >= network->topology.spring_count)
+    *any_shape = (mspringi_any_shape){
+        .masses = network->edits.masses, .values = network->edits.values - 1, .growth = network->edits.growth};
+    if (head.state == UNKNOWN || head.spring >= network->topology.reserve.spring_end)
         return;
     any_shape->is_known = true;
     any_shape->dt = head.dt;

@@ -33,6 +33,9 @@ extern const mspringi_section mspringi_section_motion;
 extern const mspringi_section mspringi_section_masses;
 extern const mspringi_section mspringi_section_forces;
 
+// In growth.c.
+extern const mspringi_section mspringi_section_growth;
+
 // In sleep.c.
 extern const mspringi_section mspringi_section_sleep;
 

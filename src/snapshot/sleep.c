@@ -20,7 +20,7 @@ typedef struct sleep_head {
 #define STILL_BYTES (sizeof(uint32_t) + sizeof(double))
 
 static size_t words_of_particles(const mspring_network *network) {
-    return ((size_t)network->topology.particle_count + 31) / 32;
+    return ((size_t)network->topology.reserve.particle_end + 31) / 32;
 }
 
 static size_t force_floats(const mspring_network *network, const sleep_head *head) {
@@ -57,7 +57,8 @@ static size_t sleep_size(const mspring_network *network) {
 static bool sleeps_on(const mspring_network *network, mspring_id particle) {
     const mspringi_sleep *sleep = &network->sleep;
     const uint32_t slot = network->topology.slot_of_particle[particle];
-    return sleep->still[sleep->island[slot]] < 0.0 && !mspringi_sleeper_is_disturbed(network, slot);
+    return mspringi_particle_exists(network, particle) && sleep->still[sleep->island[slot]] < 0.0 &&
+           !mspringi_sleeper_is_disturbed(network, slot);
 }
 
 static void sleep_save(const mspring_network *network, mspringi_writer *to) {
@@ -73,7 +74,7 @@ static void sleep_save(const mspring_network *network, mspringi_writer *to) {
         mspringi_put(to, &sleep->lowest[i], 1, sizeof sleep->lowest[i]);
         mspringi_put(to, &sleep->still[i], 1, sizeof sleep->still[i]);
     }
-    const uint32_t particles = network->topology.particle_count;
+    const uint32_t particles = network->topology.reserve.particle_end;
     for (mspring_id first = 0; head.any_asleep && first < particles; first += 32) {
         uint32_t bits = 0;
         for (mspring_id p = first; p < first + 32 && p < particles; ++p)
@@ -102,8 +103,7 @@ static mspring_result check_still(mspring_network *network, const uint8_t *from,
         uint32_t slot;
         double still;
         from = read_still(from, &slot, &still);
-        if (slot >= slots || network->topology.particle_of_slot[slot] == MSPRING_NONE ||
-            !(still > 0.0 && still <= 1e300))
+        if (slot >= slots || !(still > 0.0 && still <= 1e300))
             return mspringi_section_fail(network, &mspringi_section_sleep, "slot %u has been still for %g s",
                                          (unsigned)slot, still);
     }
@@ -120,7 +120,7 @@ static mspring_result sleep_check(mspring_network *network, const uint8_t *from,
     from = read_head(from, &head);
     if (!(head.speed > 0.0f && head.speed <= 1e15f && head.time >= 0.0f && head.time <= 1e6f) ||
         head.any_asleep > 1 || head.has_force > head.any_asleep ||
-        head.still_count > network->topology.particle_count)
+        head.still_count > network->topology.reserve.particle_end)
         return mspringi_section_fail(network, section, "%u islands below %g m/s for less than %g s",
                                      (unsigned)head.still_count, (double)head.speed, (double)head.time);
     mspring_result result = mspringi_section_check_size(network, section, size, size_of(network, &head));
@@ -137,13 +137,13 @@ static mspring_result sleep_check(mspring_network *network, const uint8_t *from,
 // Mark the islands all of whose particles sleep.
 static const uint8_t *mark_asleep(const mspring_network *network, const uint8_t *from) {
     const mspringi_sleep *sleep = &network->sleep;
-    const uint32_t particles = network->topology.particle_count;
+    const uint32_t particles = network->topology.reserve.particle_end;
     memset(sleep->mark, 1, sleep->count * sizeof *sleep->mark);
     for (mspring_id first = 0; first < particles; first += 32) {
         uint32_t bits;
         from = mspringi_get(from, &bits, 1, sizeof bits);
         for (mspring_id p = first; p < first + 32 && p < particles; ++p)
-            if (!(bits >> (p - first) & 1))
+            if (!(bits >> (p - first) & 1) && mspringi_particle_exists(network, p))
                 sleep->mark[sleep->island[network->topology.slot_of_particle[p]]] = 0;
     }
     return from;
@@ -166,7 +166,8 @@ static void sleep_load(mspring_network *network, const uint8_t *from, size_t siz
         uint32_t slot;
         double still;
         from = read_still(from, &slot, &still);
-        sleep->still[sleep->island[slot]] = still;
+        if (sleep->island[slot] != MSPRING_NONE)
+            sleep->still[sleep->island[slot]] = still;
     }
     if (!head.any_asleep)
         return;

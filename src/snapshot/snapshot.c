@@ -6,14 +6,15 @@
 #include "edits/ramps.h"
 #include "sections.h"
 
-/// In the order in which they are loaded: ramps go by the springs' values, stressed springs by what is broken,
-/// sleep by what has been edited, and a solver's tiles by what sleeps.
+/// In the order in which they are loaded: all goes by which particles and springs there are, ramps go by the
+/// springs' values, stressed springs by what is broken, sleep by what has been edited, and a solver's tiles by what
+/// sleeps.
 static const mspringi_section *const sections[] = {
-    &mspringi_section_settings,      &mspringi_section_motion,         &mspringi_section_masses,
-    &mspringi_section_forces,        &mspringi_section_broken,         &mspringi_section_values,
-    &mspringi_section_break_strains, &mspringi_section_stress_strains, &mspringi_section_stressed,
-    &mspringi_section_ramps,         &mspringi_section_sleep,          &mspringi_section_implicit,
-    &mspringi_section_guard};
+    &mspringi_section_growth,   &mspringi_section_settings,      &mspringi_section_motion,
+    &mspringi_section_masses,   &mspringi_section_forces,        &mspringi_section_broken,
+    &mspringi_section_values,   &mspringi_section_break_strains, &mspringi_section_stress_strains,
+    &mspringi_section_stressed, &mspringi_section_ramps,         &mspringi_section_sleep,
+    &mspringi_section_implicit, &mspringi_section_guard};
 enum { SECTIONS = sizeof sections / sizeof sections[0] };
 
 /* --------------------------------------------------------------------------------------------------- messages */
@@ -92,8 +93,8 @@ mspring_result mspring_network_save(const mspring_network *network, mspring_snap
     mspringi_snapshot_header header = {
         .version = MSPRINGI_SNAPSHOT_VERSION,
         .contents = (uint32_t)contents,
-        .particle_count = network->topology.particle_count,
-        .spring_count = network->topology.spring_count,
+        .particle_count = network->topology.reserve.particle_end,
+        .spring_count = network->topology.reserve.spring_end,
         .topology_print = network->topology_print,
         .parameter_print = network->parameter_print,
     };
@@ -152,12 +153,13 @@ static mspring_result check_frame(mspring_network *network, const uint8_t *snaps
 }
 
 static mspring_result check_kin(mspring_network *network, const mspringi_snapshot_header *header) {
-    const mspringi_topology *t = &network->topology;
-    if (header->particle_count != t->particle_count || header->spring_count != t->spring_count)
+    const mspringi_reserve *r = &network->topology.reserve;
+    if (header->particle_count != r->particle_end || header->spring_count != r->spring_end)
         return mspringi_fail(&network->message, MSPRING_ERROR_SNAPSHOT,
-                             "the snapshot is of %u particles and %u springs, the network has %u and %u",
+                             "the snapshot is of %u particles and %u springs, spare ones counted, the network has "
+                             "%u and %u",
                              (unsigned)header->particle_count, (unsigned)header->spring_count,
-                             (unsigned)t->particle_count, (unsigned)t->spring_count);
+                             (unsigned)r->particle_end, (unsigned)r->spring_end);
     if (header->topology_print != network->topology_print)
         return fail(network, "is of another network: its springs join other particles, or are laid out otherwise");
     if (header->contents == MSPRING_SNAPSHOT_FRAME && header->parameter_print != network->parameter_print)

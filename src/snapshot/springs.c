@@ -41,7 +41,7 @@ static mspring_result broken_check(mspring_network *network, const uint8_t *from
         return MSPRING_OK;
     mspring_result result = mspringi_section_check_size(network, section, size, words_size(network));
     for (uint32_t i = 0; result == MSPRING_OK && i < t->parked_count; ++i)
-        if (bit_at(from, t->chain_places + t->leftover_count + i))
+        if (bit_at(from, t->chain_places + t->leftover_capacity + i))
             result = mspringi_section_fail(network, section, "a spring that the plan leaves out is whole");
     return result == MSPRING_OK ? mspringi_breaking_reserve(network) : result;
 }
@@ -54,7 +54,7 @@ static void broken_load(mspring_network *network, const uint8_t *from, size_t si
     mspringi_places_begin(&reader, &t->places, 0);
     for (mspring_id s = 0; s < t->spring_count; ++s) {
         const mspringi_place place = mspringi_places_next(&reader);
-        const bool live = size == 0 || bit_at(from, place);
+        const bool live = mspringi_spring_exists(network, s) && (size == 0 || bit_at(from, place));
         if (live == mspringi_place_is_live(network, place))
             continue;
         if (live)
@@ -74,7 +74,7 @@ const mspringi_section mspringi_section_broken = {"brok",      "broken springs",
 enum { VALUES = 3 };
 
 static size_t values_size(const mspring_network *network) {
-    return (size_t)network->topology.spring_count * VALUES * sizeof(float);
+    return (size_t)network->topology.reserve.spring_end * VALUES * sizeof(float);
 }
 
 typedef struct spring_values {
@@ -82,6 +82,8 @@ typedef struct spring_values {
 } spring_values;
 
 static spring_values values_of(const mspring_network *network, mspring_id spring, mspringi_place place) {
+    if (!mspringi_spring_exists(network, spring))
+        return (spring_values){0.0f, 0.0f, 1.0f};
     const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, place);
     return (spring_values){nominal.stiffness, nominal.damping, mspringi_place_get(network, place).rest_length};
 }
@@ -89,7 +91,7 @@ static spring_values values_of(const mspring_network *network, mspring_id spring
 static void values_save(const mspring_network *network, mspringi_writer *to) {
     enum { TOGETHER = 64 };
     spring_values values[TOGETHER];
-    const uint32_t springs = network->topology.spring_count;
+    const uint32_t springs = network->topology.reserve.spring_end;
     mspringi_place_reader reader;
     mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id first = 0; first < springs; first += TOGETHER) {
@@ -106,7 +108,7 @@ static mspring_result values_check(mspring_network *network, const uint8_t *from
     bool other_rest_lengths = false, other_fractions = false;
     mspringi_place_reader reader;
     mspringi_places_begin(&reader, &network->topology.places, 0);
-    for (mspring_id s = 0; result == MSPRING_OK && s < network->topology.spring_count; ++s) {
+    for (mspring_id s = 0; result == MSPRING_OK && s < network->topology.reserve.spring_end; ++s) {
         spring_values values;
         from = mspringi_get(from, &values, VALUES, sizeof(float));
         if (!mspringi_is_spring_value(MSPRINGI_STIFFNESS, values.stiffness) ||
@@ -118,7 +120,8 @@ static mspring_result values_check(mspring_network *network, const uint8_t *from
                 (double)values.stiffness, (double)values.damping, (double)values.rest_length);
         const mspringi_place place = mspringi_places_next(&reader);
         other_rest_lengths =
-            other_rest_lengths || values.rest_length != mspringi_place_get(network, place).rest_length;
+            other_rest_lengths || (place < network->topology.lattice_places &&
+                                   values.rest_length != mspringi_place_get(network, place).rest_length);
         if (mspringi_spring_is_relative(network, s)) {
             const mspringi_relative had = mspringi_fractions_of(&network->fractions, s);
             other_fractions = other_fractions || values.stiffness != had.stiffness || values.damping != had.damping;
@@ -134,11 +137,13 @@ static void values_load(mspring_network *network, const uint8_t *from, size_t si
         return;
     mspringi_place_reader reader;
     mspringi_places_begin(&reader, &network->topology.places, 0);
-    for (mspring_id s = 0; s < network->topology.spring_count; ++s) {
+    for (mspring_id s = 0; s < network->topology.reserve.spring_end; ++s) {
         spring_values values;
         const mspringi_place place = mspringi_places_next(&reader);
         const spring_values present = values_of(network, s, place);
         from = mspringi_get(from, &values, VALUES, sizeof(float));
+        if (!mspringi_spring_exists(network, s))
+            continue;
         if (values.rest_length != present.rest_length)
             mspringi_place_set_rest_length(network, place, values.rest_length);
         if (values.stiffness != present.stiffness || values.damping != present.damping)
@@ -153,19 +158,19 @@ const mspringi_section mspringi_section_values = {
 /* ------------------------------------------------------------------------------------------------ strains */
 
 static size_t thresholds_size(const mspring_network *network, const float *thresholds) {
-    return thresholds ? network->topology.spring_count * sizeof *thresholds : 0;
+    return thresholds ? network->topology.reserve.spring_end * sizeof *thresholds : 0;
 }
 
 static void thresholds_save(const mspring_network *network, const float *thresholds, mspringi_writer *to) {
     mspringi_place_reader reader;
     mspringi_places_begin(&reader, &network->topology.places, 0);
-    for (mspring_id s = 0; s < network->topology.spring_count; ++s)
+    for (mspring_id s = 0; s < network->topology.reserve.spring_end; ++s)
         mspringi_put(to, &thresholds[mspringi_places_next(&reader)], 1, sizeof *thresholds);
 }
 
 static mspring_result thresholds_check(mspring_network *network, const mspringi_section *section,
                                        const uint8_t *from, size_t size) {
-    const uint32_t springs = network->topology.spring_count;
+    const uint32_t springs = network->topology.reserve.spring_end;
     mspring_result result = mspringi_section_check_size(network, section, size, springs * sizeof(float));
     for (mspring_id s = 0; result == MSPRING_OK && s < springs; ++s)
         if (!(mspringi_float_at(from, s) > 0.0f))
@@ -177,7 +182,7 @@ static mspring_result thresholds_check(mspring_network *network, const mspringi_
 static void thresholds_load(mspring_network *network, bool stress, const uint8_t *from, size_t size) {
     mspringi_place_reader reader;
     mspringi_places_begin(&reader, &network->topology.places, 0);
-    for (mspring_id s = 0; s < network->topology.spring_count; ++s)
+    for (mspring_id s = 0; s < network->topology.reserve.spring_end; ++s)
         mspringi_strain_store(network, mspringi_places_next(&reader), stress,
                               size > 0 ? mspringi_float_at(from, s) : INFINITY);
 }
@@ -300,14 +305,15 @@ static const uint8_t *read_ramp(const uint8_t *from, mspringi_ramp *ramp) {
 static mspring_result ramps_check(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_section *section = &mspringi_section_ramps;
     const size_t count = size / RAMP_BYTES;
-    if (size % RAMP_BYTES != 0 || count > network->topology.spring_count)
+    if (size % RAMP_BYTES != 0 || count > network->topology.reserve.spring_end)
         return mspringi_section_fail(network, section, "they take %zu bytes", size);
     for (size_t i = 0; i < count; ++i) {
         mspringi_ramp ramp;
         from = read_ramp(from, &ramp);
-        if (!(ramp.spring < network->topology.spring_count && ramp.from > 0.0 && ramp.from <= LONGEST_SPRING &&
-              mspringi_is_spring_value(MSPRINGI_REST_LENGTH, ramp.to) && ramp.seconds > 0.0 &&
-              ramp.seconds <= MSPRINGI_LONGEST_RAMP && ramp.passed >= 0.0 && ramp.passed < ramp.seconds))
+        if (!(ramp.spring < network->topology.reserve.spring_end && ramp.from > 0.0 &&
+              ramp.from <= LONGEST_SPRING && mspringi_is_spring_value(MSPRINGI_REST_LENGTH, ramp.to) &&
+              ramp.seconds > 0.0 && ramp.seconds <= MSPRINGI_LONGEST_RAMP && ramp.passed >= 0.0 &&
+              ramp.passed < ramp.seconds))
             return mspringi_section_fail(network, section, "spring %u goes from %g to %g m, for %g of %g s",
                                          (unsigned)ramp.spring, ramp.from, (double)ramp.to, ramp.passed,
                                          ramp.seconds);

@@ -114,7 +114,7 @@ static mspring_result motion_check(mspring_network *network, const uint8_t *from
     const size_t slots = mspringi_slot_count(network);
     mspring_result result = mspringi_section_check_size(network, section, size, motion_size(network));
     const float largest = (float)MSPRING_MAX_COORDINATE;
-    for (mspring_id p = 0; result == MSPRING_OK && p < network->topology.particle_count; ++p) {
+    for (mspring_id p = 0; result == MSPRING_OK && p < network->topology.reserve.particle_end; ++p) {
         const uint32_t slot = network->topology.slot_of_particle[p];
         const float x = mspringi_float_at(from, slot), y = mspringi_float_at(from, slots + slot);
         const float vx = mspringi_float_at(from, 2 * slots + slot), vy = mspringi_float_at(from, 3 * slots + slot);
@@ -147,7 +147,7 @@ static uint32_t masses_kind(const mspring_network *network) {
 }
 
 static size_t masses_size_of(const mspring_network *network, uint32_t kind) {
-    const size_t particles = network->topology.particle_count;
+    const size_t particles = network->topology.reserve.particle_end;
     return sizeof kind + sizeof(float) * (particles + (kind & SCALED ? particles : mspringi_slot_count(network)) +
                                           (kind & SPRING_MASSES ? particles : 0));
 }
@@ -158,7 +158,7 @@ static size_t masses_size(const mspring_network *network) {
 
 static void masses_save(const mspring_network *network, mspringi_writer *to) {
     const uint32_t kind = masses_kind(network);
-    const size_t particles = network->topology.particle_count;
+    const size_t particles = network->topology.reserve.particle_end;
     mspringi_put(to, &kind, 1, sizeof kind);
     mspringi_put(to, network->mass, particles, sizeof(float));
     if (kind & SCALED)
@@ -175,7 +175,7 @@ typedef struct masses {
 } masses;
 
 static masses read_masses(const mspring_network *network, const uint8_t *from) {
-    const size_t particles = network->topology.particle_count;
+    const size_t particles = network->topology.reserve.particle_end;
     masses m;
     m.mass = mspringi_get(from, &m.kind, 1, sizeof m.kind);
     m.inverse_or_scale = m.mass + particles * sizeof(float);
@@ -203,7 +203,7 @@ static mspring_result masses_check(mspring_network *network, const uint8_t *from
     if (result != MSPRING_OK)
         return result;
     const masses m = read_masses(network, from);
-    for (mspring_id p = 0; p < network->topology.particle_count; ++p) {
+    for (mspring_id p = 0; p < network->topology.reserve.particle_end; ++p) {
         const float mass = mspringi_float_at(m.mass, p);
         if (!mspringi_is_mass(mass) ||
             (kind & SPRING_MASSES && !mspringi_is_mass(mspringi_float_at(m.spring_mass, p))))
@@ -221,7 +221,7 @@ static mspring_result masses_check(mspring_network *network, const uint8_t *from
 static void masses_load(mspring_network *network, const uint8_t *from, size_t size) {
     (void)size;
     const masses m = read_masses(network, from);
-    const uint32_t particles = network->topology.particle_count;
+    const uint32_t particles = network->topology.reserve.particle_end;
     mspringi_get(m.mass, network->mass, particles, sizeof(float));
     for (mspring_id p = 0; p < particles; ++p) {
         const float scale = scale_in(network, &m, p);

@@ -37,6 +37,8 @@ static void sum_up(const mspring_network *network, const mspringi_state *sums) {
     mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
         const mspringi_place place = mspringi_places_next(&reader);
+        if (!mspringi_spring_exists(network, i))
+            continue;
         const mspringi_strength strength = mspringi_strength_of(network, i, place);
         uint32_t ends[2];
         mspringi_topology_ends(&network->topology, place, &ends[0], &ends[1]);
@@ -63,6 +65,8 @@ static double find(mspring_network *network, mspring_id *spring) {
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
         uint32_t a, b;
         mspringi_topology_ends(&network->topology, mspringi_places_next(&reader), &a, &b);
+        if (!mspringi_spring_exists(network, i))
+            continue;
         const double per_a = (double)network->inverse_mass[a], per_b = (double)network->inverse_mass[b];
         const mspringi_quotient quotient = {
             .stiffness = (double)sums->x[a] * per_a + (double)sums->x[b] * per_b,
@@ -84,10 +88,12 @@ static double find(mspring_network *network, mspring_id *spring) {
 
 double mspringi_stable_in_any_shape(mspring_network *network, mspring_id *spring) {
     mspringi_any_shape *known = &network->any_shape;
-    if (!known->is_known || known->masses != network->edits.masses || known->values != network->edits.values) {
+    if (!known->is_known || known->masses != network->edits.masses || known->values != network->edits.values ||
+        known->growth != network->edits.growth) {
         known->dt = find(network, &known->spring);
         known->masses = network->edits.masses;
         known->values = network->edits.values;
+        known->growth = network->edits.growth;
         known->is_known = true;
         // The guard wanted the motion that was in the backup: it looks anew instead, from noise.
         if (network->guard.suspicious)

@@ -39,9 +39,18 @@ mspring_result mspringi_balance_create(mspringi_balance *balance, const mspring_
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the energy of %u particles",
                              (unsigned)t->particle_count);
     }
-    for (size_t slot = 0; slot < (size_t)t->loose_first * MSPRINGI_WIDTH; ++slot)
-        balance->movable += t->particle_of_slot[slot] != MSPRING_NONE;
     return MSPRING_OK;
+}
+
+void mspringi_balance_count(const mspring_network *network, mspringi_implicit *n) {
+    const mspringi_topology *t = &network->topology;
+    const size_t loose = (size_t)t->loose_first * MSPRINGI_WIDTH, slots = mspringi_slot_count(network);
+    n->balance.movable = 0;
+    for (size_t slot = 0; slot < loose; ++slot)
+        n->balance.movable += t->particle_of_slot[slot] != MSPRING_NONE;
+    const mspringi_slots added = mspringi_loose_slots(t, &(mspringi_slots){loose, slots});
+    for (size_t slot = added.first; slot < added.end; ++slot)
+        n->balance.movable += mspringi_is_solved(network, n, slot);
 }
 
 void mspringi_balance_destroy(mspringi_balance *balance, mspringi_memory *memory) {
@@ -138,24 +147,36 @@ static double gain_of(const stretched *s) {
 
 /* ---------------------------------------------------------------------------------------- springs of their own */
 
-// What the particles of some blocks get, less the work that is done on them, J.
-static double gain_of_blocks(const substep_of *substep, const mspringi_motion *m, uint32_t first, uint32_t count) {
+// What a particle gets, less the work that is done on it, J.
+static double gain_of_slot(const substep_of *substep, const mspringi_motion *m, size_t slot) {
     const mspring_network *network = substep->network;
     const double gravity[] = {(double)network->gravity_x, (double)network->gravity_y};
+    const float inverse_mass = network->inverse_mass[slot];
     double sum = 0.0;
-    for (size_t slot = (size_t)first * MSPRINGI_WIDTH; slot < (size_t)(first + count) * MSPRINGI_WIDTH; ++slot) {
-        const float inverse_mass = network->inverse_mass[slot];
-        if (!(inverse_mass > 0.0f))
-            continue;
-        const double mass = 1.0 / (double)inverse_mass;
-        for (size_t axis = 0; axis < 2; ++axis) {
-            const passage p = passage_of(m, axis, slot);
-            const float *force = m->axes[axis].force;
-            const double work = (mass * gravity[axis] + (force ? (double)force[slot] : 0.0)) * (p.to - p.from);
-            sum += 0.5 * mass * ((p.fast - p.slow) * (p.fast + p.slow)) - work;
-        }
+    if (!(inverse_mass > 0.0f))
+        return 0.0;
+    const double mass = 1.0 / (double)inverse_mass;
+    for (size_t axis = 0; axis < 2; ++axis) {
+        const passage p = passage_of(m, axis, slot);
+        const float *force = m->axes[axis].force;
+        const double work = (mass * gravity[axis] + (force ? (double)force[slot] : 0.0)) * (p.to - p.from);
+        sum += 0.5 * mass * ((p.fast - p.slow) * (p.fast + p.slow)) - work;
     }
     return sum;
+}
+
+// The particles of some blocks.
+static double gain_of_blocks(const substep_of *substep, const mspringi_motion *m, uint32_t first, uint32_t count) {
+    double sum = 0.0;
+    for (size_t slot = (size_t)first * MSPRINGI_WIDTH; slot < (size_t)(first + count) * MSPRINGI_WIDTH; ++slot)
+        sum += gain_of_slot(substep, m, slot);
+    return sum;
+}
+
+// All slots of loose particles that springs have been added to.
+static mspringi_slots slots_added_to(const mspring_network *network) {
+    const mspringi_slots all = {0, mspringi_slot_count(network)}, none = {0, 0};
+    return network->implicit->is_solved ? mspringi_loose_slots(&network->topology, &all) : none;
 }
 
 // What springs and particles outside of lattices get, J.
@@ -164,6 +185,10 @@ static double gain_outside(const substep_of *substep, const mspringi_motion *m) 
     const mspringi_topology *t = &network->topology;
     double sum = gain_of_blocks(substep, m, t->chain_first, t->chain_blocks) +
                  gain_of_blocks(substep, m, t->web_first, t->web_blocks);
+    const mspringi_slots added = slots_added_to(network);
+    for (size_t slot = added.first; slot < added.end; ++slot)
+        if (mspringi_is_solved(network, network->implicit, slot))
+            sum += gain_of_slot(substep, m, slot);
     for (mspringi_place place = t->lattice_places; place < t->chain_places + t->leftover_count; ++place) {
         if (!is_live(network, place))
             continue;
@@ -265,6 +290,48 @@ static double work_of_floor(const mspring_network *network, const mspringi_motio
     return sum / network->implicit->system.force_scale;
 }
 
+// What a loose particle adds to the sums over particles: as sum_moves() of kernels/system_energy.h.
+static void add_loose(const mspringi_motion *m, size_t slot, double *sums) {
+    const double mass = (double)m->mass[slot];
+    sums[MSPRINGI_MOVE_MASS] += mass;
+    sums[MSPRINGI_MOVE_COUNT] += mass > 0.0 ? 1.0 : 0.0;
+    for (size_t axis = 0; axis < 2; ++axis) {
+        const mspringi_motion_axis *c = &m->axes[axis];
+        const passage p = passage_of(m, axis, slot);
+        const double step = p.to - p.from, size = fabs((double)(c->solution[slot] + m->alpha * c->direction[slot]));
+        const double force = mass > 0.0 && c->force ? (double)c->force[slot] : 0.0,
+                     way = mass > 0.0 ? 0.0 : fabs(step);
+        sums[MSPRINGI_MOVE_KINETIC] += mass * (p.slow * p.slow);
+        sums[MSPRINGI_MOVE_GAIN] += mass * ((p.fast - p.slow) * (p.fast + p.slow));
+        sums[MSPRINGI_MOVE_MOMENTUM + axis] += mass * p.slow;
+        sums[MSPRINGI_MOVE_PUSH + axis] += mass * (p.fast - p.slow);
+        sums[MSPRINGI_MOVE_WAY + axis] += mass * step;
+        sums[MSPRINGI_MOVE_WORK] += force * step;
+        sums[MSPRINGI_MOVE_FORCE + axis] += force;
+        sums[MSPRINGI_MOVE_LARGEST] = size > sums[MSPRINGI_MOVE_LARGEST] ? size : sums[MSPRINGI_MOVE_LARGEST];
+        sums[MSPRINGI_MOVE_DRIVEN] = way > sums[MSPRINGI_MOVE_DRIVEN] ? way : sums[MSPRINGI_MOVE_DRIVEN];
+    }
+}
+
+// Note how far the loose ends of added springs move. Those of which only broken springs are left are not solved
+// for, and what is there for them is needed yet.
+static void step_loose(const mspring_network *network, const mspringi_motion *m) {
+    const mspringi_topology *t = &network->topology;
+    for (uint32_t i = t->woven_count; i < t->leftover_count; ++i) {
+        const uint32_t ends[] = {t->leftover_a[i], t->leftover_b[i]};
+        for (int end = 0; end < 2; ++end) {
+            const size_t slot = ends[end];
+            if (slot < (size_t)t->loose_first * MSPRINGI_WIDTH ||
+                (m->mass[slot] > 0.0f && !mspringi_is_solved(network, network->implicit, slot)))
+                continue;
+            for (size_t axis = 0; axis < 2; ++axis) {
+                const passage p = passage_of(m, axis, slot);
+                m->axes[axis].step[slot] = (float)(p.to - p.from);
+            }
+        }
+    }
+}
+
 // Sum up the shares of all workers.
 static void gather(const substep_of *substep, const mspringi_motion *m, double *moves, double *stretches) {
     const mspring_network *network = substep->network;
@@ -277,6 +344,11 @@ static void gather(const substep_of *substep, const mspringi_motion *m, double *
         largest = chunk[MSPRINGI_MOVE_LARGEST] > largest ? chunk[MSPRINGI_MOVE_LARGEST] : largest;
     }
     moves[MSPRINGI_MOVE_LARGEST] = largest;
+    const mspringi_slots added = slots_added_to(network);
+    for (size_t slot = added.first; slot < added.end; ++slot)
+        if (mspringi_is_solved(network, network->implicit, slot))
+            add_loose(m, slot, moves);
+    step_loose(network, m);
     for (size_t i = 0; i < network->implicit->panels.count; ++i)
         add_sums(stretches, balance->panels + i * MSPRINGI_STRETCH_SUMS, MSPRINGI_STRETCH_SUMS);
     add_leftover(network, m, moves[MSPRINGI_MOVE_DRIVEN] > 0.0, stretches);

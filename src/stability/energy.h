@@ -60,6 +60,9 @@ struct mspringi_mate;
 /// Allocate what the implicit solver needs for it.
 mspring_result mspringi_balance_create(mspringi_balance *balance, const mspring_network *network, uint32_t panels,
                                        mspringi_memory *memory, mspringi_message *message);
+/// Count the particles with springs, when the solver knows which they are.
+struct mspringi_implicit;
+void mspringi_balance_count(const mspring_network *network, struct mspringi_implicit *implicit);
 void mspringi_balance_destroy(mspringi_balance *balance, mspringi_memory *memory);
 
 /// Whether there is anything to look at in the coming substeps.

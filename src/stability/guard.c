@@ -123,7 +123,10 @@ static void add_image(const mspring_network *network, double h, displacement in,
     mspringi_place_reader reader;
     mspringi_places_begin(&reader, &t->places, 0);
     for (mspring_id i = 0; i < t->spring_count; ++i) {
-        const mspringi_seen s = mspringi_see_spring(network, i, mspringi_places_next(&reader));
+        const mspringi_place place = mspringi_places_next(&reader);
+        if (!mspringi_spring_exists(network, i))
+            continue;
+        const mspringi_seen s = mspringi_see_spring(network, i, place);
         const uint32_t a = t->slot_of_particle[s.a], b = t->slot_of_particle[s.b];
         const double root_a = sqrt((double)network->inverse_mass[a]);
         const double root_b = sqrt((double)network->inverse_mass[b]);

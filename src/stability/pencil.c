@@ -71,7 +71,11 @@ void mspringi_pencil_set(mspringi_pencil *pencil, double h) {
     mspringi_place_reader reader;
     mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
-        const mspringi_seen s = see_safely(network, i, mspringi_places_next(&reader));
+        const mspringi_place place = mspringi_places_next(&reader);
+        pencil->terms[i] = (struct mspringi_pencil_term){0};
+        if (!mspringi_spring_exists(network, i))
+            continue;
+        const mspringi_seen s = see_safely(network, i, place);
         const double stiffness = h * h * s.strength.stiffness + s.strength.relative_stiffness;
         const double damping = 2.0 * (h * s.strength.damping + s.strength.relative_damping);
         const double all = s.directed ? stiffness * s.across : stiffness + damping;
@@ -106,7 +110,10 @@ mspringi_quotient mspringi_pencil_quotient(const mspringi_pencil *pencil, const 
     mspringi_place_reader reader;
     mspringi_places_begin(&reader, &pencil->network->topology.places, 0);
     for (mspring_id i = 0; i < pencil->network->topology.spring_count; ++i) {
-        mspringi_seen s = see_safely(pencil->network, i, mspringi_places_next(&reader));
+        const mspringi_place place = mspringi_places_next(&reader);
+        if (!mspringi_spring_exists(pencil->network, i))
+            continue;
+        mspringi_seen s = see_safely(pencil->network, i, place);
         const double *const at_a = vector + 2 * (size_t)s.a, *const at_b = vector + 2 * (size_t)s.b;
         const double dx = pencil->root[s.b] * at_b[0] - pencil->root[s.a] * at_a[0];
         const double dy = pencil->root[s.b] * at_b[1] - pencil->root[s.a] * at_a[1];

@@ -10,7 +10,7 @@ static void find_ends(const mspringi_topology *t, mspringi_place place, mspring_
 
 mspring_result mspringi_incidence_create(mspringi_incidence *incidence, const mspringi_topology *topology,
                                          mspringi_memory *memory, mspringi_message *message) {
-    const uint32_t particles = topology->particle_count, springs = topology->spring_count;
+    const uint32_t particles = topology->reserve.particle_end, springs = topology->reserve.first_spring;
     mspringi_incidence made = {mspringi_alloc(memory, (size_t)particles + 1, sizeof *made.first),
                                mspringi_alloc(memory, (size_t)2 * springs, sizeof *made.springs)};
     if (!made.first || !made.springs) {
@@ -42,12 +42,4 @@ void mspringi_incidence_destroy(mspringi_incidence *incidence, mspringi_memory *
     mspringi_free(memory, incidence->first);
     mspringi_free(memory, incidence->springs);
     *incidence = (mspringi_incidence){NULL, NULL};
-}
-
-mspring_id mspringi_incidence_find(const mspringi_incidence *incidence, const mspringi_topology *topology,
-                                   mspring_id particle, mspringi_place place) {
-    uint32_t i = incidence->first[particle];
-    while (mspringi_place_of(topology, incidence->springs[i]) != place)
-        ++i;
-    return incidence->springs[i];
 }

@@ -7,7 +7,8 @@
 
 #include "topology.h"
 
-/// The springs of particle p are springs[first[p]] ... springs[first[p + 1] - 1], by rising id.
+/// The springs of particle p are springs[first[p]] ... springs[first[p + 1] - 1], by rising id. Spare springs are
+/// in none of these lists.
 typedef struct mspringi_incidence {
     uint32_t *first;   ///< [particles + 1], or NULL: not made yet
     uint32_t *springs; ///< [2 * springs]
@@ -16,9 +17,5 @@ typedef struct mspringi_incidence {
 mspring_result mspringi_incidence_create(mspringi_incidence *incidence, const mspringi_topology *topology,
                                          mspringi_memory *memory, mspringi_message *message);
 void mspringi_incidence_destroy(mspringi_incidence *incidence, mspringi_memory *memory);
-
-/// The spring that has this place, one of its ends being particle.
-mspring_id mspringi_incidence_find(const mspringi_incidence *incidence, const mspringi_topology *topology,
-                                   mspring_id particle, mspringi_place place);
 
 #endif

@@ -26,8 +26,8 @@ typedef enum mspringi_direction {
 
 /// Where a spring lies: below lattice_places a lattice record, (block * MSPRINGI_DIRECTIONS + direction) *
 /// MSPRINGI_WIDTH + lane; below chain_places a chain record, lattice_places + block * MSPRINGI_WIDTH + lane; above
-/// that, chain_places + number among the leftover springs, behind which are the parked ones. Block counts from the
-/// first of its kind.
+/// that, chain_places + number among the leftover springs, behind which are those with spare ids (see spare.h) and
+/// the parked ones. Block counts from the first of its kind.
 typedef uint32_t mspringi_place;
 
 typedef enum mspringi_run_kind {

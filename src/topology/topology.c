@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "analysis.h"
+#include "spare.h"
 
 /// Chains are swept in spans of this many blocks.
 #define LONGEST_CHAIN_SPAN 64
@@ -124,6 +125,13 @@ static uint32_t web_blocks(const assembly *a, uint32_t count) {
     return count > 0 ? place / MSPRINGI_WIDTH + 1 : 0;
 }
 
+// Whether a particle lies in the loose row. One that is absent has the first slot, which holds none, or a spare
+// one.
+static bool is_loose(const assembly *a, uint32_t particle) {
+    return a->kinds[particle] == MSPRINGI_ROW_LOOSE &&
+           !(a->builder->particles[particle].flags & MSPRINGI_PARTICLE_ABSENT);
+}
+
 static mspring_result number_blocks(assembly *a) {
     mspringi_topology *t = a->topology;
     a->first_block = mspringi_alloc(a->memory, a->grids.count, sizeof *a->first_block);
@@ -141,7 +149,7 @@ static mspring_result number_blocks(assembly *a) {
 
     uint32_t loose = 0;
     for (size_t p = 0; p < a->builder->particle_count; ++p)
-        loose += a->kinds[p] == MSPRINGI_ROW_LOOSE;
+        loose += is_loose(a, (uint32_t)p);
     t->lattice_first = 1;
     t->lattice_blocks = (uint32_t)a->block_count;
     t->chain_first = t->lattice_first + t->lattice_blocks;
@@ -150,10 +158,13 @@ static mspring_result number_blocks(assembly *a) {
     t->web_first = t->chain_first + t->chain_blocks + 1;
     t->web_blocks = web_blocks(a, a->web.count);
     t->loose_first = t->web_first + t->web_blocks;
+    t->loose_particles = loose;
     t->loose_blocks = (loose + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
-    t->block_count = t->loose_first + t->loose_blocks + 1;
+    t->spare_first = t->loose_first + t->loose_blocks;
+    t->spare_blocks = (mspringi_spare_particles(t) + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
+    t->block_count = t->spare_first + t->spare_blocks + 1;
     if ((uint64_t)t->lattice_blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + a->strands.count + MSPRINGI_WIDTH +
-            a->builder->spring_count >=
+            t->reserve.spring_end >=
         MSPRING_NONE)
         return mspringi_fail(a->message, MSPRING_ERROR_LIMIT, "%u blocks of lattice are more than can be numbered",
                              (unsigned)t->lattice_blocks);
@@ -192,8 +203,10 @@ static void assign_slots(assembly *a) {
             const uint32_t block =
                 find_block(a, grids->grid_of[p], grids->row[p], grids->column[p] / MSPRINGI_WIDTH);
             place_particle(t, p, (t->lattice_first + block) * MSPRINGI_WIDTH + grids->column[p] % MSPRINGI_WIDTH);
-        } else if (a->kinds[p] == MSPRINGI_ROW_LOOSE) {
+        } else if (is_loose(a, p)) {
             place_particle(t, p, loose++);
+        } else if (a->kinds[p] == MSPRINGI_ROW_LOOSE && p >= t->reserve.first_particle) {
+            t->slot_of_particle[p] = mspringi_spare_slot(t, p);
         }
     }
     for (uint32_t i = 0; i < a->strands.count; ++i)
@@ -202,6 +215,8 @@ static void assign_slots(assembly *a) {
         place = web_place(a, i, place);
         place_particle(t, a->web.particles[i], t->web_first * MSPRINGI_WIDTH + place);
     }
+    for (mspring_id p = t->particle_count; p < t->reserve.particle_end; ++p)
+        t->slot_of_particle[p] = mspringi_spare_slot(t, p);
 }
 
 // Give each spring a place, in an array.
@@ -232,10 +247,11 @@ static void spread_places(assembly *a, mspringi_place *places) {
 
 static mspring_result assign_places(assembly *a) {
     mspringi_topology *t = a->topology;
-    mspringi_place *places = a->places = mspringi_alloc(a->memory, t->spring_count, sizeof *places);
+    mspringi_place *places = a->places = mspringi_alloc(a->memory, t->reserve.spring_end, sizeof *places);
     if (!places)
         return out_of_memory(a);
     spread_places(a, places);
+    t->woven_count = t->leftover_capacity = t->leftover_count;
     t->leftover_a = mspringi_alloc(a->memory, t->leftover_count, sizeof *t->leftover_a);
     t->leftover_b = mspringi_alloc(a->memory, t->leftover_count, sizeof *t->leftover_b);
     if (!t->leftover_a || !t->leftover_b)
@@ -386,7 +402,7 @@ static bool append_chain_row(assembly *a) {
 static bool append_simple_row(assembly *a, mspringi_row_kind kind, uint32_t first_block, uint32_t block_count,
                               uint32_t first_record) {
     const mspringi_span span = span_of_blocks(first_block, block_count, first_record, MSPRINGI_WIDTH);
-    return block_count == 0 || (append_row(a, kind) && append_span(a, &span));
+    return append_row(a, kind) && append_span(a, &span);
 }
 
 // Append the span of a strip's own particles of the web, of which the last is in last_slot.
@@ -521,10 +537,13 @@ static mspring_result make_rows(assembly *a) {
         if (!append_lattice_rows(a, a->homes.grid_order[i], i))
             return out_of_memory(a);
     const uint32_t homed_blocks = web_blocks(a, a->web.homed_count);
+    const uint32_t web_blocks = t->web_blocks - homed_blocks;
+    const bool has_loose_row = t->loose_blocks + t->spare_blocks > 0;
     if (!append_chain_row(a) ||
-        !append_simple_row(a, MSPRINGI_ROW_WEB, t->web_first + homed_blocks, t->web_blocks - homed_blocks,
-                           homed_blocks) ||
-        !append_simple_row(a, MSPRINGI_ROW_LOOSE, t->loose_first, t->loose_blocks, 0) || !trim_spans(a))
+        (web_blocks > 0 &&
+         !append_simple_row(a, MSPRINGI_ROW_WEB, t->web_first + homed_blocks, web_blocks, homed_blocks)) ||
+        (has_loose_row && !append_simple_row(a, MSPRINGI_ROW_LOOSE, t->loose_first, t->loose_blocks, 0)) ||
+        !trim_spans(a))
         return out_of_memory(a);
     return MSPRING_OK;
 }
@@ -539,7 +558,7 @@ static mspring_result list_empty_slots(assembly *a) {
         uint32_t runs = 0;
         bool in_run = false;
         for (uint32_t slot = 0; slot < end; ++slot) {
-            const bool empty = t->particle_of_slot[slot] == MSPRING_NONE;
+            const bool empty = t->particle_of_slot[slot] == MSPRING_NONE && !mspringi_slot_is_spare(t, slot);
             if (empty && !in_run && pass == 1)
                 t->empty_runs[runs] = (mspringi_empty_run){.first_slot = slot};
             runs += empty && !in_run;
@@ -559,7 +578,7 @@ static mspring_result list_empty_slots(assembly *a) {
 static mspring_result allocate_maps(assembly *a) {
     mspringi_topology *t = a->topology;
     const size_t slots = (size_t)t->block_count * MSPRINGI_WIDTH;
-    t->slot_of_particle = mspringi_alloc(a->memory, t->particle_count, sizeof *t->slot_of_particle);
+    t->slot_of_particle = mspringi_alloc(a->memory, t->reserve.particle_end, sizeof *t->slot_of_particle);
     t->particle_of_slot = mspringi_alloc(a->memory, slots, sizeof *t->particle_of_slot);
     return t->slot_of_particle && t->particle_of_slot ? MSPRING_OK : out_of_memory(a);
 }
@@ -616,14 +635,16 @@ static mspring_result (*const pieces[MSPRINGI_TOPOLOGY_PIECES])(assembly *a) = {
     give_slots,     assign_places,    lay_rows,       make_web,
 };
 
-mspring_result mspringi_topology_begin(const mspring_builder *builder, uint32_t workers, mspringi_memory *memory,
-                                       mspringi_message *message, mspringi_assembly **begun) {
+mspring_result mspringi_topology_begin(const mspring_builder *builder, const mspringi_reserve *reserve,
+                                       uint32_t workers, mspringi_memory *memory, mspringi_message *message,
+                                       mspringi_assembly **begun) {
     assembly *a = mspringi_alloc(memory, 1, sizeof *a);
     if (!a)
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to lay out %zu particles and %zu springs",
                              builder->particle_count, builder->spring_count);
     a->made = (mspringi_topology){.particle_count = (uint32_t)builder->particle_count,
-                                  .spring_count = (uint32_t)builder->spring_count};
+                                  .spring_count = (uint32_t)builder->spring_count,
+                                  .reserve = *reserve};
     a->topology = &a->made;
     a->memory = memory;
     a->message = message;
@@ -670,9 +691,10 @@ void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory,
 }
 
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
-                                        uint32_t workers, mspringi_memory *memory, mspringi_message *message) {
+                                        const mspringi_reserve *reserve, uint32_t workers, mspringi_memory *memory,
+                                        mspringi_message *message) {
     mspringi_assembly *begun = NULL;
-    mspring_result result = mspringi_topology_begin(builder, workers, memory, message, &begun);
+    mspring_result result = mspringi_topology_begin(builder, reserve, workers, memory, message, &begun);
     for (int piece = 0; result == MSPRING_OK && piece < MSPRINGI_TOPOLOGY_PIECES; ++piece)
         result = mspringi_topology_go_on(begun);
     if (result != MSPRING_OK) {
@@ -681,10 +703,7 @@ mspring_result mspringi_topology_create(mspringi_topology *topology, const mspri
     }
     mspringi_place *places;
     mspringi_topology_finish(begun, memory, topology, &places);
-    if (!mspringi_places_create(&topology->places, places, topology->spring_count, topology->spring_count,
-                                topology->lattice_places, memory))
-        result = mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the places of %u springs",
-                               (unsigned)topology->spring_count);
+    result = mspringi_spare_extend(topology, places, 0, memory, message);
     mspringi_free(memory, places);
     if (result != MSPRING_OK)
         mspringi_topology_destroy(topology, memory);
@@ -700,6 +719,8 @@ void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *mem
     mspringi_web_destroy(&topology->web, memory);
     mspringi_free(memory, topology->leftover_a);
     mspringi_free(memory, topology->leftover_b);
+    mspringi_free(memory, topology->laid_slots);
+    mspringi_free(memory, topology->laid_places);
     mspringi_free(memory, topology->spans);
     mspringi_free(memory, topology->rows);
     mspringi_free(memory, topology->strips);

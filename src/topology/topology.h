@@ -57,28 +57,39 @@ typedef struct mspringi_empty_run {
     uint32_t first_slot, slot_count;
 } mspringi_empty_run;
 
+/// Ids that there can be: those that a network is created with, and behind them spare ones for what is added later.
+typedef struct mspringi_reserve {
+    uint32_t first_particle, first_spring; ///< first spare ones
+    uint32_t particle_end, spring_end;     ///< behind the last
+} mspringi_reserve;
+
 typedef struct mspringi_topology {
-    uint32_t particle_count, spring_count;
+    uint32_t particle_count, spring_count; ///< ids so far
+    mspringi_reserve reserve;
     uint32_t block_count; ///< with one of padding in front, one before the web and one behind: lane + 1 can be read
     uint32_t lattice_first, lattice_blocks; ///< blocks: first, number
     uint32_t chain_first, chain_blocks;
     uint32_t web_first, web_blocks;
     uint32_t loose_first, loose_blocks;
+    uint32_t spare_first, spare_blocks; ///< behind the loose ones: a slot for each spare particle
 
-    uint32_t *slot_of_particle; ///< [particle_count]
+    uint32_t *slot_of_particle; ///< [reserve.particle_end]
     uint32_t *particle_of_slot; ///< [block_count * MSPRINGI_WIDTH], MSPRING_NONE where there is none
-    mspringi_places places;     ///< of springs: mspringi_place_of()
+    mspringi_places places;     ///< of springs, spare ones too: mspringi_place_of()
     uint32_t *up_of_block;      ///< [lattice_blocks] block above each lattice block; itself if there is none
 
     uint32_t *grid_of_row; ///< [lattice_rows] number of the grid of each of the first rows
 
-    mspringi_empty_run *empty_runs; ///< slots that hold no particle
+    mspringi_empty_run *empty_runs; ///< slots that hold no particle, and are for none
     uint32_t empty_run_count;
 
     mspringi_place lattice_places, chain_places;
-    uint32_t leftover_count;
-    uint32_t parked_count;             ///< springs that are broken and that nothing sweeps, see replan.h
-    uint32_t *leftover_a, *leftover_b; ///< [leftover_count + parked_count] slots
+    uint32_t leftover_count;            ///< springs of the web, and as many more as spare ids have been used
+    uint32_t woven_count;               ///< springs of the web
+    uint32_t leftover_capacity;         ///< woven_count, and a place for each spare spring
+    uint32_t parked_count;              ///< springs that are broken and that nothing sweeps, see replan.h
+    uint32_t *leftover_a, *leftover_b;  ///< [leftover_capacity + parked_count] slots
+    uint32_t *laid_slots, *laid_places; ///< of the spare ids, when the topology was made
     mspringi_web web;
 
     mspringi_span *spans;
@@ -95,12 +106,12 @@ typedef struct mspringi_topology {
     // For the plan.
     uint32_t lattice_count, lattice_particles, lattice_springs, lattice_rows;
     uint32_t chain_count, chain_particles, chain_springs;
-    uint32_t web_particles;
+    uint32_t web_particles, loose_particles;
 } mspringi_topology;
 
 /// Words of MSPRINGI_WIDTH bits that hold a bit for each place.
 static inline size_t mspringi_place_words(const mspringi_topology *topology) {
-    return ((size_t)topology->chain_places + topology->leftover_count + topology->parked_count + MSPRINGI_WIDTH -
+    return ((size_t)topology->chain_places + topology->leftover_capacity + topology->parked_count + MSPRINGI_WIDTH -
             1) /
            MSPRINGI_WIDTH;
 }
@@ -112,24 +123,31 @@ static inline mspringi_place mspringi_place_of(const mspringi_topology *topology
 
 /// Whether the spring in this place is parked.
 static inline bool mspringi_place_is_parked(const mspringi_topology *topology, mspringi_place place) {
-    return place - topology->chain_places >= topology->leftover_count && place >= topology->chain_places;
+    return place - topology->chain_places >= topology->leftover_capacity && place >= topology->chain_places;
+}
+
+/// Whether the spring in this place has been laid out with the others: it is neither parked nor in a spare place.
+static inline bool mspringi_place_is_woven(const mspringi_topology *topology, mspringi_place place) {
+    return place < topology->chain_places + topology->woven_count;
 }
 
 /// Springs that are swept.
-static inline uint32_t mspringi_woven_count(const mspringi_topology *topology) {
+static inline uint32_t mspringi_swept_count(const mspringi_topology *topology) {
     return topology->spring_count - topology->parked_count;
 }
 
-/// Lay out what the builder holds, for steps that so many workers share.
+/// Lay out what the builder holds, for steps that so many workers share, with room for spare ids.
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
-                                        uint32_t workers, mspringi_memory *memory, mspringi_message *message);
+                                        const mspringi_reserve *reserve, uint32_t workers, mspringi_memory *memory,
+                                        mspringi_message *message);
 /// The same in pieces: begin, go on so many times unless one fails, then finish; or abandon at any time, which
 /// allows NULL. The builder and what memory and message point to must stay. What is finished has its places not in
 /// itself yet but in an array of their own, for whoever asked to pack and free.
 #define MSPRINGI_TOPOLOGY_PIECES 9
 typedef struct mspringi_assembly mspringi_assembly;
-mspring_result mspringi_topology_begin(const mspring_builder *builder, uint32_t workers, mspringi_memory *memory,
-                                       mspringi_message *message, mspringi_assembly **begun);
+mspring_result mspringi_topology_begin(const mspring_builder *builder, const mspringi_reserve *reserve,
+                                       uint32_t workers, mspringi_memory *memory, mspringi_message *message,
+                                       mspringi_assembly **begun);
 mspring_result mspringi_topology_go_on(mspringi_assembly *begun);
 void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory, mspringi_topology *topology,
                               mspringi_place **places);

@@ -109,6 +109,8 @@ static mspring_result make_base(mspringi_tuning *tuning) {
     mspringi_box box = mspringi_box_empty();
     for (mspring_id p = 0; p < base->topology.particle_count; ++p) {
         const uint32_t slot = base->topology.slot_of_particle[p];
+        if (!mspringi_particle_exists(base, p))
+            continue;
         mspringi_box_include(&box, (double)base->state.x[slot], (double)base->state.y[slot]);
     }
     tuning->size = fmax(box.max_x - box.min_x, box.max_y - box.min_y);

@@ -117,10 +117,12 @@ static bool make_twins(twins *made, const recipe *from, fuzz_bytes *bytes) {
     def.guard = more % 32 < 8 ? MSPRING_GUARD_CLAMP : settings / 8 % 4;
     def.sleep_speed = more % 4 == 0 ? 0.1f : 0;
     def.sleep_time = 0.01f;
+    def.spare_particles = def.spare_springs = settings & 16 ? 24 : 0;
     bool whole =
         mspring_builder_add_particles(builder, from->particles, from->particle_count, NULL) == MSPRING_OK &&
         mspring_builder_add_springs(builder, from->springs, from->spring_count, NULL) == MSPRING_OK;
-    *made = (twins){.particles = from->particle_count, .springs = from->spring_count};
+    *made = (twins){.particles = from->particle_count + def.spare_particles,
+                    .springs = from->spring_count + def.spare_springs};
     for (int i = 0; i < TWINS && whole; i++) {
         def.simd_level = i == 0 ? MSPRING_SIMD_SCALAR : MSPRING_SIMD_AUTO;
         def.worker_count = i == 2 && workers ? 2 : 1;
@@ -163,7 +165,7 @@ static void check_answers(twins *all, const mspring_result results[TWINS]) {
         FUZZ_CHECK(strlen(mspring_network_error(all->of[0])) > 0);
     }
     all->hash = hash_of(all->of[0]);
-    check_finite(all->of[0], all->particles);
+    check_finite(all->of[0], mspring_network_particle_count(all->of[0]));
 }
 
 /* ---------------------------------------------------------------------------------------------------- calls */
@@ -236,13 +238,35 @@ static mspring_result clone(const mspring_network *network) {
     return result;
 }
 
+static mspring_result add_particles(mspring_network *network, const call *c) {
+    mspring_particle_def defs[2];
+    mspring_id ids[2];
+    for (int i = 0; i < 2; i++) {
+        FUZZ_CHECK(mspring_particle_def_init(&defs[i], sizeof defs[i]) == MSPRING_OK);
+        defs[i].x = (double)c->a + i;
+        defs[i].y = (double)c->b;
+        defs[i].vx = c->b;
+    }
+    return mspring_network_add_particles(network, defs, c->count, ids);
+}
+
+static mspring_result add_spring(mspring_network *network, const call *c) {
+    mspring_spring_def def;
+    mspring_id id;
+    FUZZ_CHECK(mspring_spring_def_init(&def, sizeof def) == MSPRING_OK);
+    def.a = c->particle;
+    def.b = (mspring_id)(c->particle * 7u + c->spring) % (mspring_network_particle_count(network) + 1);
+    def.stiffness = c->a;
+    return mspring_network_add_springs(network, &def, 1, &id);
+}
+
 static mspring_result make_call(mspring_network *network, const call *c) {
     const float pair[2] = {c->a, c->b}, other[2] = {c->b, c->a};
     const double place[2] = {(double)c->a, (double)c->b}, turned[2] = {(double)c->b, (double)c->a};
     double now = 0, any_shape = 0;
     mspring_solver_def solver;
     uint32_t number = 0;
-    switch (c->kind % 36) {
+    switch (c->kind % 44) {
     case 0:
         return mspring_network_apply_force(network, c->particle, c->a, c->b);
     case 1:
@@ -306,6 +330,17 @@ static mspring_result make_call(mspring_network *network, const call *c) {
         return clone(network);
     case 27:
         return mspring_network_wake(network);
+    case 28:
+        return add_particles(network, c);
+    case 29:
+    case 30:
+        return add_spring(network, c);
+    case 31:
+        return mspring_network_remove_particles(network, &c->particle, 1);
+    case 32:
+        return mspring_network_remove_springs(network, &c->spring, 1);
+    case 33:
+        return mspring_network_recycle(network);
     default:
         return mspring_network_step(network, c->dt);
     }
@@ -348,7 +383,7 @@ static void compare_with_reference(twins *all, const recipe *made) {
         for (int substep = 0; substep < 3; substep++)
             reference_substep(&net, (double)h);
     }
-    for (mspring_id id = 0; id < all->particles; id++) {
+    for (mspring_id id = 0; id < made->particle_count; id++) {
         double x, y;
         FUZZ_CHECK(mspring_network_get_positions(all->of[0], id, 1, &x, &y) == MSPRING_OK);
         // 15 substeps below a third of the border, springs out of shape by a percent: rounding of a coordinate
@@ -365,7 +400,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     twins all;
     if (make_twins(&all, &made, &bytes)) {
         all.hash = hash_of(all.of[0]);
-        check_finite(all.of[0], all.particles);
+        check_finite(all.of[0], made.particle_count);
         if (mild)
             compare_with_reference(&all, &made);
         else

@@ -1,0 +1,285 @@
+/// Adding particles and springs.
+#include <math.h>
+#include <string.h>
+
+#include "base/cpu.h"
+#include "base/mix.h"
+#include "breaking.h"
+#include "contact/floor.h"
+#include "growth.h"
+#include "implicit/implicit.h"
+#include "network/fractions.h"
+#include "network/origin.h"
+#include "network/springs.h"
+#include "ramps.h"
+#include "strain.h"
+#include "topology/spare.h"
+
+/// What edits of each kind are mixed into the print of parameters as.
+enum { ADDED_PARTICLE = 16, ADDED_SPRING = 17 };
+
+// Put the place in the caller's array in front of what was wrong with it.
+static mspring_result name_definition(mspring_network *network, mspring_result result, uint32_t index) {
+    const mspringi_message reason = network->message;
+    return mspringi_fail(&network->message, result, "definition %u: %s", (unsigned)index, reason.text);
+}
+
+static mspring_result check_arrays(mspring_network *network, const void *defs, uint32_t count, const void *ids) {
+    mspring_result result = mspringi_enter(network);
+    if (result == MSPRING_OK && count > 0 && (!defs || !ids))
+        result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "an array of %u elements is NULL",
+                               (unsigned)count);
+    return result;
+}
+
+// The lowest spare id from first on; end if there is none.
+static mspring_id find_spare(const uint8_t *marks, mspring_id first, mspring_id end) {
+    const uint8_t *found = marks && first < end ? memchr(marks + first, MSPRINGI_SPARE, end - first) : NULL;
+    return found ? (mspring_id)(found - marks) : end;
+}
+
+// Refuse to give more ids than are spare.
+static mspring_result check_room(mspring_network *network, const char *what, const uint8_t *marks,
+                                 mspring_id lowest, mspring_id first, mspring_id end, uint32_t count) {
+    uint32_t room = 0;
+    for (mspring_id id = find_spare(marks, lowest, end); id < end && room < count;
+         id = find_spare(marks, id + 1, end))
+        ++room;
+    return room == count
+               ? MSPRING_OK
+               : mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
+                               "no room for %u %ss: of the %u spare ones that the network was created with "
+                               "%u are left (mspring_network_recycle() gives those back that were removed)",
+                               (unsigned)count, what, (unsigned)(end - first), (unsigned)room);
+}
+
+/* ----------------------------------------------------------------------------------------------------- particles
+ */
+
+static mspring_result check_particle(mspring_network *network, mspring_id id, const mspring_particle_def *def) {
+    mspring_result result = mspringi_check_particle_def(&network->message, id, def);
+    const double largest = MSPRING_MAX_COORDINATE;
+    if (result == MSPRING_OK &&
+        !(fabs(def->x - network->origin_x) <= largest && fabs(def->y - network->origin_y) <= largest))
+        result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                               "particle %u: position (%g, %g) m is not within 1e12 of the local origin",
+                               (unsigned)id, def->x, def->y);
+    return result;
+}
+
+static void put_particle(mspring_network *network, mspring_id p, const mspring_particle_def *def) {
+    const bool is_pinned = def->flags & MSPRING_PARTICLE_PINNED;
+    mspringi_spare_put_particle(&network->topology, p);
+    if (network->is_compact)
+        mspringi_spare_put_particle(&network->whole, p);
+    const uint32_t slot = network->topology.slot_of_particle[p];
+    network->growth.particles[p] = MSPRINGI_THERE;
+    network->mass[p] = def->mass;
+    network->inverse_mass[slot] = is_pinned ? 0.0f : 1.0f / def->mass;
+    if (network->inverse_mass_scale)
+        network->inverse_mass_scale[p] = is_pinned ? 0.0f : 1.0f;
+    if (network->spring_mass)
+        network->spring_mass[p] = def->mass;
+    if (network->components.number)
+        network->components.number[p] = MSPRING_NONE;
+    network->state.vx[slot] = def->vx;
+    network->state.vy[slot] = def->vy;
+    mspringi_set_position(network, p, def->x, def->y);
+    uint64_t print = mspringi_mix(network->parameter_print, (uint64_t)ADDED_PARTICLE << 32 | p);
+    network->parameter_print = mspringi_mix(print, def->flags);
+}
+
+static MSPRINGI_NOINLINE mspring_result add_particles(mspring_network *network, const mspring_particle_def *defs,
+                                                      uint32_t count, mspring_id *ids) {
+    const mspringi_reserve *reserve = &network->topology.reserve;
+    mspringi_growth *g = &network->growth;
+    mspring_result result = check_room(network, "particle", g->particles, g->lowest_particle,
+                                       reserve->first_particle, reserve->particle_end, count);
+    mspring_id id = g->lowest_particle;
+    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i, ++id) {
+        id = find_spare(g->particles, id, reserve->particle_end);
+        result = check_particle(network, id, &defs[i]);
+        if (result != MSPRING_OK && count > 1)
+            result = name_definition(network, result, i);
+    }
+    if (result != MSPRING_OK)
+        return result;
+    uint32_t end = network->topology.particle_count;
+    id = g->lowest_particle;
+    for (uint32_t i = 0; i < count; ++i) {
+        id = find_spare(g->particles, id, reserve->particle_end);
+        put_particle(network, id, &defs[i]);
+        end = id >= end ? id + 1 : end;
+        ids[i] = id;
+    }
+    g->lowest_particle = id;
+    mspringi_growth_count(network, end, network->topology.spring_count);
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_add_particles(mspring_network *network, const mspring_particle_def *defs,
+                                             uint32_t count, mspring_id *ids) {
+    mspring_result result = check_arrays(network, defs, count, ids);
+    if (result != MSPRING_OK || count == 0)
+        return result;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    result = add_particles(network, defs, count, ids);
+    mspringi_fp_leave(before);
+    return result;
+}
+
+/* ------------------------------------------------------------------------------------------------------- springs
+ */
+
+static mspring_id other_end(const mspring_network *network, mspring_id spring, mspring_id particle) {
+    const mspringi_topology *t = &network->topology;
+    if (spring >= t->reserve.first_spring) {
+        const mspring_id *ends = network->growth.particle_of_end + 2 * (spring - t->reserve.first_spring);
+        return ends[0] == particle ? ends[1] : ends[0];
+    }
+    uint32_t base, tip;
+    mspringi_topology_ends(t, mspringi_place_of(t, spring), &base, &tip);
+    return t->particle_of_slot[base] == particle ? t->particle_of_slot[tip] : t->particle_of_slot[base];
+}
+
+static mspring_result check_ends(mspring_network *network, mspring_id id, const mspring_spring_def *def) {
+    const mspring_id ends[] = {def->a, def->b};
+    for (int i = 0; i < 2; ++i)
+        if (ends[i] >= network->topology.particle_count || !mspringi_particle_exists(network, ends[i]))
+            return mspringi_fail(&network->message, MSPRING_ERROR_ID, "spring %u: there is no particle %u",
+                                 (unsigned)id, (unsigned)ends[i]);
+    return MSPRING_OK;
+}
+
+static mspring_result check_unique(mspring_network *network, mspring_id id, const mspring_spring_def *def) {
+    mspringi_around around = mspringi_around_begin(network, def->a);
+    for (mspring_id s; (s = mspringi_around_next(network, &around)) != MSPRING_NONE;)
+        if (other_end(network, s, def->a) == def->b)
+            return mspringi_fail(&network->message, MSPRING_ERROR_DUPLICATE,
+                                 "spring %u: particles %u and %u are joined by spring %u, which may be broken",
+                                 (unsigned)id, (unsigned)def->a, (unsigned)def->b, (unsigned)s);
+    return MSPRING_OK;
+}
+
+static mspring_result check_kind(mspring_network *network, mspring_id id, const mspring_spring_def *def) {
+    if (def->flags & MSPRING_SPRING_RELATIVE && !network->fractions.values)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "spring %u is relative, but the network was created without any that is "
+                             "(MSPRING_NETWORK_RESERVE_RELATIVE)",
+                             (unsigned)id);
+    if (def->damping > 0.0f && network->parts <= MSPRINGI_DAMPING)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "spring %u: damping is %g, but the network was created without room for any "
+                             "(MSPRING_NETWORK_RESERVE_DAMPING)",
+                             (unsigned)id, (double)def->damping);
+    return MSPRING_OK;
+}
+
+static mspring_result find_rest_length(mspring_network *network, mspring_id id, const mspring_spring_def *def,
+                                       float *rest_length) {
+    const mspringi_state *s = &network->state;
+    const uint32_t a = network->topology.slot_of_particle[def->a], b = network->topology.slot_of_particle[def->b];
+    return mspringi_find_rest_length(&network->message, id, def, (double)s->x[b] - (double)s->x[a],
+                                     (double)s->y[b] - (double)s->y[a], rest_length);
+}
+
+// Check a spring and link its ends, so that those checked after it see it.
+static mspring_result link_spring(mspring_network *network, mspring_id id, const mspring_spring_def *def) {
+    float rest_length;
+    mspring_result result = mspringi_check_spring_def(&network->message, id, def);
+    if (result == MSPRING_OK)
+        result = check_ends(network, id, def);
+    if (result == MSPRING_OK)
+        result = mspringi_check_spring_values(&network->message, id, def);
+    if (result == MSPRING_OK)
+        result = check_kind(network, id, def);
+    if (result == MSPRING_OK)
+        result = find_rest_length(network, id, def, &rest_length);
+    if (result == MSPRING_OK)
+        result = check_unique(network, id, def);
+    if (result == MSPRING_OK)
+        mspringi_growth_link(network, id, def->a, def->b);
+    return result;
+}
+
+static void put_spring(mspring_network *network, mspring_id s, const mspring_spring_def *def) {
+    float rest_length = 0.0f;
+    (void)find_rest_length(network, s, def, &rest_length);
+    mspringi_implicit_clear_place(network->implicit, &network->topology, mspringi_place_of(&network->topology, s));
+    mspringi_implicit_clear_place(network->fallback, &network->topology, mspringi_place_of(&network->topology, s));
+    mspringi_spare_put_spring(&network->topology, s, def->a, def->b);
+    if (network->is_compact)
+        mspringi_spare_put_spring(&network->whole, s, def->a, def->b);
+    network->growth.springs[s] = MSPRINGI_THERE;
+    const bool relative = def->flags & MSPRING_SPRING_RELATIVE;
+    if (network->fractions.values)
+        mspringi_fractions_set(&network->fractions, s,
+                               (mspringi_relative){relative ? def->stiffness : -1.0f, 0.0f});
+    mspringi_ramp_drop(network, s);
+    const mspringi_place place = mspringi_place_of(&network->topology, s);
+    mspringi_place_set_rest_length(network, place, rest_length);
+    mspringi_spring_come_live(network, s);
+    mspringi_spring_set_nominal(network, s, place, (mspringi_relative){def->stiffness, def->damping});
+    mspringi_strain_forget(network, s);
+    mspringi_extents_turn(network, s);
+    uint64_t print = mspringi_mix(network->parameter_print, (uint64_t)(ADDED_SPRING + relative) << 32 | s);
+    print = mspringi_mix(print, (uint64_t)def->a << 32 | def->b);
+    print = mspringi_mix_floats(print, def->stiffness, def->damping);
+    network->parameter_print = mspringi_mix_floats(print, rest_length, 0.0f);
+}
+
+static MSPRINGI_NOINLINE mspring_result add_springs(mspring_network *network, const mspring_spring_def *defs,
+                                                    uint32_t count, mspring_id *ids) {
+    const mspringi_reserve *reserve = &network->topology.reserve;
+    mspringi_growth *g = &network->growth;
+    mspring_result result = check_room(network, "spring", g->springs, g->lowest_spring, reserve->first_spring,
+                                       reserve->spring_end, count);
+    if (result != MSPRING_OK)
+        return result;
+    mspring_id id = g->lowest_spring;
+    uint32_t linked = 0;
+    for (; linked < count; ++linked, ++id) {
+        id = find_spare(g->springs, id, reserve->spring_end);
+        result = link_spring(network, id, &defs[linked]);
+        if (result != MSPRING_OK)
+            break;
+    }
+    if (result != MSPRING_OK) {
+        if (count > 1)
+            result = name_definition(network, result, linked);
+        for (id = g->lowest_spring; linked > 0; --linked, ++id) {
+            id = find_spare(g->springs, id, reserve->spring_end);
+            mspringi_growth_unlink(network, id);
+        }
+        return result;
+    }
+    uint32_t end = network->topology.spring_count;
+    id = g->lowest_spring;
+    for (uint32_t i = 0; i < count; ++i) {
+        id = find_spare(g->springs, id, reserve->spring_end);
+        put_spring(network, id, &defs[i]);
+        end = id >= end ? id + 1 : end;
+        ids[i] = id;
+    }
+    g->lowest_spring = id;
+    mspringi_growth_count(network, network->topology.particle_count, end);
+    network->edits.grafts++;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_add_springs(mspring_network *network, const mspring_spring_def *defs, uint32_t count,
+                                           mspring_id *ids) {
+    mspring_result result = check_arrays(network, defs, count, ids);
+    if (result != MSPRING_OK || count == 0)
+        return result;
+    if (network->implicit && network->implicit->is_direct)
+        return mspringi_fail(
+            &network->message, MSPRING_ERROR_ARGUMENT,
+            "the direct solver has found an order of elimination for the springs that there were when "
+            "it was chosen: choose another solver before springs are added, and the direct one after "
+            "it");
+    const mspringi_fp_state before = mspringi_fp_enter();
+    result = add_springs(network, defs, count, ids);
+    mspringi_fp_leave(before);
+    return result;
+}

@@ -1,0 +1,212 @@
+/// What adding and removing keeps, and the springs of a particle.
+#include "growth.h"
+
+#include <string.h>
+
+#include "breaking.h"
+#include "contact/floor.h"
+#include "implicit/implicit.h"
+#include "network/springs.h"
+#include "sleep/sleep.h"
+#include "topology/spare.h"
+
+/* ------------------------------------------------------------------------------------------------------- memory */
+
+static uint8_t *make_marks(mspring_network *network, uint32_t first_spare, uint32_t end) {
+    uint8_t *marks = mspringi_alloc(&network->memory, end, sizeof *marks);
+    if (marks) {
+        memset(marks, MSPRINGI_THERE, first_spare);
+        memset(marks + first_spare, MSPRINGI_SPARE, end - first_spare);
+    }
+    return marks;
+}
+
+static bool reserve_ends(mspring_network *network) {
+    mspringi_growth *g = &network->growth;
+    const mspringi_topology *t = &network->topology;
+    const size_t ends = (size_t)2 * mspringi_spare_springs(t);
+    if (!g->first_end)
+        g->first_end = mspringi_alloc(&network->memory, t->reserve.particle_end, sizeof *g->first_end);
+    if (!g->next_end)
+        g->next_end = mspringi_alloc(&network->memory, ends, sizeof *g->next_end);
+    if (!g->particle_of_end)
+        g->particle_of_end = mspringi_alloc(&network->memory, ends, sizeof *g->particle_of_end);
+    if (!g->first_end || !g->next_end || !g->particle_of_end)
+        return false;
+    memset(g->first_end, 0xff, t->reserve.particle_end * sizeof *g->first_end);
+    return true;
+}
+
+mspring_result mspringi_growth_reserve(mspring_network *network) {
+    mspringi_growth *g = &network->growth;
+    const mspringi_reserve *reserve = &network->topology.reserve;
+    const bool has_spare =
+        mspringi_spare_particles(&network->topology) + mspringi_spare_springs(&network->topology) > 0;
+    if (g->particles)
+        return MSPRING_OK;
+    mspring_result result = mspringi_incidence_reserve(network);
+    if (result == MSPRING_OK && has_spare)
+        result = mspringi_breaking_reserve_log(network);
+    if (result == MSPRING_OK && mspringi_spare_springs(&network->topology) > 0)
+        result = mspringi_graft_reserve(network);
+    if (result != MSPRING_OK)
+        return result;
+    if (!g->springs)
+        g->springs = make_marks(network, reserve->first_spring, reserve->spring_end);
+    g->lowest_particle = reserve->first_particle;
+    g->lowest_spring = reserve->first_spring;
+    if (g->springs && (!has_spare || reserve_ends(network)))
+        g->particles = make_marks(network, reserve->first_particle, reserve->particle_end);
+    return g->particles ? MSPRING_OK
+                        : mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                                        "no memory for what is added to and removed from %u particles",
+                                        (unsigned)reserve->particle_end);
+}
+
+/* -------------------------------------------------------------------------------------------------------- slots */
+
+static void clear_slot(const mspring_network *network, uint32_t slot) {
+    const mspringi_state *s = &network->state;
+    s->x[slot] = s->y[slot] = s->vx[slot] = s->vy[slot] = 0.0f;
+}
+
+void mspringi_growth_clear_slots(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    const uint8_t *marks = network->growth.particles;
+    const uint32_t first = t->reserve.first_particle, slots = t->spare_blocks * MSPRINGI_WIDTH;
+    for (uint32_t slot = t->spare_first * MSPRINGI_WIDTH, end = slot + slots; slot < end; ++slot)
+        if (t->particle_of_slot[slot] == MSPRING_NONE)
+            clear_slot(network, slot);
+    // Where those of the spare particles were that had been laid out with the others.
+    for (uint32_t i = 0; i < mspringi_spare_particles(t); ++i)
+        if (t->particle_of_slot[t->laid_slots[i]] == MSPRING_NONE)
+            clear_slot(network, t->laid_slots[i]);
+    for (const uint8_t *gone = marks; (gone = memchr(gone, MSPRINGI_GONE, (size_t)(marks + first - gone))); ++gone)
+        clear_slot(network, t->slot_of_particle[gone - marks]);
+}
+
+static void clear_field(mspringi_field field, uint32_t slot) {
+    if (field.x)
+        field.x[slot] = field.y[slot] = 0.0f;
+}
+
+static void clear_history(mspringi_implicit *implicit, uint32_t slot) {
+    if (!implicit)
+        return;
+    const mspringi_field fields[] = {implicit->history.low, implicit->history.first, implicit->history.second};
+    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i)
+        clear_field(fields[i], slot);
+}
+
+void mspringi_growth_take_particle(mspring_network *network, mspring_id particle) {
+    const uint32_t slot = network->topology.slot_of_particle[particle];
+    const mspringi_state *b = &network->backup;
+    clear_slot(network, slot);
+    b->x[slot] = b->y[slot] = b->vx[slot] = b->vy[slot] = 0.0f;
+    network->inverse_mass[slot] = 0.0f;
+    if (network->inverse_mass_scale)
+        network->inverse_mass_scale[particle] = 0.0f;
+    clear_field(network->forces.held, slot);
+    clear_history(network->implicit, slot);
+    clear_history(network->fallback, slot);
+    if (network->floor) {
+        clear_field(network->floor->impulse, slot);
+        clear_field(network->floor->former, slot);
+    }
+    mspringi_spare_take_particle(&network->topology, particle);
+    if (network->is_compact)
+        mspringi_spare_take_particle(&network->whole, particle);
+}
+
+/* ------------------------------------------------------------------------------------------------------ numbers */
+
+uint32_t mspringi_growth_added_particles(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    uint32_t count = 0;
+    for (mspring_id p = t->reserve.first_particle; p < t->particle_count; ++p)
+        count +=
+            network->growth.particles[p] == MSPRINGI_THERE && t->slot_of_particle[p] == mspringi_spare_slot(t, p);
+    return count;
+}
+
+uint32_t mspringi_growth_added_springs(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    uint32_t count = 0;
+    for (mspring_id s = t->reserve.first_spring; s < t->spring_count; ++s)
+        count +=
+            network->growth.springs[s] == MSPRINGI_THERE && mspringi_place_of(t, s) == mspringi_spare_place(t, s);
+    return count;
+}
+
+void mspringi_growth_count(mspring_network *network, uint32_t particle_count, uint32_t spring_count) {
+    mspringi_spare_count(&network->topology, particle_count, spring_count);
+    if (network->is_compact)
+        mspringi_spare_count(&network->whole, particle_count, spring_count);
+    network->edits.growth++;
+    mspringi_sleep_anew(network);
+}
+
+/* ---------------------------------------------------------------------------------------------------------- ends
+ */
+
+void mspringi_growth_link(mspring_network *network, mspring_id spring, mspring_id a, mspring_id b) {
+    mspringi_growth *g = &network->growth;
+    const uint32_t first = 2 * (spring - network->topology.reserve.first_spring);
+    const mspring_id ends[] = {a, b};
+    for (uint32_t i = 0; i < 2; ++i) {
+        g->particle_of_end[first + i] = ends[i];
+        g->next_end[first + i] = g->first_end[ends[i]];
+        g->first_end[ends[i]] = first + i;
+    }
+}
+
+void mspringi_growth_unlink(mspring_network *network, mspring_id spring) {
+    mspringi_growth *g = &network->growth;
+    if (spring < network->topology.reserve.first_spring)
+        return;
+    const uint32_t first = 2 * (spring - network->topology.reserve.first_spring);
+    for (uint32_t end = first; end < first + 2; ++end) {
+        uint32_t *link = &g->first_end[g->particle_of_end[end]];
+        while (*link != end)
+            link = &g->next_end[*link];
+        *link = g->next_end[end];
+    }
+}
+
+/* ------------------------------------------------------------------------------------ the springs of a particle */
+
+mspring_result mspringi_incidence_reserve(mspring_network *network) {
+    return network->incidence.first ? MSPRING_OK
+                                    : mspringi_incidence_create(&network->incidence, &network->topology,
+                                                                &network->memory, &network->message);
+}
+
+mspringi_around mspringi_around_begin(const mspring_network *network, mspring_id particle) {
+    const mspringi_incidence *incidence = &network->incidence;
+    return (mspringi_around){
+        .next = incidence->first[particle],
+        .end = incidence->first[particle + 1],
+        .spare_end = network->growth.first_end ? network->growth.first_end[particle] : MSPRINGI_NO_END,
+    };
+}
+
+mspring_id mspringi_around_next(const mspring_network *network, mspringi_around *around) {
+    while (around->next < around->end) {
+        const mspring_id spring = network->incidence.springs[around->next++];
+        if (mspringi_spring_exists(network, spring))
+            return spring;
+    }
+    const uint32_t end = around->spare_end;
+    if (end == MSPRINGI_NO_END)
+        return MSPRING_NONE;
+    around->spare_end = network->growth.next_end[end];
+    return network->topology.reserve.first_spring + end / 2;
+}
+
+mspring_id mspringi_around_find(const mspring_network *network, mspring_id particle, mspringi_place place) {
+    mspringi_around around = mspringi_around_begin(network, particle);
+    mspring_id spring = mspringi_around_next(network, &around);
+    while (mspringi_place_of(&network->topology, spring) != place)
+        spring = mspringi_around_next(network, &around);
+    return spring;
+}

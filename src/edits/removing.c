@@ -1,0 +1,110 @@
+/// Removing particles and springs, and giving their ids back.
+#include "base/mix.h"
+#include "breaking.h"
+#include "events.h"
+#include "growth.h"
+#include "network/springs.h"
+#include "selection.h"
+#include "topology/spare.h"
+
+/// What edits of each kind are mixed into the print of parameters as.
+enum { REMOVED_PARTICLE = 20, REMOVED_SPRING = 21, RECYCLED = 22 };
+
+static void mix(mspring_network *network, uint32_t kind, mspring_id id) {
+    network->parameter_print = mspringi_mix(network->parameter_print, (uint64_t)kind << 32 | id);
+}
+
+static void remove_spring(mspring_network *network, mspring_id spring, mspring_id with) {
+    if (!mspringi_spring_exists(network, spring))
+        return;
+    if (mspringi_spring_break(network, spring))
+        mspringi_events_push(network, (mspring_event){.kind = MSPRING_EVENT_BROKEN, .id = spring, .other = with});
+    mspringi_growth_unlink(network, spring);
+    network->growth.springs[spring] = MSPRINGI_GONE;
+    mix(network, REMOVED_SPRING, spring);
+}
+
+static void remove_particle(mspring_network *network, mspring_id particle) {
+    if (!mspringi_particle_exists(network, particle))
+        return;
+    mspringi_around around = mspringi_around_begin(network, particle);
+    for (mspring_id s; (s = mspringi_around_next(network, &around)) != MSPRING_NONE;)
+        remove_spring(network, s, particle);
+    mspringi_growth_take_particle(network, particle);
+    network->growth.particles[particle] = MSPRINGI_GONE;
+    mix(network, REMOVED_PARTICLE, particle);
+}
+
+static mspring_result reserve(mspring_network *network) {
+    mspring_result result = mspringi_growth_reserve(network);
+    return result == MSPRING_OK ? mspringi_breaking_reserve(network) : result;
+}
+
+static void finish(mspring_network *network) {
+    mspringi_growth_count(network, network->topology.particle_count, network->topology.spring_count);
+    network->edits.grafts++;
+}
+
+mspring_result mspring_network_remove_particles(mspring_network *network, const mspring_id *particles,
+                                                uint32_t count) {
+    mspringi_selection at;
+    mspring_result result =
+        mspringi_select_list(network, MSPRINGI_PARTICLES, particles, count, particles, particles, &at);
+    if (result == MSPRING_OK && count > 0)
+        result = reserve(network);
+    if (result != MSPRING_OK || count == 0)
+        return result;
+    for (uint32_t i = 0; i < count; ++i)
+        remove_particle(network, particles[i]);
+    network->edits.masses++; // as where particles are pinned
+    finish(network);
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_remove_springs(mspring_network *network, const mspring_id *springs, uint32_t count) {
+    mspringi_selection at;
+    mspring_result result = mspringi_select_list(network, MSPRINGI_SPRINGS, springs, count, springs, springs, &at);
+    if (result == MSPRING_OK && count > 0)
+        result = reserve(network);
+    if (result != MSPRING_OK || count == 0)
+        return result;
+    for (uint32_t i = 0; i < count; ++i)
+        remove_spring(network, springs[i], MSPRING_NONE);
+    finish(network);
+    return MSPRING_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------ recycling
+ */
+
+// Make spare what is gone. Returns the lowest of those.
+static mspring_id give_back(uint8_t *marks, mspring_id first, mspring_id end, mspring_id lowest) {
+    for (mspring_id id = end; id-- > first;) {
+        if (marks[id] != MSPRINGI_GONE)
+            continue;
+        marks[id] = MSPRINGI_SPARE;
+        lowest = id < lowest ? id : lowest;
+    }
+    return lowest;
+}
+
+mspring_result mspring_network_recycle(mspring_network *network) {
+    mspring_result result = mspringi_enter(network);
+    mspringi_growth *g = &network->growth;
+    if (result != MSPRING_OK || !g->particles)
+        return result;
+    const mspringi_reserve *r = &network->topology.reserve;
+    g->lowest_particle = give_back(g->particles, r->first_particle, r->particle_end, g->lowest_particle);
+    g->lowest_spring = give_back(g->springs, r->first_spring, r->spring_end, g->lowest_spring);
+    mix(network, RECYCLED, 0);
+    network->edits.growth++;
+    return MSPRING_OK;
+}
+
+uint32_t mspring_network_has_particle(const mspring_network *network, mspring_id particle) {
+    return network && particle < network->topology.particle_count && mspringi_particle_exists(network, particle);
+}
+
+uint32_t mspring_network_has_spring(const mspring_network *network, mspring_id spring) {
+    return network && spring < network->topology.spring_count && mspringi_spring_exists(network, spring);
+}

@@ -1,0 +1,803 @@
+/// @file test_growth.c
+/// Particles and springs that are added and removed at run time: the network is then the one that consists of what
+/// is left, to every function, solver and number of workers.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "allocator.h"
+#include "hosts.h"
+#include "life.h"
+#include "reference.h"
+#include "snapshot/format.h"
+#include "support.h"
+
+enum { SPARE_PARTICLES = 60, SPARE_SPRINGS = 120 };
+
+/// A lattice with a rope to a pinned particle, a free strand, a random graph and loose particles.
+static recipe mixed_recipe(void) {
+    uint64_t seed = 5;
+    const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {20, 60}, .damping = {0, 0.1}, .holes = 0.1};
+    recipe made = {0};
+    recipe_lattice(&made, 19, 7, 0, 0, 1, &stuff, &seed);
+    const mspring_id end = recipe_particle(&made, 30, 12, 1, MSPRING_PARTICLE_PINNED);
+    recipe_rope(&made, 2, end, 15, &stuff, &seed);
+    const mspring_id from = recipe_particle(&made, -10, 3, 1, 0), to = recipe_particle(&made, -10, 12, 1, 0);
+    recipe_rope(&made, from, to, 9, &stuff, &seed);
+    const mspring_id first = made.particle_count;
+    for (int i = 0; i < 20; i++) {
+        const double x = support_random_between(&seed, -9, -3), y = support_random_between(&seed, -9, -3);
+        recipe_particle(&made, x, y, 1, 0);
+    }
+    for (uint32_t i = 0; i < 20; i++) {
+        recipe_spring(&made, first + i, first + (i + 1) % 20, 30, 0.1, 0);
+        recipe_spring(&made, first + i, first + (i + 3) % 20, 30, 0.1, 0);
+    }
+    for (int i = 0; i < 21; i++) {
+        recipe_particle(&made, i, 20, 1, 0);
+    }
+    recipe_disturb(&made, 0.05, 0.5, &seed);
+    return made;
+}
+
+static mspring_network *make(const recipe *made, mspring_simd level, uint32_t workers) {
+    mspring_network_def def = support_def(-9.8f, 4);
+    def.simd_level = level;
+    def.worker_count = workers;
+    def.spare_particles = SPARE_PARTICLES;
+    def.spare_springs = SPARE_SPRINGS;
+    return recipe_network(made, &def);
+}
+
+static life *begin(const recipe *made, mspring_simd level, uint32_t workers, uint64_t seed) {
+    life *it = malloc(sizeof *it);
+    assert_non_null(it);
+    life_begin(it, made, make(made, level, workers), SPARE_PARTICLES, SPARE_SPRINGS, seed);
+    return it;
+}
+
+static void end(life *it) {
+    mspring_network_destroy(it->network);
+    free(it);
+}
+
+/* -------------------------------------------------------------------------------------------------- the physics */
+
+// A step of the network is one of what it should consist of, in double precision. The tolerance is a few hundred
+// last places of coordinates up to 60 m, which is what rounding may come to in so short a time.
+static void check_step(life *it, double tolerance) {
+    mspring_id ids[LIFE_PARTICLES];
+    const double dt = 1.0 / 64;
+    recipe left = life_recipe(it, ids);
+    reference net = reference_of(&left, 0, (double)-9.8f, 0);
+    check_ok(mspring_network_step(it->network, dt));
+    for (int i = 0; i < 4; i++) {
+        reference_substep(&net, dt / 4);
+    }
+    for (uint32_t p = 0; p < net.particle_count; p++) {
+        const support_point at = support_position(it->network, ids[p]), v = support_velocity(it->network, ids[p]);
+        check_near(at.x, net.particles[p].x, tolerance);
+        check_near(at.y, net.particles[p].y, tolerance);
+        check_near(v.x, net.particles[p].vx, 100 * tolerance);
+        check_near(v.y, net.particles[p].vy, 100 * tolerance);
+    }
+    reference_free(&net);
+    recipe_free(&left);
+}
+
+static void moves_as_what_it_consists_of(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    for (uint64_t seed = 1; seed <= 3; seed++) {
+        life *it = begin(&made, MSPRING_SIMD_AUTO, 1, seed);
+        for (int i = 0; i < 200; i++) {
+            life_do_something(it);
+            if (i % 4 == 0) {
+                life_check(it);
+                check_step(it, 1e-4);
+            }
+        }
+        end(it);
+    }
+    recipe_free(&made);
+}
+
+static void moves_so_when_compacted(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    for (uint64_t seed = 11; seed <= 13; seed++) {
+        life *it = begin(&made, MSPRING_SIMD_AUTO, 1, seed);
+        for (int i = 0; i < 200; i++) {
+            life_do_something(it);
+            if (support_random(&it->seed) % 6 == 0) {
+                check_ok(mspring_network_compact(it->network, (uint32_t)(support_random(&it->seed) % 14), NULL));
+            } else if (support_random(&it->seed) % 40 == 0) {
+                check_ok(mspring_network_expand(it->network));
+            }
+            if (i % 4 == 0) {
+                life_check(it);
+                check_step(it, 1e-4);
+            }
+        }
+        end(it);
+    }
+    recipe_free(&made);
+}
+
+/* ------------------------------------------------------------------------------------------------------ the bits
+ */
+
+static void push(const mspring_hook_args *args, void *user) {
+    (void)user;
+    for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
+        args->force_x[slot] += 0.1f * args->vy[slot];
+    }
+}
+
+// Hashes of the states after each of some steps of a random life.
+static void live(life *it, bool hooked, uint64_t *hashes, int count) {
+    if (hooked) {
+        mspring_hook_def hook;
+        check_ok(mspring_hook_def_init(&hook, sizeof hook));
+        hook.phase = MSPRING_PHASE_BEFORE_SUBSTEP;
+        hook.fn = push;
+        hook.flags = MSPRING_HOOK_CONCURRENT;
+        hook.range_slots = 32;
+        check_ok(mspring_network_add_hook(it->network, &hook, NULL));
+    }
+    for (int i = 0; i < count; i++) {
+        life_do_something(it);
+        if (i % 16 == 15) {
+            check_ok(mspring_network_compact(it->network, 0, NULL));
+        }
+        check_ok(mspring_network_step(it->network, 1.0 / 64));
+        hashes[i] = support_hash(it->network);
+    }
+    end(it);
+}
+
+static void same_bits_everywhere(void **state) {
+    (void)state;
+    enum { STEPS = 60 };
+    static const uint32_t workers[] = {1, 2, 3, 8};
+    mspring_simd levels[MSPRING_SIMD_AVX512];
+    const uint32_t level_count = support_levels(levels);
+    recipe made = mixed_recipe();
+    for (int hooked = 0; hooked <= 1; hooked++) {
+        uint64_t first[STEPS], hashes[STEPS];
+        live(begin(&made, levels[0], 1, 99), hooked, first, STEPS);
+        for (uint32_t i = 1; i < level_count + COUNT_OF(workers); i++) {
+            const bool by_level = i < level_count;
+            live(
+                begin(&made, by_level ? levels[i] : MSPRING_SIMD_AUTO, by_level ? 1 : workers[i - level_count], 99),
+                hooked, hashes, STEPS);
+            assert_memory_equal(hashes, first, sizeof first);
+        }
+    }
+    recipe_free(&made);
+}
+
+/* ------------------------------------------------------------------------------------------------ other solvers */
+
+static void use(mspring_network *network, mspring_solver solver, mspring_integrator integrator,
+                uint32_t iterations) {
+    mspring_solver_def def;
+    check_ok(mspring_solver_def_init(&def, sizeof def));
+    def.solver = solver;
+    def.integrator = integrator;
+    def.iterations = iterations;
+    def.substeps = 2;
+    check_ok(mspring_network_set_solver(network, &def));
+}
+
+// The implicit solver, with iterations enough to come to the last places, and the direct one, which is made anew
+// after each edit, solve the same equations; they are linearised a little apart, which is most of the tolerance.
+static void implicit_steps_are_those_of_the_direct_solver(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    life *it = begin(&made, MSPRING_SIMD_AUTO, 1, 7);
+    use(it->network, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_EULER, 100);
+    for (int i = 0; i < 60; i++) {
+        for (int j = 0; j < 4; j++) {
+            life_do_something(it);
+        }
+        if (i % 20 == 19) {
+            check_ok(mspring_network_compact(it->network, 0, NULL));
+        }
+        mspring_network *direct = NULL;
+        check_ok(mspring_network_clone(it->network, NULL, &direct));
+        use(direct, MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_EULER, 0);
+        check_ok(mspring_network_step(it->network, 1.0 / 64));
+        check_ok(mspring_network_step(direct, 1.0 / 64));
+        for (mspring_id p = 0; p < it->particle_end; p++) {
+            const support_point at = support_position(it->network, p), want = support_position(direct, p);
+            check_near(at.x, want.x, 3e-3);
+            check_near(at.y, want.y, 3e-3);
+        }
+        mspring_network_destroy(direct);
+    }
+    end(it);
+    recipe_free(&made);
+}
+
+static void same_bits_from_implicit_workers(void **state) {
+    (void)state;
+    enum { STEPS = 24 };
+    recipe made = mixed_recipe();
+    uint64_t hashes[3][STEPS];
+    for (uint32_t workers = 1; workers <= 3; workers++) {
+        life *it = begin(&made, workers == 1 ? MSPRING_SIMD_SCALAR : MSPRING_SIMD_AUTO, workers, 17);
+        use(it->network, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_GA0, 0);
+        for (int i = 0; i < STEPS; i++) {
+            life_do_something(it);
+            life_do_something(it);
+            check_ok(mspring_network_step(it->network, 1.0 / 64));
+            hashes[workers - 1][i] = support_hash(it->network);
+        }
+        end(it);
+    }
+    assert_memory_equal(hashes[1], hashes[0], sizeof hashes[0]);
+    assert_memory_equal(hashes[2], hashes[0], sizeof hashes[0]);
+    recipe_free(&made);
+}
+
+static void the_direct_solver_refuses_springs_and_takes_the_rest(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    life *it = begin(&made, MSPRING_SIMD_AUTO, 1, 3);
+    use(it->network, MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_EULER, 0);
+    mspring_particle_def particle;
+    mspring_spring_def spring;
+    mspring_id id = 77, other;
+    check_ok(mspring_particle_def_init(&particle, sizeof particle));
+    check_ok(mspring_spring_def_init(&spring, sizeof spring));
+    particle.y = 30;
+    check_ok(mspring_network_add_particles(it->network, &particle, 1, &other));
+    spring.a = 5, spring.b = other;
+    check_error(mspring_network_add_springs(it->network, &spring, 1, &id), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_network_error(it->network), "direct");
+    assert_int_equal(id, 77);
+    check_ok(mspring_network_step(it->network, 1.0 / 64));
+    const mspring_id particles[] = {0, 5, other};
+    check_ok(mspring_network_remove_particles(it->network, particles, 3));
+    check_ok(mspring_network_step(it->network, 1.0 / 64));
+    end(it);
+    recipe_free(&made);
+}
+
+/* ---------------------------------------------------------------------------------------- snapshots and clones */
+
+typedef struct saved {
+    void *bytes;
+    size_t size;
+} saved;
+
+static saved save(const mspring_network *network, mspring_snapshot_contents contents) {
+    saved out;
+    check_ok(mspring_network_snapshot_size(network, contents, &out.size));
+    out.bytes = malloc(out.size);
+    assert_non_null(out.bytes);
+    check_ok(mspring_network_save(network, contents, out.bytes, out.size, NULL));
+    return out;
+}
+
+// Forward and back again: from what a snapshot holds the same edits and steps lead to the same bits, in the network
+// itself, in its clone, and in one that was only just made.
+static void snapshots_go_back_and_forth(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    for (int solver = 0; solver <= 1; solver++) {
+        life *it = begin(&made, MSPRING_SIMD_AUTO, 1, 31 + (uint64_t)solver);
+        mspring_network *young = make(&made, MSPRING_SIMD_SCALAR, 2);
+        if (solver == 1) {
+            use(it->network, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, 0);
+            use(young, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, 0);
+        }
+        for (int round = 0; round < 12; round++) {
+            for (int i = 0; i < 9; i++) {
+                life_do_something(it);
+            }
+            check_ok(mspring_network_step(it->network, 1.0 / 64));
+            const saved here = save(it->network, MSPRING_SNAPSHOT_ALL);
+            const life then = *it;
+            mspring_network *clone = NULL;
+            check_ok(mspring_network_clone(it->network, NULL, &clone));
+            uint64_t hashes[3][6];
+            mspring_network *const networks[] = {it->network, clone, young};
+            for (int n = 0; n < 3; n++) {
+                *it = then;
+                it->network = networks[n];
+                if (n == 2) {
+                    check_ok(mspring_network_load(young, here.bytes, here.size));
+                }
+                life_check(it);
+                for (int i = 0; i < 6; i++) {
+                    life_do_something(it);
+                    check_ok(mspring_network_step(it->network, 1.0 / 64));
+                    hashes[n][i] = support_hash(it->network);
+                }
+            }
+            assert_memory_equal(hashes[1], hashes[0], sizeof hashes[0]);
+            assert_memory_equal(hashes[2], hashes[0], sizeof hashes[0]);
+            mspring_network_destroy(clone);
+            *it = then;
+            check_ok(mspring_network_load(it->network, here.bytes, here.size));
+            life_check(it);
+            for (int i = 0; i < 6; i++) {
+                life_do_something(it);
+                check_ok(mspring_network_step(it->network, 1.0 / 64));
+                assert_int_equal(support_hash(it->network), hashes[0][i]);
+            }
+            free(here.bytes);
+        }
+        mspring_network_destroy(young);
+        end(it);
+    }
+    recipe_free(&made);
+}
+
+// Within one compact plan, too, whatever became of the added ones that it has laid out.
+static void snapshots_go_back_in_a_compact_plan(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    life *it = begin(&made, MSPRING_SIMD_AUTO, 1, 53);
+    int again_count = 0;
+    for (int round = 0; round < 8; round++) {
+        for (int i = 0; i < 12; i++) {
+            life_do_something(it);
+        }
+        check_ok(mspring_network_compact(it->network, 0, NULL));
+        const saved here = save(it->network, MSPRING_SNAPSHOT_ALL);
+        const life then = *it;
+        uint64_t hashes[4];
+        for (int again = 0; again <= 1; again++) {
+            for (int i = 0; i < 4; i++) {
+                life_do_something(it);
+                life_do_something(it);
+                check_ok(mspring_network_step(it->network, 1.0 / 64));
+                hashes[i] = again ? hashes[i] : support_hash(it->network);
+                assert_int_equal(support_hash(it->network), hashes[i]);
+            }
+            if (mspring_network_load(it->network, here.bytes, here.size) != MSPRING_OK) {
+                check_contains(mspring_network_error(it->network), "laid out otherwise");
+                break;
+            }
+            *it = then;
+            life_check(it);
+            again_count += again;
+        }
+        free(here.bytes);
+    }
+    assert_true(again_count > 2); // restoring a spring that the plan leaves out makes it another plan
+    end(it);
+    recipe_free(&made);
+}
+
+// A frame leaves out what springs are like, so it is refused where there are others.
+static void frames_are_of_the_same_springs(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    life *it = begin(&made, MSPRING_SIMD_AUTO, 1, 3);
+    life_add(it, 3, 4);
+    const saved here = save(it->network, MSPRING_SNAPSHOT_FRAME);
+    support_steps(it->network, 2, 1.0 / 64);
+    check_ok(mspring_network_load(it->network, here.bytes, here.size));
+    life_check(it);
+    life_add(it, 1, 0);
+    check_error(mspring_network_load(it->network, here.bytes, here.size), MSPRING_ERROR_SNAPSHOT);
+    life_check(it);
+    free(here.bytes);
+    end(it);
+    recipe_free(&made);
+}
+
+// Whatever byte of a snapshot's section is another one (and the checksum right again) is refused or leads to a
+// network that can be checked and stepped.
+static void foreign_growth_is_refused_or_harmless(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    life *it = begin(&made, MSPRING_SIMD_AUTO, 1, 8);
+    for (int i = 0; i < 40; i++) {
+        life_do_something(it);
+    }
+    const saved here = save(it->network, MSPRING_SNAPSHOT_ALL);
+    unsigned char *bytes = here.bytes;
+    const size_t growth = MSPRINGI_SNAPSHOT_HEADER_BYTES + MSPRINGI_SECTION_HEADER_BYTES;
+    assert_memory_equal(bytes + growth - MSPRINGI_SECTION_HEADER_BYTES, "grow", 4);
+    const size_t summed = here.size - MSPRINGI_SNAPSHOT_CHECKSUM_BYTES;
+    uint32_t refused = 0;
+    const size_t end_of_growth = growth + 8 + LIFE_PARTICLES + LIFE_SPRINGS;
+    for (size_t i = growth; i < end_of_growth && i < summed; i += 3) {
+        const unsigned char before = bytes[i];
+        bytes[i] = (unsigned char)support_random(&it->seed);
+        mspringi_checksum checksum = {{0}, {0}};
+        mspringi_checksum_add(&checksum, bytes, summed / MSPRINGI_CHECKSUM_UNIT);
+        const uint64_t value = mspringi_checksum_value(&checksum);
+        memcpy(bytes + summed, &value, sizeof value); // little-endian, as the machines that this runs on
+        const mspring_result result = mspring_network_load(it->network, bytes, here.size);
+        assert_true(result == MSPRING_OK || result == MSPRING_ERROR_SNAPSHOT);
+        refused += result != MSPRING_OK;
+        const mspring_result stepped = mspring_network_step(it->network, 1.0 / 640);
+        assert_true(stepped == MSPRING_OK || stepped == MSPRING_ERROR_UNSTABLE);
+        bytes[i] = before;
+    }
+    assert_true(refused > 100);
+    free(here.bytes);
+    end(it);
+    recipe_free(&made);
+}
+
+/* ---------------------------------------------------------------------------------------------------- the rules */
+
+// No memory is asked for but at the first removal, which has to keep what a broken spring was.
+static void adding_allocates_nothing(void **state) {
+    (void)state;
+    watched_allocator watched = {0};
+    const mspring_allocator allocator = watched_interface(&watched);
+    recipe made = mixed_recipe();
+    mspring_network_def def = support_def(-9.8f, 4);
+    def.allocator = &allocator;
+    def.spare_particles = SPARE_PARTICLES;
+    def.spare_springs = SPARE_SPRINGS;
+    life *it = malloc(sizeof *it);
+    assert_non_null(it);
+    life_begin(it, &made, recipe_network(&made, &def), SPARE_PARTICLES, SPARE_SPRINGS, 4);
+    for (int solver = 0; solver <= 1; solver++) {
+        if (solver == 1) {
+            use(it->network, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_GA0, 0);
+        }
+        size_t calls = watched.calls;
+        for (int i = 0; i < 10; i++) {
+            life_add(it, 2, 3);
+            check_ok(mspring_network_step(it->network, 1.0 / 64));
+        }
+        assert_int_equal(watched.calls, calls);
+        if (solver == 0) {
+            life_remove(it);
+            life_remove(it);
+            const mspring_id first = 3;
+            check_ok(mspring_network_break_springs(it->network, &first, 1));
+            it->springs[first].is_broken = true;
+            check_ok(mspring_network_step(it->network, 1.0 / 64));
+            calls = watched.calls;
+        }
+        for (int i = 0; i < 40; i++) {
+            life_do_something(it);
+            check_ok(mspring_network_step(it->network, 1.0 / 64));
+        }
+        assert_int_equal(watched.calls, calls);
+    }
+    life_check(it);
+    end(it);
+    check_watched_clean(&watched);
+    recipe_free(&made);
+}
+
+static void ids_come_back_when_the_host_says_so(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    mspring_network *network = make(&made, MSPRING_SIMD_AUTO, 1);
+    mspring_particle_def defs[SPARE_PARTICLES];
+    mspring_id ids[SPARE_PARTICLES], id = 12345;
+    for (uint32_t i = 0; i < SPARE_PARTICLES; i++) {
+        check_ok(mspring_particle_def_init(&defs[i], sizeof defs[i]));
+        defs[i].x = i;
+        defs[i].y = 40;
+    }
+    check_ok(mspring_network_add_particles(network, defs, SPARE_PARTICLES, ids));
+    for (uint32_t i = 0; i < SPARE_PARTICLES; i++) {
+        assert_int_equal(ids[i], made.particle_count + i);
+    }
+    const mspring_id gone[] = {ids[7], ids[3], 0};
+    check_ok(mspring_network_remove_particles(network, gone, 3));
+    check_error(mspring_network_add_particles(network, defs, 1, &id), MSPRING_ERROR_LIMIT);
+    check_contains(mspring_network_error(network), "no room for 1 particles");
+    assert_int_equal(id, 12345);
+    check_ok(mspring_network_recycle(network));
+    check_error(mspring_network_add_particles(network, defs, 3, ids), MSPRING_ERROR_LIMIT);
+    check_ok(mspring_network_add_particles(network, defs, 2, ids));
+    assert_int_equal(ids[0], gone[1]); // the lowest first; the one that the network was created with never
+    assert_int_equal(ids[1], gone[0]);
+    assert_int_equal(mspring_network_particle_count(network), made.particle_count + SPARE_PARTICLES);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+static void check_refused(mspring_network *network, const mspring_spring_def *defs, uint32_t count,
+                          mspring_result error, const char *why) {
+    mspring_id ids[3] = {9, 9, 9};
+    const uint64_t hash = support_hash(network);
+    const uint32_t springs = mspring_network_spring_count(network);
+    check_error(mspring_network_add_springs(network, defs, count, ids), error);
+    check_contains(mspring_network_error(network), why);
+    assert_true(ids[0] == 9 && ids[1] == 9);
+    assert_int_equal(mspring_network_spring_count(network), springs);
+    assert_int_equal(support_hash(network), hash);
+}
+
+static void wrong_springs_are_refused_and_change_nothing(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    mspring_network *network = make(&made, MSPRING_SIMD_AUTO, 1);
+    mspring_spring_def defs[3];
+    mspring_id ids[3];
+    for (int i = 0; i < 3; i++) {
+        check_ok(mspring_spring_def_init(&defs[i], sizeof defs[i]));
+        defs[i].a = 0;
+        defs[i].b = 50 + (mspring_id)i;
+        defs[i].stiffness = 10;
+    }
+    defs[2].b = made.particle_count;
+    check_refused(network, defs, 3, MSPRING_ERROR_ID, "definition 2");
+    defs[2].b = 50;
+    check_refused(network, defs, 3, MSPRING_ERROR_DUPLICATE, "joined by spring");
+    defs[2].a = 50, defs[2].b = 0;
+    check_refused(network, defs, 3, MSPRING_ERROR_DUPLICATE, "joined by spring");
+    defs[2].a = made.springs[4].a, defs[2].b = made.springs[4].b;
+    check_refused(network, defs, 3, MSPRING_ERROR_DUPLICATE, "joined by spring 4");
+    defs[2].a = 0, defs[2].b = 60, defs[2].flags = MSPRING_SPRING_RELATIVE;
+    check_refused(network, defs, 3, MSPRING_ERROR_ARGUMENT, "MSPRING_NETWORK_RESERVE_RELATIVE");
+    defs[2].flags = 0, defs[2].stiffness = NAN;
+    check_refused(network, defs, 3, MSPRING_ERROR_ARGUMENT, "stiffness");
+    defs[2].stiffness = 1, defs[2].rest_length = 0;
+    check_refused(network, defs, 3, MSPRING_ERROR_ARGUMENT, "rest length");
+    defs[2].rest_length = 1;
+    check_ok(mspring_network_add_springs(network, defs, 3, ids));
+    assert_true(ids[0] == made.spring_count && ids[2] == made.spring_count + 2);
+    const mspring_id gone = 60;
+    check_ok(mspring_network_remove_particles(network, &gone, 1));
+    assert_false(mspring_network_has_spring(network, ids[2]));
+    check_refused(network, &defs[2], 1, MSPRING_ERROR_ID, "no particle 60");
+    mspring_network_destroy(network);
+
+    mspring_network_def bare = support_def(0, 1);
+    network = recipe_network(&made, &bare);
+    check_refused(network, defs, 1, MSPRING_ERROR_LIMIT, "no room");
+    check_ok(mspring_network_remove_particles(network, &gone, 1)); // that needs no reserve
+    check_ok(mspring_network_step(network, 0.01));
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+// Ranges leave removed ids out, whatever values there are for them.
+static void ranges_leave_out_what_is_gone(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    mspring_network *network = make(&made, MSPRING_SIMD_AUTO, 1);
+    const mspring_id gone[] = {4, 5};
+    const uint32_t count = made.particle_count;
+    float *mass = calloc(count, sizeof *mass);
+    double *x = calloc(count, sizeof *x), *y = calloc(count, sizeof *y);
+    assert_true(mass && x && y);
+    check_ok(mspring_network_remove_particles(network, gone, 2));
+    check_ok(mspring_network_get_positions(network, 0, count, x, y));
+    for (uint32_t p = 0; p < count; p++) {
+        mass[p] = p == 4 || p == 5 ? 0 : 2;
+        x[p] += 100;
+    }
+    x[5] = NAN;
+    check_ok(mspring_network_set_masses(network, 0, count, mass));
+    check_ok(mspring_network_set_positions(network, 0, count, x, y));
+    check_near(support_position(network, 6).x, x[6], 1e-5);
+    mass[6] = 0;
+    check_error(mspring_network_set_masses(network, 0, count, mass), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_masses_at(network, gone, 2, mass), MSPRING_ERROR_ID);
+    check_error(mspring_network_apply_force(network, 5, 1, 1), MSPRING_ERROR_ID);
+    check_error(mspring_network_detach_particles(network, gone, 1), MSPRING_ERROR_ID);
+    double box[4];
+    check_ok(mspring_network_bounds(network, &box[0], &box[1], &box[2], &box[3]));
+    assert_true(box[0] > 80); // nothing was left behind
+    support_steps(network, 3, 0.01);
+    free(mass);
+    free(x);
+    free(y);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+static void components_events_and_strain_know_of_it(void **state) {
+    (void)state;
+    recipe made = {0};
+    recipe_particle(&made, 0, 0, 1, 0);
+    recipe_particle(&made, 1, 0, 1, 0);
+    recipe_particle(&made, 9, 0, 1, 0);
+    recipe_spring(&made, 0, 1, 10, 0, 0);
+    mspring_network_def def = support_def(0, 1);
+    def.spare_particles = def.spare_springs = 3;
+    mspring_network *network = recipe_network(&made, &def);
+    check_ok(mspring_network_reserve_events(network, 10));
+    uint32_t count, changed, numbers[4];
+    check_ok(mspring_network_update_components(network, &count, &changed));
+    assert_int_equal(count, 2);
+
+    mspring_particle_def particle;
+    mspring_spring_def springs[2];
+    mspring_id added, ids[2];
+    check_ok(mspring_particle_def_init(&particle, sizeof particle));
+    particle.x = 5;
+    check_ok(mspring_network_add_particles(network, &particle, 1, &added));
+    for (int i = 0; i < 2; i++) {
+        check_ok(mspring_spring_def_init(&springs[i], sizeof springs[i]));
+        springs[i].a = added;
+        springs[i].b = 1 + (mspring_id)i;
+        springs[i].stiffness = 10;
+    }
+    check_ok(mspring_network_update_components(network, &count, &changed));
+    assert_true(count == 3 && changed);
+    check_ok(mspring_network_add_springs(network, springs, 2, ids));
+    check_ok(mspring_network_update_components(network, &count, &changed));
+    assert_true(count == 1 && changed);
+    mspring_event events[10];
+    uint32_t event_count;
+    check_ok(mspring_network_read_events(network, events, 10, &event_count, NULL));
+    assert_int_equal(event_count, 2); // 2 and the added one are part of the first now
+    assert_true(events[0].kind == MSPRING_EVENT_JOINED && events[0].id == 2 && events[0].other == 0);
+    assert_true(events[1].kind == MSPRING_EVENT_JOINED && events[1].id == added && events[1].other == 0);
+
+    const float strain = 0.5f, far = 30;
+    check_ok(mspring_network_set_break_strains(network, ids[1], 1, &strain));
+    const float y = 0;
+    check_ok(mspring_network_set_positions_float(network, 2, 1, &far, &y));
+    check_ok(mspring_network_step(network, 1e-3));
+    check_ok(mspring_network_read_events(network, events, 10, &event_count, NULL));
+    assert_true(event_count == 1 && events[0].kind == MSPRING_EVENT_BROKEN && events[0].id == ids[1]);
+    float length[4], towards_x[4], towards_y[4];
+    check_ok(mspring_network_get_extents(network, length, towards_x, towards_y, NULL));
+    assert_true(towards_x[ids[0]] > 0.9f); // from 1 to the added one, which has the higher id
+
+    check_ok(mspring_network_remove_particles(network, &added, 1));
+    check_ok(mspring_network_read_events(network, events, 10, &event_count, NULL));
+    assert_true(event_count == 1 && events[0].kind == MSPRING_EVENT_BROKEN && events[0].id == ids[0] &&
+                events[0].other == added);
+    check_ok(mspring_network_update_components(network, &count, &changed));
+    assert_int_equal(count, 2);
+    check_ok(mspring_network_read_events(network, events, 10, &event_count, NULL));
+    assert_true(event_count == 1 && events[0].kind == MSPRING_EVENT_SPLIT && events[0].id == 2);
+    check_ok(mspring_network_get_component_numbers(network, 0, 4, numbers));
+    assert_true(numbers[0] == 0 && numbers[1] == 0 && numbers[2] == 1 && numbers[3] == MSPRING_NONE);
+
+    // What takes its place inherits nothing.
+    check_ok(mspring_network_recycle(network));
+    particle.x = 6;
+    check_ok(mspring_network_add_particles(network, &particle, 1, &added));
+    springs[1].rest_length = 1;
+    check_ok(mspring_network_add_springs(network, springs, 2, ids));
+    check_ok(mspring_network_step(network, 1e-3));
+    check_ok(mspring_network_read_events(network, events, 10, &event_count, NULL));
+    assert_int_equal(event_count, 0);
+    assert_true(mspring_network_has_spring(network, ids[1]));
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+static void a_sleeping_network_wakes(void **state) {
+    (void)state;
+    recipe made = {0};
+    recipe_particle(&made, 0, 0, 1, 0);
+    recipe_particle(&made, 1, 0, 1, 0);
+    recipe_spring(&made, 0, 1, 10, 1, 0);
+    mspring_network_def def = support_def(0, 1);
+    def.sleep_speed = 0.01f;
+    def.sleep_time = 0.05f;
+    def.spare_particles = def.spare_springs = 3;
+    mspring_network *network = recipe_network(&made, &def);
+    support_steps(network, 20, 0.01);
+    assert_true(mspring_network_is_asleep(network));
+    mspring_particle_def particle;
+    mspring_id id;
+    check_ok(mspring_particle_def_init(&particle, sizeof particle));
+    particle.x = 4, particle.vy = 2;
+    check_ok(mspring_network_add_particles(network, &particle, 1, &id));
+    assert_false(mspring_network_is_asleep(network));
+    support_steps(network, 10, 0.01);
+    check_near(support_position(network, id).y, 0.2, 1e-5);
+    check_ok(mspring_network_remove_particles(network, &id, 1));
+    support_steps(network, 20, 0.01);
+    assert_true(mspring_network_is_asleep(network));
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+// Everything that takes a network apart finds a whole one.
+static void settles_tunes_and_is_stable(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    life *it = begin(&made, MSPRING_SIMD_AUTO, 1, 21);
+    for (int round = 0; round < 4; round++) {
+        for (int i = 0; i < 25; i++) {
+            life_do_something(it);
+        }
+        mspring_id ids[LIFE_PARTICLES];
+        recipe left = life_recipe(it, ids);
+        mspring_network_def def = support_def(-9.8f, 4);
+        mspring_network *plain = recipe_network(&left, &def);
+        double now[2], any_shape[2];
+        check_ok(mspring_network_stable_dt(it->network, &now[0], NULL));
+        check_ok(mspring_network_stable_dt(plain, &now[1], NULL));
+        check_near(now[0], now[1], 0.02 * now[1]);        // the search for it is that accurate
+        for (mspring_id s = 0; s < it->spring_end; s++) { // broken springs count as whole in any shape
+            if (it->has_spring[s] && it->springs[s].is_broken) {
+                check_ok(mspring_network_remove_springs(it->network, &s, 1));
+                it->has_spring[s] = false;
+                it->gone_springs += s >= it->first_spare_spring;
+            }
+        }
+        check_ok(mspring_network_stable_dt(it->network, NULL, &any_shape[0]));
+        check_ok(mspring_network_stable_dt(plain, NULL, &any_shape[1]));
+        check_near(any_shape[0], any_shape[1], 1e-6 * any_shape[1]);
+
+        mspring_settle_def settle;
+        mspring_network *settled = NULL;
+        check_ok(mspring_settle_def_init(&settle, sizeof settle));
+        settle.flags = MSPRING_SETTLE_LEAVE_FLOATING;
+        check_ok(mspring_network_clone(it->network, NULL, &settled));
+        check_ok(mspring_network_settle(settled, &settle, NULL));
+        check_ok(mspring_network_settle(plain, &settle, NULL));
+        for (uint32_t p = 0; p < left.particle_count; p++) {
+            // Equilibria of soft springs under gravity: equations of condition 1e4, solved to 1e-9.
+            check_near(support_position(settled, ids[p]).x, support_position(plain, p).x, 1e-3);
+            check_near(support_position(settled, ids[p]).y, support_position(plain, p).y, 1e-3);
+        }
+        mspring_network_destroy(settled);
+        mspring_network_destroy(plain);
+        recipe_free(&left);
+        life_check(it);
+    }
+    end(it);
+    recipe_free(&made);
+}
+
+// A floor holds added particles and what they hang on.
+static void the_floor_is_under_all(void **state) {
+    (void)state;
+    static const double plane[4] = {0, -12, 0, 1};
+    recipe made = mixed_recipe();
+    for (int solver = 0; solver <= 1; solver++) {
+        life *it = begin(&made, MSPRING_SIMD_AUTO, 1, 61);
+        if (solver == 1) {
+            use(it->network, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_EULER, 0);
+        }
+        mspring_floor_def floor;
+        check_ok(mspring_floor_def_init(&floor, sizeof floor));
+        floor.planes = plane, floor.plane_count = 1, floor.friction = 0.5f;
+        check_ok(mspring_network_set_floor(it->network, &floor));
+        for (int i = 0; i < 150; i++) {
+            if (i < 60) {
+                life_do_something(it);
+            }
+            check_ok(mspring_network_step(it->network, 1.0 / 32));
+        }
+        double box[4];
+        check_ok(mspring_network_bounds(it->network, &box[0], &box[1], &box[2], &box[3]));
+        assert_true(box[1] >= -12 - 1e-4);
+        end(it);
+    }
+    recipe_free(&made);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(moves_as_what_it_consists_of),
+        cmocka_unit_test(moves_so_when_compacted),
+        cmocka_unit_test(same_bits_everywhere),
+        cmocka_unit_test(implicit_steps_are_those_of_the_direct_solver),
+        cmocka_unit_test(same_bits_from_implicit_workers),
+        cmocka_unit_test(the_direct_solver_refuses_springs_and_takes_the_rest),
+        cmocka_unit_test(snapshots_go_back_and_forth),
+        cmocka_unit_test(snapshots_go_back_in_a_compact_plan),
+        cmocka_unit_test(frames_are_of_the_same_springs),
+        cmocka_unit_test(foreign_growth_is_refused_or_harmless),
+        cmocka_unit_test(adding_allocates_nothing),
+        cmocka_unit_test(ids_come_back_when_the_host_says_so),
+        cmocka_unit_test(wrong_springs_are_refused_and_change_nothing),
+        cmocka_unit_test(ranges_leave_out_what_is_gone),
+        cmocka_unit_test(components_events_and_strain_know_of_it),
+        cmocka_unit_test(a_sleeping_network_wakes),
+        cmocka_unit_test(settles_tunes_and_is_stable),
+        cmocka_unit_test(the_floor_is_under_all),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
