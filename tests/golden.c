@@ -216,9 +216,10 @@ const golden_scene golden_scenes[] = {
 };
 const uint32_t golden_scene_count = COUNT_OF(golden_scenes);
 
-uint64_t golden_run(const golden_scene *golden, mspring_simd level) {
+uint64_t golden_run(const golden_scene *golden, mspring_simd level, uint32_t workers) {
     mspring_network_def def = support_def(-9.8f, golden->substeps);
     def.simd_level = level;
+    def.worker_count = workers;
     mspring_network *network = golden->make(&def);
     level_check(network, level);
     uint64_t hash = support_hash(network);

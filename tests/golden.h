@@ -20,7 +20,7 @@ typedef struct golden_scene {
 extern const golden_scene golden_scenes[];
 extern const uint32_t golden_scene_count;
 
-/// Run a scene at a level. The hash of its state, over all its steps.
-uint64_t golden_run(const golden_scene *golden, mspring_simd level);
+/// Run a scene at a level, by so many workers. The hash of its state, over all its steps.
+uint64_t golden_run(const golden_scene *golden, mspring_simd level, uint32_t workers);
 
 #endif

@@ -3,6 +3,7 @@
 /// every optimisation level.
 ///
 ///     test_golden LEVEL golden/hashes.txt           checks
+///     test_golden LEVEL golden/hashes.txt 2         checks with so many workers
 ///     test_golden LEVEL golden/hashes.txt --write   writes the file anew, after a change that is meant to alter
 ///     the
 ///                                                   bits; say in the commit why
@@ -11,6 +12,7 @@
 #include <inttypes.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "golden.h"
@@ -18,6 +20,7 @@
 #include "support.h"
 
 static mspring_simd level;
+static uint32_t workers = 1;
 static const char *file_name;
 
 /// The hash that the file has for a scene.
@@ -42,7 +45,7 @@ static void every_scene_has_its_hash(void **state) {
             print_message("%s: skipped, this build reads no PNG (libstb-dev)\n", scene->name);
             continue;
         }
-        uint64_t expected = 0, hash = golden_run(scene, level);
+        uint64_t expected = 0, hash = golden_run(scene, level, workers);
         bool known = read_hash(scene->name, &expected);
         if (!known || hash != expected) {
             print_error("%s at %s: %016" PRIx64 ", in the file: %016" PRIx64 "%s\n", scene->name,
@@ -92,7 +95,7 @@ static int write_hashes(void) {
             "# State hashes of the scenes in tests/golden.c, the same at every SIMD level, with every compiler\n"
             "# and at every optimisation level. Written by: test_golden scalar tests/golden/hashes.txt --write\n");
     for (uint32_t i = 0; i < golden_scene_count; i++) {
-        fprintf(file, "%s %016" PRIx64 "\n", golden_scenes[i].name, golden_run(&golden_scenes[i], level));
+        fprintf(file, "%s %016" PRIx64 "\n", golden_scenes[i].name, golden_run(&golden_scenes[i], level, workers));
     }
     return fclose(file) == 0 ? 0 : 1;
 }
@@ -107,6 +110,7 @@ int main(int argc, char **argv) {
     if (argc > 3 && strcmp(argv[3], "--write") == 0) {
         return write_hashes();
     }
+    workers = argc > 3 ? (uint32_t)strtoul(argv[3], NULL, 10) : 1;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_scene_has_its_hash),
         cmocka_unit_test(every_hash_is_that_of_a_scene),
