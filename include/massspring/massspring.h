@@ -439,7 +439,8 @@ typedef struct mspring_network_def {
     uint32_t spare_particles; ///< particles that may be added (mspring_network_add_particles()), with those that
                               ///< the builder holds at most MSPRING_MAX_PARTICLES; default 0
     uint32_t spare_springs;   ///< springs that may be added, likewise; default 0. Memory for both is reserved with
-                            ///< the network: some 150 bytes for each, and 9 for each spring that the builder holds.
+                              ///< the network: about 250 bytes for each, and 9 for each spring that the builder
+                              ///< holds, or 17 where some are relative.
 } mspring_network_def;
 
 /// Fill a definition with its defaults. Pass the size that your header gives it: sizeof *def.
@@ -658,9 +659,10 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_step(mspring_networ
 /// joins it to another island restored; a force from outside that differs from the one under which it fell asleep,
 /// so much that it would bring its particle to sleep_speed within sleep_time. All wake when gravity, solver, floor
 /// or relax fraction change, with the length of the substep where springs are relative, with
-/// mspring_network_renew_relative_springs(), and when the host sets positions that move the local origin. Hooks are
-/// called as ever; the forces of those before substeps are looked at in the first of a step. The implicit solver's
-/// history of an island is that of one at rest; of a network that slept as a whole, none.
+/// mspring_network_renew_relative_springs(), when the host sets positions that move the local origin, and when
+/// particles or springs are added or removed. Hooks are called as ever; the forces of those before substeps are
+/// looked at in the first of a step. The implicit solver's history of an island is that of one at rest; of a network
+/// that slept as a whole, none.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_network_is_asleep(const mspring_network *network);
 
@@ -1298,8 +1300,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_add_particles(mspri
 ///
 /// The plan does not know them. The explicit solver computes them apart, and takes one substep at a time, on one
 /// worker, as long as there are any that are not broken; the implicit solver needs some more iterations where they
-/// are stiff. mspring_network_compact() takes them into the plan. (Each spring is added in some tens of
-/// nanoseconds, so that any number of calls will do.)
+/// are stiff. mspring_network_compact() takes them into the plan.
 /// @param defs  [count]; relative ones and ones with damping only where the network has some, or was created with
 ///              MSPRING_NETWORK_RESERVE_RELATIVE or MSPRING_NETWORK_RESERVE_DAMPING
 /// @param ids   [count], receives their ids: the lowest that are free
