@@ -359,8 +359,8 @@ typedef struct result {
     double gain, rounding, motion;
 } result;
 
-// All in the frame of the mass centre or, if there are pinned particles, which work is done on the network by, in
-// that of the world: so that flying does not count as motion that there is much of.
+// All in the frame of the mass centre or, if there are pinned particles or a floor is touched, which work is done on the
+// network by, in that of the world: so that flying does not count as motion that there is much of.
 static result sum_up(const substep_of *substep, const mspringi_motion *m) {
     const mspring_network *network = substep->network;
     const mspringi_implicit *n = network->implicit;
@@ -369,7 +369,8 @@ static result sum_up(const substep_of *substep, const mspringi_motion *m) {
     const double mass = moves[MSPRINGI_MOVE_MASS], h = (double)substep->h;
     const double per_mass = 1.0 / (double)substep->mass_scale, per_stiffness = 1.0 / n->scale;
     const double gravity[] = {(double)network->gravity_x, (double)network->gravity_y};
-    const bool is_free = moves[MSPRINGI_MOVE_COUNT] == (double)n->balance.movable && mass > 0.0;
+    const bool is_held = network->floor && network->floor->contact_count > 0;
+    const bool is_free = !is_held && moves[MSPRINGI_MOVE_COUNT] == (double)n->balance.movable && mass > 0.0;
     double before = 0.5 * per_mass * moves[MSPRINGI_MOVE_KINETIC];
     double gain = 0.5 * per_mass * moves[MSPRINGI_MOVE_GAIN], work = moves[MSPRINGI_MOVE_WORK];
     for (size_t i = 0; i < 2; ++i) {
