@@ -359,8 +359,8 @@ typedef struct result {
     double gain, rounding, motion;
 } result;
 
-// All in the frame of the mass centre or, if there are pinned particles or a floor is touched, which work is done on the
-// network by, in that of the world: so that flying does not count as motion that there is much of.
+// All in the frame of the mass centre or, if there are pinned particles or a floor is touched, which work is done
+// on the network by, in that of the world: so that flying does not count as motion that there is much of.
 static result sum_up(const substep_of *substep, const mspringi_motion *m) {
     const mspring_network *network = substep->network;
     const mspringi_implicit *n = network->implicit;
