@@ -181,8 +181,41 @@ static void pins_come_and_go(void **state) {
     recipe_free(&made);
 }
 
+/// A step that is refused leaves the coarse matrix as it was, too, even where substeps in it have made another.
+static void refused_step_leaves_the_coarse_matrix(void **state) {
+    (void)state;
+    recipe made = lattice(COLUMNS, ROWS, 1e9);
+    for (uint32_t row = 0; row < ROWS; row++) {
+        made.particles[row * COLUMNS].flags = 0;
+    }
+    made.particles[0].vx = made.particles[1].vy = 30;
+    mspring_network *tried = implicit_network(&made, 8), *never = implicit_network(&made, 8);
+    mspring_network *const both[] = {tried, never};
+    for (int i = 0; i < 2; i++) {
+        mspring_solver_def solver;
+        check_ok(mspring_solver_def_init(&solver, sizeof solver));
+        solver.solver = MSPRING_SOLVER_IMPLICIT;
+        solver.coarse_period = 4;
+        solver.substeps = 3;
+        check_ok(mspring_network_set_solver(both[i], &solver));
+        support_steps(both[i], 2, 1.0 / 64); // the matrix is two substeps old then
+    }
+    const uint64_t before = support_hash(tried);
+    assert_int_equal(mspring_network_step(tried, 1e7), MSPRING_ERROR_UNSTABLE); // it falls out of bounds
+    assert_true(support_hash(tried) == before);
+    for (int step = 0; step < 5; step++) {
+        support_steps(tried, 1, 1.0 / 64);
+        support_steps(never, 1, 1.0 / 64);
+        assert_true(support_hash(tried) == support_hash(never));
+    }
+    mspring_network_destroy(tried);
+    mspring_network_destroy(never);
+    recipe_free(&made);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(refused_step_leaves_the_coarse_matrix),
         cmocka_unit_test(a_cut_bar_falls),
         cmocka_unit_test(fifty_breaks_a_frame_stay_right),
         cmocka_unit_test(restored_springs_join_tiles_again),

@@ -50,8 +50,9 @@ mspring_result mspringi_coarse_create(mspringi_coarse *coarse, const mspringi_ti
     coarse->row = mspringi_alloc(memory, tiles->capacity, sizeof *coarse->row);
     coarse->restricted = mspringi_alloc(memory, tiles->capacity, sizeof *coarse->restricted);
     coarse->values = mspringi_alloc(memory, tiles->value_capacity, sizeof *coarse->values);
+    coarse->kept = mspringi_alloc(memory, tiles->value_capacity, sizeof *coarse->kept);
     coarse->far_turns = mspringi_alloc(memory, tiles->value_capacity / BLOCK_VALUES + 1, sizeof *coarse->far_turns);
-    if (coarse->first && coarse->row && coarse->restricted && coarse->values && coarse->far_turns) {
+    if (coarse->first && coarse->row && coarse->restricted && coarse->values && coarse->kept && coarse->far_turns) {
         mspringi_coarse_shape(coarse, tiles);
         return MSPRING_OK;
     }
@@ -64,9 +65,18 @@ void mspringi_coarse_destroy(mspringi_coarse *coarse, mspringi_memory *memory) {
     mspringi_free(memory, coarse->first);
     mspringi_free(memory, coarse->row);
     mspringi_free(memory, coarse->values);
+    mspringi_free(memory, coarse->kept);
     mspringi_free(memory, coarse->far_turns);
     mspringi_free(memory, coarse->restricted);
     *coarse = (mspringi_coarse){0};
+}
+
+void mspringi_coarse_keep(const mspringi_coarse *coarse) {
+    memcpy(coarse->kept, coarse->values, coarse->value_count * sizeof *coarse->kept);
+}
+
+void mspringi_coarse_take_back(const mspringi_coarse *coarse) {
+    memcpy(coarse->values, coarse->kept, coarse->value_count * sizeof *coarse->values);
 }
 
 /// Three rows of the envelope, from the column of tile other on.

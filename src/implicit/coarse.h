@@ -17,6 +17,7 @@ typedef struct mspringi_coarse {
     uint32_t *first; ///< [tiles] the lowest tile in each tile's part of the envelope
     size_t *row;     ///< [tiles] where its three rows begin in values, each 3 * (tile - first + 1) long
     double *values;  ///< the lower triangle, then its factor with reciprocals on the diagonal
+    double *kept;    ///< the values of another time
     size_t value_count;
     double *far_turns; ///< [blocks] what each block's springs resist a turn of the earlier of its tiles with
     double (*restricted)[MSPRINGI_RIGID]; ///< [tiles] the right-hand side
@@ -54,6 +55,10 @@ void mspringi_coarse_add(mspringi_coarse *coarse, uint32_t tile, double xx, doub
 
 /// Factor in place. Never fails: a pivot that rounding has made too small is replaced.
 void mspringi_coarse_factor(mspringi_coarse *coarse);
+
+/// Keep the factor, and take back what was kept. The tiles must be the same ones.
+void mspringi_coarse_keep(const mspringi_coarse *coarse);
+void mspringi_coarse_take_back(const mspringi_coarse *coarse);
 
 /// Solve for restricted. Returns restricted . unknowns.
 double mspringi_coarse_solve(const mspringi_coarse *coarse, double (*unknowns)[MSPRINGI_RIGID]);

@@ -285,6 +285,9 @@ void mspringi_implicit_keep(mspring_network *network) {
     n->is_kept = true;
     n->has_changed = false;
     n->kept_ledger = n->ledger;
+    n->kept_age = n->age;
+    if (n->age > 0)
+        mspringi_coarse_keep(&n->coarse);
     n->gain.energy = 0.0;
 }
 
@@ -299,9 +302,10 @@ void mspringi_implicit_restore(mspring_network *network) {
     }
     n->has_changed = n->is_kept = false;
     n->ledger = n->kept_ledger;
-    // The factor is one of the failed step's. The others are zero between steps, or where there is no tile, unless
-    // numbers overflowed.
-    n->age = 0;
+    n->age = n->kept_age;
+    if (n->age > 0)
+        mspringi_coarse_take_back(&n->coarse);
+    // These are zero between steps, or where there is no tile, unless numbers overflowed.
     const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH * n->crew;
     memset(n->force_carry, 0, 2 * carry * sizeof *n->force_carry);
     memset(n->carry, 0, 3 * carry * sizeof *n->carry);
@@ -333,7 +337,7 @@ void mspringi_implicit_follow(mspring_network *network) {
         mspringi_coarse_shape(&n->coarse, &n->tiles);
         find_solved(n, network);
         clear_outside_of_tiles(network);
-        n->age = 0;
+        n->age = n->kept_age = 0;
     }
     if (n->is_direct && n->seen.growth != network->edits.growth)
         mspringi_balance_count(network, n);

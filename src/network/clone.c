@@ -184,6 +184,7 @@ static void move_implicit(const moving *m, mspringi_implicit *n) {
     MOVE(n->coarse.first);
     MOVE(n->coarse.row);
     MOVE(n->coarse.values);
+    MOVE(n->coarse.kept);
     MOVE(n->unknowns);
     MOVE(n->coarse.restricted);
     MOVE(n->coarse.far_turns);
