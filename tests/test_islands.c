@@ -585,7 +585,7 @@ static void the_floor_bears_sleepers(void **state) {
     (void)state;
     for (mspring_solver solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_IMPLICIT; solver++) {
         mspring_id broken;
-        mspring_network *network = make_two_guarded(solver, MSPRING_GUARD_BOUNDS, &broken);
+        mspring_network *network = make_two_guarded(solver, MSPRING_GUARD_GROWTH, &broken);
         const double level[4] = {0, -0.5, 0, 1};
         mspring_floor_def def;
         check_ok(mspring_floor_def_init(&def, sizeof def));
