@@ -131,7 +131,9 @@ MSPRING_API const char *mspring_result_string(mspring_result result);
 /* -------------------------------------------------------------------------------------------- identifiers */
 
 /// Particles and springs are named by dense integers, 0, 1, 2 ... in the order in which they were added. They
-/// never change. (Slots, the places inside a view's arrays, are another numbering: see mspring_view.)
+/// never change; the ids of some that were removed may be given to others once the host allows it
+/// (mspring_network_recycle()). (Slots, the places inside a view's arrays, are another numbering: see
+/// mspring_view.)
 typedef uint32_t mspring_id;
 
 /// No particle, no spring.
@@ -282,14 +284,14 @@ enum {
     MSPRING_SOLVER_EXPLICIT = 0,
     /// One linear system in each substep, whatever the stiffness: stable on lattices for any dt and any springs, at
     /// a cost that does not depend on them. Ropes and other springs outside of lattices have little stiffness
-    /// across them; where they are so stiff, and move so far in a substep, that this would stretch them by more
-    /// energy than there was, the step is refused (see mspring_guard, and mspring_integrator for less than that).
+    /// across them; where they are so stiff, and move so far in a substep, that energy would come from nowhere, the
+    /// substep is taken in pieces, and if that is not enough the step is refused (see mspring_guard).
     /// Springs and dampers are linearised at x + h v, with tiles of neighbouring particles turned on as rigid
     /// bodies
     /// (and with the stiffness across a spring clamped to 0 where it is compressed, so that the matrix is positive
     /// definite). The system is solved by a fixed number of conjugate gradient iterations with a two-level
     /// preconditioner: the blocks of the single particles, and the tiles. With eight
-    /// of them a substep costs 20 to 65 explicit ones, least where vectors are short. It damps what oscillates
+    /// of them a substep costs 24 to 41 explicit ones (massspring-bench --implicit). It damps what oscillates
     /// with less than about ten substeps a period. Global damping, which explicit steps apply exactly, is as
     /// accurate as its integrator.
     MSPRING_SOLVER_IMPLICIT = 1,
@@ -311,10 +313,11 @@ enum {
 /// a few steps. The two of second order remember the substep before; the first substep after a change of the
 /// solver, and after the positions of all particles were set, is one of implicit Euler.
 ///
-/// Stiff ropes that hang slack, and are pulled taut within a substep, are what the two of second order follow least
-/// well: they gain energy there, and mspring_guard refuses only a substep in which it more than doubles. Our ship
-/// falling under its own weight, with its rigging, does so in one substep of 1/64 s, before and after steps that
-/// are refused, so MSPRING_GUARD_RETRY is no cure. Implicit Euler, or two substeps from the start, go through.
+/// Stiff ropes that hang slack, and are pulled taut within a substep, are what no integrator can follow: a substep
+/// that would gain energy there is taken in pieces of implicit Euler, of a half to a 64th, with twice the
+/// iterations, and the 15 substeps after it are ones of implicit Euler, too (unless the guard is
+/// MSPRING_GUARD_BOUNDS). Our ship falling under its own weight, with its rigging, has some fifty such substeps in
+/// 10 s.
 typedef int32_t mspring_integrator;
 enum {
     MSPRING_INTEGRATOR_GA0 = 0,  ///< generalised-alpha with rho_inf = 0 (Chung and Hulbert, 1993): second order
@@ -364,7 +367,8 @@ enum {
 
 /// Flags of networks.
 enum {
-    MSPRING_NETWORK_RESERVE_DAMPING = 1u << 0 ///< springs may be given damping later, though none has any now
+    MSPRING_NETWORK_RESERVE_DAMPING = 1u << 0, ///< springs may be given damping later, though none has any now
+    MSPRING_NETWORK_RESERVE_RELATIVE = 1u << 1 ///< relative springs may be added later, though there is none now
 };
 
 /// What a step does beside refusing to end with a coordinate or speed that is not finite or out of bounds.
@@ -373,9 +377,11 @@ enum {
     /// Refuse a step whose substeps are above the border of mspring_network_stable_dt(): motion would turn round
     /// and grow in each. The border is looked at when the substep changes, and when a step changes a velocity twice
     /// as much as one did at the last look; not at all where substeps are stable in any shape. Steps below the
-    /// border are never refused. With the implicit and the direct solver, refuse instead a step in which springs
-    /// outside of lattices get more than twice the energy that there was, kinetic and elastic, with what gravity,
-    /// forces and moving pins can have added.
+    /// border are never refused. The implicit and the direct solver count instead what energy gets beyond the work
+    /// of gravity, forces, moving pins and floor, in each substep, and less what it loses after that: where there
+    /// are ropes or other springs outside of lattices, or broken springs, more than a hundredth of the motion there
+    /// is (kinetic and elastic energy, less that of flying as a whole) is not let pass. A substep with which it
+    /// would come to that is taken in pieces (see mspring_integrator), and the step refused if 64 are not enough.
     MSPRING_GUARD_GROWTH = 0,
     /// The same, but take a step that would be refused again with twice as many substeps, four times as many, and
     /// so on up to max_substeps. Later steps keep the number that was needed, until mspring_network_set_solver().
@@ -383,10 +389,24 @@ enum {
     MSPRING_GUARD_RETRY = 1,
     MSPRING_GUARD_BOUNDS = 2, ///< look at nothing else
     /// As MSPRING_GUARD_GROWTH, but have the implicit solver take a step that would be refused, in one substep of
-    /// implicit Euler, and the 15 after it, before the explicit one is tried again: slower (20 to 65 explicit
+    /// implicit Euler, and the 15 after it, before the explicit one is tried again: slower (24 to 41 explicit
     /// substeps each) and softened, but at nearly any stiffness. Hooks are called again. Its memory is reserved
     /// with the network. mspring_network_fallback_count() says how often that was.
-    MSPRING_GUARD_IMPLICIT = 3
+    MSPRING_GUARD_IMPLICIT = 3,
+    /// As MSPRING_GUARD_GROWTH, but take a step that would be refused with strain rates clamped and, unless the
+    /// solver is an implicit one, the 15 after it: in as many substeps (with MSPRING_SUBSTEPS_AUTO max_substeps),
+    /// in each of which springs act one after another in the order of their ids, and back again, by impulses along
+    /// them. None changes the rate at which its spring is strained by more than what takes it to its rest length by
+    /// the end of the substep, or its damper's by more than what brings it to rest.
+    ///
+    /// Unphysical: a spring is as stiff as its ends and the substep allow and not more (about mu / h^2, see
+    /// MSPRING_SPRING_RELATIVE), so what is stiff turns soft, the more so the more springs stand in line; motion
+    /// along springs is damped as by implicit Euler; and which spring has which id makes a difference. Small motion
+    /// about any shape does not grow, however stiff, damped or unequal springs and masses are; momentum is
+    /// conserved but for rounding, angular momentum only about. A step that ends out of bounds all the same is
+    /// refused. Works on one thread, at 30 to 160 explicit substeps for each substep; needs no memory. Hooks are
+    /// called again. mspring_network_fallback_count() says how often that was.
+    MSPRING_GUARD_CLAMP = 4
 };
 
 /// A network's settings at the start. Fill with mspring_network_def_init() first.
@@ -410,12 +430,17 @@ typedef struct mspring_network_def {
                            ///< MSPRING_MAX_WORKERS; default 1. The others are started with the network, end with
                            ///< it, take no signals, and sleep between steps. One for each core is the most that
                            ///< helps. With tasks, whose number counts, this is not looked at.
-    uint32_t flags;        ///< MSPRING_NETWORK_RESERVE_DAMPING or 0; default 0
+    uint32_t flags;        ///< bits of MSPRING_NETWORK_; default 0
     uint32_t max_substeps; ///< as in mspring_solver_def; default 1000
     mspring_guard guard;   ///< default MSPRING_GUARD_GROWTH
-    float sleep_speed; ///< m/s, 0 to 1e15: a network sleeps once none of its particles has been faster in x or y
+    float sleep_speed; ///< m/s, 0 to 1e15: an island sleeps once none of its particles has been faster in x or y
                        ///< at the end of a step for sleep_time, see mspring_network_is_asleep(); default 0: never
     float sleep_time;  ///< s of simulated time, 0 to 1e6; default 0.5
+    uint32_t spare_particles; ///< particles that may be added (mspring_network_add_particles()), with those that
+                              ///< the builder holds at most MSPRING_MAX_PARTICLES; default 0
+    uint32_t spare_springs;   ///< springs that may be added, likewise; default 0. Memory for both is reserved with
+                              ///< the network: about 250 bytes for each, and 9 for each spring that the builder
+                              ///< holds, or 17 where some are relative.
 } mspring_network_def;
 
 /// Fill a definition with its defaults. Pass the size that your header gives it: sizeof *def.
@@ -513,7 +538,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_rope(mspring_bu
 
 /* ---------------------------------------------------------------------------------------------- lifecycle */
 
-/// A network: its topology, which is fixed, and its state.
+/// A network: its topology and its state.
 typedef struct mspring_network mspring_network;
 
 /// Make a network of what the builder holds. Reads the builder once, finds the lattices and chains in it from
@@ -577,7 +602,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_clone(const mspring
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API const char *mspring_network_error(const mspring_network *network);
 
-/// Number of particles and springs. NULL gives 0.
+/// Number of particles and springs, those that were removed still counted: all ids are below. NULL gives 0.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_network_particle_count(const mspring_network *network);
 MSPRING_API uint32_t mspring_network_spring_count(const mspring_network *network);
@@ -616,26 +641,42 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_global_damping(
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_step(mspring_network *network, double dt);
 
-/// Whether the network sleeps: 1 or 0. NULL gives 0.
+/// Whether the network sleeps, all of it: 1 or 0. NULL gives 0.
 ///
-/// A network that may sleep (mspring_network_def.sleep_speed) falls asleep at the end of a step, as a whole: once
-/// every particle has been slow for long enough, no pinned one moves and no spring is on a ramp. Its velocities are
-/// set to 0 then, so what was left of its kinetic energy is gone. While it sleeps steps change nothing, and cost
-/// next to nothing if there are no hooks and no forces.
+/// In a network that may sleep (mspring_network_def.sleep_speed) every island does so by itself: particles that
+/// hang together by springs that are not broken (mspring_network_update_components()), or one without springs. It
+/// falls asleep at the end of a step, once every particle of it has been slow for long enough, no pinned one moves
+/// and none of its springs is on a ramp. Its velocities are set to 0 then, so what was left of its kinetic energy
+/// is gone. While it sleeps steps do not move it, and cost what is awake: blocks of 16 slots without a particle
+/// that is awake are left out, so islands that share their rows with others, as the pieces of one lattice do, save
+/// most after mspring_network_compact(). If all sleep, with no hooks and no forces, a step costs next to nothing.
+/// The explicit solver moves what is awake, bit by bit, as if nothing slept; the implicit one leaves sleepers out
+/// of its system, which changes the last digits; the direct one holds them, but saves no time.
 ///
-/// It wakes before or in the step that finds something changed: a position, velocity, mass or pin that is another
-/// one (set by a call or through a view, or by a hook in the step before); a stiffness, damping, rest length,
-/// threshold or relax fraction that was set, a spring that was broken or restored; gravity, solver or floor; the
-/// length of the substep where springs are relative; a force from outside that differs from the one under which it
-/// fell asleep, so much that it would bring its particle to sleep_speed within sleep_time. It also wakes when it is
-/// compacted or expanded. Hooks are called as ever; the forces of those before substeps are looked at in the first
-/// of a step. A network of the implicit solver wakes as to a new motion.
-///
-/// To have parts that come to rest sleep while others move, make them networks of their own.
+/// An island wakes before or in the step that finds something changed: a position, velocity, mass or pin of its
+/// that is another one (set by a call or through a view; by a hook, which wakes it at the end of the step); a
+/// stiffness, damping, rest length or threshold of its that was set, a spring of its that was broken, or one that
+/// joins it to another island restored; a force from outside that differs from the one under which it fell asleep,
+/// so much that it would bring its particle to sleep_speed within sleep_time. All wake when gravity, solver, floor
+/// or relax fraction change, with the length of the substep where springs are relative, with
+/// mspring_network_renew_relative_springs(), when the host sets positions that move the local origin, and when
+/// particles or springs are added or removed. Hooks are called as ever; the forces of those before substeps are
+/// looked at in the first of a step. The implicit solver's history of an island is that of one at rest; of a network
+/// that slept as a whole, none.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_network_is_asleep(const mspring_network *network);
 
-/// Wake a network. It has to be still for sleep_time again before it sleeps, and so has one that is awake already.
+/// Which of the particles first ... first + count - 1 sleep. Those whose positions, velocities or masses were set
+/// since, or written through a view, still do until the next step.
+/// @param asleep  [count], receives 1 or 0
+/// @return MSPRING_OK; MSPRING_ERROR_ID if there are not so many; MSPRING_ERROR_ARGUMENT for NULL.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_sleepers(const mspring_network *network,
+                                                                          mspring_id first, uint32_t count,
+                                                                          uint8_t *asleep);
+
+/// Wake all of a network. It has to be still for sleep_time again before it sleeps, and so has what is awake
+/// already.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL; MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_wake(mspring_network *network);
@@ -645,7 +686,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_wake(mspring_networ
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_network_substeps(const mspring_network *network);
 
-/// Number of steps so far that the implicit solver took for the explicit one (MSPRING_GUARD_IMPLICIT). NULL: 0.
+/// Number of steps so far that the implicit solver took for the explicit one (MSPRING_GUARD_IMPLICIT), or that were
+/// taken with strain rates clamped (MSPRING_GUARD_CLAMP). NULL: 0.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint64_t mspring_network_fallback_count(const mspring_network *network);
 
@@ -842,9 +884,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_tune_settings(mspring_netwo
 ///
 /// Have the network in a state as it is to be simulated: just made and falling, or moving. Hooks are not called,
 /// there is no floor, ramps stand still, nothing breaks by strain, it does not sleep, and no solver stands in for
-/// another (MSPRING_GUARD_IMPLICIT). Forces given for the next step act in the first one. Relative springs follow
-/// the substep: each row is compared with a fine run, and an equilibrium, that have the stiffness of its own
-/// substeps, and bending says how firm that is.
+/// another (MSPRING_GUARD_IMPLICIT), and nothing is clamped. Forces given for the next step act in the first one.
+/// Relative springs follow the substep: each row is compared with a fine run, and an equilibrium, that have the
+/// stiffness of its own substeps, and bending says how firm that is.
 ///
 /// Recommended is, if max_error is finite, the row of the least median cost among those within both bounds; else,
 /// of those within max_cost, the one of the least error; of equal ones the first. There may be none. When the
@@ -1157,10 +1199,12 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_inverse_mass_sc
                                                                                      uint32_t count, float *scale);
 
 /// Set nominal stiffness: N/m, of relative springs the fraction. A broken spring stays broken and has the new
-/// stiffness when it is restored.
+/// stiffness when it is restored. Before the first call that gives a relative spring another fraction, a network
+/// keeps fractions once that many springs share.
 /// @param stiffness  [count], 0 to 1e30
-/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the spring), MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the spring), MSPRING_ERROR_BUSY,
+///         MSPRING_ERROR_MEMORY.
+/// @threads exclusive access to network   @allocates at the first other fraction of a relative spring   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_stiffnesses(mspring_network *network,
                                                                              mspring_id first, uint32_t count,
                                                                              const float *stiffness);
@@ -1173,7 +1217,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_stiffnesses_at(
 /// whose springs were all made without damping has no room for any (MSPRING_ERROR_ARGUMENT), unless it was created
 /// with MSPRING_NETWORK_RESERVE_DAMPING.
 /// @param damping  [count], 0 to 1e30
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// @threads exclusive access to network   @allocates at the first other fraction of a relative spring   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_dampings(mspring_network *network,
                                                                           mspring_id first, uint32_t count,
                                                                           const float *damping);
@@ -1181,7 +1225,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_dampings_at(msp
                                                                              const mspring_id *springs,
                                                                              uint32_t count, const float *damping);
 
-/// Set rest lengths (m); as mspring_network_set_stiffnesses(), and MSPRING_ERROR_MEMORY. Ends a ramp of the spring.
+/// Set rest lengths (m); as mspring_network_set_stiffnesses(). Ends a ramp of the spring.
 /// Before the first such call, lattices keep rest lengths once that many springs share.
 /// @param rest_length  [count], > 0 and at most 4e12
 /// @threads exclusive access to network   @allocates at the first rest length or ramp in a network   @since 0.1
@@ -1212,7 +1256,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_break_springs(mspri
 /// @param ramp_seconds  0 for no ramp, at most 1e6
 /// @return as mspring_network_break_springs()
 /// @threads exclusive access to network
-/// @allocates at the first rest length or ramp in a network, and for more ramps at once than there have been
+/// @allocates at the first rest length or ramp in a network, for more ramps at once than there have been, and to
+/// expand
+///            a compact network of which a spring is restored that its plan leaves out
 /// @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_restore_springs(mspring_network *network,
                                                                              const mspring_id *springs,
@@ -1227,12 +1273,79 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_detach_particles(ms
                                                                               const mspring_id *particles,
                                                                               uint32_t count);
 
+/* --------------------------------------------------------------------------------- adding and removing */
+
+/// Whether there is such a particle or spring: 1, or 0 if there has never been one or it has been removed. NULL: 0.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API uint32_t mspring_network_has_particle(const mspring_network *network, mspring_id particle);
+MSPRING_API uint32_t mspring_network_has_spring(const mspring_network *network, mspring_id spring);
+
+/// Add particles to a network that has room for them (mspring_network_def.spare_particles): all of them or, on
+/// error, none. They are loose ones until springs are added to them, and take the lowest ids that are free: those
+/// after the last or, after mspring_network_recycle(), of added particles that were removed.
+///
+/// A view that was taken before is still valid, but for its particle_count. Nothing else about the network changes.
+/// @param defs  [count], positions also within MSPRING_MAX_COORDINATE of the local origin
+/// @param ids   [count], receives their ids
+/// @return MSPRING_OK; MSPRING_ERROR_LIMIT if there is no room (the message says for how many there is);
+///         MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT (the message names the definition); MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_add_particles(mspring_network *network,
+                                                                           const mspring_particle_def *defs,
+                                                                           uint32_t count, mspring_id *ids);
+
+/// Add springs between any particles that there are, to a network that has room for them
+/// (mspring_network_def.spare_springs): all of them or, on error, none. MSPRING_REST_LENGTH_DISTANCE is the
+/// distance that the two have now. They are as all others from then on, and may break, be edited and be restored.
+///
+/// The plan does not know them. The explicit solver computes them apart, and takes one substep at a time, on one
+/// worker, as long as there are any that are not broken; the implicit solver needs some more iterations where they
+/// are stiff. mspring_network_compact() takes them into the plan.
+/// @param defs  [count]; relative ones and ones with damping only where the network has some, or was created with
+///              MSPRING_NETWORK_RESERVE_RELATIVE or MSPRING_NETWORK_RESERVE_DAMPING
+/// @param ids   [count], receives their ids: the lowest that are free
+/// @return as mspring_network_add_particles(); MSPRING_ERROR_ID for a particle that does not exist;
+///         MSPRING_ERROR_DUPLICATE if the two are joined by a spring already, broken or not; MSPRING_ERROR_ARGUMENT
+///         with the direct solver, which has to be chosen anew after springs were added.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_add_springs(mspring_network *network,
+                                                                         const mspring_spring_def *defs,
+                                                                         uint32_t count, mspring_id *ids);
+
+/// Remove particles with all their springs, whether added or there from the beginning. In lists their ids are
+/// refused from then on (MSPRING_ERROR_ID); functions on ranges leave them out, and give 0 for what they have no
+/// more (the local origin for a position, MSPRING_NONE for a component). Springs that were not broken are told as
+/// broken (MSPRING_EVENT_BROKEN, the particle in other).
+/// @param particles  [count]
+/// @return as mspring_network_break_springs()
+/// @threads exclusive access to network
+/// @allocates at the first break, detachment and removal in a network   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_remove_particles(mspring_network *network,
+                                                                              const mspring_id *particles,
+                                                                              uint32_t count);
+
+/// Remove springs, likewise: as breaking them, but for good.
+/// @param springs  [count]
+/// @return as mspring_network_break_springs()
+/// @threads exclusive access to network
+/// @allocates at the first break, detachment and removal in a network   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_remove_springs(mspring_network *network,
+                                                                            const mspring_id *springs,
+                                                                            uint32_t count);
+
+/// Allow that ids of particles and springs that were added and have been removed are given to others from now on:
+/// the host has forgotten them, too. Until then they count as used, and so does the room that they took. Ids of
+/// those that the network was created with are never given again.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL; MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_recycle(mspring_network *network);
+
 /* ------------------------------------------------------------------------------------------- compaction */
 
 /// Leave springs that are broken out of the plan, so that a wreck costs what is left of it: lattices are swept
 /// where squares are left, strands as chains, single springs as web, and particles without spring as loose ones.
 /// Until then a broken spring costs as much as a whole one. Worth it where a quarter of the springs or more has
-/// broken.
+/// broken. Springs that were added are taken into the plan, which is worth it where they are to stay.
 ///
 /// Ids, values and thresholds of all springs stay as they are and can be read and set as before. **Slots change**:
 /// a view that was taken before is not valid any more, and hooks see other slots. Positions and velocities are
@@ -1521,6 +1634,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_load(mspring_networ
 /// grid), a chain (single strands), the web (any other graph, and ropes that hang on a lattice) or a loose row (no
 /// springs). A spring between neighbours in lattice and chain rows is swept with them, without any index; the
 /// others, leftover springs, are the web's, and cost more each.
+///
+/// Lattices of at most 64 by 64 particles share rows, side by side, whose blocks one alone would leave half empty.
 ///
 /// Lattice rows are swept in strips of some rows, several substeps in one pass, so that a network larger than the
 /// cache is read once for all of them. What hangs on a lattice is swept with its strips, unless it joins strips
