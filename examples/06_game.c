@@ -73,8 +73,7 @@ static void must(mspring_result result, const char *what, const game *played) {
     }
 }
 
-/* ----------------------------------------------------------------------------------------------------- the world
- */
+/* --------------------------------------------------------------------------------------------------- the world */
 
 // Before each step: what is under water is carried by the water that it displaces, and slowed by it.
 static void float_hook(const mspring_hook_args *args, void *user) {
@@ -133,8 +132,7 @@ static mspring_result make_floor(mspring_network *network) {
     return result == MSPRING_OK ? mspring_network_set_floor(network, &def) : result;
 }
 
-/* ------------------------------------------------------------------------------------------------------ the ship
- */
+/* ---------------------------------------------------------------------------------------------------- the ship */
 
 // A hull with a slanted bow and stern, a deck house and a mast.
 static bool is_ship(int column, int row) {
@@ -302,8 +300,7 @@ static void read_events(game *played) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------ the steps
- */
+/* --------------------------------------------------------------------------------------------------- the steps */
 
 // Every half a minute a blast somewhere below the ship, and repair three seconds later; then the last one.
 static void let_happen(game *played, uint32_t step) {
@@ -352,8 +349,7 @@ static void update(game *played, uint32_t step) {
     read_events(played);
 }
 
-/* ------------------------------------------------------------------------------------------------------ the end
- */
+/* ----------------------------------------------------------------------------------------------------- the end */
 
 static uint32_t find_largest_piece(const game *played, mspring_component *largest) {
     static mspring_component pieces[MOST];
@@ -402,8 +398,7 @@ static bool check_end(const game *played, double seconds) {
     return false;
 }
 
-/* ------------------------------------------------------------------------------------------------------ the loop
- */
+/* ---------------------------------------------------------------------------------------------------- the loop */
 
 static void print_state(const game *played, double time) {
     mspring_component largest;
@@ -482,8 +477,7 @@ static bool run(const options *asked, const mspring_tasks *tasks) {
     return ok;
 }
 
-/* ------------------------------------------------------------------------------------------------------- options
- */
+/* ----------------------------------------------------------------------------------------------------- options */
 
 static int usage(FILE *to, const char *program) {
     fprintf(to,

@@ -219,8 +219,7 @@ static bool measure_errors(const subject *about, const options *how, mspring_net
     return true;
 }
 
-/* ------------------------------------------------------------------------------------------------------- bending
- */
+/* ----------------------------------------------------------------------------------------------------- bending */
 
 // One setting of each solver: explicit with the least substeps, implicit with eight iterations, direct where it
 // pays.
@@ -285,8 +284,7 @@ static bool measure_bending(const subject *about, const options *how, mspring_ne
     return true;
 }
 
-/* ------------------------------------------------------------------------------------------------------- drawing
- */
+/* ----------------------------------------------------------------------------------------------------- drawing */
 
 static void draw_cloud(figure *target, const cloud *drawn, const char *title, const char *y_label, bool percent,
                        double left) {
@@ -324,8 +322,7 @@ static bool draw(const subject *about, const options *how, const cloud *errors, 
     return ok;
 }
 
-/* --------------------------------------------------------------------------------------------------- the subjects
- */
+/* ------------------------------------------------------------------------------------------------ the subjects */
 
 static bool make_scene(const subject *about, const options *how, scene *made, scene_error *error) {
     char image[OUTPUT_PATH_SIZE], table[OUTPUT_PATH_SIZE];

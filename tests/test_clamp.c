@@ -241,8 +241,7 @@ static void momentum_is_kept(void **state) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- the same bits
- */
+/* ----------------------------------------------------------------------------------------------- the same bits */
 
 /// A bar on its way from steps that are taken as they are to clamped ones and back, over the floor, with breaking
 /// springs and a hook.

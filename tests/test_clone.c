@@ -148,8 +148,7 @@ static mspring_clone_def clone_def(void) {
     return def;
 }
 
-/* ------------------------------------------------------------------------------------------------- the same bits
- */
+/* ----------------------------------------------------------------------------------------------- the same bits */
 
 /// What can be seen of a network beside its state.
 static uint64_t look(mspring_network *network) {

@@ -324,8 +324,7 @@ static void scattered_positions_and_velocities_equal_ranges(void **state) {
     recipe_free(&made);
 }
 
-/* ------------------------------------------------------------------------------------------------------ refusals
- */
+/* ---------------------------------------------------------------------------------------------------- refusals */
 
 static void what_is_refused_changes_nothing(void **state) {
     (void)state;

@@ -47,8 +47,7 @@ static mspring_floor_def level_floor(float friction, float restitution) {
     return def;
 }
 
-/* ----------------------------------------------------------------------------------------------- nothing gets in
- */
+/* --------------------------------------------------------------------------------------------- nothing gets in */
 
 enum { MOST_HEIGHTS = 64 };
 
@@ -216,8 +215,7 @@ static void what_is_inside_is_lifted(void **state) {
     }
 }
 
-/* ---------------------------------------------------------------------------------------------- single particles
- */
+/* -------------------------------------------------------------------------------------------- single particles */
 
 static mspring_network *one_particle(double x, double y, float vx, float vy, double mass) {
     mspring_builder *builder = support_builder();
@@ -346,8 +344,7 @@ static void valleys_collect(void **state) {
     mspring_network_destroy(network);
 }
 
-/* ------------------------------------------------------------------------------------------------------ networks
- */
+/* ---------------------------------------------------------------------------------------------------- networks */
 
 /// The 80x5 bar of the other tests, its lowest row at height y, none of it pinned. Its springs bear 40 substeps in
 /// a step of 1 / 64 s.
@@ -556,8 +553,7 @@ static void implicit_contact_gives_no_energy(void **state) {
     contact_gives_no_energy(&(way){MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_EULER, 1}, 0.5, 1.0 / 15, 0.05);
 }
 
-/* ----------------------------------------------------------------------------------------------------- same bits
- */
+/* --------------------------------------------------------------------------------------------------- same bits */
 
 static void levels_and_workers_agree(void **state) {
     (void)state;
@@ -678,8 +674,7 @@ static void snapshots_do_not_see_later_contacts(void **state) {
     mspring_network_destroy(network);
 }
 
-/* -------------------------------------------------------------------------------------------------------- errors
- */
+/* ------------------------------------------------------------------------------------------------------ errors */
 
 static void refuse(mspring_network *network, mspring_floor_def def, mspring_result code, const char *part) {
     check_error(mspring_network_set_floor(network, &def), code);

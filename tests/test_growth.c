@@ -127,8 +127,7 @@ static void moves_so_when_compacted(void **state) {
     recipe_free(&made);
 }
 
-/* ------------------------------------------------------------------------------------------------------ the bits
- */
+/* ---------------------------------------------------------------------------------------------------- the bits */
 
 static void push(const mspring_hook_args *args, void *user) {
     (void)user;

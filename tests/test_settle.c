@@ -509,8 +509,7 @@ static void too_few_iterations(void **state) {
     recipe_free(&made);
 }
 
-/* --------------------------------------------------------------------------------------------- bad input, memory
- */
+/* ------------------------------------------------------------------------------------------- bad input, memory */
 
 static void settle_in_a_hook(const mspring_hook_args *args, void *user) {
     (void)args;

@@ -271,8 +271,7 @@ static void a_weight_too_heavy_breaks_its_spring_and_falls(void **state) {
     mspring_network_destroy(network);
 }
 
-/* ----------------------------------------------------------------------------------------- whatever the substeps
- */
+/* --------------------------------------------------------------------------------------- whatever the substeps */
 
 /// Hit a bar of 1 kg particles, k = 10,000 N/m, that hangs from its left end, and see what breaks within a second.
 static uint32_t broken_by_a_blow(mspring_solver solver, uint32_t substeps, bool *is_broken,
@@ -418,8 +417,7 @@ static void detachment_is_told_spring_by_spring(void **state) {
     recipe_free(&made);
 }
 
-/* ------------------------------------------------------------------------------------------------------ refusals
- */
+/* ---------------------------------------------------------------------------------------------------- refusals */
 
 static void bad_thresholds_are_refused(void **state) {
     (void)state;

@@ -249,8 +249,7 @@ static void rows_are_the_same_everywhere(void **state) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- what is judged
- */
+/* ---------------------------------------------------------------------------------------------- what is judged */
 
 typedef struct example_row {
     double cost, error;

@@ -98,8 +98,7 @@ static bool read_number(const jbeam_file *file, const json_value *from, double l
     return true;
 }
 
-/* ------------------------------------------------------------------------------------------------ options of rows
- */
+/* --------------------------------------------------------------------------------------------- options of rows */
 
 static bool read_setting(const jbeam_file *file, const json_value *from, jbeam_state *state) {
     if (json_is(from->key, "nodeWeight"))

@@ -157,8 +157,7 @@ static bool read_materials(const char *text, size_t length, const char *file, sh
     return ok;
 }
 
-/* -------------------------------------------------------------------------------------------------------- pixels
- */
+/* ------------------------------------------------------------------------------------------------------ pixels */
 
 typedef struct unknown_colour {
     uint32_t colour;

@@ -103,8 +103,7 @@ void page_pull(double dt) {
     }
 }
 
-/* -------------------------------------------------------------------------------------------- pins, cuts, blasts
- */
+/* ------------------------------------------------------------------------------------------ pins, cuts, blasts */
 
 mspring_result page_pin(double x, double y, double radius) {
     const uint32_t count = list_near(x, y, radius);
@@ -170,8 +169,7 @@ mspring_result page_blast(double x, double y, double radius, double speed) {
     return MSPRING_OK;
 }
 
-/* --------------------------------------------------------------------------------------------------------- floor
- */
+/* ------------------------------------------------------------------------------------------------------- floor */
 
 mspring_result page_set_floor(double height) {
     if (!(height > -1e11))

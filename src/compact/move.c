@@ -14,8 +14,7 @@
 #include "network/springs.h"
 #include "sleep/sleep.h"
 
-/* ------------------------------------------------------------------------------------------------- the new parts
- */
+/* ----------------------------------------------------------------------------------------------- the new parts */
 
 // The rest lengths are shared by blocks as they are at creation, unless the network has them apart already.
 static mspring_result make_rests(mspring_network *to, const mspring_network *from) {

@@ -146,8 +146,7 @@ static mspring_result finish(mspringi_replan *replan, mspring_network *network) 
     return park(replan, network, places);
 }
 
-/* ------------------------------------------------------------------------------------------------ piece by piece
- */
+/* ---------------------------------------------------------------------------------------------- piece by piece */
 
 mspring_result mspringi_replan_begin(mspring_network *network, mspringi_replan **begun) {
     mspringi_replan *replan = mspringi_alloc(&network->plan_memory, 1, sizeof *replan);

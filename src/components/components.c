@@ -93,8 +93,7 @@ static void compare_heads(mspring_network *network) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------- updates
- */
+/* ----------------------------------------------------------------------------------------------------- updates */
 
 static void swap(uint32_t **a, uint32_t **b) {
     uint32_t *const other = *a;
@@ -130,8 +129,7 @@ mspring_result mspring_network_update_components(mspring_network *network, uint3
     return MSPRING_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------- reading
- */
+/* ----------------------------------------------------------------------------------------------------- reading */
 
 mspring_result mspring_network_get_component_numbers(const mspring_network *network, mspring_id first,
                                                      uint32_t count, uint32_t *component) {

@@ -76,8 +76,7 @@ void mspringi_find_roots(const mspring_network *network, uint32_t *root) {
         root[slot] = root[root[slot]]; // no root is above its slot, so it has its own already
 }
 
-/* ------------------------------------------------------------------------------------------------------- changes
- */
+/* ----------------------------------------------------------------------------------------------------- changes */
 
 typedef struct pair {
     mspring_id a, b;

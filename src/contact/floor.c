@@ -208,8 +208,7 @@ static MSPRINGI_NOINLINE mspringi_floor *make_floor(mspring_network *network, co
     return made;
 }
 
-/* --------------------------------------------------------------------------------------------------- the setting
- */
+/* ------------------------------------------------------------------------------------------------- the setting */
 
 mspring_result mspring_network_set_floor(mspring_network *network, const mspring_floor_def *def) {
     mspring_result result = mspringi_enter(network);

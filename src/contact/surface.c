@@ -28,8 +28,7 @@ static double distance_from(const mspringi_line *line, double x, double y) {
     return line->nx * x + line->ny * y + line->offset;
 }
 
-/* ------------------------------------------------------------------------------------------------------- heights
- */
+/* ----------------------------------------------------------------------------------------------------- heights */
 
 int64_t mspringi_heights_part_below(const mspringi_heights *h, double x) {
     const double place = (x - h->local_x) / h->spacing;
@@ -101,8 +100,7 @@ double mspringi_floor_distance(const mspringi_floor *floor, double x, double y) 
     return least;
 }
 
-/* -------------------------------------------------------------------------------------------------------- survey
- */
+/* ------------------------------------------------------------------------------------------------------ survey */
 
 /// A box in double precision.
 typedef struct box {

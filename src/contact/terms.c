@@ -36,8 +36,7 @@ static double distance_from(const mspringi_line *line, double x, double y) {
     return line->nx * x + line->ny * y + line->offset;
 }
 
-/* -------------------------------------------------------------------------------------------------- what is near
- */
+/* ------------------------------------------------------------------------------------------------ what is near */
 
 /// A particle on its way.
 typedef struct mover {
@@ -135,8 +134,7 @@ uint32_t mspringi_floor_pieces(const mspring_network *network, float h) {
     return pieces < (double)MOST_PIECES ? (uint32_t)pieces : MOST_PIECES;
 }
 
-/* ----------------------------------------------------------------------------------------------------- the terms
- */
+/* --------------------------------------------------------------------------------------------------- the terms */
 
 // What a contact adds to the matrix, and where it wants the particle to be.
 typedef struct term {
@@ -217,8 +215,7 @@ void mspringi_floor_add_nodes(const mspring_network *network, double *xx, double
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------- the review
- */
+/* -------------------------------------------------------------------------------------------------- the review */
 
 // Look at what a contact came to. Returns whether that is other than what was assumed.
 static bool review(const mspringi_floor *floor, mspringi_contact *c, double dx, double dy, double slop,

@@ -53,8 +53,7 @@ static mspring_result check_room(mspring_network *network, const char *what, con
                                (unsigned)count, what, (unsigned)(end - first), (unsigned)room);
 }
 
-/* ----------------------------------------------------------------------------------------------------- particles
- */
+/* --------------------------------------------------------------------------------------------------- particles */
 
 static mspring_result check_particle(mspring_network *network, mspring_id id, const mspring_particle_def *def) {
     mspring_result result = mspringi_check_particle_def(&network->message, id, def);
@@ -128,8 +127,7 @@ mspring_result mspring_network_add_particles(mspring_network *network, const msp
     return result;
 }
 
-/* ------------------------------------------------------------------------------------------------------- springs
- */
+/* ----------------------------------------------------------------------------------------------------- springs */
 
 static mspring_id other_end(const mspring_network *network, mspring_id spring, mspring_id particle) {
     const mspringi_topology *t = &network->topology;

@@ -143,11 +143,11 @@ void mspringi_growth_count(mspring_network *network, uint32_t particle_count, ui
     if (network->is_compact)
         mspringi_spare_count(&network->whole, particle_count, spring_count);
     network->edits.growth++;
+    network->edits.state++; // what is new may be faster than what the guard has seen
     mspringi_sleep_anew(network);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- ends
- */
+/* -------------------------------------------------------------------------------------------------------- ends */
 
 void mspringi_growth_link(mspring_network *network, mspring_id spring, mspring_id a, mspring_id b) {
     mspringi_growth *g = &network->growth;

@@ -74,8 +74,7 @@ mspring_result mspring_network_remove_springs(mspring_network *network, const ms
     return MSPRING_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------ recycling
- */
+/* --------------------------------------------------------------------------------------------------- recycling */
 
 // Make spare what is gone. Returns the lowest of those.
 static mspring_id give_back(uint8_t *marks, mspring_id first, mspring_id end, mspring_id lowest) {

@@ -162,8 +162,7 @@ static void sweep_wave(mspring_network *network, float h, mspringi_field base, u
     mspringi_tasks_run(wave.progress ? network->tasks : NULL, wave.workers, make_passes, &wave);
 }
 
-/* ---------------------------------------------------------------------------------------------- the other strips
- */
+/* -------------------------------------------------------------------------------------------- the other strips */
 
 // The blocks of a web row that a worker takes.
 static mspringi_span share_of(const mspringi_span *all, uint32_t worker, uint32_t workers) {

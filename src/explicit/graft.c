@@ -32,8 +32,7 @@ mspring_result mspringi_graft_reserve(mspring_network *network) {
     return MSPRING_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------- making
- */
+/* ------------------------------------------------------------------------------------------------------ making */
 
 // List the ends of the live springs in places of their own, by slot; those at one slot in the order of the ids.
 static void list_nodes(mspring_network *network) {

@@ -185,8 +185,7 @@ void mspringi_scheme_prepare(mspringi_substep_of *substep) {
     prepare_landing(substep, substep->flight.rate);
 }
 
-/* ----------------------------------------------------------------------------------------------------- the flight
- */
+/* -------------------------------------------------------------------------------------------------- the flight */
 
 void mspringi_predict(const mspringi_substep_of *substep, mspringi_mate *mate) {
     const mspring_network *network = substep->network;
@@ -208,8 +207,7 @@ void mspringi_predict(const mspringi_substep_of *substep, mspringi_mate *mate) {
         kernels->predict(&substep->flight, run.first, run.end);
 }
 
-/* ------------------------------------------------------------------------------------------------------- landing
- */
+/* ----------------------------------------------------------------------------------------------------- landing */
 
 // Particles without springs are in no tile and no factor: their rows of A are diagonal.
 static void land_loose(const mspring_network *network, mspringi_slots slots) {

@@ -130,8 +130,7 @@ typedef enum mspringi_turn {
 typedef void (*mspringi_turn_fn)(const mspringi_iterate *iterate, const mspringi_tile_part *parts, size_t count,
                                  const double (*bodies)[3], float beta);
 
-/* ----------------------------------------------------------------------------------- before and after the system
- */
+/* --------------------------------------------------------------------------------- before and after the system */
 
 /// How a tile flies on as a rigid body: a point in it, its mass centre from there, and the rotation less what h v
 /// makes of it.

@@ -15,8 +15,7 @@ static void weigh(const float *restrict inverse_mass, float scale, float *restri
     }
 }
 
-/* -------------------------------------------------------------------------------------------------- flying tiles
- */
+/* ------------------------------------------------------------------------------------------------ flying tiles */
 
 /// Sums by lane over a tile, about a point in it that moves along: mass, first moments of place and velocity,
 /// moment of momentum and of inertia.
@@ -110,8 +109,7 @@ static void fly(const mspringi_flight *f, const mspringi_tile_part *parts, size_
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------- by slot
- */
+/* ----------------------------------------------------------------------------------------------------- by slot */
 
 // The parameters are what compilers know to be apart from each other.
 static void predict_coordinate(size_t first, size_t end, const float *restrict position, const float *restrict low,

@@ -451,8 +451,7 @@ void mspringi_sleep_end(mspring_network *network, double dt) {
         network->edits.motion++;
 }
 
-/* ------------------------------------------------------------------------------------------------ moving along
- */
+/* ------------------------------------------------------------------------------------------------ moving along */
 
 void mspringi_sleep_move(mspring_network *to, const mspring_network *from) {
     mspringi_sleep *s = &to->sleep;

@@ -217,8 +217,7 @@ static bool is_suspicious(const substep_of *substep, const mspringi_motion *m) {
     return true;
 }
 
-/* ------------------------------------------------------------------------------------------------------ all sums
- */
+/* ---------------------------------------------------------------------------------------------------- all sums */
 
 // What pinned ends of a spring give it: force before the substep or after it, whatever is more, times their way.
 static double given_by_pins(const mspringi_motion *m, const mspringi_spring_values *values, const stretched *s) {
@@ -469,8 +468,7 @@ bool mspringi_energy_look(const substep_of *substep, mspringi_mate *mate, float 
     return !balance->fails;
 }
 
-/* ------------------------------------------------------------------------------------------------------- giving up
- */
+/* --------------------------------------------------------------------------------------------------- giving up */
 
 void mspringi_energy_give_up(const substep_of *substep) {
     const mspring_network *network = substep->network;

@@ -85,8 +85,7 @@ bool mspringi_tuning_goes_on(mspringi_tuning *tuning, double part) {
     return !tuning->is_over;
 }
 
-/* ------------------------------------------------------------------------------------------------------ setting up
- */
+/* -------------------------------------------------------------------------------------------------- setting up */
 
 // A clone that only springs, gravity and the forces given move: ramps stand still, springs do not break, and there
 // is no floor.
@@ -155,8 +154,7 @@ static void fill_trials(mspringi_tuning *tuning, const mspring_solver_def *setti
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------ measuring
- */
+/* --------------------------------------------------------------------------------------------------- measuring */
 
 static mspring_result measure(mspringi_tuning *tuning) {
     const bool by_trajectory = tuning->def.measure == MSPRING_TUNE_BY_TRAJECTORY;
