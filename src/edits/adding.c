@@ -1,7 +1,7 @@
 /// Adding particles and springs.
 #include <math.h>
-#include <string.h>
 
+#include "base/bytes.h"
 #include "base/cpu.h"
 #include "base/mix.h"
 #include "breaking.h"
@@ -34,8 +34,7 @@ static mspring_result check_arrays(mspring_network *network, const void *defs, u
 
 // The lowest spare id from first on; end if there is none.
 static mspring_id find_spare(const uint8_t *marks, mspring_id first, mspring_id end) {
-    const uint8_t *found = marks && first < end ? memchr(marks + first, MSPRINGI_SPARE, end - first) : NULL;
-    return found ? (mspring_id)(found - marks) : end;
+    return marks && first < end ? mspringi_find_byte(marks, MSPRINGI_SPARE, first, end) : end;
 }
 
 // Refuse to give more ids than are spare.

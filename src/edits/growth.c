@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/bytes.h"
 #include "breaking.h"
 #include "contact/floor.h"
 #include "implicit/implicit.h"
@@ -81,8 +82,8 @@ void mspringi_growth_clear_slots(const mspring_network *network) {
     for (uint32_t i = 0; i < mspringi_spare_particles(t); ++i)
         if (t->particle_of_slot[t->laid_slots[i]] == MSPRING_NONE)
             clear_slot(network, t->laid_slots[i]);
-    for (const uint8_t *gone = marks; (gone = memchr(gone, MSPRINGI_GONE, (size_t)(marks + first - gone))); ++gone)
-        clear_slot(network, t->slot_of_particle[gone - marks]);
+    for (mspring_id p = 0; (p = mspringi_find_byte(marks, MSPRINGI_GONE, p, first)) < first; ++p)
+        clear_slot(network, t->slot_of_particle[p]);
 }
 
 static void clear_field(mspringi_field field, uint32_t slot) {

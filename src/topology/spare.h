@@ -35,11 +35,6 @@ static inline bool mspringi_slot_is_spare(const mspringi_topology *t, uint32_t s
     return slot / MSPRINGI_WIDTH - t->spare_first < t->spare_blocks; // unsigned: slots before it are not
 }
 
-/// The spring that a place among those of spare springs is kept for.
-static inline mspring_id mspringi_spare_spring_of(const mspringi_topology *t, mspringi_place place) {
-    return place - (t->chain_places + t->woven_count) + t->reserve.first_spring;
-}
-
 /// Give the spare springs, and so many parked ones behind them, room among the leftover springs, with records
 /// behind the web's rungs, of which one serves both ends; let those of the springs with spare ids that are behind
 /// the last have theirs in places, which has room for all ids and knows the others; and keep places. On error the
