@@ -89,9 +89,9 @@ static mspring_id give_back(uint8_t *marks, mspring_id first, mspring_id end, ms
 
 mspring_result mspring_network_recycle(mspring_network *network) {
     mspring_result result = mspringi_enter(network);
-    mspringi_growth *g = &network->growth;
-    if (result != MSPRING_OK || !g->particles)
+    if (result != MSPRING_OK || !network->growth.particles)
         return result;
+    mspringi_growth *g = &network->growth;
     const mspringi_reserve *r = &network->topology.reserve;
     g->lowest_particle = give_back(g->particles, r->first_particle, r->particle_end, g->lowest_particle);
     g->lowest_spring = give_back(g->springs, r->first_spring, r->spring_end, g->lowest_spring);
