@@ -44,7 +44,7 @@ static bool is_in_bounds(const mspring_network *network, uint32_t slot) {
 }
 
 // Name a particle that left the bounds: the first that is still a number, since what is none spreads to others.
-static mspring_result explain_bounds(mspring_network *network, double dt) {
+static mspring_result check_bounds(mspring_network *network, double dt) {
     const mspringi_state *s = &network->state;
     const mspringi_topology *t = &network->topology;
     mspring_id named = MSPRING_NONE;
@@ -54,6 +54,8 @@ static mspring_result explain_bounds(mspring_network *network, double dt) {
         if (!is_in_bounds(network, slot) && (sum == sum || named == MSPRING_NONE))
             named = p;
     }
+    if (named == MSPRING_NONE)
+        return MSPRING_OK;
     const uint32_t slot = t->slot_of_particle[named];
     return mspringi_fail(
         &network->message, MSPRING_ERROR_UNSTABLE,
@@ -287,8 +289,12 @@ static void look_for_growth(mspring_network *network, float h, float speed) {
 }
 
 mspring_result mspringi_guard_end(mspring_network *network, double dt, float h, mspringi_sight sight) {
-    if (!(sight.place <= (float)MSPRING_MAX_COORDINATE && sight.speed <= network->max_speed))
-        return explain_bounds(network, dt);
+    if (!(sight.place <= (float)MSPRING_MAX_COORDINATE && sight.speed <= network->max_speed)) {
+        const mspring_result result = check_bounds(network, dt);
+        if (result != MSPRING_OK)
+            return result;
+        sight.speed = INFINITY;
+    }
     if (network->guard.watches)
         look_for_growth(network, h, sight.speed);
     network->guard.speed = network->implicit ? INFINITY : sight.speed; // its steps may yet be refused
