@@ -88,6 +88,8 @@ static particle_case *bad_particles(size_t *count) {
         BAD(mass, not_finite[i], MSPRING_ERROR_ARGUMENT, "mass");
     }
     BAD(x, 1.001e12, MSPRING_ERROR_ARGUMENT, "position");
+    BAD(vx, 1.001e15f, MSPRING_ERROR_ARGUMENT, "velocity");
+    BAD(vy, -1.001e15f, MSPRING_ERROR_ARGUMENT, "velocity");
     BAD(y, -1.001e12, MSPRING_ERROR_ARGUMENT, "position");
     BAD(mass, 0, MSPRING_ERROR_ARGUMENT, "mass");
     BAD(mass, -1, MSPRING_ERROR_ARGUMENT, "mass");

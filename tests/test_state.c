@@ -227,6 +227,9 @@ static void writes_are_all_or_nothing_and_name_the_particle(void **state) {
         x[i] = y[i] = i;
         fx[i] = fy[i] = (float)i;
     }
+    fx[97] = 1.001e15f; // too fast
+    check_error(mspring_network_set_velocities(network, 0, count, fx, fy), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_network_error(network), "97");
     for (size_t i = 0; i < COUNT_OF(bad); i++) {
         x[97] = bad[i];
         fx[97] = (float)bad[i];

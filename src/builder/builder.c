@@ -135,9 +135,10 @@ mspring_result mspringi_check_particle_def(mspringi_message *message, size_t ind
     if (!is_coordinate(def->x) || !is_coordinate(def->y))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "particle %zu: position (%g, %g) m is not within 1e12", index, def->x, def->y);
-    if (!isfinite(def->vx) || !isfinite(def->vy))
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "particle %zu: velocity (%g, %g) m/s is not finite",
-                             index, (double)def->vx, (double)def->vy);
+    if (!mspringi_is_speed(def->vx) || !mspringi_is_speed(def->vy))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "particle %zu: velocity (%g, %g) m/s is not within 1e15", index, (double)def->vx,
+                             (double)def->vy);
     if (def->flags & ~(uint32_t)MSPRING_PARTICLE_PINNED)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "particle %zu: unknown particle flags 0x%x", index,
                              (unsigned)def->flags);

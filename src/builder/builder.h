@@ -32,6 +32,12 @@ struct mspring_builder {
     size_t spring_count, spring_capacity;
 };
 
+/// Whether a component of a velocity is in range. Faster ones overflow where a rate of strain is computed: for the
+/// springs that are not there as well, which differ from one instruction set to the next.
+static inline bool mspringi_is_speed(float value) {
+    return value >= -(float)MSPRING_MAX_SPEED && value <= (float)MSPRING_MAX_SPEED;
+}
+
 /// Refuse definitions that are wrong whatever they are added to. index is for the message.
 mspring_result mspringi_check_particle_def(mspringi_message *message, size_t index,
                                            const mspring_particle_def *def);

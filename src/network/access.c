@@ -172,9 +172,9 @@ mspring_result mspring_network_set_positions_float(mspring_network *network, msp
 static mspring_result set_velocities(mspring_network *network, const mspringi_selection *at, const float *vx,
                                      const float *vy) {
     for (uint32_t i = 0; i < at->count; ++i)
-        if (!is_finite_pair(vx[i], vy[i]))
+        if (!mspringi_is_speed(vx[i]) || !mspringi_is_speed(vy[i]))
             return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                                 "particle %u: velocity (%g, %g) m/s is not finite",
+                                 "particle %u: velocity (%g, %g) m/s is not within 1e15",
                                  (unsigned)mspringi_selected(at, i), (double)vx[i], (double)vy[i]);
     for (uint32_t i = 0; i < at->count; ++i) {
         const mspring_id particle = mspringi_selected(at, i);

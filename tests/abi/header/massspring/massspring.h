@@ -147,6 +147,9 @@ typedef uint32_t mspring_id;
 /// to the local origin that a step may lead to.
 #define MSPRING_MAX_COORDINATE 1e12
 
+/// The fastest that a particle can be given, in x and y, m/s.
+#define MSPRING_MAX_SPEED 1e15
+
 /* ---------------------------------------------------------------------------------------------- allocator */
 
 /// Where an object takes its memory from. All fields must be set; the struct is copied.
@@ -219,7 +222,7 @@ typedef struct mspring_particle_def {
     uint32_t struct_size;
     uint32_t flags; ///< MSPRING_PARTICLE_PINNED or 0; default 0
     double x, y;    ///< world position, m, at most MSPRING_MAX_COORDINATE in absolute value; default 0
-    float vx, vy;   ///< velocity, m/s, finite; default 0
+    float vx, vy;   ///< velocity, m/s, within MSPRING_MAX_SPEED; default 0
     float mass;     ///< kg, 1e-30 to 1e30; default 1
 } mspring_particle_def;
 
@@ -661,8 +664,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_step(mspring_networ
 /// or relax fraction change, with the length of the substep where springs are relative, with
 /// mspring_network_renew_relative_springs(), when the host sets positions that move the local origin, and when
 /// particles or springs are added or removed. Hooks are called as ever; the forces of those before substeps are
-/// looked at in the first of a step. The implicit solver's history of an island is that of one at rest; of a network
-/// that slept as a whole, none.
+/// looked at in the first of a step. The implicit solver's history of an island is that of one at rest; of a
+/// network that slept as a whole, none.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_network_is_asleep(const mspring_network *network);
 
@@ -1071,7 +1074,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_floor_impulses(
 
 /// The state as it lies in memory: arrays by slot. The pointers stay valid, and their contents follow the
 /// steps, until the network is compacted, expanded or destroyed; origin_x and origin_y are as of the call.
-/// Positions and velocities may be written between steps; finite values only.
+/// Positions and velocities may be written between steps; finite values only, velocities within MSPRING_MAX_SPEED.
 typedef struct mspring_view {
     uint32_t struct_size;
     uint32_t slot_count;              ///< length of the arrays by slot; some slots hold no particle
@@ -1120,7 +1123,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_positions_float
                                                                                  mspring_id first, uint32_t count,
                                                                                  const float *x, const float *y);
 
-/// Set velocities (m/s, finite), as mspring_network_set_positions(). A pinned particle moves by its velocity.
+/// Set velocities (m/s, within MSPRING_MAX_SPEED), as mspring_network_set_positions(). A pinned particle moves by
+/// its velocity.
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_velocities(mspring_network *network,
                                                                             mspring_id first, uint32_t count,
@@ -1147,7 +1151,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_positions_at(ms
                                                                               uint32_t count, const double *x,
                                                                               const double *y);
 
-/// Set velocities (m/s, finite) of listed particles; as mspring_network_set_velocities().
+/// Set velocities (m/s) of listed particles; as mspring_network_set_velocities().
 /// @param particles, vx, vy  [count]
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_velocities_at(mspring_network *network,
