@@ -11,14 +11,14 @@
 #include "topology/spare.h"
 
 /// Of a spare spring.
-enum { RELATIVE = 1, LAID_OUT = 2 };
+enum { IS_RELATIVE = 1, IS_LAID_OUT = 2 };
 
 /// Where the parts of the section are.
 typedef struct growth {
     uint32_t particle_count, spring_count;
     const uint8_t *particles, *springs; ///< marks of all ids
-    const uint8_t *slots;               ///< [spare particles] LAID_OUT, or 0: in the slot that is kept for it
-    const uint8_t *kinds;               ///< [spare springs] RELATIVE, LAID_OUT
+    const uint8_t *slots;               ///< [spare particles] IS_LAID_OUT, or 0: in the slot that is kept for it
+    const uint8_t *kinds;               ///< [spare springs] IS_RELATIVE, IS_LAID_OUT
     const uint8_t *ends;                ///< [2 * spare springs] ids of particles
 } growth;
 
@@ -47,12 +47,12 @@ static void growth_save(const mspring_network *network, mspringi_writer *to) {
     mspringi_put(to, g->particles, t->reserve.particle_end, 1);
     mspringi_put(to, g->springs, t->reserve.spring_end, 1);
     for (mspring_id p = t->reserve.first_particle; p < t->reserve.particle_end; ++p) {
-        const uint8_t slot = particle_is_laid_out(t, p) ? LAID_OUT : 0;
+        const uint8_t slot = particle_is_laid_out(t, p) ? IS_LAID_OUT : 0;
         mspringi_put(to, &slot, 1, 1);
     }
     for (mspring_id s = t->reserve.first_spring; s < t->reserve.spring_end; ++s) {
-        const uint8_t kind = (uint8_t)((mspringi_spring_is_relative(network, s) ? RELATIVE : 0) |
-                                       (spring_is_laid_out(t, s) ? LAID_OUT : 0));
+        const uint8_t kind = (uint8_t)((mspringi_spring_is_relative(network, s) ? IS_RELATIVE : 0) |
+                                       (spring_is_laid_out(t, s) ? IS_LAID_OUT : 0));
         mspringi_put(to, &kind, 1, 1);
     }
     mspringi_put(to, g->particle_of_end, (size_t)2 * mspringi_spare_springs(t), sizeof *g->particle_of_end);
@@ -90,7 +90,7 @@ static mspring_result check_particle(mspring_network *network, const growth *g, 
     const mspringi_section *section = &mspringi_section_growth;
     const bool is_spare = p >= t->reserve.first_particle;
     const uint32_t i = p - t->reserve.first_particle;
-    if (is_spare && g->slots[i] != 0 && (g->slots[i] != LAID_OUT || t->laid_slots[i] == mspringi_spare_slot(t, p)))
+    if (is_spare && g->slots[i] != 0 && (g->slots[i] != IS_LAID_OUT || t->laid_slots[i] == mspringi_spare_slot(t, p)))
         return mspringi_section_fail(network, section, "particle %u lies where it cannot", (unsigned)p);
     // Some have been left out of a compact plan.
     if (g->particles[p] == MSPRINGI_THERE && !is_spare && t->slot_of_particle[p] < MSPRINGI_WIDTH)
@@ -116,15 +116,15 @@ static mspring_result check_spring(mspring_network *network, const growth *g, ms
     const mspringi_topology *t = &network->topology;
     const uint32_t i = s - t->reserve.first_spring;
     const mspring_id a = end_of(g, 2 * i), b = end_of(g, 2 * i + 1);
-    if (g->kinds[i] > (RELATIVE | LAID_OUT) || (g->kinds[i] & RELATIVE && !network->fractions.values) ||
-        (g->kinds[i] & LAID_OUT && t->laid_places[i] == mspringi_spare_place(t, s)))
+    if (g->kinds[i] > (IS_RELATIVE | IS_LAID_OUT) || (g->kinds[i] & IS_RELATIVE && !network->fractions.values) ||
+        (g->kinds[i] & IS_LAID_OUT && t->laid_places[i] == mspringi_spare_place(t, s)))
         return mspringi_section_fail(network, &mspringi_section_growth, "spring %u is of kind %u", (unsigned)s,
                                      (unsigned)g->kinds[i]);
     if (g->springs[s] != MSPRINGI_THERE)
         return MSPRING_OK;
     bool fits = a < g->particle_count && b < g->particle_count && a != b;
     fits = fits && g->particles[a] == MSPRINGI_THERE && g->particles[b] == MSPRINGI_THERE;
-    if (fits && g->kinds[i] & LAID_OUT) {
+    if (fits && g->kinds[i] & IS_LAID_OUT) {
         uint32_t base, tip;
         mspringi_topology_ends(t, t->laid_places[i], &base, &tip);
         const uint32_t slot_a = slot_in(t, g, a), slot_b = slot_in(t, g, b);
@@ -142,7 +142,7 @@ static bool stays(const mspring_network *network, const growth *g, mspring_id s)
     const bool there = g->springs[s] == MSPRINGI_THERE, is_there = mspringi_spring_exists(network, s);
     if (!there && !is_there)
         return true;
-    return there && is_there && !(g->kinds[i] & LAID_OUT) == !spring_is_laid_out(t, s) &&
+    return there && is_there && !(g->kinds[i] & IS_LAID_OUT) == !spring_is_laid_out(t, s) &&
            end_of(g, 2 * i) == network->growth.particle_of_end[2 * i] &&
            end_of(g, 2 * i + 1) == network->growth.particle_of_end[2 * i + 1];
 }
@@ -233,10 +233,10 @@ static void load_spring(mspring_network *network, const growth *g, mspring_id s)
             mspringi_spare_put_spring(&network->whole, s, a, b);
         if (network->fractions.values)
             mspringi_fractions_set(&network->fractions, s,
-                                   (mspringi_relative){g->kinds[i] & RELATIVE ? 0.0f : -1.0f, 0.0f});
+                                   (mspringi_relative){g->kinds[i] & IS_RELATIVE ? 0.0f : -1.0f, 0.0f});
         network->kept[s] = (mspringi_relative){0.0f, 0.0f};
     }
-    mspringi_places_set(&t->places, s, g->kinds[i] & LAID_OUT ? t->laid_places[i] : mspringi_spare_place(t, s));
+    mspringi_places_set(&t->places, s, g->kinds[i] & IS_LAID_OUT ? t->laid_places[i] : mspringi_spare_place(t, s));
     if (is_new)
         mspringi_extents_turn(network, s);
 }
