@@ -90,7 +90,8 @@ static mspring_result check_particle(mspring_network *network, const growth *g, 
     const mspringi_section *section = &mspringi_section_growth;
     const bool is_spare = p >= t->reserve.first_particle;
     const uint32_t i = p - t->reserve.first_particle;
-    if (is_spare && g->slots[i] != 0 && (g->slots[i] != IS_LAID_OUT || t->laid_slots[i] == mspringi_spare_slot(t, p)))
+    if (is_spare && g->slots[i] != 0 &&
+        (g->slots[i] != IS_LAID_OUT || t->laid_slots[i] == mspringi_spare_slot(t, p)))
         return mspringi_section_fail(network, section, "particle %u lies where it cannot", (unsigned)p);
     // Some have been left out of a compact plan.
     if (g->particles[p] == MSPRINGI_THERE && !is_spare && t->slot_of_particle[p] < MSPRINGI_WIDTH)
