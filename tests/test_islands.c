@@ -302,7 +302,8 @@ static mspring_network *make_two_guarded(mspring_solver solver, mspring_guard gu
     *broken = made.spring_count + 5;
     recipe_rope(&made, 19, 80, 13, &stuff, &seed);
     assert_int_equal(recipe_particle(&made, 60, 10, 1, 0), LOOSE);
-    const way how = {MSPRING_SIMD_AUTO, 1, solver, solver == MSPRING_SOLVER_EXPLICIT ? 8 : 1, guard};
+    const uint32_t substeps = guard == MSPRING_GUARD_RETRY ? MSPRING_SUBSTEPS_AUTO : 8;
+    const way how = {MSPRING_SIMD_AUTO, 1, solver, solver == MSPRING_SOLVER_EXPLICIT ? substeps : 1, guard};
     mspring_network *network = make(&made, &how);
     check_ok(mspring_network_break_springs(network, broken, 1));
     recipe_free(&made);
@@ -540,6 +541,53 @@ static void a_step_that_goes_wrong_wakes_nobody(void **state) {
     }
 }
 
+/// What was about to wake is that still after a step that is refused, before it is taken or after, however often it
+/// was tried: the network goes on as one that was not asked.
+static void check_refused_step(mspring_guard guard, change_fn change, double dt, bool one_is_awake) {
+    mspring_id broken;
+    mspring_network *network = make_two_guarded(MSPRING_SOLVER_EXPLICIT, guard, &broken), *other = NULL;
+    check_ok(mspring_network_set_global_damping(network, 0)); // over such times all would come to rest
+    if (one_is_awake) {
+        kick(network, LOOSE, 1);
+        support_steps(network, 1, DT);
+    }
+    change(network);
+    check_ok(mspring_network_clone(network, NULL, &other));
+    const uint64_t before = support_hash(network);
+    const uint32_t whole = mspring_network_is_asleep(network);
+    const uint8_t a = sleeps(network, IN_A);
+    const bool taken = mspring_network_step(network, dt) == MSPRING_OK;
+    assert_true(!taken || guard >= MSPRING_GUARD_IMPLICIT);
+    if (!taken) {
+        assert_int_equal(support_hash(network), before);
+        assert_int_equal(mspring_network_is_asleep(network), whole);
+        assert_int_equal(sleeps(network, IN_A), a);
+    }
+    for (int step = 0; step < 3 && !taken; step++) {
+        support_steps(network, 1, DT);
+        support_steps(other, 1, DT);
+        assert_int_equal(sleeps(network, IN_A), 0);
+        assert_int_equal(sleeps(network, IN_B), 1);
+        assert_int_equal(support_hash(network), support_hash(other));
+    }
+    mspring_network_destroy(network);
+    mspring_network_destroy(other);
+}
+
+static void a_refused_step_leaves_no_trace(void **state) {
+    (void)state;
+    static const change_fn changes[] = {push,   shift,    kick_a,    write_view, fill, pin,
+                                        soften, lengthen, break_one, detach,     watch};
+    for (mspring_guard guard = MSPRING_GUARD_GROWTH; guard <= MSPRING_GUARD_CLAMP; guard++) {
+        for (size_t i = 0; i < COUNT_OF(changes); i++) {
+            // Substeps that are no normal float, and some that throw everything beyond all bounds.
+            check_refused_step(guard, changes[i], 1e-40, false);
+            check_refused_step(guard, changes[i], 1e30, false);
+            check_refused_step(guard, changes[i], 1e30, true);
+        }
+    }
+}
+
 /// Strain of what sleeps is not looked at, and nothing is missed by that.
 static void events_are_those_of_what_is_awake(void **state) {
     (void)state;
@@ -632,6 +680,7 @@ int main(void) {
         cmocka_unit_test(snapshots_and_clones_go_on),
         cmocka_unit_test(what_sleeps_sleeps_on_in_another_layout),
         cmocka_unit_test(a_step_that_goes_wrong_wakes_nobody),
+        cmocka_unit_test(a_refused_step_leaves_no_trace),
         cmocka_unit_test(events_are_those_of_what_is_awake),
         cmocka_unit_test(the_floor_bears_sleepers),
     };

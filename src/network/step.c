@@ -185,6 +185,7 @@ static mspring_result attempt(mspring_network *network, double dt) {
             &network->message, MSPRING_ERROR_ARGUMENT,
             "dt is %g s (substeps: %u): each substep must be a finite number of at least 1.2e-38 s", dt,
             (unsigned)network->substeps);
+    mspringi_sleep_begin(network, dt);
     if (mspringi_sleep_is_idle(network))
         return MSPRING_OK;
     const float relative_h = network->relative_h;
@@ -222,7 +223,6 @@ static mspring_result attempt_implicitly(mspring_network *network, double dt) {
     mspringi_implicit_forget(network->fallback);
     network->implicit = network->fallback;
     network->substeps = 1;
-    mspringi_sleep_begin(network, dt);
     const mspring_result result = attempt(network, dt);
     network->implicit = NULL;
     network->substeps = substeps;
@@ -238,7 +238,6 @@ static mspring_result attempt_clamped(mspring_network *network, double dt) {
     network->is_clamped = true;
     if (network->auto_substeps && !implicit)
         network->substeps = network->max_substeps;
-    mspringi_sleep_begin(network, dt);
     const mspring_result result = attempt(network, dt);
     network->is_clamped = false;
     network->implicit = implicit;
@@ -262,10 +261,7 @@ static mspring_result fall_back(mspring_network *network, double dt) {
 
 static mspring_result attempt_explicitly(mspring_network *network, double dt) {
     const mspring_result result = network->auto_substeps ? choose_substeps(network, dt) : MSPRING_OK;
-    if (result != MSPRING_OK)
-        return result;
-    mspringi_sleep_begin(network, dt);
-    return attempt(network, dt);
+    return result == MSPRING_OK ? attempt(network, dt) : result;
 }
 
 static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt) {

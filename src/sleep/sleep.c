@@ -322,7 +322,10 @@ void mspringi_sleep_undo(mspring_network *network) {
     for (uint32_t i = 0; i < s->count; ++i)
         s->sleeping += s->still[i] < 0.0;
     network->edits.naps++;
-    s->is_mapped = false;
+    if (s->sleeping == 0)
+        return;
+    mspringi_islands_map(network);
+    s->masses = network->edits.masses - 1; // what woke of another mass still has it
 }
 
 /* ------------------------------------------------------------------------------------------- falling asleep */
