@@ -50,9 +50,18 @@ typedef struct mspringi_sweep {
 /// it does not, there is no such spring, and the force is 0.
 typedef void (*mspringi_row_fn)(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count);
 
-/// Move the particles of a span that have no springs, so many substeps. A vector of them stays in registers all the
-/// while, so that they cost what they take to compute, not to load and store (measured at AVX-512: a fifth).
-typedef void (*mspringi_loose_fn)(const mspringi_sweep *sweep, const mspringi_span *span, uint32_t substeps);
+/// What becomes of a particle that no spring pulls at in n substeps, each of which adds the same change c to its
+/// velocity v, leaves a part d of the sum, and moves it by that times h:
+///     v_n = keep v + gain c,   x_n = x + reach v + fall c
+/// with keep = d^n, gain = d + d^2 + ... + d^n, reach = h gain and fall = h times the sum of the gains of 1 to n. A
+/// pinned one keeps its velocity and moves by drift v, with drift = h n.
+typedef struct mspringi_glide {
+    float keep, gain, reach, fall, drift;
+} mspringi_glide;
+
+/// Move the particles of a span that have no springs, all substeps of a glide at once.
+typedef void (*mspringi_loose_fn)(const mspringi_sweep *sweep, const mspringi_span *span,
+                                  const mspringi_glide *glide);
 
 /// Copy position and velocity of block_count blocks of slots behind one another into packed.
 typedef void (*mspringi_pack_fn)(const mspringi_sweep *sweep, size_t first_block, size_t block_count,

@@ -217,26 +217,21 @@ static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count
 }
 
 // As move(), with the particle in registers.
-static inline void loose(const mspringi_sweep *s, const mspringi_span *span, uint32_t substeps, bool forced) {
-    const float h = s->h, decay = s->decay;
+static inline void loose(const mspringi_sweep *s, const mspringi_span *span, const mspringi_glide *glide,
+                         bool forced) {
     for (size_t slot = span->first_slot; slot < span->end_slot; ++slot) {
-        const float inverse_mass = s->inverse_mass[slot], inverse_mass_h = inverse_mass * h;
-        const float force_x = forced ? s->force_x[slot] : 0.0f, force_y = forced ? s->force_y[slot] : 0.0f;
-        const float change_x = force_x * inverse_mass_h + s->gravity_h_x;
-        const float change_y = force_y * inverse_mass_h + s->gravity_h_y;
-        float x = s->x[slot], y = s->y[slot], vx = s->vx[slot], vy = s->vy[slot];
-        for (uint32_t i = 0; i < substeps; ++i) {
-            if (inverse_mass > 0.0f) {
-                vx = (vx + change_x) * decay;
-                vy = (vy + change_y) * decay;
-            }
-            x = x + vx * h;
-            y = y + vy * h;
+        const float inverse_mass = s->inverse_mass[slot], inverse_mass_h = inverse_mass * s->h;
+        float change_x = s->gravity_h_x, change_y = s->gravity_h_y;
+        if (forced) {
+            change_x = s->force_x[slot] * inverse_mass_h + change_x;
+            change_y = s->force_y[slot] * inverse_mass_h + change_y;
         }
-        s->x[slot] = x;
-        s->y[slot] = y;
-        s->vx[slot] = vx;
-        s->vy[slot] = vy;
+        const float vx = s->vx[slot], vy = s->vy[slot];
+        const bool is_free = inverse_mass > 0.0f;
+        s->x[slot] += is_free ? vx * glide->reach + change_x * glide->fall : vx * glide->drift;
+        s->y[slot] += is_free ? vy * glide->reach + change_y * glide->fall : vy * glide->drift;
+        s->vx[slot] = is_free ? vx * glide->keep + change_x * glide->gain : vx;
+        s->vy[slot] = is_free ? vy * glide->keep + change_y * glide->gain : vy;
     }
 }
 

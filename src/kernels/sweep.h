@@ -280,42 +280,27 @@ static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count
     }
 }
 
-// As move(), for two vectors at once: each waits for itself from substep to substep.
-MSPRINGI_INLINE void loose(const mspringi_sweep *s, const mspringi_span *span, uint32_t substeps, bool forced) {
-    const vec h = set(s->h), decay = set(s->decay), gravity_h_x = set(s->gravity_h_x),
-              gravity_h_y = set(s->gravity_h_y);
+// As so many of move(), at once: see mspringi_glide.
+MSPRINGI_INLINE void loose(const mspringi_sweep *s, const mspringi_span *span, const mspringi_glide *glide,
+                           bool forced) {
+    const vec h = set(s->h), keep = set(glide->keep), gain = set(glide->gain), reach = set(glide->reach),
+              fall = set(glide->fall), drift = set(glide->drift);
     const size_t end = end_of(span);
-    for (size_t slot = first_of(span); slot < end; slot += (size_t)2 * LANES) {
-        const size_t other = slot + LANES < end ? slot + LANES : slot; // the same twice if there is no second
-        const vec inverse_mass = load(s->inverse_mass + slot), other_mass = load(s->inverse_mass + other);
-        const vec inverse_mass_h = mul(inverse_mass, h), other_mass_h = mul(other_mass, h);
-        const vec force_x = forced ? load(s->force_x + slot) : zero(),
-                  force_y = forced ? load(s->force_y + slot) : zero();
-        const vec other_x = forced ? load(s->force_x + other) : zero(),
-                  other_y = forced ? load(s->force_y + other) : zero();
-        const vec change_x = add(mul(force_x, inverse_mass_h), gravity_h_x);
-        const vec change_y = add(mul(force_y, inverse_mass_h), gravity_h_y);
-        const vec other_change_x = add(mul(other_x, other_mass_h), gravity_h_x);
-        const vec other_change_y = add(mul(other_y, other_mass_h), gravity_h_y);
-        motion one = load_motion(s, slot, true), two = load_motion(s, other, true);
-        for (uint32_t i = 0; i < substeps; ++i) {
-            one.vx = choose_positive(inverse_mass, mul(add(one.vx, change_x), decay), one.vx);
-            one.vy = choose_positive(inverse_mass, mul(add(one.vy, change_y), decay), one.vy);
-            two.vx = choose_positive(other_mass, mul(add(two.vx, other_change_x), decay), two.vx);
-            two.vy = choose_positive(other_mass, mul(add(two.vy, other_change_y), decay), two.vy);
-            one.x = add(one.x, mul(one.vx, h));
-            one.y = add(one.y, mul(one.vy, h));
-            two.x = add(two.x, mul(two.vx, h));
-            two.y = add(two.y, mul(two.vy, h));
+    for (size_t slot = first_of(span); slot < end; slot += LANES) {
+        const vec inverse_mass = load(s->inverse_mass + slot);
+        vec change_x = set(s->gravity_h_x), change_y = set(s->gravity_h_y);
+        if (forced) {
+            const vec inverse_mass_h = mul(inverse_mass, h);
+            change_x = add(mul(load(s->force_x + slot), inverse_mass_h), change_x);
+            change_y = add(mul(load(s->force_y + slot), inverse_mass_h), change_y);
         }
-        store(s->x + slot, one.x);
-        store(s->y + slot, one.y);
-        store(s->vx + slot, one.vx);
-        store(s->vy + slot, one.vy);
-        store(s->x + other, two.x);
-        store(s->y + other, two.y);
-        store(s->vx + other, two.vx);
-        store(s->vy + other, two.vy);
+        const motion m = load_motion(s, slot, true);
+        const vec way_x = add(mul(m.vx, reach), mul(change_x, fall));
+        const vec way_y = add(mul(m.vy, reach), mul(change_y, fall));
+        store(s->x + slot, add(m.x, choose_positive(inverse_mass, way_x, mul(m.vx, drift))));
+        store(s->y + slot, add(m.y, choose_positive(inverse_mass, way_y, mul(m.vy, drift))));
+        store(s->vx + slot, choose_positive(inverse_mass, add(mul(m.vx, keep), mul(change_x, gain)), m.vx));
+        store(s->vy + slot, choose_positive(inverse_mass, add(mul(m.vy, keep), mul(change_y, gain)), m.vy));
     }
 }
 

@@ -31,12 +31,12 @@ MSPRINGI_VARIANT(web, forced, false, true)
 MSPRINGI_VARIANT(web, damped, true, false)
 MSPRINGI_VARIANT(web, damped_forced, true, true)
 
-static void loose_plain(const mspringi_sweep *sweep, const mspringi_span *span, uint32_t substeps) {
-    loose(sweep, span, substeps, false);
+static void loose_plain(const mspringi_sweep *sweep, const mspringi_span *span, const mspringi_glide *glide) {
+    loose(sweep, span, glide, false);
 }
 
-static void loose_forced(const mspringi_sweep *sweep, const mspringi_span *span, uint32_t substeps) {
-    loose(sweep, span, substeps, true);
+static void loose_forced(const mspringi_sweep *sweep, const mspringi_span *span, const mspringi_glide *glide) {
+    loose(sweep, span, glide, true);
 }
 
 static void attached_plain(const mspringi_sweep *sweep, uint32_t first, uint32_t count, float *x, float *y) {
