@@ -4,6 +4,7 @@
 /// SPDX-License-Identifier: MIT
 #include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -511,6 +512,87 @@ static void foreign_snapshots_are_refused(void **state) {
     recipe_free(&turned_made);
 }
 
+/// Snapshots of before and after a change of the format: neither is taken for the other.
+static void other_versions_say_so(void **state) {
+    (void)state;
+    recipe made = small_recipe();
+    mspring_network *network = small_network(&made);
+    saved good = save(network, MSPRING_SNAPSHOT_ALL);
+    const uint64_t before = look_at(network);
+    const uint32_t others[] = {0, MSPRINGI_SNAPSHOT_VERSION - 1, MSPRINGI_SNAPSHOT_VERSION + 1, UINT32_MAX};
+    for (size_t i = 0; i < COUNT_OF(others); i++) {
+        saved other = {malloc(good.size), good.size};
+        char expected[80];
+        assert_non_null(other.bytes);
+        memcpy(other.bytes, good.bytes, good.size);
+        mspringi_writer to = mspringi_writer_begin(other.bytes + 8); // behind the magic
+        mspringi_put(&to, &others[i], 1, sizeof others[i]);
+        renew_checksum(&other);
+        check_error(mspring_network_load(network, other.bytes, other.size), MSPRING_ERROR_SNAPSHOT);
+        snprintf(expected, sizeof expected, "version %u, this library knows version %u", (unsigned)others[i],
+                 (unsigned)MSPRINGI_SNAPSHOT_VERSION);
+        check_contains(mspring_network_error(network), expected);
+        assert_int_equal(look_at(network), before);
+        free(other.bytes);
+    }
+    mspring_network_destroy(network);
+    free(good.bytes);
+    recipe_free(&made);
+}
+
+// Sections and their bytes, or bytes per slot.
+static void describe(const mspring_network *network, char *text, size_t room) {
+    mspring_plan plan = {.struct_size = sizeof plan};
+    saved of = save(network, MSPRING_SNAPSHOT_ALL);
+    check_ok(mspring_network_plan(network, &plan));
+    mspringi_snapshot_header header;
+    assert_true(mspringi_get_header(of.bytes, &header));
+    const uint8_t *at = of.bytes + MSPRINGI_SNAPSHOT_HEADER_BYTES;
+    size_t length = (size_t)snprintf(text, room, "%u:", (unsigned)header.version);
+    for (uint32_t i = 0; i < header.section_count; i++) {
+        uint64_t size;
+        mspringi_get(at + 8, &size, 1, sizeof size);
+        assert_true(length < room);
+        const bool by_slot = size % plan.slot_count == 0;
+        length += (size_t)snprintf(text + length, room - length, " %.4s %u%s", (const char *)at,
+                                   (unsigned)(by_slot ? size / plan.slot_count : size), by_slot ? "/slot" : "");
+        at += MSPRINGI_SECTION_HEADER_BYTES + mspringi_round_up((size_t)size, 8);
+    }
+    free(of.bytes);
+}
+
+/// What is in a snapshot of a single spring, with all that there can be. Where this changes, so does the version.
+static void a_version_has_one_format(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    const mspring_id a = support_pinned(builder, 0, 0, 1), b = support_particle(builder, 1, 0, 1);
+    support_spring(builder, a, b, 100, 1);
+    mspring_network_def def = support_def(-9.8f, 4);
+    def.guard = MSPRING_GUARD_IMPLICIT;
+    def.spare_particles = def.spare_springs = 1;
+    def.flags = MSPRING_NETWORK_RESERVE_RELATIVE;
+    def.sleep_speed = 0.1f;
+    mspring_network *network = support_network(builder, &def);
+    const float strain = 1, scale = 0.5f;
+    const mspring_id spring = 0;
+    check_ok(mspring_network_set_break_strains(network, 0, 1, &strain));
+    check_ok(mspring_network_set_stress_strains(network, 0, 1, &strain));
+    check_ok(mspring_network_set_inverse_mass_scales(network, b, 1, &scale));
+    check_ok(mspring_network_break_springs(network, &spring, 1));
+    check_ok(mspring_network_restore_springs(network, &spring, 1, 9));
+    check_ok(mspring_network_apply_force(network, b, 1, 2));
+    char text[400];
+    describe(network, text, sizeof text);
+    assert_string_equal(text, "2: grow 23 sett 56 moti 16/slot mass 28 forc 8/slot brok 4 valu 24 brks 8 strs 8 "
+                              "stsd 4 ramp 32 slee 20 guar 56");
+    use_solver(network, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, 1);
+    check_ok(mspring_network_step(network, 0.01));
+    describe(network, text, sizeof text);
+    assert_string_equal(text, "2: grow 23 sett 56 moti 16/slot mass 28 brok 4 valu 24 brks 8 strs 8 stsd 4 ramp 32 "
+                              "slee 20 impl 1992 guar 56");
+    mspring_network_destroy(network);
+}
+
 static void bad_arguments_are_refused(void **state) {
     (void)state;
     recipe made = small_recipe();
@@ -618,6 +700,8 @@ int main(void) {
         cmocka_unit_test(damage_is_found),
         cmocka_unit_test(forgeries_do_no_harm),
         cmocka_unit_test(foreign_snapshots_are_refused),
+        cmocka_unit_test(other_versions_say_so),
+        cmocka_unit_test(a_version_has_one_format),
         cmocka_unit_test(bad_arguments_are_refused),
         cmocka_unit_test(hooks_can_neither_save_nor_load),
         cmocka_unit_test(loading_survives_every_failure),

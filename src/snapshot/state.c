@@ -113,12 +113,12 @@ static mspring_result motion_check(mspring_network *network, const uint8_t *from
     const mspringi_section *section = &mspringi_section_motion;
     const size_t slots = mspringi_slot_count(network);
     mspring_result result = mspringi_section_check_size(network, section, size, motion_size(network));
-    const float largest = (float)MSPRING_MAX_COORDINATE;
+    const float largest = (float)MSPRING_MAX_COORDINATE, fastest = (float)MSPRING_MAX_SPEED;
     for (mspring_id p = 0; result == MSPRING_OK && p < network->topology.reserve.particle_end; ++p) {
         const uint32_t slot = network->topology.slot_of_particle[p];
         const float x = mspringi_float_at(from, slot), y = mspringi_float_at(from, slots + slot);
         const float vx = mspringi_float_at(from, 2 * slots + slot), vy = mspringi_float_at(from, 3 * slots + slot);
-        if (!(fabsf(x) <= largest && fabsf(y) <= largest && isfinite(vx) && isfinite(vy)))
+        if (!(fabsf(x) <= largest && fabsf(y) <= largest && fabsf(vx) <= fastest && fabsf(vy) <= fastest))
             result = mspringi_section_fail(network, section,
                                            "particle %u is at (%g, %g) m from the origin, at (%g, %g) m/s",
                                            (unsigned)p, (double)x, (double)y, (double)vx, (double)vy);
