@@ -236,6 +236,38 @@ static void flushing_denormals_does_not_matter(void **state) {
 }
 #endif
 
+/// A speed that is none, written to a view, where damping would bring it back within the step: refused at all
+/// levels, whatever overflows on the way.
+static void speeds_out_of_bounds(void **state) {
+    (void)state;
+    const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {1, 1}, .damping = {1, 1}};
+    const mspring_simd levels[] = {level, MSPRING_SIMD_SCALAR};
+    for (uint32_t width = 1; width <= 20; width++) {
+        for (size_t i = 0; i < COUNT_OF(levels); i++) {
+            uint64_t seed = 1;
+            recipe made = {0};
+            recipe_lattice(&made, width, 3, 0, 0, 1e9, &stuff, &seed);
+            recipe_lattice(&made, width / 2 + 1, 3, 0, 1e11, 1e9, &stuff, &seed);
+            mspring_network_def def = support_def(0, 1);
+            def.simd_level = levels[i];
+            def.guard = MSPRING_GUARD_BOUNDS;
+            def.global_damping = 1e6f;
+            mspring_network *network = recipe_network(&made, &def);
+            mspring_view view = {.struct_size = sizeof view};
+            check_ok(mspring_network_view(network, &view));
+            const uint32_t slot = view.slot_of_particle[width - 1];
+            view.vx[slot] = -3e38f;
+            const uint64_t before = support_hash(network);
+            check_error(mspring_network_step(network, 1), MSPRING_ERROR_UNSTABLE);
+            assert_int_equal(support_hash(network), before);
+            view.vx[slot] = -1e15f;
+            check_ok(mspring_network_step(network, 1));
+            mspring_network_destroy(network);
+            recipe_free(&made);
+        }
+    }
+}
+
 int main(int argc, char **argv) {
     level = level_from_arguments(argc, argv);
     const struct CMUnitTest tests[] = {
@@ -244,6 +276,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(loose_particles_of_every_number),
         cmocka_unit_test(mixtures_of_all),
         cmocka_unit_test(extreme_values),
+        cmocka_unit_test(speeds_out_of_bounds),
         cmocka_unit_test(rounding_mode_of_the_host_does_not_matter),
 #if defined(__SSE__)
         cmocka_unit_test(flushing_denormals_does_not_matter),

@@ -177,6 +177,28 @@ static void go_back(mspring_network *network) {
     mspringi_clear_empty_slots(network);
 }
 
+/// Global damping times dt from which on a speed that is no speed any more (MSPRING_MAX_SPEED) could be one again
+/// by the end of the step: exp(-20) is 2e-9, and at 1e24 m/s nothing overflows yet.
+#define STRONG_DAMPING 20.0
+
+// Refuse speeds that somebody outside has written to the state, which the end of the step would not show any more.
+// In the step they overflow where rates of strain are computed, for springs that are not there too, of which wide
+// vectors have more: not all levels would take it.
+static mspring_result check_given_speeds(mspring_network *network, double dt) {
+    if (!network->is_open || !((double)network->global_damping * dt > STRONG_DAMPING))
+        return MSPRING_OK;
+    const mspringi_state *s = &network->state;
+    for (mspring_id p = 0; p < network->topology.particle_count; ++p) {
+        const uint32_t slot = network->topology.slot_of_particle[p];
+        if (mspringi_particle_exists(network, p) &&
+            !(fabsf(s->vx[slot]) <= (float)MSPRING_MAX_SPEED && fabsf(s->vy[slot]) <= (float)MSPRING_MAX_SPEED))
+            return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
+                                 "particle %u has been given a velocity of (%g, %g) m/s: at most 1e15 is allowed",
+                                 (unsigned)p, (double)s->vx[slot], (double)s->vy[slot]);
+    }
+    return MSPRING_OK;
+}
+
 // Take the step in network->substeps substeps, or leave everything as it is.
 static mspring_result attempt(mspring_network *network, double dt) {
     const float h = (float)(dt / (double)network->substeps);
@@ -269,6 +291,8 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "dt is %g s, it must be finite and > 0",
                              dt);
     const uint32_t substeps = network->substeps;
+    if (check_given_speeds(network, dt) != MSPRING_OK)
+        return MSPRING_ERROR_UNSTABLE;
     network->sleep.has_kept = false;
     const bool lent = has_fallback(network) && network->guard.lent > 0;
     mspring_result result = lent ? fall_back(network, dt) : attempt_explicitly(network, dt);
