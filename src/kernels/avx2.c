@@ -51,7 +51,7 @@ static inline uint32_t bits_greater(vec a, vec b) {
 // The last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {
     const __m256i seam =
-        _mm256_castps_si256(_mm256_permute2f128_ps(before, a, 0x21)); // upper of before, lower of a
+        _mm256_castps_si256(_mm256_permute2f128_ps(a, before, 0x03)); // upper of before, lower of a
     return _mm256_castsi256_ps(_mm256_alignr_epi8(_mm256_castps_si256(a), seam, 12));
 }
 
