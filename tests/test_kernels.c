@@ -22,7 +22,8 @@ enum {
     ABOVE = 1 + ROW + 1,                 // and the one above it
     CARRY = ROW * W,
     RECORDS = ROW * MSPRINGI_DIRECTIONS * 3 * W,
-    GUARD = 4 * W
+    GUARD = 4 * W,
+    STRIDE = SLOTS + GUARD // from x to y and on to the velocities
 };
 
 #define CANARY 0xc5c5c5c5u
@@ -54,6 +55,10 @@ typedef struct arena {
     float rest_lengths[ROW * MSPRINGI_DIRECTIONS * W];
     uint32_t rests_of_block[ROW];
     uint32_t back[GUARD];
+    _Alignas(64) float kept[4 * STRIDE];
+    uint32_t after_kept[GUARD];
+    mspringi_watch watch;
+    mspringi_sight sight; ///< of the watch
 } arena;
 
 static arena *arena_new(void) {
@@ -61,6 +66,7 @@ static arena *arena_new(void) {
     assert_int_equal(offsetof(arena, x) % 64, 0);
     assert_int_equal(offsetof(arena, records) % 64, 0);
     assert_int_equal(offsetof(arena, rest_lengths) % 64, 0);
+    assert_int_equal(offsetof(arena, y) - offsetof(arena, x), STRIDE * sizeof(float));
     for (size_t i = 0; i < sizeof *made / sizeof(uint32_t); i++) {
         ((uint32_t *)(void *)made)[i] = CANARY;
     }
@@ -70,7 +76,8 @@ static arena *arena_new(void) {
 static void check_canaries(const arena *a) {
     const uint32_t *guards[] = {a->front,         a->after_x,       a->after_y,       a->after_vx,
                                 a->after_vy,      a->after_carry_x, a->after_records, a->after_inverse_mass,
-                                a->after_force_x, a->after_force_y, a->after_carry_y, a->back};
+                                a->after_force_x, a->after_force_y, a->after_carry_y, a->back,
+                                a->after_kept};
     for (size_t i = 0; i < COUNT_OF(guards); i++) {
         for (size_t j = 0; j < GUARD; j++) {
             assert_int_equal(guards[i][j], CANARY);
@@ -87,6 +94,8 @@ typedef struct setup {
     uint32_t parts;  ///< 2 or 3
     bool from_below; ///< a row below has left forces
     bool has_above;  ///< there is a row above; else the row itself stands for it
+    bool keeps;      ///< the state that is found; else it is there already, or something like it
+    bool watches_speed, watches_change;
     uint32_t record_slots;
     uint64_t seed;
 } setup;
@@ -113,6 +122,12 @@ static void fill(arena *a, const setup *s) {
             a->x[i] = a->y[i] = a->vx[i] = a->vy[i] = a->inverse_mass[i] = 0;
         }
     }
+    for (uint32_t i = 0; i < 4 * STRIDE; i++) {
+        const bool is_empty = i % STRIDE >= SLOTS || (a->x[i % STRIDE] == 0 && a->vx[i % STRIDE] == 0);
+        a->kept[i] = is_empty || s->keeps ? 0 : random_float(&seed, -5, 5);
+    }
+    a->watch = (mspringi_watch){{0}, {0}, {0}};
+    a->sight = (mspringi_sight){0, 0, 0};
     for (uint32_t i = 0; i < CARRY; i++) {
         // Only where there are particles: the row below has no spring to an empty slot.
         bool pulled = s->from_below && i >= s->idle && i < s->idle + s->live;
@@ -142,7 +157,7 @@ static void fill(arena *a, const setup *s) {
     }
 }
 
-static void run(arena *a, const setup *s, mspringi_row_fn kernel) {
+static void run(arena *a, const setup *s, mspringi_row_fn kernel, mspringi_sight_fn sight_of) {
     const mspringi_sweep sweep = {
         .x = a->x,
         .y = a->y,
@@ -162,6 +177,10 @@ static void run(arena *a, const setup *s, mspringi_row_fn kernel) {
         .decay = 0.99f,
         .gravity_h_x = 0.015f,
         .gravity_h_y = -0.098f,
+        .keep = s->keeps ? a->kept : NULL,
+        .watch = s->watches_speed || s->watches_change ? &a->watch : NULL,
+        .before = s->watches_change ? a->kept + 2 * (size_t)STRIDE : NULL,
+        .watches_speed = s->watches_speed,
     };
     // The last particle's springs reach one slot further.
     const uint32_t busy_end = s->live > 0 ? s->idle + s->live + 1 : 0, end = s->blocks * W;
@@ -183,6 +202,26 @@ static void run(arena *a, const setup *s, mspringi_row_fn kernel) {
         count = 2;
     }
     kernel(&sweep, spans, count);
+    // Which lane has seen what is a level's own business.
+    a->sight = sight_of(&a->watch);
+    a->watch = (mspringi_watch){{0}, {0}, {0}};
+}
+
+/// What a watch has to see of a row that has been moved.
+static mspringi_sight expected_sight(const arena *a, const setup *s) {
+    mspringi_sight sight = {0, 0, 0};
+    for (uint32_t i = FIRST * W; i < (FIRST + s->blocks) * W && (s->watches_speed || s->watches_change); i++) {
+        sight.place = fmaxf(sight.place, fmaxf(fabsf(a->x[i]), fabsf(a->y[i])));
+        if (s->watches_speed) {
+            sight.speed = fmaxf(sight.speed, fmaxf(fabsf(a->vx[i]), fabsf(a->vy[i])));
+        }
+        if (s->watches_change) {
+            const float *before = a->kept + 2 * (size_t)STRIDE + i;
+            sight.change = fmaxf(sight.change, fabsf(a->vx[i] - before[0]));
+            sight.change = fmaxf(sight.change, fabsf(a->vy[i] - before[STRIDE]));
+        }
+    }
+    return sight;
 }
 
 /// A force of zero may be +0 or -0 where no spring pulls: the step's result is the same.
@@ -197,8 +236,8 @@ static void compare(const setup *s, mspringi_row_fn kernel, mspringi_row_fn scal
     fill(mine, s);
     fill(reference, s);
     fill(before, s);
-    run(mine, s, kernel);
-    run(reference, s, scalar);
+    run(mine, s, kernel, kernels->sight_of);
+    run(reference, s, scalar, mspringi_kernels_scalar.sight_of);
     check_canaries(mine);
     check_canaries(reference);
     drop_signs_of_zero(mine->carry_x, CARRY);
@@ -216,6 +255,15 @@ static void compare(const setup *s, mspringi_row_fn kernel, mspringi_row_fn scal
             kind, s->blocks, s->live, s->split, s->parts, s->from_below, s->has_above, place, offsetof(arena, x),
             offsetof(arena, vx), offsetof(arena, carry_x));
         fail();
+    }
+    const mspringi_sight expected = expected_sight(mine, s);
+    if (kind != MSPRINGI_ROW_LOOSE) {
+        assert_memory_equal(&mine->sight, &expected, sizeof expected);
+        const float *found[] = {before->x, before->y, before->vx, before->vy};
+        for (uint32_t i = 0; s->keeps && i < 4 * s->live; i++) {
+            const uint32_t slot = FIRST * W + s->idle + i / 4;
+            assert_true(mine->kept[slot + i % 4 * STRIDE] == found[i % 4][slot]);
+        }
     }
     // And the sweep has moved something, if there is anything.
     assert_int_equal(memcmp(mine->x, before->x, sizeof mine->x) != 0, s->blocks > 0 && s->live > 0);
@@ -238,6 +286,9 @@ static void compare_all(mspringi_row_kind kind, uint32_t parts, uint32_t record_
                     .from_below = (variant & 1) && kind == MSPRINGI_ROW_LATTICE,
                     .has_above = (variant & 2) && kind == MSPRINGI_ROW_LATTICE,
                     .split = (variant & 4) && blocks > 1 ? 1 + live % (blocks - 1) : 0,
+                    .keeps = live % 3 == 1,
+                    .watches_speed = live % 3 == 2 || variant % 3 == 2,
+                    .watches_change = live % 3 == 2 || variant % 3 == 1,
                     .record_slots = record_slots,
                     .seed = blocks * 1000 + live * 10 + variant,
                 };

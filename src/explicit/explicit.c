@@ -97,7 +97,7 @@ static void mark_ends(const job *wave, mspringi_substep *substep, uint32_t numbe
     if (wave->sights && number == 0)
         mspringi_substep_keep(wave->network, substep);
     if (wave->sights && number + 1 == wave->count)
-        mspringi_substep_watch(substep, watch);
+        mspringi_substep_watch(wave->network, substep, watch);
 }
 
 static void add_sight(const job *wave, uint32_t worker, mspringi_sight sight) {
@@ -139,7 +139,7 @@ static void make_pass(const job *wave, uint32_t pass, uint32_t worker) {
             mspringi_progress_advance(&wave->progress[worker], pass / wave->workers * wave->fronts + front + 1);
     }
     if (wave->sights)
-        add_sight(wave, worker, mspringi_watch_sight(wave->network, watch));
+        add_sight(wave, worker, wave->network->kernels->sight_of(watch));
 }
 
 static void make_passes(void *argument, uint32_t index, uint32_t worker) {
@@ -149,16 +149,23 @@ static void make_passes(void *argument, uint32_t index, uint32_t worker) {
         make_pass(wave, pass, index);
 }
 
+// Pack what the first substep sees of the web's nodes.
+static void pack_wave(const mspring_network *network, float h, mspringi_field base, uint32_t count) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_substep first = mspringi_substep_prepare(network, h, base, 0, count, 0);
+    for (uint32_t s = 0; s < t->wave_strips; ++s)
+        if (mspringi_share_of_strip(network, &t->strips[s]) != MSPRINGI_ASLEEP)
+            mspringi_strip_pack(network, &first, &t->strips[s]);
+}
+
 static void sweep_wave(mspring_network *network, float h, mspringi_field base, uint32_t count,
                        mspringi_sight *sights) {
     const mspringi_topology *t = &network->topology;
     if (t->wave_strips == 0)
         return;
     job wave = plan_wave(network, h, base, count, sights);
-    const mspringi_substep first = mspringi_substep_prepare(network, h, base, 0, count, 0);
-    for (uint32_t s = 0; s < t->wave_strips; ++s)
-        if (mspringi_share_of_strip(network, &t->strips[s]) != MSPRINGI_ASLEEP)
-            mspringi_strip_pack(network, &first, &t->strips[s]);
+    if (t->web.group_count > 0)
+        pack_wave(network, h, base, count);
     mspringi_tasks_run(wave.progress ? network->tasks : NULL, wave.workers, make_passes, &wave);
 }
 
@@ -316,7 +323,7 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
                 sweep_strip(rest, &substep, index, &t->strips[s]);
     }
     if (rest->sights)
-        add_sight(rest, index, mspringi_watch_sight(rest->network, watch));
+        add_sight(rest, index, rest->network->kernels->sight_of(watch));
 }
 
 static void sweep_rest(mspring_network *network, float h, mspringi_field base, uint32_t count,

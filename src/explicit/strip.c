@@ -219,8 +219,10 @@ void mspringi_substep_keep(const mspring_network *network, mspringi_substep *sub
     substep->sweep.keep = network->backup.x;
 }
 
-void mspringi_substep_watch(mspringi_substep *substep, mspringi_watch *watch) {
+void mspringi_substep_watch(const mspring_network *network, mspringi_substep *substep, mspringi_watch *watch) {
     substep->sweep.watch = watch;
+    substep->sweep.before = network->guard.watches ? network->backup.vx : NULL;
+    substep->sweep.watches_speed = !(network->guard.watches && network->guard.knows_speed);
 }
 
 mspringi_watch *mspringi_watch_in(mspringi_watch_room *room) {
@@ -228,20 +230,16 @@ mspringi_watch *mspringi_watch_in(mspringi_watch_room *room) {
     return (mspringi_watch *)(void *)(room->values + (bytes - over) % bytes / sizeof(float));
 }
 
-mspringi_sight mspringi_watch_sight(const mspring_network *network, const mspringi_watch *watch) {
-    const mspringi_largest_fn largest = network->kernels->largest;
-    return (mspringi_sight){largest(watch->place, NULL, MSPRINGI_WIDTH).value,
-                            largest(watch->speed, NULL, MSPRINGI_WIDTH).value};
-}
-
 // What the web has pulled at after the slots of the strip were swept.
 static mspringi_sight look_at_attached(const mspring_network *network, const mspringi_strip *strip) {
-    const mspringi_state *s = &network->state;
+    const mspringi_state *s = &network->state, *b = &network->backup;
     const uint32_t *slots = network->topology.web.attached_slot + strip->first_attached;
-    mspringi_sight sight = {0.0f, 0.0f};
+    mspringi_sight sight = {0.0f, 0.0f, 0.0f};
     for (uint32_t i = 0; i < strip->attached_count; ++i) {
-        sight = mspringi_sight_join(sight, (mspringi_sight){fabsf(s->x[slots[i]]), fabsf(s->vx[slots[i]])});
-        sight = mspringi_sight_join(sight, (mspringi_sight){fabsf(s->y[slots[i]]), fabsf(s->vy[slots[i]])});
+        const uint32_t slot = slots[i];
+        const float change_x = fabsf(s->vx[slot] - b->vx[slot]), change_y = fabsf(s->vy[slot] - b->vy[slot]);
+        sight = mspringi_sight_join(sight, (mspringi_sight){fabsf(s->x[slot]), fabsf(s->vx[slot]), change_x});
+        sight = mspringi_sight_join(sight, (mspringi_sight){fabsf(s->y[slot]), fabsf(s->vy[slot]), change_y});
     }
     return sight;
 }
@@ -252,5 +250,5 @@ mspringi_sight mspringi_strip_end(const mspring_network *network, const mspringi
         const mspringi_span *span = &network->topology.spans[strip->home_span];
         mspringi_creep_stop(network, first_block_slot(span), end_block_slot(span));
     }
-    return strip->attached_count > 0 ? look_at_attached(network, strip) : (mspringi_sight){0.0f, 0.0f};
+    return strip->attached_count > 0 ? look_at_attached(network, strip) : (mspringi_sight){0.0f, 0.0f, 0.0f};
 }

@@ -30,7 +30,7 @@ void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep
 
 /// Room for what is watched, aligned as vectors need it, wherever it lies.
 typedef struct mspringi_watch_room {
-    float values[3 * MSPRINGI_WIDTH];
+    float values[4 * MSPRINGI_WIDTH];
 } mspringi_watch_room;
 
 /// The watch in a room of zeros.
@@ -39,11 +39,10 @@ mspringi_watch *mspringi_watch_in(mspringi_watch_room *room);
 /// Have the substep copy the state that it finds into the backup: the first of a step.
 void mspringi_substep_keep(const mspring_network *network, mspringi_substep *substep);
 /// Have it look at where what it moves comes to, and how fast: the last of a step.
-void mspringi_substep_watch(mspringi_substep *substep, mspringi_watch *watch);
+void mspringi_substep_watch(const mspring_network *network, mspringi_substep *substep, mspringi_watch *watch);
 /// After the last substep of a strip, while it is in the cache: stop what creeps, and look at what has been moved
 /// again since it was swept.
 mspringi_sight mspringi_strip_end(const mspring_network *network, const mspringi_strip *strip);
-mspringi_sight mspringi_watch_sight(const mspring_network *network, const mspringi_watch *watch);
 
 /// Copy the state of some blocks of a row into the backup; stop what creeps there and look at it.
 void mspringi_span_keep(const mspring_network *network, const mspringi_span *span);

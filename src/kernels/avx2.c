@@ -89,8 +89,9 @@ static inline void store_packed(float *packed, vec x, vec y, vec vx, vec vy) {
 static inline __m256i absolute(vec a) {
     return _mm256_and_si256(_mm256_castps_si256(a), _mm256_set1_epi32(0x7fffffff));
 }
-static inline float largest_lane(__m256i a) {
-    __m128i half = _mm_max_epi32(_mm256_castsi256_si128(a), _mm256_extracti128_si256(a, 1));
+static inline float largest_lane(vec a) {
+    const __m256i bits = _mm256_castps_si256(a);
+    __m128i half = _mm_max_epi32(_mm256_castsi256_si128(bits), _mm256_extracti128_si256(bits, 1));
     half = _mm_max_epi32(half, _mm_shuffle_epi32(half, _MM_SHUFFLE(1, 0, 3, 2)));
     half = _mm_max_epi32(half, _mm_shuffle_epi32(half, _MM_SHUFFLE(2, 3, 0, 1)));
     return _mm_cvtss_f32(_mm_castsi128_ps(half));
@@ -99,17 +100,6 @@ static inline float largest_lane(__m256i a) {
 // The larger of a and of the size of b.
 static inline vec larger_size(vec a, vec b) {
     return _mm256_castsi256_ps(_mm256_max_epi32(_mm256_castps_si256(a), absolute(b)));
-}
-
-static mspringi_largest largest(const float *now, const float *before, size_t count) {
-    __m256i value = _mm256_setzero_si256(), change = value;
-    for (size_t i = 0; i < count; i += LANES) {
-        const vec v = load(now + i);
-        value = _mm256_max_epi32(value, absolute(v));
-        if (before)
-            change = _mm256_max_epi32(change, absolute(sub(v, load(before + i))));
-    }
-    return (mspringi_largest){largest_lane(value), largest_lane(change)};
 }
 
 #include "sweep.h"

@@ -93,25 +93,14 @@ static inline void store_packed(float *packed, vec x, vec y, vec vx, vec vy) {
 static inline __m512i absolute(vec a) {
     return _mm512_and_si512(_mm512_castps_si512(a), _mm512_set1_epi32(0x7fffffff));
 }
-static inline float largest_lane(__m512i a) {
-    const int bits = _mm512_reduce_max_epi32(a);
+static inline float largest_lane(vec a) {
+    const int bits = _mm512_reduce_max_epi32(_mm512_castps_si512(a));
     return _mm_cvtss_f32(_mm_castsi128_ps(_mm_cvtsi32_si128(bits)));
 }
 
 // The larger of a and of the size of b.
 static inline vec larger_size(vec a, vec b) {
     return _mm512_castsi512_ps(_mm512_max_epi32(_mm512_castps_si512(a), absolute(b)));
-}
-
-static mspringi_largest largest(const float *now, const float *before, size_t count) {
-    __m512i value = _mm512_setzero_si512(), change = value;
-    for (size_t i = 0; i < count; i += LANES) {
-        const vec v = load(now + i);
-        value = _mm512_max_epi32(value, absolute(v));
-        if (before)
-            change = _mm512_max_epi32(change, absolute(sub(v, load(before + i))));
-    }
-    return (mspringi_largest){largest_lane(value), largest_lane(change)};
 }
 
 #include "sweep.h"

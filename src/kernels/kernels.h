@@ -15,11 +15,17 @@
 /// The parts of a spring record, each one value per slot; damping only if the network has any.
 typedef enum mspringi_part { MSPRINGI_REST_LENGTH = 0, MSPRINGI_STIFFNESS = 1, MSPRINGI_DAMPING = 2 } mspringi_part;
 
-/// Of each lane the largest absolute coordinate and speed of the slots that have been moved, as mspringi_largest
-/// has them.
+/// Of each lane the largest absolute coordinate, speed and change of a velocity of the slots that have been moved,
+/// as mspringi_largest has them.
 typedef struct mspringi_watch {
-    float place[MSPRINGI_WIDTH], speed[MSPRINGI_WIDTH];
+    float place[MSPRINGI_WIDTH], speed[MSPRINGI_WIDTH], change[MSPRINGI_WIDTH];
 } mspringi_watch;
+
+/// The same of all lanes.
+typedef struct mspringi_sight {
+    float place, speed, change;
+} mspringi_sight;
+typedef mspringi_sight (*mspringi_sight_fn)(const mspringi_watch *watch);
 
 /// What a sweep works on: arrays by slot, and what is the same for all of them.
 typedef struct mspringi_sweep {
@@ -40,6 +46,8 @@ typedef struct mspringi_sweep {
     float gravity_h_x, gravity_h_y; ///< gravity times h
     float *keep;                    ///< [4][slots] where the state goes that is found, as x, y, vx, vy lie; or NULL
     mspringi_watch *watch;          ///< what is seen of the state that is made, or NULL
+    const float *before;            ///< vx of before the step, vy behind as in keep, to watch changes by; or NULL
+    bool watches_speed;             ///< whether speeds are watched
 } mspringi_sweep;
 
 /// Compute the forces of the springs of one or more rows and move their particles, in place. In lattice rows and
@@ -121,6 +129,7 @@ typedef struct mspringi_kernels {
     mspringi_pack_fn pack;
     mspringi_attached_fn attached[2]; ///< [with damping]
     mspringi_largest_fn largest;
+    mspringi_sight_fn sight_of;
     mspringi_leaves_fn leaves;
     mspringi_strain_fn lattice_strain, chain_strain;
     mspringi_system_kernels system;

@@ -81,15 +81,8 @@ static inline vec larger_size(vec a, vec b) {
     return vmaxq_f32(a, vabsq_f32(b));
 }
 
-static mspringi_largest largest(const float *now, const float *before, size_t count) {
-    vec value = zero(), change = value;
-    for (size_t i = 0; i < count; i += LANES) {
-        const vec v = load(now + i);
-        value = vmaxq_f32(value, vabsq_f32(v));
-        if (before)
-            change = vmaxq_f32(change, vabsq_f32(sub(v, load(before + i))));
-    }
-    return (mspringi_largest){vmaxvq_f32(value), vmaxvq_f32(change)};
+static inline float largest_lane(vec a) {
+    return vmaxvq_f32(a);
 }
 
 #include "sweep.h"

@@ -46,10 +46,11 @@ static inline float float_of(uint32_t bits) {
     return value;
 }
 
-// The larger of *a and of the size of b, to *a.
-static inline void enlarge(float *a, float b) {
+// The larger of a and of the size of b. Sizes are compared as integers: those of floats are in the same order, with
+// NaN above all.
+static inline float larger_size(float a, float b) {
     const uint32_t size = absolute_bits(b);
-    *a = size > absolute_bits(*a) ? float_of(size) : *a;
+    return size > absolute_bits(a) ? float_of(size) : a;
 }
 
 static inline void keep_motion(const mspringi_sweep *s, size_t slot) {
@@ -62,10 +63,14 @@ static inline void keep_motion(const mspringi_sweep *s, size_t slot) {
 
 static inline void watch_motion(const mspringi_sweep *s, size_t slot) {
     mspringi_watch *seen = s->watch;
-    enlarge(&seen->place[0], s->x[slot]);
-    enlarge(&seen->place[0], s->y[slot]);
-    enlarge(&seen->speed[0], s->vx[slot]);
-    enlarge(&seen->speed[0], s->vy[slot]);
+    seen->place[0] = larger_size(larger_size(seen->place[0], s->x[slot]), s->y[slot]);
+    if (s->watches_speed)
+        seen->speed[0] = larger_size(larger_size(seen->speed[0], s->vx[slot]), s->vy[slot]);
+    if (s->before) {
+        const float *before_y = s->before + (s->y - s->x);
+        const float change = larger_size(seen->change[0], s->vx[slot] - s->before[slot]);
+        seen->change[0] = larger_size(change, s->vy[slot] - before_y[slot]);
+    }
 }
 
 // Symplectic Euler. A pinned particle keeps its velocity.
@@ -233,16 +238,6 @@ static inline void loose(const mspringi_sweep *s, const mspringi_span *span, con
         s->vx[slot] = is_free ? vx * glide->keep + change_x * glide->gain : vx;
         s->vy[slot] = is_free ? vy * glide->keep + change_y * glide->gain : vy;
     }
-}
-
-static mspringi_largest largest(const float *now, const float *before, size_t count) {
-    uint32_t value = 0, change = 0;
-    for (size_t i = 0; i < count; ++i) {
-        const uint32_t v = absolute_bits(now[i]), c = before ? absolute_bits(now[i] - before[i]) : 0;
-        value = v > value ? v : value;
-        change = c > change ? c : change;
-    }
-    return (mspringi_largest){float_of(value), float_of(change)};
 }
 
 #include "scalar_lane.h"

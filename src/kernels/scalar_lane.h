@@ -37,6 +37,9 @@ static inline vec mul(vec a, vec b) {
 static inline vec square_root(vec a) {
     return sqrtf(a);
 }
+static inline float largest_lane(vec a) {
+    return a;
+}
 // A bit for each lane: 1 where a > b.
 static inline uint32_t bits_greater(vec a, vec b) {
     return a > b;

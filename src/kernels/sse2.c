@@ -78,26 +78,16 @@ static inline __m128i larger(__m128i a, __m128i b) {
     const __m128i first = _mm_cmpgt_epi32(a, b);
     return _mm_or_si128(_mm_and_si128(first, a), _mm_andnot_si128(first, b));
 }
-static inline float largest_lane(__m128i a) {
-    a = larger(a, _mm_shuffle_epi32(a, _MM_SHUFFLE(1, 0, 3, 2)));
-    a = larger(a, _mm_shuffle_epi32(a, _MM_SHUFFLE(2, 3, 0, 1)));
-    return _mm_cvtss_f32(_mm_castsi128_ps(a));
+static inline float largest_lane(vec a) {
+    __m128i bits = _mm_castps_si128(a);
+    bits = larger(bits, _mm_shuffle_epi32(bits, _MM_SHUFFLE(1, 0, 3, 2)));
+    bits = larger(bits, _mm_shuffle_epi32(bits, _MM_SHUFFLE(2, 3, 0, 1)));
+    return _mm_cvtss_f32(_mm_castsi128_ps(bits));
 }
 
 // The larger of a and of the size of b.
 static inline vec larger_size(vec a, vec b) {
     return _mm_castsi128_ps(larger(_mm_castps_si128(a), absolute(b)));
-}
-
-static mspringi_largest largest(const float *now, const float *before, size_t count) {
-    __m128i value = _mm_setzero_si128(), change = value;
-    for (size_t i = 0; i < count; i += LANES) {
-        const vec v = load(now + i);
-        value = larger(value, absolute(v));
-        if (before)
-            change = larger(change, absolute(sub(v, load(before + i))));
-    }
-    return (mspringi_largest){largest_lane(value), largest_lane(change)};
 }
 
 #include "sweep.h"

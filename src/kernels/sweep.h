@@ -76,7 +76,8 @@ MSPRINGI_INLINE vector spring_force(extent e, vec inverse, motion base, motion t
 
 // Before the first substep of a whole step, and after its last: half hidden behind the divisions, as reading and
 // writing the state for this alone is not (96 x 96 at AVX-512, one substep: 2.2 instead of 3.7 us, with 12.4 for
-// the rest. The same for changes of velocities takes 1.9 us, on its own 0.9).
+// the rest). Changes of velocities instead of speeds take 0.3 us more, both of them 1.9 us, and changes on their
+// own, after the sweep, 1.5 to 2.
 MSPRINGI_INLINE void keep_motion(const mspringi_sweep *s, size_t slot, vec x, vec y, vec vx, vec vy) {
     const size_t slots = (size_t)(s->y - s->x);
     float *to = s->keep + slot;
@@ -86,10 +87,16 @@ MSPRINGI_INLINE void keep_motion(const mspringi_sweep *s, size_t slot, vec x, ve
     store(to + 3 * slots, vy);
 }
 
-MSPRINGI_INLINE void watch_motion(const mspringi_sweep *s, vec x, vec y, vec vx, vec vy) {
+MSPRINGI_INLINE void watch_motion(const mspringi_sweep *s, size_t slot, vec x, vec y, vec vx, vec vy) {
     mspringi_watch *seen = s->watch;
     store(seen->place, larger_size(larger_size(load(seen->place), x), y));
-    store(seen->speed, larger_size(larger_size(load(seen->speed), vx), vy));
+    if (s->watches_speed)
+        store(seen->speed, larger_size(larger_size(load(seen->speed), vx), vy));
+    if (s->before) {
+        const float *before = s->before + slot;
+        const vec dvx = sub(vx, load(before)), dvy = sub(vy, load(before + (s->y - s->x)));
+        store(seen->change, larger_size(larger_size(load(seen->change), dvx), dvy));
+    }
 }
 
 MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, motion here, vector force, bool damped,
@@ -116,7 +123,7 @@ MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, motion here, vec
     store(s->x + slot, here.x);
     store(s->y + slot, here.y);
     if (s->watch)
-        watch_motion(s, here.x, here.y, vx, vy);
+        watch_motion(s, slot, here.x, here.y, vx, vy);
 }
 
 /// Forces that LANES slots' springs exert on the slots to the right and on the slots above those. Of those of the

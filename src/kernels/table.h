@@ -1,11 +1,12 @@
 /// @file table.h
 /// The variants of an instruction set's lattice(), chain(), web(), loose(), attached(), pack(), largest(),
-/// lattice_strain() and chain_strain(), and the table of them. Included at the end of each kernel file, which
-/// defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
+/// sight_of(), lattice_strain() and chain_strain(), and the table of them. Included at the end of each kernel file,
+/// which defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
 ///
 /// SPDX-License-Identifier: MIT
 
 #include "bounds.h"
+#include "sight.h"
 #include "strain.h"
 #include "system_assemble.h"
 #include "system_energy.h"
@@ -56,6 +57,7 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .pack = pack,
     .attached = {attached_plain, attached_damped},
     .largest = largest,
+    .sight_of = sight_of,
     .leaves = leaves,
     .lattice_strain = lattice_strain,
     .chain_strain = chain_strain,

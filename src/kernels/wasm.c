@@ -89,17 +89,6 @@ static inline vec larger_size(vec a, vec b) {
     return wasm_i32x4_max(a, wasm_f32x4_abs(b));
 }
 
-static mspringi_largest largest(const float *now, const float *before, size_t count) {
-    vec value = zero(), change = value;
-    for (size_t i = 0; i < count; i += LANES) {
-        const vec v = load(now + i);
-        value = wasm_i32x4_max(value, wasm_f32x4_abs(v));
-        if (before)
-            change = wasm_i32x4_max(change, wasm_f32x4_abs(sub(v, load(before + i))));
-    }
-    return (mspringi_largest){largest_lane(value), largest_lane(change)};
-}
-
 #include "sweep.h"
 
 #define MSPRINGI_TABLE mspringi_kernels_wasm

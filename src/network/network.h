@@ -121,7 +121,8 @@ typedef struct mspringi_guard {
     bool suspicious;         ///< the last step changed a velocity more than usual
     uint32_t lent;           ///< steps that the fallback still takes before the explicit solver is tried again
     float peak;              ///< largest change when the border was looked at last, fading, m/s
-    float speed;             ///< largest at the end of the last step, m/s; infinite if that is not known
+    bool knows_speed;        ///< speed is that of the state before this step
+    float speed;             ///< none was larger at the end of the last step, m/s; infinite if that is not known
     uint64_t state;          ///< edits.state then
 } mspringi_guard;
 

@@ -124,7 +124,7 @@ static mspringi_sight run(mspring_network *network, double dt, float h) {
         const mspringi_field base = network->sleep.in_force = prepare_base(network, dt);
         mspringi_sleep_feel(network, base);
         if (mspringi_sleep_is_whole(network))
-            return (mspringi_sight){0.0f, 0.0f};
+            return (mspringi_sight){0.0f, 0.0f, 0.0f};
         if (!network->implicit && !network->is_clamped && !network->floor && network->graft.count == 0)
             return mspringi_explicit_step(network, h, base, network->substeps);
     }

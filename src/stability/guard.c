@@ -220,6 +220,8 @@ mspring_result mspringi_guard_begin(mspring_network *network, double dt, float h
     const bool same = guard->h == h && guard->global_damping == network->global_damping;
     const bool suspicious = guard->suspicious;
     guard->watches = guard->suspicious = false;
+    guard->knows_speed =
+        guard->state == network->edits.state && !network->is_open && guard->speed <= network->max_speed;
     if (network->guard_policy == MSPRING_GUARD_BOUNDS || network->implicit || network->is_clamped)
         return MSPRING_OK;
     const mspringi_any_shape *any_shape = &network->any_shape;
@@ -250,18 +252,19 @@ static float larger(float a, float b) {
 }
 
 mspringi_sight mspringi_sight_join(mspringi_sight a, mspringi_sight b) {
-    return (mspringi_sight){larger(a.place, b.place), larger(a.speed, b.speed)};
-}
-
-static float largest_of(const mspring_network *network, const float *x, const float *y, size_t first, size_t end) {
-    const mspringi_largest_fn largest = network->kernels->largest;
-    return larger(largest(x + first, NULL, end - first).value, largest(y + first, NULL, end - first).value);
+    return (mspringi_sight){larger(a.place, b.place), larger(a.speed, b.speed), larger(a.change, b.change)};
 }
 
 mspringi_sight mspringi_guard_look(const mspring_network *network, size_t first, size_t end) {
-    const mspringi_state *s = &network->state;
-    return (mspringi_sight){largest_of(network, s->x, s->y, first, end),
-                            largest_of(network, s->vx, s->vy, first, end)};
+    const mspringi_largest_fn largest = network->kernels->largest;
+    const mspringi_state *s = &network->state, *b = &network->backup;
+    const bool watches = network->guard.watches;
+    const size_t count = end - first;
+    const mspringi_largest vx = largest(s->vx + first, watches ? b->vx + first : NULL, count);
+    const mspringi_largest vy = largest(s->vy + first, watches ? b->vy + first : NULL, count);
+    return (mspringi_sight){
+        larger(largest(s->x + first, NULL, count).value, largest(s->y + first, NULL, count).value),
+        larger(vx.value, vy.value), larger(vx.change, vy.change)};
 }
 
 // Change that is as good as none, m/s.
@@ -270,34 +273,37 @@ static float calm_change(const mspring_network *network, float h) {
     return harmless < 1e15 ? (float)harmless : 1e15f;
 }
 
-// Whether a step that has come to this speed changed a velocity more than usual. No change is larger than the
-// speeds before and after it are together: where these are low, which is known unless somebody outside may have
-// changed them, the changes need not be looked at, which takes as long as all else that the guard does in a step.
-static void look_for_growth(mspring_network *network, float h, float speed) {
+// Whether the largest change of a velocity in a step is more than usual.
+static void judge_change(mspring_network *network, float h, float change) {
     mspringi_guard *guard = &network->guard;
-    const float bound = SUSPICIOUS * fmaxf(guard->peak, calm_change(network, h));
-    const bool is_known = guard->state == network->edits.state && !network->is_open;
-    guard->suspicious = false;
-    if (!(is_known && speed + guard->speed <= bound)) {
-        const size_t both = 2 * mspringi_slot_count(network); // vy lies behind vx
-        const float change = network->kernels->largest(network->state.vx, network->backup.vx, both).change;
-        guard->suspicious = change > bound;
-        guard->peak = guard->suspicious ? change : guard->peak;
-    }
-    if (!guard->suspicious)
-        guard->peak *= FADING;
+    guard->suspicious = change > SUSPICIOUS * fmaxf(guard->peak, calm_change(network, h));
+    guard->peak = guard->suspicious ? change : guard->peak * FADING;
+}
+
+// What no speed is above after a step. Where changes are watched speeds are not (see sweep.h for what either
+// takes), as no particle is faster than the fastest was before by more than the largest change; with room for
+// rounding.
+static float bound_speed(const mspring_network *network, mspringi_sight sight) {
+    const mspringi_guard *guard = &network->guard;
+    if (!(guard->watches && guard->knows_speed))
+        return sight.speed;
+    const float bound = (guard->speed + sight.change) * (1.0f + 1e-6f);
+    return bound <= network->max_speed ? bound
+                                       : mspringi_guard_look(network, 0, mspringi_slot_count(network)).speed;
 }
 
 mspring_result mspringi_guard_end(mspring_network *network, double dt, float h, mspringi_sight sight) {
-    if (!(sight.place <= (float)MSPRING_MAX_COORDINATE && sight.speed <= network->max_speed)) {
+    mspringi_guard *guard = &network->guard;
+    const float speed = bound_speed(network, sight);
+    if (!(sight.place <= (float)MSPRING_MAX_COORDINATE && speed <= network->max_speed)) {
         const mspring_result result = check_bounds(network, dt);
         if (result != MSPRING_OK)
             return result;
-        sight.speed = INFINITY;
     }
-    if (network->guard.watches)
-        look_for_growth(network, h, sight.speed);
-    network->guard.speed = network->implicit ? INFINITY : sight.speed; // its steps may yet be refused
-    network->guard.state = network->edits.state;
+    if (guard->watches)
+        judge_change(network, h, sight.change);
+    // What sleeps is not seen, and an implicit solver's step may yet be refused.
+    guard->speed = network->implicit ? INFINITY : larger(speed, network->sleep.speed);
+    guard->state = network->edits.state;
     return MSPRING_OK;
 }

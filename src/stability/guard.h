@@ -11,12 +11,8 @@
 /// border. Works in the backup of the state, which has to be that of the step before.
 mspring_result mspringi_guard_begin(mspring_network *network, double dt, float h);
 
-/// What there is to see of a state: the largest coordinates and the largest speeds.
-typedef struct mspringi_sight {
-    float place, speed;
-} mspringi_sight;
-
-/// Look at the slots first to end - 1, multiples of MSPRINGI_WIDTH. May be called by several threads at once.
+/// Look at the slots first to end - 1, multiples of MSPRINGI_WIDTH, whose state before the step is in the backup.
+/// May be called by several threads at once.
 mspringi_sight mspringi_guard_look(const mspring_network *network, size_t first, size_t end);
 
 /// The sight of both, in whatever order they are joined.
