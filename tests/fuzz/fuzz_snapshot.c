@@ -7,6 +7,7 @@
 #include "fuzz.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "recipe.h"
@@ -53,12 +54,33 @@ static recipe make_recipe(int kind) {
     recipe_rope(&made, 0, made.particle_count - 1, 6, &stuff, &seed);
     recipe_random_springs(&made, 5, &stuff, &seed);
     recipe_particle(&made, 0, 9, 1, 0);
+    recipe_particle(&made, 4, 9, 1, MSPRING_PARTICLE_PINNED); // sleeps where that may be
     recipe_disturb(&made, 0.02, 0.1, &seed);
     return made;
 }
 
 // Edit what snapshots keep, so that every section is there.
-static void edit(mspring_network *network, bool implicit) {
+static void add_and_remove(mspring_network *network) {
+    mspring_particle_def particles[2];
+    mspring_spring_def spring;
+    mspring_id added[2], joint;
+    const mspring_id removed = 7, removed_spring = 30;
+    for (int i = 0; i < 2; i++) {
+        FUZZ_CHECK(mspring_particle_def_init(&particles[i], sizeof particles[i]) == MSPRING_OK);
+        particles[i].x = -2 - i;
+    }
+    FUZZ_CHECK(mspring_spring_def_init(&spring, sizeof spring) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_add_particles(network, particles, 2, added) == MSPRING_OK);
+    spring.a = 0, spring.b = added[0], spring.stiffness = 30;
+    FUZZ_CHECK(mspring_network_add_springs(network, &spring, 1, &joint) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_remove_particles(network, &removed, 1) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_remove_springs(network, &removed_spring, 1) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_remove_particles(network, &added[1], 1) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_step(network, 0.01) == MSPRING_OK);
+}
+
+static void edit(mspring_network *network, int kind) {
+    const bool implicit = kind & 2;
     const float strains[2] = {0.5f, 0.7f}, lower[2] = {0.2f, 0.3f}, mass = 3, scale = 0.5f;
     const mspring_id broken[2] = {1, 4};
     FUZZ_CHECK(mspring_network_set_break_strains(network, 2, 2, strains) == MSPRING_OK);
@@ -69,6 +91,8 @@ static void edit(mspring_network *network, bool implicit) {
     FUZZ_CHECK(mspring_network_set_masses(network, 3, 1, &mass) == MSPRING_OK);
     if (!implicit)
         FUZZ_CHECK(mspring_network_set_inverse_mass_scales(network, 5, 1, &scale) == MSPRING_OK);
+    if (kind % 3 == 0)
+        add_and_remove(network);
     FUZZ_CHECK(mspring_network_apply_force(network, 6, 3, -2) == MSPRING_OK);
 }
 
@@ -79,6 +103,9 @@ static subject make_subject(int kind) {
     static const mspring_guard guards[KINDS] = {MSPRING_GUARD_CLAMP, MSPRING_GUARD_IMPLICIT, MSPRING_GUARD_GROWTH,
                                                 MSPRING_GUARD_GROWTH};
     def.guard = guards[kind];
+    def.spare_particles = def.spare_springs = kind % 3 == 0 ? 3 : 0;
+    def.sleep_speed = kind % 2 == 0 ? 1e-3f : 0;
+    def.sleep_time = 0;
     FUZZ_CHECK(mspring_solver_def_init(&made.solver, sizeof made.solver) == MSPRING_OK);
     made.solver.substeps = 2;
     made.solver.solver = kind & 2 ? MSPRING_SOLVER_IMPLICIT : MSPRING_SOLVER_EXPLICIT;
@@ -86,7 +113,7 @@ static subject make_subject(int kind) {
     made.network = recipe_network(&from, &def);
     FUZZ_CHECK(mspring_network_set_solver(made.network, &made.solver) == MSPRING_OK);
     recipe_free(&from);
-    edit(made.network, kind & 2);
+    edit(made.network, kind);
     made.particles = mspring_network_particle_count(made.network);
     FUZZ_CHECK(made.particles <= MOST_PARTICLES);
     made.all = save(made.network, MSPRING_SNAPSHOT_ALL, &made.all_size);
