@@ -470,6 +470,109 @@ static void forgeries_do_no_harm(void **state) {
     forge(MSPRING_SOLVER_DIRECT);
 }
 
+/// Where a section's bytes are.
+static uint8_t *section_of(const saved *of, const char *tag, uint64_t *size) {
+    uint8_t *at = of->bytes + MSPRINGI_SNAPSHOT_HEADER_BYTES;
+    for (;;) {
+        mspringi_get(at + 8, size, 1, sizeof *size);
+        at += MSPRINGI_SECTION_HEADER_BYTES;
+        if (memcmp(at - MSPRINGI_SECTION_HEADER_BYTES, tag, 4) == 0) {
+            return at;
+        }
+        at += mspringi_round_up((size_t)*size, 8);
+    }
+}
+
+static mspring_network *make_compact(uint32_t spare, bool add) {
+    const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {20, 60}};
+    uint64_t seed = 4;
+    recipe made = {0};
+    recipe_lattice(&made, 5, 3, 0, 0, 1, &stuff, &seed);
+    const mspring_id loose = recipe_particle(&made, 0, 9, 1, 0);
+    mspring_network_def def = support_def(-9.8f, 2);
+    def.spare_particles = def.spare_springs = spare;
+    mspring_network *network = recipe_network(&made, &def);
+    if (add) {
+        mspring_particle_def particle;
+        mspring_id id;
+        check_ok(mspring_particle_def_init(&particle, sizeof particle));
+        particle.y = 20;
+        check_ok(mspring_network_add_particles(network, &particle, 1, &id));
+        mspring_spring_def spring;
+        check_ok(mspring_spring_def_init(&spring, sizeof spring));
+        spring.a = loose, spring.b = id, spring.stiffness = 1;
+        check_ok(mspring_network_add_springs(network, &spring, 1, &id));
+    } else {
+        const mspring_id corner = 0;
+        check_ok(mspring_network_remove_particles(network, &corner, 1));
+    }
+    check_ok(mspring_network_compact(network, 0, NULL));
+    recipe_free(&made);
+    return network;
+}
+
+/// In a compact plan an added particle is where the plan has laid it out, or in the slot that was kept for it:
+/// which of the two is up to the snapshot, so nothing may be wrong with what it has in either.
+static void what_hides_in_other_slots_is_refused(void **state) {
+    (void)state;
+    const float bad[] = {NAN, INFINITY, 1e30f};
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        mspring_network *network = make_compact(1, true);
+        const mspring_id joint = mspring_network_spring_count(network) - 1;
+        check_ok(mspring_network_remove_springs(network, &joint, 1));
+        mspring_view view = {.struct_size = sizeof view};
+        check_ok(mspring_network_view(network, &view));
+        saved forged = save(network, MSPRING_SNAPSHOT_ALL);
+        uint64_t size;
+        uint8_t *growth = section_of(&forged, "grow", &size), *motion = section_of(&forged, "moti", &size);
+        const uint32_t particles = mspring_network_particle_count(network);
+        uint8_t *slots = growth + 8 + particles + mspring_network_spring_count(network);
+        assert_int_equal(*slots, 2); // laid out
+        *slots = 0;
+        for (uint32_t slot = 0; slot < 4 * view.slot_count; slot++) {
+            if (view.particle_of_slot[slot % view.slot_count] == MSPRING_NONE) {
+                mspringi_writer to = mspringi_writer_begin(motion + (size_t)4 * slot);
+                mspringi_put(&to, &bad[i], 1, sizeof bad[i]);
+            }
+        }
+        renew_checksum(&forged);
+        check_error(mspring_network_load(network, forged.bytes, forged.size), MSPRING_ERROR_SNAPSHOT);
+        check_contains(mspring_network_error(network), "positions and velocities");
+        check_near(support_position(network, particles - 1).y, 20, 0);
+        free(forged.bytes);
+        mspring_network_destroy(network);
+    }
+}
+
+/// A plan that has left out what was removed cannot bring it back, so it does not take a snapshot that says nothing
+/// of what was removed.
+static void what_a_plan_leaves_out_stays_out(void **state) {
+    (void)state;
+    mspring_network *network = make_compact(0, false);
+    saved forged = save(network, MSPRING_SNAPSHOT_ALL);
+    mspringi_snapshot_header header;
+    uint64_t size;
+    uint8_t *growth = section_of(&forged, "grow", &size);
+    const size_t cut = MSPRINGI_SECTION_HEADER_BYTES + mspringi_round_up((size_t)size, 8);
+    assert_true(mspringi_get_header(forged.bytes, &header));
+    uint8_t *rest = growth + mspringi_round_up((size_t)size, 8);
+    memmove(growth - MSPRINGI_SECTION_HEADER_BYTES, rest, (size_t)(forged.bytes + forged.size - rest));
+    // What follows the sections is zeros up to the checksum.
+    const size_t kept = forged.size - MSPRINGI_SNAPSHOT_CHECKSUM_BYTES - cut;
+    forged.size = mspringi_round_up(kept, MSPRINGI_CHECKSUM_UNIT);
+    memset(forged.bytes + kept, 0, forged.size - kept);
+    forged.size += MSPRINGI_SNAPSHOT_CHECKSUM_BYTES;
+    header.size = forged.size;
+    header.section_count--;
+    mspringi_writer to = mspringi_writer_begin(forged.bytes);
+    mspringi_put_header(&to, &header);
+    renew_checksum(&forged);
+    check_error(mspring_network_load(network, forged.bytes, forged.size), MSPRING_ERROR_SNAPSHOT);
+    check_contains(mspring_network_error(network), "particle 0 is there, which the plan leaves out");
+    free(forged.bytes);
+    mspring_network_destroy(network);
+}
+
 static void foreign_snapshots_are_refused(void **state) {
     (void)state;
     recipe made = small_recipe(), other_made = mixed_recipe(3), turned_made = small_recipe();
@@ -699,6 +802,8 @@ int main(void) {
         cmocka_unit_test(all_goes_into_a_new_network),
         cmocka_unit_test(damage_is_found),
         cmocka_unit_test(forgeries_do_no_harm),
+        cmocka_unit_test(what_hides_in_other_slots_is_refused),
+        cmocka_unit_test(what_a_plan_leaves_out_stays_out),
         cmocka_unit_test(foreign_snapshots_are_refused),
         cmocka_unit_test(other_versions_say_so),
         cmocka_unit_test(a_version_has_one_format),

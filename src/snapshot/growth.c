@@ -136,6 +136,16 @@ static mspring_result check_spring(mspring_network *network, const growth *g, ms
                                         (unsigned)s, (unsigned)a, (unsigned)b);
 }
 
+// All are there in a snapshot without this section: some have been left out of a compact plan.
+static mspring_result check_none_is_left_out(mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    for (mspring_id p = 0; network->growth.particles && p < t->particle_count; ++p)
+        if (t->slot_of_particle[p] < MSPRINGI_WIDTH)
+            return mspringi_section_fail(network, &mspringi_section_growth,
+                                         "particle %u is there, which the plan leaves out", (unsigned)p);
+    return MSPRING_OK;
+}
+
 // Whether an added spring is to join what it joins now, or is not there now nor then.
 static bool stays(const mspring_network *network, const growth *g, mspring_id s) {
     const mspringi_topology *t = &network->topology;
@@ -156,7 +166,7 @@ static mspring_result growth_check(mspring_network *network, const uint8_t *from
         t->reserve.particle_end + t->reserve.spring_end > t->reserve.first_particle + t->reserve.first_spring)
         return mspringi_section_check_size(network, section, size, size_of(t));
     if (size == 0)
-        return MSPRING_OK;
+        return check_none_is_left_out(network);
     result = mspringi_section_check_size(network, section, size, size_of(t));
     if (result == MSPRING_OK)
         result = mspringi_growth_reserve(network);

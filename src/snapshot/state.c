@@ -6,6 +6,7 @@
 #include "edits/particles.h"
 #include "network/springs.h"
 #include "sections.h"
+#include "topology/spare.h"
 
 /* --------------------------------------------------------------------------------------------------- settings */
 
@@ -109,19 +110,28 @@ static void motion_save(const mspring_network *network, mspringi_writer *to) {
     mspringi_put(to, network->state.x, motion_floats(network), sizeof(float));
 }
 
-static mspring_result motion_check(mspring_network *network, const uint8_t *from, size_t size) {
-    const mspringi_section *section = &mspringi_section_motion;
+static mspring_result check_motion(mspring_network *network, const uint8_t *from, mspring_id p, uint32_t slot) {
     const size_t slots = mspringi_slot_count(network);
-    mspring_result result = mspringi_section_check_size(network, section, size, motion_size(network));
     const float largest = (float)MSPRING_MAX_COORDINATE, fastest = (float)MSPRING_MAX_SPEED;
-    for (mspring_id p = 0; result == MSPRING_OK && p < network->topology.reserve.particle_end; ++p) {
-        const uint32_t slot = network->topology.slot_of_particle[p];
-        const float x = mspringi_float_at(from, slot), y = mspringi_float_at(from, slots + slot);
-        const float vx = mspringi_float_at(from, 2 * slots + slot), vy = mspringi_float_at(from, 3 * slots + slot);
-        if (!(fabsf(x) <= largest && fabsf(y) <= largest && fabsf(vx) <= fastest && fabsf(vy) <= fastest))
-            result = mspringi_section_fail(network, section,
-                                           "particle %u is at (%g, %g) m from the origin, at (%g, %g) m/s",
-                                           (unsigned)p, (double)x, (double)y, (double)vx, (double)vy);
+    const float x = mspringi_float_at(from, slot), y = mspringi_float_at(from, slots + slot);
+    const float vx = mspringi_float_at(from, 2 * slots + slot), vy = mspringi_float_at(from, 3 * slots + slot);
+    return fabsf(x) <= largest && fabsf(y) <= largest && fabsf(vx) <= fastest && fabsf(vy) <= fastest
+               ? MSPRING_OK
+               : mspringi_section_fail(network, &mspringi_section_motion,
+                                       "particle %u is at (%g, %g) m from the origin, at (%g, %g) m/s", (unsigned)p,
+                                       (double)x, (double)y, (double)vx, (double)vy);
+}
+
+// The slots that particles may be in: to which of its two a spare one goes is in another section.
+static mspring_result motion_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_topology *t = &network->topology;
+    mspring_result result =
+        mspringi_section_check_size(network, &mspringi_section_motion, size, motion_size(network));
+    for (mspring_id p = 0; result == MSPRING_OK && p < t->reserve.particle_end; ++p) {
+        const uint32_t first = t->reserve.first_particle;
+        result = check_motion(network, from, p, p < first ? t->slot_of_particle[p] : mspringi_spare_slot(t, p));
+        if (result == MSPRING_OK && p >= first)
+            result = check_motion(network, from, p, t->laid_slots[p - first]);
     }
     return result;
 }
@@ -224,7 +234,7 @@ static void masses_load(mspring_network *network, const uint8_t *from, size_t si
     const uint32_t particles = network->topology.reserve.particle_end;
     mspringi_get(m.mass, network->mass, particles, sizeof(float));
     for (mspring_id p = 0; p < particles; ++p) {
-        const float scale = scale_in(network, &m, p);
+        const float scale = mspringi_particle_exists(network, p) ? scale_in(network, &m, p) : 0.0f;
         network->inverse_mass[network->topology.slot_of_particle[p]] = scale / network->mass[p];
         if (network->inverse_mass_scale)
             network->inverse_mass_scale[p] = scale;
