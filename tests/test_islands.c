@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "changes.h"
 #include "recipe.h"
 #include "support.h"
 
@@ -290,7 +291,7 @@ static void to_others_sleepers_are_pinned(void **state) {
 
 /* ------------------------------------------------------------------------------------------- two and a rope */
 
-enum { IN_A = 12, IN_B = 80 + 12, ROPE = 160, LOOSE = 172 };
+enum { IN_A = 12, IN_A_SPRING = 50, IN_B = 80 + 12, ROPE = 160, LOOSE = 172 };
 
 /// Two lattices of 20 by 4, a rope from one to the other of which one spring is broken, and a loose particle.
 static mspring_network *make_two_guarded(mspring_solver solver, mspring_guard guard, mspring_id *broken) {
@@ -315,52 +316,6 @@ static mspring_network *make_two(mspring_solver solver, mspring_id *broken) {
     return make_two_guarded(solver, MSPRING_GUARD_GROWTH, broken);
 }
 
-typedef void (*change_fn)(mspring_network *network);
-
-static void push(mspring_network *network) {
-    check_ok(mspring_network_apply_force(network, IN_A, 10, 0));
-}
-static void shift(mspring_network *network) {
-    const support_point at = support_position(network, IN_A);
-    const double x = at.x + 0.01;
-    check_ok(mspring_network_set_positions(network, IN_A, 1, &x, &at.y));
-}
-static void kick_a(mspring_network *network) {
-    kick(network, IN_A, 1);
-}
-static void write_view(mspring_network *network) {
-    mspring_view view = {.struct_size = sizeof view};
-    check_ok(mspring_network_view(network, &view));
-    view.y[view.slot_of_particle[IN_A]] += 0.01f;
-}
-static void fill(mspring_network *network) {
-    const float mass = 5;
-    check_ok(mspring_network_set_masses(network, IN_A, 1, &mass));
-}
-static void pin(mspring_network *network) {
-    const float scale = 0;
-    check_ok(mspring_network_set_inverse_mass_scales(network, IN_A, 1, &scale));
-}
-static void soften(mspring_network *network) {
-    const float stiffness = 500;
-    check_ok(mspring_network_set_stiffnesses(network, 50, 1, &stiffness));
-}
-static void lengthen(mspring_network *network) {
-    const float rest_length = 1.1f;
-    check_ok(mspring_network_set_rest_lengths(network, 50, 1, &rest_length));
-}
-static void break_one(mspring_network *network) {
-    const mspring_id spring = 50;
-    check_ok(mspring_network_break_springs(network, &spring, 1));
-}
-static void detach(mspring_network *network) {
-    const mspring_id particle = IN_A;
-    check_ok(mspring_network_detach_particles(network, &particle, 1));
-}
-static void watch(mspring_network *network) {
-    const float strain = 0.5f;
-    check_ok(mspring_network_set_break_strains(network, 50, 1, &strain));
-}
 static uint32_t slot_of(const mspring_hook_args *args, mspring_id particle) {
     uint32_t slot = 0;
     while (args->particle_of_slot[slot] != particle) {
@@ -379,18 +334,20 @@ static void hook(mspring_network *network) {
 
 static void each_wakes_for_itself(void **state) {
     (void)state;
-    static const change_fn changes[] = {push,   shift,    kick_a,    write_view, fill,  pin,
-                                        soften, lengthen, break_one, detach,     watch, hook};
     for (mspring_solver solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++) {
-        for (size_t i = 0; i < COUNT_OF(changes); i++) {
+        for (size_t i = 0; i <= CHANGE_COUNT; i++) {
             mspring_id broken;
             mspring_network *network = make_two(solver, &broken);
             const support_point b = support_position(network, IN_B);
-            changes[i](network);
+            if (i < CHANGE_COUNT) {
+                changes[i].make(network, IN_A, IN_A_SPRING);
+            } else {
+                hook(network);
+            }
             support_steps(network, 1, DT);
             if (sleeps(network, IN_A) || !sleeps(network, IN_B) || !sleeps(network, LOOSE) ||
                 mspring_network_is_asleep(network)) {
-                print_error("change %zu\n", i);
+                print_error("%s\n", i < CHANGE_COUNT ? changes[i].name : "hook");
                 fail();
             }
             support_steps(network, 3, DT);
@@ -402,6 +359,126 @@ static void each_wakes_for_itself(void **state) {
     }
 }
 
+/// Both that share a vector, when both are moved at once.
+static void neighbours_in_a_vector_wake_together(void **state) {
+    (void)state;
+    mspring_id broken;
+    mspring_network *network = make_two(MSPRING_SOLVER_EXPLICIT, &broken);
+    mspring_view view = {.struct_size = sizeof view};
+    check_ok(mspring_network_view(network, &view));
+    // The rope's halves hang on A and B.
+    const uint32_t a = view.slot_of_particle[ROPE + 4], b = view.slot_of_particle[ROPE + 5];
+    assert_int_equal(a / 16, b / 16);
+    view.x[a] += 0.01f;
+    view.x[b] += 0.01f;
+    support_steps(network, 1, DT);
+    assert_int_equal(sleeps(network, IN_A) + sleeps(network, IN_B), 0);
+    assert_int_equal(sleeps(network, LOOSE), 1);
+    mspring_network_destroy(network);
+}
+
+/// Though it moves nothing: the spring has its rest length as it is.
+static void a_ramp_keeps_its_island_awake(void **state) {
+    (void)state;
+    mspring_id broken;
+    mspring_network *network = make_two(MSPRING_SOLVER_EXPLICIT, &broken);
+    const mspring_id spring = IN_A_SPRING;
+    check_ok(mspring_network_break_springs(network, &spring, 1));
+    fall_asleep(network);
+    check_ok(mspring_network_restore_springs(network, &spring, 1, 2));
+    support_steps(network, 100, DT);
+    assert_int_equal(sleeps(network, IN_A), 0);
+    assert_int_equal(sleeps(network, IN_B), 1);
+    support_steps(network, 28 + 16 + 1, DT); // to the end of the ramp, and for the time of falling asleep
+    assert_int_equal(sleeps(network, IN_A), 1);
+    mspring_network_destroy(network);
+}
+
+/// What wakes has no past: the implicit solver finds nothing of the motion before.
+static void what_wakes_was_at_rest(void **state) {
+    (void)state;
+    for (mspring_integrator integrator = MSPRING_INTEGRATOR_GA0; integrator <= MSPRING_INTEGRATOR_EULER;
+         integrator++) {
+        mspring_builder *builder = support_builder();
+        support_particle(builder, 0, 0, 1);
+        support_particle(builder, 10, 0, 1);
+        mspring_network_def def = support_def(0, 1);
+        def.global_damping = 4; // an acceleration to be remembered
+        def.sleep_speed = 0.5f;
+        def.sleep_time = 0.25f;
+        mspring_network *network = support_network(builder, &def);
+        mspring_solver_def solver;
+        check_ok(mspring_solver_def_init(&solver, sizeof solver));
+        solver.solver = MSPRING_SOLVER_IMPLICIT;
+        solver.integrator = integrator;
+        check_ok(mspring_network_set_solver(network, &solver));
+        // One is slow enough to fall asleep as it goes, the other never sleeps.
+        kick(network, 0, 0.4f);
+        kick(network, 1, 3);
+        for (int i = 0; i < 100 && !sleeps(network, 0); i++) {
+            support_steps(network, 1, DT);
+        }
+        const support_point at = support_position(network, 0);
+        check_ok(mspring_network_wake(network));
+        support_steps(network, 1, DT);
+        assert_int_equal(sleeps(network, 0), 0);
+        check_near(support_position(network, 0).x, at.x, 0);
+        check_near(support_position(network, 0).y, at.y, 0);
+        mspring_network_destroy(network);
+    }
+}
+
+/// The local origin moves along with what is awake; what sleeps stays where it is in the world, and asleep.
+static void the_origin_moves_on_without_waking(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    support_particle(builder, 80, 0, 1);
+    support_particle(builder, 200, 0, 1);
+    mspring_network_def def = support_def(0, 1);
+    def.sleep_speed = 0.1f;
+    def.sleep_time = 0.25f;
+    mspring_network *network = support_network(builder, &def);
+    mspring_view view = {.struct_size = sizeof view};
+    check_ok(mspring_network_view(network, &view));
+    const double origin = view.origin_x;
+    kick(network, 0, 100);
+    support_steps(network, 90, DT); // the origin goes along once it is 64 m from it, and past the other
+    check_ok(mspring_network_view(network, &view));
+    assert_true(view.origin_x > origin + 50);
+    kick(network, 0, -100);
+    support_steps(network, 2, DT);
+    assert_int_equal(sleeps(network, 1), 1);
+    check_near(support_position(network, 1).x, 200, 0);
+    mspring_network_destroy(network);
+}
+
+/// Masses of what is awake are the new ones at once, though something sleeps beside it.
+static void masses_of_what_is_awake_count_at_once(void **state) {
+    (void)state;
+    mspring_id broken;
+    mspring_network *network = make_two(MSPRING_SOLVER_EXPLICIT, &broken), *awake = NULL;
+    check_ok(mspring_network_clone(network, NULL, &awake));
+    mspring_network *const both[] = {network, awake};
+    const float heavy = 20;
+    for (int step = 0; step < 8; step++) {
+        for (int i = 0; i < 2; i++) {
+            if (step == 0) {
+                kick(both[i], IN_B, 4);
+            } else if (step == 4) {
+                check_ok(mspring_network_set_masses(both[i], IN_B, 1, &heavy));
+            }
+        }
+        check_ok(mspring_network_wake(awake));
+        support_steps(network, 1, DT);
+        support_steps(awake, 1, DT);
+        check_near(support_position(network, IN_B).x, support_position(awake, IN_B).x, 0);
+        check_near(support_position(network, IN_B).y, support_position(awake, IN_B).y, 0);
+    }
+    assert_int_equal(sleeps(network, IN_A), 1);
+    mspring_network_destroy(network);
+    mspring_network_destroy(awake);
+}
+
 /// A spring that joins two islands wakes both; from then on they are one.
 static void joining_wakes_both(void **state) {
     (void)state;
@@ -411,7 +488,7 @@ static void joining_wakes_both(void **state) {
     assert_int_equal(sleeps(network, IN_A) + sleeps(network, IN_B), 0);
     assert_int_equal(sleeps(network, LOOSE), 1);
     fall_asleep(network);
-    kick_a(network);
+    kick(network, IN_A, 1);
     support_steps(network, 1, DT);
     assert_int_equal(sleeps(network, IN_A) + sleeps(network, IN_B), 0);
     // Parted again, each sleeps by itself.
@@ -458,15 +535,15 @@ static void sleepers_stay_until_the_step_is_over(void **state) {
 /// Saved, cloned or compacted with one asleep, whatever is about to wake it, it goes on as it would have.
 static void snapshots_and_clones_go_on(void **state) {
     (void)state;
-    static const change_fn changes[] = {NULL, push, shift, write_view, fill, break_one};
+    static const change_fn last[] = {NULL, change_push, change_shift, change_write_view, change_fill, change_break};
     for (mspring_solver solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_IMPLICIT; solver++) {
-        for (size_t c = 0; c < COUNT_OF(changes); c++) {
+        for (size_t c = 0; c < COUNT_OF(last); c++) {
             mspring_id broken;
             mspring_network *network = make_two(solver, &broken), *other = make_two(solver, &broken), *clone = NULL;
             kick(network, IN_B, 4);
             support_steps(network, 3, DT);
-            if (changes[c]) {
-                changes[c](network);
+            if (last[c]) {
+                last[c](network, IN_A, IN_A_SPRING);
             }
             size_t size;
             check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &size));
@@ -517,6 +594,29 @@ static void what_sleeps_sleeps_on_in_another_layout(void **state) {
     }
 }
 
+/// A force under which it fell asleep, and masses set for others, are no news in another layout.
+static void forces_and_masses_are_those_of_before(void **state) {
+    (void)state;
+    mspring_id broken;
+    mspring_network *network = make_two(MSPRING_SOLVER_EXPLICIT, &broken);
+    const float none = 0, mass = 5;
+    check_ok(mspring_network_set_inverse_mass_scales(network, 0, 1, &none)); // A's corner is held
+    for (int i = 0; i < 3000 && !mspring_network_is_asleep(network); i++) {
+        check_ok(mspring_network_apply_force(network, IN_A, 10, 0));
+        support_steps(network, 1, DT);
+    }
+    assert_int_equal(mspring_network_is_asleep(network), 1);
+    check_ok(mspring_network_compact(network, 0, NULL));
+    check_ok(mspring_network_set_masses(network, IN_B, 1, &mass));
+    check_ok(mspring_network_apply_force(network, IN_A, 10, 0));
+    support_steps(network, 1, DT);
+    assert_int_equal(sleeps(network, IN_A), 1);
+    assert_int_equal(sleeps(network, IN_B), 0);
+    support_steps(network, 1, DT); // without the force
+    assert_int_equal(sleeps(network, IN_A), 0);
+    mspring_network_destroy(network);
+}
+
 /// A step that goes wrong for one wakes nobody, and leaves all where they were.
 static void a_step_that_goes_wrong_wakes_nobody(void **state) {
     (void)state;
@@ -543,7 +643,7 @@ static void a_step_that_goes_wrong_wakes_nobody(void **state) {
 
 /// What was about to wake is that still after a step that is refused, before it is taken or after, however often it
 /// was tried: the network goes on as one that was not asked.
-static void check_refused_step(mspring_guard guard, change_fn change, double dt, bool one_is_awake) {
+static void check_refused_step(mspring_guard guard, change_fn disturb, double dt, bool one_is_awake) {
     mspring_id broken;
     mspring_network *network = make_two_guarded(MSPRING_SOLVER_EXPLICIT, guard, &broken), *other = NULL;
     check_ok(mspring_network_set_global_damping(network, 0)); // over such times all would come to rest
@@ -551,7 +651,7 @@ static void check_refused_step(mspring_guard guard, change_fn change, double dt,
         kick(network, LOOSE, 1);
         support_steps(network, 1, DT);
     }
-    change(network);
+    disturb(network, IN_A, IN_A_SPRING);
     check_ok(mspring_network_clone(network, NULL, &other));
     const uint64_t before = support_hash(network);
     const uint32_t whole = mspring_network_is_asleep(network);
@@ -576,14 +676,12 @@ static void check_refused_step(mspring_guard guard, change_fn change, double dt,
 
 static void a_refused_step_leaves_no_trace(void **state) {
     (void)state;
-    static const change_fn changes[] = {push,   shift,    kick_a,    write_view, fill, pin,
-                                        soften, lengthen, break_one, detach,     watch};
     for (mspring_guard guard = MSPRING_GUARD_GROWTH; guard <= MSPRING_GUARD_CLAMP; guard++) {
-        for (size_t i = 0; i < COUNT_OF(changes); i++) {
+        for (size_t i = 0; i < CHANGE_COUNT; i++) {
             // Substeps that are no normal float, and some that throw everything beyond all bounds.
-            check_refused_step(guard, changes[i], 1e-40, false);
-            check_refused_step(guard, changes[i], 1e30, false);
-            check_refused_step(guard, changes[i], 1e30, true);
+            check_refused_step(guard, changes[i].make, 1e-40, false);
+            check_refused_step(guard, changes[i].make, 1e30, false);
+            check_refused_step(guard, changes[i].make, 1e30, true);
         }
     }
 }
@@ -675,10 +773,16 @@ int main(void) {
         cmocka_unit_test(bits_are_the_same_everywhere),
         cmocka_unit_test(to_others_sleepers_are_pinned),
         cmocka_unit_test(each_wakes_for_itself),
+        cmocka_unit_test(neighbours_in_a_vector_wake_together),
+        cmocka_unit_test(a_ramp_keeps_its_island_awake),
+        cmocka_unit_test(what_wakes_was_at_rest),
+        cmocka_unit_test(the_origin_moves_on_without_waking),
+        cmocka_unit_test(masses_of_what_is_awake_count_at_once),
         cmocka_unit_test(joining_wakes_both),
         cmocka_unit_test(sleepers_stay_until_the_step_is_over),
         cmocka_unit_test(snapshots_and_clones_go_on),
         cmocka_unit_test(what_sleeps_sleeps_on_in_another_layout),
+        cmocka_unit_test(forces_and_masses_are_those_of_before),
         cmocka_unit_test(a_step_that_goes_wrong_wakes_nobody),
         cmocka_unit_test(a_refused_step_leaves_no_trace),
         cmocka_unit_test(events_are_those_of_what_is_awake),

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "allocator.h"
+#include "changes.h"
 #include "recipe.h"
 #include "support.h"
 
@@ -125,48 +126,10 @@ static void what_moves_does_not_sleep(void **state) {
 
 /* -------------------------------------------------------------------------------------------------- waking */
 
-typedef void (*change_fn)(mspring_network *network);
-
-static void push(mspring_network *network) {
-    check_ok(mspring_network_apply_force(network, 3, 10, 0));
-}
-static void shift(mspring_network *network) {
-    const support_point at = support_position(network, 3);
-    const double x = at.x + 0.01;
-    check_ok(mspring_network_set_positions(network, 3, 1, &x, &at.y));
-}
-static void kick(mspring_network *network) {
-    const float vx = 0.5f, vy = 0;
-    check_ok(mspring_network_set_velocities(network, 3, 1, &vx, &vy));
-}
-static void write_view(mspring_network *network) {
-    mspring_view view = {.struct_size = sizeof view};
-    check_ok(mspring_network_view(network, &view));
-    view.x[view.slot_of_particle[3]] += 0.01f;
-}
-static void fill_with_water(mspring_network *network) {
-    const float mass = 5;
-    check_ok(mspring_network_set_masses(network, 3, 1, &mass));
-}
+/// Changes of the network as a whole, and of its pin.
 static void let_go(mspring_network *network) {
     const float scale = 1;
     check_ok(mspring_network_set_inverse_mass_scales(network, 100, 1, &scale));
-}
-static void soften(mspring_network *network) {
-    const float stiffness = 500;
-    check_ok(mspring_network_set_stiffnesses(network, 50, 1, &stiffness));
-}
-static void lengthen(mspring_network *network) {
-    const float rest_length = 1.1f;
-    check_ok(mspring_network_set_rest_lengths(network, 50, 1, &rest_length));
-}
-static void break_one(mspring_network *network) {
-    const mspring_id spring = 50;
-    check_ok(mspring_network_break_springs(network, &spring, 1));
-}
-static void watch(mspring_network *network) {
-    const float strain = 0.5f;
-    check_ok(mspring_network_set_break_strains(network, 50, 1, &strain));
 }
 static void tilt(mspring_network *network) {
     check_ok(mspring_network_set_gravity(network, 1, -9.8f));
@@ -186,23 +149,37 @@ static void settle(mspring_network *network) {
     check_ok(mspring_network_settle(network, NULL, NULL));
 }
 
+static void check_it_wakes(const recipe *made, const char *name, void (*general)(mspring_network *network),
+                           change_fn particular) {
+    mspring_network *network = make(made);
+    fall_asleep(network);
+    const uint64_t before = support_hash(network);
+    if (general) {
+        general(network);
+    } else {
+        particular(network, 3, 50);
+    }
+    support_steps(network, 2, DT);
+    if (mspring_network_is_asleep(network) || support_hash(network) == before) {
+        print_error("%s\n", name);
+        fail();
+    }
+    mspring_network_destroy(network);
+}
+
 static void changes_wake_it(void **state) {
     (void)state;
-    static const change_fn changes[] = {push,   shift,         kick,        write_view, fill_with_water,
-                                        let_go, soften,        lengthen,    break_one,  watch,
-                                        tilt,   change_solver, raise_floor, settle};
+    static const struct {
+        const char *name;
+        void (*make)(mspring_network *network);
+    } general[] = {
+        {"let go", let_go}, {"tilt", tilt}, {"solver", change_solver}, {"floor", raise_floor}, {"settle", settle}};
     recipe made = hanging_recipe(0);
-    for (size_t i = 0; i < COUNT_OF(changes); i++) {
-        mspring_network *network = make(&made);
-        fall_asleep(network);
-        const uint64_t before = support_hash(network);
-        changes[i](network);
-        support_steps(network, 2, DT);
-        if (mspring_network_is_asleep(network) || support_hash(network) == before) {
-            print_error("change %zu\n", i);
-            fail();
-        }
-        mspring_network_destroy(network);
+    for (size_t i = 0; i < CHANGE_COUNT; i++) {
+        check_it_wakes(&made, changes[i].name, NULL, changes[i].make);
+    }
+    for (size_t i = 0; i < COUNT_OF(general); i++) {
+        check_it_wakes(&made, general[i].name, general[i].make, NULL);
     }
     recipe_free(&made);
 }
@@ -211,7 +188,7 @@ static void restoring_wakes_it_and_a_ramp_keeps_it_awake(void **state) {
     (void)state;
     recipe made = hanging_recipe(0);
     mspring_network *network = make(&made);
-    break_one(network);
+    change_break(network, MSPRING_NONE, 50);
     fall_asleep(network);
     const mspring_id spring = 50;
     check_ok(mspring_network_restore_springs(network, &spring, 1, 5));
@@ -358,12 +335,12 @@ static uint64_t session_hash(const recipe *made, mspring_simd level, uint32_t wo
     check_ok(mspring_network_apply_force(network, 5, 300, 100));
     support_steps(network, 3, DT);
     fall_asleep(network);
-    break_one(network);
+    change_break(network, MSPRING_NONE, 50);
     check_ok(mspring_network_compact(network, 0, NULL));
     support_steps(network, 3, DT);
     assert_int_equal(mspring_network_is_asleep(network), 0);
     fall_asleep(network);
-    shift(network);
+    change_shift(network, 3, MSPRING_NONE);
     support_steps(network, 3, DT);
     const uint64_t hash = support_hash(network);
     mspring_network_destroy(network);
@@ -402,7 +379,7 @@ static void snapshots_and_clones_sleep_on(void **state) {
             check_ok(mspring_network_apply_force(network, 7, 20, 5));
             support_steps(network, 1, DT);
         } else if (when == 2) {
-            write_view(network);
+            change_write_view(network, 3, MSPRING_NONE);
         }
         size_t size;
         check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_FRAME, &size));

@@ -1,0 +1,80 @@
+/// @file changes.c
+///
+/// SPDX-License-Identifier: MIT
+#include "changes.h"
+
+#include "support.h"
+
+void change_push(mspring_network *network, mspring_id particle, mspring_id spring) {
+    (void)spring;
+    check_ok(mspring_network_apply_force(network, particle, 10, 0));
+}
+
+void change_shift(mspring_network *network, mspring_id particle, mspring_id spring) {
+    (void)spring;
+    const support_point at = support_position(network, particle);
+    const double x = at.x + 0.01;
+    check_ok(mspring_network_set_positions(network, particle, 1, &x, &at.y));
+}
+
+static void kick(mspring_network *network, mspring_id particle, mspring_id spring) {
+    (void)spring;
+    const float vx = 1, vy = 0.3f;
+    check_ok(mspring_network_set_velocities(network, particle, 1, &vx, &vy));
+}
+
+void change_write_view(mspring_network *network, mspring_id particle, mspring_id spring) {
+    (void)spring;
+    mspring_view view = {.struct_size = sizeof view};
+    check_ok(mspring_network_view(network, &view));
+    view.y[view.slot_of_particle[particle]] += 0.01f;
+}
+
+void change_fill(mspring_network *network, mspring_id particle, mspring_id spring) {
+    (void)spring;
+    const float mass = 5;
+    check_ok(mspring_network_set_masses(network, particle, 1, &mass));
+}
+
+static void pin(mspring_network *network, mspring_id particle, mspring_id spring) {
+    (void)spring;
+    const float scale = 0;
+    check_ok(mspring_network_set_inverse_mass_scales(network, particle, 1, &scale));
+}
+
+static void soften(mspring_network *network, mspring_id particle, mspring_id spring) {
+    (void)particle;
+    const float stiffness = 500;
+    check_ok(mspring_network_set_stiffnesses(network, spring, 1, &stiffness));
+}
+
+static void lengthen(mspring_network *network, mspring_id particle, mspring_id spring) {
+    (void)particle;
+    const float rest_length = 1.1f;
+    check_ok(mspring_network_set_rest_lengths(network, spring, 1, &rest_length));
+}
+
+void change_break(mspring_network *network, mspring_id particle, mspring_id spring) {
+    (void)particle;
+    check_ok(mspring_network_break_springs(network, &spring, 1));
+}
+
+static void detach(mspring_network *network, mspring_id particle, mspring_id spring) {
+    (void)spring;
+    check_ok(mspring_network_detach_particles(network, &particle, 1));
+}
+
+static void watch(mspring_network *network, mspring_id particle, mspring_id spring) {
+    (void)particle;
+    const float strain = 0.5f;
+    check_ok(mspring_network_set_break_strains(network, spring, 1, &strain));
+}
+
+const change changes[CHANGE_COUNT] = {
+    {"push", change_push},   {"shift", change_shift},
+    {"kick", kick},          {"write to a view", change_write_view},
+    {"fill", change_fill},   {"pin", pin},
+    {"soften", soften},      {"lengthen", lengthen},
+    {"break", change_break}, {"detach", detach},
+    {"watch", watch},
+};
