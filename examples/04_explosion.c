@@ -38,7 +38,7 @@ static bool measure_speed(const mspring_network *network, double *fastest) {
         return false;
     *fastest = 0;
     for (int i = 0; i < PARTICLES; i++)
-        *fastest = fmax(*fastest, hypot(vx[i], vy[i]));
+        *fastest = fmax(*fastest, hypot((double)vx[i], (double)vy[i]));
     return true;
 }
 

@@ -272,7 +272,7 @@ static void find_pieces(game *played) {
     must(mspring_network_update_components(played->network, &played->piece_count, &changed), "pieces", played);
     if (!changed)
         return;
-    double water_of[MOST];
+    double water_of[MOST] = {0};
     for (uint32_t i = 0; i < played->particles; i++)
         water_of[i] = played->size[played->piece[i]] > 0
                           ? played->water[played->piece[i]] / played->size[played->piece[i]]

@@ -89,6 +89,7 @@ static bool tune(mspring_network *network, const options *how, mspring_tune_def 
         rows[i].struct_size = sizeof rows[i];
     const mspring_result result = mspring_network_tune(network, def, rows, MOST_ROWS, count);
     progress_clear(&told.line);
+    def->user = NULL;
     if (result != MSPRING_OK)
         fprintf(stderr, "cannot tune: %s\n", mspring_network_error(network));
     return result == MSPRING_OK;
@@ -290,14 +291,15 @@ static void draw_cloud(figure *target, const cloud *drawn, const char *title, co
                        double left) {
     scatter_series series[SOLVERS];
     size_t count = 0;
-    for (int s = 0; s < SOLVERS; s++)
-        if (drawn->counts[s] > 0)
-            series[count++] = (scatter_series){.points = drawn->points[s],
-                                               .count = drawn->counts[s],
-                                               .mark = solver_marks[s],
-                                               .colour = solver_colours[s],
-                                               .labels_below = s == MSPRING_SOLVER_EXPLICIT,
-                                               .name = solver_names[s]};
+    for (int s = 0; s < SOLVERS; s++) {
+        series[count] = (scatter_series){.points = drawn->points[s],
+                                         .count = drawn->counts[s],
+                                         .mark = solver_marks[s],
+                                         .colour = solver_colours[s],
+                                         .labels_below = s == MSPRING_SOLVER_EXPLICIT,
+                                         .name = solver_names[s]};
+        count += drawn->counts[s] > 0;
+    }
     const scatter plot = {.title = title,
                           .x_label = "a step of 1/64 s takes at least, microseconds",
                           .y_label = y_label,
@@ -386,8 +388,8 @@ int main(int count, char **arguments) {
             how.images = value;
         else if (value && strcmp(arguments[i], "--only") == 0)
             how.only = value;
-        else if (value && strcmp(arguments[i], "--budget") == 0 && atof(value) > 0)
-            how.budget = atof(value);
+        else if (value && strcmp(arguments[i], "--budget") == 0 && strtod(value, NULL) > 0)
+            how.budget = strtod(value, NULL);
         else if (value && strcmp(arguments[i], "--clock") == 0 && strcmp(value, "cpu") == 0)
             how.clock = clock_processor_seconds;
         else if (value && strcmp(arguments[i], "--clock") == 0 && strcmp(value, "wall") == 0)

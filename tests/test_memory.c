@@ -88,7 +88,6 @@ static void fill(mspring_builder *builder, const input *in) {
     if (!done(builder, before, mspring_builder_add_rope(builder, &in->rope, NULL, NULL))) {
         check_ok(mspring_builder_add_rope(builder, &in->rope, NULL, NULL));
     }
-    before = counts_of(builder);
     // One by one until the arrays have to grow again.
     for (uint32_t i = 0; i < 1000; i++) {
         mspring_particle_def particle;

@@ -100,9 +100,10 @@ static bool choose_files(bending_run *run) {
     for (int i = 0; i < 3; i++) {
         if (!given[i])
             continue;
-        if (strlen(given[i]) >= OUTPUT_PATH_SIZE)
+        const size_t size = strlen(given[i]) + 1;
+        if (size > OUTPUT_PATH_SIZE)
             return fail("the path of a picture is too long: choose a shorter one");
-        strcpy(chosen[i], given[i]);
+        memcpy(chosen[i], given[i], size);
     }
     if (options->at_once) // there is no way down to be shown
         run->animation[0] = '\0';

@@ -37,6 +37,7 @@ static void blend(canvas *target, int x, int y, double coverage, draw_colour col
     int weight = (int)(coverage * 256 + 0.5);
     for (int i = 0; i < 3; i++) {
         int wanted = (int)(colour >> (16 - 8 * i)) & 255;
+        // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): canvas_make has filled it
         pixel[i] = (uint8_t)(pixel[i] + (wanted - pixel[i]) * weight / 256);
     }
 }

@@ -167,7 +167,7 @@ static size_t cut_boxes(const colour_bin *bins, colour_box *boxes, size_t most) 
 // Every bin lies in one box, also those without a pixel.
 static void fill_nearest(palette *made, const colour_bin *bins, const colour_box *boxes) {
     for (size_t i = 0; i < made->count; i++) {
-        int at[CHANNELS];
+        int at[CHANNELS] = {0};
         bool started = false;
         for (const colour_bin *bin; (bin = next_bin(bins, &boxes[i], at, &started));)
             made->nearest[bin - bins] = (uint8_t)i;

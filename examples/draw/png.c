@@ -72,7 +72,9 @@ static void write_palette(FILE *stream, const palette *colours) {
 static uint8_t *map_pixels(const canvas *source, const palette *colours) {
     size_t pixels = (size_t)source->width * source->height;
     uint8_t *places = malloc(pixels);
-    for (size_t i = 0; places && i < pixels; i++) {
+    if (!places)
+        return NULL;
+    for (size_t i = 0; i < pixels; i++) {
         const uint8_t *rgb = source->rgb + 3 * i;
         places[i] = palette_place(colours, (draw_colour)rgb[0] << 16 | (draw_colour)rgb[1] << 8 | rgb[2]);
     }
@@ -144,6 +146,7 @@ static region changed_region(const png_animation *animation, const uint8_t *now)
     for (uint32_t row = 0; row < animation->height; row++) {
         for (uint32_t column = 0; column < animation->width; column++) {
             size_t index = (size_t)row * animation->width + column;
+            // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): both are of as many pixels
             if (animation->shown[index] == now[index])
                 continue;
             left = column < left ? column : left;

@@ -45,6 +45,7 @@ static bool keep(frame_list *list, const lab_raster *source, uint32_t shrink) {
                     const size_t row = (size_t)y * shrink + i / shrink, column = (size_t)x * shrink + i % shrink;
                     sum += source->pixels[row * (size_t)source->width + column] >> (16 - 8 * channel) & 255;
                 }
+                // NOLINTNEXTLINE(clang-analyzer-core.DivideZero): it is read as 1 at least
                 made->rgb[3 * ((size_t)y * width + x) + (size_t)channel] = (uint8_t)(sum / (shrink * shrink));
             }
     return true;

@@ -15,7 +15,7 @@ bool raster_make(lab_raster *made, int width, int height) {
     uint32_t *pixels = calloc((size_t)width * (size_t)height, sizeof *pixels);
     if (!pixels)
         return false;
-    *made = (lab_raster){width, height, pixels};
+    *made = (lab_raster){.width = width, .height = height, .pixels = pixels};
     return true;
 }
 

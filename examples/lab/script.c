@@ -75,7 +75,7 @@ bool script_parse(const char *text, size_t length, const char *name, lab_script 
             start++;
         if (start == size || line[start] == '#')
             continue;
-        script_line read;
+        script_line read = {.line = number};
         ok = read_line(&made, number, line, size, start, &read, error) && add_line(&made, &capacity, &read, error);
     }
     if (!ok) {

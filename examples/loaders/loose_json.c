@@ -174,6 +174,7 @@ static bool read_value(json_reader *reader, unsigned depth, uint32_t *index) {
     case '{':
     case '[':
         value.kind = *reader->at == '{' ? JSON_OBJECT : JSON_ARRAY;
+        // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): add_value has made it
         reader->made->values[*index] = value;
         return read_members(reader, depth, *index);
     case '"':
@@ -183,6 +184,7 @@ static bool read_value(json_reader *reader, unsigned depth, uint32_t *index) {
     default:
         ok = read_word(reader, &value);
     }
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): add_value has made it
     reader->made->values[*index] = value;
     return ok;
 }

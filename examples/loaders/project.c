@@ -36,6 +36,7 @@ static uint32_t find_particle(const place_table *table, const structure *made, d
     for (int64_t r = row - 1; r <= row + 1; r++) {
         for (int64_t c = column - 1; c <= column + 1; c++) {
             for (uint32_t i = table->heads[bucket_of(table, c, r)]; i; i = table->next[i - 1]) {
+                // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): merge_nodes has filled it
                 double dx = made->particles[i - 1].x - x;
                 double dy = made->particles[i - 1].y - y;
                 if (dx * dx + dy * dy <= table->size * table->size && i - 1 < found)
@@ -79,6 +80,7 @@ static void merge_nodes(const model *from, const int axes[2], place_table *table
 static bool flatten_beam(const model *from, const model_beam *beam, mspring_id a, mspring_id b,
                          mspring_spring_def *def, float *break_strain, structure *made) {
     double in_space = model_distance(from, beam->a, beam->b);
+    // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): merge_nodes has filled both
     double length = hypot(made->particles[a].x - made->particles[b].x, made->particles[a].y - made->particles[b].y);
     if (!(in_space > 0) || !(length > 0))
         return false;

@@ -350,6 +350,7 @@ static bool read_lines(ror_file *file, scene_error *error) {
     while (line_next(&file->reader)) {
         const text_span word = file->reader.words[0];
         bool ok = true;
+        // NOLINTNEXTLINE(bugprone-branch-clone): the order of the questions counts
         if (!begins_with_letter(word)) {
             ok = read_row(file, &in, error);
         } else if (word_is(word, "end")) {

@@ -186,6 +186,7 @@ static uint32_t colour_of(const pixel_image *image, size_t pixel) {
 
 static const ship_material *material_of(const ship_materials *materials, uint32_t colour) {
     ship_material wanted = {.colour = colour};
+    // NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): a file has a material, or was refused
     return bsearch(&wanted, materials->items, materials->count, sizeof wanted, compare_colours);
 }
 
@@ -267,7 +268,8 @@ static bool add_beams(const pixel_image *image, const ship_material *const *cell
 static bool add_pixels(const pixel_image *image, const ship_materials *materials, const char *name,
                        const char *file, model *made, scene_error *error) {
     const size_t pixels = (size_t)image->width * image->height;
-    const ship_material **cells = malloc(pixels * sizeof *cells);
+    // NOLINTNEXTLINE(bugprone-sizeof-expression): they are pointers
+    const ship_material **cells = calloc(pixels, sizeof *cells);
     uint32_t *nodes = malloc(pixels * sizeof *nodes);
     made->side = STRUCTURE_PLANE_XY;
     made->relative = true;

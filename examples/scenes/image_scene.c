@@ -125,6 +125,7 @@ static void fill_break_strains(const pixel_image *image, const uint16_t *cells, 
     size_t spring = 0;
     for (uint32_t row = 0; row < image->height; row++) {
         for (uint32_t column = 0; column < image->width; column++) {
+            // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): every one was filled in
             uint16_t cell = cells[(size_t)row * image->width + column];
             for (int i = 0; cell != MSPRING_CELL_EMPTY && i < 4; i++) {
                 int64_t x = (int64_t)column + steps[i][0];

@@ -39,6 +39,7 @@ static mspring_result reserve(mspring_network *network) {
     if (result == MSPRING_OK)
         result = mspringi_incidence_reserve(network);
     for (size_t p = 0; result == MSPRING_OK && p < particles; ++p)
+        // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): they are there, or result says otherwise
         made.number[p] = made.old[p] = MSPRING_NONE;
     if (result == MSPRING_OK)
         network->components = made;
@@ -59,6 +60,7 @@ static void number_components(mspring_network *network) {
     c->count = 0;
     for (mspring_id p = 0; p < t->particle_count; ++p) {
         if (!mspringi_particle_exists(network, p)) {
+            // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): made with the components
             c->number[p] = MSPRING_NONE;
             continue;
         }
@@ -66,10 +68,12 @@ static void number_components(mspring_network *network) {
         const uint32_t root = c->root[slot] & NUMBERED ? slot : c->root[slot];
         if (!(c->root[root] & NUMBERED)) {
             c->root[root] = NUMBERED | c->count;
+            // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): made with the components
             c->head[c->count] = p;
             c->size[c->count++] = 0;
         }
         const uint32_t number = c->root[root] & ~NUMBERED;
+        // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): made with the components
         c->number[p] = number;
         c->size[number]++;
     }

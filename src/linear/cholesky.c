@@ -25,6 +25,7 @@ const mspringi_cholesky_kernels *mspringi_cholesky_kernels_of(mspring_simd level
     }
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): of a type
 #define MSPRINGI_CHOLESKY_DEFINE(real)                                                                             \
     mspring_result mspringi_cholesky_##real##_create(mspringi_cholesky_##real *factor,                             \
                                                      const mspringi_cholesky_plan *plan, mspring_simd level,       \
@@ -73,6 +74,7 @@ const mspringi_cholesky_kernels *mspringi_cholesky_kernels_of(mspring_simd level
         mspringi_cholesky_##real *factor, const mspringi_cholesky_matrix_##real *matrix, real *x, real *y) {       \
         return factor->kernels->factor_solve_##real(factor, matrix, x, y);                                         \
     }
+// NOLINTEND(bugprone-macro-parentheses)
 
 MSPRINGI_CHOLESKY_DEFINE(float)
 MSPRINGI_CHOLESKY_DEFINE(double)

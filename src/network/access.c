@@ -118,10 +118,12 @@ typedef struct positions {
 } positions;
 
 static double x_of(const positions *p, uint32_t i) {
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): x is there, or x_float
     return p->x ? p->x[i] : (double)p->x_float[i];
 }
 
 static double y_of(const positions *p, uint32_t i) {
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): y is there, or y_float
     return p->y ? p->y[i] : (double)p->y_float[i];
 }
 

@@ -234,7 +234,7 @@ static void fill_springs(mspring_network *network, const mspring_builder *builde
 static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const mspring_builder *builder,
                                              const mspring_network_def *def) {
     bool damped, relative;
-    mspringi_reserve reserve;
+    mspringi_reserve reserve = {0};
     mspring_result result = mspringi_tasks_create(def->worker_count, def->tasks, &network->tasks_memory,
                                                   &network->message, &network->tasks);
     if (result == MSPRING_OK)

@@ -74,7 +74,7 @@ mspring_result mspringi_rests_create(mspringi_rests *rests, const mspringi_topol
                                      const mspring_builder *builder, mspringi_memory *memory,
                                      mspringi_message *message) {
     const uint32_t blocks = topology->lattice_blocks;
-    pattern shared[MOST_PATTERNS];
+    pattern shared[MOST_PATTERNS] = {{.is_mixed = false}};
     pattern *of_block = mspringi_alloc(memory, blocks, sizeof *of_block);
     rests->of_block = mspringi_alloc(memory, blocks, sizeof *rests->of_block);
     if (of_block && rests->of_block) {
@@ -113,5 +113,6 @@ mspring_result mspringi_rests_separate(mspring_network *network) {
 }
 
 float *mspringi_rests_at(const mspringi_rests *rests, mspringi_place place) {
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a place of a lattice has a block
     return rests->lengths + (size_t)rests->of_block[place / BLOCK_PLACES] * BLOCK_PLACES + place % BLOCK_PLACES;
 }

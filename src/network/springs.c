@@ -82,6 +82,7 @@ void mspringi_place_copy(const mspring_network *from, mspringi_place had_place, 
         *record->rest_length = *had.rest_length;
         *record->stiffness = *had.stiffness;
         if (record->damping)
+            // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): both networks have it, or neither
             *record->damping = *had.damping;
     }
 }

@@ -655,6 +655,7 @@ mspring_result mspringi_topology_begin(const mspring_builder *builder, const msp
 }
 
 mspring_result mspringi_topology_go_on(mspringi_assembly *begun) {
+    // NOLINTNEXTLINE(-Wanalyzer-null-dereference): it was begun
     return begun->done < MSPRINGI_TOPOLOGY_PIECES ? pieces[begun->done++](begun) : MSPRING_OK;
 }
 
@@ -683,9 +684,11 @@ void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory,
     begun->made.chain_particles = begun->strands.count;
     begun->made.chain_springs = begun->strands.spring_count;
     begun->made.web_particles = begun->web.count;
+    // NOLINTNEXTLINE(-Wanalyzer-null-dereference): it was begun
     *topology = begun->made;
     *places = begun->places;
     begun->places = NULL;
+    // NOLINTNEXTLINE(-Wanalyzer-null-dereference): as above
     begun->made = (mspringi_topology){0};
     mspringi_topology_abandon(begun, memory);
 }

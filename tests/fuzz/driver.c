@@ -32,6 +32,7 @@ static uint64_t next_random(uint64_t *seed) {
     return bits ^ (bits >> 31);
 }
 
+// NOLINTBEGIN(bugprone-signal-handler,cert-sig30-c): it ends the program, in whatever state
 static void leave_input(int number) {
     signal(number, SIG_DFL);
     FILE *stream = fopen("crash", "wb");
@@ -42,6 +43,7 @@ static void leave_input(int number) {
     }
     raise(number);
 }
+// NOLINTEND(bugprone-signal-handler,cert-sig30-c)
 
 static void run(void) {
     // A copy of just this size, so that sanitizers see reads behind it.
@@ -137,7 +139,7 @@ int main(int count, char **arguments) {
             draw_bytes(&seed, length);
         run();
     }
-    printf("%llu inputs\n", (unsigned long long)(runs + file_count));
+    printf("%llu inputs\n", (unsigned long long)runs + file_count);
     for (size_t i = 0; i < file_count; i++)
         free(files[i].bytes);
     return 0;
