@@ -3,7 +3,7 @@
 /// springs that do not exist, absurd counts, structs of impossible sizes, calls from inside a hook. Each is refused
 /// or, where that is documented, accepted; a refusal says why, changes nothing and touches no out-parameter.
 ///
-/// The functions are those of the header: one that is missing in the table fails the test.
+/// The functions are those of the header: one that is missing in the table (hostile.c) fails the test.
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
@@ -12,375 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hostile.h"
 #include "recipe.h"
 #include "support.h"
-
-enum { OUTS = 6, OUT_BYTES = 512, STRUCT_BYTES = 512, SNAPSHOT_BYTES = 8192 };
-
-/// What a function is called with: good at first, then spoilt in one place.
-typedef struct arguments {
-    mspring_network *network;
-    mspring_builder *builder;
-    mspring_id id, first;
-    uint32_t count;
-    size_t size;
-    int32_t kind;
-    float x, y;
-    double dt, safety, ramp;
-    const float *f, *g;
-    const double *d, *e;
-    const mspring_id *ids;
-    const void *snapshot;
-    void *given; ///< a struct
-    void *out[OUTS];
-
-    float f_values[2], g_values[2];
-    double d_values[2], e_values[2];
-    mspring_id id_values[2];
-    _Alignas(16) unsigned char given_bytes[STRUCT_BYTES];
-    _Alignas(16) unsigned char out_bytes[OUTS][OUT_BYTES];
-    _Alignas(16) unsigned char snapshot_bytes[SNAPSHOT_BYTES];
-    size_t snapshot_size;
-} arguments;
-
-/* --------------------------------------------------------------------------------------------- the functions */
-
-static size_t sink; // what functions without a result return
-
-static mspring_result note_size(size_t value) {
-    sink += value;
-    return MSPRING_OK;
-}
-
-static mspring_result note_text(const char *text) {
-    assert_non_null(text);
-    return note_size(strlen(text));
-}
-
-static mspring_result create_builder(arguments *a) {
-    const mspring_result result = mspring_builder_create(a->given, a->out[0]);
-    if (result == MSPRING_OK) {
-        mspring_builder_destroy(*(mspring_builder **)a->out[0]);
-    }
-    return result;
-}
-
-static mspring_result create_network(arguments *a) {
-    const mspring_result result = mspring_network_create(a->builder, a->given, a->out[0]);
-    if (result == MSPRING_OK) {
-        mspring_network_destroy(*(mspring_network **)a->out[0]);
-    }
-    return result;
-}
-
-static mspring_result clone_network(arguments *a) {
-    const mspring_result result = mspring_network_clone(a->network, a->given, a->out[0]);
-    if (result == MSPRING_OK) {
-        mspring_network_destroy(*(mspring_network **)a->out[0]);
-    }
-    return result;
-}
-
-static mspring_result destroy_nothing(void) {
-    mspring_builder_destroy(NULL);
-    mspring_network_destroy(NULL);
-    return MSPRING_OK;
-}
-
-static void *host_alloc(size_t size, size_t alignment, void *user) {
-    (void)alignment, (void)user;
-    return malloc(size);
-}
-
-static void host_free(void *memory, size_t size, void *user) {
-    (void)size, (void)user;
-    free(memory);
-}
-
-static void no_hook(const mspring_hook_args *args, void *user) {
-    (void)args, (void)user;
-}
-
-/// Ways to make what is given.
-#define NOTHING ((void)0)
-#define FILL(type) ((void)mspring_##type##_init((mspring_##type *)(void *)a->given_bytes, sizeof(mspring_##type)))
-/// Out-parameter i is a struct.
-#define OUT_STRUCT(i, type) (*(uint32_t *)(void *)a->out_bytes[i] = (uint32_t)sizeof(mspring_##type))
-
-static void make_allocator(arguments *a) {
-    const mspring_allocator made = {.struct_size = sizeof made, .alloc = host_alloc, .free = host_free};
-    memcpy(a->given_bytes, &made, sizeof made);
-}
-
-static void make_spring(arguments *a) {
-    mspring_spring_def made;
-    check_ok(mspring_spring_def_init(&made, sizeof made));
-    made.a = 0, made.b = 7;
-    memcpy(a->given_bytes, &made, sizeof made);
-}
-
-static void make_rope(arguments *a) {
-    mspring_rope_def made;
-    check_ok(mspring_rope_def_init(&made, sizeof made));
-    made.from = 0, made.to = 7, made.segment_count = 2;
-    memcpy(a->given_bytes, &made, sizeof made);
-}
-
-static void make_lattice(arguments *a) {
-    static const uint16_t cells[4] = {0, 0, 0, 0};
-    static mspring_material material;
-    mspring_lattice_def made;
-    check_ok(mspring_material_init(&material, sizeof material));
-    check_ok(mspring_lattice_def_init(&made, sizeof made));
-    made.width = made.height = 2, made.cells = cells, made.materials = &material, made.material_count = 1;
-    memcpy(a->given_bytes, &made, sizeof made);
-}
-
-static void make_hook(arguments *a) {
-    mspring_hook_def made;
-    check_ok(mspring_hook_def_init(&made, sizeof made));
-    made.fn = no_hook;
-    memcpy(a->given_bytes, &made, sizeof made);
-}
-
-/// One setting to be tried in a few short steps.
-static void make_tune(arguments *a) {
-    static mspring_solver_def setting;
-    mspring_tune_def made;
-    check_ok(mspring_solver_def_init(&setting, sizeof setting));
-    check_ok(mspring_tune_def_init(&made, sizeof made));
-    made.settings = &setting, made.setting_count = 1, made.dt = 0.001, made.duration = 0.004;
-    memcpy(a->given_bytes, &made, sizeof made);
-}
-
-static void make_tune_row(arguments *a) {
-    const mspring_tune_row made = {.struct_size = sizeof made, .substeps = 1};
-    memcpy(a->given_bytes, &made, sizeof made);
-}
-
-static void make_floor(arguments *a) {
-    static const double plane[4] = {0, -1, 0, 1};
-    mspring_floor_def made;
-    check_ok(mspring_floor_def_init(&made, sizeof made));
-    made.planes = plane, made.plane_count = 1;
-    memcpy(a->given_bytes, &made, sizeof made);
-}
-
-static void add_hook(arguments *a) {
-    check_ok(support_add_hook(a->network, MSPRING_PHASE_BEFORE_STEP, no_hook, NULL, &a->id));
-}
-
-/// Name, kinds of arguments, what makes the struct given, the call.
-///
-/// Kinds: capitals have to be refused when they are spoilt, small letters may be accepted.
-///   N  network, of a call that is refused inside a hook, and leaves a message     n  network of another call
-///   v  network or builder that may be NULL        B  builder
-///   I  id        R  first and count       A  ids        C  count of structs (size)
-///   X  x, Y  y   T  dt   L  safety   J  ramp            K  enumerator
-///   F f  G g     arrays of floats, where only small letters allow infinity    D E  arrays of doubles
-///   S  struct, NULL refused    s  struct, NULL accepted; impossible sizes are refused for both
-///   W  any other word of the struct may be anything (for those without pointers)
-///   P  first out-parameter, a struct with its size     0-5  out-parameter needed    o  all of them may be NULL
-///   Z  size    V  bytes of a snapshot
-#define FUNCTIONS(X)                                                                                               \
-    X(mspring_version, "", NOTHING, note_size(mspring_version()))                                                  \
-    X(mspring_version_string, "", NOTHING, note_text(mspring_version_string()))                                    \
-    X(mspring_features, "", NOTHING, note_size(mspring_features()))                                                \
-    X(mspring_result_string, "k", NOTHING, note_text(mspring_result_string(a->kind)))                              \
-    X(mspring_particle_def_init, "Z0", a->size = sizeof(mspring_particle_def),                                     \
-      mspring_particle_def_init(a->out[0], a->size))                                                               \
-    X(mspring_spring_def_init, "Z0", a->size = sizeof(mspring_spring_def),                                         \
-      mspring_spring_def_init(a->out[0], a->size))                                                                 \
-    X(mspring_material_init, "Z0", a->size = sizeof(mspring_material), mspring_material_init(a->out[0], a->size))  \
-    X(mspring_lattice_def_init, "Z0", a->size = sizeof(mspring_lattice_def),                                       \
-      mspring_lattice_def_init(a->out[0], a->size))                                                                \
-    X(mspring_rope_def_init, "Z0", a->size = sizeof(mspring_rope_def), mspring_rope_def_init(a->out[0], a->size))  \
-    X(mspring_solver_def_init, "Z0", a->size = sizeof(mspring_solver_def),                                         \
-      mspring_solver_def_init(a->out[0], a->size))                                                                 \
-    X(mspring_network_def_init, "Z0", a->size = sizeof(mspring_network_def),                                       \
-      mspring_network_def_init(a->out[0], a->size))                                                                \
-    X(mspring_settle_def_init, "Z0", a->size = sizeof(mspring_settle_def),                                         \
-      mspring_settle_def_init(a->out[0], a->size))                                                                 \
-    X(mspring_hook_def_init, "Z0", a->size = sizeof(mspring_hook_def), mspring_hook_def_init(a->out[0], a->size))  \
-    X(mspring_clone_def_init, "Z0", a->size = sizeof(mspring_clone_def),                                           \
-      mspring_clone_def_init(a->out[0], a->size))                                                                  \
-    X(mspring_builder_create, "s0", make_allocator(a), create_builder(a))                                          \
-    X(mspring_builder_destroy, "", NOTHING, destroy_nothing())                                                     \
-    X(mspring_builder_error, "v", NOTHING, note_text(mspring_builder_error(a->builder)))                           \
-    X(mspring_builder_particle_count, "v", NOTHING, note_size(mspring_builder_particle_count(a->builder)))         \
-    X(mspring_builder_spring_count, "v", NOTHING, note_size(mspring_builder_spring_count(a->builder)))             \
-    X(mspring_builder_add_particle, "BSWo", FILL(particle_def),                                                    \
-      mspring_builder_add_particle(a->builder, a->given, a->out[0]))                                               \
-    X(mspring_builder_add_particles, "BSWCo", FILL(particle_def),                                                  \
-      mspring_builder_add_particles(a->builder, a->given, a->size, a->out[0]))                                     \
-    X(mspring_builder_add_spring, "BSWo", make_spring(a),                                                          \
-      mspring_builder_add_spring(a->builder, a->given, a->out[0]))                                                 \
-    X(mspring_builder_add_springs, "BSWCo", make_spring(a),                                                        \
-      mspring_builder_add_springs(a->builder, a->given, a->size, a->out[0]))                                       \
-    X(mspring_builder_add_lattice, "BSo", make_lattice(a),                                                         \
-      mspring_builder_add_lattice(a->builder, a->given, a->out[0]))                                                \
-    X(mspring_builder_add_rope, "BSo", make_rope(a),                                                               \
-      mspring_builder_add_rope(a->builder, a->given, a->out[0], a->out[1]))                                        \
-    X(mspring_network_create, "Bs0", FILL(network_def), create_network(a))                                         \
-    X(mspring_network_destroy, "", NOTHING, destroy_nothing())                                                     \
-    X(mspring_network_clone, "ns0", FILL(clone_def), clone_network(a))                                             \
-    X(mspring_network_error, "v", NOTHING, note_text(mspring_network_error(a->network)))                           \
-    X(mspring_network_particle_count, "v", NOTHING, note_size(mspring_network_particle_count(a->network)))         \
-    X(mspring_network_spring_count, "v", NOTHING, note_size(mspring_network_spring_count(a->network)))             \
-    X(mspring_network_substeps, "v", NOTHING, note_size(mspring_network_substeps(a->network)))                     \
-    X(mspring_network_fallback_count, "v", NOTHING, note_size((size_t)mspring_network_fallback_count(a->network))) \
-    X(mspring_network_simd_level, "v", NOTHING, note_size((size_t)mspring_network_simd_level(a->network)))         \
-    X(mspring_network_worker_count, "v", NOTHING, note_size(mspring_network_worker_count(a->network)))             \
-    X(mspring_network_memory_used, "v", NOTHING, note_size(mspring_network_memory_used(a->network)))               \
-    X(mspring_simd_supported, "", NOTHING, note_size((size_t)mspring_simd_supported()))                            \
-    X(mspring_simd_available, "k", NOTHING, note_size(mspring_simd_available(a->kind)))                            \
-    X(mspring_simd_name, "k", NOTHING, note_text(mspring_simd_name(a->kind)))                                      \
-    X(mspring_network_set_solver, "NSW", FILL(solver_def), mspring_network_set_solver(a->network, a->given))       \
-    X(mspring_network_set_gravity, "NXY", NOTHING, mspring_network_set_gravity(a->network, a->x, a->y))            \
-    X(mspring_network_set_global_damping, "NX", NOTHING, mspring_network_set_global_damping(a->network, a->x))     \
-    X(mspring_network_step, "NT", NOTHING, mspring_network_step(a->network, a->dt))                                \
-    X(mspring_network_stable_dt, "No", NOTHING, mspring_network_stable_dt(a->network, a->out[0], a->out[1]))       \
-    X(mspring_network_suggest_substeps, "NTL0", NOTHING,                                                           \
-      mspring_network_suggest_substeps(a->network, a->dt, a->safety, a->out[0]))                                   \
-    X(mspring_network_settle, "NsWo", (FILL(settle_def), OUT_STRUCT(0, settle_result)),                            \
-      mspring_network_settle(a->network, a->given, a->out[0]))                                                     \
-    X(mspring_tune_def_init, "Z0", a->size = sizeof(mspring_tune_def), mspring_tune_def_init(a->out[0], a->size))  \
-    X(mspring_tune_settings, "NT0", NOTHING, mspring_tune_settings(a->network, a->dt, NULL, 0, a->out[0]))         \
-    X(mspring_network_tune, "NsP1", (make_tune(a), OUT_STRUCT(0, tune_row)),                                       \
-      mspring_network_tune(a->network, a->given, a->out[0], 1, a->out[1]))                                         \
-    X(mspring_tune_row_solver, "S0", make_tune_row(a), mspring_tune_row_solver(a->given, a->out[0]))               \
-    X(mspring_network_apply_force, "NIXY", NOTHING, mspring_network_apply_force(a->network, a->id, a->x, a->y))    \
-    X(mspring_network_apply_forces, "NRFG", NOTHING,                                                               \
-      mspring_network_apply_forces(a->network, a->first, a->count, a->f, a->g))                                    \
-    X(mspring_network_add_hook, "NSo", make_hook(a), mspring_network_add_hook(a->network, a->given, a->out[0]))    \
-    X(mspring_network_remove_hook, "NI", add_hook(a), mspring_network_remove_hook(a->network, a->id))              \
-    X(mspring_network_view, "nP", OUT_STRUCT(0, view), mspring_network_view(a->network, a->out[0]))                \
-    X(mspring_network_get_positions, "nR01", NOTHING,                                                              \
-      mspring_network_get_positions(a->network, a->first, a->count, a->out[0], a->out[1]))                         \
-    X(mspring_network_get_positions_float, "nR01", NOTHING,                                                        \
-      mspring_network_get_positions_float(a->network, a->first, a->count, a->out[0], a->out[1]))                   \
-    X(mspring_network_get_velocities, "nR01", NOTHING,                                                             \
-      mspring_network_get_velocities(a->network, a->first, a->count, a->out[0], a->out[1]))                        \
-    X(mspring_network_set_positions, "NRDE", NOTHING,                                                              \
-      mspring_network_set_positions(a->network, a->first, a->count, a->d, a->e))                                   \
-    X(mspring_network_set_positions_float, "NRFG", NOTHING,                                                        \
-      mspring_network_set_positions_float(a->network, a->first, a->count, a->f, a->g))                             \
-    X(mspring_network_set_velocities, "NRFG", NOTHING,                                                             \
-      mspring_network_set_velocities(a->network, a->first, a->count, a->f, a->g))                                  \
-    X(mspring_network_get_masses, "nR0", NOTHING,                                                                  \
-      mspring_network_get_masses(a->network, a->first, a->count, a->out[0]))                                       \
-    X(mspring_network_set_positions_at, "NADE", NOTHING,                                                           \
-      mspring_network_set_positions_at(a->network, a->ids, a->count, a->d, a->e))                                  \
-    X(mspring_network_set_velocities_at, "NAFG", NOTHING,                                                          \
-      mspring_network_set_velocities_at(a->network, a->ids, a->count, a->f, a->g))                                 \
-    X(mspring_network_set_masses, "NRF", NOTHING,                                                                  \
-      mspring_network_set_masses(a->network, a->first, a->count, a->f))                                            \
-    X(mspring_network_set_masses_at, "NAF", NOTHING,                                                               \
-      mspring_network_set_masses_at(a->network, a->ids, a->count, a->f))                                           \
-    X(mspring_network_renew_relative_springs, "N", NOTHING, mspring_network_renew_relative_springs(a->network))    \
-    X(mspring_network_set_inverse_mass_scales, "NRF", NOTHING,                                                     \
-      mspring_network_set_inverse_mass_scales(a->network, a->first, a->count, a->f))                               \
-    X(mspring_network_set_inverse_mass_scales_at, "NAF", NOTHING,                                                  \
-      mspring_network_set_inverse_mass_scales_at(a->network, a->ids, a->count, a->f))                              \
-    X(mspring_network_get_inverse_mass_scales, "nR0", NOTHING,                                                     \
-      mspring_network_get_inverse_mass_scales(a->network, a->first, a->count, a->out[0]))                          \
-    X(mspring_network_set_stiffnesses, "NRF", NOTHING,                                                             \
-      mspring_network_set_stiffnesses(a->network, a->first, a->count, a->f))                                       \
-    X(mspring_network_set_stiffnesses_at, "NAF", NOTHING,                                                          \
-      mspring_network_set_stiffnesses_at(a->network, a->ids, a->count, a->f))                                      \
-    X(mspring_network_set_dampings, "NRF", NOTHING,                                                                \
-      mspring_network_set_dampings(a->network, a->first, a->count, a->f))                                          \
-    X(mspring_network_set_dampings_at, "NAF", NOTHING,                                                             \
-      mspring_network_set_dampings_at(a->network, a->ids, a->count, a->f))                                         \
-    X(mspring_network_set_rest_lengths, "NRF", NOTHING,                                                            \
-      mspring_network_set_rest_lengths(a->network, a->first, a->count, a->f))                                      \
-    X(mspring_network_set_rest_lengths_at, "NAF", NOTHING,                                                         \
-      mspring_network_set_rest_lengths_at(a->network, a->ids, a->count, a->f))                                     \
-    X(mspring_network_break_springs, "NA", NOTHING, mspring_network_break_springs(a->network, a->ids, a->count))   \
-    X(mspring_network_restore_springs, "NAJ", NOTHING,                                                             \
-      mspring_network_restore_springs(a->network, a->ids, a->count, a->ramp))                                      \
-    X(mspring_network_detach_particles, "NA", NOTHING,                                                             \
-      mspring_network_detach_particles(a->network, a->ids, a->count))                                              \
-    X(mspring_network_has_particle, "v", NOTHING, note_size(mspring_network_has_particle(a->network, a->id)))      \
-    X(mspring_network_has_spring, "v", NOTHING, note_size(mspring_network_has_spring(a->network, a->id)))          \
-    X(mspring_network_add_particles, "NSW0", FILL(particle_def),                                                   \
-      mspring_network_add_particles(a->network, a->given, 1, a->out[0]))                                           \
-    X(mspring_network_add_springs, "NSW0", make_spring(a),                                                         \
-      mspring_network_add_springs(a->network, a->given, 1, a->out[0]))                                             \
-    X(mspring_network_remove_particles, "NA", NOTHING,                                                             \
-      mspring_network_remove_particles(a->network, a->ids, a->count))                                              \
-    X(mspring_network_remove_springs, "NA", NOTHING, mspring_network_remove_springs(a->network, a->ids, a->count)) \
-    X(mspring_network_recycle, "N", NOTHING, mspring_network_recycle(a->network))                                  \
-    X(mspring_network_set_break_strains, "NRf", NOTHING,                                                           \
-      mspring_network_set_break_strains(a->network, a->first, a->count, a->f))                                     \
-    X(mspring_network_set_break_strains_at, "NAf", NOTHING,                                                        \
-      mspring_network_set_break_strains_at(a->network, a->ids, a->count, a->f))                                    \
-    X(mspring_network_set_stress_strains, "NRf", NOTHING,                                                          \
-      mspring_network_set_stress_strains(a->network, a->first, a->count, a->f))                                    \
-    X(mspring_network_set_stress_strains_at, "NAf", NOTHING,                                                       \
-      mspring_network_set_stress_strains_at(a->network, a->ids, a->count, a->f))                                   \
-    X(mspring_network_set_relax_fraction, "NX", NOTHING, mspring_network_set_relax_fraction(a->network, a->x))     \
-    X(mspring_network_reserve_events, "N", NOTHING, mspring_network_reserve_events(a->network, 100))               \
-    X(mspring_network_read_events, "N01", NOTHING,                                                                 \
-      mspring_network_read_events(a->network, a->out[0], 8, a->out[1], a->out[2]))                                 \
-    X(mspring_network_update_components, "No", NOTHING,                                                            \
-      mspring_network_update_components(a->network, a->out[0], a->out[1]))                                         \
-    X(mspring_network_get_component_numbers, "nR0", NOTHING,                                                       \
-      mspring_network_get_component_numbers(a->network, a->first, a->count, a->out[0]))                            \
-    X(mspring_network_get_components, "nRP", (a->count = 1, a->first = 0, OUT_STRUCT(0, component)),               \
-      mspring_network_get_components(a->network, a->first, a->count, a->out[0]))                                   \
-    X(mspring_network_energy, "no", NOTHING, mspring_network_energy(a->network, a->out[0], a->out[1], a->out[2]))  \
-    X(mspring_network_momentum, "no", NOTHING,                                                                     \
-      mspring_network_momentum(a->network, a->out[0], a->out[1], a->out[2]))                                       \
-    X(mspring_network_bounds, "n0123", NOTHING,                                                                    \
-      mspring_network_bounds(a->network, a->out[0], a->out[1], a->out[2], a->out[3]))                              \
-    X(mspring_network_get_spring, "nIP", OUT_STRUCT(0, spring_info),                                               \
-      mspring_network_get_spring(a->network, a->id, a->out[0]))                                                    \
-    X(mspring_network_get_strains, "nR0", NOTHING,                                                                 \
-      mspring_network_get_strains(a->network, a->first, a->count, a->out[0]))                                      \
-    X(mspring_network_get_extents, "No", NOTHING,                                                                  \
-      mspring_network_get_extents(a->network, a->out[0], NULL, NULL, a->out[1]))                                   \
-    X(mspring_network_max_strain, "no", NOTHING, mspring_network_max_strain(a->network, a->out[0], a->out[1]))     \
-    X(mspring_network_state_hash, "n0", NOTHING, mspring_network_state_hash(a->network, a->out[0]))                \
-    X(mspring_network_snapshot_size, "nK0", a->kind = MSPRING_SNAPSHOT_ALL,                                        \
-      mspring_network_snapshot_size(a->network, a->kind, a->out[0]))                                               \
-    X(mspring_network_save, "nKZ0",                                                                                \
-      (a->kind = MSPRING_SNAPSHOT_FRAME, a->size = SNAPSHOT_BYTES, a->out[0] = a->snapshot_bytes),                 \
-      mspring_network_save(a->network, a->kind, a->out[0], a->size, a->out[1]))                                    \
-    X(mspring_network_load, "NZV", a->size = a->snapshot_size,                                                     \
-      mspring_network_load(a->network, a->snapshot, a->size))                                                      \
-    X(mspring_floor_def_init, "Z0", a->size = sizeof(mspring_floor_def),                                           \
-      mspring_floor_def_init(a->out[0], a->size))                                                                  \
-    X(mspring_network_set_floor, "Ns", make_floor(a), mspring_network_set_floor(a->network, a->given))             \
-    X(mspring_network_get_floor_impulses, "nR01", NOTHING,                                                         \
-      mspring_network_get_floor_impulses(a->network, a->first, a->count, a->out[0], a->out[1]))                    \
-    X(mspring_network_get_sleepers, "nR0", NOTHING,                                                                \
-      mspring_network_get_sleepers(a->network, a->first, a->count, a->out[0]))                                     \
-    X(mspring_network_is_asleep, "v", NOTHING, note_size(mspring_network_is_asleep(a->network)))                   \
-    X(mspring_network_wake, "N", NOTHING, mspring_network_wake(a->network))                                        \
-    X(mspring_network_compact, "No", NOTHING, mspring_network_compact(a->network, 0, a->out[0]))                   \
-    X(mspring_network_expand, "N", NOTHING, mspring_network_expand(a->network))                                    \
-    X(mspring_network_plan, "nP", OUT_STRUCT(0, plan), mspring_network_plan(a->network, a->out[0]))
-
-typedef struct function {
-    const char *name, *kinds;
-    void (*prepare)(arguments *a);
-    mspring_result (*call)(arguments *a);
-} function;
-
-#define DEFINE(name, kinds, prepare, call)                                                                         \
-    static void prepare_##name(arguments *a) {                                                                     \
-        (void)a;                                                                                                   \
-        prepare;                                                                                                   \
-    }                                                                                                              \
-    static mspring_result call_##name(arguments *a) {                                                              \
-        (void)a;                                                                                                   \
-        return call;                                                                                               \
-    }
-FUNCTIONS(DEFINE)
-
-#define ENTRY(name, kinds, prepare, call) {#name, kinds, prepare_##name, call_##name},
-static const function functions[] = {FUNCTIONS(ENTRY)};
 
 /* --------------------------------------------------------------------------------------------------- spoiling */
 
@@ -681,13 +315,13 @@ static bool try_spoilt(const function *f, char kind, int n) {
 static void good_calls_succeed(void **state) {
     (void)state;
     static arguments a;
-    for (size_t i = 0; i < COUNT_OF(functions); i++) {
+    for (size_t i = 0; i < hostile_function_count; i++) {
         begin(&a);
-        functions[i].prepare(&a);
+        hostile_functions[i].prepare(&a);
         const before b = look(&a);
-        const mspring_result result = functions[i].call(&a);
+        const mspring_result result = hostile_functions[i].call(&a);
         if (result != MSPRING_OK)
-            print_error("%s: %s%s\n", functions[i].name, mspring_network_error(a.network),
+            print_error("%s: %s%s\n", hostile_functions[i].name, mspring_network_error(a.network),
                         mspring_builder_error(a.builder));
         check_ok(result);
         end(&b);
@@ -696,11 +330,11 @@ static void good_calls_succeed(void **state) {
 
 static void spoilt_calls_are_refused(void **state) {
     (void)state;
-    for (size_t i = 0; i < COUNT_OF(functions); i++)
-        for (const char *kind = functions[i].kinds; *kind; kind++)
-            for (int n = 0; try_spoilt(&functions[i], *kind, n); n++) {
+    for (size_t i = 0; i < hostile_function_count; i++)
+        for (const char *kind = hostile_functions[i].kinds; *kind; kind++)
+            for (int n = 0; try_spoilt(&hostile_functions[i], *kind, n); n++) {
             }
-    print_message("%u calls of %u functions, %u of them refused\n", spoilt_calls, (unsigned)COUNT_OF(functions),
+    print_message("%u calls of %u functions, %u of them refused\n", spoilt_calls, (unsigned)hostile_function_count,
                   refused_calls);
     assert_true(refused_calls > 800);
 }
@@ -724,8 +358,8 @@ static void call_inside(const mspring_hook_args *args, void *user) {
 static void hooks_cannot_change_the_network(void **state) {
     (void)state;
     static arguments a;
-    for (size_t i = 0; i < COUNT_OF(functions); i++) {
-        const function *f = &functions[i];
+    for (size_t i = 0; i < hostile_function_count; i++) {
+        const function *f = &hostile_functions[i];
         if (!strchr(f->kinds, 'N') && !strchr(f->kinds, 'n'))
             continue;
         begin(&a);
@@ -737,7 +371,7 @@ static void hooks_cannot_change_the_network(void **state) {
         if (strchr(f->kinds, 'N') && in.result != MSPRING_ERROR_BUSY)
             print_error("%s: %s\n", f->name, mspring_result_string(in.result));
         assert_true(in.result == MSPRING_ERROR_BUSY || (!strchr(f->kinds, 'N') && in.result == MSPRING_OK));
-        in.f = &functions[0];
+        in.f = &hostile_functions[0];
         end(&b);
     }
 }
@@ -745,8 +379,8 @@ static void hooks_cannot_change_the_network(void **state) {
 /* ------------------------------------------------------------------------------------------------ completeness */
 
 static bool is_in_table(const char *name, size_t length) {
-    for (size_t i = 0; i < COUNT_OF(functions); i++)
-        if (strlen(functions[i].name) == length && memcmp(functions[i].name, name, length) == 0)
+    for (size_t i = 0; i < hostile_function_count; i++)
+        if (strlen(hostile_functions[i].name) == length && memcmp(hostile_functions[i].name, name, length) == 0)
             return true;
     return false;
 }
@@ -789,7 +423,7 @@ static void every_function_is_in_the_table(void **state) {
         }
         found++;
     }
-    assert_int_equal(found, COUNT_OF(functions));
+    assert_int_equal(found, hostile_function_count);
     test_free(text);
 }
 

@@ -1,0 +1,182 @@
+/// @file test_growth_snapshots.c
+/// Snapshots and clones of networks to which particles and springs have been added: what goes back goes on as it
+/// did.
+///
+/// SPDX-License-Identifier: MIT
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "growth.h"
+#include "snapshot/format.h"
+#include "support.h"
+
+typedef struct saved {
+    void *bytes;
+    size_t size;
+} saved;
+
+static saved save(const mspring_network *network, mspring_snapshot_contents contents) {
+    saved out;
+    check_ok(mspring_network_snapshot_size(network, contents, &out.size));
+    out.bytes = malloc(out.size);
+    assert_non_null(out.bytes);
+    check_ok(mspring_network_save(network, contents, out.bytes, out.size, NULL));
+    return out;
+}
+
+// Forward and back again: from what a snapshot holds the same edits and steps lead to the same bits, in the network
+// itself, in its clone, and in one that was only just made.
+static void snapshots_go_back_and_forth(void **state) {
+    (void)state;
+    recipe made = growth_recipe();
+    for (int solver = 0; solver <= 1; solver++) {
+        life *it = growth_begin(&made, MSPRING_SIMD_AUTO, 1, 31 + (uint64_t)solver);
+        mspring_network *young = growth_network(&made, MSPRING_SIMD_SCALAR, 2);
+        if (solver == 1) {
+            growth_use(it->network, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, 0);
+            growth_use(young, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, 0);
+        }
+        for (int round = 0; round < 12; round++) {
+            for (int i = 0; i < 9; i++) {
+                life_do_something(it);
+            }
+            check_ok(mspring_network_step(it->network, 1.0 / 64));
+            const saved here = save(it->network, MSPRING_SNAPSHOT_ALL);
+            const life then = *it;
+            mspring_network *clone = NULL;
+            check_ok(mspring_network_clone(it->network, NULL, &clone));
+            uint64_t hashes[3][6];
+            mspring_network *const networks[] = {it->network, clone, young};
+            for (int n = 0; n < 3; n++) {
+                *it = then;
+                it->network = networks[n];
+                if (n == 2) {
+                    check_ok(mspring_network_load(young, here.bytes, here.size));
+                }
+                life_check(it);
+                for (int i = 0; i < 6; i++) {
+                    life_do_something(it);
+                    check_ok(mspring_network_step(it->network, 1.0 / 64));
+                    hashes[n][i] = support_hash(it->network);
+                }
+            }
+            assert_memory_equal(hashes[1], hashes[0], sizeof hashes[0]);
+            assert_memory_equal(hashes[2], hashes[0], sizeof hashes[0]);
+            mspring_network_destroy(clone);
+            *it = then;
+            check_ok(mspring_network_load(it->network, here.bytes, here.size));
+            life_check(it);
+            for (int i = 0; i < 6; i++) {
+                life_do_something(it);
+                check_ok(mspring_network_step(it->network, 1.0 / 64));
+                assert_int_equal(support_hash(it->network), hashes[0][i]);
+            }
+            free(here.bytes);
+        }
+        mspring_network_destroy(young);
+        growth_end(it);
+    }
+    recipe_free(&made);
+}
+
+// Within one compact plan, too, whatever became of the added ones that it has laid out.
+static void snapshots_go_back_in_a_compact_plan(void **state) {
+    (void)state;
+    recipe made = growth_recipe();
+    life *it = growth_begin(&made, MSPRING_SIMD_AUTO, 1, 53);
+    int again_count = 0;
+    for (int round = 0; round < 8; round++) {
+        for (int i = 0; i < 12; i++) {
+            life_do_something(it);
+        }
+        check_ok(mspring_network_compact(it->network, 0, NULL));
+        const saved here = save(it->network, MSPRING_SNAPSHOT_ALL);
+        const life then = *it;
+        uint64_t hashes[4];
+        for (int again = 0; again <= 1; again++) {
+            for (int i = 0; i < 4; i++) {
+                life_do_something(it);
+                life_do_something(it);
+                check_ok(mspring_network_step(it->network, 1.0 / 64));
+                hashes[i] = again ? hashes[i] : support_hash(it->network);
+                assert_int_equal(support_hash(it->network), hashes[i]);
+            }
+            if (mspring_network_load(it->network, here.bytes, here.size) != MSPRING_OK) {
+                check_contains(mspring_network_error(it->network), "laid out otherwise");
+                break;
+            }
+            *it = then;
+            life_check(it);
+            again_count += again;
+        }
+        free(here.bytes);
+    }
+    assert_true(again_count > 2); // restoring a spring that the plan leaves out makes it another plan
+    growth_end(it);
+    recipe_free(&made);
+}
+
+// A frame leaves out what springs are like, so it is refused where there are others.
+static void frames_are_of_the_same_springs(void **state) {
+    (void)state;
+    recipe made = growth_recipe();
+    life *it = growth_begin(&made, MSPRING_SIMD_AUTO, 1, 3);
+    life_add(it, 3, 4);
+    const saved here = save(it->network, MSPRING_SNAPSHOT_FRAME);
+    support_steps(it->network, 2, 1.0 / 64);
+    check_ok(mspring_network_load(it->network, here.bytes, here.size));
+    life_check(it);
+    life_add(it, 1, 0);
+    check_error(mspring_network_load(it->network, here.bytes, here.size), MSPRING_ERROR_SNAPSHOT);
+    life_check(it);
+    free(here.bytes);
+    growth_end(it);
+    recipe_free(&made);
+}
+
+// Whatever byte of a snapshot's section is another one (and the checksum right again) is refused or leads to a
+// network that can be checked and stepped.
+static void foreign_growth_is_refused_or_harmless(void **state) {
+    (void)state;
+    recipe made = growth_recipe();
+    life *it = growth_begin(&made, MSPRING_SIMD_AUTO, 1, 8);
+    for (int i = 0; i < 40; i++) {
+        life_do_something(it);
+    }
+    const saved here = save(it->network, MSPRING_SNAPSHOT_ALL);
+    unsigned char *bytes = here.bytes;
+    const size_t growth = MSPRINGI_SNAPSHOT_HEADER_BYTES + MSPRINGI_SECTION_HEADER_BYTES;
+    assert_memory_equal(bytes + growth - MSPRINGI_SECTION_HEADER_BYTES, "grow", 4);
+    const size_t summed = here.size - MSPRINGI_SNAPSHOT_CHECKSUM_BYTES;
+    uint32_t refused = 0;
+    const size_t end_of_growth = growth + 8 + LIFE_PARTICLES + LIFE_SPRINGS;
+    for (size_t i = growth; i < end_of_growth && i < summed; i += 3) {
+        const unsigned char before = bytes[i];
+        bytes[i] = (unsigned char)support_random(&it->seed);
+        mspringi_checksum checksum = {{0}, {0}};
+        mspringi_checksum_add(&checksum, bytes, summed / MSPRINGI_CHECKSUM_UNIT);
+        const uint64_t value = mspringi_checksum_value(&checksum);
+        memcpy(bytes + summed, &value, sizeof value); // little-endian, as the machines that this runs on
+        const mspring_result result = mspring_network_load(it->network, bytes, here.size);
+        assert_true(result == MSPRING_OK || result == MSPRING_ERROR_SNAPSHOT);
+        refused += result != MSPRING_OK;
+        const mspring_result stepped = mspring_network_step(it->network, 1.0 / 640);
+        assert_true(stepped == MSPRING_OK || stepped == MSPRING_ERROR_UNSTABLE);
+        bytes[i] = before;
+    }
+    assert_true(refused > 100);
+    free(here.bytes);
+    growth_end(it);
+    recipe_free(&made);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(snapshots_go_back_and_forth),
+        cmocka_unit_test(snapshots_go_back_in_a_compact_plan),
+        cmocka_unit_test(frames_are_of_the_same_springs),
+        cmocka_unit_test(foreign_growth_is_refused_or_harmless),
+    };
+    return cmocka_run_group_tests_name("growth_snapshots", tests, NULL, NULL);
+}
