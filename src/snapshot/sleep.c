@@ -126,6 +126,8 @@ static mspring_result sleep_check(mspring_network *network, const uint8_t *from,
     mspring_result result = mspringi_section_check_size(network, section, size, size_of(network, &head));
     if (result == MSPRING_OK)
         result = check_still(network, from, head.still_count);
+    if (result != MSPRING_OK)
+        return result;
     const size_t floats = force_floats(network, &head);
     from += size - HEAD_BYTES - floats * sizeof(float);
     for (size_t i = 0; result == MSPRING_OK && i < floats; ++i)
