@@ -382,12 +382,16 @@ enum {
     /// as much as one did at the last look; not at all where substeps are stable in any shape. Steps below the
     /// border are never refused. On the explicit solver that costs 2 to 3 % of a step of one substep, and less than
     /// 0.5 % of one of 8 or more. (That a step can be taken back at all, and bounds are looked at, takes 13 to 22 %
-    /// of one substep, 2 to 3 % of 8 and less than 1 % of 40, whatever the guard: bench/STABILITY.md.) The implicit
-    /// and the direct solver count instead what energy gets beyond the work of gravity, forces, moving pins and
-    /// floor, in each substep, and less what it loses after that: where there are ropes or other springs outside of
-    /// lattices, or broken springs, more than a hundredth of the motion there is (kinetic and elastic energy, less
-    /// that of flying as a whole) is not let pass. A substep with which it would come to that is taken in pieces
-    /// (see mspring_integrator), and the step refused if 64 are not enough.
+    /// of one substep, 2 to 3 % of 8 and less than 1 % of 40, whatever the guard: bench/STABILITY.md.)
+    /// The implicit and the direct solver count instead what energy gets beyond the work of gravity, forces, moving
+    /// pins and floor, in each substep. Since the history began (see mspring_integrator) that never comes to more
+    /// than nothing, but for rounding: what would is taken out of the velocities, by one factor for all that hang
+    /// together, relative to their mass centre or, if a pinned particle or one on the floor is among them, to rest.
+    /// (What was lost counts against it, as long as it is no more than the motion that there was: kinetic and
+    /// elastic energy, less that of flying as a whole.) Rounding is a millionth of the motion, and what lengths are
+    /// off by in the last place u of positions, about k u^2 / 12 a spring. More than a hundredth of the motion at
+    /// once is not let pass so: that substep is taken with four times the iterations, as are the 15 after it, or
+    /// else in pieces (see mspring_integrator), and the step refused if 64 are not enough.
     MSPRING_GUARD_GROWTH = 0,
     /// The same, but take a step that would be refused again with twice as many substeps, four times as many, and
     /// so on up to max_substeps. Later steps keep the number that was needed, until mspring_network_set_solver().

@@ -503,6 +503,7 @@ static bool try_substep(mspringi_substep_of *substep, bool by_euler) {
     choose_crew(substep);
     n->is_hit = by_euler && n->integrator != MSPRING_INTEGRATOR_EULER;
     n->balance.fails = false;
+    n->balance.surplus = n->fall = 0.0;
     run_crew(substep);
     if (network->floor && network->floor->has_hit) {
         n->is_hit = true;
@@ -518,6 +519,8 @@ static bool try_substep(mspringi_substep_of *substep, bool by_euler) {
     if (network->floor)
         mspringi_floor_bear(network, substep->h);
     mspringi_scheme_close(substep);
+    if (n->balance.surplus > 0.0)
+        mspringi_energy_settle(substep);
     n->age = n->age + 1 < n->coarse_period ? n->age + 1 : 0;
     return true;
 }
@@ -549,9 +552,14 @@ void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_fiel
     mspringi_substep_of substep = {
         .network = network, .base = base, .h = h, .watches = mspringi_energy_is_watched(network)};
     for (; count > 0 && !(n->gain.energy > 0.0); --count) {
-        const bool is_calm = n->ledger.calm > 0;
+        const bool is_calm = n->ledger.calm > 0, has_more = n->is_direct || n->ledger.more > 0;
         n->ledger.calm -= is_calm;
-        if (try_substep(&substep, is_calm))
+        if (try_substep(&substep, is_calm)) {
+            n->ledger.more -= n->ledger.more > 0;
+            continue;
+        }
+        n->ledger.more = MSPRINGI_MORE_SUBSTEPS;
+        if (!has_more && try_substep(&substep, is_calm))
             continue;
         n->ledger.calm = MSPRINGI_CALM_SUBSTEPS;
         take_pieces(&substep);

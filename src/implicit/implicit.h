@@ -67,6 +67,7 @@ typedef struct mspringi_implicit {
     mspringi_tile_flight *flights;      ///< [tiles]
     uint8_t *is_solved;                 ///< [loose and spare slots] 1 where springs were added, so that A is not
                                         ///< diagonal there; NULL: nowhere
+    double fall;                        ///< by how much d lowers the energy of what is linearised, J
     double leftover_product;            ///< what leftover springs and contacts add to p . A p
     bool is_hit;                        ///< the present substep is one of implicit Euler: particles hit the floor,
                                         ///< or motion is not to be followed as the integrator would

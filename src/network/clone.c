@@ -176,6 +176,8 @@ static void move_implicit(const moving *m, mspringi_implicit *n) {
     MOVE(n->panels.sums);
     MOVE(n->balance.chunks);
     MOVE(n->balance.panels);
+    MOVE(n->balance.body);
+    MOVE(n->balance.bodies);
     move_system(m, &n->system);
     move_iterate(m, &n->iterate);
     MOVE(n->seen.link_log);

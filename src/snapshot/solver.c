@@ -13,10 +13,10 @@ typedef struct implicit_head {
     uint64_t tiles_print;
     double scale;
     float h;
-    uint32_t restarts, integrator, iterations, coarse_period, age, look, calm;
-    double gained, motion, risen;
+    uint32_t restarts, integrator, iterations, coarse_period, age, look, calm, more;
+    double gained, motion, risen, balance;
 } implicit_head;
-#define HEAD_BYTES ((size_t)72)
+#define HEAD_BYTES ((size_t)84)
 
 static size_t implicit_size_of(const mspringi_implicit *n, size_t coarse_values) {
     return HEAD_BYTES + n->history_size * sizeof(float) + coarse_values * sizeof(double);
@@ -49,8 +49,9 @@ static void implicit_save(const mspring_network *network, mspringi_writer *to) {
                               n->coarse_period,
                               age_of(network),
                               ledger.look,
-                              ledger.calm};
-    const double energies[] = {ledger.gained, ledger.motion, ledger.risen};
+                              ledger.calm,
+                              ledger.more};
+    const double energies[] = {ledger.gained, ledger.motion, ledger.risen, ledger.balance};
     mspringi_put(to, &n->tiles.print, 1, sizeof n->tiles.print);
     mspringi_put(to, &n->scale, 1, sizeof n->scale);
     mspringi_put(to, &n->history.h, 1, sizeof n->history.h);
@@ -74,9 +75,11 @@ static const uint8_t *read_head(const uint8_t *from, implicit_head *head) {
     from = mspringi_get(from, &head->age, 1, sizeof head->age);
     from = mspringi_get(from, &head->look, 1, sizeof head->look);
     from = mspringi_get(from, &head->calm, 1, sizeof head->calm);
+    from = mspringi_get(from, &head->more, 1, sizeof head->more);
     from = mspringi_get(from, &head->gained, 1, sizeof head->gained);
     from = mspringi_get(from, &head->motion, 1, sizeof head->motion);
-    return mspringi_get(from, &head->risen, 1, sizeof head->risen);
+    from = mspringi_get(from, &head->risen, 1, sizeof head->risen);
+    return mspringi_get(from, &head->balance, 1, sizeof head->balance);
 }
 
 static bool is_energy(double value) {
@@ -99,7 +102,8 @@ static mspring_result check_head(mspring_network *network, const implicit_head *
             network, section, "it has %u iterations, and a coarse matrix %u substeps old of %u",
             (unsigned)head->iterations, (unsigned)head->age, (unsigned)head->coarse_period);
     if (!(is_energy(head->gained) && is_energy(head->motion) && is_energy(head->risen)) ||
-        head->look > MSPRINGI_LOOKS || head->calm > MSPRINGI_CALM_SUBSTEPS)
+        !(fabs(head->balance) <= DBL_MAX) || head->look > MSPRINGI_LOOKS || head->calm > MSPRINGI_CALM_SUBSTEPS ||
+        head->more > MSPRINGI_MORE_SUBSTEPS)
         return mspringi_section_fail(network, section, "it has gained %g of %g J", head->gained, head->motion);
     return MSPRING_OK;
 }
@@ -156,8 +160,13 @@ static void implicit_load(mspring_network *network, const uint8_t *from, size_t 
     n->history.restarts = head.restarts;
     n->iterations = head.iterations;
     n->coarse_period = head.coarse_period;
-    n->ledger = (mspringi_ledger){
-        .gained = head.gained, .motion = head.motion, .risen = head.risen, .look = head.look, .calm = head.calm};
+    n->ledger = (mspringi_ledger){.gained = head.gained,
+                                  .balance = head.balance,
+                                  .motion = head.motion,
+                                  .risen = head.risen,
+                                  .look = head.look,
+                                  .calm = head.calm,
+                                  .more = head.more};
     n->balance.is_dead_known = false;
     from = mspringi_get(from, n->history.low.x, n->history_size, sizeof(float));
     clear_history(network);

@@ -18,6 +18,9 @@
 #define UNSUSPICIOUS 0.004
 #define HARMLESS 1e-5
 
+/// The same that is taken out of the motion, but that more iterations are to keep from coming again.
+#define NOTABLE 1e-4
+
 /// What is left of the most motion in each substep: half in 2839.
 #define FADING (4095.0 / 4096.0)
 
@@ -34,7 +37,9 @@ mspring_result mspringi_balance_create(mspringi_balance *balance, const mspring_
     *balance = (mspringi_balance){0};
     balance->chunks = mspringi_alloc(memory, chunks * MSPRINGI_MOVE_SUMS, sizeof *balance->chunks);
     balance->panels = mspringi_alloc(memory, (size_t)panels * MSPRINGI_STRETCH_SUMS, sizeof *balance->panels);
-    if (!balance->chunks || !balance->panels) {
+    balance->body = mspringi_alloc(memory, slots, sizeof *balance->body);
+    balance->bodies = mspringi_alloc(memory, slots / 2 + 1, sizeof *balance->bodies);
+    if (!balance->chunks || !balance->panels || !balance->body || !balance->bodies) {
         mspringi_balance_destroy(balance, memory);
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the energy of %u particles",
                              (unsigned)t->particle_count);
@@ -56,6 +61,8 @@ void mspringi_balance_count(const mspring_network *network, mspringi_implicit *n
 void mspringi_balance_destroy(mspringi_balance *balance, mspringi_memory *memory) {
     mspringi_free(memory, balance->chunks);
     mspringi_free(memory, balance->panels);
+    mspringi_free(memory, balance->body);
+    mspringi_free(memory, balance->bodies);
     *balance = (mspringi_balance){0};
 }
 
@@ -77,12 +84,10 @@ bool mspringi_energy_is_watched(const mspring_network *network) {
     mspringi_balance *balance = &network->implicit->balance;
     if (network->guard_policy == MSPRING_GUARD_BOUNDS)
         return false;
-    if (has_others(&network->topology))
-        return true;
     if (!balance->is_dead_known)
         balance->dead = count_dead(network);
     balance->is_dead_known = true;
-    return balance->dead > 0;
+    return balance->dead > 0 || has_others(&network->topology) || !network->implicit->is_direct;
 }
 
 static bool is_live(const mspring_network *network, mspringi_place place) {
@@ -206,13 +211,15 @@ static bool is_suspicious(const substep_of *substep, const mspringi_motion *m) {
     if (n->balance.dead > 0 || substep->network->topology.lattice_places == 0)
         return true;
     if (ledger->look == 0 && ledger->motion > 0.0) {
-        const double risen = ledger->risen + gain_outside(substep, m);
-        if (risen <= UNSUSPICIOUS * ledger->motion) {
-            ledger->risen = risen > 0.0 ? risen : 0.0;
+        const double outside = ledger->risen + gain_outside(substep, m);
+        const double risen = (outside > 0.0 ? outside : 0.0) + n->fall;
+        if (risen <= UNSUSPICIOUS * ledger->motion && ledger->balance + risen <= 0.0) {
+            ledger->risen = risen;
             return false;
         }
     }
     ledger->look = ledger->look > 0 ? ledger->look - 1 : MSPRINGI_LOOKS;
+    ledger->balance += ledger->risen;
     ledger->risen = 0.0;
     return true;
 }
@@ -355,7 +362,9 @@ static void gather(const substep_of *substep, const mspringi_motion *m, double *
 
 /// What a substep comes to, J.
 typedef struct result {
-    double gain, rounding, motion;
+    double gain, motion;
+    double noise;    ///< of the sums
+    double rounding; ///< and of the substep itself
 } result;
 
 // All in the frame of the mass centre or, if there are pinned particles or a floor is touched, which work is done
@@ -384,13 +393,14 @@ static result sum_up(const substep_of *substep, const mspringi_motion *m) {
     const double slip = DISPLACEMENT_ROUNDING * moves[MSPRINGI_MOVE_LARGEST];
     work += work_of_floor(network, m) + per_stiffness * stretches[MSPRINGI_STRETCH_GIVEN];
     gain += per_stiffness * stretches[MSPRINGI_STRETCH_GAIN];
+    const double noise = 4.0 * LENGTH_ROUNDING * per_stiffness * sqrt(stretches[MSPRINGI_STRETCH_ERROR]) +
+                         LENGTH_ROUNDING * (before + energy + fabs(work));
     return (result){
         .gain = gain - work,
-        .rounding = per_stiffness * stretches[MSPRINGI_STRETCH_PULL] * slip +
-                    stretches[MSPRINGI_STRETCH_STIFFNESS] * slip * slip +
-                    4.0 * LENGTH_ROUNDING * per_stiffness * sqrt(stretches[MSPRINGI_STRETCH_ERROR]) +
-                    LENGTH_ROUNDING * (before + energy + fabs(work)),
         .motion = kinetic + energy,
+        .noise = noise,
+        .rounding = per_stiffness * stretches[MSPRINGI_STRETCH_PULL] * slip +
+                    stretches[MSPRINGI_STRETCH_STIFFNESS] * slip * slip + noise,
     };
 }
 
@@ -399,13 +409,18 @@ static bool is_accepted(const substep_of *substep, const mspringi_motion *m) {
     mspringi_ledger *ledger = &substep->network->implicit->ledger;
     const result r = sum_up(substep, m);
     const double faded = FADING * ledger->motion, motion = r.motion > faded ? r.motion : faded;
-    const double gained = ledger->gained + r.gain - r.rounding;
-    if (!(gained <= TOLERATED * motion && motion <= DBL_MAX))
+    const double gained = ledger->gained + r.gain - r.rounding, balance = ledger->balance + r.gain;
+    if (!(gained <= TOLERATED * motion && balance - r.rounding <= TOLERATED * motion && motion <= DBL_MAX))
         return false;
     ledger->gained = gained > 0.0 ? gained : 0.0;
+    ledger->balance = balance > -motion ? balance : -motion;
     ledger->motion = motion;
+    substep->network->implicit->balance.surplus = balance > r.noise ? balance : 0.0;
+    substep->network->implicit->balance.rounding = r.rounding;
     if (r.gain - r.rounding > HARMLESS * motion)
         ledger->look = MSPRINGI_LOOKS;
+    if (balance > NOTABLE * motion)
+        ledger->more = MSPRINGI_MORE_SUBSTEPS;
     return true;
 }
 
@@ -445,6 +460,7 @@ bool mspringi_energy_look(const substep_of *substep, mspringi_mate *mate, float 
     if (mate->index == 0) {
         balance->looks = is_suspicious(substep, &motion);
         balance->fails = false;
+        balance->surplus = 0.0;
     }
     mspringi_meet(mate);
     if (!balance->looks)
