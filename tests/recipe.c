@@ -207,3 +207,21 @@ mspring_builder *recipe_builder(const recipe *made, const mspring_allocator *all
 mspring_network *recipe_network(const recipe *made, const mspring_network_def *def) {
     return support_network(recipe_builder(made, NULL), def);
 }
+
+recipe recipe_mixed(uint64_t seed) {
+    const recipe_stuff relative = {.mass = {1, 2},
+                                   .stiffness = {0.1, 0.2},
+                                   .damping = {0, 0.1},
+                                   .spring_flags = MSPRING_SPRING_RELATIVE,
+                                   .pinned = 0.02,
+                                   .holes = 0.2};
+    const recipe_stuff absolute = {.mass = {1, 2}, .stiffness = {50, 100}, .damping = {0, 1}};
+    recipe made = {0};
+    recipe_lattice(&made, 19, 6, 0, 0, 1, &relative, &seed);
+    const mspring_id other = recipe_lattice(&made, 7, 4, 40, 0.5, 1, &absolute, &seed);
+    recipe_rope(&made, 2, other, 9, &absolute, &seed);
+    recipe_random_springs(&made, 8, &absolute, &seed);
+    recipe_particle(&made, 5, 20, 1, 0);
+    recipe_disturb(&made, 0.05, 0.5, &seed);
+    return made;
+}

@@ -53,6 +53,9 @@ void recipe_random_springs(recipe *made, uint32_t count, const recipe_stuff *stu
 /// (Rest lengths that are still to be taken from distances are set to what they are now.)
 void recipe_disturb(recipe *made, double distance, double speed, uint64_t *seed);
 
+/// Rows of every kind, relative springs and others, dampers, pins and a loose particle.
+recipe recipe_mixed(uint64_t seed);
+
 /// Put particles and springs into a random order, and half of the springs' ends the other way round.
 /// @param new_ids  [particle_count], receives where each particle went; may be NULL
 void recipe_shuffle(recipe *made, uint64_t *seed, mspring_id *new_ids);

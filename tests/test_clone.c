@@ -13,26 +13,6 @@
 
 enum { MOST = 400 };
 
-/// Rows of every kind, relative springs and others, dampers.
-static recipe mixed_recipe(void) {
-    const recipe_stuff relative = {.mass = {1, 2},
-                                   .stiffness = {0.1, 0.2},
-                                   .damping = {0, 0.1},
-                                   .spring_flags = MSPRING_SPRING_RELATIVE,
-                                   .pinned = 0.02,
-                                   .holes = 0.2};
-    const recipe_stuff absolute = {.mass = {1, 2}, .stiffness = {50, 100}, .damping = {0, 1}};
-    recipe made = {0};
-    uint64_t seed = 11;
-    recipe_lattice(&made, 19, 6, 0, 0, 1, &relative, &seed);
-    const mspring_id other = recipe_lattice(&made, 7, 4, 40, 0.5, 1, &absolute, &seed);
-    recipe_rope(&made, 2, other, 9, &absolute, &seed);
-    recipe_random_springs(&made, 8, &absolute, &seed);
-    recipe_particle(&made, 5, 20, 1, 0);
-    recipe_disturb(&made, 0.05, 0.5, &seed);
-    return made;
-}
-
 static mspring_solver_def solver_def(mspring_solver solver, mspring_integrator integrator, uint32_t coarse_period) {
     mspring_solver_def def;
     check_ok(mspring_solver_def_init(&def, sizeof def));
@@ -165,7 +145,7 @@ static uint64_t look(mspring_network *network) {
 
 static void clones_go_on_as_their_original(void **state) {
     (void)state;
-    recipe made = mixed_recipe();
+    recipe made = recipe_mixed(11);
     for (size_t i = 0; i < COUNT_OF(solvers); i++) {
         mspring_network *network = make(&made, &solvers[i], NULL, 1);
         use_everything(network);
@@ -308,7 +288,7 @@ static void no_pointer_leads_into_the_original(void **state) {
     if (sizeof(uintptr_t) < 8) {
         skip();
     }
-    recipe made = mixed_recipe();
+    recipe made = recipe_mixed(11);
     float strength = 0;
     for (size_t i = 0; i < COUNT_OF(solvers); i++) {
         block_list ours = {.count = 0}, theirs = {.count = 0};
@@ -339,7 +319,7 @@ static void no_pointer_leads_into_the_original(void **state) {
 
 static void clones_that_fail_leave_nothing(void **state) {
     (void)state;
-    recipe made = mixed_recipe();
+    recipe made = recipe_mixed(11);
     for (size_t i = 0; i < COUNT_OF(solvers); i++) {
         mspring_network *network = make(&made, &solvers[i], NULL, 1);
         use_everything(network);
@@ -389,7 +369,7 @@ static void clone_in_hook(const mspring_hook_args *args, void *user) {
 
 static void hooks_stay_behind_unless_asked_for(void **state) {
     (void)state;
-    recipe made = mixed_recipe();
+    recipe made = recipe_mixed(11);
     float strength = 100;
     mspring_network *network = make(&made, &solvers[0], NULL, 1), *with_hooks = NULL;
     add_hook(network, MSPRING_PHASE_BEFORE_SUBSTEP, 1, &strength);
@@ -436,7 +416,7 @@ static void hooks_stay_behind_unless_asked_for(void **state) {
 
 static void bad_calls_are_refused(void **state) {
     (void)state;
-    recipe made = mixed_recipe();
+    recipe made = recipe_mixed(11);
     mspring_network *network = make(&made, &solvers[0], NULL, 1);
     mspring_network *const untouched = (mspring_network *)(uintptr_t)16;
     mspring_network *clone = untouched;

@@ -15,25 +15,6 @@
 
 enum { MOST = 400 };
 
-/// Rows of every kind, relative springs and others, dampers.
-static recipe mixed_recipe(uint64_t seed) {
-    const recipe_stuff relative = {.mass = {1, 2},
-                                   .stiffness = {0.1, 0.2},
-                                   .damping = {0, 0.1},
-                                   .spring_flags = MSPRING_SPRING_RELATIVE,
-                                   .pinned = 0.02,
-                                   .holes = 0.2};
-    const recipe_stuff absolute = {.mass = {1, 2}, .stiffness = {50, 100}, .damping = {0, 1}};
-    recipe made = {0};
-    recipe_lattice(&made, 19, 6, 0, 0, 1, &relative, &seed);
-    const mspring_id other = recipe_lattice(&made, 7, 4, 40, 0.5, 1, &absolute, &seed);
-    recipe_rope(&made, 2, other, 9, &absolute, &seed);
-    recipe_random_springs(&made, 8, &absolute, &seed);
-    recipe_particle(&made, 5, 20, 1, 0);
-    recipe_disturb(&made, 0.05, 0.5, &seed);
-    return made;
-}
-
 static mspring_network *make(const recipe *made, mspring_simd level, uint32_t worker_count) {
     mspring_network_def def = support_def(-9.8f, 4);
     def.simd_level = level;
@@ -158,7 +139,7 @@ enum { FRAMES = 60, BACK = 8 };
 /// Go on for some frames, go back, and go on again: the same.
 static void check_rollback(mspring_snapshot_contents contents, uint32_t worker_count, mspring_solver kind,
                            mspring_integrator integrator, uint32_t coarse_period) {
-    recipe made = mixed_recipe(3);
+    recipe made = recipe_mixed(3);
     mspring_network *network = make(&made, MSPRING_SIMD_AUTO, worker_count);
     mspring_network *straight = make(&made, MSPRING_SIMD_SCALAR, 1);
     if (kind != MSPRING_SOLVER_EXPLICIT) {
@@ -225,7 +206,7 @@ static void a_rollback_of_the_implicit_solvers_gives_the_same_bits(void **state)
 /// What a solver has gone through that is not in a snapshot does not matter: not even after ten thousand steps.
 static void an_old_network_goes_on_like_a_young_one(void **state) {
     (void)state;
-    recipe made = mixed_recipe(3);
+    recipe made = recipe_mixed(3);
     for (mspring_solver kind = MSPRING_SOLVER_IMPLICIT; kind <= MSPRING_SOLVER_DIRECT; kind++) {
         mspring_network *old = make(&made, MSPRING_SIMD_AUTO, 1), *young = make(&made, MSPRING_SIMD_AUTO, 1);
         use_solver(old, kind, MSPRING_INTEGRATOR_GA0, 1);
@@ -248,7 +229,7 @@ static void an_old_network_goes_on_like_a_young_one(void **state) {
 
 static void solvers_have_to_be_alike(void **state) {
     (void)state;
-    recipe made = mixed_recipe(3);
+    recipe made = recipe_mixed(3);
     mspring_network *explicit_one = make(&made, MSPRING_SIMD_AUTO, 1);
     mspring_network *implicit_one = make(&made, MSPRING_SIMD_AUTO, 1);
     mspring_network *other_one = make(&made, MSPRING_SIMD_AUTO, 1);
@@ -281,7 +262,7 @@ static void solvers_have_to_be_alike(void **state) {
 
 static void snapshots_are_the_same_everywhere(void **state) {
     (void)state;
-    recipe made = mixed_recipe(3);
+    recipe made = recipe_mixed(3);
     mspring_simd levels[MSPRING_SIMD_AVX512];
     const uint32_t count = support_levels(levels);
     saved first = {0};
@@ -307,7 +288,7 @@ static void snapshots_are_the_same_everywhere(void **state) {
 
 static void all_goes_into_a_new_network(void **state) {
     (void)state;
-    recipe made = mixed_recipe(3);
+    recipe made = recipe_mixed(3);
     mspring_network *old = make(&made, MSPRING_SIMD_AUTO, 1);
     set_up(old);
     for (uint32_t frame = 0; frame < 20; frame++) {
@@ -575,7 +556,7 @@ static void what_a_plan_leaves_out_stays_out(void **state) {
 
 static void foreign_snapshots_are_refused(void **state) {
     (void)state;
-    recipe made = small_recipe(), other_made = mixed_recipe(3), turned_made = small_recipe();
+    recipe made = small_recipe(), other_made = recipe_mixed(3), turned_made = small_recipe();
     turned_made.springs[4].b = turned_made.springs[4].b == 10 ? 11 : 10;
     turned_made.springs[4].rest_length = 1.5f;
     mspring_network *network = small_network(&made);
