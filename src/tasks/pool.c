@@ -81,6 +81,7 @@ void mspringi_pool_destroy(mspringi_pool *pool, mspringi_memory *memory) {
         return;
     pool->fn = NULL;
     for (uint32_t w = 1; w < pool->worker_count; ++w)
+        // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): without them their number is 0
         if (pool->workers[w].has_thread)
             mspringi_progress_advance(&pool->workers[w].called, ++pool->workers[w].calls);
     for (uint32_t w = 1; w < pool->worker_count; ++w) {

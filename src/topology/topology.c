@@ -655,7 +655,7 @@ mspring_result mspringi_topology_begin(const mspring_builder *builder, const msp
 }
 
 mspring_result mspringi_topology_go_on(mspringi_assembly *begun) {
-    // NOLINTNEXTLINE(-Wanalyzer-null-dereference): it was begun
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference,-Wanalyzer-null-dereference): it was begun
     return begun->done < MSPRINGI_TOPOLOGY_PIECES ? pieces[begun->done++](begun) : MSPRING_OK;
 }
 
