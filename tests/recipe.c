@@ -190,6 +190,35 @@ void recipe_shuffle(recipe *made, uint64_t *seed, mspring_id *new_ids) {
     made->particle_room = count;
 }
 
+recipe recipe_of_shape(const recipe_shape *shape, double stiffness, double mass_ratio) {
+    uint64_t seed = 21;
+    const recipe_stuff stuff = {.mass = {1, mass_ratio},
+                                .stiffness = {stiffness, stiffness},
+                                .damping = {shape->damping, shape->damping},
+                                .holes = shape->rope > 0 ? 0.1 : 0};
+    const uint32_t held = shape->hangs ? MSPRING_PARTICLE_PINNED : 0;
+    recipe made = {0};
+    if (shape->width > 0) {
+        recipe_lattice(&made, shape->width, shape->height, 0, 0, 1, &stuff, &seed);
+        for (uint32_t row = 0; shape->hangs && row < shape->height; row++) {
+            made.particles[row * shape->width].flags = MSPRING_PARTICLE_PINNED;
+        }
+    }
+    for (uint32_t i = 0; i < shape->particles; i++) {
+        const double x = support_random_between(&seed, 0, 30), y = support_random_between(&seed, -40, -10);
+        const double mass = exp(support_random_between(&seed, 0, log(mass_ratio)));
+        recipe_particle(&made, x, y, mass, 0);
+    }
+    recipe_random_springs(&made, shape->springs, &stuff, &seed);
+    if (shape->rope > 0) {
+        const mspring_id start = shape->width > 0 ? 0 : recipe_particle(&made, -70, 50, 2, MSPRING_PARTICLE_PINNED);
+        const mspring_id end = recipe_particle(&made, 3, 50, 2, held);
+        recipe_rope(&made, start, end, shape->rope, &stuff, &seed);
+    }
+    recipe_disturb(&made, 1e-3, 0.01, &seed);
+    return made;
+}
+
 mspring_builder *recipe_builder(const recipe *made, const mspring_allocator *allocator) {
     mspring_builder *builder = NULL;
     check_ok(mspring_builder_create(allocator, &builder));

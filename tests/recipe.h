@@ -9,6 +9,7 @@
 #define TEST_RECIPE_H
 
 #include <massspring/massspring.h>
+#include <stdbool.h>
 
 typedef struct recipe {
     mspring_particle_def *particles;
@@ -59,6 +60,19 @@ recipe recipe_mixed(uint64_t seed);
 /// Put particles and springs into a random order, and half of the springs' ends the other way round.
 /// @param new_ids  [particle_count], receives where each particle went; may be NULL
 void recipe_shuffle(recipe *made, uint64_t *seed, mspring_id *new_ids);
+
+/// A lattice, a random graph or a rope, or what several of them make.
+typedef struct recipe_shape {
+    const char *name;
+    uint32_t width, height;      ///< of a lattice, with holes if there is a rope; 0: none
+    uint32_t particles, springs; ///< of a random graph
+    uint32_t rope;               ///< segments, from the lattice or from a pinned particle; 0: none
+    double damping;
+    bool hangs; ///< the lattice's left column and the rope's other end are pinned
+} recipe_shape;
+
+/// Masses from 1 to mass_ratio, a little out of shape.
+recipe recipe_of_shape(const recipe_shape *shape, double stiffness, double mass_ratio);
 
 mspring_builder *recipe_builder(const recipe *made, const mspring_allocator *allocator);
 

@@ -16,51 +16,13 @@
 
 /* -------------------------------------------------------------------------------------------------- networks */
 
-typedef struct shape {
-    const char *name;
-    uint32_t width, height;      ///< of a lattice; 0: none
-    uint32_t particles, springs; ///< of a random graph
-    uint32_t rope;               ///< segments
-    double damping;
-    bool hangs;
-} shape;
-
-static const shape shapes[] = {
+static const recipe_shape shapes[] = {
     {"bar", .width = 60, .height = 5, .hangs = true},
     {"damped bar", .width = 60, .height = 5, .damping = 1e5, .hangs = true},
     {"ship", .width = 30, .height = 20, .rope = 20},
-    {"rope", .rope = 50, .hangs = true},
+    {"rope", .rope = 50},
     {"graph", .particles = 100, .springs = 300},
 };
-
-/// Masses from 1 to ratio, a little out of shape.
-static recipe shape_recipe(const shape *s, double stiffness, double mass_ratio) {
-    uint64_t seed = 21;
-    const recipe_stuff stuff = {.mass = {1, mass_ratio},
-                                .stiffness = {stiffness, stiffness},
-                                .damping = {s->damping, s->damping},
-                                .holes = s->rope > 0 ? 0.1 : 0};
-    recipe made = {0};
-    if (s->width > 0) {
-        recipe_lattice(&made, s->width, s->height, 0, 0, 1, &stuff, &seed);
-        for (uint32_t row = 0; s->hangs && row < s->height; row++) {
-            made.particles[row * s->width].flags = MSPRING_PARTICLE_PINNED;
-        }
-    }
-    for (uint32_t i = 0; i < s->particles; i++) {
-        const double x = support_random_between(&seed, 0, 30), y = support_random_between(&seed, -40, -10);
-        const double mass = support_random_between(&seed, 1, mass_ratio);
-        recipe_particle(&made, x, y, mass, 0);
-    }
-    recipe_random_springs(&made, s->springs, &stuff, &seed);
-    if (s->rope > 0) {
-        mspring_id start = s->width > 0 ? 0 : recipe_particle(&made, -70, 50, 2, MSPRING_PARTICLE_PINNED);
-        mspring_id end = recipe_particle(&made, 3, 50, 2, 0);
-        recipe_rope(&made, start, end, s->rope, &stuff, &seed);
-    }
-    recipe_disturb(&made, 1e-3, 0.01, &seed);
-    return made;
-}
 
 static mspring_network *make(const recipe *made, mspring_guard guard, float gravity, uint32_t substeps) {
     mspring_network_def def = support_def(gravity, substeps);
@@ -103,12 +65,12 @@ static void what_would_explode_goes_on(void **state) {
     const uint32_t substeps[] = {1, 3};
     double worst = 0;
     for (size_t i = 0; i < COUNT_OF(shapes) * COUNT_OF(stiffnesses) * COUNT_OF(ratios) * COUNT_OF(substeps); i++) {
-        const shape *s = &shapes[i % COUNT_OF(shapes)];
+        const recipe_shape *s = &shapes[i % COUNT_OF(shapes)];
         size_t rest = i / COUNT_OF(shapes);
         const double stiffness = stiffnesses[rest % COUNT_OF(stiffnesses)];
         rest /= COUNT_OF(stiffnesses);
         const uint32_t count = substeps[rest % COUNT_OF(substeps)];
-        recipe made = shape_recipe(s, stiffness, ratios[rest / COUNT_OF(substeps)]);
+        recipe made = recipe_of_shape(s, stiffness, ratios[rest / COUNT_OF(substeps)]);
         mspring_network *network = make(&made, MSPRING_GUARD_CLAMP, -9.8f, count);
         const double first = softened_energy(network, &made, DT / count), mass = mass_of(&made);
         for (uint32_t step = 1; step <= 320; step++) {
@@ -134,7 +96,7 @@ static void energy_falls(void **state) {
     (void)state;
     const double stiffnesses[] = {1e5, 1e8, 1e12};
     for (size_t i = 0; i < 2 * COUNT_OF(stiffnesses); i++) {
-        recipe made = shape_recipe(&shapes[i % 2 ? 4 : 2], stiffnesses[i / 2], 10);
+        recipe made = recipe_of_shape(&shapes[i % 2 ? 4 : 2], stiffnesses[i / 2], 10);
         uint64_t seed = 3;
         recipe_disturb(&made, 0.2, 5, &seed);
         mspring_network *network = make(&made, MSPRING_GUARD_CLAMP, 0, 1);
@@ -216,7 +178,7 @@ static void particles_in_one_place_have_no_direction(void **state) {
 static void momentum_is_kept(void **state) {
     (void)state;
     for (size_t i = 0; i < 2; i++) {
-        recipe made = shape_recipe(&shapes[i ? 4 : 2], 1e9, 10);
+        recipe made = recipe_of_shape(&shapes[i ? 4 : 2], 1e9, 10);
         uint64_t seed = 3;
         recipe_disturb(&made, 0.1, 5, &seed);
         for (uint32_t p = 0; p < made.particle_count; p++) {
@@ -346,7 +308,7 @@ static void bits_are_the_same_everywhere(void **state) {
 /// Springs take turns by their ids, wherever they lie: a compacted network goes on with the same bits.
 static void plans_make_no_difference(void **state) {
     (void)state;
-    recipe made = shape_recipe(&shapes[2], 1e8, 10);
+    recipe made = recipe_of_shape(&shapes[2], 1e8, 10);
     mspring_network *networks[2];
     for (size_t i = 0; i < 2; i++) {
         networks[i] = make(&made, MSPRING_GUARD_CLAMP, -9.8f, 1);
@@ -372,7 +334,7 @@ static void plans_make_no_difference(void **state) {
 
 static void what_is_stable_is_not_clamped(void **state) {
     (void)state;
-    recipe made = shape_recipe(&shapes[2], 1000, 1);
+    recipe made = recipe_of_shape(&shapes[2], 1000, 1);
     mspring_network *network = make(&made, MSPRING_GUARD_CLAMP, -9.8f, 1);
     mspring_network *twin = make(&made, MSPRING_GUARD_GROWTH, -9.8f, 1);
     support_steps(network, 500, DT);
@@ -387,7 +349,7 @@ static void what_is_stable_is_not_clamped(void **state) {
 /// Out of bounds is out of bounds: the error as without, and everything as it was.
 static void what_cannot_be_helped_is_refused(void **state) {
     (void)state;
-    recipe made = shape_recipe(&shapes[2], 1e9, 10);
+    recipe made = recipe_of_shape(&shapes[2], 1e9, 10);
     mspring_network *network = make(&made, MSPRING_GUARD_CLAMP, -9.8f, 1);
     mspring_network *twin = make(&made, MSPRING_GUARD_CLAMP, -9.8f, 1);
     support_steps(network, 10, DT);

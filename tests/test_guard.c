@@ -5,21 +5,13 @@
 /// SPDX-License-Identifier: MIT
 #include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "recipe.h"
 #include "support.h"
 
-typedef struct shape {
-    const char *name;
-    uint32_t width, height;      ///< of a lattice; 0: none
-    uint32_t particles, springs; ///< of a random graph
-    uint32_t rope;               ///< segments
-    double damping;
-    bool hangs;
-} shape;
-
-static const shape shapes[] = {
+static const recipe_shape shapes[] = {
     {"bar", .width = 60, .height = 5, .hangs = true},
     {"damped bar", .width = 60, .height = 5, .damping = 30, .hangs = true},
     {"ship", .width = 30, .height = 20, .rope = 20},
@@ -27,33 +19,6 @@ static const shape shapes[] = {
     {"graph", .particles = 200, .springs = 600},
     {"pair", .rope = 2},
 };
-
-static recipe shape_recipe(const shape *s, double mass_ratio) {
-    uint64_t seed = 21;
-    const recipe_stuff stuff = {.mass = {1, mass_ratio},
-                                .stiffness = {1e4, 1e4},
-                                .damping = {s->damping, s->damping},
-                                .holes = s->rope > 0 ? 0.1 : 0};
-    recipe made = {0};
-    if (s->width > 0) {
-        recipe_lattice(&made, s->width, s->height, 0, 0, 1, &stuff, &seed);
-        for (uint32_t row = 0; s->hangs && row < s->height; row++) {
-            made.particles[row * s->width].flags = MSPRING_PARTICLE_PINNED;
-        }
-    }
-    for (uint32_t i = 0; i < s->particles; i++) {
-        recipe_particle(&made, support_random_between(&seed, 0, 30), support_random_between(&seed, -40, -10),
-                        exp(support_random_between(&seed, 0, log(mass_ratio))), 0);
-    }
-    recipe_random_springs(&made, s->springs, &stuff, &seed);
-    if (s->rope > 0) {
-        mspring_id start = s->width > 0 ? 0 : recipe_particle(&made, -70, 50, 2, MSPRING_PARTICLE_PINNED);
-        mspring_id end = recipe_particle(&made, 3, 50, 2, s->hangs ? MSPRING_PARTICLE_PINNED : 0);
-        recipe_rope(&made, start, end, s->rope, &stuff, &seed);
-    }
-    recipe_disturb(&made, 1e-3, 0.01, &seed);
-    return made;
-}
 
 static double energy_of(const mspring_network *network) {
     double kinetic = 0, elastic = 0;
@@ -74,12 +39,12 @@ static void what_explodes_is_refused_in_time(void **state) {
     uint32_t cases = 0;
     double worst = 0;
     for (size_t i = 0; i < COUNT_OF(shapes) * COUNT_OF(beyond) * COUNT_OF(substeps) * COUNT_OF(ratios); i++) {
-        const shape *s = &shapes[i % COUNT_OF(shapes)];
+        const recipe_shape *s = &shapes[i % COUNT_OF(shapes)];
         size_t rest = i / COUNT_OF(shapes);
         const double over = beyond[rest % COUNT_OF(beyond)];
         rest /= COUNT_OF(beyond);
         const uint32_t count = substeps[rest % COUNT_OF(substeps)];
-        recipe made = shape_recipe(s, ratios[rest / COUNT_OF(substeps)]);
+        recipe made = recipe_of_shape(s, 1e4, ratios[rest / COUNT_OF(substeps)]);
         mspring_network_def def = support_def(-9.8f, count);
         mspring_network *network = recipe_network(&made, &def);
         double now = 0, mass = 0;
@@ -105,6 +70,92 @@ static void what_explodes_is_refused_in_time(void **state) {
     }
     print_message("%u cases, energy at the refusal at most %.3f of what is allowed\n", cases, worst);
     assert_true(worst < 1);
+}
+
+/// Of all springs one is too stiff, whichever it is: it is named, with the end that is more easily moved.
+static void the_refusal_names_the_spring(void **state) {
+    (void)state;
+    for (size_t i = 0; i < COUNT_OF(shapes); i++) {
+        recipe made = recipe_of_shape(&shapes[i], 1e4, 10);
+        mspring_network_def def = support_def(-9.8f, 1);
+        const uint32_t stride = made.spring_count / 40 + 1;
+        for (mspring_id s = 0; s < made.spring_count; s += stride) {
+            const mspring_spring_def *spring = &made.springs[s];
+            const mspring_particle_def *a = &made.particles[spring->a], *b = &made.particles[spring->b];
+            const bool a_is_pinned = a->flags & MSPRING_PARTICLE_PINNED,
+                       b_is_pinned = b->flags & MSPRING_PARTICLE_PINNED;
+            if (a_is_pinned && b_is_pinned) {
+                continue; // moves nothing
+            }
+            mspring_network *network = recipe_network(&made, &def);
+            double now = 0;
+            const float stiff = 1e7f;
+            check_ok(mspring_network_set_stiffnesses(network, s, 1, &stiff));
+            check_ok(mspring_network_stable_dt(network, &now, NULL));
+            const uint64_t before = support_hash(network);
+            check_error(mspring_network_step(network, 1.1 * now), MSPRING_ERROR_UNSTABLE);
+            const bool b_moves =
+                a_is_pinned ||
+                (!b_is_pinned && (b->mass < a->mass || (b->mass == a->mass && spring->b < spring->a)));
+            char expected[64];
+            snprintf(expected, sizeof expected, "spring %u at particle %u:", (unsigned)s,
+                     (unsigned)(b_moves ? spring->b : spring->a));
+            check_contains(mspring_network_error(network), expected);
+            assert_int_equal(support_hash(network), before);
+            mspring_network_destroy(network);
+        }
+        recipe_free(&made);
+    }
+}
+
+/// A spring that had no stiffness when the border was looked at first, so that nothing set it then.
+static void a_spring_that_was_none_is_named(void **state) {
+    (void)state;
+    recipe made = {0};
+    recipe_particle(&made, 0, 0, 1, 0);
+    recipe_particle(&made, 1, 0, 2, 0);
+    recipe_spring(&made, 0, 1, 0, 0, 0);
+    mspring_network_def def = support_def(0, 1);
+    mspring_network *network = recipe_network(&made, &def);
+    support_steps(network, 1, 0.01);
+    const float stiff = 1e5f, vx = 0.01f, vy = 0;
+    check_ok(mspring_network_set_stiffnesses(network, 0, 1, &stiff));
+    check_ok(mspring_network_set_velocities(network, 0, 1, &vx, &vy));
+    mspring_result result = MSPRING_OK;
+    for (int step = 0; step < 100 && result == MSPRING_OK; step++) {
+        result = mspring_network_step(network, 0.01);
+    }
+    check_error(result, MSPRING_ERROR_UNSTABLE);
+    check_contains(mspring_network_error(network), "spring 0 at particle 0:");
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+/// One particle is thrown out of the bounds, whichever it is: it is named, where it would have come to.
+static void the_refusal_names_the_particle(void **state) {
+    (void)state;
+    for (size_t i = 0; i < COUNT_OF(shapes); i++) {
+        recipe made = recipe_of_shape(&shapes[i], 10, 10);
+        mspring_network_def def = support_def(-9.8f, 3);
+        def.max_speed = 100;
+        mspring_network *network = recipe_network(&made, &def);
+        for (mspring_id p = 0; p < made.particle_count; p += made.particle_count / 40 + 1) {
+            if (made.particles[p].flags & MSPRING_PARTICLE_PINNED) {
+                continue;
+            }
+            const double dt = 0.001, push = 1.2 * 100 / dt * (double)made.particles[p].mass;
+            check_ok(mspring_network_apply_force(network, p, 0, (float)push));
+            const uint64_t before = support_hash(network);
+            check_error(mspring_network_step(network, dt), MSPRING_ERROR_UNSTABLE);
+            char expected[64];
+            snprintf(expected, sizeof expected, "would throw particle %u,", (unsigned)p);
+            check_contains(mspring_network_error(network), expected);
+            assert_int_equal(support_hash(network), before);
+            check_ok(mspring_network_apply_force(network, p, 0, -(float)push)); // it was still there
+        }
+        mspring_network_destroy(network);
+        recipe_free(&made);
+    }
 }
 
 /// The article's bar: stable at rest, it explodes as it falls and stretches.
@@ -246,8 +297,8 @@ static void what_is_stable_is_never_refused(void **state) {
     // again: not one refusal. The energy tells that nothing exploded.
     uint32_t steps = 0;
     for (size_t i = 0; i < 2 * COUNT_OF(shapes); i++) {
-        const shape *s = &shapes[i % COUNT_OF(shapes)];
-        recipe made = shape_recipe(s, i < COUNT_OF(shapes) ? 1 : 100);
+        const recipe_shape *s = &shapes[i % COUNT_OF(shapes)];
+        recipe made = recipe_of_shape(s, 1e4, i < COUNT_OF(shapes) ? 1 : 100);
         mspring_network_def def = support_def(0, 1 + (uint32_t)i % 3);
         def.global_damping = 0.5f;
         mspring_network *network = recipe_network(&made, &def);
@@ -280,6 +331,9 @@ static void what_is_stable_is_never_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_explodes_is_refused_in_time),
+        cmocka_unit_test(the_refusal_names_the_spring),
+        cmocka_unit_test(a_spring_that_was_none_is_named),
+        cmocka_unit_test(the_refusal_names_the_particle),
         cmocka_unit_test(a_shape_that_crosses_its_border_is_refused),
         cmocka_unit_test(more_substeps_are_tried_where_that_is_wanted),
         cmocka_unit_test(the_implicit_solver_steps_in_where_that_is_wanted),

@@ -156,12 +156,14 @@ static mspring_result choose_substeps(mspring_network *network, double dt) {
     mspring_id spring;
     const double limit = mspringi_stable_in_any_shape(network, &spring);
     const uint32_t substeps = mspringi_substeps_within(dt, limit, network->max_substeps);
-    if (substeps > network->max_substeps)
+    if (substeps > network->max_substeps) {
+        const mspring_id tightest = mspringi_tightest_spring(network, dt / (double)network->max_substeps);
         return mspringi_fail(
             &network->message, MSPRING_ERROR_UNSTABLE,
             "a step of %g s needs substeps of at most %g s, as spring %u is that stiff or damped for "
             "its masses: more than max_substeps, which is %u",
-            dt, limit, (unsigned)spring, (unsigned)network->max_substeps);
+            dt, limit, (unsigned)tightest, (unsigned)network->max_substeps);
+    }
     network->substeps = substeps;
     return MSPRING_OK;
 }

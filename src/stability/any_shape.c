@@ -104,6 +104,33 @@ double mspringi_stable_in_any_shape(mspring_network *network, mspring_id *spring
     return known->dt;
 }
 
+mspring_id mspringi_tightest_spring(mspring_network *network, double h) {
+    const mspringi_topology *t = &network->topology;
+    mspring_id named;
+    (void)mspringi_stable_in_any_shape(network, &named);
+    if (named == MSPRING_NONE)
+        return named;
+    uint32_t base, tip;
+    mspringi_topology_ends(t, mspringi_place_of(t, named), &base, &tip);
+    double most = 0.0;
+    mspringi_place_reader reader;
+    mspringi_places_begin(&reader, &t->places, 0);
+    for (mspring_id i = 0; i < t->spring_count; ++i) {
+        const mspringi_place place = mspringi_places_next(&reader);
+        uint32_t a, b;
+        mspringi_topology_ends(t, place, &a, &b);
+        if (!mspringi_spring_exists(network, i) || !(a == base || a == tip || b == base || b == tip))
+            continue;
+        const mspringi_strength s = mspringi_strength_of(network, i, place);
+        const double weight =
+            h * (h * s.stiffness + 2.0 * s.damping) + s.relative_stiffness + 2.0 * s.relative_damping;
+        const double rate = weight * ((double)network->inverse_mass[a] + (double)network->inverse_mass[b]);
+        named = rate > most ? i : named;
+        most = rate > most ? rate : most;
+    }
+    return named;
+}
+
 uint32_t mspringi_substeps_within(double dt, double limit, uint32_t most) {
     const double count = dt / limit;
     if (!(count <= (double)most))

@@ -179,10 +179,10 @@ static double largest_eigenvalue(const mspring_network *network, double h, displ
     }
 }
 
-// Name the spring that is tightest in any shape, and the end of it that is more easily moved.
+// Name the tightest spring, and the end of it that is more easily moved.
 static mspring_result explain_border(mspring_network *network, double dt, float h) {
     const mspringi_topology *t = &network->topology;
-    const mspring_id spring = network->any_shape.spring;
+    const mspring_id spring = mspringi_tightest_spring(network, (double)h);
     uint32_t base, tip;
     mspringi_topology_ends(t, mspringi_place_of(t, spring), &base, &tip);
     const float at_base = network->inverse_mass[base], at_tip = network->inverse_mass[tip];

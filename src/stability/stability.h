@@ -20,6 +20,11 @@ mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_i
 /// until springs or masses are edited. Between steps only: it works in the backup of the state.
 double mspringi_stable_in_any_shape(mspring_network *network, mspring_id *spring);
 
+/// The spring to name where substeps of h are too long: of those that share an end with the one that sets the
+/// longest substep, which says only where, the one that is stiffest or most damped for its masses. MSPRING_NONE if
+/// nothing sets it. Looks at all springs, works in the backup.
+mspring_id mspringi_tightest_spring(mspring_network *network, double h);
+
 /// Whether no eigenvalue of A + 2 D (see pencil.h) for substeps of h, in the shape that the network has, can be
 /// above bound. False says nothing. first and second are room for a number by slot each.
 bool mspringi_border_is_below(const mspring_network *network, double h, double bound, float *first, float *second);
