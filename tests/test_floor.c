@@ -323,6 +323,26 @@ static void bounces_lose_height(void **state) {
     mspring_network_destroy(network);
 }
 
+/// The part of a field of heights under a particle may rise on either side of it.
+static void slopes_bear_what_falls_on_them(void **state) {
+    (void)state;
+    const float heights[] = {0, 10, 0};
+    mspring_floor_def def = floor_def();
+    def.heights = heights;
+    def.height_count = COUNT_OF(heights);
+    def.heights_x = -10;
+    def.spacing = 10;
+    def.friction = 2; // more than the slopes' 1: it stays where it meets them
+    for (double x = -4; x <= 4; x += 8) {
+        mspring_network *network = one_particle(x, 8, 0, 0, 5);
+        check_ok(mspring_network_set_floor(network, &def));
+        support_steps(network, 128, 1.0 / 64);
+        check_near(support_position(network, 0).y, 6, 0.1); // it falls 2 m at up to 6.3 m/s: 0.1 m in a step
+        check_near(above(&def, support_position(network, 0).x, support_position(network, 0).y), 0, tolerance);
+        mspring_network_destroy(network);
+    }
+}
+
 /// In a valley of a field of heights a particle ends at the bottom, in a straight one without friction with the
 /// energy it had.
 static void valleys_collect(void **state) {
@@ -741,6 +761,7 @@ int main(void) {
         cmocka_unit_test(friction_slows_explicitly),
         cmocka_unit_test(slopes_hold_explicitly),
         cmocka_unit_test(bounces_lose_height),
+        cmocka_unit_test(slopes_bear_what_falls_on_them),
         cmocka_unit_test(valleys_collect),
         cmocka_unit_test(bars_lie_still_explicitly),
         cmocka_unit_test(bars_lie_still_implicitly),
