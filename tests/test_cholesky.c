@@ -322,6 +322,57 @@ static void fronts_of_every_size(void **state) {
     }
 }
 
+// Bands of every width that there is a banded factor for and one more, of even and odd length, with random edges
+// within them, some doubled, from none at all on; numbered at random, so that the order is not the given one.
+static void bands(void **state) {
+    (void)state;
+    uint64_t seed = 8;
+    for (uint32_t width = 0; width <= 8; width++) {
+        for (uint32_t count = 1; count < 60; count += count < 10 ? 1 : 23) {
+            problem *p = new_problem();
+            uint32_t number[64];
+            for (uint32_t i = 0; i < count; i++) {
+                const uint32_t swapped = (uint32_t)(support_random(&seed) % (i + 1));
+                number[i] = number[swapped];
+                number[swapped] = i;
+            }
+            for (uint32_t i = 0; i < count; i++) {
+                add_node(p, 0, 0);
+            }
+            for (uint32_t i = 0; i < count; i++) {
+                p->x[number[i]] = i;
+                for (uint32_t other = i + 1; other <= i + width && other < count; other++) {
+                    for (uint32_t copies = (uint32_t)(support_random(&seed) % 4); copies > 1; copies--) {
+                        add_edge(p, number[i], number[other]);
+                    }
+                }
+            }
+            check_and_free(p, &seed);
+        }
+    }
+}
+
+// What is thin takes a band, whichever way it lies, and what is not takes none.
+static void thin_is_banded(void **state) {
+    (void)state;
+    static const struct {
+        uint32_t width, height, groups;
+    } sizes[] = {{90, 5, 225}, {5, 90, 225}, {1, 77, 39}, {60, 6, 0}, {20, 20, 0}};
+    for (size_t i = 0; i < COUNT_OF(sizes); i++) {
+        mspringi_memory memory;
+        mspringi_message message;
+        mspringi_cholesky_plan plan = {0};
+        problem *p = new_problem();
+        add_grid(p, sizes[i].width, sizes[i].height, 0);
+        const mspringi_cholesky_graph graph = graph_of(p);
+        check_ok(mspringi_memory_init(&memory, NULL, &message));
+        check_ok(mspringi_cholesky_plan_create(&plan, &graph, &memory, &message));
+        assert_int_equal(plan.band_groups, sizes[i].groups);
+        mspringi_cholesky_plan_destroy(&plan, &memory);
+        free(p);
+    }
+}
+
 static void trees_stars_and_rings(void **state) {
     (void)state;
     uint64_t seed = 3;
@@ -565,6 +616,8 @@ int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(grids),
         cmocka_unit_test(fronts_of_every_size),
+        cmocka_unit_test(bands),
+        cmocka_unit_test(thin_is_banded),
         cmocka_unit_test(trees_stars_and_rings),
         cmocka_unit_test(random_graphs),
         cmocka_unit_test(many_parts),

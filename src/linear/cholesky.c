@@ -30,12 +30,12 @@ const mspringi_cholesky_kernels *mspringi_cholesky_kernels_of(mspring_simd level
     mspring_result mspringi_cholesky_##real##_create(mspringi_cholesky_##real *factor,                             \
                                                      const mspringi_cholesky_plan *plan, mspring_simd level,       \
                                                      mspringi_memory *memory, mspringi_message *message) {         \
-        const size_t size = plan->size;                                                                            \
+        const size_t size = mspringi_pad(2 * (size_t)plan->size) + MSPRINGI_PAD;                                   \
         *factor = (mspringi_cholesky_##real){                                                                      \
             .plan = plan,                                                                                          \
             .kernels = mspringi_cholesky_kernels_of(level),                                                        \
             .panels = mspringi_alloc(memory, plan->panel_reals + MSPRINGI_PAD, sizeof(real)),                      \
-            .reciprocal = mspringi_alloc(memory, 2 * size, sizeof(real)),                                          \
+            .reciprocal = mspringi_alloc(memory, size, sizeof(real)),                                              \
             .updates = {mspringi_alloc(memory, plan->update_reals[0] + MSPRINGI_PAD, sizeof(real)),                \
                         mspringi_alloc(memory, plan->update_reals[1] + MSPRINGI_PAD, sizeof(real))},               \
             .scaled = mspringi_alloc(memory, plan->scaled_reals, sizeof(real)),                                    \

@@ -8,7 +8,8 @@
 /// roots). It is computed anew for every A, without allocating anything.
 ///
 /// Method: nested dissection (George 1973) or a sweep from end to end (Cuthill & McKee 1969), whichever is cheaper;
-/// supernodes, merged where that pays (Ashcraft & Grimes 1989); multifrontal elimination (Duff & Reid 1983).
+/// supernodes, merged where that pays (Ashcraft & Grimes 1989); multifrontal elimination (Duff & Reid 1983). What
+/// is thin from end to end (ropes, bars of up to five rows) is eliminated as a band instead.
 ///
 /// Same bits: every element of L has its products subtracted one by one, in the order of elimination, at each level
 /// alike. Only elements that do not depend on each other share a vector.
@@ -42,15 +43,18 @@ typedef struct mspringi_front_run mspringi_front_run;
 
 /// All that depends on the graph alone. Read-only once made, so that several factors may share it.
 typedef struct mspringi_cholesky_plan {
-    uint32_t node_count; ///< of the graph
-    uint32_t size;       ///< nodes that are there: blocks on the diagonal of A
-    uint32_t *order;     ///< [size] node by place in the order of elimination
+    uint32_t node_count;    ///< of the graph
+    uint32_t size;          ///< nodes that are there: blocks on the diagonal of A
+    uint32_t *order;        ///< [size] node by place in the order of elimination
+    uint32_t band_groups;   ///< of a banded factor: pairs of nodes; 0: there are fronts, and no such factor
+    uint32_t band_reach;    ///< groups behind its own that a node reaches, 0 to 3
+    uint32_t *band_entries; ///< [band_groups + 1] where the entries of each begin
     uint32_t front_count;
     mspringi_front *fronts;           ///< [front_count] children before their parents
     uint32_t *children;               ///< [front_count] fronts, by their parent
     uint32_t *border;                 ///< places, front after front
     mspringi_front_run *runs;         ///< where the border of a front lies in its parent
-    mspringi_cholesky_entry *entries; ///< edges, front after front
+    mspringi_cholesky_entry *entries; ///< edges, front after front or group after group
     size_t panel_reals;               ///< numbers in the factor,
     size_t update_reals[2];           ///< in each of the two stacks of update matrices,
     size_t scaled_reals;              ///< in the scaled copy of a front's columns,

@@ -468,16 +468,23 @@ MSPRINGI_INLINE void NAME(solve_backward)(const FACTOR *factor, const mspringi_f
     NAME(solve_pivots)(pivots, pivot_rows, columns, y);
 }
 
+#include "band.h"
+
+/* ------------------------------------------------------------------------------------------------ the table's */
+
 MSPRINGI_INLINE void NAME(permute)(const FACTOR *factor, const REAL *x, const REAL *y) {
     for (uint32_t i = 0; i < factor->plan->size; ++i) {
         factor->vector[2 * (size_t)i] = x[factor->plan->order[i]];
         factor->vector[2 * (size_t)i + 1] = y[factor->plan->order[i]];
     }
+    memset(factor->vector + 2 * (size_t)factor->plan->size, 0, 2 * sizeof *factor->vector); // see fill_group()
 }
 
 static void NAME(solve_all_backward)(const FACTOR *factor, REAL *x, REAL *y) {
     const mspringi_cholesky_plan *plan = factor->plan;
     REAL *vector = factor->vector;
+    if (plan->band_groups > 0)
+        NAME(solve_band_backward)(factor, vector);
     for (uint32_t n = plan->front_count; n-- > 0;)
         NAME(solve_backward)(factor, &plan->fronts[n], vector + 2 * (size_t)plan->fronts[n].first_pivot);
     for (uint32_t i = 0; i < plan->size; ++i) {
@@ -486,16 +493,20 @@ static void NAME(solve_all_backward)(const FACTOR *factor, REAL *x, REAL *y) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ the table's */
+/// Factor A; the right side in factor->vector leaves as D^-1 L^-1 b.
+static uint32_t NAME(eliminate_matrix)(FACTOR *factor, const MATRIX *matrix) {
+    return factor->plan->band_groups > 0 ? NAME(eliminate_band)(factor, matrix, factor->vector)
+                                         : NAME(eliminate_all)(factor, matrix, factor->vector);
+}
 
 static uint32_t NAME(factor)(FACTOR *factor, const MATRIX *matrix) {
-    memset(factor->vector, 0, 2 * (size_t)factor->plan->size * sizeof *factor->vector);
-    return NAME(eliminate_all)(factor, matrix, factor->vector);
+    memset(factor->vector, 0, (2 * (size_t)factor->plan->size + 2) * sizeof *factor->vector);
+    return NAME(eliminate_matrix)(factor, matrix);
 }
 
 static uint32_t NAME(factor_solve)(FACTOR *factor, const MATRIX *matrix, REAL *x, REAL *y) {
     NAME(permute)(factor, x, y);
-    const uint32_t bad = NAME(eliminate_all)(factor, matrix, factor->vector);
+    const uint32_t bad = NAME(eliminate_matrix)(factor, matrix);
     if (bad == MSPRING_NONE)
         NAME(solve_all_backward)(factor, x, y);
     return bad;
@@ -504,6 +515,8 @@ static uint32_t NAME(factor_solve)(FACTOR *factor, const MATRIX *matrix, REAL *x
 static void NAME(solve)(FACTOR *factor, REAL *x, REAL *y) {
     const mspringi_cholesky_plan *plan = factor->plan;
     NAME(permute)(factor, x, y);
+    if (plan->band_groups > 0)
+        NAME(solve_band_forward)(factor, factor->vector);
     for (uint32_t n = 0; n < plan->front_count; ++n)
         NAME(solve_forward)(factor, &plan->fronts[n], factor->vector + 2 * (size_t)plan->fronts[n].first_pivot);
     NAME(solve_all_backward)(factor, x, y);

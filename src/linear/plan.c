@@ -1,4 +1,4 @@
-/// Finding a plan: for each connected component the cheaper of two orders, then the fronts.
+/// Finding a plan: a band, or for each connected component the cheaper of two orders, then the fronts.
 #include "plan.h"
 
 #include <string.h>
@@ -35,7 +35,10 @@ static mspring_result find(mspringi_cholesky_plan *plan, const mspringi_cholesky
                            const mspringi_adjacency *adjacency, const mspringi_sweep_order *sweep,
                            mspringi_tree *tree, uint32_t *order, mspringi_memory *memory,
                            mspringi_message *message) {
-    mspring_result result = mspringi_dissect(order, sweep, adjacency, graph, memory, message);
+    mspring_result result = mspringi_band_create(plan, sweep, adjacency, graph, memory, message);
+    if (result != MSPRING_OK || plan->band_groups > 0)
+        return result;
+    result = mspringi_dissect(order, sweep, adjacency, graph, memory, message);
     if (result != MSPRING_OK)
         return result;
     if (!choose_orders(order, sweep, tree, adjacency))
@@ -74,6 +77,7 @@ mspring_result mspringi_cholesky_plan_create(mspringi_cholesky_plan *plan, const
 
 void mspringi_cholesky_plan_destroy(mspringi_cholesky_plan *plan, mspringi_memory *memory) {
     mspringi_free(memory, plan->order);
+    mspringi_free(memory, plan->band_entries);
     mspringi_free(memory, plan->fronts);
     mspringi_free(memory, plan->children);
     mspringi_free(memory, plan->border);

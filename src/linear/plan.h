@@ -10,6 +10,9 @@
 /// Rows are padded to this many numbers: 64 bytes of floats.
 #define MSPRINGI_PAD 16
 
+/// Columns of a group of a banded factor: those of two nodes.
+#define MSPRINGI_BAND_COLUMNS 4
+
 /// A dense part of the elimination: the columns of its pivots, with a row for each pivot and each node of its
 /// border. They are two column-major arrays behind one another in the factor: pivot rows, then border rows.
 struct mspringi_front {
@@ -32,7 +35,7 @@ struct mspringi_front_run {
     uint32_t is_pivot; ///< 1 or 0
 };
 
-/// An edge, and where its block begins in the pivot rows or border rows of its front.
+/// An edge, and where its block begins in the pivot rows or border rows of its front, or in a banded factor.
 struct mspringi_cholesky_entry {
     uint32_t edge, to;
 };
@@ -72,6 +75,12 @@ typedef struct mspringi_sweep_order {
 mspring_result mspringi_sweep_order_find(mspringi_sweep_order *sweep, const mspringi_adjacency *adjacency,
                                          mspringi_memory *memory, mspringi_message *message);
 void mspringi_sweep_order_destroy(mspringi_sweep_order *sweep, mspringi_memory *memory);
+
+/// Make the plan of a banded factor, if there is an order in which no node reaches further than that has room for.
+/// Else plan->band_groups stays 0.
+mspring_result mspringi_band_create(mspringi_cholesky_plan *plan, const mspringi_sweep_order *sweep,
+                                    const mspringi_adjacency *adjacency, const mspringi_cholesky_graph *graph,
+                                    mspringi_memory *memory, mspringi_message *message);
 
 /// Order the nodes of each component, which lie as in sweep, by nested dissection. order is [size].
 mspring_result mspringi_dissect(uint32_t *order, const mspringi_sweep_order *sweep,

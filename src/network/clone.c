@@ -135,6 +135,7 @@ static void move_direct(const moving *m, mspringi_direct *direct) {
     MOVE(direct->end_a);
     MOVE(direct->end_b);
     MOVE(direct->plan.order);
+    MOVE(direct->plan.band_entries);
     MOVE(direct->plan.fronts);
     MOVE(direct->plan.children);
     MOVE(direct->plan.border);
