@@ -54,6 +54,7 @@ typedef struct arena {
     uint32_t after_records[GUARD];
     float rest_lengths[ROW * MSPRINGI_DIRECTIONS * W];
     uint32_t rests_of_block[ROW];
+    uint32_t springs_of_block[ROW];
     uint32_t back[GUARD];
     _Alignas(64) float kept[4 * STRIDE];
     uint32_t after_kept[GUARD];
@@ -140,9 +141,12 @@ static void fill(arena *a, const setup *s) {
     for (uint32_t i = 0; i < ROW * s->record_slots; i++) {
         uint32_t record = i / s->record_slots, direction = i % s->record_slots / W, lane = i % W;
         const bool lattice = s->record_slots > W;
-        float *first =
-            a->records + ((size_t)record * s->record_slots + direction * W) * (s->parts - lattice) + lane;
+        float *first = a->records +
+                       ((size_t)(lattice ? (record + 1) % ROW : record) * s->record_slots + direction * W) *
+                           (s->parts - lattice) +
+                       lane;
         a->rests_of_block[record] = ROW - 1 - record;
+        a->springs_of_block[record] = (record + 1) % ROW;
         float *rest_length =
             lattice ? a->rest_lengths + ((ROW - 1 - record) * MSPRINGI_DIRECTIONS + direction) * W + lane : first;
         float *stiffness = lattice ? first : first + W;
@@ -171,6 +175,7 @@ static void run(arena *a, const setup *s, mspringi_row_fn kernel, mspringi_sight
         .lattice_springs = a->records,
         .rest_lengths = a->rest_lengths,
         .rests_of_block = a->rests_of_block,
+        .springs_of_block = a->springs_of_block,
         .chain_springs = a->records,
         .parts = s->parts,
         .h = 0.01f,

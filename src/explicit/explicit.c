@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "contact/floor.h"
+#include "network/alike.h"
 #include "sleep/sleep.h"
 #include "strip.h"
 
@@ -356,6 +357,7 @@ static void sweep_grafted(mspring_network *network, float h, mspringi_field base
 // The wave's strips know nothing of the others, nor they of the wave's, unless springs were added.
 static void sweep_all(mspring_network *network, float h, mspringi_field base, uint32_t count,
                       mspringi_sight *sights) {
+    mspringi_alike_renew(network);
     if (network->graft.count > 0) {
         sweep_grafted(network, h, base, count);
         return;

@@ -31,6 +31,7 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
                 .carry_x = carry,
                 .carry_y = carry + carry_slots,
                 .lattice_springs = network->lattice_springs,
+                .springs_of_block = network->alike.of_block,
                 .rest_lengths = network->rests.lengths,
                 .rests_of_block = network->rests.of_block,
                 .chain_springs = network->chain_springs,

@@ -31,12 +31,13 @@ typedef mspringi_sight (*mspringi_sight_fn)(const mspringi_watch *watch);
 typedef struct mspringi_sweep {
     float *x, *y, *vx, *vy;
     const float *inverse_mass;
-    const float *force_x, *force_y; ///< forces from outside; read by the kernels with forces only
-    float *carry_x, *carry_y;       ///< forces that the row below exerts, by column
-    const float *lattice_springs;   ///< records: [block][direction][part after the rest length][lane]
-    const float *rest_lengths;      ///< of lattice springs: [block of rest lengths][direction][lane]
-    const uint32_t *rests_of_block; ///< [block] which of these it has
-    const float *chain_springs;     ///< records: [block][part][lane]
+    const float *force_x, *force_y;   ///< forces from outside; read by the kernels with forces only
+    float *carry_x, *carry_y;         ///< forces that the row below exerts, by column
+    const float *lattice_springs;     ///< records: [direction][part after the rest length][lane]
+    const uint32_t *springs_of_block; ///< [block] which of these it has
+    const float *rest_lengths;        ///< of lattice springs: [block of rest lengths][direction][lane]
+    const uint32_t *rests_of_block;   ///< [block] which of these it has
+    const float *chain_springs;       ///< records: [block][part][lane]
     const mspringi_web *web;
     const float *web_springs;       ///< records: [rung][part][lane]
     const float *packed;            ///< [node][4] x, y, vx, vy of the web's nodes at the start of the substep

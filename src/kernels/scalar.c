@@ -108,7 +108,7 @@ static inline lattice_springs springs_of(const mspringi_sweep *s, const mspringi
     const size_t block = span->first_record + (slot / MSPRINGI_WIDTH - span->first_slot / MSPRINGI_WIDTH);
     const size_t places = (size_t)MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH, lane = slot % MSPRINGI_WIDTH;
     return (lattice_springs){s->rest_lengths + s->rests_of_block[block] * places + lane,
-                             s->lattice_springs + block * places * (s->parts - 1) + lane};
+                             s->lattice_springs + s->springs_of_block[block] * places * (s->parts - 1) + lane};
 }
 
 static inline vector lattice_force(motion base, motion tip, lattice_springs springs, mspringi_direction direction,

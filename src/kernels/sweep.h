@@ -159,7 +159,9 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *s
         for (size_t slot = first_of(span); slot < end_slot; ++block) {
             const size_t first = slot, block_end = (slot / MSPRINGI_WIDTH + 1) * MSPRINGI_WIDTH;
             const size_t end = block_end < end_slot ? block_end : end_slot;
-            const float *springs = s->lattice_springs + block * MSPRINGI_DIRECTIONS * part + slot % MSPRINGI_WIDTH;
+            const float *springs = s->lattice_springs +
+                                   (size_t)s->springs_of_block[block] * MSPRINGI_DIRECTIONS * part +
+                                   slot % MSPRINGI_WIDTH;
             const float *rests = s->rest_lengths +
                                  (size_t)s->rests_of_block[block] * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH +
                                  slot % MSPRINGI_WIDTH;
@@ -232,10 +234,11 @@ MSPRINGI_INLINE void chain(const mspringi_sweep *sweep, const mspringi_span *spa
                 is_chain ? chain_record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH
                          : s->rest_lengths +
                                (size_t)s->rests_of_block[block] * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + lane;
-            const float *record =
-                is_chain
-                    ? chain_record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH
-                    : s->lattice_springs + block * MSPRINGI_DIRECTIONS * (damped ? 2 : 1) * MSPRINGI_WIDTH + lane;
+            const float *record = is_chain ? chain_record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH
+                                           : s->lattice_springs +
+                                                 (size_t)s->springs_of_block[block] * MSPRINGI_DIRECTIONS *
+                                                     (damped ? 2 : 1) * MSPRINGI_WIDTH +
+                                                 lane;
             const motion here = load_motion(s, slot, damped), next = load_motion_unaligned(s, slot + 1, damped);
             const extent to_east = spring_extent(here, next);
             const vector east =

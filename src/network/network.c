@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "alike.h"
 #include "base/cpu.h"
 #include "base/mix.h"
 #include "edits/growth.h"
@@ -110,8 +111,10 @@ mspring_result mspringi_layout_reserve(mspring_network *network) {
     mspringi_memory *memory = &network->memory;
     const size_t parts = network->parts;
     network->inverse_mass = mspringi_alloc(memory, mspringi_slot_count(network), sizeof *network->inverse_mass);
+    mspringi_alike_begin(&network->alike, t, memory);
     network->lattice_springs =
-        mspringi_alloc(memory, (parts - 1) * t->lattice_places, sizeof *network->lattice_springs);
+        mspringi_alloc(memory, (parts - 1) * (t->lattice_places + mspringi_alike_places(&network->alike)),
+                       sizeof *network->lattice_springs);
     network->chain_springs =
         mspringi_alloc(memory, parts * (t->chain_places - t->lattice_places), sizeof *network->chain_springs);
     const size_t rungs =
@@ -124,8 +127,9 @@ mspring_result mspringi_layout_reserve(mspring_network *network) {
     network->depth = mspringi_explicit_depth(t, network->parts);
     network->live = mspringi_alloc(memory, mspringi_place_words(t), sizeof *network->live);
     if (!reserve_state(network, &network->state) || !reserve_state(network, &network->backup) ||
-        !network->inverse_mass || !network->lattice_springs || !network->chain_springs || !network->web_springs ||
-        !network->packed || !network->attached || !network->live)
+        !network->inverse_mass || !network->alike.of_block || !network->lattice_springs ||
+        !network->chain_springs || !network->web_springs || !network->packed || !network->attached ||
+        !network->live)
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for a network of %u particles and %u springs", (unsigned)t->particle_count,
                              (unsigned)t->spring_count);
@@ -136,6 +140,7 @@ void mspringi_layout_free(const mspring_network *network, mspringi_memory *memor
     mspringi_free(memory, network->state.x);
     mspringi_free(memory, network->backup.x);
     mspringi_free(memory, network->inverse_mass);
+    mspringi_free(memory, network->alike.of_block);
     mspringi_free(memory, network->lattice_springs);
     mspringi_free(memory, network->chain_springs);
     mspringi_free(memory, network->web_springs);
@@ -148,6 +153,7 @@ void mspringi_layout_free(const mspring_network *network, mspringi_memory *memor
 void mspringi_layout_forget(mspring_network *network) {
     network->state = network->backup = (mspringi_state){NULL, NULL, NULL, NULL};
     network->inverse_mass = NULL;
+    network->alike = (mspringi_alike){0};
     network->lattice_springs = network->chain_springs = network->web_springs = NULL;
     network->packed = network->attached = network->carry = NULL;
     network->live = NULL;

@@ -133,6 +133,13 @@ typedef struct mspringi_rests {
     uint32_t count, shared_count;
 } mspringi_rests;
 
+/// Lattice blocks whose springs are alike in stiffness and damping.
+typedef struct mspringi_alike {
+    uint32_t *of_block; ///< [lattice blocks] the record that is read for each: its own, or one behind all of these
+    uint32_t count, capacity; ///< records behind
+    uint64_t changes;         ///< springs that were set since these were looked for
+} mspringi_alike;
+
 /// Which islands sleep, and what they were when they fell asleep; no arrays if none ever does. An island is a
 /// component of live springs, numbered by its lowest slot.
 typedef struct mspringi_sleep {
@@ -219,6 +226,7 @@ struct mspring_network {
     uint32_t parts;            ///< values per spring in the records: 2, or 3 with damping
     mspringi_rests rests;      ///< of lattice_springs, whose records have stiffness and damping only
     float *lattice_springs, *chain_springs;
+    mspringi_alike alike;
     float *web_springs;
     float *packed;   ///< [2][nodes of the web][4] at the start of every other substep
     float *attached; ///< forces on the attached nodes, all x and then all y

@@ -1,6 +1,7 @@
 /// Where springs lie and what they are like.
 #include "springs.h"
 
+#include "alike.h"
 #include "rests.h"
 
 // Where a spring's values are: in one record, or in one at each of its ends.
@@ -60,6 +61,7 @@ mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspri
 
 void mspringi_place_set(mspring_network *network, mspringi_place place, float stiffness, float damping) {
     const spring_records records = find_records(network, place);
+    mspringi_alike_part(network, place);
     for (int i = 0; i < records.count; ++i) {
         *records.ends[i].stiffness = stiffness;
         if (records.ends[i].damping)
@@ -77,6 +79,7 @@ void mspringi_place_copy(const mspring_network *from, mspringi_place had_place, 
                          mspringi_place place) {
     const spring_record had = find_records(from, had_place).ends[0];
     const spring_records records = find_records(to, place);
+    mspringi_alike_part(to, place);
     for (int i = 0; i < records.count; ++i) {
         const spring_record *record = &records.ends[i];
         *record->rest_length = *had.rest_length;

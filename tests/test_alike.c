@@ -1,0 +1,125 @@
+/// @file test_alike.c
+/// Lattice blocks whose springs are alike are read from one record: what is edited afterwards is not.
+///
+/// SPDX-License-Identifier: MIT
+#include "network/network.h"
+#include "recipe.h"
+#include "support.h"
+
+enum { WIDTH = 70, HEIGHT = 40 };
+
+static const recipe_stuff absolute = {.mass = {1, 1}, .stiffness = {900, 900}, .damping = {2, 2}};
+static const recipe_stuff relative = {
+    .mass = {1, 1}, .stiffness = {0.2, 0.2}, .damping = {0.05, 0.05}, .spring_flags = MSPRING_SPRING_RELATIVE};
+
+/// Springs first, first + step, ... are broken, or get these values.
+typedef struct edits {
+    mspring_id first, step;
+    bool breaks;
+    float stiffness, damping;
+} edits;
+
+static void edit(mspring_network *network, const edits *which) {
+    const uint32_t count = mspring_network_spring_count(network);
+    for (mspring_id s = which->first; s < count; s += which->step) {
+        if (which->breaks) {
+            check_ok(mspring_network_break_springs(network, &s, 1));
+        } else {
+            check_ok(mspring_network_set_stiffnesses(network, s, 1, &which->stiffness));
+            check_ok(mspring_network_set_dampings(network, s, 1, &which->damping));
+        }
+    }
+}
+
+/// Blocks that read a record which is not their own.
+static uint32_t shared_blocks(const mspring_network *network) {
+    uint32_t shared = 0;
+    for (uint32_t b = 0; b < network->topology.lattice_blocks; b++) {
+        shared += network->alike.of_block[b] != b;
+    }
+    return shared;
+}
+
+/// The state after some steps of a network that is edited before or after its first step, which does not count.
+static uint64_t run(const recipe *made, const edits *which, bool afterwards) {
+    mspring_network_def def = support_def(-9.8f, 8);
+    mspring_network *network = recipe_network(made, &def);
+    static double x[WIDTH * HEIGHT], y[WIDTH * HEIGHT];
+    static float vx[WIDTH * HEIGHT], vy[WIDTH * HEIGHT];
+    check_ok(mspring_network_get_positions(network, 0, made->particle_count, x, y));
+    check_ok(mspring_network_get_velocities(network, 0, made->particle_count, vx, vy));
+    if (!afterwards) {
+        edit(network, which);
+    }
+    check_ok(mspring_network_step(network, 1.0 / 64));
+    if (afterwards) {
+        // Most blocks have full rows and equal springs: all but those of the last columns and of the top.
+        assert_true(shared_blocks(network) >= network->topology.lattice_blocks / 2);
+        edit(network, which);
+    }
+    check_ok(mspring_network_set_positions(network, 0, made->particle_count, x, y));
+    check_ok(mspring_network_set_velocities(network, 0, made->particle_count, vx, vy));
+    for (int i = 0; i < 4; i++) {
+        check_ok(mspring_network_step(network, 1.0 / 64));
+    }
+    uint64_t hash = 0;
+    check_ok(mspring_network_state_hash(network, &hash));
+    mspring_network_destroy(network);
+    return hash;
+}
+
+static void edits_count_at_once(void **state) {
+    (void)state;
+    const edits all[] = {{.first = 1000, .step = 100000}, {.first = 1000, .step = 100000, .breaks = true},
+                         {.first = 7, .step = 97},        {.first = 7, .step = 97, .breaks = true},
+                         {.first = 0, .step = 2},         {.first = 0, .step = 1}};
+    const recipe_stuff *const stuffs[] = {&absolute, &relative};
+    for (size_t i = 0; i < COUNT_OF(stuffs); i++) {
+        uint64_t seed = 11;
+        recipe made = {0};
+        recipe_lattice(&made, WIDTH, HEIGHT, 0, 0, 1, stuffs[i], &seed);
+        recipe_disturb(&made, 0, 0.5, &seed);
+        const edits none = {.first = made.spring_count, .step = 1};
+        const uint64_t unedited = run(&made, &none, true);
+        for (size_t e = 0; e < COUNT_OF(all); e++) {
+            edits some = all[e];
+            some.stiffness = (float)(0.5 * stuffs[i]->stiffness[0]);
+            some.damping = (float)(2 * stuffs[i]->damping[0]);
+            const uint64_t hash = run(&made, &some, true);
+            assert_true(hash != unedited);
+            assert_true(hash == run(&made, &some, false));
+        }
+        recipe_free(&made);
+    }
+}
+
+static void a_copy_shares_too(void **state) {
+    (void)state;
+    uint64_t seed = 11, hashes[2];
+    recipe made = {0};
+    recipe_lattice(&made, WIDTH, HEIGHT, 0, 0, 1, &absolute, &seed);
+    recipe_disturb(&made, 0, 0.5, &seed);
+    mspring_network_def def = support_def(-9.8f, 8);
+    mspring_network *networks[2] = {recipe_network(&made, &def), NULL};
+    check_ok(mspring_network_step(networks[0], 1.0 / 64));
+    check_ok(mspring_network_clone(networks[0], NULL, &networks[1]));
+    assert_int_equal(shared_blocks(networks[0]), shared_blocks(networks[1]));
+    const edits some = {.first = 5, .step = 301, .stiffness = 400, .damping = 3};
+    edit(networks[1], &some); // of the copy alone
+    edit(networks[0], &some);
+    for (int i = 0; i < 2; i++) {
+        check_ok(mspring_network_step(networks[i], 1.0 / 64));
+        check_ok(mspring_network_state_hash(networks[i], &hashes[i]));
+        mspring_network_destroy(networks[i]);
+    }
+    assert_true(hashes[0] == hashes[1]);
+    recipe_free(&made);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(edits_count_at_once),
+        cmocka_unit_test(a_copy_shares_too),
+    };
+    return cmocka_run_group_tests_name("alike", tests, NULL, NULL);
+}
