@@ -18,6 +18,15 @@
 #define UNSUSPICIOUS 0.004
 #define HARMLESS 1e-5
 
+/// How far a solution lowers the energy of what is linearised, its fall, is about what may come from nowhere.
+/// Below CALM, a part of the motion, nearly all of it goes with the acceleration, and SPURIOUS is the part that
+/// counts. As energy comes and goes with second order, the balance has to have RESERVE of the falls left then;
+/// below STILL not.
+#define CALM 1e-4
+#define SPURIOUS 0.001
+#define RESERVE 4.0
+#define STILL 1e-8
+
 /// The same that is taken out of the motion, but that more iterations are to keep from coming again.
 #define NOTABLE 1e-4
 
@@ -212,8 +221,11 @@ static bool is_suspicious(const substep_of *substep, const mspringi_motion *m) {
         return true;
     if (ledger->look == 0 && ledger->motion > 0.0) {
         const double outside = ledger->risen + gain_outside(substep, m);
-        const double risen = (outside > 0.0 ? outside : 0.0) + n->fall;
-        if (risen <= UNSUSPICIOUS * ledger->motion && ledger->balance + risen <= 0.0) {
+        const double fall = n->fall <= CALM * ledger->motion ? SPURIOUS * n->fall : n->fall;
+        const double risen = (outside > 0.0 ? outside : 0.0) + fall;
+        const double rounding = LENGTH_ROUNDING * ledger->motion;
+        const double reserve = n->fall > STILL * ledger->motion ? RESERVE * n->fall : -rounding;
+        if (risen <= UNSUSPICIOUS * ledger->motion && ledger->balance + risen <= -reserve) {
             ledger->risen = risen;
             return false;
         }
