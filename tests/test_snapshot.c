@@ -525,6 +525,35 @@ static void what_hides_in_other_slots_is_refused(void **state) {
     }
 }
 
+/// What was saved when nothing had been removed brings back what was removed since.
+static void what_was_removed_comes_back(void **state) {
+    (void)state;
+    recipe made = small_recipe();
+    mspring_network *network = make(&made, MSPRING_SIMD_AUTO, 1), *other = NULL;
+    support_steps(network, 3, 0.01);
+    saved before = save(network, MSPRING_SNAPSHOT_ALL);
+    check_ok(mspring_network_clone(network, NULL, &other));
+    const mspring_id particles[] = {2, made.particle_count - 1}, springs[] = {0, made.spring_count - 1};
+    check_ok(mspring_network_remove_particles(network, particles, 2));
+    for (size_t i = 0; i < COUNT_OF(springs); i++) {
+        if (mspring_network_has_spring(network, springs[i])) {
+            check_ok(mspring_network_remove_springs(network, &springs[i], 1));
+        }
+    }
+    support_steps(network, 3, 0.01);
+    load(network, &before);
+    assert_int_equal(mspring_network_has_particle(network, 2), 1);
+    for (int step = 0; step < 5; step++) {
+        assert_int_equal(look_at(network), look_at(other));
+        support_steps(network, 1, 0.01);
+        support_steps(other, 1, 0.01);
+    }
+    free(before.bytes);
+    mspring_network_destroy(network);
+    mspring_network_destroy(other);
+    recipe_free(&made);
+}
+
 /// A plan that has left out what was removed cannot bring it back, so it does not take a snapshot that says nothing
 /// of what was removed.
 static void what_a_plan_leaves_out_stays_out(void **state) {
@@ -784,6 +813,7 @@ int main(void) {
         cmocka_unit_test(damage_is_found),
         cmocka_unit_test(forgeries_do_no_harm),
         cmocka_unit_test(what_hides_in_other_slots_is_refused),
+        cmocka_unit_test(what_was_removed_comes_back),
         cmocka_unit_test(what_a_plan_leaves_out_stays_out),
         cmocka_unit_test(foreign_snapshots_are_refused),
         cmocka_unit_test(other_versions_say_so),
