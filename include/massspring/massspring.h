@@ -1367,12 +1367,16 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_recycle(mspring_net
 /// Restoring a spring that was left out takes all springs in again, as mspring_network_expand() does; then the
 /// network can be compacted anew.
 ///
-/// The work comes in about a dozen pieces, so that it can be done over several frames; each looks at particles or
-/// springs a few times. Between them the network may be stepped and edited: springs that break meanwhile stay in
-/// the plan, and if one is restored that the plan would leave out, the work begins anew. The network moves in the
-/// last piece, until when nothing is to be seen of it.
+/// The work comes in pieces, so that it can be done over many frames: each looks at some thousands of particles or
+/// springs, however large the network, but for the memory that it sets to zero, a strand, which is found in one go, and
+/// the last piece, which copies what all particles are. How many they are depends on nothing but the network. Between
+/// them the network may be stepped, edited, saved, loaded and cloned, and nothing is to be seen of the compaction
+/// until the network moves, in the last piece. What springs are, and that some break, is followed; if one is restored
+/// that the plan would leave out, or particles or springs are added or removed, the work begins anew, and the copying
+/// of springs, which is its last fifth, does so when a snapshot is loaded. Snapshots and clones know nothing of a
+/// compaction that has begun.
 /// @param pieces  how many of them to do at most; 0 for all
-/// @param left    receives how many are left; 0: the network is compact. May be NULL.
+/// @param left    receives about how many are left; 0: the network is compact. May be NULL.
 /// @return MSPRING_OK; MSPRING_ERROR_MEMORY, after which the network is as it was and the work begins anew;
 ///         MSPRING_ERROR_LIMIT, MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network   @allocates yes, and frees most   @since 0.1

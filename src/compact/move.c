@@ -6,7 +6,6 @@
 
 #include <string.h>
 
-#include "base/mix.h"
 #include "contact/floor.h"
 #include "edits/strain.h"
 #include "implicit/implicit.h"
@@ -124,6 +123,23 @@ static void move_particles(mspring_network *to, const mspring_network *from) {
     move_values(from->forces.held.y, to->forces.held.y, from, to);
 }
 
+// Copy all that there is of a spring, from its place here to its place there, whatever is there.
+static void copy_spring(mspring_network *to, mspringi_place place, const mspring_network *from,
+                        mspringi_place before) {
+    const uint16_t bit = (uint16_t)(1u << place % MSPRINGI_WIDTH);
+    uint16_t *live = &to->live[place / MSPRINGI_WIDTH];
+    mspringi_place_copy(from, before, to, place);
+    *live = (uint16_t)(mspringi_place_is_live(from, before) ? *live | bit : *live & ~bit);
+    if (to->strain.stressed) {
+        uint16_t *stressed = &to->strain.stressed[place / MSPRINGI_WIDTH];
+        *stressed = (uint16_t)(mspringi_place_is_stressed(from, before) ? *stressed | bit : *stressed & ~bit);
+    }
+    if (to->strain.break_strain)
+        mspringi_strain_store(to, place, false, from->strain.break_strain[before]);
+    if (to->strain.stress_strain)
+        mspringi_strain_store(to, place, true, from->strain.stress_strain[before]);
+}
+
 static void move_springs(mspring_network *to, const mspring_network *from) {
     const mspringi_topology *t = &to->topology, *old = &from->topology;
     mspringi_place_reader places, old_places;
@@ -131,16 +147,7 @@ static void move_springs(mspring_network *to, const mspring_network *from) {
     mspringi_places_begin(&old_places, &old->places, 0);
     for (mspring_id s = 0; s < t->spring_count; ++s) {
         const mspringi_place place = mspringi_places_next(&places), before = mspringi_places_next(&old_places);
-        const uint16_t bit = (uint16_t)(1u << place % MSPRINGI_WIDTH);
-        mspringi_place_copy(from, before, to, place);
-        if (mspringi_place_is_live(from, before))
-            to->live[place / MSPRINGI_WIDTH] |= bit;
-        if (mspringi_place_is_stressed(from, before))
-            to->strain.stressed[place / MSPRINGI_WIDTH] |= bit;
-        if (from->strain.break_strain)
-            mspringi_strain_store(to, place, false, from->strain.break_strain[before]);
-        if (from->strain.stress_strain)
-            mspringi_strain_store(to, place, true, from->strain.stress_strain[before]);
+        copy_spring(to, place, from, before);
     }
 }
 
@@ -164,17 +171,6 @@ static void move_implicit(mspring_network *to, const mspring_network *from) {
     n->ledger = had->ledger;
     for (size_t i = 0; i < had->history_size / slots; ++i)
         move_values(had->history.low.x + i * slots, n->history.low.x + i * made_slots, from, to);
-}
-
-static void take_print(mspring_network *to, uint64_t print) {
-    const mspringi_topology *t = &to->topology;
-    for (mspring_id p = 0; p < t->particle_count; ++p)
-        print = mspringi_mix(print, t->slot_of_particle[p]);
-    mspringi_place_reader reader;
-    mspringi_places_begin(&reader, &t->places, 0);
-    for (mspring_id s = 0; s < t->spring_count; ++s)
-        print = mspringi_mix(print, mspringi_places_next(&reader));
-    to->topology_print = print;
 }
 
 /* ----------------------------------------------------------------------------------------------- the exchange */
@@ -219,19 +215,173 @@ static mspring_network without_layout(const mspring_network *network, const mspr
     mspringi_sleep_forget(&to.sleep);
     to.implicit = to.fallback = NULL;
     to.floor = NULL;
+    to.mover = NULL;
     return to;
+}
+
+/* ------------------------------------------------------------------------------------------------ in advance */
+
+struct mspringi_mover {
+    mspring_network to;    ///< what has been made so far; its memory is the network's plan_memory
+    mspringi_place *there; ///< by place, where its spring has been copied to; MSPRING_NONE: it has not been yet
+    uint32_t parts;        ///< of the layout that there is room for
+    mspringi_rest_pattern *of_block; ///< [lattice blocks] while rest lengths are looked at
+};
+
+static mspring_result no_memory_to_move(mspring_network *network) {
+    return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to move %u springs",
+                         (unsigned)network->topology.spring_count);
+}
+
+// What is done to the network that is being made allocates in the plan's memory, and may have a message.
+static mspring_result with_plan_memory(mspring_network *network,
+                                       mspring_result (*make)(mspring_network *, const mspring_network *)) {
+    mspring_network *to = &network->mover->to;
+    to->memory = network->plan_memory;
+    mspring_result result = make(to, network);
+    network->plan_memory = to->memory;
+    if (result != MSPRING_OK)
+        network->message = to->message;
+    return result;
+}
+
+mspring_result mspringi_mover_begin(mspring_network *network, const mspringi_topology *topology,
+                                    mspringi_pace *pace) {
+    const size_t places = mspringi_place_words(&network->topology) * MSPRINGI_WIDTH;
+    mspringi_mover *mover = mspringi_alloc(&network->plan_memory, 1, sizeof *mover);
+    if (!mover)
+        return no_memory_to_move(network);
+    network->mover = mover;
+    mover->to = without_layout(network, topology);
+    mover->there = mspringi_pace_alloc(pace, &network->plan_memory, places, sizeof *mover->there);
+    mover->of_block = mspringi_alloc(&network->plan_memory, topology->lattice_blocks, sizeof *mover->of_block);
+    if (!mover->there || !mover->of_block)
+        return no_memory_to_move(network);
+    memset(mover->there, 0xff, places * sizeof *mover->there);
+    return MSPRING_OK;
+}
+
+// Pages that are touched for the first time take longer than anything else here: a piece for each part.
+static mspring_result make_layout(mspring_network *to, const mspring_network *from) {
+    return mspringi_layout_reserve_part(to, from->mover->parts++);
+}
+
+mspring_result mspringi_mover_reserve(mspring_network *network, mspringi_pace *pace) {
+    const mspringi_mover *mover = network->mover;
+    mspring_result result = with_plan_memory(network, make_layout);
+    pace->left = 0;
+    pace->is_halfway = mover->parts < MSPRINGI_LAYOUT_PARTS;
+    return result;
+}
+
+void mspringi_mover_note_rests(const mspring_network *network, const mspring_id *ids, const mspringi_place *places,
+                               uint32_t count, mspringi_pace *pace) {
+    const mspringi_topology *t = &network->mover->to.topology;
+    uint32_t first, end;
+    mspringi_pace_take(pace, count, 4, &first, &end);
+    for (uint32_t i = first; i < end; ++i)
+        if (places[i] < t->lattice_places)
+            mspringi_rests_note(network->mover->of_block, places[i],
+                                mspringi_spring_get(network, ids[i]).rest_length);
+}
+
+static mspring_result make_shared_rests(mspring_network *to, const mspring_network *from) {
+    mspring_result result = mspringi_rests_reserve(&to->rests, from->mover->of_block, to->topology.lattice_blocks,
+                                                   &to->memory, &to->message);
+    return result == MSPRING_OK && from->rests.shared_count == 0 ? mspringi_rests_separate(to) : result;
+}
+
+mspring_result mspringi_mover_reserve_rests(mspring_network *network) {
+    return with_plan_memory(network, make_shared_rests);
+}
+
+mspring_result mspringi_mover_reserve_strain(mspring_network *network, mspringi_pace *pace) {
+    const uint64_t places = (uint64_t)mspringi_place_words(&network->mover->to.topology) * MSPRINGI_WIDTH;
+    if (network->strain.break_strain)
+        mspringi_pace_spend(pace, places * 2 * sizeof(float) / MSPRINGI_PACE_BYTES);
+    return with_plan_memory(network, make_strain);
+}
+
+void mspringi_mover_copy(const mspring_network *network, const mspringi_place *places, mspringi_pace *pace) {
+    mspringi_mover *mover = network->mover;
+    mspringi_place_reader old_places;
+    uint32_t first, end;
+    mspringi_pace_take(pace, network->topology.spring_count, 12, &first, &end);
+    mspringi_places_begin(&old_places, &network->topology.places, first);
+    for (mspring_id s = first; s < end; ++s) {
+        const mspringi_place before = mspringi_places_next(&old_places);
+        copy_spring(&mover->to, places[s], network, before);
+        mover->there[before] = places[s];
+    }
+}
+
+void mspringi_mover_follow(const mspring_network *network, mspringi_place place) {
+    mspringi_mover *mover = network->mover;
+    if (mover->there[place] != MSPRING_NONE)
+        copy_spring(&mover->to, mover->there[place], network, place);
+}
+
+void mspringi_mover_drop(mspring_network *network) {
+    mspringi_mover *mover = network->mover;
+    if (!mover)
+        return;
+    free_layout(&mover->to, &network->plan_memory);
+    mspringi_free(&network->plan_memory, mover->there);
+    mspringi_free(&network->plan_memory, mover->of_block);
+    mspringi_free(&network->plan_memory, mover);
+    network->mover = NULL;
+}
+
+// Take over what a mover has made. Its memory has been handed over.
+static void take_layout(mspring_network *to, const mspring_network *made) {
+    to->state = made->state;
+    to->backup = made->backup;
+    to->inverse_mass = made->inverse_mass;
+    to->alike = made->alike;
+    to->lattice_springs = made->lattice_springs;
+    to->chain_springs = made->chain_springs;
+    to->web_springs = made->web_springs;
+    to->packed = made->packed;
+    to->attached = made->attached;
+    to->carry = made->carry;
+    to->carry_rows = made->carry_rows;
+    to->depth = made->depth;
+    to->live = made->live;
+    to->rests = made->rests;
+    to->strain = made->strain;
+}
+
+/* ------------------------------------------------------------------------------------------------- at once */
+
+// What lies by place, and room for the state.
+static mspring_result make_springs(mspring_network *to, const mspring_network *from) {
+    mspring_result result = mspringi_layout_reserve(to);
+    if (result == MSPRING_OK)
+        result = make_rests(to, from);
+    if (result == MSPRING_OK)
+        result = make_strain(to, from);
+    if (result == MSPRING_OK)
+        move_springs(to, from);
+    return result;
 }
 
 mspring_result mspringi_move(mspring_network *network, const mspringi_topology *topology, uint32_t tile_size,
                              uint32_t fallback_size) {
     mspring_network to = without_layout(network, topology);
-    mspring_result result = mspringi_layout_reserve(&to);
-    if (result == MSPRING_OK)
-        result = make_rests(&to, network);
+    mspringi_mover *mover = network->mover;
+    mspring_result result = MSPRING_OK;
+    if (mover) {
+        take_layout(&to, &mover->to);
+        to.strain.relax = network->strain.relax;
+        mspringi_free(&to.memory, mover->there);
+        mspringi_free(&to.memory, mover->of_block);
+        mspringi_free(&to.memory, mover);
+        network->mover = NULL;
+    } else {
+        result = make_springs(&to, network);
+    }
     if (result == MSPRING_OK)
         result = make_fields(&to, network);
-    if (result == MSPRING_OK)
-        result = make_strain(&to, network);
     if (result == MSPRING_OK)
         result = make_components(&to, network);
     if (result == MSPRING_OK)
@@ -240,7 +390,6 @@ mspring_result mspringi_move(mspring_network *network, const mspringi_topology *
         result = mspringi_sleep_reserve(&to);
     if (result == MSPRING_OK) {
         move_particles(&to, network);
-        move_springs(&to, network);
         mspringi_sleep_move(&to, network);
         result = make_implicit(&to, network, tile_size);
         if (result == MSPRING_OK && network->fallback)
@@ -254,7 +403,6 @@ mspring_result mspringi_move(mspring_network *network, const mspringi_topology *
     }
     move_implicit(&to, network);
     mspringi_graft_forget(&to.graft);
-    take_print(&to, network->is_compact ? network->whole_print : network->topology_print);
     const mspring_network old = *network;
     *network = to;
     free_layout(&old, &network->memory);

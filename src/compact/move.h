@@ -5,6 +5,7 @@
 #ifndef MSPRINGI_MOVE_H
 #define MSPRINGI_MOVE_H
 
+#include "base/pace.h"
 #include "network/network.h"
 
 /// Move everything that lies by slot or by place to this topology, which sweeps at least the springs that are live;
@@ -12,5 +13,24 @@
 /// plan gets tiles of this size, and the fallback of its own, or 0: by plan. On error nothing has changed.
 mspring_result mspringi_move(mspring_network *network, const mspringi_topology *topology, uint32_t tile_size,
                              uint32_t fallback_size);
+
+/// The greater part of that in advance, while the network goes on: passes in their order. What they allocate is the
+/// network's plan_memory, which has been handed over to its memory when mspringi_move() takes what they have made.
+/// Springs that have been copied are followed: what happens to one after that is copied again.
+/// @param ids, woven_places  [live_count] of the springs that the topology sweeps
+/// @param places             [springs] in the topology
+typedef struct mspringi_mover mspringi_mover;
+mspring_result mspringi_mover_begin(mspring_network *network, const mspringi_topology *topology,
+                                    mspringi_pace *pace);
+mspring_result mspringi_mover_reserve(mspring_network *network, mspringi_pace *pace);
+void mspringi_mover_note_rests(const mspring_network *network, const mspring_id *ids,
+                               const mspringi_place *woven_places, uint32_t live_count, mspringi_pace *pace);
+mspring_result mspringi_mover_reserve_rests(mspring_network *network);
+mspring_result mspringi_mover_reserve_strain(mspring_network *network, mspringi_pace *pace);
+void mspringi_mover_copy(const mspring_network *network, const mspringi_place *places, mspringi_pace *pace);
+/// The spring in this place has changed.
+void mspringi_mover_follow(const mspring_network *network, mspringi_place place);
+/// What cannot be followed has changed: all this begins anew.
+void mspringi_mover_drop(mspring_network *network);
 
 #endif

@@ -4,13 +4,26 @@
 #include "network/springs.h"
 #include "topology/spare.h"
 
+#include "base/mix.h"
+#include "base/pace.h"
+#include "move.h"
+
 struct mspringi_replan {
+    mspringi_pace pace;
+    uint64_t spent;         ///< effort so far
+    uint64_t links, growth; ///< edits.links and edits.growth when the replan was begun
+    bool has_work;          ///< some spring that is swept is broken, or one was added that the plan does not know
+    uint16_t *was_live;     ///< [springs / 16] a bit for each spring
     struct mspring_builder left; ///< particles in the first topology's rows and columns, live springs
     mspring_id *ids;             ///< [left.spring_count] of the live springs, rising
+    uint32_t live, listed;       ///< of these counted, and listed so far
+    uint32_t slot;               ///< in the lattice row that is gone through
     mspringi_assembly *assembly;
-    mspringi_topology topology; ///< once the assembly has made it
-    uint64_t links, growth;     ///< edits.links and edits.growth when live springs were listed
-    uint32_t done;              ///< pieces of the work
+    mspringi_topology topology;            ///< once the assembly has made it
+    mspringi_place *woven_places, *places; ///< of the live springs, and of all
+    mspringi_place next_parked;
+    mspringi_packing packing;
+    uint64_t print; ///< of the plan, so far
 };
 
 // The topology that the network was created with.
@@ -18,175 +31,378 @@ static const mspringi_topology *first_topology(const mspring_network *network) {
     return network->is_compact ? &network->whole : &network->topology;
 }
 
+static mspring_result out_of_memory(mspring_network *network) {
+    return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for another plan of %u springs",
+                         (unsigned)network->topology.spring_count);
+}
+
 /* --------------------------------------------------------------------------------------------- what is left */
+
+static mspring_result begin(mspringi_replan *r, mspring_network *network) {
+    const uint32_t springs = network->topology.spring_count;
+    r->was_live = mspringi_pace_alloc(&r->pace, &network->plan_memory,
+                                      ((size_t)springs + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH, sizeof *r->was_live);
+    return r->was_live ? MSPRING_OK : out_of_memory(network);
+}
+
+static mspring_result look_for_live(mspringi_replan *r, mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    mspringi_place_reader places;
+    uint32_t first, end;
+    mspringi_pace_take(&r->pace, t->spring_count, 2, &first, &end);
+    mspringi_places_begin(&places, &t->places, first);
+    for (mspring_id s = first; s < end; ++s) {
+        const mspringi_place place = mspringi_places_next(&places);
+        const bool is_live = mspringi_place_is_live(network, place);
+        r->was_live[s / MSPRINGI_WIDTH] |= (uint16_t)(is_live << s % MSPRINGI_WIDTH);
+        r->live += is_live;
+        r->has_work = r->has_work || is_live != mspringi_place_is_woven(t, place);
+    }
+    return MSPRING_OK;
+}
+
+static mspring_result reserve_lists(mspringi_replan *r, mspring_network *network) {
+    const uint32_t particles = network->topology.particle_count;
+    struct mspring_builder *left = &r->left;
+    left->particles = mspringi_pace_alloc(&r->pace, &network->plan_memory, particles, sizeof *left->particles);
+    left->springs = mspringi_pace_alloc(&r->pace, &network->plan_memory, r->live, sizeof *left->springs);
+    r->ids = mspringi_pace_alloc(&r->pace, &network->plan_memory, r->live, sizeof *r->ids);
+    left->particle_count = particles;
+    left->spring_count = r->live;
+    return left->particles && left->springs && r->ids ? MSPRING_OK : out_of_memory(network);
+}
 
 // Where a particle is in its grid: grids lie one above the other, too far apart to be taken for one. Particles
 // of no grid lie on a diagonal on the other side, where no two can be taken for neighbours on a grid, in the order
 // in which they lie in memory.
-static void place_particles(const mspringi_topology *first, mspringi_particle *particles) {
-    for (mspring_id p = 0; p < first->particle_count; ++p)
-        particles[p].x = particles[p].y = -10.0 - 3.0 * (double)first->slot_of_particle[p];
-    for (uint32_t r = 0; r < first->lattice_rows; ++r) {
-        const mspringi_row *row = &first->rows[r];
-        for (const mspringi_span *span = first->spans + row->first_span;
-             span < first->spans + row->first_span + row->span_count; ++span) {
+
+static mspring_result place_on_diagonal(mspringi_replan *r, mspring_network *network) {
+    const mspringi_topology *first_one = first_topology(network);
+    mspringi_particle *particles = r->left.particles;
+    uint32_t first, end;
+    mspringi_pace_take(&r->pace, (uint32_t)r->left.particle_count, 2, &first, &end);
+    for (mspring_id p = first; p < end; ++p) {
+        particles[p].x = particles[p].y = -10.0 - 3.0 * (double)first_one->slot_of_particle[p];
+        if (!mspringi_particle_exists(network, p))
+            particles[p].flags = MSPRINGI_PARTICLE_ABSENT;
+    }
+    return MSPRING_OK;
+}
+
+static mspring_result place_in_grids(mspringi_replan *r, mspring_network *network) {
+    const mspringi_topology *t = first_topology(network);
+    mspringi_particle *particles = r->left.particles;
+    uint32_t i = r->pace.at;
+    for (; i < t->lattice_rows && r->pace.left > 0; ++i) {
+        const mspringi_row *row = &t->rows[i];
+        for (const mspringi_span *span = t->spans + row->first_span;
+             span < t->spans + row->first_span + row->span_count; ++span) {
+            mspringi_pace_spend(&r->pace, (uint64_t)2 * (span->end_slot - span->first_slot));
             for (uint32_t slot = span->first_slot; slot < span->end_slot; ++slot) {
-                const mspring_id p = first->particle_of_slot[slot];
+                const mspring_id p = t->particle_of_slot[slot];
                 if (p == MSPRING_NONE)
                     continue;
                 particles[p].x = (double)((int64_t)slot + span->carry);
-                particles[p].y = (double)r + 2.0 * (double)first->grid_of_row[r];
+                particles[p].y = (double)i + 2.0 * (double)t->grid_of_row[i];
             }
         }
     }
+    r->pace.at = i;
+    r->pace.is_halfway = i < t->lattice_rows;
+    return MSPRING_OK;
 }
 
-static mspring_result list_what_is_left(mspringi_replan *replan, mspring_network *network) {
-    const mspringi_topology *first = first_topology(network);
-    struct mspring_builder *left = &replan->left;
-    mspringi_place_reader places, first_places;
-    size_t live = 0;
-    replan->links = network->edits.links;
-    replan->growth = network->edits.growth;
-    mspringi_places_begin(&places, &network->topology.places, 0);
-    for (mspring_id s = 0; s < first->spring_count; ++s)
-        live += mspringi_place_is_live(network, mspringi_places_next(&places));
-    left->particles = mspringi_alloc(&network->plan_memory, first->particle_count, sizeof *left->particles);
-    left->springs = mspringi_alloc(&network->plan_memory, live, sizeof *left->springs);
-    replan->ids = mspringi_alloc(&network->plan_memory, live, sizeof *replan->ids);
-    if (!left->particles || !left->springs || !replan->ids)
-        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to list %zu springs that are left",
-                             live);
-    place_particles(first, left->particles);
-    for (mspring_id p = 0; p < first->particle_count; ++p)
-        if (!mspringi_particle_exists(network, p))
-            left->particles[p].flags = MSPRINGI_PARTICLE_ABSENT;
-    left->particle_count = first->particle_count;
-    mspringi_places_begin(&places, &network->topology.places, 0);
-    mspringi_places_begin(&first_places, &first->places, 0);
-    for (mspring_id s = 0; s < first->spring_count; ++s) {
-        const mspringi_place place = mspringi_places_next(&places),
-                             first_place = mspringi_places_next(&first_places);
+static mspring_result list_springs(mspringi_replan *r, mspring_network *network) {
+    const mspringi_topology *t = first_topology(network);
+    mspringi_place_reader places;
+    uint32_t first, end;
+    mspringi_pace_take(&r->pace, t->spring_count, 3, &first, &end);
+    mspringi_places_begin(&places, &t->places, first);
+    for (mspring_id s = first; s < end; ++s) {
+        const mspringi_place place = mspringi_places_next(&places);
         uint32_t base, tip;
-        if (!mspringi_place_is_live(network, place))
+        if (!(r->was_live[s / MSPRINGI_WIDTH] >> s % MSPRINGI_WIDTH & 1))
             continue;
-        mspringi_topology_ends(first, first_place, &base, &tip);
-        replan->ids[left->spring_count] = s;
-        left->springs[left->spring_count++] =
-            (mspringi_spring){.a = first->particle_of_slot[base], .b = first->particle_of_slot[tip]};
+        mspringi_topology_ends(t, place, &base, &tip);
+        r->ids[r->listed] = s;
+        r->left.springs[r->listed++] =
+            (mspringi_spring){.a = t->particle_of_slot[base], .b = t->particle_of_slot[tip]};
     }
-    return mspringi_topology_begin(left, &first->reserve, mspringi_tasks_concurrency(network->tasks),
-                                   &network->plan_memory, &network->message, &replan->assembly);
+    return MSPRING_OK;
+}
+
+static mspring_result begin_layout(mspringi_replan *r, mspring_network *network) {
+    return mspringi_topology_begin(&r->left, &first_topology(network)->reserve, true,
+                                   mspringi_tasks_concurrency(network->tasks), &network->plan_memory,
+                                   &network->message, &r->assembly);
+}
+
+static mspring_result lay_out(mspringi_replan *r, mspring_network *network) {
+    bool is_done;
+    (void)network;
+    mspring_result result = mspringi_topology_go_on(r->assembly, &r->pace.left, &is_done);
+    r->pace.is_halfway = !is_done;
+    return result;
 }
 
 /* ------------------------------------------------------------------------------------------------- parking */
 
-static mspring_result no_memory_to_park(mspring_network *network, uint32_t parked) {
-    return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to park %u springs", (unsigned)parked);
+// How many of the live springs are not spare ones.
+static uint32_t count_woven(const mspringi_replan *r, uint32_t first_spare) {
+    uint32_t low = 0, high = (uint32_t)r->left.spring_count;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (r->ids[middle] < first_spare)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static mspring_result finish_layout(mspringi_replan *r, mspring_network *network) {
+    mspringi_topology *t = &r->topology;
+    mspringi_topology_finish(r->assembly, &network->plan_memory, t, &r->woven_places);
+    r->assembly = NULL;
+    const uint32_t parked = t->reserve.first_spring - count_woven(r, t->reserve.first_spring);
+    r->places = mspringi_pace_alloc(&r->pace, &network->plan_memory, t->reserve.spring_end, sizeof *r->places);
+    if (!r->places)
+        return out_of_memory(network);
+    t->spring_count = first_topology(network)->spring_count;
+    mspringi_pace_spend(&r->pace, ((uint64_t)t->woven_count + parked) * 16 / MSPRINGI_PACE_BYTES);
+    r->next_parked = t->chain_places + t->woven_count + mspringi_spare_springs(t);
+    r->listed = 0;
+    return mspringi_spare_reserve(t, parked, &network->plan_memory, &network->message);
 }
 
 // Give the springs that are not left places behind those that are: spare ones those that are kept for them, the
 // others behind these.
-static void number_places(const mspringi_replan *replan, const mspringi_topology *first, const mspringi_topology *t,
-                          const mspringi_place *woven_places, mspringi_place *places) {
-    const uint32_t woven = (uint32_t)replan->left.spring_count;
-    mspringi_place next_parked = t->chain_places + t->woven_count + mspringi_spare_springs(t);
-    for (mspring_id s = 0, next_woven = 0; s < first->spring_count; ++s) {
-        if (next_woven < woven && replan->ids[next_woven] == s)
-            places[s] = woven_places[next_woven++];
+static mspring_result number_places(mspringi_replan *r, mspring_network *network) {
+    const mspringi_topology *t = &r->topology;
+    uint32_t first, end;
+    (void)network;
+    mspringi_pace_take(&r->pace, t->spring_count, 1, &first, &end);
+    for (mspring_id s = first; s < end; ++s) {
+        if (r->was_live[s / MSPRINGI_WIDTH] >> s % MSPRINGI_WIDTH & 1)
+            r->places[s] = r->woven_places[r->listed++];
         else
-            places[s] = s < t->reserve.first_spring ? next_parked++ : mspringi_spare_place(t, s);
+            r->places[s] = s < t->reserve.first_spring ? r->next_parked++ : mspringi_spare_place(t, s);
     }
+    return MSPRING_OK;
+}
+
+static mspring_result enter_spare(mspringi_replan *r, mspring_network *network) {
+    (void)network;
+    mspringi_spare_enter(&r->topology, &r->pace);
+    return MSPRING_OK;
 }
 
 // Write down what springs outside of the plan join. Those that have been removed keep whatever ends: their
 // particles may be gone, too.
-static void note_ends(const mspring_network *network, const mspringi_topology *first, mspringi_topology *t,
-                      const mspringi_place *places) {
+static mspring_result note_ends(mspringi_replan *r, mspring_network *network) {
+    const mspringi_topology *first_one = first_topology(network);
+    mspringi_topology *t = &r->topology;
     mspringi_place_reader first_places;
-    mspringi_places_begin(&first_places, &first->places, 0);
-    for (mspring_id s = 0; s < t->spring_count; ++s) {
-        const mspringi_place first_place = mspringi_places_next(&first_places);
+    uint32_t first, end;
+    mspringi_pace_take(&r->pace, t->spring_count, 4, &first, &end);
+    mspringi_places_begin(&first_places, &first_one->places, first);
+    for (mspring_id s = first; s < end; ++s) {
+        const mspringi_place first_place = mspringi_places_next(&first_places), place = r->places[s];
         uint32_t base, tip;
-        if (mspringi_place_is_woven(t, places[s]) || !mspringi_spring_exists(network, s))
+        if (mspringi_place_is_woven(t, place) || !mspringi_spring_exists(network, s))
             continue;
-        mspringi_topology_ends(first, first_place, &base, &tip);
-        t->leftover_a[places[s] - t->chain_places] = t->slot_of_particle[first->particle_of_slot[base]];
-        t->leftover_b[places[s] - t->chain_places] = t->slot_of_particle[first->particle_of_slot[tip]];
+        mspringi_topology_ends(first_one, first_place, &base, &tip);
+        t->leftover_a[place - t->chain_places] = t->slot_of_particle[first_one->particle_of_slot[base]];
+        t->leftover_b[place - t->chain_places] = t->slot_of_particle[first_one->particle_of_slot[tip]];
     }
-}
-
-// Who asked for the replan frees all of it if this fails.
-static mspring_result park(mspringi_replan *replan, mspring_network *network, mspringi_place *woven_places) {
-    const mspringi_topology *first = first_topology(network);
-    mspringi_topology *t = &replan->topology;
-    uint32_t woven = 0;
-    while (woven < replan->left.spring_count && replan->ids[woven] < t->reserve.first_spring)
-        ++woven;
-    const uint32_t parked = t->reserve.first_spring - woven;
-    mspringi_place *places = mspringi_alloc(&network->plan_memory, t->reserve.spring_end, sizeof *places);
-    if (!places)
-        return no_memory_to_park(network, parked);
-    number_places(replan, first, t, woven_places, places);
-    t->spring_count = first->spring_count;
-    mspring_result result = mspringi_spare_extend(t, places, parked, &network->plan_memory, &network->message);
-    if (result != MSPRING_OK)
-        return result;
-    note_ends(network, first, t, places);
-    mspringi_spare_count(t, t->particle_count, t->spring_count);
-    mspringi_free(&network->plan_memory, places);
-    mspringi_free(&network->plan_memory, woven_places);
     return MSPRING_OK;
 }
 
-static mspring_result finish(mspringi_replan *replan, mspring_network *network) {
-    mspringi_place *places;
-    mspringi_topology_finish(replan->assembly, &network->plan_memory, &replan->topology, &places);
-    replan->assembly = NULL;
-    return park(replan, network, places);
+static mspring_result begin_packing(mspringi_replan *r, mspring_network *network) {
+    mspringi_topology *t = &r->topology;
+    r->packing = (mspringi_packing){.of_spring = r->places,
+                                    .count = t->reserve.first_spring,
+                                    .all = t->reserve.spring_end,
+                                    .lattice_places = t->lattice_places,
+                                    .memory = &network->plan_memory};
+    mspring_result result = mspringi_spare_keep(t, r->places, &network->plan_memory, &network->message);
+    if (result == MSPRING_OK)
+        mspringi_spare_count(t, t->particle_count, t->spring_count);
+    return result;
+}
+
+static mspring_result pack_places(mspringi_replan *r, mspring_network *network) {
+    return mspringi_places_pack(&r->packing, &r->pace) ? MSPRING_OK : out_of_memory(network);
+}
+
+static mspring_result keep_places(mspringi_replan *r, mspring_network *network) {
+    if (!mspringi_places_keep(&r->packing, &r->topology.places))
+        return out_of_memory(network);
+    r->print = network->is_compact ? network->whole_print : network->topology_print;
+    return MSPRING_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------- the print */
+
+static mspring_result print_slots(mspringi_replan *r, mspring_network *network) {
+    const mspringi_topology *t = &r->topology;
+    uint32_t first, end;
+    (void)network;
+    mspringi_pace_take(&r->pace, t->particle_count, 1, &first, &end);
+    for (mspring_id p = first; p < end; ++p)
+        r->print = mspringi_mix(r->print, t->slot_of_particle[p]);
+    return MSPRING_OK;
+}
+
+static mspring_result print_places(mspringi_replan *r, mspring_network *network) {
+    uint32_t first, end;
+    (void)network;
+    mspringi_pace_take(&r->pace, r->topology.spring_count, 1, &first, &end);
+    for (mspring_id s = first; s < end; ++s)
+        r->print = mspringi_mix(r->print, r->places[s]);
+    return MSPRING_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------- the springs */
+
+static mspring_result begin_move(mspringi_replan *r, mspring_network *network) {
+    return mspringi_mover_begin(network, &r->topology, &r->pace);
+}
+
+static mspring_result reserve_move(mspringi_replan *r, mspring_network *network) {
+    return mspringi_mover_reserve(network, &r->pace);
+}
+
+static mspring_result note_rests(mspringi_replan *r, mspring_network *network) {
+    mspringi_mover_note_rests(network, r->ids, r->woven_places, r->live, &r->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result reserve_rests(mspringi_replan *r, mspring_network *network) {
+    (void)r;
+    return mspringi_mover_reserve_rests(network);
+}
+
+static mspring_result reserve_strain(mspringi_replan *r, mspring_network *network) {
+    return mspringi_mover_reserve_strain(network, &r->pace);
+}
+
+static mspring_result copy_springs(mspringi_replan *r, mspring_network *network) {
+    mspringi_mover_copy(network, r->places, &r->pace);
+    return MSPRING_OK;
+}
+
+// Only the springs' places are needed still, should the copying begin anew, and how many are live.
+static mspring_result free_lists(mspringi_replan *r, mspring_network *network) {
+    mspringi_free(&network->plan_memory, r->was_live);
+    mspringi_free(&network->plan_memory, r->left.particles);
+    mspringi_free(&network->plan_memory, r->left.springs);
+    r->was_live = NULL;
+    r->left.particles = NULL;
+    r->left.springs = NULL;
+    r->pace.left = 0;
+    return MSPRING_OK;
 }
 
 /* ---------------------------------------------------------------------------------------------- piece by piece */
+
+static mspring_result (*const replan_passes[])(mspringi_replan *, mspring_network *) = {
+    begin,         look_for_live, reserve_lists, place_on_diagonal, place_in_grids, list_springs,
+    begin_layout,  lay_out,       finish_layout, number_places,     enter_spare,    note_ends,
+    begin_packing, pack_places,   keep_places,   print_slots,       print_places,   free_lists,
+    begin_move,    reserve_move,  note_rests,    reserve_rests,     reserve_strain, copy_springs,
+};
+
+#define REPLAN_PASSES (sizeof replan_passes / sizeof replan_passes[0])
+#define PASS_AFTER_LOOK 2u
+#define MOVE_PASSES 6u
 
 mspring_result mspringi_replan_begin(mspring_network *network, mspringi_replan **begun) {
     mspringi_replan *replan = mspringi_alloc(&network->plan_memory, 1, sizeof *replan);
     if (!replan)
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for another plan");
+    replan->links = network->edits.links;
+    replan->growth = network->edits.growth;
     *begun = replan;
     return MSPRING_OK;
 }
 
-mspring_result mspringi_replan_go_on(mspringi_replan *replan, mspring_network *network) {
-    const uint32_t piece = replan->done++;
-    if (piece == 0)
-        return list_what_is_left(replan, network);
-    return piece <= MSPRINGI_TOPOLOGY_PIECES ? mspringi_topology_go_on(replan->assembly) : finish(replan, network);
+mspring_result mspringi_replan_go_on(mspringi_replan *r, mspring_network *network, uint32_t *effort) {
+    mspringi_pace *pace = &r->pace;
+    mspring_result result = MSPRING_OK;
+    pace->left = *effort;
+    if (pace->pass > REPLAN_PASSES - MOVE_PASSES && !network->mover) { // it was dropped
+        pace->pass = (uint32_t)REPLAN_PASSES - MOVE_PASSES;
+        pace->at = 0;
+    }
+    while (result == MSPRING_OK && !mspringi_replan_is_done(r) && pace->left > 0) {
+        pace->is_halfway = false;
+        result = replan_passes[pace->pass](r, network);
+        if (pace->is_halfway)
+            continue;
+        pace->pass++;
+        pace->at = 0;
+    }
+    r->spent += *effort - pace->left;
+    *effort = pace->left;
+    return result;
 }
 
-uint32_t mspringi_replan_pieces_left(const mspringi_replan *replan) {
-    return MSPRINGI_REPLAN_PIECES - replan->done;
+bool mspringi_replan_is_needless(const mspringi_replan *replan) {
+    return replan->pace.pass == PASS_AFTER_LOOK && !replan->has_work;
+}
+
+bool mspringi_replan_is_done(const mspringi_replan *replan) {
+    return replan->pace.pass == REPLAN_PASSES || mspringi_replan_is_needless(replan);
+}
+
+// So much takes a particle, a live spring and any spring, about.
+uint64_t mspringi_replan_left(const mspringi_replan *replan, const mspring_network *network) {
+    const uint64_t springs = network->topology.spring_count;
+    const uint64_t live = replan->pace.pass < PASS_AFTER_LOOK ? springs : replan->live;
+    const uint64_t all = 60 * (uint64_t)network->topology.particle_count + 80 * live + 12 * springs;
+    return all > replan->spent ? all - replan->spent : 0;
+}
+
+bool mspringi_replan_is_outdated(const mspringi_replan *replan, const mspring_network *network) {
+    return replan->growth != network->edits.growth;
+}
+
+bool mspringi_replan_is_current(const mspringi_replan *replan, const mspring_network *network) {
+    return replan->links == network->edits.links;
+}
+
+// Whether a spring that is live is in the plan.
+static bool fits(const mspringi_replan *replan, const mspring_network *network, mspring_id spring) {
+    const mspringi_topology *t = &replan->topology;
+    return !mspringi_place_is_parked(t, mspringi_place_of(t, spring)) || !mspringi_spring_is_live(network, spring);
 }
 
 bool mspringi_replan_is_valid(const mspringi_replan *replan, const mspring_network *network) {
-    const mspringi_topology *t = &replan->topology;
-    mspringi_place_reader places, planned;
-    if (replan->growth != network->edits.growth)
-        return false;
-    mspringi_places_begin(&places, &network->topology.places, 0);
-    mspringi_places_begin(&planned, &t->places, 0);
-    for (mspring_id s = 0; replan->links != network->edits.links && s < t->spring_count; ++s) {
-        const bool live = mspringi_place_is_live(network, mspringi_places_next(&places));
-        if (mspringi_place_is_parked(t, mspringi_places_next(&planned)) && live)
-            return false;
+    const mspringi_edits *edits = &network->edits;
+    bool is_valid = true;
+    if (mspringi_edits_have_link(edits, replan->links)) {
+        for (uint64_t n = replan->links; is_valid && n < edits->links; ++n)
+            is_valid = fits(replan, network, mspringi_edits_link(edits, n));
+        return is_valid;
     }
-    return true;
+    for (mspring_id s = 0; is_valid && s < replan->topology.spring_count; ++s)
+        is_valid = fits(replan, network, s);
+    return is_valid;
 }
 
-void mspringi_replan_take(mspringi_replan *replan, mspring_network *network, mspringi_topology *topology) {
+void mspringi_replan_take(mspringi_replan *replan, mspring_network *network, mspringi_topology *topology,
+                          uint64_t *print) {
     *topology = replan->topology;
-    mspringi_free(&network->plan_memory, replan->left.particles);
-    mspringi_free(&network->plan_memory, replan->left.springs);
-    mspringi_free(&network->plan_memory, replan->ids);
-    mspringi_free(&network->plan_memory, replan);
+    *print = replan->print;
+    void *const blocks[] = {replan->was_live,
+                            replan->left.particles,
+                            replan->left.springs,
+                            replan->ids,
+                            replan->woven_places,
+                            replan->places,
+                            replan};
+    for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; ++i)
+        mspringi_free(&network->plan_memory, blocks[i]);
     mspringi_memory_hand_over(&network->plan_memory, &network->memory);
 }

@@ -15,18 +15,26 @@
 
 #include "network/network.h"
 
-/// Pieces of the work: listing what is live, those of the topology, and parking the rest.
-#define MSPRINGI_REPLAN_PIECES (MSPRINGI_TOPOLOGY_PIECES + 2)
-
 typedef struct mspringi_replan mspringi_replan;
 
-/// Begin one, for the springs that are live by then; go on so many times unless it fails, then take the topology.
-/// All that it allocates is the network's plan_memory: to abandon it is to free that.
+/// Begin one; go on until it is done or fails, then take the topology. All that it allocates is the network's
+/// plan_memory: to abandon it is to free that.
 mspring_result mspringi_replan_begin(mspring_network *network, mspringi_replan **begun);
-mspring_result mspringi_replan_go_on(mspringi_replan *replan, mspring_network *network);
-uint32_t mspringi_replan_pieces_left(const mspringi_replan *replan);
+/// @param effort  how much to do, and what is left of that; see pace.h
+mspring_result mspringi_replan_go_on(mspringi_replan *replan, mspring_network *network, uint32_t *effort);
+/// Effort that is left, about: it never grows.
+uint64_t mspringi_replan_left(const mspringi_replan *replan, const mspring_network *network);
+bool mspringi_replan_is_done(const mspringi_replan *replan);
+/// Whether it is done because the network's plan sweeps what is live, and nothing else: there is nothing to take.
+bool mspringi_replan_is_needless(const mspringi_replan *replan);
+/// Whether no spring has been broken or restored since it began.
+bool mspringi_replan_is_current(const mspringi_replan *replan, const mspring_network *network);
+/// Whether particles or springs have been added or removed since it began: then it cannot go on.
+bool mspringi_replan_is_outdated(const mspringi_replan *replan, const mspring_network *network);
 /// Whether the topology sweeps every spring that is live now. It may sweep some that have broken since.
 bool mspringi_replan_is_valid(const mspringi_replan *replan, const mspring_network *network);
-void mspringi_replan_take(mspringi_replan *replan, mspring_network *network, mspringi_topology *topology);
+/// @param print  receives what becomes the network's topology_print
+void mspringi_replan_take(mspringi_replan *replan, mspring_network *network, mspringi_topology *topology,
+                          uint64_t *print);
 
 #endif

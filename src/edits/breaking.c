@@ -3,6 +3,7 @@
 
 #include "base/cpu.h"
 #include "compact/compact.h"
+#include "compact/move.h"
 #include "events.h"
 #include "growth.h"
 #include "network/springs.h"
@@ -47,6 +48,8 @@ mspring_result mspringi_breaking_reserve(mspring_network *network) {
 static void toggle(mspring_network *network, mspring_id spring, mspringi_place place) {
     network->live[place / MSPRINGI_WIDTH] ^= (uint16_t)(1u << place % MSPRINGI_WIDTH);
     network->edits.link_log[network->edits.links++ & network->edits.link_mask] = spring;
+    if (network->mover)
+        mspringi_mover_follow(network, place);
     mspringi_wake_spring(network, spring);
 }
 
@@ -66,6 +69,8 @@ bool mspringi_spring_break(mspring_network *network, mspring_id spring) {
     toggle(network, spring, place);
     if (network->strain.stressed)
         network->strain.stressed[place / MSPRINGI_WIDTH] &= (uint16_t) ~(1u << place % MSPRINGI_WIDTH);
+    if (network->mover)
+        mspringi_mover_follow(network, place);
     return true;
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/mix.h"
 #include "breaking.h"
+#include "compact/move.h"
 #include "events.h"
 #include "growth.h"
 #include "network/springs.h"
@@ -86,6 +87,8 @@ static void look_at(mspring_network *network, mspringi_place place) {
         (void)mspringi_spring_break(network, event.id);
     else
         strain->stressed[place / MSPRINGI_WIDTH] ^= (uint16_t)(1u << place % MSPRINGI_WIDTH);
+    if (network->mover)
+        mspringi_mover_follow(network, place);
     mspringi_events_push(network, event);
 }
 
@@ -150,6 +153,7 @@ mspring_result mspringi_strain_reserve(mspring_network *network) {
         strain->hits = mspringi_alloc(&network->memory, words, sizeof *strain->hits);
     if (strain->stressed && strain->hits)
         strain->least = strain->break_strain = allocate_thresholds(network);
+    mspringi_mover_drop(network);
     return strain->break_strain ? MSPRING_OK
                                 : mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                                                 "no memory to watch the strain of %u springs",
@@ -172,6 +176,7 @@ mspring_result mspringi_strain_reserve_stress(mspring_network *network) {
     memcpy(least, strain->break_strain, count * sizeof *least);
     strain->stress_strain = stress_strain;
     strain->least = least;
+    mspringi_mover_drop(network);
     return MSPRING_OK;
 }
 
@@ -184,6 +189,8 @@ void mspringi_strain_store(mspring_network *network, mspringi_place place, bool 
     if (strain->stress_strain)
         // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): its callers have looked for it
         strain->least[place] = fminf(strain->break_strain[place], strain->stress_strain[place]);
+    if (network->mover)
+        mspringi_mover_follow(network, place);
 }
 
 void mspringi_strain_forget(mspring_network *network, mspring_id spring) {

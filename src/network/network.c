@@ -106,17 +106,34 @@ static void look_at_springs(const mspring_builder *builder, bool *damped, bool *
     }
 }
 
-mspring_result mspringi_layout_reserve(mspring_network *network) {
+static bool reserve_particles(mspring_network *network) {
+    network->inverse_mass =
+        mspringi_alloc(&network->memory, mspringi_slot_count(network), sizeof *network->inverse_mass);
+    return network->inverse_mass && reserve_state(network, &network->state);
+}
+
+static bool reserve_backup(mspring_network *network) {
+    return reserve_state(network, &network->backup);
+}
+
+static bool reserve_rows(mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     mspringi_memory *memory = &network->memory;
     const size_t parts = network->parts;
-    network->inverse_mass = mspringi_alloc(memory, mspringi_slot_count(network), sizeof *network->inverse_mass);
     mspringi_alike_begin(&network->alike, t, memory);
     network->lattice_springs =
         mspringi_alloc(memory, (parts - 1) * (t->lattice_places + mspringi_alike_places(&network->alike)),
                        sizeof *network->lattice_springs);
     network->chain_springs =
         mspringi_alloc(memory, parts * (t->chain_places - t->lattice_places), sizeof *network->chain_springs);
+    network->live = mspringi_alloc(memory, mspringi_place_words(t), sizeof *network->live);
+    return network->alike.of_block && network->lattice_springs && network->chain_springs && network->live;
+}
+
+static bool reserve_web(mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    mspringi_memory *memory = &network->memory;
+    const size_t parts = network->parts;
     const size_t rungs =
         (t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0) +
         ((size_t)(t->leftover_capacity - t->woven_count) + t->parked_count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
@@ -124,16 +141,28 @@ mspring_result mspringi_layout_reserve(mspring_network *network) {
     network->packed =
         mspringi_alloc(memory, (size_t)8 * t->web.group_count * MSPRINGI_WIDTH, sizeof *network->packed);
     network->attached = mspringi_alloc(memory, (size_t)2 * t->web.attached_count, sizeof *network->attached);
-    network->depth = mspringi_explicit_depth(t, network->parts);
-    network->live = mspringi_alloc(memory, mspringi_place_words(t), sizeof *network->live);
-    if (!reserve_state(network, &network->state) || !reserve_state(network, &network->backup) ||
-        !network->inverse_mass || !network->alike.of_block || !network->lattice_springs ||
-        !network->chain_springs || !network->web_springs || !network->packed || !network->attached ||
-        !network->live)
+    return network->web_springs && network->packed && network->attached;
+}
+
+mspring_result mspringi_layout_reserve_part(mspring_network *network, uint32_t part) {
+    static bool (*const reserve[MSPRINGI_LAYOUT_PARTS])(mspring_network *) = {reserve_particles, reserve_backup,
+                                                                              reserve_rows, reserve_web};
+    const mspringi_topology *t = &network->topology;
+    if (!reserve[part](network))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for a network of %u particles and %u springs", (unsigned)t->particle_count,
                              (unsigned)t->spring_count);
+    if (part + 1 < MSPRINGI_LAYOUT_PARTS)
+        return MSPRING_OK;
+    network->depth = mspringi_explicit_depth(t, network->parts);
     return mspringi_carry_reserve(network);
+}
+
+mspring_result mspringi_layout_reserve(mspring_network *network) {
+    mspring_result result = MSPRING_OK;
+    for (uint32_t part = 0; result == MSPRING_OK && part < MSPRINGI_LAYOUT_PARTS; ++part)
+        result = mspringi_layout_reserve_part(network, part);
+    return result;
 }
 
 void mspringi_layout_free(const mspring_network *network, mspringi_memory *memory) {

@@ -208,8 +208,11 @@ struct mspring_network {
     uint32_t whole_tile_size;       ///< of the implicit solver that whole had; 0 if there was none
     uint32_t whole_fallback_size;   ///< the same of the fallback's
     struct mspringi_replan *replan; ///< a compaction that is under way, or NULL
-    uint64_t topology_print;        ///< hash of which particles the springs join, and of where they lie
-    uint64_t parameter_print;       ///< hash of what the springs are like, and of all edits of that
+    struct mspringi_mover *mover;   ///< its copy of the springs, or NULL
+    bool is_seen_compact;           ///< with these edits it was found to have nothing to do
+    uint64_t seen_links, seen_growth;
+    uint64_t topology_print;  ///< hash of which particles the springs join, and of where they lie
+    uint64_t parameter_print; ///< hash of what the springs are like, and of all edits of that
     const mspringi_kernels *kernels;
     mspringi_tasks *tasks; ///< NULL: the caller's thread steps alone
 
@@ -315,6 +318,9 @@ mspring_result mspringi_carry_reserve(mspring_network *network);
 
 /// Allocate what the explicit solver has by slot and by place. On error some of it is there.
 mspring_result mspringi_layout_reserve(mspring_network *network);
+/// The same part by part: all of them in their order.
+#define MSPRINGI_LAYOUT_PARTS 4u
+mspring_result mspringi_layout_reserve_part(mspring_network *network, uint32_t part);
 /// Free that from this memory, or forget it.
 void mspringi_layout_free(const mspring_network *network, mspringi_memory *memory);
 void mspringi_layout_forget(mspring_network *network);

@@ -1,6 +1,8 @@
 /// Keeping rest lengths that many springs have in common.
 #include "rests.h"
 
+#include "compact/move.h"
+
 #include <string.h>
 
 /// Values of a block: one for each place.
@@ -9,11 +11,15 @@
 /// Most patterns, that is, sets of rest lengths by direction that blocks have in common.
 #define MOST_PATTERNS 16
 
-/// Rest lengths by direction; 0 where no spring has told yet.
-typedef struct pattern {
-    float length[MSPRINGI_DIRECTIONS];
-    bool is_mixed; ///< some direction has several
-} pattern;
+typedef mspringi_rest_pattern pattern;
+
+void mspringi_rests_note(pattern *of_block, mspringi_place place, float rest_length) {
+    pattern *block = &of_block[place / BLOCK_PLACES];
+    float *length = &block->length[place / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS];
+    if (*length == 0.0f)
+        *length = rest_length;
+    block->is_mixed = block->is_mixed || *length != rest_length;
+}
 
 // What the springs of each block have in common.
 static void find_patterns(pattern *of_block, const mspringi_topology *t, const mspring_builder *builder) {
@@ -21,13 +27,8 @@ static void find_patterns(pattern *of_block, const mspringi_topology *t, const m
     mspringi_places_begin(&reader, &t->places, 0);
     for (uint32_t s = 0; s < t->spring_count; ++s) {
         const mspringi_place place = mspringi_places_next(&reader);
-        if (place >= t->lattice_places)
-            continue;
-        pattern *block = &of_block[place / BLOCK_PLACES];
-        float *length = &block->length[place / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS];
-        if (*length == 0.0f)
-            *length = builder->springs[s].rest_length;
-        block->is_mixed = block->is_mixed || *length != builder->springs[s].rest_length;
+        if (place < t->lattice_places)
+            mspringi_rests_note(of_block, place, builder->springs[s].rest_length);
     }
 }
 
@@ -57,10 +58,7 @@ static void number_blocks(mspringi_rests *rests, const pattern *of_block, uint32
             rests->of_block[b] = rests->count++;
 }
 
-static void fill(mspringi_rests *rests, const mspringi_topology *t, const mspring_builder *builder,
-                 const pattern *shared) {
-    for (uint32_t i = 0; i < rests->shared_count * BLOCK_PLACES; ++i)
-        rests->lengths[i] = shared[i / BLOCK_PLACES].length[i / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS];
+static void fill(mspringi_rests *rests, const mspringi_topology *t, const mspring_builder *builder) {
     mspringi_place_reader reader;
     mspringi_places_begin(&reader, &t->places, 0);
     for (uint32_t s = 0; s < t->spring_count; ++s) {
@@ -70,24 +68,39 @@ static void fill(mspringi_rests *rests, const mspringi_topology *t, const msprin
     }
 }
 
+static mspring_result no_memory(uint32_t blocks, mspringi_message *message) {
+    return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the rest lengths of %u blocks of lattice",
+                         (unsigned)blocks);
+}
+
+mspring_result mspringi_rests_reserve(mspringi_rests *rests, const pattern *of_block, uint32_t blocks,
+                                      mspringi_memory *memory, mspringi_message *message) {
+    pattern shared[MOST_PATTERNS] = {{.is_mixed = false}};
+    rests->of_block = mspringi_alloc(memory, blocks, sizeof *rests->of_block);
+    if (!rests->of_block)
+        return no_memory(blocks, message);
+    number_blocks(rests, of_block, blocks, shared);
+    rests->lengths = mspringi_alloc(memory, (size_t)rests->count * BLOCK_PLACES, sizeof *rests->lengths);
+    if (!rests->lengths)
+        return no_memory(blocks, message);
+    for (uint32_t i = 0; i < rests->shared_count * BLOCK_PLACES; ++i)
+        rests->lengths[i] = shared[i / BLOCK_PLACES].length[i / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS];
+    return MSPRING_OK;
+}
+
 mspring_result mspringi_rests_create(mspringi_rests *rests, const mspringi_topology *topology,
                                      const mspring_builder *builder, mspringi_memory *memory,
                                      mspringi_message *message) {
     const uint32_t blocks = topology->lattice_blocks;
-    pattern shared[MOST_PATTERNS] = {{.is_mixed = false}};
     pattern *of_block = mspringi_alloc(memory, blocks, sizeof *of_block);
-    rests->of_block = mspringi_alloc(memory, blocks, sizeof *rests->of_block);
-    if (of_block && rests->of_block) {
-        find_patterns(of_block, topology, builder);
-        number_blocks(rests, of_block, blocks, shared);
-        rests->lengths = mspringi_alloc(memory, (size_t)rests->count * BLOCK_PLACES, sizeof *rests->lengths);
-    }
+    if (!of_block)
+        return no_memory(blocks, message);
+    find_patterns(of_block, topology, builder);
+    mspring_result result = mspringi_rests_reserve(rests, of_block, blocks, memory, message);
     mspringi_free(memory, of_block);
-    if (!rests->lengths)
-        return mspringi_fail(message, MSPRING_ERROR_MEMORY,
-                             "no memory for the rest lengths of %u blocks of lattice", (unsigned)blocks);
-    fill(rests, topology, builder, shared);
-    return MSPRING_OK;
+    if (result == MSPRING_OK)
+        fill(rests, topology, builder);
+    return result;
 }
 
 mspring_result mspringi_rests_separate(mspring_network *network) {
@@ -109,6 +122,7 @@ mspring_result mspringi_rests_separate(mspring_network *network) {
     rests->lengths = lengths;
     rests->count = blocks;
     rests->shared_count = 0;
+    mspringi_mover_drop(network);
     return MSPRING_OK;
 }
 

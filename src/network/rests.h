@@ -13,6 +13,16 @@ mspring_result mspringi_rests_create(mspringi_rests *rests, const mspringi_topol
                                      const mspring_builder *builder, mspringi_memory *memory,
                                      mspringi_message *message);
 
+/// The same spring by spring: note the rest length of each, in one pattern for each block of the lattice; then
+/// reserve, and set each at its place.
+typedef struct mspringi_rest_pattern {
+    float length[MSPRINGI_DIRECTIONS]; ///< 0 where no spring has told yet
+    bool is_mixed;                     ///< some direction has several
+} mspringi_rest_pattern;
+void mspringi_rests_note(mspringi_rest_pattern *of_block, mspringi_place place, float rest_length);
+mspring_result mspringi_rests_reserve(mspringi_rests *rests, const mspringi_rest_pattern *of_block, uint32_t blocks,
+                                      mspringi_memory *memory, mspringi_message *message);
+
 /// Give every lattice spring a rest length of its own, which mspringi_rests_at() may then set. Allocates, once.
 mspring_result mspringi_rests_separate(mspring_network *network);
 

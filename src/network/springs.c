@@ -2,6 +2,7 @@
 #include "springs.h"
 
 #include "alike.h"
+#include "compact/move.h"
 #include "rests.h"
 
 // Where a spring's values are: in one record, or in one at each of its ends.
@@ -67,12 +68,16 @@ void mspringi_place_set(mspring_network *network, mspringi_place place, float st
         if (records.ends[i].damping)
             *records.ends[i].damping = damping;
     }
+    if (network->mover)
+        mspringi_mover_follow(network, place);
 }
 
 void mspringi_place_set_rest_length(mspring_network *network, mspringi_place place, float rest_length) {
     const spring_records records = find_records(network, place);
     for (int i = 0; i < records.count; ++i)
         *records.ends[i].rest_length = rest_length;
+    if (network->mover)
+        mspringi_mover_follow(network, place);
 }
 
 void mspringi_place_copy(const mspring_network *from, mspringi_place had_place, mspring_network *to,

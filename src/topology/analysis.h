@@ -5,13 +5,40 @@
 #ifndef MSPRINGI_ANALYSIS_H
 #define MSPRINGI_ANALYSIS_H
 
+#include "base/pace.h"
 #include "topology.h"
+
+/// Sort keys in place by radix; scratch is as long as keys.
+void mspringi_sort_keys(uint64_t *keys, uint64_t *scratch, size_t count);
+
+#define MSPRINGI_DIGIT_BITS 8
+
+typedef enum mspringi_sorting_stage {
+    MSPRINGI_SORTING_LOOKS, ///< in which digits keys differ at all
+    MSPRINGI_SORTING_COUNTS,
+    MSPRINGI_SORTING_MOVES,
+    MSPRINGI_SORTING_COPIES, ///< from scratch, if that is where they have come to lie
+    MSPRINGI_SORTED
+} mspringi_sorting_stage;
+
+/// The same in parts.
+typedef struct mspringi_sorting {
+    uint64_t *keys, *from, *to;
+    uint64_t differing; ///< bits in which keys differ
+    uint32_t count, at, shift;
+    mspringi_sorting_stage stage;
+    uint32_t place[(1 << MSPRINGI_DIGIT_BITS) + 1];
+} mspringi_sorting;
+void mspringi_sorting_begin(mspringi_sorting *sorting, uint64_t *keys, uint64_t *scratch, uint32_t count);
+/// True: they are sorted.
+bool mspringi_sorting_go_on(mspringi_sorting *sorting, mspringi_pace *pace);
 
 /// Springs by particle: those of particle p are springs[first[p]] ... springs[first[p + 1] - 1], by rising id.
 typedef struct mspringi_graph {
     const mspring_builder *builder;
-    uint32_t *first;   ///< [particles + 1]
-    uint32_t *springs; ///< [2 * springs]
+    uint32_t *first;                ///< [particles + 1]
+    uint32_t *springs;              ///< [2 * springs]
+    uint32_t *stamp_of, *spring_to; ///< [particles] until it is known that no springs join the same particles
 } mspringi_graph;
 
 /// Strands, laid end to end.
@@ -19,6 +46,9 @@ typedef struct mspringi_strands {
     uint32_t *particles; ///< [count] in order along each strand, strand after strand
     uint32_t *springs;   ///< [count] the spring to the next entry, or MSPRING_NONE at a strand's end
     uint32_t count, strand_count, spring_count;
+    uint32_t candidates; ///< particles that may be in a strand
+    uint32_t kept;       ///< of count, so far, while some are dropped
+    uint8_t *visited;    ///< [particles] while strands are looked for
 } mspringi_strands;
 
 /// Grids: for each, its particles with their column and row, both from 0.
@@ -28,31 +58,48 @@ typedef struct mspringi_grids {
     uint32_t *members;      ///< [member_count] particles, grid after grid
     uint32_t *first_member; ///< [count + 1]
     uint32_t count, member_count;
-    uint32_t found_count; ///< grids that were found, some of which may have been put side by side
+    uint32_t found_count;                  ///< grids that were found, some of which may have been put side by side
+    struct mspringi_grid_finder *finder;   ///< while they are looked for
+    struct mspringi_grid_shelver *shelver; ///< while they are put side by side
 } mspringi_grids;
 
 static inline mspring_id mspringi_other_end(const mspringi_spring *spring, mspring_id particle) {
     return spring->a == particle ? spring->b : spring->a;
 }
 
-/// Index the springs by particle. Fails with MSPRING_ERROR_DUPLICATE if two springs join the same particles.
-mspring_result mspringi_graph_create(mspringi_graph *graph, const mspring_builder *builder, mspringi_memory *memory,
-                                     mspringi_message *message);
+/// Index the springs by particle: reserve, then the passes in their order. If it is not known that no two springs
+/// join the same particles, the last one fails with MSPRING_ERROR_DUPLICATE for two that do.
+mspring_result mspringi_graph_reserve(mspringi_graph *graph, const mspring_builder *builder, bool is_checked,
+                                      mspringi_pace *pace, mspringi_memory *memory, mspringi_message *message);
+void mspringi_graph_count(mspringi_graph *graph, mspringi_pace *pace);
+void mspringi_graph_sum(mspringi_graph *graph, mspringi_pace *pace);
+void mspringi_graph_fill(mspringi_graph *graph, mspringi_pace *pace);
+mspring_result mspringi_graph_check(mspringi_graph *graph, mspringi_pace *pace, mspringi_memory *memory,
+                                    mspringi_message *message);
 void mspringi_graph_destroy(mspringi_graph *graph, mspringi_memory *memory);
 
 /// Find the strands: paths of at least three particles that have at most two springs each, and shorter ones that
-/// are attached to nothing. Their particles get MSPRINGI_ROW_CHAIN in kinds.
-mspring_result mspringi_strands_find(mspringi_strands *strands, const mspringi_graph *graph, uint8_t *kinds,
-                                     mspringi_memory *memory, mspringi_message *message);
+/// are attached to nothing. Their particles get MSPRINGI_ROW_CHAIN in kinds. Passes in their order.
+void mspringi_strands_count(mspringi_strands *strands, const mspringi_graph *graph, mspringi_pace *pace);
+mspring_result mspringi_strands_reserve(mspringi_strands *strands, const mspringi_graph *graph, mspringi_pace *pace,
+                                        mspringi_memory *memory, mspringi_message *message);
+void mspringi_strands_find(mspringi_strands *strands, const mspringi_graph *graph, uint8_t *kinds,
+                           mspringi_pace *pace, mspringi_memory *memory);
 void mspringi_strands_destroy(mspringi_strands *strands, mspringi_memory *memory);
 
-/// Find the grids among the particles that are loose in kinds: their particles get MSPRINGI_ROW_LATTICE.
-mspring_result mspringi_grids_find(mspringi_grids *grids, const mspringi_graph *graph, uint8_t *kinds,
-                                   mspringi_memory *memory, mspringi_message *message);
+/// Find the grids among the particles that are loose in kinds: their particles get MSPRINGI_ROW_LATTICE. Passes in
+/// their order; the graph and kinds must stay.
+mspring_result mspringi_grids_reserve(mspringi_grids *grids, const mspringi_graph *graph, uint8_t *kinds,
+                                      mspringi_pace *pace, mspringi_memory *memory, mspringi_message *message);
+void mspringi_grids_find(mspringi_grids *grids, mspringi_pace *pace, mspringi_memory *memory);
 void mspringi_grids_destroy(mspringi_grids *grids, mspringi_memory *memory);
 
-/// Put small grids side by side in the same rows, as one grid. found_count stays.
-mspring_result mspringi_grids_shelve(mspringi_grids *grids, mspringi_memory *memory, mspringi_message *message);
+/// Put small grids side by side in the same rows, as one grid. found_count stays. Passes in their order.
+mspring_result mspringi_grids_measure(mspringi_grids *grids, mspringi_pace *pace, mspringi_memory *memory,
+                                      mspringi_message *message);
+void mspringi_grids_shelve(mspringi_grids *grids, mspringi_pace *pace);
+void mspringi_grids_number(mspringi_grids *grids, mspringi_pace *pace, mspringi_memory *memory);
+void mspringi_shelver_destroy(struct mspringi_grid_shelver *shelver, mspringi_memory *memory);
 
 /// How a spring lies on a grid.
 typedef struct mspringi_lattice_spring {
@@ -77,15 +124,22 @@ typedef struct mspringi_homes {
     uint32_t strip_rows;  ///< rows in a strip; the last one may have fewer
     uint32_t lag;         ///< strips that each substep stays behind the one before: ends of leftover springs are
                           ///< no further apart
+    struct mspringi_homes_finder *finder; ///< while they are looked for
 } mspringi_homes;
 
-mspring_result mspringi_homes_find(mspringi_homes *homes, const mspringi_graph *graph, const mspringi_grids *grids,
-                                   const mspringi_strands *strands, uint32_t workers, mspringi_memory *memory,
-                                   mspringi_message *message);
+/// Find them: passes in their order; all that they are given must stay.
+mspring_result mspringi_homes_reserve(mspringi_homes *homes, const mspringi_graph *graph,
+                                      const mspringi_grids *grids, const mspringi_strands *strands,
+                                      mspringi_pace *pace, mspringi_memory *memory, mspringi_message *message);
+void mspringi_homes_attach(mspringi_homes *homes, mspringi_pace *pace);
+mspring_result mspringi_homes_prepare(mspringi_homes *homes, uint32_t workers, mspringi_pace *pace,
+                                      mspringi_memory *memory, mspringi_message *message);
+void mspringi_homes_find(mspringi_homes *homes, mspringi_pace *pace, mspringi_memory *memory);
 void mspringi_homes_destroy(mspringi_homes *homes, mspringi_memory *memory);
 
 /// Drop the strands that have a home: their particles become loose in kinds, for the web.
-void mspringi_strands_drop(mspringi_strands *strands, const mspringi_homes *homes, uint8_t *kinds);
+void mspringi_strands_drop(mspringi_strands *strands, const mspringi_homes *homes, uint8_t *kinds,
+                           mspringi_pace *pace);
 
 /// The particles of the web: those that are loose in kinds and have springs. They get MSPRINGI_ROW_WEB. First
 /// those with a home, by home; then those without, in whose list neighbours in space are near each other, and
@@ -94,13 +148,27 @@ typedef struct mspringi_web_list {
     uint32_t *particles; ///< [count]
     uint32_t count;
     uint32_t homed_count; ///< of these have a home
-} mspringi_web_list;
-mspring_result mspringi_web_list_find(mspringi_web_list *list, const mspringi_graph *graph,
-                                      const mspringi_homes *homes, uint8_t *kinds, mspringi_memory *memory,
-                                      mspringi_message *message);
-void mspringi_web_list_destroy(mspringi_web_list *list, mspringi_memory *memory);
 
-/// Sort keys in place by radix; scratch is as long as keys.
-void mspringi_sort_keys(uint64_t *keys, uint64_t *scratch, size_t count);
+    // While it is made.
+    uint32_t listed_homed, listed_free;
+    double min_x, max_x, min_y, max_y; ///< of those without a home
+    uint64_t *keys, *scratch;          ///< [count]
+    bool is_half_sorted;               ///< those with a home are
+    mspringi_sorting sorting;
+} mspringi_web_list;
+/// Find it: passes in their order.
+void mspringi_web_list_count(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes,
+                             const uint8_t *kinds, mspringi_pace *pace);
+mspring_result mspringi_web_list_reserve(mspringi_web_list *list, mspringi_pace *pace, mspringi_memory *memory,
+                                         mspringi_message *message);
+void mspringi_web_list_fill(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes,
+                            uint8_t *kinds, mspringi_pace *pace);
+void mspringi_web_list_set_keys(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes,
+                                mspringi_pace *pace);
+void mspringi_web_list_sort(mspringi_web_list *list, mspringi_pace *pace);
+void mspringi_web_list_take_order(mspringi_web_list *list, mspringi_pace *pace);
+void mspringi_web_list_order_windows(mspringi_web_list *list, const mspringi_graph *graph, mspringi_pace *pace,
+                                     mspringi_memory *memory);
+void mspringi_web_list_destroy(mspringi_web_list *list, mspringi_memory *memory);
 
 #endif

@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /// How far, in cells, an offset may lie off its cell's centre.
 #define CELL_TOLERANCE 0.3
@@ -15,7 +16,20 @@
 /// many times a slot of a swept record (measured: 6 to 12, by instruction set).
 #define SLOTS_PER_SPRING 6
 
-typedef struct finder {
+typedef enum search_stage {
+    SEEKS,   ///< a seed
+    FLOODS,  ///< from there
+    VACATES, ///< the hash table
+    BOUNDS,  ///< the grid: its lowest column and row
+    KEYS,    ///< sets those of its blocks,
+    SORTS,   ///< sorts them
+    RUNS,    ///< and counts blocks and runs of them: all three transposed first, then upright
+    COUNTS,  ///< springs
+    DECIDES, ///< whether to keep the grid
+    STAGES
+} search_stage;
+
+typedef struct mspringi_grid_finder {
     const mspringi_graph *graph;
     mspringi_grids *grids;
     uint8_t *kinds;
@@ -25,6 +39,19 @@ typedef struct finder {
     uint32_t *cell;    ///< hash table of the current grid's particles
     size_t cell_mask;
     uint64_t *keys, *scratch;
+
+    search_stage stage;
+    uint32_t seed;  ///< the current grid's, or the particle to be looked at next
+    uint32_t begin; ///< its first member
+    uint32_t at;    ///< how far the stage has come in its members
+    double spacing;
+    int32_t min_column, min_row;
+    bool transposed; ///< its columns are taken along the rows
+    uint64_t cost_transposed;
+    uint32_t blocks_transposed, blocks, runs;
+    size_t neighbours, ends; ///< springs between neighbouring cells, twice; all ends of springs
+    bool is_kept;
+    mspringi_sorting sorting;
 } finder;
 
 /* --------------------------------------------------------------------------------------- the cells of a grid */
@@ -52,15 +79,34 @@ static bool occupy(finder *f, uint32_t particle, int32_t column, int32_t row) {
     return true;
 }
 
+// Members of the current grid that a stage is to go through now. Returns the first, and moves on to the last.
+static uint32_t take_members(finder *f, uint32_t weight, mspringi_pace *pace) {
+    const uint32_t first = f->begin + f->at, left = f->grids->member_count - first;
+    const uint32_t most = pace->left / weight, now = left <= most ? left : most > 0 ? most : 1;
+    mspringi_pace_spend(pace, (uint64_t)now * weight);
+    f->at += now;
+    return first;
+}
+
+// Go on to a stage if this one has gone through all members.
+static void finish_stage(finder *f, search_stage next) {
+    if (f->begin + f->at < f->grids->member_count)
+        return;
+    f->stage = next;
+    f->at = 0;
+}
+
 // Empty the hash table again: probe for each member, then clear.
-static void vacate(finder *f, const uint32_t *members, uint32_t count) {
-    for (uint32_t m = 0; m < count; ++m) {
+static void vacate(finder *f, mspringi_pace *pace) {
+    const uint32_t *members = f->grids->members;
+    for (uint32_t m = take_members(f, 4, pace); m < f->begin + f->at; ++m) {
         size_t i = hash_cell(f->column[members[m]], f->row[members[m]], f->cell_mask);
         while (f->cell[i] != 0) {
             f->cell[i] = 0;
             i = (i + 1) & f->cell_mask;
         }
     }
+    finish_stage(f, BOUNDS);
 }
 
 /* ------------------------------------------------------------------------------------------------- the search */
@@ -94,162 +140,211 @@ static bool round_offset(double offset, int32_t *cell) {
     return true;
 }
 
-// Collect all particles that can be reached from seed, cell by cell, behind those of the earlier grids.
-static void flood(finder *f, uint32_t seed, double spacing, uint32_t number) {
+// Look for the next particle that a grid can be found from.
+static void seek(finder *f, mspringi_pace *pace) {
+    const uint32_t particles = (uint32_t)f->graph->builder->particle_count;
+    mspringi_grids *grids = f->grids;
+    for (; f->seed < particles && pace->left > 0; f->seed++) {
+        const bool can_be = is_free(f, f->seed);
+        f->spacing = can_be ? shortest_axial_spring(f, f->seed) : 0.0;
+        mspringi_pace_spend(pace, can_be ? 8 : 1);
+        if (!(f->spacing > 0.0))
+            continue;
+        f->begin = grids->member_count;
+        f->at = 0;
+        occupy(f, f->seed, 0, 0);
+        grids->grid_of[f->seed] = grids->count;
+        grids->members[grids->member_count++] = f->seed;
+        f->stage = FLOODS;
+        return;
+    }
+}
+
+// Collect all particles that can be reached from the seed, cell by cell, behind those of the earlier grids.
+static void flood(finder *f, mspringi_pace *pace) {
     const mspringi_graph *graph = f->graph;
     const mspring_builder *builder = graph->builder;
     mspringi_grids *grids = f->grids;
-    occupy(f, seed, 0, 0);
-    grids->grid_of[seed] = number;
-    uint32_t done = grids->member_count;
-    grids->members[grids->member_count++] = seed;
-    for (; done < grids->member_count; ++done) {
-        const uint32_t at = grids->members[done];
+    for (; f->begin + f->at < grids->member_count && pace->left > 0; f->at++) {
+        const uint32_t at = grids->members[f->begin + f->at];
+        mspringi_pace_spend(pace, 2 + (uint64_t)6 * (graph->first[at + 1] - graph->first[at]));
         for (uint32_t i = graph->first[at]; i < graph->first[at + 1]; ++i) {
             const mspring_id other = mspringi_other_end(&builder->springs[graph->springs[i]], at);
             int32_t dc = 0, dr = 0;
             if (!is_free(f, other) ||
-                !round_offset((builder->particles[other].x - builder->particles[at].x) / spacing, &dc) ||
-                !round_offset((builder->particles[other].y - builder->particles[at].y) / spacing, &dr))
+                !round_offset((builder->particles[other].x - builder->particles[at].x) / f->spacing, &dc) ||
+                !round_offset((builder->particles[other].y - builder->particles[at].y) / f->spacing, &dr))
                 continue;
             if ((dc != 0 || dr != 0) && occupy(f, other, f->column[at] + dc, f->row[at] + dr)) {
-                grids->grid_of[other] = number;
+                grids->grid_of[other] = grids->count;
                 grids->members[grids->member_count++] = other;
             }
         }
     }
+    finish_stage(f, VACATES);
 }
 
 /* --------------------------------------------------------------------------------------------- is it worth it */
 
+static void bound(finder *f, mspringi_pace *pace) {
+    const uint32_t *members = f->grids->members;
+    if (f->at == 0)
+        f->min_column = f->min_row = 0; // where the seed is
+    for (uint32_t m = take_members(f, 1, pace); m < f->begin + f->at; ++m) {
+        f->min_column = f->column[members[m]] < f->min_column ? f->column[members[m]] : f->min_column;
+        f->min_row = f->row[members[m]] < f->min_row ? f->row[members[m]] : f->min_row;
+    }
+    f->transposed = true;
+    finish_stage(f, KEYS);
+}
+
+static void set_keys(finder *f, mspringi_pace *pace) {
+    const uint32_t *members = f->grids->members;
+    for (uint32_t m = take_members(f, 1, pace); m < f->begin + f->at; ++m) {
+        const uint32_t column = (uint32_t)(f->column[members[m]] - f->min_column);
+        const uint32_t row = (uint32_t)(f->row[members[m]] - f->min_row);
+        f->keys[m - f->begin] = f->transposed ? (uint64_t)column << 32 | row / MSPRINGI_WIDTH
+                                              : (uint64_t)row << 32 | column / MSPRINGI_WIDTH;
+    }
+    finish_stage(f, SORTS);
+    if (f->stage == SORTS)
+        mspringi_sorting_begin(&f->sorting, f->keys, f->scratch, f->grids->member_count - f->begin);
+}
+
+static void sort(finder *f, mspringi_pace *pace) {
+    if (!mspringi_sorting_go_on(&f->sorting, pace))
+        return;
+    f->stage = RUNS;
+    f->blocks = f->runs = 0;
+}
+
 // What it costs to sweep a grid with its columns along the rows, or the other way round, in blocks: those it has,
 // and about one for each run of neighbouring ones to start with.
-static uint64_t cost_of_sweep(finder *f, const uint32_t *members, uint32_t count, int32_t min_column,
-                              int32_t min_row, bool transposed, uint32_t *blocks) {
-    for (uint32_t m = 0; m < count; ++m) {
-        const uint32_t column = (uint32_t)(f->column[members[m]] - min_column);
-        const uint32_t row = (uint32_t)(f->row[members[m]] - min_row);
-        f->keys[m] = transposed ? (uint64_t)column << 32 | row / MSPRINGI_WIDTH
-                                : (uint64_t)row << 32 | column / MSPRINGI_WIDTH;
+static void count_runs(finder *f, mspringi_pace *pace) {
+    for (uint32_t i = take_members(f, 1, pace) - f->begin; i < f->at; ++i) {
+        f->blocks += i == 0 || f->keys[i] != f->keys[i - 1];
+        f->runs += i == 0 || f->keys[i] > f->keys[i - 1] + 1;
     }
-    mspringi_sort_keys(f->keys, f->scratch, count);
-    uint32_t runs = 0;
-    *blocks = 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        *blocks += i == 0 || f->keys[i] != f->keys[i - 1];
-        runs += i == 0 || f->keys[i] > f->keys[i - 1] + 1;
+    finish_stage(f, f->transposed ? KEYS : COUNTS);
+    if (f->stage == RUNS)
+        return;
+    if (f->stage == KEYS) {
+        f->cost_transposed = (uint64_t)f->blocks + f->runs;
+        f->blocks_transposed = f->blocks;
+        f->transposed = false;
+        return;
     }
-    return (uint64_t)*blocks + runs;
+    f->transposed = f->cost_transposed < (uint64_t)f->blocks + f->runs;
+    f->neighbours = f->ends = 0;
 }
 
 // Count the springs of a grid's particles: those between neighbouring cells, and all.
-static void count_springs(const finder *f, const uint32_t *members, uint32_t count, size_t *neighbours,
-                          size_t *all) {
+static void count_springs(finder *f, mspringi_pace *pace) {
     const mspringi_graph *graph = f->graph;
-    size_t ends = 0;
-    *all = 0;
-    for (uint32_t m = 0; m < count; ++m) {
+    const uint32_t *members = f->grids->members;
+    for (uint32_t m = take_members(f, 16, pace); m < f->begin + f->at; ++m) {
         const uint32_t at = members[m];
-        *all += graph->first[at + 1] - graph->first[at];
+        f->ends += graph->first[at + 1] - graph->first[at];
         for (uint32_t i = graph->first[at]; i < graph->first[at + 1]; ++i) {
             const mspring_id other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], at);
-            ends += f->grids->grid_of[other] == f->grids->grid_of[at] &&
-                    abs(f->column[other] - f->column[at]) <= 1 && abs(f->row[other] - f->row[at]) <= 1;
+            f->neighbours += f->grids->grid_of[other] == f->grids->grid_of[at] &&
+                             abs(f->column[other] - f->column[at]) <= 1 && abs(f->row[other] - f->row[at]) <= 1;
         }
     }
-    *neighbours = ends / 2;
-    *all -= *neighbours;
+    finish_stage(f, DECIDES);
+    if (f->stage != DECIDES)
+        return;
+    const uint32_t blocks = f->transposed ? f->blocks_transposed : f->blocks;
+    const size_t neighbours = f->neighbours / 2, all = f->ends - neighbours;
+    f->is_kept = neighbours * SLOTS_PER_SPRING >= (size_t)blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH &&
+                 2 * neighbours >= all;
 }
 
 // Keep the grid that was flooded last, in its better orientation, or give it up.
-static void judge(finder *f, uint32_t begin) {
+static void decide(finder *f, mspringi_pace *pace) {
     mspringi_grids *grids = f->grids;
-    uint32_t *members = grids->members + begin;
-    const uint32_t count = grids->member_count - begin;
-    int32_t min_column = 0, min_row = 0;
-    for (uint32_t m = 0; m < count; ++m) {
-        min_column = f->column[members[m]] < min_column ? f->column[members[m]] : min_column;
-        min_row = f->row[members[m]] < min_row ? f->row[members[m]] : min_row;
-    }
-    uint32_t blocks_upright, blocks_transposed;
-    const bool transposed = cost_of_sweep(f, members, count, min_column, min_row, true, &blocks_transposed) <
-                            cost_of_sweep(f, members, count, min_column, min_row, false, &blocks_upright);
-    const uint32_t blocks = transposed ? blocks_transposed : blocks_upright;
-    size_t neighbours = 0, all = 0;
-    count_springs(f, members, count, &neighbours, &all);
-
-    if (neighbours * SLOTS_PER_SPRING < (size_t)blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH ||
-        2 * neighbours < all) {
-        for (uint32_t m = 0; m < count; ++m) {
-            grids->grid_of[members[m]] = MSPRING_NONE;
-            f->given_up[members[m]] = 1;
+    for (uint32_t m = take_members(f, 2, pace); m < f->begin + f->at; ++m) {
+        const uint32_t p = grids->members[m];
+        const uint32_t column = (uint32_t)(f->column[p] - f->min_column), row = (uint32_t)(f->row[p] - f->min_row);
+        if (!f->is_kept) {
+            grids->grid_of[p] = MSPRING_NONE;
+            f->given_up[p] = 1;
+            continue;
         }
-        grids->member_count = begin;
-        return;
-    }
-    for (uint32_t m = 0; m < count; ++m) {
-        const uint32_t p = members[m];
-        const uint32_t column = (uint32_t)(f->column[p] - min_column), row = (uint32_t)(f->row[p] - min_row);
-        grids->column[p] = transposed ? row : column;
-        grids->row[p] = transposed ? column : row;
+        grids->column[p] = f->transposed ? row : column;
+        grids->row[p] = f->transposed ? column : row;
         f->kinds[p] = MSPRINGI_ROW_LATTICE;
     }
-    grids->first_member[++grids->count] = grids->member_count;
+    finish_stage(f, SEEKS);
+    if (f->stage != SEEKS)
+        return;
+    if (f->is_kept)
+        grids->first_member[++grids->count] = grids->member_count;
+    else
+        grids->member_count = f->begin;
+    f->seed++;
 }
 
-static void find_all(finder *f) {
-    mspringi_grids *grids = f->grids;
-    const uint32_t particles = (uint32_t)f->graph->builder->particle_count;
-    for (uint32_t seed = 0; seed < particles; ++seed) {
-        const double spacing = is_free(f, seed) ? shortest_axial_spring(f, seed) : 0.0;
-        if (!(spacing > 0.0))
-            continue;
-        const uint32_t begin = grids->member_count;
-        flood(f, seed, spacing, grids->count);
-        vacate(f, grids->members + begin, grids->member_count - begin);
-        judge(f, begin);
-    }
+/* ---------------------------------------------------------------------------------------------------- the whole */
+
+static void free_finder(finder *f, mspringi_memory *memory) {
+    if (!f)
+        return;
+    void *const blocks[] = {f->given_up, f->column, f->row, f->cell, f->keys, f->scratch, f};
+    for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; ++i)
+        mspringi_free(memory, blocks[i]);
 }
 
-mspring_result mspringi_grids_find(mspringi_grids *grids, const mspringi_graph *graph, uint8_t *kinds,
-                                   mspringi_memory *memory, mspringi_message *message) {
+mspring_result mspringi_grids_reserve(mspringi_grids *grids, const mspringi_graph *graph, uint8_t *kinds,
+                                      mspringi_pace *pace, mspringi_memory *memory, mspringi_message *message) {
     const size_t particles = graph->builder->particle_count;
     size_t table = 16;
     while (table < 2 * particles)
         table *= 2;
-    finder f = {.graph = graph, .grids = grids, .kinds = kinds, .cell_mask = table - 1};
-    grids->grid_of = mspringi_alloc(memory, particles, sizeof *grids->grid_of);
-    grids->column = mspringi_alloc(memory, particles, sizeof *grids->column);
-    grids->row = mspringi_alloc(memory, particles, sizeof *grids->row);
-    grids->members = mspringi_alloc(memory, particles, sizeof *grids->members);
-    grids->first_member = mspringi_alloc(memory, particles + 1, sizeof *grids->first_member);
-    f.given_up = mspringi_alloc(memory, particles, sizeof *f.given_up);
-    f.column = mspringi_alloc(memory, particles, sizeof *f.column);
-    f.row = mspringi_alloc(memory, particles, sizeof *f.row);
-    f.cell = mspringi_alloc(memory, table, sizeof *f.cell);
-    f.keys = mspringi_alloc(memory, particles, sizeof *f.keys);
-    f.scratch = mspringi_alloc(memory, particles, sizeof *f.scratch);
-    mspring_result result = MSPRING_OK;
-    if (!grids->grid_of || !grids->column || !grids->row || !grids->members || !grids->first_member ||
-        !f.given_up || !f.column || !f.row || !f.cell || !f.keys || !f.scratch) {
-        result =
-            mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to search %zu particles for grids", particles);
-    } else {
-        for (size_t p = 0; p < particles; ++p)
-            grids->grid_of[p] = MSPRING_NONE;
-        find_all(&f);
+    finder *f = grids->finder = mspringi_alloc(memory, 1, sizeof *f);
+    grids->grid_of = mspringi_pace_alloc(pace, memory, particles, sizeof *grids->grid_of);
+    grids->column = mspringi_pace_alloc(pace, memory, particles, sizeof *grids->column);
+    grids->row = mspringi_pace_alloc(pace, memory, particles, sizeof *grids->row);
+    grids->members = mspringi_pace_alloc(pace, memory, particles, sizeof *grids->members);
+    grids->first_member = mspringi_pace_alloc(pace, memory, particles + 1, sizeof *grids->first_member);
+    if (f) {
+        f->graph = graph;
+        f->grids = grids;
+        f->kinds = kinds;
+        f->cell_mask = table - 1;
+        f->given_up = mspringi_pace_alloc(pace, memory, particles, sizeof *f->given_up);
+        f->column = mspringi_pace_alloc(pace, memory, particles, sizeof *f->column);
+        f->row = mspringi_pace_alloc(pace, memory, particles, sizeof *f->row);
+        f->cell = mspringi_pace_alloc(pace, memory, table, sizeof *f->cell);
+        f->keys = mspringi_pace_alloc(pace, memory, particles, sizeof *f->keys);
+        f->scratch = mspringi_pace_alloc(pace, memory, particles, sizeof *f->scratch);
     }
+    if (!f || !grids->grid_of || !grids->column || !grids->row || !grids->members || !grids->first_member ||
+        !f->given_up || !f->column || !f->row || !f->cell || !f->keys || !f->scratch)
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to search %zu particles for grids",
+                             particles);
+    memset(grids->grid_of, 0xff, particles * sizeof *grids->grid_of);
+    return MSPRING_OK;
+}
+
+void mspringi_grids_find(mspringi_grids *grids, mspringi_pace *pace, mspringi_memory *memory) {
+    static void (*const stages[STAGES])(finder *, mspringi_pace *) = {
+        seek, flood, vacate, bound, set_keys, sort, count_runs, count_springs, decide};
+    finder *f = grids->finder;
+    const size_t particles = f->graph->builder->particle_count;
+    while (f->seed < particles && pace->left > 0)
+        stages[f->stage](f, pace);
+    pace->is_halfway = f->seed < particles;
+    if (pace->is_halfway)
+        return;
     grids->found_count = grids->count;
-    mspringi_free(memory, f.given_up);
-    mspringi_free(memory, f.column);
-    mspringi_free(memory, f.row);
-    mspringi_free(memory, f.cell);
-    mspringi_free(memory, f.keys);
-    mspringi_free(memory, f.scratch);
-    return result;
+    free_finder(f, memory);
+    grids->finder = NULL;
 }
 
 void mspringi_grids_destroy(mspringi_grids *grids, mspringi_memory *memory) {
+    free_finder(grids->finder, memory);
+    mspringi_shelver_destroy(grids->shelver, memory);
     mspringi_free(memory, grids->grid_of);
     mspringi_free(memory, grids->column);
     mspringi_free(memory, grids->row);

@@ -6,18 +6,6 @@
 /// Springs that a run has at least, unless they are listed: with fewer, a list of them is no longer.
 #define SHORTEST_RUN 16
 
-/// What is being gone through, and what is made of it, in arrays that grow.
-typedef struct packing {
-    const mspringi_place *of_spring;
-    uint32_t count; ///< of those that patterns are looked for in
-    mspringi_place lattice_places;
-    mspringi_memory *memory;
-    mspringi_place_run *runs;
-    mspringi_place *listed;
-    size_t run_count, listed_count;
-    size_t run_capacity, listed_capacity;
-} packing;
-
 static uint32_t slot_of(mspringi_place place) {
     return place / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH) * MSPRINGI_WIDTH + place % MSPRINGI_WIDTH;
 }
@@ -27,7 +15,7 @@ static uint32_t direction_of(mspringi_place place) {
 }
 
 // The spring behind those from first on whose places are equally spaced.
-static mspring_id end_of_spaced(const packing *p, mspring_id first, uint32_t step) {
+static mspring_id end_of_spaced(const mspringi_packing *p, mspring_id first, uint32_t step) {
     mspring_id s = first + 1;
     while (s < p->count && p->of_spring[s] - p->of_spring[s - 1] == step)
         ++s;
@@ -35,7 +23,7 @@ static mspring_id end_of_spaced(const packing *p, mspring_id first, uint32_t ste
 }
 
 // The spring behind those from first on that go on with the pattern of the first ones; first if there is none.
-static mspring_id end_of_pattern(const packing *p, mspring_id first, uint32_t period, uint32_t step) {
+static mspring_id end_of_pattern(const mspringi_packing *p, mspring_id first, uint32_t period, uint32_t step) {
     const mspringi_place *of = p->of_spring;
     mspring_id s = first + period;
     while (s < p->count && of[s] < p->lattice_places && direction_of(of[s]) == direction_of(of[s - period]) &&
@@ -47,19 +35,34 @@ static mspring_id end_of_pattern(const packing *p, mspring_id first, uint32_t pe
     return s;
 }
 
+// Whether the last of so many springs that a run has at least may be in one with the first ones: most often not,
+// and then nobody need look at those between.
+static bool may_be_spaced(const mspringi_place *of, uint32_t step) {
+    return of[SHORTEST_RUN - 1] - of[0] == (SHORTEST_RUN - 1) * step;
+}
+
+static bool may_be_pattern(const mspringi_place *of, uint32_t period, uint32_t step) {
+    const uint32_t turns = (SHORTEST_RUN - 1) / period;
+    return direction_of(of[turns * period]) == direction_of(of[0]) &&
+           slot_of(of[turns * period]) - slot_of(of[0]) == turns * step;
+}
+
 // Find the kind of run that gets furthest from first on. Returns its end.
-static mspring_id find_run(const packing *p, mspring_id first, mspringi_place_run *run) {
+static mspring_id find_run(const mspringi_packing *p, mspring_id first, mspringi_place_run *run) {
     const mspringi_place *of = p->of_spring;
     const uint32_t left = p->count - first;
     mspring_id furthest = first;
     if (left < SHORTEST_RUN)
         return first;
     const uint32_t spacing = of[first + 1] - of[first];
-    furthest = end_of_spaced(p, first, spacing);
+    if (may_be_spaced(of + first, spacing))
+        furthest = end_of_spaced(p, first, spacing);
     *run = (mspringi_place_run){
         .first = first, .kind = MSPRINGI_RUN_SPACED, .period = 1, .step = spacing, .start = {of[first]}};
     for (uint32_t period = 1; period <= MSPRINGI_DIRECTIONS; ++period) {
         const uint32_t step = slot_of(of[first + period]) - slot_of(of[first]);
+        if (!may_be_pattern(of + first, period, step))
+            continue;
         const mspring_id end = end_of_pattern(p, first, period, step);
         if (end <= furthest || end - first < 2 * period)
             continue;
@@ -72,7 +75,7 @@ static mspring_id find_run(const packing *p, mspring_id first, mspringi_place_ru
     return furthest;
 }
 
-static bool append_run(packing *p, const mspringi_place_run *run) {
+static bool append_run(mspringi_packing *p, const mspringi_place_run *run) {
     void *runs = p->runs;
     const bool grown = mspringi_grow(p->memory, &runs, &p->run_capacity, p->run_count + 1, sizeof *p->runs);
     p->runs = runs;
@@ -81,7 +84,7 @@ static bool append_run(packing *p, const mspringi_place_run *run) {
     return grown;
 }
 
-static bool append_listed(packing *p, mspring_id spring, bool begins) {
+static bool append_listed(mspringi_packing *p, mspring_id spring, bool begins) {
     const mspringi_place_run run = {
         .first = spring, .kind = MSPRINGI_RUN_LISTED, .period = 1, .start = {(uint32_t)p->listed_count}};
     void *listed = p->listed;
@@ -95,23 +98,28 @@ static bool append_listed(packing *p, mspring_id spring, bool begins) {
     return grown;
 }
 
-static bool pack(packing *p, uint32_t all) {
-    bool ok = true, in_list = false;
-    for (mspring_id s = 0; ok && s < p->count;) {
+// A run is found in one go, however long it is.
+bool mspringi_places_pack(mspringi_packing *p, mspringi_pace *pace) {
+    bool ok = true;
+    mspring_id s = pace->at;
+    while (ok && s < p->all && pace->left > 0) {
         mspringi_place_run run = {0};
-        const mspring_id end = find_run(p, s, &run);
+        const mspring_id end = s < p->count ? find_run(p, s, &run) : s;
         const bool is_run = end - s >= SHORTEST_RUN;
-        ok = is_run ? append_run(p, &run) : append_listed(p, s, !in_list);
-        in_list = !is_run;
+        ok = is_run ? append_run(p, &run) : append_listed(p, s, !p->in_list || s == p->count);
+        p->in_list = !is_run;
         s = is_run ? end : s + 1;
+        mspringi_pace_spend(
+            pace, is_run ? 16 + (run.kind == MSPRINGI_RUN_SPACED ? 1 : 4) * (uint64_t)(end - run.first) : 4);
     }
-    for (mspring_id s = p->count; ok && s < all; ++s)
-        ok = append_listed(p, s, s == p->count);
+    pace->at = s;
+    pace->is_halfway = s < p->all;
     return ok;
 }
 
 // Copy what has been packed to arrays that are as long as it.
-static bool keep(const packing *p, uint32_t all, mspringi_places *to) {
+static bool keep(const mspringi_packing *p, mspringi_places *to) {
+    const uint32_t all = p->all;
     const uint32_t pages = (all + MSPRINGI_PLACES_PAGE - 1) / MSPRINGI_PLACES_PAGE;
     to->runs = mspringi_alloc(p->memory, p->run_count + 1, sizeof *to->runs);
     to->listed = mspringi_alloc(p->memory, p->listed_count, sizeof *to->listed);
@@ -132,18 +140,37 @@ static bool keep(const packing *p, uint32_t all, mspringi_places *to) {
     return true;
 }
 
-bool mspringi_places_create(mspringi_places *places, const mspringi_place *of_spring, uint32_t count,
-                            uint32_t fixed, mspringi_place lattice_places, mspringi_memory *memory) {
+bool mspringi_places_keep(mspringi_packing *p, mspringi_places *places) {
     mspringi_places made = {0};
-    packing p = {.of_spring = of_spring, .count = fixed, .lattice_places = lattice_places, .memory = memory};
-    const bool ok = pack(&p, count) && keep(&p, count, &made);
-    mspringi_free(memory, p.runs);
-    mspringi_free(memory, p.listed);
+    const bool ok = keep(p, &made);
+    mspringi_packing_destroy(p);
     if (ok)
         *places = made;
     else
-        mspringi_places_destroy(&made, memory);
+        mspringi_places_destroy(&made, p->memory);
     return ok;
+}
+
+void mspringi_packing_destroy(mspringi_packing *p) {
+    mspringi_free(p->memory, p->runs);
+    mspringi_free(p->memory, p->listed);
+    p->runs = NULL;
+    p->listed = NULL;
+}
+
+bool mspringi_places_create(mspringi_places *places, const mspringi_place *of_spring, uint32_t count,
+                            uint32_t fixed, mspringi_place lattice_places, mspringi_memory *memory) {
+    mspringi_packing p = {
+        .of_spring = of_spring, .count = fixed, .all = count, .lattice_places = lattice_places, .memory = memory};
+    mspringi_pace pace = {0};
+    bool ok;
+    do {
+        pace.left = MSPRINGI_PACE_ALL;
+        ok = mspringi_places_pack(&p, &pace);
+    } while (ok && pace.is_halfway);
+    if (!ok)
+        mspringi_packing_destroy(&p);
+    return ok && mspringi_places_keep(&p, places);
 }
 
 void mspringi_places_destroy(mspringi_places *places, mspringi_memory *memory) {

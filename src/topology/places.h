@@ -60,6 +60,23 @@ bool mspringi_places_create(mspringi_places *places, const mspringi_place *of_sp
                             uint32_t fixed, mspringi_place lattice_places, mspringi_memory *memory);
 void mspringi_places_destroy(mspringi_places *places, mspringi_memory *memory);
 
+/// The same in parts: what is gone through, and what is made of it, in arrays that grow.
+typedef struct mspringi_packing {
+    const mspringi_place *of_spring;
+    uint32_t count, all; ///< springs that patterns are looked for in, and with those behind them
+    mspringi_place lattice_places;
+    mspringi_memory *memory;
+    mspringi_place_run *runs;
+    mspringi_place *listed;
+    size_t run_count, listed_count;
+    size_t run_capacity, listed_capacity;
+    bool in_list; ///< the last run is one of listed springs
+} mspringi_packing;
+/// A pass, and what comes after it; false: no memory. What is kept leaves nothing to destroy.
+bool mspringi_places_pack(mspringi_packing *packing, mspringi_pace *pace);
+bool mspringi_places_keep(mspringi_packing *packing, mspringi_places *places);
+void mspringi_packing_destroy(mspringi_packing *packing);
+
 /// Give another place to a spring that is not fixed.
 void mspringi_places_set(const mspringi_places *places, mspring_id spring, mspringi_place place);
 

@@ -26,8 +26,8 @@ static bool note_layout(mspringi_topology *t, const mspringi_place *places, mspr
     return true;
 }
 
-mspring_result mspringi_spare_extend(mspringi_topology *t, mspringi_place *places, uint32_t parked,
-                                     mspringi_memory *memory, mspringi_message *message) {
+mspring_result mspringi_spare_reserve(mspringi_topology *t, uint32_t parked, mspringi_memory *memory,
+                                      mspringi_message *message) {
     const uint32_t springs = mspringi_spare_springs(t), woven = t->woven_count;
     const size_t count = (size_t)woven + springs + parked;
     const uint32_t rungs = t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0;
@@ -41,20 +41,29 @@ mspring_result mspringi_spare_extend(mspringi_topology *t, mspringi_place *place
         (!lengthen(&t->leftover_a, woven, count, memory) || !lengthen(&t->leftover_b, woven, count, memory) ||
          !lengthen(&t->web.entry, (size_t)2 * (t->web.entry ? woven : 0), 2 * count, memory)))
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the places of %zu springs", count);
-    for (uint32_t i = 0; i < springs + parked; ++i)
-        t->web.entry[2 * ((size_t)woven + i)] = t->web.entry[2 * ((size_t)woven + i) + 1] =
-            rungs * MSPRINGI_WIDTH + i;
+    t->leftover_count = woven + (t->spring_count - t->reserve.first_spring);
+    return MSPRING_OK;
+}
+
+void mspringi_spare_enter(mspringi_topology *t, mspringi_pace *pace) {
+    const uint32_t rungs = t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0;
+    uint32_t first, end;
+    mspringi_pace_take(pace, mspringi_spare_springs(t) + t->parked_count, 1, &first, &end);
+    for (uint32_t i = first; i < end; ++i) {
+        uint32_t *entry = t->web.entry + 2 * ((size_t)t->woven_count + i);
+        entry[0] = entry[1] = rungs * MSPRINGI_WIDTH + i;
+    }
+}
+
+mspring_result mspringi_spare_keep(mspringi_topology *t, mspringi_place *places, mspringi_memory *memory,
+                                   mspringi_message *message) {
     for (mspring_id s = t->spring_count > t->reserve.first_spring ? t->spring_count : t->reserve.first_spring;
          s < t->reserve.spring_end; ++s)
         places[s] = mspringi_spare_place(t, s);
-    t->leftover_count = woven + (t->spring_count - t->reserve.first_spring);
-    if (mspringi_spare_particles(t) + springs > 0 && !note_layout(t, places, memory))
-        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for %u spare springs", (unsigned)springs);
-    return mspringi_places_create(&t->places, places, t->reserve.spring_end, t->reserve.first_spring,
-                                  t->lattice_places, memory)
-               ? MSPRING_OK
-               : mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the places of %u springs",
-                               (unsigned)t->spring_count);
+    if (mspringi_spare_particles(t) + mspringi_spare_springs(t) > 0 && !note_layout(t, places, memory))
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for %u spare springs",
+                             (unsigned)mspringi_spare_springs(t));
+    return MSPRING_OK;
 }
 
 void mspringi_spare_put_particle(mspringi_topology *t, mspring_id particle) {

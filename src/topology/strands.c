@@ -44,10 +44,11 @@ static bool is_attached(const mspringi_graph *graph, uint32_t particle) {
     return false;
 }
 
-// Append the strand that begins at end; take it back if it is too short.
-static void append_strand(mspringi_strands *strands, const mspringi_graph *graph, uint32_t end, uint8_t *kinds,
-                          uint8_t *visited) {
+// Append the strand that begins at end; take it back if it is too short. Returns how many particles it has.
+static uint32_t append_strand(mspringi_strands *strands, const mspringi_graph *graph, uint32_t end,
+                              uint8_t *kinds) {
     const uint32_t begin = strands->count;
+    uint8_t *visited = strands->visited;
     bool attached = false;
     uint32_t at = end, came_by = MSPRING_NONE;
     for (;;) {
@@ -63,42 +64,61 @@ static void append_strand(mspringi_strands *strands, const mspringi_graph *graph
         at = mspringi_other_end(&graph->builder->springs[spring], at);
         came_by = spring;
     }
-    if (attached && strands->count - begin < SHORTEST_ATTACHED_STRAND) {
+    const uint32_t length = strands->count - begin;
+    if (attached && length < SHORTEST_ATTACHED_STRAND) {
         strands->count = begin;
-        return;
+        return length;
     }
     for (uint32_t i = begin; i < strands->count; ++i)
         kinds[strands->particles[i]] = MSPRINGI_ROW_CHAIN;
     strands->strand_count++;
-    strands->spring_count += strands->count - begin - 1;
+    strands->spring_count += length - 1;
+    return length;
 }
 
-mspring_result mspringi_strands_find(mspringi_strands *strands, const mspringi_graph *graph, uint8_t *kinds,
-                                     mspringi_memory *memory, mspringi_message *message) {
+void mspringi_strands_count(mspringi_strands *strands, const mspringi_graph *graph, mspringi_pace *pace) {
+    uint32_t first, end;
+    mspringi_pace_take(pace, (uint32_t)graph->builder->particle_count, 1, &first, &end);
+    for (uint32_t p = first; p < end; ++p)
+        strands->candidates += may_be_in_strand(graph, p);
+}
+
+mspring_result mspringi_strands_reserve(mspringi_strands *strands, const mspringi_graph *graph, mspringi_pace *pace,
+                                        mspringi_memory *memory, mspringi_message *message) {
+    const uint32_t candidates = strands->candidates;
+    strands->visited = mspringi_pace_alloc(pace, memory, graph->builder->particle_count, sizeof *strands->visited);
+    strands->particles = mspringi_pace_alloc(pace, memory, candidates, sizeof *strands->particles);
+    strands->springs = mspringi_pace_alloc(pace, memory, candidates, sizeof *strands->springs);
+    return strands->visited && strands->particles && strands->springs
+               ? MSPRING_OK
+               : mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for strands of %u particles", candidates);
+}
+
+// A strand is found in one go, however long it is.
+void mspringi_strands_find(mspringi_strands *strands, const mspringi_graph *graph, uint8_t *kinds,
+                           mspringi_pace *pace, mspringi_memory *memory) {
     const uint32_t particles = (uint32_t)graph->builder->particle_count;
-    uint32_t candidates = 0;
-    for (uint32_t p = 0; p < particles; ++p)
-        candidates += may_be_in_strand(graph, p);
-
-    uint8_t *visited = mspringi_alloc(memory, particles, sizeof *visited);
-    strands->particles = mspringi_alloc(memory, candidates, sizeof *strands->particles);
-    strands->springs = mspringi_alloc(memory, candidates, sizeof *strands->springs);
-    mspring_result result = MSPRING_OK;
-    if (!visited || !strands->particles || !strands->springs) {
-        result = mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for strands of %u particles", candidates);
-    } else {
-        for (uint32_t p = 0; p < particles; ++p)
-            if (may_be_in_strand(graph, p) && !visited[p])
-                append_strand(strands, graph, find_end(graph, p), kinds, visited);
+    uint32_t p = pace->at;
+    for (; p < particles && pace->left > 0; ++p) {
+        mspringi_pace_spend(pace, 1);
+        if (may_be_in_strand(graph, p) && !strands->visited[p])
+            mspringi_pace_spend(pace, (uint64_t)16 * append_strand(strands, graph, find_end(graph, p), kinds));
     }
-    mspringi_free(memory, visited);
-    return result;
+    pace->at = p;
+    pace->is_halfway = p < particles;
+    if (pace->is_halfway)
+        return;
+    mspringi_free(memory, strands->visited);
+    strands->visited = NULL;
 }
 
-void mspringi_strands_drop(mspringi_strands *strands, const mspringi_homes *homes, uint8_t *kinds) {
-    uint32_t kept = 0;
-    strands->strand_count = strands->spring_count = 0;
-    for (uint32_t i = 0; i < strands->count; ++i) {
+void mspringi_strands_drop(mspringi_strands *strands, const mspringi_homes *homes, uint8_t *kinds,
+                           mspringi_pace *pace) {
+    uint32_t first, end, kept = strands->kept;
+    mspringi_pace_take(pace, strands->count, 2, &first, &end);
+    if (first == 0)
+        strands->strand_count = strands->spring_count = 0;
+    for (uint32_t i = first; i < end; ++i) {
         const uint32_t particle = strands->particles[i], spring = strands->springs[i];
         if (homes->home[particle] != MSPRING_NONE) {
             kinds[particle] = MSPRINGI_ROW_LOOSE;
@@ -109,10 +129,13 @@ void mspringi_strands_drop(mspringi_strands *strands, const mspringi_homes *home
         strands->strand_count += spring == MSPRING_NONE;
         strands->spring_count += spring != MSPRING_NONE;
     }
-    strands->count = kept;
+    strands->kept = kept;
+    if (!pace->is_halfway)
+        strands->count = kept;
 }
 
 void mspringi_strands_destroy(mspringi_strands *strands, mspringi_memory *memory) {
+    mspringi_free(memory, strands->visited);
     mspringi_free(memory, strands->particles);
     mspringi_free(memory, strands->springs);
 }

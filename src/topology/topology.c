@@ -45,7 +45,19 @@ typedef struct mspringi_assembly {
     mspringi_place *places; ///< [springs]
     uint32_t home_blocks;   ///< blocks of the web that have been given to rows
     size_t row_capacity, span_capacity;
-    uint32_t done; ///< pieces of the work
+    bool is_checked; ///< no two springs join the same particles
+    mspringi_pace pace;
+    uint32_t grid;     ///< the grid that is gone through, as a number in grid_order
+    uint32_t stage;    ///< of a pass that has several: what is done with the grid
+    uint64_t *scratch; ///< [blocks of the grid that is sorted]
+    mspringi_sorting sorting;
+    uint32_t loose;        ///< loose particles so far, counted or placed
+    uint32_t web_place;    ///< of the web's last particle so far
+    uint32_t homed_blocks; ///< blocks of the web's particles with a home
+    uint32_t runs;         ///< of empty slots so far
+    bool in_run;           ///< the slot before is in one
+    uint8_t *busy;         ///< [blocks] bits of quarters that have to be swept
+    mspringi_weaving weaving;
 } assembly;
 
 static mspring_result out_of_memory(assembly *a) {
@@ -66,46 +78,41 @@ static bool append_block(assembly *a, uint32_t row, uint32_t column_block) {
     return grown;
 }
 
-// List the blocks of one grid: those with particles; those that own a spring; and, where a block's last slot has a
-// north-east spring, the block to its right, through which the spring's force is handed on to the row above, and
-// the block above it, so that the slot to the right of that is the spring's other end.
-static bool list_blocks(assembly *a, uint32_t grid) {
+// List the blocks of one of a grid's particles: its own; those that own a spring; and, where a block's last slot
+// has a north-east spring, the block to its right, through which the spring's force is handed on to the row above,
+// and the block above it, so that the slot to the right of that is the spring's other end.
+static bool list_blocks(assembly *a, uint32_t p) {
     const mspringi_grids *grids = &a->grids;
-    for (uint32_t m = grids->first_member[grid]; m < grids->first_member[grid + 1]; ++m) {
-        const uint32_t p = grids->members[m];
-        if (!append_block(a, grids->row[p], grids->column[p] / MSPRINGI_WIDTH))
+    const uint32_t column = grids->column[p];
+    if (!append_block(a, grids->row[p], column / MSPRINGI_WIDTH))
+        return false;
+    // Springs reach one column to the right at most, so only those of a block's first and last slot leave it.
+    if ((column + 1) % MSPRINGI_WIDTH > 1)
+        return true;
+    for (uint32_t i = a->graph.first[p]; i < a->graph.first[p + 1]; ++i) {
+        mspringi_lattice_spring spring;
+        if (!mspringi_grids_place(grids, &a->builder->springs[a->graph.springs[i]], &spring) ||
+            spring.column % MSPRINGI_WIDTH != MSPRINGI_WIDTH - 1)
+            continue;
+        const uint32_t column_block = spring.column / MSPRINGI_WIDTH;
+        if (spring.direction == MSPRINGI_SOUTH_EAST && !append_block(a, spring.row, column_block))
             return false;
-        for (uint32_t i = a->graph.first[p]; i < a->graph.first[p + 1]; ++i) {
-            mspringi_lattice_spring spring;
-            if (!mspringi_grids_place(grids, &a->builder->springs[a->graph.springs[i]], &spring) ||
-                spring.column % MSPRINGI_WIDTH != MSPRINGI_WIDTH - 1)
-                continue;
-            const uint32_t column_block = spring.column / MSPRINGI_WIDTH;
-            if (spring.direction == MSPRINGI_SOUTH_EAST && !append_block(a, spring.row, column_block))
-                return false;
-            if (spring.direction == MSPRINGI_NORTH_EAST &&
-                (!append_block(a, spring.row, column_block + 1) || !append_block(a, spring.row + 1, column_block)))
-                return false;
-        }
+        if (spring.direction == MSPRINGI_NORTH_EAST &&
+            (!append_block(a, spring.row, column_block + 1) || !append_block(a, spring.row + 1, column_block)))
+            return false;
     }
     return true;
 }
 
-// Sort the blocks of the grid that has been listed and drop repeated ones.
-static bool sort_blocks(assembly *a) {
+// Drop repeated blocks of the grid that has been listed and sorted.
+static void drop_repeated(assembly *a) {
     const size_t count = a->block_count - a->grid_begin;
     block_key *keys = a->blocks + a->grid_begin;
-    block_key *scratch = mspringi_alloc(a->memory, count, sizeof *scratch);
-    if (!scratch)
-        return false;
-    mspringi_sort_keys(keys, scratch, count);
-    mspringi_free(a->memory, scratch);
     size_t kept = 0;
     for (size_t i = 0; i < count; ++i)
         if (i == 0 || keys[i] != keys[i - 1])
             keys[kept++] = keys[i];
     a->block_count = a->grid_begin + kept;
-    return true;
 }
 
 // Where the web's particle i goes among its slots: those of each home begin a block, and so do those without.
@@ -117,14 +124,6 @@ static uint32_t web_place(const assembly *a, uint32_t i, uint32_t place_before) 
     return goes_on ? place_before + 1 : (place_before / MSPRINGI_WIDTH + 1) * MSPRINGI_WIDTH;
 }
 
-// Blocks of the web's first count particles.
-static uint32_t web_blocks(const assembly *a, uint32_t count) {
-    uint32_t place = 0;
-    for (uint32_t i = 0; i < count; ++i)
-        place = web_place(a, i, place);
-    return count > 0 ? place / MSPRINGI_WIDTH + 1 : 0;
-}
-
 // Whether a particle lies in the loose row. One that is absent has the first slot, which holds none, or a spare
 // one.
 static bool is_loose(const assembly *a, uint32_t particle) {
@@ -132,34 +131,96 @@ static bool is_loose(const assembly *a, uint32_t particle) {
            !(a->builder->particles[particle].flags & MSPRINGI_PARTICLE_ABSENT);
 }
 
-static mspring_result number_blocks(assembly *a) {
-    mspringi_topology *t = a->topology;
-    a->first_block = mspringi_alloc(a->memory, a->grids.count, sizeof *a->first_block);
-    a->end_block = mspringi_alloc(a->memory, a->grids.count, sizeof *a->end_block);
-    if (!a->first_block || !a->end_block)
-        return out_of_memory(a);
-    for (uint32_t i = 0; i < a->grids.count; ++i) {
-        const uint32_t grid = a->homes.grid_order[i];
+static mspring_result begin_blocks(assembly *a) {
+    a->first_block = mspringi_pace_alloc(&a->pace, a->memory, a->grids.count, sizeof *a->first_block);
+    a->end_block = mspringi_pace_alloc(&a->pace, a->memory, a->grids.count, sizeof *a->end_block);
+    return a->first_block && a->end_block ? MSPRING_OK : out_of_memory(a);
+}
+
+/// What is done with each grid in turn: list its blocks, then sort them.
+enum { LISTS_BLOCKS, SORTS_BLOCKS };
+
+static mspring_result list_grid(assembly *a, uint32_t grid) {
+    const mspringi_grids *grids = &a->grids;
+    uint32_t m = grids->first_member[grid] + a->pace.at;
+    if (a->pace.at == 0) {
         a->first_block[grid] = (uint32_t)a->block_count;
         a->grid_begin = a->block_count;
-        if (!list_blocks(a, grid) || !sort_blocks(a))
-            return out_of_memory(a);
-        a->end_block[grid] = (uint32_t)a->block_count;
     }
+    for (; m < grids->first_member[grid + 1] && a->pace.left > 0; ++m) {
+        if (!list_blocks(a, grids->members[m]))
+            return out_of_memory(a);
+        mspringi_pace_spend(&a->pace, 4);
+    }
+    a->pace.at = m - grids->first_member[grid];
+    if (m < grids->first_member[grid + 1])
+        return MSPRING_OK;
+    a->stage = SORTS_BLOCKS;
+    a->scratch = mspringi_alloc(a->memory, a->block_count - a->grid_begin, sizeof *a->scratch);
+    if (!a->scratch)
+        return out_of_memory(a);
+    mspringi_sorting_begin(&a->sorting, a->blocks + a->grid_begin, a->scratch,
+                           (uint32_t)(a->block_count - a->grid_begin));
+    return MSPRING_OK;
+}
 
-    uint32_t loose = 0;
-    for (size_t p = 0; p < a->builder->particle_count; ++p)
-        loose += is_loose(a, (uint32_t)p);
+static void sort_grid(assembly *a, uint32_t grid) {
+    if (!mspringi_sorting_go_on(&a->sorting, &a->pace))
+        return;
+    mspringi_free(a->memory, a->scratch);
+    a->scratch = NULL;
+    drop_repeated(a);
+    a->end_block[grid] = (uint32_t)a->block_count;
+    a->grid++;
+    a->stage = LISTS_BLOCKS;
+    a->pace.at = 0;
+}
+
+static mspring_result number_blocks(assembly *a) {
+    mspring_result result = MSPRING_OK;
+    while (result == MSPRING_OK && a->grid < a->grids.count && a->pace.left > 0) {
+        const uint32_t grid = a->homes.grid_order[a->grid];
+        if (a->stage == LISTS_BLOCKS)
+            result = list_grid(a, grid);
+        else
+            sort_grid(a, grid);
+        mspringi_pace_spend(&a->pace, 64); // for the counts of the sort
+    }
+    a->pace.is_halfway = a->grid < a->grids.count;
+    return result;
+}
+
+static mspring_result count_loose(assembly *a) {
+    uint32_t first, end;
+    mspringi_pace_take(&a->pace, (uint32_t)a->builder->particle_count, 1, &first, &end);
+    for (uint32_t p = first; p < end; ++p)
+        a->loose += is_loose(a, p);
+    return MSPRING_OK;
+}
+
+static mspring_result count_web_blocks(assembly *a) {
+    uint32_t first, end;
+    mspringi_pace_take(&a->pace, a->web.count, 1, &first, &end);
+    for (uint32_t i = first; i < end; ++i) {
+        a->web_place = web_place(a, i, a->web_place);
+        if (i + 1 == a->web.homed_count)
+            a->homed_blocks = a->web_place / MSPRINGI_WIDTH + 1;
+    }
+    return MSPRING_OK;
+}
+
+static mspring_result number_the_rest(assembly *a) {
+    mspringi_topology *t = a->topology;
     t->lattice_first = 1;
     t->lattice_blocks = (uint32_t)a->block_count;
     t->chain_first = t->lattice_first + t->lattice_blocks;
     t->chain_blocks = (a->strands.count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
     // One of padding: vectors at the end of the rows before reach into it, while other threads move the web.
     t->web_first = t->chain_first + t->chain_blocks + 1;
-    t->web_blocks = web_blocks(a, a->web.count);
+    t->web_blocks = a->web.count > 0 ? a->web_place / MSPRINGI_WIDTH + 1 : 0;
     t->loose_first = t->web_first + t->web_blocks;
-    t->loose_particles = loose;
-    t->loose_blocks = (loose + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
+    t->loose_particles = a->loose;
+    t->loose_blocks = (a->loose + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
     t->spare_first = t->loose_first + t->loose_blocks;
     t->spare_blocks = (mspringi_spare_particles(t) + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
     t->block_count = t->spare_first + t->spare_blocks + 1;
@@ -168,6 +229,8 @@ static mspring_result number_blocks(assembly *a) {
         MSPRING_NONE)
         return mspringi_fail(a->message, MSPRING_ERROR_LIMIT, "%u blocks of lattice are more than can be numbered",
                              (unsigned)t->lattice_blocks);
+    t->lattice_places = t->lattice_blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
+    t->chain_places = t->lattice_places + t->chain_blocks * MSPRINGI_WIDTH;
     return MSPRING_OK;
 }
 
@@ -192,44 +255,93 @@ static void place_particle(mspringi_topology *t, uint32_t particle, uint32_t slo
     t->particle_of_slot[slot] = particle;
 }
 
-static void assign_slots(assembly *a) {
+static mspring_result reserve_maps(assembly *a) {
+    mspringi_topology *t = a->topology;
+    const size_t slots = (size_t)t->block_count * MSPRINGI_WIDTH;
+    t->slot_of_particle =
+        mspringi_pace_alloc(&a->pace, a->memory, t->reserve.particle_end, sizeof *t->slot_of_particle);
+    t->particle_of_slot = mspringi_pace_alloc(&a->pace, a->memory, slots, sizeof *t->particle_of_slot);
+    if (!t->slot_of_particle || !t->particle_of_slot)
+        return out_of_memory(a);
+    memset(t->particle_of_slot, 0xff, slots * sizeof *t->particle_of_slot);
+    a->loose = t->loose_first * MSPRINGI_WIDTH;
+    a->web_place = 0;
+    return MSPRING_OK;
+}
+
+static mspring_result assign_slots(assembly *a) {
     mspringi_topology *t = a->topology;
     const mspringi_grids *grids = &a->grids;
-    for (uint32_t slot = 0; slot < t->block_count * MSPRINGI_WIDTH; ++slot)
-        t->particle_of_slot[slot] = MSPRING_NONE;
-    uint32_t loose = t->loose_first * MSPRINGI_WIDTH;
-    for (uint32_t p = 0; p < t->particle_count; ++p) {
+    uint32_t first, end;
+    mspringi_pace_take(&a->pace, t->particle_count, 8, &first, &end);
+    for (uint32_t p = first; p < end; ++p) {
         if (a->kinds[p] == MSPRINGI_ROW_LATTICE) {
             const uint32_t block =
                 find_block(a, grids->grid_of[p], grids->row[p], grids->column[p] / MSPRINGI_WIDTH);
             place_particle(t, p, (t->lattice_first + block) * MSPRINGI_WIDTH + grids->column[p] % MSPRINGI_WIDTH);
         } else if (is_loose(a, p)) {
-            place_particle(t, p, loose++);
+            place_particle(t, p, a->loose++);
         } else if (a->kinds[p] == MSPRINGI_ROW_LOOSE && p >= t->reserve.first_particle) {
             t->slot_of_particle[p] = mspringi_spare_slot(t, p);
         }
     }
-    for (uint32_t i = 0; i < a->strands.count; ++i)
-        place_particle(t, a->strands.particles[i], t->chain_first * MSPRINGI_WIDTH + i);
-    for (uint32_t i = 0, place = 0; i < a->web.count; ++i) {
-        place = web_place(a, i, place);
-        place_particle(t, a->web.particles[i], t->web_first * MSPRINGI_WIDTH + place);
-    }
-    for (mspring_id p = t->particle_count; p < t->reserve.particle_end; ++p)
-        t->slot_of_particle[p] = mspringi_spare_slot(t, p);
+    return MSPRING_OK;
 }
 
-// Give each spring a place, in an array.
-static void spread_places(assembly *a, mspringi_place *places) {
+static mspring_result assign_chain_slots(assembly *a) {
     mspringi_topology *t = a->topology;
-    t->lattice_places = t->lattice_blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
-    t->chain_places = t->lattice_places + t->chain_blocks * MSPRINGI_WIDTH;
-    for (uint32_t s = 0; s < t->spring_count; ++s)
-        places[s] = MSPRING_NONE;
-    for (uint32_t i = 0; i < a->strands.count; ++i)
+    uint32_t first, end;
+    mspringi_pace_take(&a->pace, a->strands.count, 1, &first, &end);
+    for (uint32_t i = first; i < end; ++i)
+        place_particle(t, a->strands.particles[i], t->chain_first * MSPRINGI_WIDTH + i);
+    return MSPRING_OK;
+}
+
+static mspring_result assign_web_slots(assembly *a) {
+    mspringi_topology *t = a->topology;
+    uint32_t first, end;
+    mspringi_pace_take(&a->pace, a->web.count, 2, &first, &end);
+    for (uint32_t i = first; i < end; ++i) {
+        a->web_place = web_place(a, i, a->web_place);
+        place_particle(t, a->web.particles[i], t->web_first * MSPRINGI_WIDTH + a->web_place);
+    }
+    return MSPRING_OK;
+}
+
+static mspring_result assign_spare_slots(assembly *a) {
+    mspringi_topology *t = a->topology;
+    uint32_t first, end;
+    mspringi_pace_take(&a->pace, t->reserve.particle_end - t->particle_count, 1, &first, &end);
+    for (mspring_id p = t->particle_count + first; p < t->particle_count + end; ++p)
+        t->slot_of_particle[p] = mspringi_spare_slot(t, p);
+    return MSPRING_OK;
+}
+
+static mspring_result begin_places(assembly *a) {
+    const uint32_t springs = a->topology->reserve.spring_end;
+    a->places = mspringi_pace_alloc(&a->pace, a->memory, springs, sizeof *a->places);
+    if (!a->places)
+        return out_of_memory(a);
+    memset(a->places, 0xff, springs * sizeof *a->places);
+    return MSPRING_OK;
+}
+
+static mspring_result assign_chain_places(assembly *a) {
+    uint32_t first, end;
+    mspringi_pace_take(&a->pace, a->strands.count, 1, &first, &end);
+    for (uint32_t i = first; i < end; ++i)
         if (a->strands.springs[i] != MSPRING_NONE)
-            places[a->strands.springs[i]] = t->lattice_places + i;
-    for (uint32_t s = 0; s < t->spring_count; ++s) {
+            a->places[a->strands.springs[i]] = a->topology->lattice_places + i;
+    return MSPRING_OK;
+}
+
+// In an array: lattice springs where they are, and the others one after the other.
+static mspring_result assign_places(assembly *a) {
+    mspringi_topology *t = a->topology;
+    mspringi_place *places = a->places;
+    uint32_t first, end;
+    mspringi_pace_take(&a->pace, t->spring_count, 12, &first, &end);
+    for (uint32_t s = first; s < end; ++s) {
         mspringi_lattice_spring found;
         if (places[s] != MSPRING_NONE)
             continue;
@@ -237,29 +349,32 @@ static void spread_places(assembly *a, mspringi_place *places) {
             places[s] = t->chain_places + t->leftover_count++;
             continue;
         }
+        // The spring's first particle is in its block, in the one to the right, or in the one above or both.
         const uint32_t grid = a->grids.grid_of[a->builder->springs[s].a];
         const uint32_t block = find_block(a, grid, found.row, found.column / MSPRINGI_WIDTH);
         places[s] = (block * MSPRINGI_DIRECTIONS + (uint32_t)found.direction) * MSPRINGI_WIDTH +
                     found.column % MSPRINGI_WIDTH;
         t->lattice_springs++;
     }
+    return MSPRING_OK;
 }
 
-static mspring_result assign_places(assembly *a) {
+static mspring_result reserve_ends(assembly *a) {
     mspringi_topology *t = a->topology;
-    mspringi_place *places = a->places = mspringi_alloc(a->memory, t->reserve.spring_end, sizeof *places);
-    if (!places)
-        return out_of_memory(a);
-    spread_places(a, places);
     t->woven_count = t->leftover_capacity = t->leftover_count;
-    t->leftover_a = mspringi_alloc(a->memory, t->leftover_count, sizeof *t->leftover_a);
-    t->leftover_b = mspringi_alloc(a->memory, t->leftover_count, sizeof *t->leftover_b);
-    if (!t->leftover_a || !t->leftover_b)
-        return out_of_memory(a);
-    for (uint32_t s = 0; s < t->spring_count; ++s) {
-        if (places[s] < t->chain_places)
+    t->leftover_a = mspringi_pace_alloc(&a->pace, a->memory, t->leftover_count, sizeof *t->leftover_a);
+    t->leftover_b = mspringi_pace_alloc(&a->pace, a->memory, t->leftover_count, sizeof *t->leftover_b);
+    return t->leftover_a && t->leftover_b ? MSPRING_OK : out_of_memory(a);
+}
+
+static mspring_result note_ends(assembly *a) {
+    mspringi_topology *t = a->topology;
+    uint32_t first, end;
+    mspringi_pace_take(&a->pace, t->spring_count, 1, &first, &end);
+    for (uint32_t s = first; s < end; ++s) {
+        if (a->places[s] < t->chain_places)
             continue;
-        const uint32_t i = places[s] - t->chain_places;
+        const uint32_t i = a->places[s] - t->chain_places;
         t->leftover_a[i] = t->slot_of_particle[a->builder->springs[s].a];
         t->leftover_b[i] = t->slot_of_particle[a->builder->springs[s].b];
     }
@@ -360,28 +475,38 @@ static uint32_t widest_row(const assembly *a) {
     return widest;
 }
 
-static bool append_lattice_rows(assembly *a, uint32_t grid, uint32_t number) {
+// Append the row of a grid's block, or the block to its row.
+static bool append_lattice_block(assembly *a, uint32_t i, uint32_t grid, uint32_t number) {
     mspringi_topology *t = a->topology;
-    for (uint32_t i = a->first_block[grid]; i < a->end_block[grid]; ++i) {
-        const uint32_t row = row_of(a->blocks[i]), column_block = column_block_of(a->blocks[i]);
-        const bool starts_row = i == a->first_block[grid] || row_of(a->blocks[i - 1]) != row;
-        const uint32_t up = find_block(a, grid, row + 1, column_block);
-        const uint32_t block = t->lattice_first + i, up_block = up == MSPRING_NONE ? block : t->lattice_first + up;
-        mspringi_span span = span_of_blocks(block, 1, i, MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH);
-        span.up = offset_between(block, up_block);
-        span.carry = offset_between(block, column_block);
-        t->up_of_block[i] = up_block;
-        if (starts_row) {
-            if (!append_row(a, MSPRINGI_ROW_CHAIN))
-                return false;
-            t->grid_of_row[t->lattice_rows++] = number;
-        }
-        if (up != MSPRING_NONE)
-            t->rows[t->row_count - 1].kind = MSPRINGI_ROW_LATTICE;
-        if (!append_span(a, &span))
+    const uint32_t row = row_of(a->blocks[i]), column_block = column_block_of(a->blocks[i]);
+    const bool starts_row = i == a->first_block[grid] || row_of(a->blocks[i - 1]) != row;
+    const uint32_t up = find_block(a, grid, row + 1, column_block);
+    const uint32_t block = t->lattice_first + i, up_block = up == MSPRING_NONE ? block : t->lattice_first + up;
+    mspringi_span span = span_of_blocks(block, 1, i, MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH);
+    span.up = offset_between(block, up_block);
+    span.carry = offset_between(block, column_block);
+    t->up_of_block[i] = up_block;
+    if (starts_row) {
+        if (!append_row(a, MSPRINGI_ROW_CHAIN))
             return false;
+        t->grid_of_row[t->lattice_rows++] = number;
     }
-    return true;
+    if (up != MSPRING_NONE)
+        t->rows[t->row_count - 1].kind = MSPRINGI_ROW_LATTICE;
+    return append_span(a, &span);
+}
+
+static mspring_result append_lattice_rows(assembly *a) {
+    const mspringi_topology *t = a->topology;
+    uint32_t first, end;
+    mspringi_pace_take(&a->pace, t->lattice_blocks, 24, &first, &end);
+    for (uint32_t i = first; i < end; ++i) {
+        while (i >= a->end_block[a->homes.grid_order[a->grid]])
+            a->grid++;
+        if (!append_lattice_block(a, i, a->homes.grid_order[a->grid], a->grid))
+            return out_of_memory(a);
+    }
+    return MSPRING_OK;
 }
 
 // Append the chains. Their spans are no longer than the carry row, which has no force for them.
@@ -459,26 +584,6 @@ static uint32_t *list_strips_of_blocks(const assembly *a) {
     return strip_of_block;
 }
 
-static mspring_result make_web(assembly *a) {
-    mspringi_topology *t = a->topology;
-    uint32_t *strip_of_block = list_strips_of_blocks(a);
-    if (!strip_of_block)
-        return out_of_memory(a);
-    mspring_result result =
-        mspringi_web_create(&t->web, t->leftover_a, t->leftover_b, t->leftover_count, t->web_first * MSPRINGI_WIDTH,
-                            t->web_blocks * MSPRINGI_WIDTH, t->block_count, strip_of_block, a->memory, a->message);
-    // The attached nodes are in slot order, and each strip's begin a group.
-    for (uint32_t i = 0; result == MSPRING_OK && i < t->web.attached_count; ++i) {
-        if (t->web.attached_slot[i] == MSPRING_NONE)
-            continue;
-        mspringi_strip *strip = &t->strips[strip_of_block[t->web.attached_slot[i] / MSPRINGI_WIDTH]];
-        if (strip->attached_count++ == 0)
-            strip->first_attached = i;
-    }
-    mspringi_free(a->memory, strip_of_block);
-    return result;
-}
-
 // Set a bit of busy for the quarter of a slot.
 static void mark_busy(uint8_t *busy, uint32_t slot) {
     busy[slot / MSPRINGI_WIDTH] |= (uint8_t)(1u << slot % MSPRINGI_WIDTH / MSPRINGI_QUARTER);
@@ -491,153 +596,325 @@ static bool is_busy(const uint8_t *busy, uint32_t slot) {
 // Find the quarters at the ends of lattice spans that need not be swept: they hold no particle, own no spring, and
 // no force is handed on through them. The latter two are so if no spring's record, and no slot to the right of a
 // north-east spring, lies in them.
-static bool trim_spans(assembly *a) {
-    mspringi_topology *t = a->topology;
-    uint8_t *busy = mspringi_alloc(a->memory, t->block_count, sizeof *busy);
-    if (!busy)
-        return false;
-    for (uint32_t slot = 0; slot < t->block_count * MSPRINGI_WIDTH; ++slot)
+
+static mspring_result mark_particles(assembly *a) {
+    const mspringi_topology *t = a->topology;
+    uint32_t first, end;
+    mspringi_pace_take(&a->pace, t->chain_first * MSPRINGI_WIDTH, 1, &first, &end);
+    for (uint32_t slot = first; slot < end; ++slot)
         if (t->particle_of_slot[slot] != MSPRING_NONE)
-            mark_busy(busy, slot);
-    for (uint32_t s = 0; s < t->spring_count; ++s) {
+            mark_busy(a->busy, slot);
+    return MSPRING_OK;
+}
+
+static mspring_result mark_springs(assembly *a) {
+    const mspringi_topology *t = a->topology;
+    uint32_t first, end;
+    mspringi_pace_take(&a->pace, t->spring_count, 1, &first, &end);
+    for (uint32_t s = first; s < end; ++s) {
         const mspringi_place place = a->places[s];
         if (place >= t->lattice_places)
             continue;
         const uint32_t block = place / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH);
         const uint32_t slot = (t->lattice_first + block) * MSPRINGI_WIDTH + place % MSPRINGI_WIDTH;
-        mark_busy(busy, slot);
+        mark_busy(a->busy, slot);
         if (place / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS == MSPRINGI_NORTH_EAST)
-            mark_busy(busy, slot + 1);
+            mark_busy(a->busy, slot + 1);
     }
+    return MSPRING_OK;
+}
+
+static mspring_result trim_spans(assembly *a) {
+    const mspringi_topology *t = a->topology;
     const uint32_t lattice_end = t->chain_first * MSPRINGI_WIDTH;
     for (uint32_t s = 0; s < t->span_count && t->spans[s].first_slot < lattice_end; ++s) {
         mspringi_span *span = &t->spans[s];
         // Within its first and its last block; one quarter is left of a block that is all idle (and is there for
         // the slot to its right).
         while (span->first_slot % MSPRINGI_WIDTH < MSPRINGI_WIDTH - MSPRINGI_QUARTER &&
-               !is_busy(busy, span->first_slot))
+               !is_busy(a->busy, span->first_slot))
             span->first_slot += MSPRINGI_QUARTER;
         while (span->end_slot - MSPRINGI_QUARTER > span->first_slot &&
-               (span->end_slot - 1) % MSPRINGI_WIDTH >= MSPRINGI_QUARTER && !is_busy(busy, span->end_slot - 1))
+               (span->end_slot - 1) % MSPRINGI_WIDTH >= MSPRINGI_QUARTER && !is_busy(a->busy, span->end_slot - 1))
             span->end_slot -= MSPRINGI_QUARTER;
     }
-    mspringi_free(a->memory, busy);
-    return true;
+    mspringi_free(a->memory, a->busy);
+    a->busy = NULL;
+    return MSPRING_OK;
 }
 
-static mspring_result make_rows(assembly *a) {
+static mspring_result begin_rows(assembly *a) {
     mspringi_topology *t = a->topology;
     t->carry_blocks = widest_row(a);
-    t->up_of_block = mspringi_alloc(a->memory, t->lattice_blocks, sizeof *t->up_of_block);
-    t->grid_of_row =
-        mspringi_alloc(a->memory, t->lattice_blocks, sizeof *t->grid_of_row); // no more rows than blocks
-    if (!t->up_of_block || !t->grid_of_row)
-        return out_of_memory(a);
-    for (uint32_t i = 0; i < a->grids.count; ++i)
-        if (!append_lattice_rows(a, a->homes.grid_order[i], i))
-            return out_of_memory(a);
-    const uint32_t homed_blocks = web_blocks(a, a->web.homed_count);
-    const uint32_t web_blocks = t->web_blocks - homed_blocks;
+    t->up_of_block = mspringi_pace_alloc(&a->pace, a->memory, t->lattice_blocks, sizeof *t->up_of_block);
+    t->grid_of_row = mspringi_pace_alloc(&a->pace, a->memory, t->lattice_blocks,
+                                         sizeof *t->grid_of_row); // no more rows than blocks
+    a->busy = mspringi_pace_alloc(&a->pace, a->memory, t->block_count, sizeof *a->busy);
+    a->grid = 0;
+    return t->up_of_block && t->grid_of_row && a->busy ? MSPRING_OK : out_of_memory(a);
+}
+
+static mspring_result append_other_rows(assembly *a) {
+    const mspringi_topology *t = a->topology;
+    const uint32_t web_blocks = t->web_blocks - a->homed_blocks;
     const bool has_loose_row = t->loose_blocks + t->spare_blocks > 0;
     if (!append_chain_row(a) ||
         (web_blocks > 0 &&
-         !append_simple_row(a, MSPRINGI_ROW_WEB, t->web_first + homed_blocks, web_blocks, homed_blocks)) ||
-        (has_loose_row && !append_simple_row(a, MSPRINGI_ROW_LOOSE, t->loose_first, t->loose_blocks, 0)) ||
-        !trim_spans(a))
+         !append_simple_row(a, MSPRINGI_ROW_WEB, t->web_first + a->homed_blocks, web_blocks, a->homed_blocks)) ||
+        (has_loose_row && !append_simple_row(a, MSPRINGI_ROW_LOOSE, t->loose_first, t->loose_blocks, 0)))
         return out_of_memory(a);
+    return MSPRING_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------------- the web */
+
+static mspring_result begin_web(assembly *a) {
+    mspringi_topology *t = a->topology;
+    a->weaving = (mspringi_weaving){.web = &t->web,
+                                    .a = t->leftover_a,
+                                    .b = t->leftover_b,
+                                    .count = t->leftover_count,
+                                    .first_slot = t->web_first * MSPRINGI_WIDTH,
+                                    .own_count = t->web_blocks * MSPRINGI_WIDTH,
+                                    .block_count = t->block_count,
+                                    .strip_of_block = list_strips_of_blocks(a)};
+    return a->weaving.strip_of_block ? mspringi_web_begin(&a->weaving, &a->pace, a->memory, a->message)
+                                     : out_of_memory(a);
+}
+
+// The attached nodes are in slot order, and each strip's begin a group.
+static mspring_result attach_to_strips(assembly *a) {
+    mspringi_topology *t = a->topology;
+    uint32_t first, end;
+    mspringi_pace_take(&a->pace, t->web.attached_count, 4, &first, &end);
+    for (uint32_t i = first; i < end; ++i) {
+        if (t->web.attached_slot[i] == MSPRING_NONE)
+            continue;
+        mspringi_strip *strip = &t->strips[a->weaving.strip_of_block[t->web.attached_slot[i] / MSPRINGI_WIDTH]];
+        if (strip->attached_count++ == 0)
+            strip->first_attached = i;
+    }
     return MSPRING_OK;
 }
 
 /* ---------------------------------------------------------------------------------------------------- the whole */
 
-// List the slots without particle, the padding in front and behind among them.
-static mspring_result list_empty_slots(assembly *a) {
-    mspringi_topology *t = a->topology;
-    const uint32_t end = t->block_count * MSPRINGI_WIDTH;
-    for (int pass = 0; pass < 2; ++pass) { // first count, then fill
-        uint32_t runs = 0;
-        bool in_run = false;
-        for (uint32_t slot = 0; slot < end; ++slot) {
-            const bool empty = t->particle_of_slot[slot] == MSPRING_NONE && !mspringi_slot_is_spare(t, slot);
-            if (empty && !in_run && pass == 1)
-                t->empty_runs[runs] = (mspringi_empty_run){.first_slot = slot};
-            runs += empty && !in_run;
-            if (empty && pass == 1)
-                t->empty_runs[runs - 1].slot_count++;
-            in_run = empty;
-        }
-        if (pass == 0)
-            t->empty_runs = mspringi_alloc(a->memory, runs, sizeof *t->empty_runs);
-        if (!t->empty_runs)
-            return out_of_memory(a);
-        t->empty_run_count = runs;
+// List the slots without particle, the padding in front and behind among them: first count them, then fill.
+static mspring_result go_through_empty_slots(assembly *a, mspringi_empty_run *runs) {
+    const mspringi_topology *t = a->topology;
+    uint32_t first, end;
+    mspringi_pace_take(&a->pace, t->block_count * MSPRINGI_WIDTH, 1, &first, &end);
+    for (uint32_t slot = first; slot < end; ++slot) {
+        const bool empty = t->particle_of_slot[slot] == MSPRING_NONE && !mspringi_slot_is_spare(t, slot);
+        if (empty && !a->in_run && runs)
+            runs[a->runs] = (mspringi_empty_run){.first_slot = slot};
+        a->runs += empty && !a->in_run;
+        if (empty && runs)
+            runs[a->runs - 1].slot_count++;
+        a->in_run = empty;
     }
     return MSPRING_OK;
 }
 
-static mspring_result allocate_maps(assembly *a) {
-    mspringi_topology *t = a->topology;
-    const size_t slots = (size_t)t->block_count * MSPRINGI_WIDTH;
-    t->slot_of_particle = mspringi_alloc(a->memory, t->reserve.particle_end, sizeof *t->slot_of_particle);
-    t->particle_of_slot = mspringi_alloc(a->memory, slots, sizeof *t->particle_of_slot);
-    return t->slot_of_particle && t->particle_of_slot ? MSPRING_OK : out_of_memory(a);
+static mspring_result count_empty_slots(assembly *a) {
+    return go_through_empty_slots(a, NULL);
 }
 
-/* The pieces: each goes over particles or springs a few times at most. */
+static mspring_result reserve_empty_slots(assembly *a) {
+    mspringi_topology *t = a->topology;
+    t->empty_runs = mspringi_pace_alloc(&a->pace, a->memory, a->runs, sizeof *t->empty_runs);
+    t->empty_run_count = a->runs;
+    a->runs = 0;
+    a->in_run = false;
+    return t->empty_runs ? MSPRING_OK : out_of_memory(a);
+}
 
-static mspring_result look_for_graph(assembly *a) {
+static mspring_result list_empty_slots(assembly *a) {
+    return go_through_empty_slots(a, a->topology->empty_runs);
+}
+
+/* The passes of others. */
+
+static mspring_result begin_graph(assembly *a) {
     const size_t particles = a->builder->particle_count;
-    a->kinds = mspringi_alloc(a->memory, particles, sizeof *a->kinds);
+    a->kinds = mspringi_pace_alloc(&a->pace, a->memory, particles, sizeof *a->kinds);
     if (!a->kinds)
         return out_of_memory(a);
     memset(a->kinds, MSPRINGI_ROW_LOOSE, particles);
-    return mspringi_graph_create(&a->graph, a->builder, a->memory, a->message);
+    return mspringi_graph_reserve(&a->graph, a->builder, a->is_checked, &a->pace, a->memory, a->message);
 }
 
-static mspring_result look_for_strands(assembly *a) {
-    return mspringi_strands_find(&a->strands, &a->graph, a->kinds, a->memory, a->message);
+static mspring_result count_graph(assembly *a) {
+    mspringi_graph_count(&a->graph, &a->pace);
+    return MSPRING_OK;
 }
 
-static mspring_result look_for_grids(assembly *a) {
-    mspring_result result = mspringi_grids_find(&a->grids, &a->graph, a->kinds, a->memory, a->message);
-    return result == MSPRING_OK ? mspringi_grids_shelve(&a->grids, a->memory, a->message) : result;
+static mspring_result sum_graph(assembly *a) {
+    mspringi_graph_sum(&a->graph, &a->pace);
+    return MSPRING_OK;
 }
 
-static mspring_result look_for_homes(assembly *a) {
-    mspring_result result =
-        mspringi_homes_find(&a->homes, &a->graph, &a->grids, &a->strands, a->workers, a->memory, a->message);
-    if (result == MSPRING_OK)
-        mspringi_strands_drop(&a->strands, &a->homes, a->kinds);
-    return result;
+static mspring_result fill_graph(assembly *a) {
+    mspringi_graph_fill(&a->graph, &a->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result check_graph(assembly *a) {
+    return mspringi_graph_check(&a->graph, &a->pace, a->memory, a->message);
+}
+
+static mspring_result count_strands(assembly *a) {
+    mspringi_strands_count(&a->strands, &a->graph, &a->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result begin_strands(assembly *a) {
+    return mspringi_strands_reserve(&a->strands, &a->graph, &a->pace, a->memory, a->message);
+}
+
+static mspring_result find_strands(assembly *a) {
+    mspringi_strands_find(&a->strands, &a->graph, a->kinds, &a->pace, a->memory);
+    return MSPRING_OK;
+}
+
+static mspring_result begin_grids(assembly *a) {
+    return mspringi_grids_reserve(&a->grids, &a->graph, a->kinds, &a->pace, a->memory, a->message);
+}
+
+static mspring_result find_grids(assembly *a) {
+    mspringi_grids_find(&a->grids, &a->pace, a->memory);
+    return MSPRING_OK;
+}
+
+static mspring_result measure_grids(assembly *a) {
+    return mspringi_grids_measure(&a->grids, &a->pace, a->memory, a->message);
+}
+
+static mspring_result shelve_grids(assembly *a) {
+    mspringi_grids_shelve(&a->grids, &a->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result number_grids(assembly *a) {
+    mspringi_grids_number(&a->grids, &a->pace, a->memory);
+    return MSPRING_OK;
+}
+
+static mspring_result begin_homes(assembly *a) {
+    return mspringi_homes_reserve(&a->homes, &a->graph, &a->grids, &a->strands, &a->pace, a->memory, a->message);
+}
+
+static mspring_result attach_homes(assembly *a) {
+    mspringi_homes_attach(&a->homes, &a->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result prepare_homes(assembly *a) {
+    return mspringi_homes_prepare(&a->homes, a->workers, &a->pace, a->memory, a->message);
+}
+
+static mspring_result find_homes(assembly *a) {
+    mspringi_homes_find(&a->homes, &a->pace, a->memory);
+    return MSPRING_OK;
+}
+
+static mspring_result drop_strands(assembly *a) {
+    mspringi_strands_drop(&a->strands, &a->homes, a->kinds, &a->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result count_web(assembly *a) {
+    mspringi_web_list_count(&a->web, &a->graph, &a->homes, a->kinds, &a->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result begin_web_list(assembly *a) {
+    return mspringi_web_list_reserve(&a->web, &a->pace, a->memory, a->message);
 }
 
 static mspring_result list_web(assembly *a) {
-    return mspringi_web_list_find(&a->web, &a->graph, &a->homes, a->kinds, a->memory, a->message);
+    mspringi_web_list_fill(&a->web, &a->graph, &a->homes, a->kinds, &a->pace);
+    return MSPRING_OK;
 }
 
-static mspring_result give_slots(assembly *a) {
-    mspring_result result = number_blocks(a);
-    if (result == MSPRING_OK)
-        result = allocate_maps(a);
-    if (result != MSPRING_OK)
-        return result;
-    assign_slots(a);
-    return list_empty_slots(a);
+static mspring_result set_web_keys(assembly *a) {
+    mspringi_web_list_set_keys(&a->web, &a->graph, &a->homes, &a->pace);
+    return MSPRING_OK;
 }
 
-static mspring_result lay_rows(assembly *a) {
-    mspring_result result = make_rows(a);
-    return result == MSPRING_OK ? make_strips(a) : result;
+static mspring_result sort_web(assembly *a) {
+    mspringi_web_list_sort(&a->web, &a->pace);
+    return MSPRING_OK;
 }
 
-static mspring_result (*const pieces[MSPRINGI_TOPOLOGY_PIECES])(assembly *a) = {
-    look_for_graph, look_for_strands, look_for_grids, look_for_homes, list_web,
-    give_slots,     assign_places,    lay_rows,       make_web,
+static mspring_result order_web(assembly *a) {
+    mspringi_web_list_take_order(&a->web, &a->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result order_web_windows(assembly *a) {
+    mspringi_web_list_order_windows(&a->web, &a->graph, &a->pace, a->memory);
+    return MSPRING_OK;
+}
+
+static mspring_result count_degrees(assembly *a) {
+    mspringi_web_count_degrees(&a->weaving, &a->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result list_attached(assembly *a) {
+    mspringi_web_list_attached(&a->weaving, &a->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result reserve_web(assembly *a) {
+    return mspringi_web_reserve(&a->weaving, &a->pace, a->memory, a->message);
+}
+
+static mspring_result number_nodes(assembly *a) {
+    mspringi_web_number_nodes(&a->weaving, &a->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result count_rungs(assembly *a) {
+    return mspringi_web_count_rungs(&a->weaving, &a->pace, a->message);
+}
+
+static mspring_result reserve_rungs(assembly *a) {
+    return mspringi_web_reserve_rungs(&a->weaving, &a->pace, a->memory, a->message);
+}
+
+static mspring_result lay_rungs(assembly *a) {
+    mspringi_web_lay_rungs(&a->weaving, &a->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result fill_web(assembly *a) {
+    mspringi_web_fill(&a->weaving, &a->pace, a->memory);
+    return MSPRING_OK;
+}
+
+static mspring_result (*const layout_passes[])(assembly *a) = {
+    begin_graph,       count_graph,         sum_graph,          fill_graph,       check_graph,
+    count_strands,     begin_strands,       find_strands,       begin_grids,      find_grids,
+    measure_grids,     shelve_grids,        number_grids,       begin_homes,      attach_homes,
+    prepare_homes,     find_homes,          drop_strands,       count_web,        begin_web_list,
+    list_web,          set_web_keys,        sort_web,           order_web,        order_web_windows,
+    begin_blocks,      number_blocks,       count_loose,        count_web_blocks, number_the_rest,
+    reserve_maps,      assign_slots,        assign_chain_slots, assign_web_slots, assign_spare_slots,
+    count_empty_slots, reserve_empty_slots, list_empty_slots,   begin_places,     assign_chain_places,
+    assign_places,     reserve_ends,        note_ends,          begin_rows,       append_lattice_rows,
+    append_other_rows, mark_particles,      mark_springs,       trim_spans,       make_strips,
+    begin_web,         count_degrees,       list_attached,      reserve_web,      list_attached,
+    attach_to_strips,  number_nodes,        count_rungs,        reserve_rungs,    lay_rungs,
+    fill_web,
 };
 
+#define LAYOUT_PASSES (sizeof layout_passes / sizeof layout_passes[0])
+
 mspring_result mspringi_topology_begin(const mspring_builder *builder, const mspringi_reserve *reserve,
-                                       uint32_t workers, mspringi_memory *memory, mspringi_message *message,
-                                       mspringi_assembly **begun) {
+                                       bool is_checked, uint32_t workers, mspringi_memory *memory,
+                                       mspringi_message *message, mspringi_assembly **begun) {
     assembly *a = mspringi_alloc(memory, 1, sizeof *a);
     if (!a)
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to lay out %zu particles and %zu springs",
@@ -649,14 +926,28 @@ mspring_result mspringi_topology_begin(const mspring_builder *builder, const msp
     a->memory = memory;
     a->message = message;
     a->builder = builder;
+    a->is_checked = is_checked;
     a->workers = workers;
     *begun = a;
     return MSPRING_OK;
 }
 
-mspring_result mspringi_topology_go_on(mspringi_assembly *begun) {
-    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference,-Wanalyzer-null-dereference): it was begun
-    return begun->done < MSPRINGI_TOPOLOGY_PIECES ? pieces[begun->done++](begun) : MSPRING_OK;
+// No pass may spend effort on what depends on the number of workers, as strips do: when the work is done must not.
+mspring_result mspringi_topology_go_on(mspringi_assembly *begun, uint32_t *effort, bool *is_done) {
+    mspringi_pace *pace = &begun->pace;
+    mspring_result result = MSPRING_OK;
+    pace->left = *effort;
+    while (result == MSPRING_OK && pace->pass < LAYOUT_PASSES && pace->left > 0) {
+        pace->is_halfway = false;
+        result = layout_passes[pace->pass](begun);
+        if (pace->is_halfway)
+            continue;
+        pace->pass++;
+        pace->at = 0;
+    }
+    *effort = pace->left;
+    *is_done = pace->pass == LAYOUT_PASSES;
+    return result;
 }
 
 void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory) {
@@ -668,6 +959,9 @@ void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory
     mspringi_free(memory, begun->blocks);
     mspringi_free(memory, begun->first_block);
     mspringi_free(memory, begun->end_block);
+    mspringi_free(memory, begun->scratch);
+    mspringi_free(memory, begun->busy);
+    mspringi_weaving_destroy(&begun->weaving, memory);
     mspringi_graph_destroy(&begun->graph, memory);
     mspringi_strands_destroy(&begun->strands, memory);
     mspringi_grids_destroy(&begun->grids, memory);
@@ -693,20 +987,40 @@ void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory,
     mspringi_topology_abandon(begun, memory);
 }
 
+static mspring_result keep_places(mspringi_topology *t, mspringi_place *places, mspringi_memory *memory,
+                                  mspringi_message *message) {
+    mspring_result result = mspringi_spare_reserve(t, 0, memory, message);
+    if (result != MSPRING_OK)
+        return result;
+    mspringi_pace pace = {0};
+    do {
+        pace.left = MSPRINGI_PACE_ALL;
+        mspringi_spare_enter(t, &pace);
+    } while (pace.is_halfway);
+    result = mspringi_spare_keep(t, places, memory, message);
+    if (result == MSPRING_OK && !mspringi_places_create(&t->places, places, t->reserve.spring_end,
+                                                        t->reserve.first_spring, t->lattice_places, memory))
+        result = mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the places of %u springs",
+                               (unsigned)t->spring_count);
+    return result;
+}
+
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
                                         const mspringi_reserve *reserve, uint32_t workers, mspringi_memory *memory,
                                         mspringi_message *message) {
     mspringi_assembly *begun = NULL;
-    mspring_result result = mspringi_topology_begin(builder, reserve, workers, memory, message, &begun);
-    for (int piece = 0; result == MSPRING_OK && piece < MSPRINGI_TOPOLOGY_PIECES; ++piece)
-        result = mspringi_topology_go_on(begun);
+    mspring_result result = mspringi_topology_begin(builder, reserve, false, workers, memory, message, &begun);
+    for (bool is_done = false; result == MSPRING_OK && !is_done;) {
+        uint32_t effort = MSPRINGI_PACE_ALL;
+        result = mspringi_topology_go_on(begun, &effort, &is_done);
+    }
     if (result != MSPRING_OK) {
         mspringi_topology_abandon(begun, memory);
         return result;
     }
     mspringi_place *places;
     mspringi_topology_finish(begun, memory, topology, &places);
-    result = mspringi_spare_extend(topology, places, 0, memory, message);
+    result = keep_places(topology, places, memory, message);
     mspringi_free(memory, places);
     if (result != MSPRING_OK)
         mspringi_topology_destroy(topology, memory);

@@ -140,15 +140,16 @@ static inline uint32_t mspringi_swept_count(const mspringi_topology *topology) {
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
                                         const mspringi_reserve *reserve, uint32_t workers, mspringi_memory *memory,
                                         mspringi_message *message);
-/// The same in pieces: begin, go on so many times unless one fails, then finish; or abandon at any time, which
-/// allows NULL. The builder and what memory and message point to must stay. What is finished has its places not in
-/// itself yet but in an array of their own, for whoever asked to pack and free.
-#define MSPRINGI_TOPOLOGY_PIECES 9
+/// The same in parts: begin, go on until it is done unless that fails, then finish; or abandon at any time, which
+/// allows NULL. The builder and what memory and message point to must stay; is_checked: no two of its springs join
+/// the same particles. What is finished has its places not in itself yet but in an array of their own, for whoever
+/// asked to pack and free.
 typedef struct mspringi_assembly mspringi_assembly;
 mspring_result mspringi_topology_begin(const mspring_builder *builder, const mspringi_reserve *reserve,
-                                       uint32_t workers, mspringi_memory *memory, mspringi_message *message,
-                                       mspringi_assembly **begun);
-mspring_result mspringi_topology_go_on(mspringi_assembly *begun);
+                                       bool is_checked, uint32_t workers, mspringi_memory *memory,
+                                       mspringi_message *message, mspringi_assembly **begun);
+/// @param effort  how much to do, and what is left of that; see pace.h
+mspring_result mspringi_topology_go_on(mspringi_assembly *begun, uint32_t *effort, bool *is_done);
 void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory, mspringi_topology *topology,
                               mspringi_place **places);
 void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory);

@@ -11,6 +11,7 @@
 #ifndef MSPRINGI_WEB_H
 #define MSPRINGI_WEB_H
 
+#include "base/pace.h"
 #include "builder/builder.h"
 
 /// Slots in a block and nodes in a group: the lanes of the widest vector register, so that every instruction set
@@ -27,12 +28,33 @@ typedef struct mspringi_web {
     uint32_t *entry;         ///< [2 * springs] where in neighbour the two ends of each leftover spring are
 } mspringi_web;
 
-/// Make the web of count springs between slots a and b. The slots first_slot ... first_slot + own_count - 1 are
-/// those of the web rows; in what strip another slot is, its block tells.
-mspring_result mspringi_web_create(mspringi_web *web, const uint32_t *a, const uint32_t *b, uint32_t count,
-                                   uint32_t first_slot, uint32_t own_count, uint32_t block_count,
-                                   const uint32_t *strip_of_block, mspringi_memory *memory,
-                                   mspringi_message *message);
+/// What a web is made of, and what is needed meanwhile.
+typedef struct mspringi_weaving {
+    mspringi_web *web;
+    const uint32_t *a, *b; ///< [count] slots that the springs join
+    uint32_t count;
+    uint32_t first_slot, own_count;         ///< the slots of the web rows
+    uint32_t block_count;                   ///< of all slots
+    uint32_t *strip_of_block;               ///< [block_count] in what strip another slot is; freed with the rest
+    uint32_t *degree, *node_of_slot, *used; ///< by slot, by slot and by node
+    uint32_t attached, strip;               ///< attached nodes so far, and the strip of the last
+} mspringi_weaving;
+
+/// Make the web: passes in their order, the one that lists the attached nodes once before and once after they have
+/// been given room.
+mspring_result mspringi_web_begin(mspringi_weaving *weaving, mspringi_pace *pace, mspringi_memory *memory,
+                                  mspringi_message *message);
+void mspringi_web_count_degrees(mspringi_weaving *weaving, mspringi_pace *pace);
+void mspringi_web_list_attached(mspringi_weaving *weaving, mspringi_pace *pace);
+mspring_result mspringi_web_reserve(mspringi_weaving *weaving, mspringi_pace *pace, mspringi_memory *memory,
+                                    mspringi_message *message);
+void mspringi_web_number_nodes(mspringi_weaving *weaving, mspringi_pace *pace);
+mspring_result mspringi_web_count_rungs(mspringi_weaving *weaving, mspringi_pace *pace, mspringi_message *message);
+mspring_result mspringi_web_reserve_rungs(mspringi_weaving *weaving, mspringi_pace *pace, mspringi_memory *memory,
+                                          mspringi_message *message);
+void mspringi_web_lay_rungs(mspringi_weaving *weaving, mspringi_pace *pace);
+void mspringi_web_fill(mspringi_weaving *weaving, mspringi_pace *pace, mspringi_memory *memory);
+void mspringi_weaving_destroy(mspringi_weaving *weaving, mspringi_memory *memory);
 void mspringi_web_destroy(mspringi_web *web, mspringi_memory *memory);
 
 #endif

@@ -26,37 +26,6 @@ static uint32_t quantise(double value, double low, double high) {
     return high > low ? (uint32_t)((value - low) / (high - low) * 65535.0) : 0;
 }
 
-// Sort by place on the Z-order curve (Morton 1966).
-static void order_by_place(uint32_t *particles, uint32_t count, const mspring_builder *builder, uint64_t *keys,
-                           uint64_t *scratch) {
-    const mspringi_particle *all = builder->particles;
-    double min_x = INFINITY, max_x = -INFINITY, min_y = INFINITY, max_y = -INFINITY;
-    for (uint32_t i = 0; i < count; ++i) {
-        const double x = all[particles[i]].x, y = all[particles[i]].y;
-        min_x = x < min_x ? x : min_x;
-        max_x = x > max_x ? x : max_x;
-        min_y = y < min_y ? y : min_y;
-        max_y = y > max_y ? y : max_y;
-    }
-    for (uint32_t i = 0; i < count; ++i) {
-        const uint32_t x = quantise(all[particles[i]].x, min_x, max_x);
-        const uint32_t y = quantise(all[particles[i]].y, min_y, max_y);
-        keys[i] = (uint64_t)(spread_bits(x) | spread_bits(y) << 1) << 32 | particles[i];
-    }
-    mspringi_sort_keys(keys, scratch, count);
-    for (uint32_t i = 0; i < count; ++i)
-        particles[i] = (uint32_t)keys[i];
-}
-
-static void order_by_home(uint32_t *particles, uint32_t count, const mspringi_homes *homes, uint64_t *keys,
-                          uint64_t *scratch) {
-    for (uint32_t i = 0; i < count; ++i)
-        keys[i] = (uint64_t)homes->home[particles[i]] << 32 | particles[i];
-    mspringi_sort_keys(keys, scratch, count);
-    for (uint32_t i = 0; i < count; ++i)
-        particles[i] = (uint32_t)keys[i];
-}
-
 static void order_window_by_degree(uint32_t *particles, uint32_t count, const mspringi_graph *graph) {
     uint64_t keys[WINDOW], scratch[WINDOW];
     uint32_t before[WINDOW];
@@ -69,47 +38,111 @@ static void order_window_by_degree(uint32_t *particles, uint32_t count, const ms
         particles[i] = before[(uint32_t)keys[i]];
 }
 
-// List the particles with or without home, behind those that are in the list.
-static void append(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes,
-                   uint8_t *kinds, bool with_home) {
-    for (uint32_t p = 0; p < graph->builder->particle_count; ++p) {
-        if (kinds[p] != MSPRINGI_ROW_LOOSE || degree_of(graph, p) == 0 ||
-            (homes->home[p] != MSPRING_NONE) != with_home)
+/* ------------------------------------------------------------------------------------------------------ passes */
+
+static bool is_listed(const mspringi_graph *graph, const uint8_t *kinds, uint32_t p) {
+    return kinds[p] == MSPRINGI_ROW_LOOSE && degree_of(graph, p) > 0;
+}
+
+void mspringi_web_list_count(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes,
+                             const uint8_t *kinds, mspringi_pace *pace) {
+    uint32_t first, end;
+    mspringi_pace_take(pace, (uint32_t)graph->builder->particle_count, 1, &first, &end);
+    for (uint32_t p = first; p < end; ++p) {
+        if (!is_listed(graph, kinds, p))
             continue;
-        kinds[p] = MSPRINGI_ROW_WEB;
-        list->particles[list->count++] = p;
+        list->count++;
+        list->homed_count += homes->home[p] != MSPRING_NONE;
     }
 }
 
-mspring_result mspringi_web_list_find(mspringi_web_list *list, const mspringi_graph *graph,
-                                      const mspringi_homes *homes, uint8_t *kinds, mspringi_memory *memory,
-                                      mspringi_message *message) {
-    const uint32_t particles = (uint32_t)graph->builder->particle_count;
-    uint32_t count = 0;
-    for (uint32_t p = 0; p < particles; ++p)
-        count += kinds[p] == MSPRINGI_ROW_LOOSE && degree_of(graph, p) > 0;
-    list->particles = mspringi_alloc(memory, count, sizeof *list->particles);
-    uint64_t *keys = mspringi_alloc(memory, count, sizeof *keys);
-    uint64_t *scratch = mspringi_alloc(memory, count, sizeof *scratch);
-    mspring_result result = MSPRING_OK;
-    if (!list->particles || !keys || !scratch) {
-        result = mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for a web of %u particles", count);
-    } else {
-        append(list, graph, homes, kinds, true);
-        list->homed_count = list->count;
-        append(list, graph, homes, kinds, false);
-        order_by_home(list->particles, list->homed_count, homes, keys, scratch);
-        uint32_t *free_ones = list->particles + list->homed_count;
-        const uint32_t free_count = count - list->homed_count;
-        order_by_place(free_ones, free_count, graph->builder, keys, scratch);
-        for (uint32_t i = 0; i < free_count; i += WINDOW)
-            order_window_by_degree(free_ones + i, free_count - i < WINDOW ? free_count - i : WINDOW, graph);
+mspring_result mspringi_web_list_reserve(mspringi_web_list *list, mspringi_pace *pace, mspringi_memory *memory,
+                                         mspringi_message *message) {
+    list->particles = mspringi_pace_alloc(pace, memory, list->count, sizeof *list->particles);
+    list->keys = mspringi_pace_alloc(pace, memory, list->count, sizeof *list->keys);
+    list->scratch = mspringi_pace_alloc(pace, memory, list->count, sizeof *list->scratch);
+    list->min_x = list->min_y = INFINITY;
+    list->max_x = list->max_y = -INFINITY;
+    return list->particles && list->keys && list->scratch
+               ? MSPRING_OK
+               : mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for a web of %u particles", list->count);
+}
+
+// Those with a home, and behind them those without, with a box around the latter.
+void mspringi_web_list_fill(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes,
+                            uint8_t *kinds, mspringi_pace *pace) {
+    const mspringi_particle *all = graph->builder->particles;
+    uint32_t first, end;
+    mspringi_pace_take(pace, (uint32_t)graph->builder->particle_count, 2, &first, &end);
+    for (uint32_t p = first; p < end; ++p) {
+        if (!is_listed(graph, kinds, p))
+            continue;
+        kinds[p] = MSPRINGI_ROW_WEB;
+        if (homes->home[p] != MSPRING_NONE) {
+            list->particles[list->listed_homed++] = p;
+            continue;
+        }
+        list->particles[list->homed_count + list->listed_free++] = p;
+        list->min_x = all[p].x < list->min_x ? all[p].x : list->min_x;
+        list->max_x = all[p].x > list->max_x ? all[p].x : list->max_x;
+        list->min_y = all[p].y < list->min_y ? all[p].y : list->min_y;
+        list->max_y = all[p].y > list->max_y ? all[p].y : list->max_y;
     }
-    mspringi_free(memory, keys);
-    mspringi_free(memory, scratch);
-    return result;
+}
+
+// Those with a home are sorted by that, the others by place on the Z-order curve (Morton 1966).
+void mspringi_web_list_set_keys(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes,
+                                mspringi_pace *pace) {
+    uint32_t first, end;
+    mspringi_pace_take(pace, list->count, 4, &first, &end);
+    for (uint32_t i = first; i < end; ++i) {
+        const uint32_t p = list->particles[i];
+        const mspringi_particle *particle = &graph->builder->particles[p];
+        const uint32_t x = i < list->homed_count ? 0 : quantise(particle->x, list->min_x, list->max_x);
+        const uint32_t y = i < list->homed_count ? 0 : quantise(particle->y, list->min_y, list->max_y);
+        const uint32_t key = i < list->homed_count ? homes->home[p] : spread_bits(x) | spread_bits(y) << 1;
+        list->keys[i] = (uint64_t)key << 32 | p;
+    }
+    if (!pace->is_halfway)
+        mspringi_sorting_begin(&list->sorting, list->keys, list->scratch, list->homed_count);
+}
+
+// First those with a home, then those without.
+void mspringi_web_list_sort(mspringi_web_list *list, mspringi_pace *pace) {
+    bool is_sorted = mspringi_sorting_go_on(&list->sorting, pace);
+    if (is_sorted && !list->is_half_sorted) {
+        list->is_half_sorted = true;
+        mspringi_sorting_begin(&list->sorting, list->keys + list->homed_count, list->scratch,
+                               list->count - list->homed_count);
+        is_sorted = mspringi_sorting_go_on(&list->sorting, pace);
+    }
+    pace->is_halfway = !is_sorted;
+}
+
+void mspringi_web_list_take_order(mspringi_web_list *list, mspringi_pace *pace) {
+    uint32_t first, end;
+    mspringi_pace_take(pace, list->count, 1, &first, &end);
+    for (uint32_t i = first; i < end; ++i)
+        list->particles[i] = (uint32_t)list->keys[i];
+}
+
+void mspringi_web_list_order_windows(mspringi_web_list *list, const mspringi_graph *graph, mspringi_pace *pace,
+                                     mspringi_memory *memory) {
+    const uint32_t free_count = list->count - list->homed_count;
+    uint32_t *free_ones = list->particles + list->homed_count, first, end;
+    mspringi_pace_take(pace, (free_count + WINDOW - 1) / WINDOW, 16 * WINDOW, &first, &end);
+    for (uint32_t w = first; w < end; ++w)
+        order_window_by_degree(free_ones + w * WINDOW,
+                               free_count - w * WINDOW < WINDOW ? free_count - w * WINDOW : WINDOW, graph);
+    if (pace->is_halfway)
+        return;
+    mspringi_free(memory, list->keys);
+    mspringi_free(memory, list->scratch);
+    list->keys = list->scratch = NULL;
 }
 
 void mspringi_web_list_destroy(mspringi_web_list *list, mspringi_memory *memory) {
     mspringi_free(memory, list->particles);
+    mspringi_free(memory, list->keys);
+    mspringi_free(memory, list->scratch);
 }

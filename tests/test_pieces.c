@@ -1,0 +1,156 @@
+/// @file test_pieces.c
+/// A plan is the same however the making of it is divided.
+///
+/// SPDX-License-Identifier: MIT
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/message.h"
+#include "recipe.h"
+#include "support.h"
+#include "topology/topology.h"
+
+/// Everything that there is a pass for: grids of several sizes, some side by side and one not worth it, ropes that
+/// are chains and ropes that hang on a grid, a web, loose particles.
+static recipe every_kind(void) {
+    uint64_t seed = 7;
+    const recipe_stuff solid = {.mass = {1, 1}, .stiffness = {100, 100}, .holes = 0.1};
+    const recipe_stuff sparse = {.mass = {1, 1}, .stiffness = {100, 100}, .holes = 0.7};
+    recipe made = {0};
+    const mspring_id large = recipe_lattice(&made, 90, 12, 0, 0, 1, &solid, &seed);
+    for (int i = 0; i < 6; i++) {
+        recipe_lattice(&made, 3 + (uint32_t)i, 4, 200.0 + 20 * i, 0, 1, &solid, &seed);
+    }
+    recipe_lattice(&made, 20, 20, 0, 100, 1, &sparse, &seed);
+    const mspring_id lone = recipe_particle(&made, 400, 0, 1, 0);
+    recipe_rope(&made, large, large + 80, 12, &solid, &seed);
+    recipe_rope(&made, lone, recipe_particle(&made, 440, 0, 1, 0), 30, &solid, &seed);
+    recipe_random_springs(&made, 60, &solid, &seed);
+    recipe_particle(&made, 500, 0, 1, 0);
+    return made;
+}
+
+static mspring_builder *builder_of(const recipe *made) {
+    mspring_builder *builder = NULL;
+    check_ok(mspring_builder_create(NULL, &builder));
+    check_ok(mspring_builder_add_particles(builder, made->particles, made->particle_count, NULL));
+    check_ok(mspring_builder_add_springs(builder, made->springs, made->spring_count, NULL));
+    return builder;
+}
+
+/// A topology with its places in an array, made with so much effort at a time; counts how often.
+typedef struct laid_out {
+    mspringi_topology topology;
+    mspringi_place *places;
+    uint32_t parts;
+} laid_out;
+
+static laid_out lay_out(const mspring_builder *builder, uint32_t effort, uint32_t workers,
+                        mspringi_memory *memory) {
+    const mspringi_reserve reserve = {.first_particle = (uint32_t)builder->particle_count,
+                                      .first_spring = (uint32_t)builder->spring_count,
+                                      .particle_end = (uint32_t)builder->particle_count + 5,
+                                      .spring_end = (uint32_t)builder->spring_count + 9};
+    laid_out out = {.parts = 0};
+    mspringi_message message = {0};
+    mspringi_assembly *begun = NULL;
+    check_ok(mspringi_topology_begin(builder, &reserve, false, workers, memory, &message, &begun));
+    for (bool is_done = false; !is_done; out.parts++) {
+        uint32_t left = effort;
+        check_ok(mspringi_topology_go_on(begun, &left, &is_done));
+    }
+    mspringi_topology_finish(begun, memory, &out.topology, &out.places);
+    return out;
+}
+
+static void check_same(const laid_out *a, const laid_out *b) {
+    const mspringi_topology *s = &a->topology, *t = &b->topology;
+    assert_int_equal(s->block_count, t->block_count);
+    assert_int_equal(s->chain_places, t->chain_places);
+    assert_int_equal(s->leftover_count, t->leftover_count);
+    assert_int_equal(s->span_count, t->span_count);
+    assert_int_equal(s->row_count, t->row_count);
+    assert_int_equal(s->strip_count, t->strip_count);
+    assert_int_equal(s->lag, t->lag);
+    assert_int_equal(s->empty_run_count, t->empty_run_count);
+    assert_memory_equal(a->places, b->places, s->spring_count * sizeof *a->places);
+    assert_memory_equal(s->slot_of_particle, t->slot_of_particle,
+                        s->reserve.particle_end * sizeof *s->slot_of_particle);
+    assert_memory_equal(s->particle_of_slot, t->particle_of_slot,
+                        (size_t)s->block_count * MSPRINGI_WIDTH * sizeof *s->particle_of_slot);
+    assert_memory_equal(s->up_of_block, t->up_of_block, s->lattice_blocks * sizeof *s->up_of_block);
+    assert_memory_equal(s->grid_of_row, t->grid_of_row, s->lattice_rows * sizeof *s->grid_of_row);
+    assert_memory_equal(s->leftover_a, t->leftover_a, s->leftover_count * sizeof *s->leftover_a);
+    assert_memory_equal(s->leftover_b, t->leftover_b, s->leftover_count * sizeof *s->leftover_b);
+    for (uint32_t i = 0; i < s->span_count; i++) {
+        assert_int_equal(s->spans[i].first_slot, t->spans[i].first_slot);
+        assert_int_equal(s->spans[i].end_slot, t->spans[i].end_slot);
+        assert_int_equal(s->spans[i].up, t->spans[i].up);
+        assert_int_equal(s->spans[i].carry, t->spans[i].carry);
+    }
+    assert_memory_equal(s->strips, t->strips, s->strip_count * sizeof *s->strips);
+    assert_memory_equal(s->empty_runs, t->empty_runs, s->empty_run_count * sizeof *s->empty_runs);
+    assert_int_equal(s->web.group_count, t->web.group_count);
+    assert_memory_equal(s->web.attached_slot, t->web.attached_slot,
+                        s->web.attached_count * sizeof *s->web.attached_slot);
+    assert_memory_equal(s->web.entry, t->web.entry, 2 * (size_t)s->leftover_count * sizeof *s->web.entry);
+    assert_memory_equal(s->web.neighbour, t->web.neighbour,
+                        (size_t)s->web.first_rung[s->web.group_count] * MSPRINGI_WIDTH * sizeof *s->web.neighbour);
+}
+
+static void plans_do_not_depend_on_parts(void **state) {
+    (void)state;
+    static const uint32_t efforts[] = {1, 2, 17, 1000, 50000};
+    recipe made = every_kind();
+    mspring_builder *builder = builder_of(&made);
+    mspringi_memory memory;
+    mspringi_message message = {0};
+    check_ok(mspringi_memory_init(&memory, NULL, &message));
+    const laid_out whole = lay_out(builder, UINT32_MAX, 1, &memory);
+    assert_int_equal(whole.parts, 1);
+    assert_true(whole.topology.lattice_count >= 3);
+    assert_true(whole.topology.chain_count > 0 && whole.topology.web.attached_count > 0);
+    uint32_t parts = UINT32_MAX;
+    for (size_t i = 0; i < sizeof efforts / sizeof efforts[0]; i++) {
+        const laid_out divided = lay_out(builder, efforts[i], 1, &memory);
+        assert_true(divided.parts <= parts);
+        parts = divided.parts;
+        check_same(&whole, &divided);
+    }
+    mspringi_free_all(&memory);
+    mspring_builder_destroy(builder);
+    recipe_free(&made);
+}
+
+/// When it is done must not depend on the number of workers, or networks that are compacted between steps would
+/// not move alike.
+static void workers_change_no_division(void **state) {
+    (void)state;
+    uint64_t seed = 3;
+    const recipe_stuff solid = {.mass = {1, 1}, .stiffness = {100, 100}};
+    for (int hung = 0; hung < 2; hung++) { // whether something hangs on the lattice: strips are by workers if not
+        recipe made = {0};
+        const mspring_id first = recipe_lattice(&made, 120, 60, 0, 0, 1, &solid, &seed);
+        if (hung) {
+            recipe_rope(&made, first, first + 60, 40, &solid, &seed);
+        }
+        mspring_builder *builder = builder_of(&made);
+        mspringi_memory memory;
+        mspringi_message message = {0};
+        check_ok(mspringi_memory_init(&memory, NULL, &message));
+        const laid_out one = lay_out(builder, 100, 1, &memory), seven = lay_out(builder, 100, 7, &memory);
+        assert_int_equal(one.parts, seven.parts);
+        assert_true(one.parts > 1000);
+        mspringi_free_all(&memory);
+        mspring_builder_destroy(builder);
+        recipe_free(&made);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(plans_do_not_depend_on_parts),
+        cmocka_unit_test(workers_change_no_division),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
