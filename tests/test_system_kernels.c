@@ -171,7 +171,6 @@ static void fill(arena *a, uint32_t live, uint32_t parts, bool has_above, uint64
             1, 2, 0.5f, 0.25f, 0.125f, random_float(&seed, -1, 1), 0.1f, 0.2f, -0.01f, random_float(&seed, -1, 1)};
     }
     memset(a->sums, 0, sizeof a->sums);
-    memset(a->results, 0, sizeof a->results);
     memset(a->rests_of_block, 0, sizeof a->rests_of_block);
     memset(a->parts, 0, sizeof a->parts);
     for (uint32_t i = 0; i < 2 * ROW; i++) {
@@ -513,6 +512,72 @@ static void advances(void **state) {
     support_aligned_free(pieces);
 }
 
+/* ------------------------------------------------------------------------------------------------------ energy */
+
+static mspringi_motion motion_of(arena *a, int variant) {
+    return (mspringi_motion){
+        .axes = {{a->by_slot[ARM_X], a->by_slot[LOW], a->by_slot[VX], a->predicted_x, a->by_slot[PRODUCT_X],
+                  a->by_slot[SOLUTION_X], a->by_slot[DIRECTION_X], variant & 1 ? a->by_slot[FORCE_X] : NULL,
+                  a->by_slot[SCALED_X]},
+                 {a->by_slot[ARM_Y], a->by_slot[FIRST], a->by_slot[VY], a->predicted_y, a->by_slot[PRODUCT_Y],
+                  a->by_slot[SOLUTION_Y], a->by_slot[DIRECTION_Y], variant & 2 ? a->by_slot[FORCE_Y] : NULL,
+                  a->by_slot[SCALED_Y]}},
+        .mass = a->by_slot[MASS],
+        .alpha = 0.3f,
+        .rate = 90,
+        .stiffness_scale = 0.7f,
+    };
+}
+
+static void run_move(arena *a, const setup *s, const mspringi_system_kernels *k) {
+    const mspringi_motion motion = motion_of(a, s->variant);
+    const size_t first = s->first * W;
+    k->move(&motion, first, first + s->blocks * W, a->results);
+}
+
+static void moves(void **state) {
+    (void)state;
+    for (uint32_t blocks = 0; blocks <= 5; blocks++) {
+        for (uint32_t first = 0; first < 3; first++) {
+            for (int variant = 0; variant < 4; variant++) {
+                const setup s = {.blocks = blocks,
+                                 .first = first,
+                                 .variant = variant,
+                                 .parts = 2,
+                                 .live = W,
+                                 .seed = blocks * 10 + first};
+                compare("move", &s, run_move, true);
+            }
+        }
+    }
+}
+
+/// Lay every seventh particle upon the one before, where it stays: a spring between them has no direction.
+static void lay_upon_others(arena *a) {
+    const int arrays[] = {ARM_X, ARM_Y, LOW, FIRST, SCALED_X, SCALED_Y};
+    for (uint32_t slot = 6; slot < MANY; slot += 7) {
+        for (size_t i = 0; i < COUNT_OF(arrays); i++) {
+            a->by_slot[arrays[i]][slot] = a->by_slot[arrays[i]][slot - 1];
+        }
+    }
+}
+
+/// Without and with pinned particles that move.
+static void run_stretch(arena *a, const setup *s, const mspringi_system_kernels *k) {
+    mspringi_span spans[3];
+    const mspringi_system system = system_of(a, s->parts);
+    const mspringi_motion motion = motion_of(a, 0);
+    const uint32_t count = spans_of(s, spans);
+    lay_upon_others(a);
+    k->stretch(&system, &motion, spans, count, s->has_above, false, a->results);
+    k->stretch(&system, &motion, spans, count, s->has_above, true, a->results + MSPRINGI_STRETCH_SUMS);
+}
+
+static void stretches(void **state) {
+    (void)state;
+    compare_rows("stretch", run_stretch);
+}
+
 /* ----------------------------------------------------------------------------------------------------- by tile */
 
 static void run_by_parts(arena *a, const setup *s, const mspringi_system_kernels *k) {
@@ -578,6 +643,8 @@ int main(int argc, char **argv) {
         cmocka_unit_test(what_is_handed_on),
         cmocka_unit_test(passes_by_slot),
         cmocka_unit_test(advances),
+        cmocka_unit_test(moves),
+        cmocka_unit_test(stretches),
         cmocka_unit_test(passes_by_part),
         cmocka_unit_test(weights_are_those_of_the_lanes),
     };
