@@ -249,6 +249,7 @@ enum {
     MSPRINGI_STRETCH_ENERGY,    ///< k e^2 after the substep
     MSPRINGI_STRETCH_PULL,      ///< k |e| after it
     MSPRINGI_STRETCH_ERROR,     ///< squares of what an error of all of a length would change the gain by
+    MSPRINGI_STRETCH_LENGTH,    ///< k l^2 before it
     MSPRINGI_STRETCH_GIVEN,     ///< what moving pinned particles may give
     MSPRINGI_STRETCH_STIFFNESS, ///< k, N/m
     MSPRINGI_STRETCH_SUMS

@@ -103,7 +103,8 @@ static void sum_moves(const mspringi_motion *m, size_t first, size_t end, double
 MSPRINGI_PART_INLINE void stretch_lanes(const mspringi_motion *m, size_t base, size_t tip,
                                         const float *restrict rest_lengths, const float *restrict stiffnesses,
                                         double *restrict gain, double *restrict energy, double *restrict pull,
-                                        double *restrict error, double *restrict stiffness) {
+                                        double *restrict error, double *restrict length,
+                                        double *restrict stiffness) {
     const mspringi_motion_axis *const cx = &m->axes[0], *const cy = &m->axes[1];
     const float *const ax = cx->position + base, *const ay = cy->position + base;
     const float *const bx = cx->position + tip, *const by = cy->position + tip;
@@ -125,6 +126,7 @@ MSPRINGI_PART_INLINE void stretch_lanes(const mspringi_motion *m, size_t base, s
         energy[i] += (double)(at_end * stretch);
         pull[i] += (double)fabsf(at_end);
         error[i] += (double)off * (double)off;
+        length[i] += (double)(k * before) * (double)before;
         stiffness[i] += (double)stiffnesses[i];
     }
 }
@@ -133,7 +135,8 @@ static void stretch_springs(const mspringi_motion *m, size_t base, size_t tip, c
                             const float *stiffnesses, lane_sums *sums) {
     stretch_lanes(m, base, tip, rest_lengths, stiffnesses, sums->of[MSPRINGI_STRETCH_GAIN],
                   sums->of[MSPRINGI_STRETCH_ENERGY], sums->of[MSPRINGI_STRETCH_PULL],
-                  sums->of[MSPRINGI_STRETCH_ERROR], sums->of[MSPRINGI_STRETCH_STIFFNESS]);
+                  sums->of[MSPRINGI_STRETCH_ERROR], sums->of[MSPRINGI_STRETCH_LENGTH],
+                  sums->of[MSPRINGI_STRETCH_STIFFNESS]);
 }
 
 // The same, and what pinned ends that move give: the force before the substep or after it, whatever is more, times

@@ -276,11 +276,12 @@ static void add_leftover(const mspring_network *network, const mspringi_motion *
         const double y = (double)(cy->position[b] - cy->position[a]) + (double)(cy->low[b] - cy->low[a]);
         const double later_x = x + (double)(cx->step[b] - cx->step[a]);
         const double later_y = y + (double)(cy->step[b] - cy->step[a]);
-        const double before = sqrt(x * x + y * y) - rest_length;
+        const double length = sqrt(x * x + y * y), before = length - rest_length;
         const double after = sqrt(later_x * later_x + later_y * later_y) - rest_length;
         sums[MSPRINGI_STRETCH_GAIN] += 0.5 * k * ((after - before) * (after + before));
         sums[MSPRINGI_STRETCH_ENERGY] += k * after * after;
         sums[MSPRINGI_STRETCH_PULL] += k * fabs(after);
+        sums[MSPRINGI_STRETCH_LENGTH] += k * length * length;
         sums[MSPRINGI_STRETCH_STIFFNESS] += stiffness;
         if (driven && !(m->mass[a] > 0.0f && m->mass[b] > 0.0f)) {
             const mspringi_spring_values values = mspringi_place_get(network, t->chain_places + i);
@@ -405,7 +406,9 @@ static result sum_up(const substep_of *substep, const mspringi_motion *m) {
     const double slip = DISPLACEMENT_ROUNDING * moves[MSPRINGI_MOVE_LARGEST];
     work += work_of_floor(network, m) + per_stiffness * stretches[MSPRINGI_STRETCH_GIVEN];
     gain += per_stiffness * stretches[MSPRINGI_STRETCH_GAIN];
-    const double noise = 4.0 * LENGTH_ROUNDING * per_stiffness * sqrt(stretches[MSPRINGI_STRETCH_ERROR]) +
+    // What forces that are off by the rounding of lengths can do, at rest, too; of what moves; and of the sums.
+    const double noise = LENGTH_ROUNDING * LENGTH_ROUNDING * per_stiffness * stretches[MSPRINGI_STRETCH_LENGTH] +
+                         4.0 * LENGTH_ROUNDING * per_stiffness * sqrt(stretches[MSPRINGI_STRETCH_ERROR]) +
                          LENGTH_ROUNDING * (before + energy + fabs(work));
     return (result){
         .gain = gain - work,
