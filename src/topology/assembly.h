@@ -1,0 +1,104 @@
+/// @file assembly.h
+/// A topology that is being made: blocks of grids, then slots and places, then rows, as passes that can pause.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_ASSEMBLY_H
+#define MSPRINGI_ASSEMBLY_H
+
+#include "analysis.h"
+
+/// A block of a grid on its way to a number: row, then column block.
+typedef uint64_t mspringi_block_key;
+
+static inline mspringi_block_key mspringi_make_key(uint32_t row, uint32_t column_block) {
+    return (uint64_t)row << 32 | column_block;
+}
+
+static inline uint32_t mspringi_row_of_key(mspringi_block_key key) {
+    return (uint32_t)(key >> 32);
+}
+
+static inline uint32_t mspringi_column_block_of_key(mspringi_block_key key) {
+    return (uint32_t)key;
+}
+
+/// What is needed while a topology is made.
+struct mspringi_assembly {
+    mspringi_topology made, *topology; ///< the latter is the former
+    mspringi_memory *memory;
+    mspringi_message *message;
+    const mspring_builder *builder;
+    uint32_t workers;
+    uint8_t *kinds;
+    mspringi_graph graph;
+    mspringi_strands strands;
+    mspringi_grids grids;
+    mspringi_homes homes;
+    mspringi_web_list web;
+    mspringi_block_key *blocks; ///< of all grids, grid after grid in the order of their rows, each sorted
+    size_t block_count, block_capacity;
+    size_t grid_begin;      ///< where the blocks of the grid that is being listed begin
+    uint32_t *first_block;  ///< [grids] in blocks
+    uint32_t *end_block;    ///< [grids] in blocks
+    mspringi_place *places; ///< [springs]
+    uint32_t home_blocks;   ///< blocks of the web that have been given to rows
+    size_t row_capacity, span_capacity;
+    bool is_checked; ///< no two springs join the same particles
+    mspringi_pace pace;
+    uint32_t grid;     ///< the grid that is gone through, as a number in grid_order
+    uint32_t stage;    ///< of a pass that has several: what is done with the grid
+    uint64_t *scratch; ///< [blocks of the grid that is sorted]
+    mspringi_sorting sorting;
+    uint32_t loose;        ///< loose particles so far, counted or placed
+    uint32_t web_place;    ///< of the web's last particle so far
+    uint32_t homed_blocks; ///< blocks of the web's particles with a home
+    uint32_t runs;         ///< of empty slots so far
+    bool in_run;           ///< the slot before is in one
+    uint8_t *busy;         ///< [blocks] bits of quarters that have to be swept
+    mspringi_weaving weaving;
+};
+
+/// Say that there is no memory, and return that.
+mspring_result mspringi_assembly_fail(mspringi_assembly *a);
+
+/* Blocks: passes in their order. */
+mspring_result mspringi_assembly_begin_blocks(mspringi_assembly *a);
+mspring_result mspringi_assembly_number_blocks(mspringi_assembly *a);
+mspring_result mspringi_assembly_count_loose(mspringi_assembly *a);
+mspring_result mspringi_assembly_count_web_blocks(mspringi_assembly *a);
+mspring_result mspringi_assembly_number_the_rest(mspringi_assembly *a);
+
+/// Where the web's particle i goes among its slots: those of each home begin a block, and so do those without.
+uint32_t mspringi_assembly_web_place(const mspringi_assembly *a, uint32_t i, uint32_t place_before);
+/// Whether a particle lies in the loose row. One that is absent has the first slot, which holds none, or a spare
+/// one.
+bool mspringi_assembly_is_loose(const mspringi_assembly *a, uint32_t particle);
+/// The number of a grid's block among all lattice blocks; MSPRING_NONE if it is not stored.
+uint32_t mspringi_assembly_find_block(const mspringi_assembly *a, uint32_t grid, uint32_t row,
+                                      uint32_t column_block);
+
+/* Slots and places: passes in their order. */
+mspring_result mspringi_assembly_reserve_maps(mspringi_assembly *a);
+mspring_result mspringi_assembly_assign_slots(mspringi_assembly *a);
+mspring_result mspringi_assembly_assign_chain_slots(mspringi_assembly *a);
+mspring_result mspringi_assembly_assign_web_slots(mspringi_assembly *a);
+mspring_result mspringi_assembly_assign_spare_slots(mspringi_assembly *a);
+mspring_result mspringi_assembly_begin_places(mspringi_assembly *a);
+mspring_result mspringi_assembly_assign_chain_places(mspringi_assembly *a);
+mspring_result mspringi_assembly_assign_places(mspringi_assembly *a);
+mspring_result mspringi_assembly_reserve_ends(mspringi_assembly *a);
+mspring_result mspringi_assembly_note_ends(mspringi_assembly *a);
+
+/* Rows and strips: passes in their order. */
+mspring_result mspringi_assembly_begin_rows(mspringi_assembly *a);
+mspring_result mspringi_assembly_append_lattice_rows(mspringi_assembly *a);
+mspring_result mspringi_assembly_append_other_rows(mspringi_assembly *a);
+mspring_result mspringi_assembly_mark_particles(mspringi_assembly *a);
+mspring_result mspringi_assembly_mark_springs(mspringi_assembly *a);
+mspring_result mspringi_assembly_trim_spans(mspringi_assembly *a);
+mspring_result mspringi_assembly_make_strips(mspringi_assembly *a);
+
+/// The strip of each lattice and chain block, a new array of [block_count]; NULL if there is no memory.
+uint32_t *mspringi_assembly_list_strips_of_blocks(const mspringi_assembly *a);
+
+#endif

@@ -1,0 +1,257 @@
+/// Rows of spans, and strips of rows, as they are swept.
+#include "assembly.h"
+#include "spare.h"
+
+/// Chains are swept in spans of this many blocks.
+#define LONGEST_CHAIN_SPAN 64
+
+// Append a row without spans.
+static bool append_row(mspringi_assembly *a, mspringi_row_kind kind) {
+    mspringi_topology *t = a->topology;
+    void *rows = t->rows;
+    const bool grown = mspringi_grow(a->memory, &rows, &a->row_capacity, (size_t)t->row_count + 1, sizeof *t->rows);
+    t->rows = rows;
+    if (grown)
+        t->rows[t->row_count++] = (mspringi_row){.kind = kind, .first_span = t->span_count};
+    return grown;
+}
+
+static bool store_span(mspringi_assembly *a, const mspringi_span *span) {
+    mspringi_topology *t = a->topology;
+    void *spans = t->spans;
+    const bool grown = mspringi_grow(a->memory, &spans, &a->span_capacity, (size_t)t->span_count + 1, sizeof *span);
+    t->spans = spans;
+    if (grown)
+        t->spans[t->span_count++] = *span;
+    return grown;
+}
+
+// Append a span to the last row, or lengthen its last one if this is what that would go on with.
+static bool append_span(mspringi_assembly *a, const mspringi_span *span) {
+    mspringi_topology *t = a->topology;
+    mspringi_row *row = &t->rows[t->row_count - 1];
+    if (row->span_count > 0) {
+        mspringi_span *last = &t->spans[t->span_count - 1];
+        if (last->end_slot == span->first_slot && last->up == span->up && last->carry == span->carry) {
+            last->end_slot = span->end_slot;
+            return true;
+        }
+    }
+    row->span_count++;
+    return store_span(a, span);
+}
+
+// A span of whole blocks.
+static mspringi_span span_of_blocks(uint32_t first_block, uint32_t block_count, uint32_t first_record,
+                                    uint32_t record_slots) {
+    return (mspringi_span){.first_slot = first_block * MSPRINGI_WIDTH,
+                           .end_slot = (first_block + block_count) * MSPRINGI_WIDTH,
+                           .first_record = first_record,
+                           .record_slots = record_slots};
+}
+
+// From the slots of one block to those of another.
+static int64_t offset_between(uint32_t from_block, uint32_t to_block) {
+    return ((int64_t)to_block - (int64_t)from_block) * MSPRINGI_WIDTH;
+}
+
+static uint32_t widest_row(const mspringi_assembly *a) {
+    uint32_t widest =
+        a->topology->chain_blocks < LONGEST_CHAIN_SPAN ? a->topology->chain_blocks : LONGEST_CHAIN_SPAN;
+    for (size_t i = 0; i < a->block_count; ++i)
+        widest = mspringi_column_block_of_key(a->blocks[i]) + 1 > widest
+                     ? mspringi_column_block_of_key(a->blocks[i]) + 1
+                     : widest;
+    return widest;
+}
+
+// Append the row of a grid's block, or the block to its row.
+static bool append_lattice_block(mspringi_assembly *a, uint32_t i, uint32_t grid, uint32_t number) {
+    mspringi_topology *t = a->topology;
+    const uint32_t row = mspringi_row_of_key(a->blocks[i]),
+                   column_block = mspringi_column_block_of_key(a->blocks[i]);
+    const bool starts_row = i == a->first_block[grid] || mspringi_row_of_key(a->blocks[i - 1]) != row;
+    const uint32_t up = mspringi_assembly_find_block(a, grid, row + 1, column_block);
+    const uint32_t block = t->lattice_first + i, up_block = up == MSPRING_NONE ? block : t->lattice_first + up;
+    mspringi_span span = span_of_blocks(block, 1, i, MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH);
+    span.up = offset_between(block, up_block);
+    span.carry = offset_between(block, column_block);
+    t->up_of_block[i] = up_block;
+    if (starts_row) {
+        if (!append_row(a, MSPRINGI_ROW_CHAIN))
+            return false;
+        t->grid_of_row[t->lattice_rows++] = number;
+    }
+    if (up != MSPRING_NONE)
+        t->rows[t->row_count - 1].kind = MSPRINGI_ROW_LATTICE;
+    return append_span(a, &span);
+}
+
+mspring_result mspringi_assembly_append_lattice_rows(mspringi_assembly *a) {
+    const mspringi_topology *t = a->topology;
+    uint32_t first, end;
+    mspringi_pace_take(&a->pace, t->lattice_blocks, 24, &first, &end);
+    for (uint32_t i = first; i < end; ++i) {
+        while (i >= a->end_block[a->homes.grid_order[a->grid]])
+            a->grid++;
+        if (!append_lattice_block(a, i, a->homes.grid_order[a->grid], a->grid))
+            return mspringi_assembly_fail(a);
+    }
+    return MSPRING_OK;
+}
+
+// Append the chains. Their spans are no longer than the carry row, which has no force for them.
+static bool append_chain_row(mspringi_assembly *a) {
+    mspringi_topology *t = a->topology;
+    bool ok = t->chain_blocks == 0 || append_row(a, MSPRINGI_ROW_CHAIN);
+    for (uint32_t i = 0; ok && i < t->chain_blocks; i += LONGEST_CHAIN_SPAN) {
+        const uint32_t left = t->chain_blocks - i, block = t->chain_first + i;
+        mspringi_span span =
+            span_of_blocks(block, left < LONGEST_CHAIN_SPAN ? left : LONGEST_CHAIN_SPAN, i, MSPRINGI_WIDTH);
+        span.carry = offset_between(block, 0);
+        ok = append_span(a, &span);
+    }
+    return ok;
+}
+
+// Append a row of one span.
+static bool append_simple_row(mspringi_assembly *a, mspringi_row_kind kind, uint32_t first_block,
+                              uint32_t block_count, uint32_t first_record) {
+    const mspringi_span span = span_of_blocks(first_block, block_count, first_record, MSPRINGI_WIDTH);
+    return append_row(a, kind) && append_span(a, &span);
+}
+
+// Append the span of a strip's own particles of the web, of which the last is in last_slot.
+static bool append_home_span(mspringi_assembly *a, uint32_t strip, uint32_t last_slot) {
+    mspringi_topology *t = a->topology;
+    const uint32_t first_block = t->web_first + a->home_blocks, end_block = last_slot / MSPRINGI_WIDTH + 1;
+    mspringi_span span = span_of_blocks(first_block, end_block - first_block, a->home_blocks, MSPRINGI_WIDTH);
+    span.end_slot = (last_slot / MSPRINGI_QUARTER + 1) * MSPRINGI_QUARTER;
+    a->home_blocks += end_block - first_block;
+    t->strips[strip].home_span = t->span_count;
+    return store_span(a, &span);
+}
+
+static bool append_home_spans(mspringi_assembly *a) {
+    const mspringi_topology *t = a->topology;
+    const uint32_t *particles = a->web.particles, *home = a->homes.home;
+    for (uint32_t i = 0; i < a->web.homed_count; ++i) {
+        const bool is_last = i + 1 == a->web.count || home[particles[i + 1]] != home[particles[i]];
+        if (is_last && !append_home_span(a, home[particles[i]], t->slot_of_particle[particles[i]]))
+            return false;
+    }
+    return true;
+}
+
+// Cut the rows into strips: those of the wave as their homes want it, of the others each on its own.
+mspring_result mspringi_assembly_make_strips(mspringi_assembly *a) {
+    mspringi_topology *t = a->topology;
+    const uint32_t rows = a->homes.strip_rows;
+    t->lag = a->homes.lag;
+    t->wave_rows = a->homes.row_count;
+    t->wave_strips = (t->wave_rows + rows - 1) / rows;
+    t->strip_count = t->wave_strips + (t->row_count - t->wave_rows);
+    t->strips = mspringi_alloc(a->memory, t->strip_count, sizeof *t->strips);
+    if (!t->strips)
+        return mspringi_assembly_fail(a);
+    for (uint32_t s = 0, row = 0; s < t->strip_count; ++s) {
+        const uint32_t left = t->wave_rows - row, count = s >= t->wave_strips ? 1 : left < rows ? left : rows;
+        t->strips[s] = (mspringi_strip){.first_row = row, .row_count = count, .home_span = MSPRING_NONE};
+        row += count;
+    }
+    return append_home_spans(a) ? MSPRING_OK : mspringi_assembly_fail(a);
+}
+
+uint32_t *mspringi_assembly_list_strips_of_blocks(const mspringi_assembly *a) {
+    const mspringi_topology *t = a->topology;
+    uint32_t *strip_of_block = mspringi_alloc(a->memory, t->block_count, sizeof *strip_of_block);
+    for (uint32_t s = 0; strip_of_block && s < t->strip_count; ++s) {
+        const mspringi_row *first = &t->rows[t->strips[s].first_row], *last = first + t->strips[s].row_count - 1;
+        for (uint32_t i = first->first_span; i < last->first_span + last->span_count; ++i)
+            for (uint32_t slot = t->spans[i].first_slot; slot < t->spans[i].end_slot; slot += MSPRINGI_QUARTER)
+                strip_of_block[slot / MSPRINGI_WIDTH] = s;
+    }
+    return strip_of_block;
+}
+
+// Set a bit of busy for the quarter of a slot.
+static void mark_busy(uint8_t *busy, uint32_t slot) {
+    busy[slot / MSPRINGI_WIDTH] |= (uint8_t)(1u << slot % MSPRINGI_WIDTH / MSPRINGI_QUARTER);
+}
+
+static bool is_busy(const uint8_t *busy, uint32_t slot) {
+    return busy[slot / MSPRINGI_WIDTH] >> slot % MSPRINGI_WIDTH / MSPRINGI_QUARTER & 1;
+}
+
+// Find the quarters at the ends of lattice spans that need not be swept: they hold no particle, own no spring, and
+// no force is handed on through them. The latter two are so if no spring's record, and no slot to the right of a
+// north-east spring, lies in them.
+
+mspring_result mspringi_assembly_mark_particles(mspringi_assembly *a) {
+    const mspringi_topology *t = a->topology;
+    uint32_t first, end;
+    mspringi_pace_take(&a->pace, t->chain_first * MSPRINGI_WIDTH, 1, &first, &end);
+    for (uint32_t slot = first; slot < end; ++slot)
+        if (t->particle_of_slot[slot] != MSPRING_NONE)
+            mark_busy(a->busy, slot);
+    return MSPRING_OK;
+}
+
+mspring_result mspringi_assembly_mark_springs(mspringi_assembly *a) {
+    const mspringi_topology *t = a->topology;
+    uint32_t first, end;
+    mspringi_pace_take(&a->pace, t->spring_count, 1, &first, &end);
+    for (uint32_t s = first; s < end; ++s) {
+        const mspringi_place place = a->places[s];
+        if (place >= t->lattice_places)
+            continue;
+        const uint32_t block = place / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH);
+        const uint32_t slot = (t->lattice_first + block) * MSPRINGI_WIDTH + place % MSPRINGI_WIDTH;
+        mark_busy(a->busy, slot);
+        if (place / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS == MSPRINGI_NORTH_EAST)
+            mark_busy(a->busy, slot + 1);
+    }
+    return MSPRING_OK;
+}
+
+mspring_result mspringi_assembly_trim_spans(mspringi_assembly *a) {
+    const mspringi_topology *t = a->topology;
+    const uint32_t lattice_end = t->chain_first * MSPRINGI_WIDTH;
+    for (uint32_t s = 0; s < t->span_count && t->spans[s].first_slot < lattice_end; ++s) {
+        mspringi_span *span = &t->spans[s];
+        // Within its first and its last block; one quarter is left of a block that is all idle (and is there for
+        // the slot to its right).
+        while (span->first_slot % MSPRINGI_WIDTH < MSPRINGI_WIDTH - MSPRINGI_QUARTER &&
+               !is_busy(a->busy, span->first_slot))
+            span->first_slot += MSPRINGI_QUARTER;
+        while (span->end_slot - MSPRINGI_QUARTER > span->first_slot &&
+               (span->end_slot - 1) % MSPRINGI_WIDTH >= MSPRINGI_QUARTER && !is_busy(a->busy, span->end_slot - 1))
+            span->end_slot -= MSPRINGI_QUARTER;
+    }
+    mspringi_free(a->memory, a->busy);
+    a->busy = NULL;
+    return MSPRING_OK;
+}
+
+mspring_result mspringi_assembly_begin_rows(mspringi_assembly *a) {
+    mspringi_topology *t = a->topology;
+    t->carry_blocks = widest_row(a);
+    t->up_of_block = mspringi_pace_alloc(&a->pace, a->memory, t->lattice_blocks, sizeof *t->up_of_block);
+    t->grid_of_row = mspringi_pace_alloc(&a->pace, a->memory, t->lattice_blocks,
+                                         sizeof *t->grid_of_row); // no more rows than blocks
+    a->busy = mspringi_pace_alloc(&a->pace, a->memory, t->block_count, sizeof *a->busy);
+    a->grid = 0;
+    return t->up_of_block && t->grid_of_row && a->busy ? MSPRING_OK : mspringi_assembly_fail(a);
+}
+
+mspring_result mspringi_assembly_append_other_rows(mspringi_assembly *a) {
+    const mspringi_topology *t = a->topology;
+    const uint32_t web_blocks = t->web_blocks - a->homed_blocks;
+    const bool has_loose_row = t->loose_blocks + t->spare_blocks > 0;
+    if (!append_chain_row(a) ||
+        (web_blocks > 0 &&
+         !append_simple_row(a, MSPRINGI_ROW_WEB, t->web_first + a->homed_blocks, web_blocks, a->homed_blocks)) ||
+        (has_loose_row && !append_simple_row(a, MSPRINGI_ROW_LOOSE, t->loose_first, t->loose_blocks, 0)))
+        return mspringi_assembly_fail(a);
+    return MSPRING_OK;
+}
