@@ -386,7 +386,7 @@ static void it_helps_the_implicit_solvers_out(void **state) {
         def.guard = MSPRING_GUARD_CLAMP;
         def.solver = solvers[i];
         mspring_network *network = recipe_network(&made, &def);
-        support_steps(network, 100, 0.125);
+        support_steps(network, 100, 1);
         const uint64_t clamped = mspring_network_fallback_count(network);
         print_message("%u of 100 steps clamped\n", (unsigned)clamped);
         assert_true(clamped > 0);
