@@ -50,7 +50,49 @@ static double sort_by(const choosing *c, uint32_t *nodes, uint32_t count, const 
     return high - low;
 }
 
-// Let a component be ordered along its longer side, if it reaches less far so than in order.
+static uint32_t degree_of(const choosing *c, uint32_t node) {
+    return c->adjacency->first[node + 1] - c->adjacency->first[node];
+}
+
+// Search breadth-first from the first nodes of a component, those of fewest neighbours first (Cuthill & McKee
+// 1969). Returns where the last level begins.
+static uint32_t search_from(const choosing *c, uint32_t *nodes, uint32_t started, const uint32_t *order,
+                            uint32_t count) {
+    uint32_t last_level = 0, end = started;
+    for (uint32_t i = 0; i < count; ++i)
+        c->place[order[i]] = MSPRING_NONE;
+    for (uint32_t i = 0; i < started; ++i)
+        c->place[nodes[i]] = i;
+    for (uint32_t place = 0, level_end = started; place < end; ++place) {
+        const uint32_t node = nodes[place], own = end;
+        if (place == level_end) {
+            last_level = level_end;
+            level_end = end;
+        }
+        for (uint32_t i = c->adjacency->first[node]; i < c->adjacency->first[node + 1]; ++i) {
+            const uint32_t other = c->adjacency->neighbour[i];
+            if (c->place[other] != MSPRING_NONE)
+                continue;
+            uint32_t at = end++;
+            c->place[other] = at;
+            for (; at > own && degree_of(c, nodes[at - 1]) > degree_of(c, other); --at)
+                nodes[at] = nodes[at - 1];
+            nodes[at] = other;
+        }
+    }
+    return last_level;
+}
+
+// Order a component breadth-first from all nodes that are farthest from where its order ends: a bar's whole end,
+// where that order began at a corner. Then each level lies straight across the bar, however it is bent.
+static void sort_by_levels(const choosing *c, uint32_t *nodes, const uint32_t *order, uint32_t count) {
+    nodes[0] = order[count - 1];
+    const uint32_t farthest = search_from(c, nodes, 1, order, count);
+    memmove(nodes, nodes + farthest, (count - farthest) * sizeof *nodes);
+    (void)search_from(c, nodes, count - farthest, order, count);
+}
+
+// Let a component be ordered along its longer side, or by levels, if it reaches less far so than in order.
 static uint32_t choose(const choosing *c, uint32_t *order, uint32_t first, uint32_t end,
                        const mspringi_cholesky_graph *graph) {
     const uint32_t count = end - first;
@@ -62,7 +104,12 @@ static uint32_t choose(const choosing *c, uint32_t *order, uint32_t first, uint3
     const double height = sort_by(c, c->sorted + first, count, graph->y);
     if (width >= height)
         (void)sort_by(c, c->sorted + first, count, graph->x);
-    const uint32_t other = reach_of(c, c->sorted, first, end);
+    uint32_t other = reach_of(c, c->sorted, first, end);
+    // Where a node has many neighbours, no order would do.
+    if (other > MOST_REACH && reach > MOST_REACH && reach <= 2 * MOST_REACH) {
+        sort_by_levels(c, c->sorted + first, order + first, count);
+        other = reach_of(c, c->sorted, first, end);
+    }
     if (other >= reach)
         return reach;
     memcpy(order + first, c->sorted + first, count * sizeof *order);
