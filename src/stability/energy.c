@@ -96,7 +96,8 @@ bool mspringi_energy_is_watched(const mspring_network *network) {
     if (!balance->is_dead_known)
         balance->dead = count_dead(network);
     balance->is_dead_known = true;
-    return balance->dead > 0 || has_others(&network->topology) || !network->implicit->is_direct;
+    const mspringi_topology *t = &network->topology;
+    return balance->dead > 0 || has_others(t) || (t->lattice_places > 0 && !network->implicit->is_direct);
 }
 
 static bool is_live(const mspring_network *network, mspringi_place place) {
@@ -508,7 +509,8 @@ void mspringi_energy_give_up(const substep_of *substep) {
     const mspringi_motion motion = describe(substep, n->alpha);
     const result r = sum_up(substep, &motion);
     double most = -1.0;
-    n->gain = (mspringi_gain){.energy = n->ledger.gained + r.gain, .motion = n->ledger.motion};
+    n->gain =
+        (mspringi_gain){.energy = n->ledger.gained + r.gain, .motion = n->ledger.motion, .place = MSPRING_NONE};
     for (mspringi_place place = 0; place < t->chain_places + t->leftover_count; ++place) {
         if (!is_live(network, place))
             continue;
@@ -538,6 +540,11 @@ mspring_result mspringi_energy_verdict(mspring_network *network, double dt) {
     if (!network->implicit || !(network->implicit->gain.energy > 0.0))
         return MSPRING_OK;
     const mspringi_gain gain = network->implicit->gain;
+    if (gain.place == MSPRING_NONE)
+        return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
+                             "a step of %g s (substeps: %u): energy would grow by %g J that nothing has added, "
+                             "though all springs are broken: take a shorter step or more substeps",
+                             dt, (unsigned)network->substeps, gain.energy);
     uint32_t base, tip;
     mspringi_topology_ends(t, gain.place, &base, &tip);
     const mspring_id spring = find_spring(t, gain.place);

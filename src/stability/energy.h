@@ -41,7 +41,7 @@ typedef struct mspringi_ledger {
 /// What refuses a step.
 typedef struct mspringi_gain {
     double energy, motion; ///< gain and what is known of motion, J; energy 0: there was none
-    mspringi_place place;  ///< of the spring outside of lattices, or anywhere, that would have most
+    mspringi_place place;  ///< of the spring that would have most; MSPRING_NONE: all are broken
 } mspringi_gain;
 
 /// Sums over what hangs together: its mass, 0 where it is held, and its momentum.
