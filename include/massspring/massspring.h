@@ -398,7 +398,7 @@ enum {
     /// whole lattices how far the solution lowers the linearised energy tells, by constants that were measured,
     /// when to do so (with the direct solver never), and there the bound is measured, too: at most 5.2e-6 of the
     /// motion in 1008 runs of 128 steps, up to 1e12 N/m. More than a hundredth of the motion at once is not let
-    /// pass so: that substep is taken with four times the iterations, as are the 15 after it, or else in pieces
+    /// pass so: that substep is taken with four times the iterations, as are the 3 after it, or else in pieces
     /// (see mspring_integrator), and the step refused if 64 are not enough.
     MSPRING_GUARD_GROWTH = 0,
     /// The same, but take a step that would be refused again with twice as many substeps, four times as many, and
@@ -407,7 +407,7 @@ enum {
     MSPRING_GUARD_RETRY = 1,
     MSPRING_GUARD_BOUNDS = 2, ///< look at nothing else
     /// As MSPRING_GUARD_GROWTH, but have the implicit solver take a step that would be refused, in one substep of
-    /// implicit Euler, and the 15 after it, before the explicit one is tried again: slower (24 to 41 explicit
+    /// implicit Euler, and the 15 after it, before the explicit one is tried again: slower (29 to 42 explicit
     /// substeps each) and softened, but at nearly any stiffness. Hooks are called again. Its memory is reserved
     /// with the network. mspring_network_fallback_count() says how often that was.
     MSPRING_GUARD_IMPLICIT = 3,

@@ -70,7 +70,7 @@ typedef struct mspringi_balance {
 
 /// Times the iterations, and substeps, that follow one whose iterations ended too early.
 #define MSPRINGI_MORE_ITERATIONS 4u
-#define MSPRINGI_MORE_SUBSTEPS 15u
+#define MSPRINGI_MORE_SUBSTEPS 3u
 
 struct mspringi_substep_of;
 struct mspringi_mate;
