@@ -322,9 +322,13 @@ static mspring_result ramps_check(mspring_network *network, const uint8_t *from,
 }
 
 static void ramps_load(mspring_network *network, const uint8_t *from, size_t size) {
-    network->ramps.count = size / RAMP_BYTES;
-    for (size_t i = 0; i < network->ramps.count; ++i)
-        from = read_ramp(from, &network->ramps.list[i]);
+    // One of a spring that is not there can only be forged: it has no ends to wake.
+    network->ramps.count = 0;
+    for (size_t i = 0; i < size / RAMP_BYTES; ++i) {
+        mspringi_ramp *ramp = &network->ramps.list[network->ramps.count];
+        from = read_ramp(from, ramp);
+        network->ramps.count += mspringi_spring_exists(network, ramp->spring);
+    }
     mspringi_ramps_apply(network, 0.0);
 }
 
