@@ -209,6 +209,12 @@ static void set_flushing(int on) {
 
 static void flushing_denormals_does_not_matter(void **state) {
     (void)state;
+    set_flushing(1);
+    const bool flushes = (_mm_getcsr() & FLUSH_TO_ZERO) == FLUSH_TO_ZERO;
+    set_flushing(0);
+    if (!flushes) {
+        skip(); // some emulators, valgrind's too, leave out these modes
+    }
     // Speeds that are denormal numbers; nothing damps them.
     uint64_t seed = 9;
     recipe made = {0};
