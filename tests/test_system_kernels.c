@@ -630,6 +630,60 @@ static void weights_are_those_of_the_lanes(void **state) {
     }
 }
 
+enum { NODES = 4 * W };
+
+/// Blocks of a matrix in double precision: three arrays behind one another, and what lies around them.
+typedef struct doubles {
+    double nodes[3 * NODES], before[W], edges[3 * W], after[W];
+} doubles;
+
+static void fill_doubles(doubles *d, uint64_t seed) {
+    double *values = (double *)d;
+    for (size_t i = 0; i < sizeof *d / sizeof *values; i++) {
+        values[i] = support_random_between(&seed, 0, 1e6);
+    }
+}
+
+/// A spring after the other, each to its ends.
+static void add_one_by_one(const mspringi_edge_block *block, const float *factors, doubles *d) {
+    for (uint32_t i = 0; i < W; i++) {
+        const double pull_x = (double)factors[i], pull_y = (double)factors[W + i];
+        const double swing = (double)factors[2 * W + i];
+        const double spring[] = {swing + pull_x * pull_x, pull_x * pull_y, swing + pull_y * pull_y};
+        for (int part = 0; part < 3; part++) {
+            d->edges[part * W + i] = -spring[part];
+            if (block->lanes >> i & 1) {
+                d->nodes[part * NODES + block->base + i] += spring[part];
+                d->nodes[part * NODES + block->tip + i] += spring[part];
+            }
+        }
+    }
+}
+
+static void edges_in_double_precision(void **state) {
+    (void)state;
+    // To the right and to the left, where springs share ends, by less than a block and by more.
+    static const uint32_t ends[][2] = {{W, W + 1}, {W + 1, W}, {W, W + 5}, {W + 5, W}, {0, 2 * W}, {3 * W, 7}};
+    uint64_t seed = 11;
+    for (size_t n = 0; n < 8 * COUNT_OF(ends); n++) {
+        const uint32_t *at = ends[n % COUNT_OF(ends)];
+        const uint32_t any = (uint32_t)support_random(&seed) & ((1u << W) - 1);
+        const mspringi_edge_block block = {at[0], at[1], n < COUNT_OF(ends) ? (1u << W) - 1 : any};
+        _Alignas(64) float factors[MSPRINGI_FACTORS * W];
+        for (size_t i = 0; i < COUNT_OF(factors); i++) {
+            factors[i] = random_float(&seed, -1e3, 1e3);
+        }
+        doubles expected, found;
+        fill_doubles(&expected, n);
+        fill_doubles(&found, n);
+        add_one_by_one(&block, factors, &expected);
+        const mspringi_blocks_double edges = {found.edges, found.edges + W, found.edges + 2 * W};
+        const mspringi_blocks_double nodes = {found.nodes, found.nodes + NODES, found.nodes + 2 * NODES};
+        kernels->add_edges(&block, factors, &edges, &nodes);
+        assert_memory_equal(&expected, &found, sizeof found);
+    }
+}
+
 int main(int argc, char **argv) {
     const mspring_simd level = level_from_arguments(argc, argv);
     kernels = &mspringi_kernels_of(level)->system;
@@ -647,6 +701,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(stretches),
         cmocka_unit_test(passes_by_part),
         cmocka_unit_test(weights_are_those_of_the_lanes),
+        cmocka_unit_test(edges_in_double_precision),
     };
     return cmocka_run_group_tests_name("system_kernels", tests, NULL, NULL);
 }

@@ -66,6 +66,37 @@ static void list_ends(const mspring_network *network, mspringi_direct *direct) {
     }
 }
 
+static size_t block_count(const mspringi_direct *direct) {
+    return ((size_t)direct->place_count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
+}
+
+// The springs of a block's places, if their ends follow on each other as the places do; else there is no tip.
+static mspringi_edge_block find_edge_block(const mspringi_direct *direct, size_t block, uint32_t slots) {
+    const uint32_t first = (uint32_t)(block * MSPRINGI_WIDTH);
+    const uint32_t rest = direct->place_count - first, count = rest < MSPRINGI_WIDTH ? rest : MSPRINGI_WIDTH;
+    const mspringi_edge_block others = {.lanes = UINT32_MAX};
+    mspringi_edge_block found = {0};
+    for (uint32_t i = 0; i < count; ++i) {
+        const uint32_t a = direct->end_a[first + i], b = direct->end_b[first + i];
+        if (a == slots)
+            continue;
+        if (found.lanes == 0 && (a < i || b < i))
+            return others;
+        if (found.lanes == 0)
+            found = (mspringi_edge_block){.base = a - i, .tip = b - i};
+        if (a != found.base + i || b != found.tip + i)
+            return others;
+        found.lanes |= (uint32_t)1 << i;
+    }
+    return found;
+}
+
+static void find_edge_blocks(const mspring_network *network, mspringi_direct *direct) {
+    const uint32_t slots = (uint32_t)mspringi_slot_count(network);
+    for (size_t block = 0; block < block_count(direct); ++block)
+        direct->edge_blocks[block] = find_edge_block(direct, block, slots);
+}
+
 // Slots without springs are absent, and so is the one behind the last, the end of places without spring.
 static void list_absent(const mspring_network *network, const mspringi_direct *direct, bool *absent) {
     const size_t slots = mspringi_slot_count(network);
@@ -108,18 +139,19 @@ static mspring_result reserve(mspringi_direct *d, mspring_network *network) {
     mspringi_memory *memory = &network->memory;
     const mspring_simd level = network->kernels->level;
     const size_t places = d->place_count, nodes = mspringi_slot_count(network) + 1;
+    const size_t whole = block_count(d) * MSPRINGI_WIDTH, all_nodes = nodes + MSPRINGI_WIDTH;
     d->edges.xx = mspringi_alloc(memory, 3 * places, sizeof *d->edges.xx);
-    d->edges_twice.xx = mspringi_alloc(memory, 3 * places, sizeof *d->edges_twice.xx);
-    d->nodes_twice.xx = mspringi_alloc(memory, 3 * nodes, sizeof *d->nodes_twice.xx);
+    d->edges_twice.xx = mspringi_alloc(memory, 3 * whole, sizeof *d->edges_twice.xx);
+    d->nodes_twice.xx = mspringi_alloc(memory, 3 * all_nodes, sizeof *d->nodes_twice.xx);
     d->solution = mspringi_alloc(memory, 2 * nodes, sizeof *d->solution);
     if (!d->edges.xx || !d->edges_twice.xx || !d->nodes_twice.xx || !d->solution)
         return MSPRING_ERROR_MEMORY;
     d->edges.xy = d->edges.xx + places;
     d->edges.yy = d->edges.xy + places;
-    d->edges_twice.xy = d->edges_twice.xx + places;
-    d->edges_twice.yy = d->edges_twice.xy + places;
-    d->nodes_twice.xy = d->nodes_twice.xx + nodes;
-    d->nodes_twice.yy = d->nodes_twice.xy + nodes;
+    d->edges_twice.xy = d->edges_twice.xx + whole;
+    d->edges_twice.yy = d->edges_twice.xy + whole;
+    d->nodes_twice.xy = d->nodes_twice.xx + all_nodes;
+    d->nodes_twice.yy = d->nodes_twice.xy + all_nodes;
     mspring_result result = mspringi_cholesky_float_create(&d->single, &d->plan, level, memory, &network->message);
     return result == MSPRING_OK
                ? mspringi_cholesky_double_create(&d->twice, &d->plan, level, memory, &network->message)
@@ -131,9 +163,11 @@ mspring_result mspringi_direct_create(mspringi_direct *direct, mspring_network *
     *direct = (mspringi_direct){.place_count = t->chain_places + t->leftover_count};
     direct->end_a = mspringi_alloc(&network->memory, direct->place_count, sizeof *direct->end_a);
     direct->end_b = mspringi_alloc(&network->memory, direct->place_count, sizeof *direct->end_b);
+    direct->edge_blocks = mspringi_alloc(&network->memory, block_count(direct), sizeof *direct->edge_blocks);
     mspring_result result = MSPRING_ERROR_MEMORY;
-    if (direct->end_a && direct->end_b) {
+    if (direct->end_a && direct->end_b && direct->edge_blocks) {
         list_ends(network, direct);
+        find_edge_blocks(network, direct);
         result = make_plan(direct, network);
     }
     if (result == MSPRING_OK)
@@ -156,6 +190,7 @@ void mspringi_direct_destroy(mspringi_direct *direct, mspringi_memory *memory) {
     mspringi_cholesky_plan_destroy(&direct->plan, memory);
     mspringi_free(memory, direct->end_a);
     mspringi_free(memory, direct->end_b);
+    mspringi_free(memory, direct->edge_blocks);
     mspringi_free(memory, direct->edges.xx);
     mspringi_free(memory, direct->edges_twice.xx);
     mspringi_free(memory, direct->nodes_twice.xx);
@@ -214,14 +249,12 @@ static bool solve_in_single(mspring_network *network) {
 
 /* ------------------------------------------------------------------------------------------- double precision */
 
-// All blocks, from the springs' factors: sums in single precision would not be positive definite.
-static void fill_twice(const mspring_network *network, double added) {
-    const mspringi_implicit *n = network->implicit;
+// As mspringi_edges_fn, whatever the springs of a block join.
+static void add_any_edges(const mspringi_implicit *n, uint32_t first) {
     const mspringi_direct *d = &n->direct;
-    const size_t slots = mspringi_slot_count(network);
     const mspringi_blocks_double node = d->nodes_twice, edge = d->edges_twice;
-    memset(node.xx, 0, 3 * (slots + 1) * sizeof *node.xx);
-    for (uint32_t place = 0; place < d->place_count; ++place) {
+    const uint32_t rest = d->place_count - first, count = rest < MSPRINGI_WIDTH ? rest : MSPRINGI_WIDTH;
+    for (uint32_t place = first; place < first + count; ++place) {
         const uint32_t a = d->end_a[place], b = d->end_b[place];
         const float *f = factors_of_block(n, place / MSPRINGI_WIDTH) + place % MSPRINGI_WIDTH;
         const double pull_x = (double)f[MSPRINGI_PULL_X * MSPRINGI_WIDTH];
@@ -237,6 +270,27 @@ static void fill_twice(const mspring_network *network, double added) {
         node.xx[b] += xx;
         node.xy[b] += xy;
         node.yy[b] += yy;
+    }
+}
+
+// All blocks, from the springs' factors: sums in single precision would not be positive definite.
+static void fill_twice(const mspring_network *network, double added) {
+    const mspringi_implicit *n = network->implicit;
+    const mspringi_direct *d = &n->direct;
+    const size_t slots = mspringi_slot_count(network);
+    const mspringi_blocks_double node = d->nodes_twice;
+    memset(node.xx, 0, 3 * (slots + 1 + MSPRINGI_WIDTH) * sizeof *node.xx);
+    for (size_t block = 0; block < block_count(d); ++block) {
+        const size_t first = block * MSPRINGI_WIDTH;
+        const mspringi_edge_block *edges = &d->edge_blocks[block];
+        const mspringi_blocks_double to = {d->edges_twice.xx + first, d->edges_twice.xy + first,
+                                           d->edges_twice.yy + first};
+        if (edges->lanes == 0)
+            continue;
+        if (edges->base != edges->tip)
+            network->kernels->system.add_edges(edges, factors_of_block(n, block), &to, &node);
+        else
+            add_any_edges(n, (uint32_t)first);
     }
     mspringi_floor_add_nodes(network, node.xx, node.xy, node.yy);
     for (size_t i = 0; i < slots; ++i) {

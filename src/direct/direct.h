@@ -15,23 +15,22 @@
 #include "linear/cholesky.h"
 #include "network/network.h"
 
-/// Three numbers for each node or edge, xx, xy and yy, one array behind the other.
+/// As mspringi_blocks_double.
 typedef struct mspringi_blocks_float {
     float *xx, *xy, *yy;
 } mspringi_blocks_float;
-typedef struct mspringi_blocks_double {
-    double *xx, *xy, *yy;
-} mspringi_blocks_double;
 
 typedef struct mspringi_direct {
-    uint32_t place_count;    ///< edges
-    uint32_t *end_a, *end_b; ///< [place_count] slots; of places without spring both the slot count
+    uint32_t place_count;             ///< edges
+    uint32_t *end_a, *end_b;          ///< [place_count] slots; of places without spring both the slot count
+    mspringi_edge_block *edge_blocks; ///< [place_count / MSPRINGI_WIDTH, rounded up]; tip = base: springs have to
+                                      ///< be taken one by one
     mspringi_cholesky_plan plan;
     mspringi_cholesky_float single;
     mspringi_cholesky_double twice;
     mspringi_blocks_float edges;        ///< [place_count]
-    mspringi_blocks_double edges_twice; ///< [place_count]
-    mspringi_blocks_double nodes_twice; ///< [slots + 1]
+    mspringi_blocks_double edges_twice; ///< [place_count, rounded up to whole blocks]
+    mspringi_blocks_double nodes_twice; ///< [slots + 1 + MSPRINGI_WIDTH]
     double *solution;                   ///< [slots + 1] x, then y
 } mspringi_direct;
 

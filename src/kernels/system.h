@@ -260,6 +260,24 @@ typedef void (*mspringi_stretch_fn)(const mspringi_system *system, const mspring
                                     const mspringi_span *spans, uint32_t count, bool is_lattice, bool driven,
                                     double *sums);
 
+/* ------------------------------------------------------------------------------------------ in double precision */
+
+/// Three numbers for each node or edge, xx, xy and yy, one array behind the other.
+typedef struct mspringi_blocks_double {
+    double *xx, *xy, *yy;
+} mspringi_blocks_double;
+
+/// MSPRINGI_WIDTH places of springs: that of lane i, if there is one, joins the slots base + i and tip + i.
+typedef struct mspringi_edge_block {
+    uint32_t base, tip;
+    uint32_t lanes; ///< bit i: there is one
+} mspringi_edge_block;
+
+/// Fill in the blocks beside the diagonal, edges beginning at that of lane 0, also where there is no spring; add
+/// the springs there are to those on the diagonal. Lanes without spring, too, are read and added to by 0.
+typedef void (*mspringi_edges_fn)(const mspringi_edge_block *block, const float *factors,
+                                  const mspringi_blocks_double *edges, const mspringi_blocks_double *nodes);
+
 typedef struct mspringi_system_kernels {
     mspringi_weigh_fn weigh;
     mspringi_aim_fn aim_tile;
@@ -278,6 +296,7 @@ typedef struct mspringi_system_kernels {
     mspringi_land_fn land[MSPRINGI_REMEMBERS];
     mspringi_move_fn move;
     mspringi_stretch_fn stretch;
+    mspringi_edges_fn add_edges;
 } mspringi_system_kernels;
 
 #endif

@@ -9,6 +9,7 @@
 #include "sight.h"
 #include "strain.h"
 #include "system_assemble.h"
+#include "system_double.h"
 #include "system_energy.h"
 #include "system_iterate.h"
 #include "system_motion.h"
@@ -84,5 +85,6 @@ const mspringi_kernels MSPRINGI_TABLE = {
                         [MSPRINGI_REMEMBER_ACCELERATION] = land_acceleration,
                         [MSPRINGI_REMEMBER_BOTH] = land_both},
                .move = sum_moves,
-               .stretch = sum_stretches},
+               .stretch = sum_stretches,
+               .add_edges = add_edges},
 };

@@ -136,9 +136,10 @@ static void fill_entries(mspringi_cholesky_plan *plan, const mspringi_cholesky_g
             if (a == MSPRING_NONE || b == MSPRING_NONE)
                 continue;
             const uint32_t column = 2 * (a < b ? a : b), row = 2 * (a < b ? b : a);
+            const uint32_t own = column / MSPRINGI_BAND_COLUMNS * MSPRINGI_BAND_COLUMNS;
             uint32_t *const at = &next[column / MSPRINGI_BAND_COLUMNS];
             if (pass == 1)
-                plan->entries[*at] = (mspringi_cholesky_entry){edge, column * MSPRINGI_PAD + row % MSPRINGI_PAD};
+                plan->entries[*at] = (mspringi_cholesky_entry){edge, column * MSPRINGI_PAD + row - own};
             ++*at;
         }
         for (uint32_t group = 0, end = 0; group < plan->band_groups && pass == 0; ++group) {

@@ -33,6 +33,14 @@
 #define VECTORS_OF(type) type
 #define VECTORS_ANYWHERE_OF(type) type
 #endif
+// As wide as four numbers at most: the rows of a group of a banded factor.
+#if defined(__GNUC__) && MSPRINGI_VECTOR_BYTES > 16
+typedef __attribute__((vector_size(16), may_alias)) float band_vector_float;
+typedef __attribute__((vector_size(32), may_alias)) double band_vector_double;
+#else
+typedef VECTORS_OF(float) band_vector_float;
+typedef VECTORS_OF(double) band_vector_double;
+#endif
 typedef VECTORS_OF(float) vector_float;
 typedef VECTORS_OF(double) vector_double;
 typedef VECTORS_OF(uint32_t) mask_float;
@@ -51,6 +59,7 @@ static const uint64_t masks_double[2 * MSPRINGI_PAD] = {SIXTEEN(UINT64_MAX)};
 #define NAME(name) name##_float
 #define REAL float
 #define VECTOR vector_float
+#define BAND_VECTOR band_vector_float
 #define VECTOR_ANYWHERE vector_anywhere_float
 #define MASK mask_float
 #define MASK_ANYWHERE mask_anywhere_float
@@ -62,6 +71,7 @@ static const uint64_t masks_double[2 * MSPRINGI_PAD] = {SIXTEEN(UINT64_MAX)};
 #undef NAME
 #undef REAL
 #undef VECTOR
+#undef BAND_VECTOR
 #undef VECTOR_ANYWHERE
 #undef MASK
 #undef MASK_ANYWHERE
@@ -73,6 +83,7 @@ static const uint64_t masks_double[2 * MSPRINGI_PAD] = {SIXTEEN(UINT64_MAX)};
 #define NAME(name) name##_double
 #define REAL double
 #define VECTOR vector_double
+#define BAND_VECTOR band_vector_double
 #define VECTOR_ANYWHERE vector_anywhere_double
 #define MASK mask_double
 #define MASK_ANYWHERE mask_anywhere_double

@@ -134,6 +134,7 @@ DEFINE_MOVE_FACTOR(double)
 static void move_direct(const moving *m, mspringi_direct *direct) {
     MOVE(direct->end_a);
     MOVE(direct->end_b);
+    MOVE(direct->edge_blocks);
     MOVE(direct->plan.order);
     MOVE(direct->plan.band_entries);
     MOVE(direct->plan.fronts);
