@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "added.h"
 #include "machine.h"
 #include "modes.h"
 #include "wreck.h"
@@ -380,12 +381,40 @@ static bool compact(mspring_network *network, double *all, double *longest, scen
     return true;
 }
 
+/// Compactions that are timed: the first of a process is slower, as it is given its memory by the system.
+#define COMPACTIONS 5u
+
+/// Compact a network several times.
+/// @param all      [COMPACTIONS] how long each took, sorted
+/// @param longest  [COMPACTIONS] and its longest piece, likewise
+static bool compact_again(mspring_network *network, double *all, double *longest, scene_error *error) {
+    for (uint32_t i = 0; i < COMPACTIONS; i++) {
+        mspring_result result = mspring_network_expand(network);
+        if (result != MSPRING_OK) {
+            bench_library_error(error, "expanding", result, mspring_network_error(network));
+            return false;
+        }
+        if (!compact(network, &all[i], &longest[i], error)) {
+            return false;
+        }
+    }
+    bench_median(all, COMPACTIONS); // sorts
+    bench_median(longest, COMPACTIONS);
+    return true;
+}
+
+static void print_compaction(session *with, const bench_options *options, const bench_scene *subject,
+                             const double *all, const double *longest, double step) {
+    const uint32_t middle = COMPACTIONS / 2;
+    print_row(options, subject, with->step, "  to compact it", all[0], all[middle], step);
+    print_row(options, subject, with->step, "  the longest piece of that", longest[0], longest[middle], step);
+}
+
 /// Time steps of a wreck in turn with those of the whole: as it is after the breaks, and compact; and the
 /// compaction.
 static bool measure_wreck(session *with, const bench_options *options, const bench_scene *subject,
                           mspring_simd level, bench_wreck kind, uint32_t repeat, double *times,
                           scene_error *error) {
-    enum { COMPACTIONS = 5 };
     char text[64];
     bench_network wreck;
     if (!bench_network_create(subject->made.builder, level, 1, with->step->substeps, &wreck, error)) {
@@ -398,18 +427,12 @@ static bool measure_wreck(session *with, const bench_options *options, const ben
         snprintf(text, sizeof text, "%s", bench_wreck_name(kind));
         print_row(options, subject, with->step, text, of_wreck[0], of_wreck[repeat / 2], times[0]);
     }
-    for (uint32_t i = 0; ok && i < COMPACTIONS; i++) {
-        ok = mspring_network_expand(wreck.network) == MSPRING_OK &&
-             compact(wreck.network, &seconds[i], &pieces[i], error);
-    }
-    if (ok && measure_steps(&whole, &broken, repeat, times, error)) {
-        const double median = bench_median(seconds, COMPACTIONS), median_piece = bench_median(pieces, COMPACTIONS);
+    ok = ok && compact_again(wreck.network, seconds, pieces, error) &&
+         measure_steps(&whole, &broken, repeat, times, error);
+    if (ok) {
         snprintf(text, sizeof text, "%s, compact", bench_wreck_name(kind));
         print_row(options, subject, with->step, text, of_wreck[0], of_wreck[repeat / 2], times[0]);
-        print_row(options, subject, with->step, "  to compact it", seconds[0], median, times[0]);
-        print_row(options, subject, with->step, "  the longest piece of that", pieces[0], median_piece, times[0]);
-    } else {
-        ok = false;
+        print_compaction(with, options, subject, seconds, pieces, times[0]);
     }
     bench_network_free(&wreck);
     return ok;
@@ -492,6 +515,67 @@ static bool measure_parts(session *with, const bench_options *options, const ben
     }
     bench_network_free(&all[0]);
     bench_network_free(&all[1]);
+    return ok;
+}
+
+/// Add springs, and take them out again but for the last time: how long adding takes.
+static bool add(mspring_network *network, const mspring_spring_def *springs, mspring_id *ids, uint32_t count,
+                uint32_t repeat, double *seconds, scene_error *error) {
+    mspring_result result = MSPRING_OK;
+    for (uint32_t i = 0; result == MSPRING_OK && i < repeat; i++) {
+        const double start = bench_thread_seconds();
+        result = mspring_network_add_springs(network, springs, count, ids);
+        seconds[i] = bench_thread_seconds() - start;
+        if (result == MSPRING_OK && i + 1 < repeat) {
+            result = mspring_network_remove_springs(network, ids, count);
+        }
+        if (result == MSPRING_OK) {
+            result = mspring_network_recycle(network);
+        }
+    }
+    if (result != MSPRING_OK) {
+        bench_library_error(error, "adding springs", result, mspring_network_error(network));
+    }
+    return result == MSPRING_OK;
+}
+
+/// Time adding springs: the call, the compaction that takes them into the plan, and steps in turn with those of the
+/// network without them, before and after that.
+static bool measure_added(session *with, const bench_options *options, const bench_scene *subject,
+                          mspring_simd level, uint32_t count, uint32_t repeat, double *times, scene_error *error) {
+    enum { CALLS = 7 };
+    double made[CALLS], all[COMPACTIONS], longest[COMPACTIONS], *const of_added = times + repeat;
+    char text[64];
+    bench_network added;
+    mspring_spring_def *springs = bench_allocate(count, sizeof *springs, error);
+    mspring_id *ids = bench_allocate(count, sizeof *ids, error);
+    bool ok = springs != NULL && ids != NULL &&
+              bench_added_create(subject->made.builder, level, 1, with->step->substeps, count, &added, error);
+    if (!ok) {
+        free(springs);
+        free(ids);
+        return false;
+    }
+    bench_runner before = bench_network_runner(with->step), after = bench_network_runner(&added);
+    ok = bench_added_list(&added, count, springs, error) && after.run(after.self, 1, error) &&
+         add(added.network, springs, ids, count, CALLS, made, error) &&
+         measure_steps(&before, &after, repeat, times, error);
+    if (ok) {
+        const double median = bench_median(made, CALLS); // sorts
+        snprintf(text, sizeof text, "add %u springs", count);
+        print_row(options, subject, with->step, text, made[0], median, times[0]);
+        print_row(options, subject, with->step, "  a step with these", of_added[0], of_added[repeat / 2], times[0]);
+    }
+    ok = ok && compact_again(added.network, all, longest, error) &&
+         measure_steps(&before, &after, repeat, times, error);
+    if (ok) {
+        print_row(options, subject, with->step, "  a step with these, compact", of_added[0], of_added[repeat / 2],
+                  times[0]);
+        print_compaction(with, options, subject, all, longest, times[0]);
+    }
+    bench_network_free(&added);
+    free(springs);
+    free(ids);
     return ok;
 }
 
@@ -600,6 +684,9 @@ static bool measure_level(const bench_scene *subject, const bench_options *optio
     }
     for (bench_wreck kind = 0; ok && kind < BENCH_WRECKS; kind++) {
         ok = measure_wreck(&with, options, subject, level, kind, repeat, times, &error);
+    }
+    for (uint32_t count = 100; ok && count <= springs / 10; count *= 10) {
+        ok = measure_added(&with, options, subject, level, count, repeat, times, &error);
     }
     if (!ok) {
         bench_complain(subject->label, &error);

@@ -1,0 +1,96 @@
+/// @file added.c
+/// Networks that springs are added to while they run.
+///
+/// SPDX-License-Identifier: MIT
+#include "added.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/// How far from its first particle a spring's second one is, m, and how firm it is: as the other springs are.
+#define REACH 2.0
+#define STIFFNESS 0.02f
+#define DAMPING 0.03f
+
+bool bench_added_create(mspring_builder *builder, mspring_simd level, uint32_t workers, uint32_t substeps,
+                        uint32_t spare_springs, bench_network *out, scene_error *error) {
+    if (!bench_network_create(builder, level, workers, substeps, out, error)) {
+        return false;
+    }
+    mspring_network_def def;
+    mspring_network_destroy(out->network);
+    out->network = NULL;
+    mspring_result result = mspring_network_def_init(&def, sizeof def);
+    def.simd_level = level;
+    def.worker_count = workers;
+    def.substeps = substeps;
+    def.global_damping = BENCH_GLOBAL_DAMPING;
+    def.spare_springs = spare_springs;
+    if (result == MSPRING_OK) {
+        result = mspring_network_create(builder, &def, &out->network);
+    }
+    if (result != MSPRING_OK) {
+        bench_library_error(error, "making room for springs", result, mspring_builder_error(builder));
+        bench_network_free(out);
+    }
+    return result == MSPRING_OK;
+}
+
+/// A particle and where it is.
+typedef struct place {
+    double x, y;
+    mspring_id particle;
+} place;
+
+static int compare(const void *a, const void *b) {
+    const place *one = a, *other = b;
+    if (one->y != other->y) {
+        return one->y < other->y ? -1 : 1;
+    }
+    return (one->x > other->x) - (one->x < other->x);
+}
+
+/// The place in a row that lies so far to the right of another, or the end of the row.
+static uint32_t find(const place *places, uint32_t count, uint32_t from) {
+    uint32_t to = from + 1;
+    while (to < count && places[to].y == places[from].y && places[to].x < places[from].x + REACH) {
+        to++;
+    }
+    return to < count && places[to].y == places[from].y && places[to].x == places[from].x + REACH ? to : from;
+}
+
+bool bench_added_list(const bench_network *network, uint32_t count, mspring_spring_def *springs,
+                      scene_error *error) {
+    const uint32_t particles = network->particle_count;
+    place *places = bench_allocate(particles, sizeof *places, error);
+    if (places == NULL) {
+        return false;
+    }
+    for (mspring_id p = 0; p < particles; p++) {
+        places[p] = (place){network->start_x[p], network->start_y[p], p};
+    }
+    qsort(places, particles, sizeof *places, compare);
+    uint32_t found = 0, from = 0;
+    for (uint32_t i = 0; i < count && from < particles; i++, from++) {
+        const uint32_t even = (uint32_t)((uint64_t)i * particles / count);
+        from = from > even ? from : even;
+        while (from < particles && find(places, particles, from) == from) {
+            from++;
+        }
+        if (from == particles || mspring_spring_def_init(&springs[i], sizeof springs[i]) != MSPRING_OK) {
+            break;
+        }
+        springs[i].a = places[from].particle;
+        springs[i].b = places[find(places, particles, from)].particle;
+        springs[i].flags = MSPRING_SPRING_RELATIVE;
+        springs[i].stiffness = STIFFNESS;
+        springs[i].damping = DAMPING;
+        found++;
+    }
+    if (found < count) {
+        snprintf(error->text, sizeof error->text, "there is no place for %u springs more", count);
+    }
+    free(places);
+    return found == count;
+}
