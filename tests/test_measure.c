@@ -271,14 +271,19 @@ static void extents_are_those_of_each_spring(void **state) {
     (void)state;
     for (uint64_t variant = 1; variant <= 10; variant++) {
         uint64_t seed = variant;
-        const recipe_stuff stuff = {
-            .mass = {1, 2}, .stiffness = {50, 100}, .damping = {0, variant % 2 ? 1 : 0}, .holes = 0.2};
+        const recipe_stuff stuff = {.mass = {1, 2},
+                                    .stiffness = {50, 100},
+                                    .damping = {0, variant % 2 ? 1 : 0},
+                                    .holes = variant > 6 ? 0.2 : 0.02};
         recipe made = {0};
-        recipe_lattice(&made, 5 + 7 * (uint32_t)variant, 6, 0, 0, 1, &stuff, &seed);
+        const uint32_t longer = 5 + 7 * (uint32_t)variant;
+        recipe_lattice(&made, variant % 2 ? longer : 6, variant % 2 ? 6 : longer, 0, 0, 1, &stuff, &seed);
         recipe_rope(&made, 0, made.particle_count - 1, 40, &stuff, &seed);
         recipe_random_springs(&made, 23, &stuff, &seed);
         recipe_disturb(&made, 0.2, 3, &seed);
-        recipe_shuffle(&made, &seed, NULL);
+        if (variant % 3 == 0) { // else most ids lie in patterns
+            recipe_shuffle(&made, &seed, NULL);
+        }
         mspring_network *network = recipe_network(&made, NULL);
         const mspring_id broken = 3;
         check_ok(mspring_network_break_springs(network, &broken, 1));

@@ -191,8 +191,8 @@ typedef struct mspringi_growth {
 
 /// What is needed to measure all springs at once; NULL as long as that has not been done.
 typedef struct mspringi_extents {
-    float *scratch;    ///< [places]
-    uint8_t *reversed; ///< [springs / 8] a bit for each spring: 1 where its base is the end with the higher id
+    float *scratch;     ///< [2][places] what is computed, see extents.c
+    uint16_t *reversed; ///< [place words] a bit for each place: 1 where its base is the end with the higher id
 } mspringi_extents;
 
 /// A pointer added here, or to what hangs on it, goes into clone.c, too.
