@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "contact/floor.h"
+#include "creep.h"
 #include "network/alike.h"
 #include "sleep/sleep.h"
 #include "strip.h"
@@ -34,6 +35,8 @@ typedef struct job {
     mspringi_progress *progress; ///< [workers]; NULL for one
     uint32_t group;              ///< substeps in a pass (wave)
     uint32_t fronts;             ///< steps of a pass of that many (wave)
+    uint32_t strips, lag, depth; ///< of what, by how many behind each other, so many at once (wave)
+    const mspringi_strip *web;   ///< the web row's, if that is swept in layers, as strips of a wave of its own
     mspringi_sight *sights;      ///< [workers] if the substeps are a whole step; else NULL
 } job;
 
@@ -61,25 +64,23 @@ uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t par
 // How the substeps are divided: worker w makes the passes w, w + workers, ... over all strips, each pass some
 // strips behind the one before, so that what is computed, and in which order, is the same for any number of
 // workers. A pass must be short enough for each worker's next one to begin as soon as it is done with the last.
-static job plan_wave(const mspring_network *network, float h, mspringi_field base, uint32_t count,
-                     mspringi_sight *sights) {
-    const mspringi_topology *t = &network->topology;
-    job made = {.network = network, .base = base, .h = h, .count = count, .sights = sights};
-    const bool shared = (uint64_t)mspringi_swept_count(t) * count >= SMALLEST_SHARED_WORK;
-    made.workers = shared ? mspringi_tasks_concurrency(network->tasks) : 1;
-    while (made.workers > 1 && made.workers * (t->lag + 2 + SLACK) > t->wave_strips)
-        made.workers--;
-    uint32_t group = network->depth;
-    if (made.workers > 1 && group > (t->wave_strips / made.workers - 2 - SLACK) / t->lag)
-        group = (t->wave_strips / made.workers - 2 - SLACK) / t->lag;
+static void plan_wave(job *wave) {
+    const mspring_network *network = wave->network;
+    const uint32_t lag = wave->lag, count = wave->count;
+    const bool shared = (uint64_t)mspringi_swept_count(&network->topology) * count >= SMALLEST_SHARED_WORK;
+    wave->workers = shared ? mspringi_tasks_concurrency(network->tasks) : 1;
+    while (wave->workers > 1 && wave->workers * (lag + 2 + SLACK) > wave->strips)
+        wave->workers--;
+    uint32_t group = wave->depth;
+    if (wave->workers > 1 && group > (wave->strips / wave->workers - 2 - SLACK) / lag)
+        group = (wave->strips / wave->workers - 2 - SLACK) / lag;
     // Equal passes, and as many for each worker.
-    const uint32_t at_once = group * made.workers, rounds = (count + at_once - 1) / at_once;
-    made.group = (count + rounds * made.workers - 1) / (rounds * made.workers);
-    const uint32_t passes = (count + made.group - 1) / made.group;
-    made.workers = passes < made.workers ? passes : made.workers;
-    made.fronts = t->wave_strips + (made.group - 1) * t->lag;
-    made.progress = made.workers > 1 ? mspringi_tasks_progress(network->tasks) : NULL;
-    return made;
+    const uint32_t at_once = group * wave->workers, rounds = (count + at_once - 1) / at_once;
+    wave->group = (count + rounds * wave->workers - 1) / (rounds * wave->workers);
+    const uint32_t passes = (count + wave->group - 1) / wave->group;
+    wave->workers = passes < wave->workers ? passes : wave->workers;
+    wave->fronts = wave->strips + (wave->group - 1) * lag;
+    wave->progress = wave->workers > 1 ? mspringi_tasks_progress(network->tasks) : NULL;
 }
 
 // Wait until the pass before is so far that a pass can make its step number front: with its last substep beyond the
@@ -87,7 +88,7 @@ static job plan_wave(const mspring_network *network, float h, mspringi_field bas
 static void wait_for_pass_before(const job *wave, uint32_t pass, uint32_t front) {
     if (pass == 0 || !wave->progress)
         return;
-    const uint32_t behind = front + wave->group * wave->network->topology.lag + 2;
+    const uint32_t behind = front + wave->group * wave->lag + 2;
     const uint32_t done = behind < wave->fronts ? behind : wave->fronts;
     mspringi_progress_wait(&wave->progress[(pass - 1) % wave->workers],
                            (pass - 1) / wave->workers * wave->fronts + done);
@@ -115,27 +116,54 @@ static void sweep_strip(const job *wave, const mspringi_substep *substep, uint32
         add_sight(wave, worker, mspringi_strip_end(wave->network, strip));
 }
 
+// A layer of the web row, as a span of its own.
+static mspringi_span layer_span(const job *wave, uint32_t layer) {
+    const mspringi_topology *t = &wave->network->topology;
+    const uint32_t begin = t->layer_blocks[layer], end = t->layer_blocks[layer + 1];
+    mspringi_span span = t->spans[t->rows[wave->web->first_row].first_span];
+    span.first_slot += begin * MSPRINGI_WIDTH;
+    span.end_slot = span.first_slot + (end - begin) * MSPRINGI_WIDTH;
+    span.first_record += begin;
+    return span;
+}
+
+// The same of a layer of the web row.
+static void sweep_layer(const job *wave, const mspringi_substep *substep, uint32_t layer) {
+    const mspring_network *network = wave->network;
+    const mspringi_span span = layer_span(wave, layer);
+    mspringi_web_sweep(network, substep, &span);
+    mspringi_floor_touch(network, wave->web, &span, 1, substep->sweep.h);
+    if (substep->next_packed)
+        mspringi_web_pack_next(network, substep, &span);
+    if (substep->sweep.watch)
+        mspringi_creep_stop(network, span.first_slot, span.end_slot);
+}
+
 // Make one pass: several substeps over all strips of the wave, each lag strips behind the one before, so that a
 // strip is in the cache for all of them. A strip's substep needs the one before of the strip itself, of the row
 // above, and of the other ends of leftover springs: all are done by then, and none is further.
 static void make_pass(const job *wave, uint32_t pass, uint32_t worker) {
     const mspring_network *network = wave->network;
-    const mspringi_topology *t = &network->topology;
-    const uint32_t first = pass * wave->group, left = wave->count - first;
+    const uint32_t first = pass * wave->group, left = wave->count - first, lag = wave->lag;
     const uint32_t count = left < wave->group ? left : wave->group;
     mspringi_substep substeps[DEEPEST];
     mspringi_watch_room room = {{0.0f}};
     mspringi_watch *const watch = mspringi_watch_in(&room);
     for (uint32_t i = 0; i < count; ++i) {
         substeps[i] = mspringi_substep_prepare(network, wave->h, wave->base, first + i, wave->count,
-                                               worker * network->depth + i);
+                                               wave->web ? 0 : worker * network->depth + i);
         mark_ends(wave, &substeps[i], first + i, watch);
     }
-    for (uint32_t front = 0; front < t->wave_strips + (count - 1) * t->lag; ++front) {
+    for (uint32_t front = 0; front < wave->strips + (count - 1) * lag; ++front) {
         wait_for_pass_before(wave, pass, front);
-        for (uint32_t i = 0; i < count && i * t->lag <= front; ++i)
-            if (front - i * t->lag < t->wave_strips)
-                sweep_strip(wave, &substeps[i], worker, &t->strips[front - i * t->lag]);
+        for (uint32_t i = 0; i < count && i * lag <= front; ++i) {
+            if (front - i * lag >= wave->strips)
+                continue;
+            if (wave->web)
+                sweep_layer(wave, &substeps[i], front - i * lag);
+            else
+                sweep_strip(wave, &substeps[i], worker, &network->topology.strips[front - i * lag]);
+        }
         if (wave->progress)
             mspringi_progress_advance(&wave->progress[worker], pass / wave->workers * wave->fronts + front + 1);
     }
@@ -164,10 +192,68 @@ static void sweep_wave(mspring_network *network, float h, mspringi_field base, u
     const mspringi_topology *t = &network->topology;
     if (t->wave_strips == 0)
         return;
-    job wave = plan_wave(network, h, base, count, sights);
+    job wave = {.network = network,
+                .base = base,
+                .h = h,
+                .count = count,
+                .strips = t->wave_strips,
+                .lag = t->lag,
+                .depth = network->depth,
+                .sights = sights};
+    plan_wave(&wave);
     if (t->web.group_count > 0)
         pack_wave(network, h, base, count);
     mspringi_tasks_run(wave.progress ? network->tasks : NULL, wave.workers, make_passes, &wave);
+}
+
+/* ---------------------------------------------------------------------------------------- a web's own wave */
+
+static const mspringi_strip *find_web_strip(const mspringi_topology *t) {
+    for (uint32_t s = t->wave_strips; s < t->strip_count; ++s)
+        if (t->rows[t->strips[s].first_row].kind == MSPRINGI_ROW_WEB)
+            return &t->strips[s];
+    return NULL;
+}
+
+// Substeps for which layers of the web row fit so much cache, at least one: a pass has as many under way, and two.
+static uint32_t web_depth_within(const job *wave, size_t cache_bytes) {
+    const mspringi_topology *t = &wave->network->topology;
+    const uint32_t first = t->spans[t->rows[wave->web->first_row].first_span].first_record;
+    const uint32_t groups = t->layer_blocks[t->layer_count];
+    const uint64_t rungs = t->web.first_rung[first + groups] - t->web.first_rung[first];
+    const uint64_t parts = wave->network->parts + 1;                            // and the neighbour
+    const uint64_t floats = rungs * parts + (uint64_t)groups * (4 + 1 + 2 * 4); // state, inverse mass, packed twice
+    const uint64_t layers = cache_bytes * t->layer_count / (floats * MSPRINGI_WIDTH * sizeof(float) + 1);
+    return layers < 3 ? 1 : layers - 2 < DEEPEST ? (uint32_t)layers - 2 : DEEPEST;
+}
+
+// Sweep the web row in layers, if it has them and that is worth it: for several substeps, where a wave has work for
+// all workers. (100,000 particles of about 8 neighbours, which take 15 MB, 40 substeps, on a Zen 4 whose
+// third-level cache others use, too: 28 ms instead of 60 to 75.)
+static bool sweep_layers(const mspring_network *network, float h, mspringi_field base, uint32_t count,
+                         mspringi_sight *sights) {
+    const mspringi_topology *t = &network->topology;
+    if (t->layer_count == 0 || count == 1 || network->graft.count > 0)
+        return false;
+    job wave = {.network = network,
+                .base = base,
+                .h = h,
+                .count = count,
+                .strips = t->layer_count,
+                .lag = 1,
+                .web = find_web_strip(t),
+                .sights = sights};
+    const uint32_t near_depth = web_depth_within(&wave, NEAR_CACHE_BYTES);
+    wave.depth = near_depth > FEW_SUBSTEPS ? near_depth : web_depth_within(&wave, FAR_CACHE_BYTES);
+    plan_wave(&wave);
+    if (wave.depth == 1 || wave.workers < mspringi_tasks_concurrency(network->tasks))
+        return false;
+    if (mspringi_share_of_strip(network, wave.web) == MSPRINGI_ASLEEP)
+        return true;
+    const mspringi_substep first = mspringi_substep_prepare(network, h, base, 0, count, 0);
+    mspringi_web_pack(network, &first, &t->spans[t->rows[wave.web->first_row].first_span]);
+    mspringi_tasks_run(wave.progress ? network->tasks : NULL, wave.workers, make_passes, &wave);
+    return true;
 }
 
 /* -------------------------------------------------------------------------------------------- the other strips */
@@ -300,6 +386,8 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
                 if (i == 0 && network->graft.count == 0)
                     sweep_loose(rest, &t->strips[s], index);
             } else if (row->kind == MSPRINGI_ROW_WEB) {
+                if (rest->web)
+                    continue;
                 strip = &t->strips[s];
                 share = share_of(&t->spans[row->first_span], index, rest->workers);
                 mspringi_web_pack(network, &substep, &share);
@@ -333,6 +421,10 @@ static void sweep_rest(mspring_network *network, float h, mspringi_field base, u
     if (t->wave_strips == t->strip_count)
         return;
     job rest = {.network = network, .base = base, .h = h, .count = count, .workers = 1, .sights = sights};
+    if (sweep_layers(network, h, base, count, sights))
+        rest.web = find_web_strip(t);
+    if (rest.web && t->wave_strips + 1 == t->strip_count)
+        return;
     if ((uint64_t)t->leftover_count * count >= SMALLEST_SHARED_WORK && network->graft.count == 0)
         rest.workers = mspringi_tasks_concurrency(network->tasks);
     rest.progress = rest.workers > 1 ? mspringi_tasks_progress(network->tasks) : NULL;

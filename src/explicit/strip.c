@@ -120,6 +120,11 @@ void mspringi_web_pack(const mspring_network *network, const mspringi_substep *s
     pack_span(network, &substep->sweep, span, substep->packed);
 }
 
+void mspringi_web_pack_next(const mspring_network *network, const mspringi_substep *substep,
+                            const mspringi_span *span) {
+    pack_span(network, &substep->sweep, span, substep->next_packed);
+}
+
 void mspringi_web_sweep(const mspring_network *network, const mspringi_substep *substep,
                         const mspringi_span *span) {
     const mspringi_row_fn web = network->kernels->web[network->parts > MSPRINGI_DAMPING][substep->base.x != NULL];

@@ -48,8 +48,10 @@ mspringi_sight mspringi_strip_end(const mspring_network *network, const mspringi
 void mspringi_span_keep(const mspring_network *network, const mspringi_span *span);
 mspringi_sight mspringi_span_look(const mspring_network *network, const mspringi_span *span);
 
-/// Pack the web's nodes of some of a web row's blocks, or sweep them.
+/// Pack the web's nodes of some of a web row's blocks for this substep or for the next, or sweep them.
 void mspringi_web_pack(const mspring_network *network, const mspringi_substep *substep, const mspringi_span *span);
+void mspringi_web_pack_next(const mspring_network *network, const mspringi_substep *substep,
+                            const mspringi_span *span);
 void mspringi_web_sweep(const mspring_network *network, const mspringi_substep *substep, const mspringi_span *span);
 
 #endif

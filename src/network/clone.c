@@ -46,6 +46,7 @@ static void move_topology(const moving *m, mspringi_topology *t) {
     MOVE(t->spans);
     MOVE(t->rows);
     MOVE(t->strips);
+    MOVE(t->layer_blocks);
 }
 
 /* --------------------------------------------------------------------------------------------- implicit solver */

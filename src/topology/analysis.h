@@ -156,7 +156,7 @@ typedef struct mspringi_web_list {
     bool is_half_sorted;               ///< those with a home are
     mspringi_sorting sorting;
 } mspringi_web_list;
-/// Find it: passes in their order.
+/// Find it: passes in their order, then its layers.
 void mspringi_web_list_count(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes,
                              const uint8_t *kinds, mspringi_pace *pace);
 mspring_result mspringi_web_list_reserve(mspringi_web_list *list, mspringi_pace *pace, mspringi_memory *memory,
@@ -167,8 +167,44 @@ void mspringi_web_list_set_keys(mspringi_web_list *list, const mspringi_graph *g
                                 mspringi_pace *pace);
 void mspringi_web_list_sort(mspringi_web_list *list, mspringi_pace *pace);
 void mspringi_web_list_take_order(mspringi_web_list *list, mspringi_pace *pace);
-void mspringi_web_list_order_windows(mspringi_web_list *list, const mspringi_graph *graph, mspringi_pace *pace,
-                                     mspringi_memory *memory);
 void mspringi_web_list_destroy(mspringi_web_list *list, mspringi_memory *memory);
+
+typedef enum mspringi_layers_stage {
+    MSPRINGI_LAYERS_MARKS,  ///< what there is to be found
+    MSPRINGI_LAYERS_SEEKS,  ///< a particle of another piece: from there,
+    MSPRINGI_LAYERS_SCOUTS, ///< one that is far away, and
+    MSPRINGI_LAYERS_LAYS,   ///< from that the layers
+    MSPRINGI_LAYERS_SORTS,  ///< the list by layer
+    MSPRINGI_LAYERS_COPIES,
+    MSPRINGI_LAYERS_DONE
+} mspringi_layers_stage;
+
+/// Layers of the web's particles without a home, if they are many: springs join particles of one layer or of two
+/// that follow each other.
+typedef struct mspringi_layers {
+    uint32_t count;     ///< 0: they have none
+    uint32_t *end;      ///< [count] behind the last of each, counted from the first particle without a home
+    uint32_t *layer_of; ///< [particles] of the network
+
+    // While they are found.
+    mspringi_layers_stage stage;
+    uint32_t *particles;     ///< the list
+    uint32_t particle_count; ///< in it
+    uint32_t *queue;         ///< [particle_count] of searches, one piece of the web behind the other
+    uint32_t piece;          ///< where in it the search under way begins
+    uint32_t head, tail, level_end;
+    uint32_t sought; ///< of the list: those before have been gone through
+} mspringi_layers;
+/// Find them and sort the list by layer: passes in their order.
+mspring_result mspringi_layers_reserve(mspringi_layers *layers, const mspringi_web_list *list,
+                                       const mspringi_graph *graph, mspringi_pace *pace, mspringi_memory *memory,
+                                       mspringi_message *message);
+void mspringi_layers_find(mspringi_layers *layers, const mspringi_graph *graph, mspringi_pace *pace,
+                          mspringi_memory *memory);
+void mspringi_layers_destroy(mspringi_layers *layers, mspringi_memory *memory);
+
+/// The list's last pass: put particles with about as many springs side by side, those of a layer.
+void mspringi_web_list_order_windows(mspringi_web_list *list, const mspringi_layers *layers,
+                                     const mspringi_graph *graph, mspringi_pace *pace, mspringi_memory *memory);
 
 #endif

@@ -35,6 +35,7 @@ struct mspringi_assembly {
     mspringi_grids grids;
     mspringi_homes homes;
     mspringi_web_list web;
+    mspringi_layers layers;
     mspringi_block_key *blocks; ///< of all grids, grid after grid in the order of their rows, each sorted
     size_t block_count, block_capacity;
     size_t grid_begin;      ///< where the blocks of the grid that is being listed begin
@@ -68,7 +69,8 @@ mspring_result mspringi_assembly_count_loose(mspringi_assembly *a);
 mspring_result mspringi_assembly_count_web_blocks(mspringi_assembly *a);
 mspring_result mspringi_assembly_number_the_rest(mspringi_assembly *a);
 
-/// Where the web's particle i goes among its slots: those of each home begin a block, and so do those without.
+/// Where the web's particle i goes among its slots: those of each home and of each layer begin a block, and so do
+/// those without.
 uint32_t mspringi_assembly_web_place(const mspringi_assembly *a, uint32_t i, uint32_t place_before);
 /// Whether a particle lies in the loose row. One that is absent has the first slot, which holds none, or a spare
 /// one.

@@ -54,7 +54,9 @@ uint32_t mspringi_assembly_web_place(const mspringi_assembly *a, uint32_t i, uin
     const uint32_t *particles = a->web.particles, *home = a->homes.home;
     if (i == 0)
         return 0;
-    const bool goes_on = home[particles[i]] == home[particles[i - 1]];
+    const uint32_t *layer_of = a->layers.count > 0 ? a->layers.layer_of : home;
+    const bool goes_on =
+        home[particles[i]] == home[particles[i - 1]] && layer_of[particles[i]] == layer_of[particles[i - 1]];
     return goes_on ? place_before + 1 : (place_before / MSPRINGI_WIDTH + 1) * MSPRINGI_WIDTH;
 }
 

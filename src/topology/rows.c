@@ -143,6 +143,23 @@ static bool append_home_spans(mspringi_assembly *a) {
     return true;
 }
 
+// The last particle of a layer says where the next one begins.
+static bool list_layers(mspringi_assembly *a) {
+    mspringi_topology *t = a->topology;
+    if (a->layers.count == 0)
+        return true;
+    const uint32_t *particles = a->web.particles + a->web.homed_count;
+    t->layer_blocks = mspringi_alloc(a->memory, (size_t)a->layers.count + 1, sizeof *t->layer_blocks);
+    if (!t->layer_blocks)
+        return false;
+    t->layer_blocks[0] = 0;
+    for (uint32_t i = 0; i < a->layers.count; ++i)
+        t->layer_blocks[i + 1] = t->slot_of_particle[particles[a->layers.end[i] - 1]] / MSPRINGI_WIDTH + 1 -
+                                 t->web_first - a->homed_blocks;
+    t->layer_count = a->layers.count;
+    return true;
+}
+
 // Cut the rows into strips: those of the wave as their homes want it, of the others each on its own.
 mspring_result mspringi_assembly_make_strips(mspringi_assembly *a) {
     mspringi_topology *t = a->topology;
@@ -159,7 +176,7 @@ mspring_result mspringi_assembly_make_strips(mspringi_assembly *a) {
         t->strips[s] = (mspringi_strip){.first_row = row, .row_count = count, .home_span = MSPRING_NONE};
         row += count;
     }
-    return append_home_spans(a) ? MSPRING_OK : mspringi_assembly_fail(a);
+    return append_home_spans(a) && list_layers(a) ? MSPRING_OK : mspringi_assembly_fail(a);
 }
 
 uint32_t *mspringi_assembly_list_strips_of_blocks(const mspringi_assembly *a) {

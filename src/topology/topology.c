@@ -35,7 +35,11 @@ static mspring_result attach_to_strips(mspringi_assembly *a) {
     for (uint32_t i = first; i < end; ++i) {
         if (t->web.attached_slot[i] == MSPRING_NONE)
             continue;
-        mspringi_strip *strip = &t->strips[a->weaving.strip_of_block[t->web.attached_slot[i] / MSPRINGI_WIDTH]];
+        const uint32_t number = a->weaving.strip_of_block[t->web.attached_slot[i] / MSPRINGI_WIDTH];
+        mspringi_strip *strip = &t->strips[number];
+        // Such a strip is swept with the web, one substep after the other.
+        if (number >= t->wave_strips)
+            t->layer_count = 0;
         if (strip->attached_count++ == 0)
             strip->first_attached = i;
     }
@@ -197,8 +201,17 @@ static mspring_result order_web(mspringi_assembly *a) {
     return MSPRING_OK;
 }
 
+static mspring_result begin_layers(mspringi_assembly *a) {
+    return mspringi_layers_reserve(&a->layers, &a->web, &a->graph, &a->pace, a->memory, a->message);
+}
+
+static mspring_result find_layers(mspringi_assembly *a) {
+    mspringi_layers_find(&a->layers, &a->graph, &a->pace, a->memory);
+    return MSPRING_OK;
+}
+
 static mspring_result order_web_windows(mspringi_assembly *a) {
-    mspringi_web_list_order_windows(&a->web, &a->graph, &a->pace, a->memory);
+    mspringi_web_list_order_windows(&a->web, &a->layers, &a->graph, &a->pace, a->memory);
     return MSPRING_OK;
 }
 
@@ -264,6 +277,8 @@ static mspring_result (*const layout_passes[])(mspringi_assembly *a) = {
     set_web_keys,
     sort_web,
     order_web,
+    begin_layers,
+    find_layers,
     order_web_windows,
     mspringi_assembly_begin_blocks,
     mspringi_assembly_number_blocks,
@@ -360,6 +375,7 @@ void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory
     mspringi_grids_destroy(&begun->grids, memory);
     mspringi_homes_destroy(&begun->homes, memory);
     mspringi_web_list_destroy(&begun->web, memory);
+    mspringi_layers_destroy(&begun->layers, memory);
     mspringi_free(memory, begun);
 }
 
@@ -434,6 +450,7 @@ void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *mem
     mspringi_free(memory, topology->spans);
     mspringi_free(memory, topology->rows);
     mspringi_free(memory, topology->strips);
+    mspringi_free(memory, topology->layer_blocks);
     mspringi_free(memory, topology->empty_runs);
     *topology = (mspringi_topology){0};
 }

@@ -11,7 +11,7 @@
 ///
 /// A spring that lies in no lattice or chain row is left over: the web has it. Web particles that hang on a lattice
 /// have a home: the strip of lattice rows that they are swept with, so that several substeps can be taken in one
-/// pass over the strips.
+/// pass over the strips. A large web without a home has layers for the same purpose.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_TOPOLOGY_H
@@ -102,6 +102,9 @@ typedef struct mspringi_topology {
     uint32_t wave_strips;  ///< the strips that they are in
     uint32_t lag;          ///< strips by which each substep of such a pass must stay behind the one before
     uint32_t carry_blocks; ///< blocks of the carry row
+
+    uint32_t layer_count;   ///< of the web row, if it is swept in layers, each with springs to the next ones only
+    uint32_t *layer_blocks; ///< [layer_count + 1] where each begins, counted from the row's first block
 
     // For the plan.
     uint32_t lattice_count, lattice_particles, lattice_springs, lattice_rows;

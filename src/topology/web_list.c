@@ -7,6 +7,9 @@
 /// narrow enough that a window's nodes stay near each other.
 #define WINDOW 256
 
+/// Particles with more springs than that are sorted as if they had that many.
+#define MOST_SPRINGS 0xffffu
+
 /* --------------------------------------------------------------------------------------------------- ordering */
 
 static uint32_t degree_of(const mspringi_graph *graph, uint32_t particle) {
@@ -26,12 +29,18 @@ static uint32_t quantise(double value, double low, double high) {
     return high > low ? (uint32_t)((value - low) / (high - low) * 65535.0) : 0;
 }
 
-static void order_window_by_degree(uint32_t *particles, uint32_t count, const mspringi_graph *graph) {
+// Within each layer, of which a window's particles may be in several, one behind the other.
+static void order_window_by_degree(uint32_t *particles, uint32_t count, const mspringi_layers *layers,
+                                   const mspringi_graph *graph) {
     uint64_t keys[WINDOW], scratch[WINDOW];
     uint32_t before[WINDOW];
     for (uint32_t i = 0; i < count; ++i) {
         before[i] = particles[i];
-        keys[i] = (uint64_t)(UINT32_MAX - degree_of(graph, particles[i])) << 32 | i;
+        const uint32_t layer =
+            layers->count > 0 ? layers->layer_of[particles[i]] - layers->layer_of[*particles] : 0;
+        const uint32_t degree = degree_of(graph, particles[i]);
+        const uint32_t lacks = degree < MOST_SPRINGS ? MOST_SPRINGS - degree : 0;
+        keys[i] = (uint64_t)layer << 48 | (uint64_t)lacks << 32 | i;
     }
     mspringi_sort_keys(keys, scratch, count);
     for (uint32_t i = 0; i < count; ++i)
@@ -126,14 +135,14 @@ void mspringi_web_list_take_order(mspringi_web_list *list, mspringi_pace *pace) 
         list->particles[i] = (uint32_t)list->keys[i];
 }
 
-void mspringi_web_list_order_windows(mspringi_web_list *list, const mspringi_graph *graph, mspringi_pace *pace,
-                                     mspringi_memory *memory) {
+void mspringi_web_list_order_windows(mspringi_web_list *list, const mspringi_layers *layers,
+                                     const mspringi_graph *graph, mspringi_pace *pace, mspringi_memory *memory) {
     const uint32_t free_count = list->count - list->homed_count;
     uint32_t *free_ones = list->particles + list->homed_count, first, end;
     mspringi_pace_take(pace, (free_count + WINDOW - 1) / WINDOW, 16 * WINDOW, &first, &end);
     for (uint32_t w = first; w < end; ++w)
         order_window_by_degree(free_ones + w * WINDOW,
-                               free_count - w * WINDOW < WINDOW ? free_count - w * WINDOW : WINDOW, graph);
+                               free_count - w * WINDOW < WINDOW ? free_count - w * WINDOW : WINDOW, layers, graph);
     if (pace->is_halfway)
         return;
     mspringi_free(memory, list->keys);

@@ -1,0 +1,232 @@
+/// @file test_layers.c
+/// A large web is swept in layers: several substeps in one pass give the bits of substeps taken one by one, for any
+/// number of workers, whatever else is in the network.
+///
+/// SPDX-License-Identifier: MIT
+#include <stdbool.h>
+#include <stdlib.h>
+
+#include "network/network.h"
+#include "recipe.h"
+#include "support.h"
+
+/// A few more than a web needs to get layers.
+#define PARTICLES 60100
+
+#define SUBSTEPS 6
+
+/// What there is in a network.
+typedef enum content {
+    ONE_PIECE,
+    MANY_PIECES,       ///< of 700 particles
+    WITH_CABLES,       ///< from one end to the other, and one particle that has a hundred springs; beside a lattice
+                       ///< with a rope, a strand and loose particles
+    ON_A_TIED_LATTICE, ///< of which rows cannot be swept for several substeps
+} content;
+
+/// Particles in a long heap, each with springs to three before it, in any order.
+static recipe heap_of(content of) {
+    uint64_t seed = 70 + of;
+    recipe made = {0};
+    for (uint32_t i = 0; i < PARTICLES; i++) {
+        recipe_particle(&made, 0.02 * i + support_random_between(&seed, 0, 1), support_random_between(&seed, 0, 3),
+                        support_random_between(&seed, 1, 2), i % 5000 == 17 ? MSPRING_PARTICLE_PINNED : 0);
+        const uint32_t piece = of == MANY_PIECES ? i % 700 : i;
+        for (uint32_t back = 1; back <= 3 && piece >= back * back; back++) {
+            recipe_spring(&made, i - back * back, i, support_random_between(&seed, 200, 2000), 2, 0);
+        }
+    }
+    const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {500, 900}};
+    if (of == WITH_CABLES) {
+        const mspring_id lattice = recipe_lattice(&made, 40, 60, 0, 10, 1, &stuff, &seed);
+        recipe_rope(&made, lattice + 3, lattice + 2000, 30, &stuff, &seed);
+        const mspring_id end = recipe_particle(&made, -20, 0, 1, 0), other = recipe_particle(&made, -80, 0, 1, 0);
+        recipe_rope(&made, end, other, 50, &stuff, &seed);
+        for (int i = 0; i < 40; i++) {
+            recipe_particle(&made, -5 - i, -9, 1, 0);
+        }
+        recipe_rope(&made, 5, PARTICLES - 9, 3, &stuff, &seed);
+        for (uint32_t i = 0; i < 100; i++) {
+            recipe_spring(&made, 30000, i * 40, 50, 0, 0);
+        }
+    } else if (of == ON_A_TIED_LATTICE) {
+        const mspring_id lattice = recipe_lattice(&made, 120, 1000, 2000, 0, 1, &stuff, &seed);
+        recipe_spring(&made, lattice, lattice + 119999, 500, 0, 0); // from its first row to its last
+        recipe_spring(&made, PARTICLES - 1, lattice, 500, 0, 0);
+    }
+    if (of != MANY_PIECES) {
+        recipe_disturb(&made, 0.02, 3, &seed);
+    }
+    recipe_shuffle(&made, &seed, NULL);
+    return made;
+}
+
+static void do_nothing(const mspring_hook_args *args, void *user) {
+    (void)args;
+    (void)user;
+}
+
+/// With a hook after every substep no two of them can share a pass.
+static void take_one_by_one(mspring_network *network) {
+    check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, do_nothing, NULL, NULL));
+}
+
+/// How steps are to be taken.
+typedef struct manner {
+    bool one_by_one, forced, on_floor, has_layers;
+    uint32_t workers;
+} manner;
+
+/// Springs join particles of one layer or of two that follow each other, and each has its particles.
+static void check_layers(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    const uint32_t first_block = t->web_first + t->web_blocks - t->layer_blocks[t->layer_count];
+    uint32_t *layer_of_block = calloc(t->block_count, sizeof *layer_of_block);
+    assert_non_null(layer_of_block);
+    for (uint32_t layer = 0; layer < t->layer_count; layer++) {
+        assert_true(t->layer_blocks[layer] < t->layer_blocks[layer + 1]);
+        for (uint32_t i = t->layer_blocks[layer]; i < t->layer_blocks[layer + 1]; i++) {
+            layer_of_block[first_block + i] = layer + 1;
+        }
+    }
+    for (uint32_t i = 0; i < t->leftover_count; i++) {
+        const int64_t a = layer_of_block[t->leftover_a[i] / MSPRINGI_WIDTH];
+        const int64_t b = layer_of_block[t->leftover_b[i] / MSPRINGI_WIDTH];
+        assert_true((a == 0) == (b == 0) && a - b <= 1 && b - a <= 1);
+    }
+    free(layer_of_block);
+}
+
+static uint64_t hash_after_steps(const recipe *made, manner how) {
+    mspring_network_def def = support_def(-9.8f, SUBSTEPS);
+    def.worker_count = how.workers;
+    def.global_damping = 0.25f;
+    mspring_network *network = recipe_network(made, &def);
+    if (how.one_by_one) {
+        take_one_by_one(network);
+    } else if (how.has_layers) {
+        assert_true(network->topology.layer_count >= 20);
+        check_layers(network);
+    } else {
+        assert_int_equal(network->topology.layer_count, 0);
+    }
+    const double planes[2][4] = {{0, 0.5, 0.01, 1}, {700, 0, -1, 0.2}};
+    mspring_floor_def floor;
+    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    floor.plane_count = 2;
+    floor.planes = planes[0];
+    floor.friction = 0.3f;
+    check_ok(mspring_network_set_floor(network, how.on_floor ? &floor : NULL));
+    for (mspring_id p = 0; how.forced && p < made->particle_count; p += 3) {
+        check_ok(mspring_network_apply_force(network, p, 30, -20));
+    }
+    support_steps(network, 2, 1.0 / 64);
+    const uint64_t hash = support_hash(network);
+    mspring_network_destroy(network);
+    return hash;
+}
+
+static void layers_give_the_bits_of_single_substeps(void **state) {
+    (void)state;
+    static const content contents[] = {ONE_PIECE, WITH_CABLES, ON_A_TIED_LATTICE};
+    for (size_t i = 0; i < COUNT_OF(contents); i++) {
+        const content of = contents[i];
+        recipe made = heap_of(of);
+        manner how = {.one_by_one = true, .forced = of == ONE_PIECE, .on_floor = of == WITH_CABLES, .workers = 1};
+        const uint64_t expected = hash_after_steps(&made, how);
+        how.one_by_one = false;
+        how.has_layers = of != ON_A_TIED_LATTICE;
+        for (how.workers = 1; how.workers <= 3; how.workers += 1 + (of == ON_A_TIED_LATTICE)) {
+            assert_int_equal(hash_after_steps(&made, how), expected);
+        }
+        recipe_free(&made);
+    }
+}
+
+static void small_webs_have_no_layers(void **state) {
+    (void)state;
+    recipe made = {0};
+    recipe_particle(&made, 0, 0, 1, 0);
+    for (uint32_t i = 1; i < 5000; i++) {
+        recipe_particle(&made, i % 70, i / 70.0, 1, 0);
+        recipe_spring(&made, i, i - 1, 100, 0, 0);
+        if (i > 2) {
+            recipe_spring(&made, i, i / 2, 100, 0, 0);
+        }
+    }
+    mspring_network *network = recipe_network(&made, NULL);
+    assert_int_equal(network->topology.layer_count, 0);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+/// Every second piece moves, the others sleep, and a step that is refused wakes none of them.
+static void pieces_sleep_in_layers(void **state) {
+    (void)state;
+    recipe made = heap_of(MANY_PIECES);
+    uint64_t hashes[2][2];
+    for (int one_by_one = 0; one_by_one < 2; one_by_one++) {
+        mspring_network_def def = support_def(0, SUBSTEPS);
+        def.sleep_speed = 0.001f;
+        def.sleep_time = 0.05f;
+        mspring_network *network = recipe_network(&made, &def);
+        if (one_by_one) {
+            take_one_by_one(network);
+        }
+        mspring_id moving = 0;
+        for (mspring_id p = 0; p < 40; p++) {
+            moving = p * 997;
+            check_ok(mspring_network_set_velocities_at(network, &moving, 1, &(float){1}, &(float){(float)(p % 3)}));
+        }
+        support_steps(network, 8, 1.0 / 64);
+        assert_true(network->sleep.sleeping > 0 && network->sleep.sleeping < network->sleep.count);
+        const uint64_t before = hashes[one_by_one][0] = support_hash(network);
+        check_ok(mspring_network_apply_force(network, moving, 1e9f, 0));
+        check_error(mspring_network_step(network, 1.0 / 64), MSPRING_ERROR_UNSTABLE);
+        assert_int_equal(support_hash(network), before);
+        assert_true(network->sleep.sleeping > 0);
+        check_ok(mspring_network_apply_force(network, moving, -1e9f, 0));
+        support_steps(network, 2, 1.0 / 64);
+        hashes[one_by_one][1] = support_hash(network);
+        mspring_network_destroy(network);
+    }
+    assert_int_equal(hashes[0][0], hashes[1][0]);
+    assert_int_equal(hashes[0][1], hashes[1][1]);
+    recipe_free(&made);
+}
+
+/// A clone, and what a compaction leaves, have layers of their own.
+static void clones_and_compact_ones_have_layers(void **state) {
+    (void)state;
+    recipe made = heap_of(ONE_PIECE);
+    const mspring_network_def def = support_def(-9.8f, SUBSTEPS);
+    mspring_network *network = recipe_network(&made, &def), *clone = NULL;
+    for (mspring_id s = 0; s < made.spring_count; s += 997) {
+        check_ok(mspring_network_break_springs(network, &s, 1));
+    }
+    for (int compact = 0; compact < 2; compact++) {
+        if (compact) {
+            check_ok(mspring_network_compact(network, 0, NULL));
+        }
+        check_ok(mspring_network_clone(network, NULL, &clone));
+        assert_true(clone->topology.layer_count > 0);
+        check_layers(clone);
+        take_one_by_one(clone);
+        support_steps(network, 2, 1.0 / 64);
+        support_steps(clone, 2, 1.0 / 64);
+        assert_int_equal(support_hash(clone), support_hash(network));
+        mspring_network_destroy(clone);
+    }
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(layers_give_the_bits_of_single_substeps),
+        cmocka_unit_test(small_webs_have_no_layers),
+        cmocka_unit_test(pieces_sleep_in_layers),
+        cmocka_unit_test(clones_and_compact_ones_have_layers),
+    };
+    return cmocka_run_group_tests_name("layers", tests, NULL, NULL);
+}
