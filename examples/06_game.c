@@ -24,17 +24,21 @@ enum {
     MOST_SPRINGS = 4 * MOST,
     SUBSTEPS = 40,
     EVENTS = 8192,
+    STAYS = 2,
     HEIGHTS = 81
 };
 
-static const double dt = 1.0 / 64;   // of a step, s
-static const float displaced = 1000; // kg of water in the volume of a particle
-static const float hull_mass = 350;  // kg
-static const float drag = 300;       // N s/m of a particle under water
-static const double leak = 200;      // kg/s through each broken spring under water
-static const double pump = 20000;    // kg/s that is bailed out of a ship afloat
-static const double ramp = 2;        // s that a repair takes
-static const double sinking = 45;    // s from the last blast to the end
+static const double dt = 1.0 / 64;    // of a step, s
+static const float displaced = 1000;  // kg of water in the volume of a particle
+static const float hull_mass = 350;   // kg
+static const float drag = 300;        // N s/m of a particle under water
+static const double leak = 200;       // kg/s through each broken spring under water
+static const double pump = 20000;     // kg/s that is bailed out of a ship afloat
+static const float firmness = 0.02f;  // stiffness of the ship's springs, and damping, as fractions of what
+static const float toughness = 0.03f; // substeps bear
+static const float breaking = 0.02f;  // strain
+static const double ramp = 2;         // s that a repair takes
+static const double sinking = 45;     // s from the last blast to the end
 static const double gravity = -(double)9.8f;
 
 typedef struct options {
@@ -55,6 +59,8 @@ typedef struct game {
     double water[MOST], size[MOST]; // by component: kg in it, particles of it
     double entered, bailed;         // kg
     uint32_t broken, restored, splits;
+    mspring_id stays[STAYS + 1]; // where they are to be: the mast's top, and places on deck
+    bool is_implicit, is_rigged, is_compact;
     double x[MOST], y[MOST], before_x[MOST], before_y[MOST]; // m, after the last step and before it
     double force_x[MOST], force_y[MOST];                     // N, of the water in the last step
     float impulse_x[MOST], impulse_y[MOST];                  // N s, of the floor in the last step
@@ -142,6 +148,14 @@ static bool is_ship(int column, int row) {
     return hull || house || mast;
 }
 
+// For the implicit solver what the fractions come to at SUBSTEPS.
+static void strength_of_springs(bool implicit, uint32_t *flags, float *stiffness, float *damping) {
+    const double h = dt / SUBSTEPS, half_mass = 0.5 * (double)hull_mass;
+    *flags = implicit ? 0 : MSPRING_SPRING_RELATIVE;
+    *stiffness = implicit ? (float)((double)firmness * half_mass / (h * h)) : firmness;
+    *damping = implicit ? (float)((double)toughness * half_mass / h) : toughness;
+}
+
 static mspring_result build(mspring_builder *builder, bool implicit) {
     static uint16_t cells[HEIGHT * WIDTH];
     for (int row = 0; row < HEIGHT; row++)
@@ -153,15 +167,7 @@ static mspring_result build(mspring_builder *builder, bool implicit) {
     if (result != MSPRING_OK || (result = mspring_lattice_def_init(&def, sizeof def)) != MSPRING_OK)
         return result;
     hull.mass = hull_mass;
-    hull.stiffness = 0.02f;
-    hull.damping = 0.03f;
-    if (implicit) { // what these fractions come to at SUBSTEPS
-        const double h = dt / SUBSTEPS, half_mass = 0.5 * (double)hull_mass;
-        hull.stiffness = (float)((double)hull.stiffness * half_mass / (h * h));
-        hull.damping = (float)((double)hull.damping * half_mass / h);
-    } else {
-        hull.spring_flags = MSPRING_SPRING_RELATIVE;
-    }
+    strength_of_springs(implicit, &hull.spring_flags, &hull.stiffness, &hull.damping);
     def.width = WIDTH;
     def.height = HEIGHT;
     def.y = -2;
@@ -171,28 +177,42 @@ static mspring_result build(mspring_builder *builder, bool implicit) {
     return mspring_builder_add_lattice(builder, &def, NULL);
 }
 
+static mspring_id nearest(const game *played, double x, double y) {
+    mspring_id found = 0;
+    double least = INFINITY;
+    for (mspring_id i = 0; i < played->particles; i++) {
+        const double dx = played->x[i] - x, dy = played->y[i] - y, distance = dx * dx + dy * dy;
+        found = distance < least ? i : found;
+        least = fmin(distance, least);
+    }
+    return found;
+}
+
 static bool start(game *played, mspring_builder *builder, const options *asked, const mspring_tasks *tasks) {
     mspring_network_def def;
-    static float breaking[MOST_SPRINGS];
+    static float strains[MOST_SPRINGS];
     if (mspring_network_def_init(&def, sizeof def) != MSPRING_OK || build(builder, asked->implicit) != MSPRING_OK)
         return false;
     def.substeps = asked->implicit ? 1 : SUBSTEPS;
     def.solver = asked->implicit ? MSPRING_SOLVER_IMPLICIT : MSPRING_SOLVER_EXPLICIT;
     def.worker_count = 2;
     def.tasks = tasks;
+    def.spare_springs = STAYS;
     if (mspring_network_create(builder, &def, &played->network) != MSPRING_OK) {
         fprintf(stderr, "cannot make the ship: %s\n", mspring_builder_error(builder));
         return false;
     }
+    played->is_implicit = asked->implicit;
+    played->is_compact = true;
     played->particles = mspring_network_particle_count(played->network);
     played->springs = mspring_network_spring_count(played->network);
     for (mspring_id s = 0; s < played->springs; s++) {
         mspring_spring_info info = {.struct_size = sizeof info};
         must(mspring_network_get_spring(played->network, s, &info), "spring", played);
         played->end[s] = info.a;
-        breaking[s] = 0.02f;
+        strains[s] = breaking;
     }
-    must(mspring_network_set_break_strains(played->network, 0, played->springs, breaking), "strains", played);
+    must(mspring_network_set_break_strains(played->network, 0, played->springs, strains), "strains", played);
     must(mspring_network_reserve_events(played->network, EVENTS), "events", played);
     must(mspring_network_get_masses(played->network, 0, played->particles, played->dry), "masses", played);
     must(mspring_network_get_positions(played->network, 0, played->particles, played->x, played->y), "positions",
@@ -200,6 +220,9 @@ static bool start(game *played, mspring_builder *builder, const options *asked, 
     must(add_float_hook(played), "float hook", played);
     must(make_floor(played->network), "sea floor", played);
     played->last_blast = 60 * asked->minutes - sinking;
+    played->stays[0] = nearest(played, 40, 9);
+    played->stays[1] = nearest(played, 31, 3);
+    played->stays[2] = nearest(played, 49, 3);
     books_open(&played->accounts, played->network);
     return true;
 }
@@ -236,6 +259,37 @@ static void repair(game *played, double time) {
     must(mspring_network_restore_springs(played->network, list, count, ramp), "repair", played);
     played->ramps_end = time + ramp + 2 * dt;
     books_edit(&played->accounts, played->network);
+}
+
+// Stay the mast with springs that were not there before. They hold at once; taken into the plan they cost as little
+// as others.
+static void rig(game *played) {
+    mspring_spring_def defs[STAYS];
+    mspring_id ids[STAYS];
+    const float strains[STAYS] = {breaking, breaking};
+    for (int i = 0; i < STAYS; i++) {
+        must(mspring_spring_def_init(&defs[i], sizeof defs[i]), "stay", played);
+        strength_of_springs(played->is_implicit, &defs[i].flags, &defs[i].stiffness, &defs[i].damping);
+        defs[i].a = played->stays[0];
+        defs[i].b = played->stays[i + 1];
+    }
+    must(mspring_network_add_springs(played->network, defs, STAYS, ids), "stays", played);
+    must(mspring_network_set_break_strains_at(played->network, ids, STAYS, strains), "stays", played);
+    for (int i = 0; i < STAYS; i++)
+        played->end[ids[i]] = defs[i].a;
+    played->springs = mspring_network_spring_count(played->network);
+    played->is_rigged = true;
+    played->is_compact = false;
+    books_edit(&played->accounts, played->network);
+}
+
+// Take what has been added into the plan and leave out what has broken, a piece in each step.
+static void make_compact(game *played) {
+    uint32_t left;
+    if (played->is_compact)
+        return;
+    must(mspring_network_compact(played->network, 1, &left), "compacting", played);
+    played->is_compact = left == 0;
 }
 
 // Water comes in through broken springs below the surface and spreads over the piece of ship that they belong to,
@@ -310,6 +364,8 @@ static void let_happen(game *played, uint32_t step) {
         blast(played, x, -4, 8, 50);
     if (within == 8 * 64 && time < played->last_blast)
         repair(played, time);
+    if (within == 9 * 64 && !played->is_rigged)
+        rig(played);
     if (time == played->last_blast)
         blast(played, 36, -6, 12, 220);
 }
@@ -342,6 +398,7 @@ static void enter_step(game *played, double time) {
 static void update(game *played, uint32_t step) {
     const double time = step * dt;
     let_happen(played, step);
+    make_compact(played);
     find_pieces(played);
     take_water(played, time);
     must(mspring_network_step(played->network, dt), "step", played);
