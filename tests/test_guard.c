@@ -158,6 +158,97 @@ static void the_refusal_names_the_particle(void **state) {
     }
 }
 
+static void look_on(const mspring_hook_args *args, void *user) {
+    (void)args;
+    (void)user;
+}
+
+/// Where a step is one substep it is reckoned how far particles can have come, and looked at only when that is too
+/// far: what leaves the bounds is refused in the same step as where all is looked at in each, as with a hook.
+static void reckoning_lets_nothing_out(void **state) {
+    (void)state;
+    const double far = MSPRING_MAX_COORDINATE;
+    const mspring_guard guards[] = {MSPRING_GUARD_GROWTH, MSPRING_GUARD_BOUNDS};
+    uint64_t seed = 9;
+    uint32_t refused = 0, taken = 0;
+    for (size_t i = 0; i < 200; i++) {
+        // Two corners are pinned, so that the origin stays where it is.
+        const double stiffness = i % 3 == 0 ? 0.4 : 1e-6;
+        const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {stiffness, stiffness}};
+        recipe made = {0};
+        recipe_lattice(&made, 5, 5, -0.4 * far, -0.4 * far, 0.2 * far, &stuff, &seed);
+        made.particles[0].flags = made.particles[24].flags = MSPRING_PARTICLE_PINNED;
+        mspring_network_def def = support_def(0, i % 4 < 3 ? 1 : 2);
+        def.guard = guards[i % 2];
+        def.max_speed = i % 5 == 0 ? 2e10f : (float)MSPRING_MAX_SPEED;
+        mspring_network *const both[] = {recipe_network(&made, &def), recipe_network(&made, &def)};
+        check_ok(support_add_hook(both[1], MSPRING_PHASE_BEFORE_STEP, look_on, NULL, NULL));
+        recipe_free(&made);
+        for (uint32_t step = 0; step < 60; step++) {
+            if (step % 20 == 0 || support_random(&seed) % 8 == 0) {
+                const mspring_id p = (mspring_id)(1 + support_random(&seed) % 23);
+                const double x = support_random_between(&seed, -0.95 * far, 0.95 * far),
+                             y = support_random_between(&seed, -0.95 * far, 0.95 * far);
+                const float vx = (float)support_random_between(&seed, -2e10, 2e10);
+                const float vy = (float)support_random_between(&seed, -2e10, 2e10);
+                for (size_t one = 0; one < 2; one++) {
+                    if (step % 2 == 0) {
+                        check_ok(mspring_network_set_positions(both[one], p, 1, &x, &y));
+                    }
+                    check_ok(mspring_network_set_velocities(both[one], p, 1, &vx, &vy));
+                }
+            }
+            const mspring_result expected = mspring_network_step(both[1], 1);
+            assert_int_equal(mspring_network_step(both[0], 1), expected);
+            assert_int_equal(support_hash(both[0]), support_hash(both[1]));
+            refused += expected == MSPRING_ERROR_UNSTABLE;
+            taken += expected == MSPRING_OK;
+            if (expected != MSPRING_OK) {
+                assert_string_equal(mspring_network_error(both[0]), mspring_network_error(both[1]));
+            }
+        }
+        mspring_network_destroy(both[0]);
+        mspring_network_destroy(both[1]);
+    }
+    print_message("%u steps refused, %u not\n", refused, taken);
+    assert_true(refused > 1000 && taken > 1000);
+}
+
+/// What sleeps far out is not seen while others move, and is again in the step in which it wakes.
+static void what_wakes_far_out_is_seen(void **state) {
+    (void)state;
+    const double far = MSPRING_MAX_COORDINATE;
+    const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {1e-6, 1e-6}};
+    uint64_t seed = 3;
+    recipe made = {0};
+    recipe_lattice(&made, 5, 5, -2, -2, 1, &stuff, &seed);
+    recipe_lattice(&made, 40, 6, 0.9 * far, 0, 0.001 * far, &stuff, &seed);
+    recipe_lattice(&made, 40, 6, -0.9 * far, 0, 0.001 * far, &stuff, &seed); // so that the origin stays
+    mspring_network_def def = support_def(0, 1);
+    def.max_speed = (float)MSPRING_MAX_SPEED;
+    def.sleep_speed = 1e3f;
+    def.sleep_time = 2;
+    mspring_network *network = recipe_network(&made, &def);
+    for (int step = 0; step < 10 && !mspring_network_is_asleep(network); step++) {
+        support_steps(network, 1, 1);
+    }
+    assert_int_equal(mspring_network_is_asleep(network), 1);
+    const float fast = 2e3f;
+    check_ok(mspring_network_set_velocities(network, 7, 1, &fast, &fast));
+    support_steps(network, 3, 1);
+    const mspring_id end = 25 + 39;
+    const uint64_t before = support_hash(network);
+    check_ok(mspring_network_apply_force(network, end, 0.1f * (float)far, 0));
+    check_error(mspring_network_step(network, 1), MSPRING_ERROR_UNSTABLE);
+    check_contains(mspring_network_error(network), "would throw particle 64");
+    assert_int_equal(support_hash(network), before);
+    check_ok(mspring_network_apply_force(network, end, -0.05f * (float)far, 0));
+    check_ok(mspring_network_step(network, 1));
+    check_near(support_position(network, end).x, 0.989 * far, 1e-6 * far);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
 /// The article's bar: stable at rest, it explodes as it falls and stretches.
 static mspring_network *falling_bar(double stiffness, mspring_guard guard, double *mass) {
     uint64_t seed = 8;
@@ -334,6 +425,8 @@ int main(void) {
         cmocka_unit_test(the_refusal_names_the_spring),
         cmocka_unit_test(a_spring_that_was_none_is_named),
         cmocka_unit_test(the_refusal_names_the_particle),
+        cmocka_unit_test(reckoning_lets_nothing_out),
+        cmocka_unit_test(what_wakes_far_out_is_seen),
         cmocka_unit_test(a_shape_that_crosses_its_border_is_refused),
         cmocka_unit_test(more_substeps_are_tried_where_that_is_wanted),
         cmocka_unit_test(the_implicit_solver_steps_in_where_that_is_wanted),

@@ -96,7 +96,7 @@ typedef struct setup {
     bool from_below; ///< a row below has left forces
     bool has_above;  ///< there is a row above; else the row itself stands for it
     bool keeps;      ///< the state that is found; else it is there already, or something like it
-    bool watches_speed, watches_change;
+    bool watches_place, watches_speed, watches_change;
     uint32_t record_slots;
     uint64_t seed;
 } setup;
@@ -183,8 +183,9 @@ static void run(arena *a, const setup *s, mspringi_row_fn kernel, mspringi_sight
         .gravity_h_x = 0.015f,
         .gravity_h_y = -0.098f,
         .keep = s->keeps ? a->kept : NULL,
-        .watch = s->watches_speed || s->watches_change ? &a->watch : NULL,
+        .watch = s->watches_place || s->watches_speed || s->watches_change ? &a->watch : NULL,
         .before = s->watches_change ? a->kept + 2 * (size_t)STRIDE : NULL,
+        .watches_place = s->watches_place,
         .watches_speed = s->watches_speed,
     };
     // The last particle's springs reach one slot further.
@@ -215,8 +216,10 @@ static void run(arena *a, const setup *s, mspringi_row_fn kernel, mspringi_sight
 /// What a watch has to see of a row that has been moved.
 static mspringi_sight expected_sight(const arena *a, const setup *s) {
     mspringi_sight sight = {0, 0, 0};
-    for (uint32_t i = FIRST * W; i < (FIRST + s->blocks) * W && (s->watches_speed || s->watches_change); i++) {
-        sight.place = fmaxf(sight.place, fmaxf(fabsf(a->x[i]), fabsf(a->y[i])));
+    for (uint32_t i = FIRST * W; i < (FIRST + s->blocks) * W; i++) {
+        if (s->watches_place) {
+            sight.place = fmaxf(sight.place, fmaxf(fabsf(a->x[i]), fabsf(a->y[i])));
+        }
         if (s->watches_speed) {
             sight.speed = fmaxf(sight.speed, fmaxf(fabsf(a->vx[i]), fabsf(a->vy[i])));
         }
@@ -292,6 +295,7 @@ static void compare_all(mspringi_row_kind kind, uint32_t parts, uint32_t record_
                     .has_above = (variant & 2) && kind == MSPRINGI_ROW_LATTICE,
                     .split = (variant & 4) && blocks > 1 ? 1 + live % (blocks - 1) : 0,
                     .keeps = live % 3 == 1,
+                    .watches_place = live % 4 == 1 || variant % 5 == 1,
                     .watches_speed = live % 3 == 2 || variant % 3 == 2,
                     .watches_change = live % 3 == 2 || variant % 3 == 1,
                     .record_slots = record_slots,

@@ -228,6 +228,7 @@ void mspringi_substep_keep(const mspring_network *network, mspringi_substep *sub
 void mspringi_substep_watch(const mspring_network *network, mspringi_substep *substep, mspringi_watch *watch) {
     substep->sweep.watch = watch;
     substep->sweep.before = network->guard.watches ? network->backup.vx : NULL;
+    substep->sweep.watches_place = !network->guard.knows_place;
     substep->sweep.watches_speed = !(network->guard.watches && network->guard.knows_speed);
 }
 

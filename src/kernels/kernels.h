@@ -47,8 +47,9 @@ typedef struct mspringi_sweep {
     float gravity_h_x, gravity_h_y; ///< gravity times h
     float *keep;                    ///< [4][slots] where the state goes that is found, as x, y, vx, vy lie; or NULL
     mspringi_watch *watch;          ///< what is seen of the state that is made, or NULL
-    const float *before;            ///< vx of before the step, vy behind as in keep, to watch changes by; or NULL
-    bool watches_speed;             ///< whether speeds are watched
+    const float *before; ///< vx of before the step, vy behind, to watch changes by, which is where keep has them
+                         ///< put if there is both; or NULL
+    bool watches_place, watches_speed; ///< whether coordinates and speeds are watched
 } mspringi_sweep;
 
 /// Compute the forces of the springs of one or more rows and move their particles, in place. In lattice rows and

@@ -63,7 +63,8 @@ static inline void keep_motion(const mspringi_sweep *s, size_t slot) {
 
 static inline void watch_motion(const mspringi_sweep *s, size_t slot) {
     mspringi_watch *seen = s->watch;
-    seen->place[0] = larger_size(larger_size(seen->place[0], s->x[slot]), s->y[slot]);
+    if (s->watches_place)
+        seen->place[0] = larger_size(larger_size(seen->place[0], s->x[slot]), s->y[slot]);
     if (s->watches_speed)
         seen->speed[0] = larger_size(larger_size(seen->speed[0], s->vx[slot]), s->vy[slot]);
     if (s->before) {

@@ -76,8 +76,8 @@ MSPRINGI_INLINE vector spring_force(extent e, vec inverse, motion base, motion t
 
 // Before the first substep of a whole step, and after its last: half hidden behind the divisions, as reading and
 // writing the state for this alone is not (96 x 96 at AVX-512, one substep: 2.2 instead of 3.7 us, with 12.4 for
-// the rest). Changes of velocities instead of speeds take 0.3 us more, both of them 1.9 us, and changes on their
-// own, after the sweep, 1.5 to 2.
+// the rest; 1.4 where coordinates need not be watched). Changes of velocities instead of speeds take 0.2 us more,
+// both of them 1.9 us, and changes on their own, after the sweep, 1.5 to 2.
 MSPRINGI_INLINE void keep_motion(const mspringi_sweep *s, size_t slot, vec x, vec y, vec vx, vec vy) {
     const size_t slots = (size_t)(s->y - s->x);
     float *to = s->keep + slot;
@@ -87,14 +87,19 @@ MSPRINGI_INLINE void keep_motion(const mspringi_sweep *s, size_t slot, vec x, ve
     store(to + 3 * slots, vy);
 }
 
-MSPRINGI_INLINE void watch_motion(const mspringi_sweep *s, size_t slot, vec x, vec y, vec vx, vec vy) {
+// found: velocities before the substep; if that is the first of the step, nothing has to be loaded again.
+MSPRINGI_INLINE void watch_motion(const mspringi_sweep *s, size_t slot, motion made, vector found) {
     mspringi_watch *seen = s->watch;
-    store(seen->place, larger_size(larger_size(load(seen->place), x), y));
+    if (s->watches_place)
+        store(seen->place, larger_size(larger_size(load(seen->place), made.x), made.y));
     if (s->watches_speed)
-        store(seen->speed, larger_size(larger_size(load(seen->speed), vx), vy));
+        store(seen->speed, larger_size(larger_size(load(seen->speed), made.vx), made.vy));
     if (s->before) {
-        const float *before = s->before + slot;
-        const vec dvx = sub(vx, load(before)), dvy = sub(vy, load(before + (s->y - s->x)));
+        if (!s->keep) {
+            found.x = load(s->before + slot);
+            found.y = load(s->before + (s->y - s->x) + slot);
+        }
+        const vec dvx = sub(made.vx, found.x), dvy = sub(made.vy, found.y);
         store(seen->change, larger_size(larger_size(load(seen->change), dvx), dvy));
     }
 }
@@ -110,6 +115,7 @@ MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, motion here, vec
     const vec inverse_mass_h = mul(inverse_mass, h);
     // Without dampers, velocities have not been read yet.
     vec vx = damped ? here.vx : load(s->vx + slot), vy = damped ? here.vy : load(s->vy + slot);
+    const vector found = {vx, vy};
     if (s->keep)
         keep_motion(s, slot, here.x, here.y, vx, vy);
     vx = choose_positive(inverse_mass, mul(add(vx, add(mul(force.x, inverse_mass_h), set(s->gravity_h_x))), decay),
@@ -123,7 +129,7 @@ MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, motion here, vec
     store(s->x + slot, here.x);
     store(s->y + slot, here.y);
     if (s->watch)
-        watch_motion(s, slot, here.x, here.y, vx, vy);
+        watch_motion(s, slot, (motion){here.x, here.y, vx, vy}, found);
 }
 
 /// Forces that LANES slots' springs exert on the slots to the right and on the slots above those. Of those of the

@@ -302,7 +302,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     if (result != MSPRING_OK)
         return result;
     network->guard_policy = def->guard;
-    network->guard.speed = INFINITY; // is not known
+    network->guard.speed = network->guard.place = INFINITY; // are not known
     network->strain.relax = MSPRINGI_USUAL_RELAX;
     result = mspring_network_set_gravity(network, def->gravity_x, def->gravity_y);
     if (result == MSPRING_OK)

@@ -122,7 +122,9 @@ typedef struct mspringi_guard {
     uint32_t lent;           ///< steps that the fallback still takes before the explicit solver is tried again
     float peak;              ///< largest change when the border was looked at last, fading, m/s
     bool knows_speed;        ///< speed is that of the state before this step
+    bool knows_place;        ///< place is, and how far it gets in this step follows from speeds at its end
     float speed;             ///< none was larger at the end of the last step, m/s; infinite if that is not known
+    float place;             ///< so with coordinates, m
     uint64_t state;          ///< edits.state then
 } mspringi_guard;
 

@@ -140,7 +140,8 @@ static void guard_load(mspring_network *network, const uint8_t *from, size_t siz
     network->guard = (mspringi_guard){.h = head.h,
                                       .global_damping = head.global_damping,
                                       .peak = head.peak,
-                                      .speed = INFINITY, // is not known
+                                      .speed = INFINITY, // are not known
+                                      .place = INFINITY,
                                       .suspicious = head.suspicious,
                                       .lent = head.lent};
     if (head.policy == MSPRING_GUARD_IMPLICIT)

@@ -220,8 +220,9 @@ mspring_result mspringi_guard_begin(mspring_network *network, double dt, float h
     const bool same = guard->h == h && guard->global_damping == network->global_damping;
     const bool suspicious = guard->suspicious;
     guard->watches = guard->suspicious = false;
-    guard->knows_speed =
-        guard->state == network->edits.state && !network->is_open && guard->speed <= network->max_speed;
+    const bool is_same = guard->state == network->edits.state && !network->is_open;
+    guard->knows_speed = is_same && guard->speed <= network->max_speed;
+    guard->knows_place = is_same && guard->place <= (float)MSPRING_MAX_COORDINATE && network->substeps == 1;
     if (network->guard_policy == MSPRING_GUARD_BOUNDS || network->implicit || network->is_clamped)
         return MSPRING_OK;
     const mspringi_any_shape *any_shape = &network->any_shape;
@@ -292,10 +293,22 @@ static float bound_speed(const mspring_network *network, mspringi_sight sight) {
                                        : mspringi_guard_look(network, 0, mspringi_slot_count(network)).speed;
 }
 
+// What no coordinate is above after a step. One substep takes none further than by the speed at its end, unless
+// a floor does: then all of it has been looked at.
+static float bound_place(const mspring_network *network, float h, float speed, mspringi_sight sight) {
+    const mspringi_guard *guard = &network->guard;
+    if (!guard->knows_place)
+        return sight.place;
+    const float bound = larger(sight.place, (guard->place + h * speed) * (1.0f + 1e-6f));
+    return bound <= (float)MSPRING_MAX_COORDINATE
+               ? bound
+               : mspringi_guard_look(network, 0, mspringi_slot_count(network)).place;
+}
+
 mspring_result mspringi_guard_end(mspring_network *network, double dt, float h, mspringi_sight sight) {
     mspringi_guard *guard = &network->guard;
-    const float speed = bound_speed(network, sight);
-    if (!(sight.place <= (float)MSPRING_MAX_COORDINATE && speed <= network->max_speed)) {
+    const float speed = bound_speed(network, sight), place = bound_place(network, h, speed, sight);
+    if (!(place <= (float)MSPRING_MAX_COORDINATE && speed <= network->max_speed)) {
         const mspring_result result = check_bounds(network, dt);
         if (result != MSPRING_OK)
             return result;
@@ -304,6 +317,7 @@ mspring_result mspringi_guard_end(mspring_network *network, double dt, float h, 
         judge_change(network, h, sight.change);
     // What sleeps is not seen, and an implicit solver's step may yet be refused.
     guard->speed = network->implicit ? INFINITY : larger(speed, network->sleep.speed);
+    guard->place = network->implicit || network->sleep.sleeping > 0 ? INFINITY : place;
     guard->state = network->edits.state;
     return MSPRING_OK;
 }
