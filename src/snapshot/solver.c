@@ -139,14 +139,14 @@ static mspring_result implicit_check(mspring_network *network, const uint8_t *fr
     return result;
 }
 
-// Slots without particle stay where they are.
+// Slots without particle stay where they are, and have no past for a particle that is added.
 static void clear_history(const mspring_network *network) {
-    const mspringi_topology *t = &network->topology;
     float *const history = network->implicit->history.low.x;
-    for (size_t first = 0; first < network->implicit->history_size; first += mspringi_slot_count(network))
-        for (uint32_t run = 0; run < t->empty_run_count; ++run)
-            memset(history + first + t->empty_runs[run].first_slot, 0,
-                   t->empty_runs[run].slot_count * sizeof *history);
+    const size_t slots = mspringi_slot_count(network);
+    for (size_t slot = 0; slot < slots; ++slot)
+        for (size_t i = slot; i < network->implicit->history_size; i += slots)
+            if (network->topology.particle_of_slot[slot] == MSPRING_NONE)
+                history[i] = 0.0f;
 }
 
 static void implicit_load(mspring_network *network, const uint8_t *from, size_t size) {

@@ -275,12 +275,17 @@ static mspring_result forces_check(mspring_network *network, const uint8_t *from
     return result == MSPRING_OK ? mspringi_field_reserve(network, &network->forces.held) : result;
 }
 
+// Forces on nobody can only be forged: a particle that is added would find them.
 static void forces_load(mspring_network *network, const uint8_t *from, size_t size) {
-    const size_t floats = 2 * mspringi_slot_count(network);
+    const mspringi_field held = network->forces.held;
+    const size_t slots = mspringi_slot_count(network);
     if (size > 0)
-        mspringi_get(from, network->forces.held.x, floats, sizeof(float));
+        mspringi_get(from, held.x, 2 * slots, sizeof(float));
     else if (network->forces.held_any)
-        memset(network->forces.held.x, 0, floats * sizeof(float));
+        memset(held.x, 0, 2 * slots * sizeof(float));
+    for (size_t slot = 0; size > 0 && slot < slots; ++slot)
+        if (network->topology.particle_of_slot[slot] == MSPRING_NONE)
+            held.x[slot] = held.y[slot] = 0.0f;
     network->forces.held_any = size > 0;
 }
 
