@@ -1,8 +1,7 @@
 /// @file test_snapshot.c
-/// Snapshots: what is saved comes back, and what is no snapshot is refused.
+/// Snapshots: what is saved comes back, and nothing else comes with it.
 ///
 /// SPDX-License-Identifier: MIT
-#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
