@@ -133,15 +133,6 @@ recipe snapshots_small_recipe(void) {
     return made;
 }
 
-mspring_network *snapshots_small_network(const recipe *made) {
-    mspring_network *network = snapshots_make(made, MSPRING_SIMD_AUTO, 1);
-    snapshots_set_up(network);
-    for (uint32_t frame = 0; frame < 6; frame++) {
-        snapshots_run_frame(network, frame);
-    }
-    return network;
-}
-
 void snapshots_renew_checksum(saved *of) {
     const size_t summed = of->size - MSPRINGI_SNAPSHOT_CHECKSUM_BYTES;
     mspringi_checksum checksum = {{0}, {0}};
@@ -161,4 +152,49 @@ uint8_t *snapshots_section_of(const saved *of, const char *tag, uint64_t *size) 
         }
         at += mspringi_round_up((size_t)*size, 8);
     }
+}
+
+mspring_network *snapshots_small_guarded(const recipe *made, mspring_guard guard) {
+    mspring_network_def def = support_def(-9.8f, 4);
+    def.guard = guard;
+    mspring_network *network = recipe_network(made, &def);
+    snapshots_set_up(network);
+    for (uint32_t frame = 0; frame < 6; frame++) {
+        snapshots_run_frame(network, frame);
+    }
+    return network;
+}
+
+saved snapshots_copy(const saved *from) {
+    saved out = {malloc(from->size), from->size};
+    assert_non_null(out.bytes);
+    memcpy(out.bytes, from->bytes, from->size);
+    return out;
+}
+
+void snapshots_put_word(uint8_t *at, uint32_t word) {
+    mspringi_writer to = mspringi_writer_begin(at);
+    mspringi_put(&to, &word, 1, sizeof word);
+}
+
+void snapshots_put_float(uint8_t *at, float value) {
+    mspringi_writer to = mspringi_writer_begin(at);
+    mspringi_put(&to, &value, 1, sizeof value);
+}
+
+void snapshots_put_double(uint8_t *at, double value) {
+    mspringi_writer to = mspringi_writer_begin(at);
+    mspringi_put(&to, &value, 1, sizeof value);
+}
+
+void snapshots_check_refused(mspring_network *network, saved *forged, const char *part) {
+    const uint64_t before = snapshots_look_at(network);
+    snapshots_renew_checksum(forged);
+    check_error(mspring_network_load(network, forged->bytes, forged->size), MSPRING_ERROR_SNAPSHOT);
+    check_contains(mspring_network_error(network), part);
+    assert_int_equal(snapshots_look_at(network), before);
+}
+
+mspring_network *snapshots_small_network(const recipe *made) {
+    return snapshots_small_guarded(made, MSPRING_GUARD_GROWTH);
 }

@@ -18,6 +18,16 @@ void snapshots_load(mspring_network *network, const saved *from);
 /// Make the checksum right again.
 void snapshots_renew_checksum(saved *of);
 
+saved snapshots_copy(const saved *from);
+
+/// Write a number as snapshots have it.
+void snapshots_put_word(uint8_t *at, uint32_t word);
+void snapshots_put_float(uint8_t *at, float value);
+void snapshots_put_double(uint8_t *at, double value);
+
+/// Loading it, with the checksum made right, fails with this, and changes nothing.
+void snapshots_check_refused(mspring_network *network, saved *forged, const char *part);
+
 /// Where a section's bytes are.
 uint8_t *snapshots_section_of(const saved *of, const char *tag, uint64_t *size);
 
@@ -29,6 +39,7 @@ void snapshots_use_solver(mspring_network *network, mspring_solver kind, mspring
 /// A network of few bytes, with something in each section but those of growth and sleep.
 recipe snapshots_small_recipe(void);
 mspring_network *snapshots_small_network(const recipe *made);
+mspring_network *snapshots_small_guarded(const recipe *made, mspring_guard guard);
 
 /// What the springs are like: what a frame leaves out.
 void snapshots_set_up(mspring_network *network);
