@@ -172,6 +172,18 @@ uint64_t support_hash(const mspring_network *network) {
     return hash;
 }
 
+double support_energy_of_motion(const mspring_network *network) {
+    double kinetic, elastic;
+    check_ok(mspring_network_energy(network, &kinetic, &elastic, NULL));
+    return kinetic + elastic;
+}
+
+double support_energy(const mspring_network *network) {
+    double kinetic, elastic, potential;
+    check_ok(mspring_network_energy(network, &kinetic, &elastic, &potential));
+    return kinetic + elastic + potential;
+}
+
 uint32_t support_levels(mspring_simd levels[MSPRING_SIMD_AVX512]) {
     uint32_t count = 0;
     for (mspring_simd level = MSPRING_SIMD_SCALAR; level <= MSPRING_SIMD_WASM; level++) {

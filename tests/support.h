@@ -88,6 +88,12 @@ support_point support_position(const mspring_network *network, mspring_id partic
 support_point support_velocity(const mspring_network *network, mspring_id particle);
 uint64_t support_hash(const mspring_network *network);
 
+/// What has been made of motion: kinetic and elastic energy, J.
+double support_energy_of_motion(const mspring_network *network);
+
+/// With what is potential.
+double support_energy(const mspring_network *network);
+
 /// Levels that this machine can run, worst (scalar) first. No kind of CPU has more than those up to AVX-512.
 /// @return how many
 uint32_t support_levels(mspring_simd levels[MSPRING_SIMD_AVX512]);

@@ -38,19 +38,6 @@ static mspring_network *start(const recipe *made, mspring_solver solver, mspring
     return network;
 }
 
-static double energy_of(const mspring_network *network) {
-    double kinetic, elastic;
-    check_ok(mspring_network_energy(network, &kinetic, &elastic, NULL));
-    return kinetic + elastic;
-}
-
-/// Kinetic, elastic and potential energy.
-static double total_of(const mspring_network *network) {
-    double kinetic, elastic, potential;
-    check_ok(mspring_network_energy(network, &kinetic, &elastic, &potential));
-    return kinetic + elastic + potential;
-}
-
 /// A network on its way, from total on.
 typedef struct course {
     double total, motion; ///< at the start; most kinetic and elastic energy so far
@@ -58,13 +45,14 @@ typedef struct course {
 } course;
 
 static course begin_course(const mspring_network *network, double rounding) {
-    return (course){.total = total_of(network), .motion = energy_of(network), .rounding = rounding};
+    return (course){
+        .total = support_energy(network), .motion = support_energy_of_motion(network), .rounding = rounding};
 }
 
 /// There is never more than at the start, but for rounding: that of positions, and that of sums.
 static void check_course(course *c, const mspring_network *network, const char *what, int step) {
-    const double total = total_of(network);
-    c->motion = fmax(c->motion, energy_of(network));
+    const double total = support_energy(network);
+    c->motion = fmax(c->motion, support_energy_of_motion(network));
     const double most = c->total + 1e-6 * c->motion + c->rounding;
     if (!(total <= most)) {
         print_error("%s, step %d: from %g J to %g J, with a motion of %g J\n", what, step, c->total, total,
@@ -126,7 +114,7 @@ static void bounds_alone_let_it_pass(void **state) {
     recipe made = rope(1e12, 0);
     mspring_network *network = start(&made, MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_EULER, MSPRING_GUARD_BOUNDS);
     support_steps(network, 1, 0.125);
-    assert_true(energy_of(network) > 1e6);
+    assert_true(support_energy_of_motion(network) > 1e6);
     mspring_network_destroy(network);
     recipe_free(&made);
 }

@@ -20,12 +20,6 @@ static const recipe_shape shapes[] = {
     {"pair", .rope = 2},
 };
 
-static double energy_of(const mspring_network *network) {
-    double kinetic = 0, elastic = 0;
-    check_ok(mspring_network_energy(network, &kinetic, &elastic, NULL));
-    return kinetic + elastic;
-}
-
 /// Energy that the network can have come by: what it had, and all that gravity may have given it so far.
 static double energy_allowed(double first, double mass, double seconds) {
     const double root = sqrt(first) + 9.8 * seconds * sqrt(mass / 2);
@@ -52,7 +46,7 @@ static void what_explodes_is_refused_in_time(void **state) {
         for (uint32_t p = 0; p < made.particle_count; p++) {
             mass += (double)made.particles[p].mass;
         }
-        const double dt = over * now * count, first = energy_of(network);
+        const double dt = over * now * count, first = support_energy_of_motion(network);
         mspring_result result = MSPRING_OK;
         uint32_t step = 0;
         uint64_t before = 0;
@@ -63,7 +57,7 @@ static void what_explodes_is_refused_in_time(void **state) {
         check_error(result, MSPRING_ERROR_UNSTABLE);
         check_contains(mspring_network_error(network), "spring");
         assert_int_equal(support_hash(network), before);
-        worst = fmax(worst, energy_of(network) / energy_allowed(first, mass, step * dt));
+        worst = fmax(worst, support_energy_of_motion(network) / energy_allowed(first, mass, step * dt));
         mspring_network_destroy(network);
         recipe_free(&made);
         cases++;
@@ -281,7 +275,7 @@ static void a_shape_that_crosses_its_border_is_refused(void **state) {
     }
     check_error(result, MSPRING_ERROR_UNSTABLE);
     assert_int_equal(support_hash(network), before);
-    const double energy = energy_of(network), allowed = energy_allowed(0, mass, step * dt);
+    const double energy = support_energy_of_motion(network), allowed = energy_allowed(0, mass, step * dt);
     double now = 0;
     check_ok(mspring_network_stable_dt(network, &now, NULL));
     print_message("refused after %.3f s: energy %.3g J of at most %.3g, border %.4f of the step\n", step * dt,
@@ -298,7 +292,7 @@ static void a_shape_that_crosses_its_border_is_refused(void **state) {
     double most = 0;
     for (step = 0; step < 3840 && result == MSPRING_OK; step++) {
         result = mspring_network_step(network, dt);
-        most = fmax(most, energy_of(network));
+        most = fmax(most, support_energy_of_motion(network));
     }
     check_error(result, MSPRING_ERROR_UNSTABLE);
     check_contains(mspring_network_error(network), "would throw particle");
@@ -354,7 +348,7 @@ static void more_substeps_are_tried_where_that_is_wanted(void **state) {
     for (uint32_t step = 1; step <= 3840; step++) {
         check_ok(mspring_network_step(network, dt));
         // Near the border the energy of a mode swings.
-        assert_true(energy_of(network) < 2 * energy_allowed(0, mass, step * dt));
+        assert_true(support_energy_of_motion(network) < 2 * energy_allowed(0, mass, step * dt));
     }
     assert_int_equal(mspring_network_substeps(network), 2);
     mspring_network_destroy(network);
@@ -390,7 +384,7 @@ static void the_implicit_solver_steps_in_where_that_is_wanted(void **state) {
         for (uint32_t step = 1; step <= 1000; step++) {
             check_ok(mspring_network_step(network, dt));
             // Near the border the energy of a mode swings.
-            assert_true(energy_of(network) < 2 * energy_allowed(0, mass, step * dt));
+            assert_true(support_energy_of_motion(network) < 2 * energy_allowed(0, mass, step * dt));
             assert_int_equal(mspring_network_substeps(network), 1);
             if (step == 700) { // among steps of either kind
                 check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_FRAME, &size));
@@ -452,7 +446,7 @@ static void what_is_stable_is_never_refused(void **state) {
             }
             check_ok(result);
         }
-        assert_true(energy_of(network) < mass * speed * speed);
+        assert_true(support_energy_of_motion(network) < mass * speed * speed);
         mspring_network_destroy(network);
         recipe_free(&made);
     }
