@@ -5,7 +5,7 @@
 /// streams that lie one behind the other in memory, and read out they are woven together: loops without branches
 /// or indices, which the compiler can vectorise. (Of a lattice with few holes strain takes a third and all four
 /// arrays a quarter of what they took with an index for each spring; of our ship, a third of whose ids lie in no
-/// pattern, a fifth and a third less.)
+/// pattern, an eighth and a fifth less.)
 #include <math.h>
 #include <string.h>
 
