@@ -10,7 +10,7 @@
 
 #include "allocator.h"
 #include "level.h"
-#include "linear/cholesky.h"
+#include "linear/plan.h"
 #include "support.h"
 
 static mspring_simd tested_level;
@@ -104,7 +104,7 @@ static void fill_matrix(problem *p, double mass, uint64_t *seed) {
 }
 
 static mspringi_cholesky_graph graph_of(const problem *p) {
-    return (mspringi_cholesky_graph){p->nodes, p->edges, p->a, p->b, p->absent, p->x, p->y};
+    return (mspringi_cholesky_graph){p->nodes, p->edges, p->a, p->b, p->absent, p->x, p->y, 0};
 }
 
 static mspringi_cholesky_matrix_double double_matrix(const problem *p) {
@@ -561,6 +561,61 @@ static void bad_pivots_are_named(void **state) {
     free(p);
 }
 
+/// What is counted is what there is, in any order: here of numbers, from the first on and from the last.
+static void check_count(const problem *p) {
+    mspringi_memory memory;
+    mspringi_message message;
+    mspringi_adjacency adjacency;
+    mspringi_tree tree = {0};
+    mspringi_elimination_cost cost;
+    const mspringi_cholesky_graph graph = graph_of(p);
+    check_ok(mspringi_memory_init(&memory, NULL, &message));
+    check_ok(mspringi_adjacency_create(&adjacency, &graph, &memory, &message));
+    check_ok(mspringi_tree_create(&tree, adjacency.size, &memory, &message));
+    uint32_t *order = mspringi_alloc(&memory, 2 * (size_t)adjacency.size, sizeof *order);
+    assert_non_null(order);
+    for (int way = 0; way < 2; way++) {
+        for (uint32_t i = 0; i < adjacency.size; i++) {
+            order[i] = way == 0 ? i : adjacency.size - 1 - i;
+        }
+        assert_true(mspringi_tree_find(&tree, &adjacency, order, 0, adjacency.size, 1e9, &cost));
+        assert_true(cost.blocks ==
+                    mspringi_tree_count(&tree, &adjacency, order, 0, adjacency.size, order + adjacency.size));
+    }
+    mspringi_free_all(&memory);
+}
+
+static void too_large_is_predicted(void **state) {
+    (void)state;
+    uint64_t seed = 17;
+    for (uint32_t n = 0; n < 60; n++) {
+        problem *p = calloc(1, sizeof *p);
+        assert_non_null(p);
+        if (n % 3 == 0) {
+            add_grid(p, 1 + n / 2, 1 + n % 7, 0);
+        }
+        add_random_graph(p, 2 + n, n % 3 == 1 ? n / 2 : 2 * n, &seed);
+        check_count(p);
+        mspringi_memory memory;
+        mspringi_message message;
+        mspringi_cholesky_plan plan;
+        mspringi_cholesky_graph graph = graph_of(p);
+        graph.most_numbers = 4;
+        check_ok(mspringi_memory_init(&memory, NULL, &message));
+        const mspring_result result = mspringi_cholesky_plan_create(&plan, &graph, &memory, &message);
+        // Bands are as small as can be.
+        if (result != MSPRING_OK) {
+            assert_int_equal(result, MSPRING_ERROR_LIMIT);
+            assert_true(plan.predicted_numbers >= 4.0 * (p->nodes - 1));
+            assert_null(plan.order);
+        } else {
+            assert_true(plan.band_groups > 0);
+        }
+        mspringi_free_all(&memory);
+        free(p);
+    }
+}
+
 static void factors_again_with_the_same_bits_and_no_memory(void **state) {
     (void)state;
     uint64_t seed = 9;
@@ -636,6 +691,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(nothing_there),
         cmocka_unit_test(order_is_good),
         cmocka_unit_test(bad_pivots_are_named),
+        cmocka_unit_test(too_large_is_predicted),
         cmocka_unit_test(factors_again_with_the_same_bits_and_no_memory),
         cmocka_unit_test(every_allocation_may_fail),
     };

@@ -1,6 +1,6 @@
 /// @file test_factor_limit.c
-/// A network whose factor would be too large for the direct solver: it is refused, says how large the network is,
-/// and all stays and goes on as it was.
+/// A network whose factor would be too large for the direct solver: it is refused, says how large the factor would
+/// be, and all stays and goes on as it was. The implicit solver does with few tiles there, or refuses many.
 ///
 /// SPDX-License-Identifier: MIT
 #include <stdlib.h>
@@ -53,7 +53,9 @@ static void a_factor_too_large_is_refused(void **state) {
     check_error(mspring_network_set_solver(network, &settings), MSPRING_ERROR_LIMIT);
     check_contains(mspring_network_error(network), "70000 particles");
     check_contains(mspring_network_error(network), "280000 springs");
-    check_contains(mspring_network_error(network), "2^31 numbers");
+    check_contains(mspring_network_error(network), "would take at least 3.");
+    check_contains(mspring_network_error(network), "e+09 numbers (4");
+    check_contains(mspring_network_error(network), "more than 1.34e+08");
     assert_int_equal(mspring_network_memory_used(network), memory);
     assert_int_equal(mspring_network_substeps(network), 3);
     assert_int_equal(support_hash(network), support_hash(twin));
@@ -64,9 +66,38 @@ static void a_factor_too_large_is_refused(void **state) {
     mspring_network_destroy(twin);
 }
 
+static void tiles_of_a_random_graph_are_few(void **state) {
+    (void)state;
+    mspring_network *network = expander(), *twin = NULL;
+    mspring_solver_def settings;
+    mspring_plan plan = {.struct_size = sizeof plan};
+    check_ok(mspring_network_clone(network, NULL, &twin));
+    check_ok(mspring_solver_def_init(&settings, sizeof settings));
+    settings.solver = MSPRING_SOLVER_IMPLICIT;
+    // Each of 2 * HALF / 32 cells, and of as many crumbs, has springs to nearly all others.
+    settings.tile_size = 8;
+    check_error(mspring_network_set_solver(network, &settings), MSPRING_ERROR_LIMIT);
+    check_contains(mspring_network_error(network), "tiles of size 8");
+    check_contains(mspring_network_error(network), "more than 1.7e+10");
+    assert_int_equal(support_hash(network), support_hash(twin));
+    support_steps(network, 1, 1.0 / 64);
+    support_steps(twin, 1, 1.0 / 64);
+    assert_int_equal(support_hash(network), support_hash(twin));
+    settings.tile_size = 0;
+    check_ok(mspring_network_set_solver(network, &settings));
+    check_ok(mspring_network_plan(network, &plan));
+    assert_int_equal(plan.tile_size, 256);
+    assert_int_equal(plan.tile_count, (2 * HALF + 32767) / 32768);
+    assert_true(mspring_network_memory_used(network) < (uint64_t)100 << 20);
+    support_steps(network, 2, 1.0 / 64);
+    mspring_network_destroy(network);
+    mspring_network_destroy(twin);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_factor_too_large_is_refused),
+        cmocka_unit_test(tiles_of_a_random_graph_are_few),
     };
     return cmocka_run_group_tests_name("factor_limit", tests, NULL, NULL);
 }

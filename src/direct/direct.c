@@ -11,6 +11,10 @@
 /// 6e-8 of the stiffness: 0.1 % of the mass there, at random, so far less in any motion of many particles.
 #define SINGLE_STIFFNESS 16384.0f
 
+/// Most numbers that a factor may take, 1.6 GB in both precisions: a square of some 600 x 600 particles, or a
+/// random graph of some 5,000, of which a substep takes seconds.
+#define MOST_NUMBERS 0x1p27
+
 /// What a pinned particle's mass is in A: what springs can take from it is lost in rounding.
 #define PINNED_MASS 0x1p100
 
@@ -121,7 +125,8 @@ static mspring_result make_plan(mspringi_direct *direct, mspring_network *networ
                                                .edge_b = direct->end_b,
                                                .absent = absent,
                                                .x = x,
-                                               .y = x + nodes};
+                                               .y = x + nodes,
+                                               .most_numbers = MOST_NUMBERS};
         list_absent(network, direct, absent);
         is_placed[nodes - 1] = false;
         place_slots(network, direct, x, x + nodes, is_placed);
@@ -174,12 +179,15 @@ mspring_result mspringi_direct_create(mspringi_direct *direct, mspring_network *
         result = reserve(direct, network);
     if (result == MSPRING_OK)
         return result;
+    const double numbers = direct->plan.predicted_numbers, bytes = sizeof(float) + sizeof(double);
     mspringi_direct_destroy(direct, &network->memory);
     if (result == MSPRING_ERROR_LIMIT)
-        return mspringi_fail(&network->message, result,
-                             "the direct solver's factor for %u particles and %u springs would have over 2^31 "
-                             "numbers: take the implicit solver",
-                             (unsigned)t->particle_count, (unsigned)t->spring_count);
+        return mspringi_fail(
+            &network->message, result,
+            "the direct solver's factor for %u particles and %u springs would take at least %.3g numbers "
+            "(%.3g GB), more than %.3g (%.3g GB): take the implicit solver",
+            (unsigned)t->particle_count, (unsigned)t->spring_count, numbers, 1e-9 * bytes * numbers, MOST_NUMBERS,
+            1e-9 * bytes * MOST_NUMBERS);
     return mspringi_fail(&network->message, result, "no memory for a direct solver of %u particles",
                          (unsigned)t->particle_count);
 }

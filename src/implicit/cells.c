@@ -104,22 +104,30 @@ static bool list_neighbours(incidence *in, const cutting *g) {
 }
 
 // Grow neighbourhoods of at most size * size / 2 particles, breadth first, from the first slot that is in none.
+// Where springs lead anywhere, the last of them are crumbs, each with springs to many others, and their coarse
+// matrix is full: of the largest size they are swept up into cells as large as the others.
 static bool cut_web(cutting *g, uint32_t size) {
     const mspringi_topology *t = &g->network->topology;
     const uint32_t first = t->web_first * MSPRINGI_WIDTH, end = first + t->web_blocks * MSPRINGI_WIDTH;
     const uint32_t most = size * size / 2;
     if (first == end)
         return true;
+    const bool sweeps_up = size == MSPRINGI_LARGEST_TILE_SIZE;
     incidence in = {NULL, NULL};
+    uint32_t count = 0; // in the cell that grows
     uint32_t *queue = mspringi_alloc(g->memory, most, sizeof *queue);
     const bool ok = list_neighbours(&in, g) && queue;
     for (uint32_t seed = first; ok && seed < end; ++seed) {
         if (g->is_for_none[seed] || g->cells->of_slot[seed] != MSPRING_NONE)
             continue;
-        uint32_t count = 0;
+        if (count == most || !sweeps_up) {
+            g->cells->count += count > 0;
+            count = 0;
+        }
+        uint32_t i = count;
         queue[count++] = seed;
         g->cells->of_slot[seed] = g->cells->count;
-        for (uint32_t i = 0; i < count; ++i) {
+        for (; i < count; ++i) {
             for (uint32_t n = in.first[queue[i]]; n < in.first[queue[i] + 1] && count < most; ++n) {
                 const uint32_t slot = in.neighbour[n];
                 if (slot < first || slot >= end || g->is_for_none[slot] || g->cells->of_slot[slot] != MSPRING_NONE)
@@ -128,8 +136,8 @@ static bool cut_web(cutting *g, uint32_t size) {
                 queue[count++] = slot;
             }
         }
-        g->cells->count++;
     }
+    g->cells->count += count > 0;
     mspringi_free(g->memory, in.first);
     mspringi_free(g->memory, in.neighbour);
     mspringi_free(g->memory, queue);

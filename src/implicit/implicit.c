@@ -13,6 +13,9 @@
 /// takes.
 #define COARSE_COST_PER_SLOT 20.0
 
+/// Most that it may take at all, a few seconds.
+#define MOST_COARSE_COST 0x1p34
+
 /// Slots from which more than one worker is worth it.
 #define SMALLEST_SHARED_SLOTS 4096
 
@@ -159,6 +162,18 @@ mspring_result mspringi_implicit_reserve(mspring_network *network) {
     return result == MSPRING_OK && network->fallback ? reserve_crew(network->fallback, network) : result;
 }
 
+// Whether the coarse matrix of these tiles is one that can be factored in every substep.
+static mspring_result check_coarse(const mspringi_implicit *n, mspring_network *network) {
+    const double cost = mspringi_coarse_cost(&n->tiles);
+    if (cost <= MOST_COARSE_COST)
+        return MSPRING_OK;
+    return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
+                         "with tiles of size %u there are %u of them, so tied to each other that factoring their "
+                         "coarse matrix would take %.2g multiply-adds, more than %.2g: leave tile_size at 0, take "
+                         "larger tiles or the explicit solver",
+                         (unsigned)n->tiles.cells.size, (unsigned)n->tiles.count, cost, MOST_COARSE_COST);
+}
+
 // Cut into tiles of the size asked for or else, beginning at the default, of the first whose coarse matrix is cheap
 // to factor.
 static mspring_result cut_tiles(mspringi_implicit *n, mspring_network *network, uint32_t asked) {
@@ -177,6 +192,8 @@ static mspring_result cut_tiles(mspringi_implicit *n, mspring_network *network, 
 
 static mspring_result make_two_level(mspringi_implicit *n, mspring_network *network) {
     mspring_result result = cut_tiles(n, network, n->tile_size);
+    if (result == MSPRING_OK)
+        result = check_coarse(n, network);
     if (result == MSPRING_OK)
         result = mspringi_coarse_create(&n->coarse, &n->tiles, &network->memory, &network->message);
     return result == MSPRING_OK ? allocate_iterate(n, network) : result;

@@ -35,6 +35,7 @@ typedef struct mspringi_cholesky_graph {
     const bool *absent;              ///< [node_count] nodes without row and column, as pinned particles or slots
                                      ///< that hold none; edges to them are ignored. NULL: all nodes are there.
     const double *x, *y;             ///< [node_count] where the nodes are, as a hint for the order. NULL: unknown.
+    double most_numbers;             ///< that the factor may take; 0: 2^31
 } mspringi_cholesky_graph;
 
 typedef struct mspringi_front mspringi_front;
@@ -60,11 +61,12 @@ typedef struct mspringi_cholesky_plan {
     size_t scaled_reals;              ///< in the scaled copy of a front's columns,
     size_t vector_reals;              ///< and in the largest front's part of a vector
     double multiply_adds;             ///< products that a factorisation subtracts, padding not counted
+    double predicted_numbers;         ///< that the factor would take, where it was refused for them
 } mspringi_cholesky_plan;
 
 /// Find the plan. Positions only change the cost; they may coincide.
-/// @return MSPRING_OK; MSPRING_ERROR_MEMORY; MSPRING_ERROR_LIMIT if the factor would have over 2^31 numbers. Then
-///         the plan is as it was: zero.
+/// @return MSPRING_OK; MSPRING_ERROR_MEMORY; MSPRING_ERROR_LIMIT if the factor would take over most_numbers. Then
+///         the plan is as it was, zero, but for predicted_numbers.
 mspring_result mspringi_cholesky_plan_create(mspringi_cholesky_plan *plan, const mspringi_cholesky_graph *graph,
                                              mspringi_memory *memory, mspringi_message *message);
 void mspringi_cholesky_plan_destroy(mspringi_cholesky_plan *plan, mspringi_memory *memory);

@@ -115,6 +115,10 @@ typedef struct mspringi_elimination_cost {
 bool mspringi_tree_find(mspringi_tree *tree, const mspringi_adjacency *adjacency, const uint32_t *order,
                         uint32_t first, uint32_t end, double most_blocks, mspringi_elimination_cost *cost);
 
+/// The number of blocks in L for these places. scratch is [size]; the tree is not of use then.
+double mspringi_tree_count(const mspringi_tree *tree, const mspringi_adjacency *adjacency, const uint32_t *order,
+                           uint32_t first, uint32_t end, uint32_t *scratch);
+
 /// Gather the tree's supernodes into the plan's fronts.
 mspring_result mspringi_fronts_create(mspringi_cholesky_plan *plan, mspringi_tree *tree,
                                       const mspringi_adjacency *adjacency, const mspringi_cholesky_graph *graph,
