@@ -27,9 +27,11 @@ typedef struct session {
     float *more_values;
     float *by_spring[4]; ///< [springs] each
     double *x, *y;       ///< [particles]
-    mspring_id *list;    ///< [BURST] springs, scattered
-    uint32_t burst;      ///< of them: BURST, or all springs if there are fewer
-    uint32_t calls;      ///< so far
+    void *snapshot;      ///< [snapshot_size]
+    size_t snapshot_size;
+    mspring_id *list; ///< [BURST] springs, scattered
+    uint32_t burst;   ///< of them: BURST, or all springs if there are fewer
+    uint32_t calls;   ///< so far
 } session;
 
 typedef mspring_result (*session_fn)(session *with);
@@ -159,6 +161,26 @@ static mspring_result hash(session *with) {
     return mspring_network_state_hash(with->step->network, &sum);
 }
 
+static mspring_result save_frame(session *with) {
+    return mspring_network_save(with->step->network, MSPRING_SNAPSHOT_FRAME, with->snapshot, with->snapshot_size,
+                                NULL);
+}
+
+static void prepare_frame(session *with) {
+    (void)!save_frame(with);
+}
+
+static mspring_result load_frame(session *with) {
+    size_t size;
+    mspring_result result = mspring_network_snapshot_size(with->step->network, MSPRING_SNAPSHOT_FRAME, &size);
+    return result == MSPRING_OK ? mspring_network_load(with->step->network, with->snapshot, size) : result;
+}
+
+static mspring_result save_all(session *with) {
+    return mspring_network_save(with->step->network, MSPRING_SNAPSHOT_ALL, with->snapshot, with->snapshot_size,
+                                NULL);
+}
+
 /// A call, and what has to be so before it.
 typedef struct session_call {
     const char *name;
@@ -183,6 +205,9 @@ static const session_call calls[] = {
     {"strain of all springs", no_preparation, measure_strains},
     {"and length and direction", no_preparation, measure_extents},
     {"hash of the state", no_preparation, hash},
+    {"save a frame", no_preparation, save_frame},
+    {"load a frame", prepare_frame, load_frame},
+    {"save all", no_preparation, save_all},
 };
 
 #define CALL_COUNT (sizeof calls / sizeof *calls)
@@ -620,6 +645,48 @@ static bool measure_floor(session *with, const bench_options *options, const ben
     return ok;
 }
 
+static void empty_hook(const mspring_hook_args *args, void *user) {
+    (void)args;
+    (void)user;
+}
+
+/// Time steps with an empty hook in every substep against steps without, and say what one substep's call costs:
+/// with it substeps are swept one by one.
+static bool measure_hook(session *with, const bench_options *options, const bench_scene *subject,
+                         mspring_simd level, uint32_t repeat, scene_error *error) {
+    bench_network hooked, plain;
+    if (!bench_network_create(subject->made.builder, level, 1, with->step->substeps, &hooked, error)) {
+        return false;
+    }
+    if (!bench_network_create(subject->made.builder, level, 1, with->step->substeps, &plain, error)) {
+        bench_network_free(&hooked);
+        return false;
+    }
+    mspring_hook_def def;
+    mspring_result result = mspring_hook_def_init(&def, sizeof def);
+    def.phase = MSPRING_PHASE_AFTER_SUBSTEP;
+    def.fn = empty_hook;
+    if (result == MSPRING_OK) {
+        result = mspring_network_add_hook(hooked.network, &def, NULL);
+    }
+    bool ok = result == MSPRING_OK;
+    if (!ok) {
+        bench_library_error(error, "adding a hook", result, mspring_network_error(hooked.network));
+    }
+    bench_runner first = bench_network_runner(&plain), second = bench_network_runner(&hooked);
+    bench_turns turns;
+    ok = ok && bench_turns_measure(&first, &second, repeat, &turns, error);
+    if (ok) {
+        const double substeps = with->step->substeps;
+        print_row(options, subject, with->step, "an empty hook, one substep",
+                  (turns.second_min - turns.first_min) / substeps,
+                  (turns.second_median - turns.first_median) / substeps, turns.first_min);
+    }
+    bench_network_free(&plain);
+    bench_network_free(&hooked);
+    return ok;
+}
+
 static bool make_session(bench_network *network, session *out, scene_error *error) {
     const uint32_t particles = network->particle_count, springs = network->spring_count;
     const uint32_t most = particles > springs ? particles : springs;
@@ -629,12 +696,17 @@ static bool make_session(bench_network *network, session *out, scene_error *erro
     out->more_values = bench_allocate(particles, sizeof *out->more_values, error);
     out->x = bench_allocate(particles, sizeof *out->x, error);
     out->y = bench_allocate(particles, sizeof *out->y, error);
+    out->snapshot = NULL;
+    if (mspring_network_snapshot_size(network->network, MSPRING_SNAPSHOT_ALL, &out->snapshot_size) == MSPRING_OK) {
+        out->snapshot_size += (size_t)64 * (particles + springs); // and what edits bring
+        out->snapshot = bench_allocate(out->snapshot_size, 1, error);
+    }
     out->list = bench_allocate(BURST, sizeof *out->list, error);
     bool ok = true;
     for (int i = 0; i < 4; i++) {
         ok = (out->by_spring[i] = bench_allocate(springs, sizeof *out->by_spring[i], error)) != NULL && ok;
     }
-    if (!ok || !out->values || !out->more_values || !out->x || !out->y || !out->list) {
+    if (!ok || !out->values || !out->more_values || !out->x || !out->y || !out->list || !out->snapshot) {
         return false;
     }
     for (uint32_t i = 0; i < out->burst; i++) {
@@ -652,6 +724,7 @@ static void free_session(session *unwanted) {
     free(unwanted->x);
     free(unwanted->y);
     free(unwanted->list);
+    free(unwanted->snapshot);
 }
 
 static bool measure_level(const bench_scene *subject, const bench_options *options, mspring_simd level) {
@@ -673,6 +746,7 @@ static bool measure_level(const bench_scene *subject, const bench_options *optio
     }
     ok = ok && measure_floor(&with, options, subject, level, "floor, out of reach", 100.0, repeat, &error);
     ok = ok && measure_floor(&with, options, subject, level, "floor, lowest rows on it", -0.5, repeat, &error);
+    ok = ok && measure_hook(&with, options, subject, level, repeat, &error);
     for (size_t i = 0; ok && i < CALL_COUNT; i++) {
         ok = measure_call(&calls[i], &with, options, subject, repeat, times, &error);
     }
