@@ -133,7 +133,7 @@ static bool fill(linear_system *s, mspring_network *network) {
 }
 
 static bool analyse(linear_system *s, mspring_simd level, scene_error *error) {
-    const mspringi_cholesky_graph graph = {s->nodes, s->edges, s->a, s->b, s->absent, s->x, s->y};
+    const mspringi_cholesky_graph graph = {s->nodes, s->edges, s->a, s->b, s->absent, s->x, s->y, 0};
     const double start = bench_seconds();
     bool ok = mspringi_cholesky_plan_create(&s->plan, &graph, &s->memory, &s->message) == MSPRING_OK;
     s->plan_seconds = bench_seconds() - start;
