@@ -2,6 +2,7 @@
 /// Snapshots: what is saved comes back, and nothing else comes with it.
 ///
 /// SPDX-License-Identifier: MIT
+#include <fenv.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -292,6 +293,39 @@ static void a_version_has_one_format(void **state) {
     mspring_network_destroy(network);
 }
 
+/// What happened before a network was loaded has not happened to it; and the rounding mode of the thread stays.
+static void loading_leaves_no_events_and_no_rounding_mode(void **state) {
+    (void)state;
+    recipe made = snapshots_small_recipe();
+    mspring_network *network = snapshots_make(&made, MSPRING_SIMD_AUTO, 1);
+    saved before = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
+    const float strain = 1e-3f, fast = 20;
+    check_ok(mspring_network_reserve_events(network, 10));
+    check_ok(mspring_network_set_break_strains(network, 0, 1, &strain));
+    check_ok(mspring_network_set_velocities(network, 0, 1, &fast, &fast));
+    support_steps(network, 3, 0.01);
+    const int mode = fegetround();
+    assert_int_equal(fesetround(FE_UPWARD), 0);
+    snapshots_load(network, &before);
+    volatile float one = 1, little = 1e-10f, sum = one + little;
+    assert_int_equal(fegetround(), FE_UPWARD);
+    assert_int_equal(fesetround(mode), 0);
+    assert_true(sum > 1); // which fegetround() need not know
+    mspring_event event;
+    uint32_t count = 1;
+    check_ok(mspring_network_read_events(network, &event, 1, &count, NULL));
+    assert_int_equal(count, 0);
+    // They were there.
+    check_ok(mspring_network_set_break_strains(network, 0, 1, &strain));
+    check_ok(mspring_network_set_velocities(network, 0, 1, &fast, &fast));
+    support_steps(network, 3, 0.01);
+    check_ok(mspring_network_read_events(network, &event, 1, &count, NULL));
+    assert_int_equal(count, 1);
+    free(before.bytes);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
 static void bad_arguments_are_refused(void **state) {
     (void)state;
     recipe made = snapshots_small_recipe();
@@ -398,6 +432,7 @@ int main(void) {
         cmocka_unit_test(all_goes_into_a_new_network),
         cmocka_unit_test(what_was_removed_comes_back),
         cmocka_unit_test(a_version_has_one_format),
+        cmocka_unit_test(loading_leaves_no_events_and_no_rounding_mode),
         cmocka_unit_test(bad_arguments_are_refused),
         cmocka_unit_test(hooks_can_neither_save_nor_load),
         cmocka_unit_test(loading_survives_every_failure),
