@@ -74,7 +74,8 @@ static void plan_wave(job *wave) {
     uint32_t group = wave->depth;
     if (wave->workers > 1 && group > (wave->strips / wave->workers - 2 - SLACK) / lag)
         group = (wave->strips / wave->workers - 2 - SLACK) / lag;
-    // Equal passes, and as many for each worker.
+    // Equal passes, and as many for each worker. The loop above leaves at least lag + 2 + SLACK strips to a worker.
+    // NOLINTNEXTLINE(clang-analyzer-core.DivideZero)
     const uint32_t at_once = group * wave->workers, rounds = (count + at_once - 1) / at_once;
     wave->group = (count + rounds * wave->workers - 1) / (rounds * wave->workers);
     const uint32_t passes = (count + wave->group - 1) / wave->group;
@@ -233,7 +234,8 @@ static uint32_t web_depth_within(const job *wave, size_t cache_bytes) {
 static bool sweep_layers(const mspring_network *network, float h, mspringi_field base, uint32_t count,
                          mspringi_sight *sights) {
     const mspringi_topology *t = &network->topology;
-    if (t->layer_count == 0 || count == 1 || network->graft.count > 0)
+    const mspringi_strip *web = find_web_strip(t);
+    if (!web || t->layer_count == 0 || count == 1 || network->graft.count > 0)
         return false;
     job wave = {.network = network,
                 .base = base,
@@ -241,17 +243,17 @@ static bool sweep_layers(const mspring_network *network, float h, mspringi_field
                 .count = count,
                 .strips = t->layer_count,
                 .lag = 1,
-                .web = find_web_strip(t),
+                .web = web,
                 .sights = sights};
     const uint32_t near_depth = web_depth_within(&wave, NEAR_CACHE_BYTES);
     wave.depth = near_depth > FEW_SUBSTEPS ? near_depth : web_depth_within(&wave, FAR_CACHE_BYTES);
     plan_wave(&wave);
     if (wave.depth == 1 || wave.workers < mspringi_tasks_concurrency(network->tasks))
         return false;
-    if (mspringi_share_of_strip(network, wave.web) == MSPRINGI_ASLEEP)
+    if (mspringi_share_of_strip(network, web) == MSPRINGI_ASLEEP)
         return true;
     const mspringi_substep first = mspringi_substep_prepare(network, h, base, 0, count, 0);
-    mspringi_web_pack(network, &first, &t->spans[t->rows[wave.web->first_row].first_span]);
+    mspringi_web_pack(network, &first, &t->spans[t->rows[web->first_row].first_span]);
     mspringi_tasks_run(wave.progress ? network->tasks : NULL, wave.workers, make_passes, &wave);
     return true;
 }
