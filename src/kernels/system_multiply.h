@@ -72,7 +72,10 @@ MSPRINGI_PRODUCT float multiply_lattice_rows(const mspringi_system *system, cons
                                         shift_in(before_right.y, right.y));
                 const displacement to = {sub(mul(load(mass + slot), here.x), force_x),
                                          sub(mul(load(mass + slot), here.y), force_y)};
+                // They are NULL only if springs are handed on and no more.
+                // cppcheck-suppress nullPointerArithmetic
                 store(to_x + slot, to.x);
+                // cppcheck-suppress nullPointerArithmetic
                 store(to_y + slot, to.y);
                 add_product(&sums, slot, here, to);
                 before_right = right;

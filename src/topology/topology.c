@@ -344,6 +344,7 @@ mspring_result mspringi_topology_begin(const mspring_builder *builder, const msp
 mspring_result mspringi_topology_go_on(mspringi_assembly *begun, uint32_t *effort, bool *is_done) {
     mspringi_pace *pace = &begun->pace;
     mspring_result result = MSPRING_OK;
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): begun was made, or this is not called
     pace->left = *effort;
     while (result == MSPRING_OK && pace->pass < LAYOUT_PASSES && pace->left > 0) {
         pace->is_halfway = false;
