@@ -4,12 +4,6 @@
 
 #include "base/mix.h"
 
-#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
-#define BIG_ENDIAN_HOST 1
-#else
-#define BIG_ENDIAN_HOST 0
-#endif
-
 static const char magic[8] = {'m', 's', 'p', 'r', 'i', 'n', 'g', '\n'};
 
 /// Bytes that are written before the checksum is taken: half of a first-level cache.
@@ -53,8 +47,7 @@ static void sum_up(mspringi_writer *to) {
     to->unsummed += units * MSPRINGI_CHECKSUM_UNIT;
 }
 
-// Copy values and turn the bytes of each around.
-static void copy_reversed(uint8_t *to, const uint8_t *from, size_t size, size_t width) {
+void mspringi_copy_reversed(uint8_t *to, const uint8_t *from, size_t size, size_t width) {
     for (size_t i = 0; i < size; i += width)
         for (size_t byte = 0; byte < width; ++byte)
             to[i + byte] = from[i + width - 1 - byte];
@@ -64,8 +57,8 @@ void mspringi_put(mspringi_writer *to, const void *values, size_t count, size_t 
     const uint8_t *from = values;
     for (size_t left = count * width; left > 0;) {
         const size_t size = left < CHUNK ? left : CHUNK;
-        if (BIG_ENDIAN_HOST)
-            copy_reversed(to->at, from, size, width);
+        if (MSPRINGI_BIG_ENDIAN_HOST)
+            mspringi_copy_reversed(to->at, from, size, width);
         else
             memcpy(to->at, from, size);
         to->at += size;
@@ -79,14 +72,6 @@ void mspringi_put(mspringi_writer *to, const void *values, size_t count, size_t 
 void mspringi_put_zeros(mspringi_writer *to, size_t count) {
     for (size_t i = 0; i < count; ++i)
         mspringi_put(to, &(uint8_t){0}, 1, 1);
-}
-
-const uint8_t *mspringi_get(const uint8_t *from, void *values, size_t count, size_t width) {
-    if (BIG_ENDIAN_HOST)
-        copy_reversed(values, from, count * width, width);
-    else if (count > 0)
-        memcpy(values, from, count * width);
-    return from + count * width;
 }
 
 void mspringi_put_header(mspringi_writer *to, const mspringi_snapshot_header *header) {

@@ -13,6 +13,13 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
+
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+#define MSPRINGI_BIG_ENDIAN_HOST 1
+#else
+#define MSPRINGI_BIG_ENDIAN_HOST 0
+#endif
 
 /// Counted up with any change of what is saved, so that no library takes what another means otherwise.
 #define MSPRINGI_SNAPSHOT_VERSION 3u
@@ -57,9 +64,18 @@ void mspringi_put(mspringi_writer *to, const void *values, size_t count, size_t 
 /// Write zeros.
 void mspringi_put_zeros(mspringi_writer *to, size_t count);
 
-/// Read values.
+/// Copy values and turn the bytes of each around.
+void mspringi_copy_reversed(uint8_t *to, const uint8_t *from, size_t size, size_t width);
+
+/// Read values. (Inline, as many are read one by one: called, it took half of loading a frame.)
 /// @return what follows
-const uint8_t *mspringi_get(const uint8_t *from, void *values, size_t count, size_t width);
+static inline const uint8_t *mspringi_get(const uint8_t *from, void *values, size_t count, size_t width) {
+    if (MSPRINGI_BIG_ENDIAN_HOST)
+        mspringi_copy_reversed(values, from, count * width, width);
+    else if (count > 0)
+        memcpy(values, from, count * width);
+    return from + count * width;
+}
 
 void mspringi_put_header(mspringi_writer *to, const mspringi_snapshot_header *header);
 /// @return false if this does not begin as snapshots do; at least MSPRINGI_SNAPSHOT_HEADER_BYTES must be there

@@ -46,9 +46,22 @@ static mspring_result broken_check(mspring_network *network, const uint8_t *from
     return result == MSPRING_OK ? mspringi_breaking_reserve(network) : result;
 }
 
+// Most often no spring has broken since, or been restored, and looking at each would take half of loading a frame.
+// (Where springs may have been added or removed each is looked at.)
+static bool are_as_in(const mspring_network *network, const uint8_t *from) {
+    const size_t words = mspringi_place_words(&network->topology);
+    bool same = !network->growth.springs;
+    for (size_t i = 0; same && i < words; ++i) {
+        uint16_t word;
+        mspringi_get(from + i * sizeof word, &word, 1, sizeof word);
+        same = word == network->live[i];
+    }
+    return same;
+}
+
 static void broken_load(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_topology *t = &network->topology;
-    if (size == 0 && !network->edits.link_log)
+    if ((size == 0 && !network->edits.link_log) || (size > 0 && are_as_in(network, from)))
         return;
     mspringi_place_reader reader;
     mspringi_places_begin(&reader, &t->places, 0);
