@@ -144,6 +144,18 @@ void support_steps(mspring_network *network, uint32_t count, double dt) {
     }
 }
 
+void support_fall_asleep(mspring_network *network, double dt) {
+    for (int i = 0; i < 6400 && !mspring_network_is_asleep(network); i++) {
+        support_steps(network, 1, dt);
+    }
+    assert_int_equal(mspring_network_is_asleep(network), 1);
+}
+
+void support_kick(mspring_network *network, mspring_id particle, float speed) {
+    const float along = 0.3f * speed;
+    check_ok(mspring_network_set_velocities(network, particle, 1, &speed, &along));
+}
+
 mspring_result support_add_hook(mspring_network *network, mspring_phase phase, mspring_hook_fn fn, void *user,
                                 uint32_t *hook) {
     mspring_hook_def def;
@@ -170,6 +182,13 @@ uint64_t support_hash(const mspring_network *network) {
     uint64_t hash = 0;
     check_ok(mspring_network_state_hash(network, &hash));
     return hash;
+}
+
+bool support_sleeps(const mspring_network *network, mspring_id particle) {
+    uint8_t asleep = 2;
+    check_ok(mspring_network_get_sleepers(network, particle, 1, &asleep));
+    assert_true(asleep <= 1);
+    return asleep == 1;
 }
 
 double support_energy_of_motion(const mspring_network *network) {

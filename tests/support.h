@@ -6,6 +6,7 @@
 #define TEST_SUPPORT_H
 
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -78,6 +79,12 @@ void support_steps(mspring_network *network, uint32_t count, double dt);
 mspring_result support_add_hook(mspring_network *network, mspring_phase phase, mspring_hook_fn fn, void *user,
                                 uint32_t *hook);
 
+/// Step by dt until everything sleeps.
+void support_fall_asleep(mspring_network *network, double dt);
+
+/// Give a particle a speed along x, m/s, and a third of it along y.
+void support_kick(mspring_network *network, mspring_id particle, float speed);
+
 /* -------------------------------------------------------------------------------------- reading a network */
 
 typedef struct support_point {
@@ -87,6 +94,7 @@ typedef struct support_point {
 support_point support_position(const mspring_network *network, mspring_id particle);
 support_point support_velocity(const mspring_network *network, mspring_id particle);
 uint64_t support_hash(const mspring_network *network);
+bool support_sleeps(const mspring_network *network, mspring_id particle);
 
 /// What has been made of motion: kinetic and elastic energy, J.
 double support_energy_of_motion(const mspring_network *network);

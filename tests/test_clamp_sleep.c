@@ -57,18 +57,6 @@ static mspring_network *make(const recipe *made, float gravity, uint32_t workers
     return recipe_network(made, &def);
 }
 
-static void fall_asleep(mspring_network *network) {
-    for (int i = 0; i < 1000 && !mspring_network_is_asleep(network); i++) {
-        support_steps(network, 1, DT);
-    }
-    assert_int_equal(mspring_network_is_asleep(network), 1);
-}
-
-static void kick(mspring_network *network, mspring_id particle, float speed) {
-    const float along = 0.3f * speed;
-    check_ok(mspring_network_set_velocities(network, particle, 1, &speed, &along));
-}
-
 /// What there is to see of a network.
 typedef struct sight {
     double x[PARTICLES], y[PARTICLES];
@@ -106,10 +94,10 @@ static void what_is_awake_moves_as_if_nothing_slept(void **state) {
     mspring_network *network = make(&made, GRAVITY, 1, 2);
     for (size_t i = 0; i < COUNT_OF(kicked); i++) {
         mspring_network *awake = NULL;
-        fall_asleep(network);
+        support_fall_asleep(network, DT);
         check_ok(mspring_network_clone(network, NULL, &awake));
-        kick(network, kicked[i], 3);
-        kick(awake, kicked[i], 3);
+        support_kick(network, kicked[i], 3);
+        support_kick(awake, kicked[i], 3);
         look(network, &before);
         const uint64_t clamped = mspring_network_fallback_count(network);
         for (uint32_t step = 0; step < 10; step++) {
@@ -141,9 +129,9 @@ static void momentum_stays_where_it_is(void **state) {
     static sight before, after;
     recipe made = lumps(1e6, false);
     mspring_network *network = make(&made, 0, 1, 1);
-    fall_asleep(network);
+    support_fall_asleep(network, DT);
     check_ok(mspring_network_set_global_damping(network, 0));
-    kick(network, IN_LUMP + 40, 50);
+    support_kick(network, IN_LUMP + 40, 50);
     double px = 0, py = 0, turn = 0, px_then = 0, py_then = 0, turn_then = 0;
     check_ok(mspring_network_momentum(network, &px, &py, &turn));
     assert_true(px > 0 && py > 0);
@@ -196,10 +184,10 @@ static played play(const recipe *made, uint32_t workers) {
     mspring_network *network = make(made, GRAVITY, workers, 160);
     for (uint32_t step = 0; step < STEPS; step++) {
         if (step % 6 == 0) {
-            kick(network, step / 6 % LUMPS * IN_LUMP + 7 * step, 4);
+            support_kick(network, step / 6 % LUMPS * IN_LUMP + 7 * step, 4);
         }
         if (step == 20) {
-            kick(network, PARTICLES - 1, 1);
+            support_kick(network, PARTICLES - 1, 1);
         }
         play_step(network, step >= 16 && step < 34 ? 0.004 : 0.04, &out);
     }

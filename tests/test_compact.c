@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "allocator.h"
+#include "look.h"
 #include "recipe.h"
 #include "support.h"
 
@@ -101,70 +102,6 @@ static void set_solver(mspring_network *network, mspring_solver which, mspring_i
 
 /* -------------------------------------------------------------------------------------- what is to be seen */
 
-/// All that can be asked of particles and springs, in their order.
-typedef struct look {
-    uint64_t hash;
-    double energy[3], momentum[3];
-    mspring_spring_info *springs;
-    float *by_spring[4], *scale;
-    uint32_t *component, component_count;
-} look;
-
-static void *array(size_t count, size_t size) {
-    void *made = calloc(count, size);
-    assert_non_null(made);
-    return made;
-}
-
-static look look_at(mspring_network *network) {
-    const uint32_t springs = mspring_network_spring_count(network);
-    const uint32_t particles = mspring_network_particle_count(network);
-    look seen = {.hash = support_hash(network)};
-    seen.springs = array(springs, sizeof *seen.springs);
-    for (mspring_id s = 0; s < springs; s++) {
-        seen.springs[s].struct_size = sizeof *seen.springs;
-        check_ok(mspring_network_get_spring(network, s, &seen.springs[s]));
-    }
-    for (int i = 0; i < 4; i++) {
-        seen.by_spring[i] = array(springs, sizeof(float));
-    }
-    seen.scale = array(particles, sizeof(float));
-    seen.component = array(particles, sizeof *seen.component);
-    check_ok(mspring_network_energy(network, &seen.energy[0], &seen.energy[1], &seen.energy[2]));
-    check_ok(mspring_network_momentum(network, &seen.momentum[0], &seen.momentum[1], &seen.momentum[2]));
-    check_ok(mspring_network_get_extents(network, seen.by_spring[0], seen.by_spring[1], seen.by_spring[2],
-                                         seen.by_spring[3]));
-    check_ok(mspring_network_get_inverse_mass_scales(network, 0, particles, seen.scale));
-    check_ok(mspring_network_update_components(network, &seen.component_count, NULL));
-    check_ok(mspring_network_get_component_numbers(network, 0, particles, seen.component));
-    return seen;
-}
-
-static void check_same_look(look a, look b, const mspring_network *network) {
-    const uint32_t springs = mspring_network_spring_count(network);
-    const uint32_t particles = mspring_network_particle_count(network);
-    assert_int_equal(a.hash, b.hash);
-    assert_memory_equal(a.energy, b.energy, sizeof a.energy);
-    assert_memory_equal(a.momentum, b.momentum, sizeof a.momentum);
-    assert_memory_equal(a.springs, b.springs, springs * sizeof *a.springs);
-    for (int i = 0; i < 4; i++) {
-        for (mspring_id s = 0; s < springs; s++) { // the sense of a difference may be another, and so 0's sign
-            check_near(a.by_spring[i][s], b.by_spring[i][s], 0);
-        }
-        free(a.by_spring[i]);
-        free(b.by_spring[i]);
-    }
-    assert_memory_equal(a.scale, b.scale, particles * sizeof *a.scale);
-    assert_int_equal(a.component_count, b.component_count);
-    assert_memory_equal(a.component, b.component, particles * sizeof *a.component);
-    free(a.springs);
-    free(b.springs);
-    free(a.scale);
-    free(b.scale);
-    free(a.component);
-    free(b.component);
-}
-
 static void nothing_changes_but_the_plan(void **state) {
     (void)state;
     recipe made = mixed_recipe();
@@ -202,7 +139,7 @@ static void plans_are_those_of_what_is_left(void **state) {
     for (wreck kind = 0; kind < WRECKS; kind++) {
         mspring_network *network = make(&made, MSPRING_SIMD_AUTO, 1);
         recipe left = made;
-        left.springs = array(made.spring_count, sizeof *left.springs);
+        left.springs = look_array(made.spring_count, sizeof *left.springs);
         left.spring_count = 0;
         for (mspring_id s = 0; s < made.spring_count; s++) {
             if (!breaks(&made, kind, s)) {
@@ -387,7 +324,7 @@ typedef struct saved {
 static saved save(const mspring_network *network) {
     saved out;
     check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &out.size));
-    out.bytes = array(out.size, 1);
+    out.bytes = look_array(out.size, 1);
     check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_ALL, out.bytes, out.size, NULL));
     return out;
 }
@@ -559,7 +496,7 @@ static void strains_are_watched_as_before(void **state) {
     recipe made = mixed_recipe();
     mspring_event events[2][64];
     uint32_t counts[2];
-    float *strain = array(made.spring_count, sizeof *strain);
+    float *strain = look_array(made.spring_count, sizeof *strain);
     for (mspring_id s = 0; s < made.spring_count; s++) {
         strain[s] = 0.02f + 0.01f * (float)(s % 5);
     }
@@ -730,7 +667,7 @@ static mspring_result compact_all(mspring_network *network) {
 static void every_failure_leaves_the_network_as_it_was(void **state) {
     (void)state;
     recipe made = mixed_recipe();
-    float *strain = array(made.spring_count, sizeof *strain);
+    float *strain = look_array(made.spring_count, sizeof *strain);
     for (mspring_id s = 0; s < made.spring_count; s++) {
         strain[s] = 10;
     }

@@ -40,24 +40,6 @@ static mspring_network *make(const recipe *made, const way *how) {
     return network;
 }
 
-static void fall_asleep(mspring_network *network) {
-    for (int i = 0; i < 3000 && !mspring_network_is_asleep(network); i++) {
-        support_steps(network, 1, DT);
-    }
-    assert_int_equal(mspring_network_is_asleep(network), 1);
-}
-
-static uint8_t sleeps(const mspring_network *network, mspring_id particle) {
-    uint8_t asleep = 2;
-    check_ok(mspring_network_get_sleepers(network, particle, 1, &asleep));
-    return asleep;
-}
-
-static void kick(mspring_network *network, mspring_id particle, float speed) {
-    const float along = 0.3f * speed;
-    check_ok(mspring_network_set_velocities(network, particle, 1, &speed, &along));
-}
-
 /* --------------------------------------------------------------------------------------------- in pieces */
 
 /// A lattice of which most springs will break, with ropes to and fro, a graph, strands and loose particles, all of
@@ -111,7 +93,7 @@ static void check_places(const mspring_network *asleep, const mspring_network *a
     check_ok(mspring_network_get_positions(asleep, 0, count, at[0], at[1]));
     check_ok(mspring_network_get_positions(awake, 0, count, at[2], at[3]));
     for (mspring_id p = 0; p < count; p++) {
-        const bool still = sleeps(asleep, p);
+        const bool still = support_sleeps(asleep, p);
         check_near(at[0][p], still ? x[p] : at[2][p], 0);
         check_near(at[1][p], still ? y[p] : at[3][p], 0);
     }
@@ -128,8 +110,8 @@ static uint32_t kick_and_compare(mspring_network *network, mspring_id particle) 
     double *x = malloc(count * sizeof *x), *y = malloc(count * sizeof *y);
     assert_true(x != NULL && y != NULL);
     check_ok(mspring_network_get_positions(network, 0, count, x, y));
-    kick(network, particle, 3);
-    kick(awake, particle, 3);
+    support_kick(network, particle, 3);
+    support_kick(awake, particle, 3);
     uint32_t moving = 0;
     for (int i = 0; i < 12; i++) {
         check_ok(mspring_network_wake(awake));
@@ -138,7 +120,7 @@ static uint32_t kick_and_compare(mspring_network *network, mspring_id particle) 
         check_places(network, awake, x, y);
     }
     for (mspring_id p = 0; p < count; p++) {
-        moving += !sleeps(network, p);
+        moving += !support_sleeps(network, p);
     }
     mspring_network_destroy(awake);
     free(x);
@@ -161,7 +143,7 @@ static void what_is_awake_moves_as_if_nothing_slept(void **state) {
             }
             uint32_t some = 0;
             for (int i = 0; i < 8; i++) {
-                fall_asleep(network);
+                support_fall_asleep(network, DT);
                 const uint32_t moving = kick_and_compare(
                     network, (mspring_id)(support_random(&seed) % mspring_network_particle_count(network)));
                 some += moving > 0 && moving < mspring_network_particle_count(network);
@@ -184,7 +166,7 @@ static uint64_t session(const recipe *made, const way *how, uint32_t kicks) {
         for (int frame = 0; frame < 40; frame++) {
             support_steps(network, 1, DT);
         }
-        kick(network, (mspring_id)(support_random(&seed) % particles), 2);
+        support_kick(network, (mspring_id)(support_random(&seed) % particles), 2);
         const mspring_id spring = (mspring_id)(support_random(&seed) % springs);
         if (i % 3 == 1) {
             check_ok(mspring_network_break_springs(network, &spring, 1));
@@ -195,7 +177,7 @@ static uint64_t session(const recipe *made, const way *how, uint32_t kicks) {
             check_ok(mspring_network_compact(network, 0, NULL));
         }
         for (mspring_id p = 0; p < particles; p++) {
-            print = print * 3 + sleeps(network, p);
+            print = print * 3 + support_sleeps(network, p);
         }
         print = print * 31 + support_hash(network);
     }
@@ -247,7 +229,7 @@ static mspring_network *make_three(const way *how) {
     mspring_network *network = make(&made, how);
     check_ok(mspring_network_break_springs(network, broken, count));
     recipe_free(&made);
-    fall_asleep(network);
+    support_fall_asleep(network, DT);
     return network;
 }
 
@@ -271,9 +253,9 @@ static void to_others_sleepers_are_pinned(void **state) {
         mspring_network *const both[] = {network, pinned};
         for (int i = 0; i < 2; i++) {
             for (uint32_t column = 3; column < 20; column++) {
-                kick(both[i], 5 * COLUMNS + column, 5);
-                kick(both[i], (CUT - 1) * COLUMNS + column, -3);
-                kick(both[i], SECOND_CUT * COLUMNS + column, 4);
+                support_kick(both[i], 5 * COLUMNS + column, 5);
+                support_kick(both[i], (CUT - 1) * COLUMNS + column, -3);
+                support_kick(both[i], SECOND_CUT * COLUMNS + column, 4);
             }
         }
         for (int frame = 0; frame < 10; frame++) {
@@ -282,8 +264,8 @@ static void to_others_sleepers_are_pinned(void **state) {
             support_steps(pinned, 1, DT);
             assert_int_equal(support_hash(network), support_hash(pinned));
         }
-        assert_int_equal(sleeps(network, 50 * COLUMNS), 1);
-        assert_int_equal(sleeps(network, 10 * COLUMNS) + sleeps(network, 90 * COLUMNS), 0);
+        assert_int_equal(support_sleeps(network, 50 * COLUMNS), 1);
+        assert_int_equal(support_sleeps(network, 10 * COLUMNS) + support_sleeps(network, 90 * COLUMNS), 0);
         mspring_network_destroy(network);
         mspring_network_destroy(pinned);
     }
@@ -308,7 +290,7 @@ static mspring_network *make_two_guarded(mspring_solver solver, mspring_guard gu
     mspring_network *network = make(&made, &how);
     check_ok(mspring_network_break_springs(network, broken, 1));
     recipe_free(&made);
-    fall_asleep(network);
+    support_fall_asleep(network, DT);
     return network;
 }
 
@@ -345,15 +327,15 @@ static void each_wakes_for_itself(void **state) {
                 hook(network);
             }
             support_steps(network, 1, DT);
-            if (sleeps(network, IN_A) || !sleeps(network, IN_B) || !sleeps(network, LOOSE) ||
-                mspring_network_is_asleep(network)) {
+            if (support_sleeps(network, IN_A) || !support_sleeps(network, IN_B) ||
+                !support_sleeps(network, LOOSE) || mspring_network_is_asleep(network)) {
                 print_error("%s\n", i < CHANGE_COUNT ? changes[i].name : "hook");
                 fail();
             }
             support_steps(network, 3, DT);
             check_near(support_position(network, IN_B).x, b.x, 0);
             check_near(support_position(network, IN_B).y, b.y, 0);
-            assert_int_equal(sleeps(network, IN_B), 1);
+            assert_int_equal(support_sleeps(network, IN_B), 1);
             mspring_network_destroy(network);
         }
     }
@@ -372,8 +354,8 @@ static void neighbours_in_a_vector_wake_together(void **state) {
     view.x[a] += 0.01f;
     view.x[b] += 0.01f;
     support_steps(network, 1, DT);
-    assert_int_equal(sleeps(network, IN_A) + sleeps(network, IN_B), 0);
-    assert_int_equal(sleeps(network, LOOSE), 1);
+    assert_int_equal(support_sleeps(network, IN_A) + support_sleeps(network, IN_B), 0);
+    assert_int_equal(support_sleeps(network, LOOSE), 1);
     mspring_network_destroy(network);
 }
 
@@ -384,13 +366,13 @@ static void a_ramp_keeps_its_island_awake(void **state) {
     mspring_network *network = make_two(MSPRING_SOLVER_EXPLICIT, &broken);
     const mspring_id spring = IN_A_SPRING;
     check_ok(mspring_network_break_springs(network, &spring, 1));
-    fall_asleep(network);
+    support_fall_asleep(network, DT);
     check_ok(mspring_network_restore_springs(network, &spring, 1, 2));
     support_steps(network, 100, DT);
-    assert_int_equal(sleeps(network, IN_A), 0);
-    assert_int_equal(sleeps(network, IN_B), 1);
+    assert_int_equal(support_sleeps(network, IN_A), 0);
+    assert_int_equal(support_sleeps(network, IN_B), 1);
     support_steps(network, 28 + 16 + 1, DT); // to the end of the ramp, and for the time of falling asleep
-    assert_int_equal(sleeps(network, IN_A), 1);
+    assert_int_equal(support_sleeps(network, IN_A), 1);
     mspring_network_destroy(network);
 }
 
@@ -413,15 +395,15 @@ static void what_wakes_was_at_rest(void **state) {
         solver.integrator = integrator;
         check_ok(mspring_network_set_solver(network, &solver));
         // One is slow enough to fall asleep as it goes, the other never sleeps.
-        kick(network, 0, 0.4f);
-        kick(network, 1, 3);
-        for (int i = 0; i < 100 && !sleeps(network, 0); i++) {
+        support_kick(network, 0, 0.4f);
+        support_kick(network, 1, 3);
+        for (int i = 0; i < 100 && !support_sleeps(network, 0); i++) {
             support_steps(network, 1, DT);
         }
         const support_point at = support_position(network, 0);
         check_ok(mspring_network_wake(network));
         support_steps(network, 1, DT);
-        assert_int_equal(sleeps(network, 0), 0);
+        assert_int_equal(support_sleeps(network, 0), 0);
         check_near(support_position(network, 0).x, at.x, 0);
         check_near(support_position(network, 0).y, at.y, 0);
         mspring_network_destroy(network);
@@ -441,13 +423,13 @@ static void the_origin_moves_on_without_waking(void **state) {
     mspring_view view = {.struct_size = sizeof view};
     check_ok(mspring_network_view(network, &view));
     const double origin = view.origin_x;
-    kick(network, 0, 100);
+    support_kick(network, 0, 100);
     support_steps(network, 90, DT); // the origin goes along once it is 64 m from it, and past the other
     check_ok(mspring_network_view(network, &view));
     assert_true(view.origin_x > origin + 50);
-    kick(network, 0, -100);
+    support_kick(network, 0, -100);
     support_steps(network, 2, DT);
-    assert_int_equal(sleeps(network, 1), 1);
+    assert_int_equal(support_sleeps(network, 1), 1);
     check_near(support_position(network, 1).x, 200, 0);
     mspring_network_destroy(network);
 }
@@ -463,7 +445,7 @@ static void masses_of_what_is_awake_count_at_once(void **state) {
     for (int step = 0; step < 8; step++) {
         for (int i = 0; i < 2; i++) {
             if (step == 0) {
-                kick(both[i], IN_B, 4);
+                support_kick(both[i], IN_B, 4);
             } else if (step == 4) {
                 check_ok(mspring_network_set_masses(both[i], IN_B, 1, &heavy));
             }
@@ -474,7 +456,7 @@ static void masses_of_what_is_awake_count_at_once(void **state) {
         check_near(support_position(network, IN_B).x, support_position(awake, IN_B).x, 0);
         check_near(support_position(network, IN_B).y, support_position(awake, IN_B).y, 0);
     }
-    assert_int_equal(sleeps(network, IN_A), 1);
+    assert_int_equal(support_sleeps(network, IN_A), 1);
     mspring_network_destroy(network);
     mspring_network_destroy(awake);
 }
@@ -485,19 +467,19 @@ static void joining_wakes_both(void **state) {
     mspring_id broken;
     mspring_network *network = make_two(MSPRING_SOLVER_EXPLICIT, &broken);
     check_ok(mspring_network_restore_springs(network, &broken, 1, 0));
-    assert_int_equal(sleeps(network, IN_A) + sleeps(network, IN_B), 0);
-    assert_int_equal(sleeps(network, LOOSE), 1);
-    fall_asleep(network);
-    kick(network, IN_A, 1);
+    assert_int_equal(support_sleeps(network, IN_A) + support_sleeps(network, IN_B), 0);
+    assert_int_equal(support_sleeps(network, LOOSE), 1);
+    support_fall_asleep(network, DT);
+    support_kick(network, IN_A, 1);
     support_steps(network, 1, DT);
-    assert_int_equal(sleeps(network, IN_A) + sleeps(network, IN_B), 0);
+    assert_int_equal(support_sleeps(network, IN_A) + support_sleeps(network, IN_B), 0);
     // Parted again, each sleeps by itself.
     check_ok(mspring_network_break_springs(network, &broken, 1));
-    fall_asleep(network);
-    kick(network, IN_B, 1);
+    support_fall_asleep(network, DT);
+    support_kick(network, IN_B, 1);
     support_steps(network, 1, DT);
-    assert_int_equal(sleeps(network, IN_A), 1);
-    assert_int_equal(sleeps(network, IN_B), 0);
+    assert_int_equal(support_sleeps(network, IN_A), 1);
+    assert_int_equal(support_sleeps(network, IN_B), 0);
     mspring_network_destroy(network);
 }
 
@@ -517,13 +499,13 @@ static void sleepers_stay_until_the_step_is_over(void **state) {
     bool once = true;
     check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, push_in_hook, &once, NULL));
     // The rope's two halves share a vector: the one on B's side moves.
-    kick(network, ROPE + 5, 1);
+    support_kick(network, ROPE + 5, 1);
     support_steps(network, 1, DT);
-    assert_int_equal(sleeps(network, ROPE + 4), 1);
+    assert_int_equal(support_sleeps(network, ROPE + 4), 1);
     const support_point before = support_position(network, ROPE + 4);
     once = false;
     support_steps(network, 1, DT);
-    assert_int_equal(sleeps(network, ROPE + 4), 0);
+    assert_int_equal(support_sleeps(network, ROPE + 4), 0);
     check_near(support_position(network, ROPE + 4).x, before.x, 0);
     support_steps(network, 1, DT);
     assert_true(support_position(network, ROPE + 4).x > before.x + 0.01);
@@ -540,7 +522,7 @@ static void snapshots_and_clones_go_on(void **state) {
         for (size_t c = 0; c < COUNT_OF(last); c++) {
             mspring_id broken;
             mspring_network *network = make_two(solver, &broken), *other = make_two(solver, &broken), *clone = NULL;
-            kick(network, IN_B, 4);
+            support_kick(network, IN_B, 4);
             support_steps(network, 3, DT);
             if (last[c]) {
                 last[c](network, IN_A, IN_A_SPRING);
@@ -557,8 +539,8 @@ static void snapshots_and_clones_go_on(void **state) {
             for (int i = 0; i < 3; i++) {
                 for (int frame = 0; frame < 100; frame++) {
                     support_steps(all[i], 1, DT);
-                    prints[i] = prints[i] * 31 + support_hash(all[i]) + (uint64_t)sleeps(all[i], IN_A) +
-                                (uint64_t)sleeps(all[i], IN_B) * 2;
+                    prints[i] = prints[i] * 31 + support_hash(all[i]) + (uint64_t)support_sleeps(all[i], IN_A) +
+                                (uint64_t)support_sleeps(all[i], IN_B) * 2;
                 }
                 mspring_network_destroy(all[i]);
             }
@@ -574,22 +556,22 @@ static void what_sleeps_sleeps_on_in_another_layout(void **state) {
     for (mspring_solver solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_IMPLICIT; solver++) {
         mspring_id broken;
         mspring_network *network = make_two(solver, &broken);
-        kick(network, IN_B, 4);
+        support_kick(network, IN_B, 4);
         support_steps(network, 1, DT);
         const uint64_t before = support_hash(network);
         check_ok(mspring_network_compact(network, 0, NULL));
         assert_int_equal(support_hash(network), before);
-        assert_int_equal(sleeps(network, IN_A), 1);
-        assert_int_equal(sleeps(network, IN_B), 0);
+        assert_int_equal(support_sleeps(network, IN_A), 1);
+        assert_int_equal(support_sleeps(network, IN_B), 0);
         const support_point a = support_position(network, IN_A), b = support_position(network, IN_B);
         support_steps(network, 5, DT);
         check_near(support_position(network, IN_A).x, a.x, 0);
         assert_true(support_position(network, IN_B).x != b.x);
-        assert_int_equal(sleeps(network, IN_A), 1);
+        assert_int_equal(support_sleeps(network, IN_A), 1);
         check_ok(mspring_network_expand(network));
         support_steps(network, 1, DT);
-        assert_int_equal(sleeps(network, IN_A), 1);
-        fall_asleep(network);
+        assert_int_equal(support_sleeps(network, IN_A), 1);
+        support_fall_asleep(network, DT);
         mspring_network_destroy(network);
     }
 }
@@ -610,10 +592,10 @@ static void forces_and_masses_are_those_of_before(void **state) {
     check_ok(mspring_network_set_masses(network, IN_B, 1, &mass));
     check_ok(mspring_network_apply_force(network, IN_A, 10, 0));
     support_steps(network, 1, DT);
-    assert_int_equal(sleeps(network, IN_A), 1);
-    assert_int_equal(sleeps(network, IN_B), 0);
+    assert_int_equal(support_sleeps(network, IN_A), 1);
+    assert_int_equal(support_sleeps(network, IN_B), 0);
     support_steps(network, 1, DT); // without the force
-    assert_int_equal(sleeps(network, IN_A), 0);
+    assert_int_equal(support_sleeps(network, IN_A), 0);
     mspring_network_destroy(network);
 }
 
@@ -627,16 +609,16 @@ static void a_step_that_goes_wrong_wakes_nobody(void **state) {
         if (hooked) {
             check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, push_in_hook, &once, NULL));
         }
-        kick(network, IN_B, 1);
+        support_kick(network, IN_B, 1);
         support_steps(network, 2, DT);
         const uint64_t before = support_hash(network);
         check_ok(mspring_network_apply_force(network, LOOSE, 0, 1e30f));
         check_error(mspring_network_step(network, DT), MSPRING_ERROR_UNSTABLE);
         assert_int_equal(support_hash(network), before);
-        assert_int_equal(sleeps(network, LOOSE) + sleeps(network, IN_A), 2);
+        assert_int_equal(support_sleeps(network, LOOSE) + support_sleeps(network, IN_A), 2);
         check_ok(mspring_network_apply_force(network, LOOSE, 0, -1e30f));
         support_steps(network, 1, DT);
-        assert_int_equal(sleeps(network, LOOSE) + sleeps(network, IN_A), 2);
+        assert_int_equal(support_sleeps(network, LOOSE) + support_sleeps(network, IN_A), 2);
         mspring_network_destroy(network);
     }
 }
@@ -648,26 +630,26 @@ static void check_refused_step(mspring_guard guard, change_fn disturb, double dt
     mspring_network *network = make_two_guarded(MSPRING_SOLVER_EXPLICIT, guard, &broken), *other = NULL;
     check_ok(mspring_network_set_global_damping(network, 0)); // over such times all would come to rest
     if (one_is_awake) {
-        kick(network, LOOSE, 1);
+        support_kick(network, LOOSE, 1);
         support_steps(network, 1, DT);
     }
     disturb(network, IN_A, IN_A_SPRING);
     check_ok(mspring_network_clone(network, NULL, &other));
     const uint64_t before = support_hash(network);
     const uint32_t whole = mspring_network_is_asleep(network);
-    const uint8_t a = sleeps(network, IN_A);
+    const uint8_t a = support_sleeps(network, IN_A);
     const bool taken = mspring_network_step(network, dt) == MSPRING_OK;
     assert_true(!taken || guard >= MSPRING_GUARD_IMPLICIT);
     if (!taken) {
         assert_int_equal(support_hash(network), before);
         assert_int_equal(mspring_network_is_asleep(network), whole);
-        assert_int_equal(sleeps(network, IN_A), a);
+        assert_int_equal(support_sleeps(network, IN_A), a);
     }
     for (int step = 0; step < 3 && !taken; step++) {
         support_steps(network, 1, DT);
         support_steps(other, 1, DT);
-        assert_int_equal(sleeps(network, IN_A), 0);
-        assert_int_equal(sleeps(network, IN_B), 1);
+        assert_int_equal(support_sleeps(network, IN_A), 0);
+        assert_int_equal(support_sleeps(network, IN_B), 1);
         assert_int_equal(support_hash(network), support_hash(other));
     }
     mspring_network_destroy(network);
@@ -698,10 +680,10 @@ static void events_are_those_of_what_is_awake(void **state) {
         check_ok(mspring_network_set_stress_strains(network, s, 1, &stress));
         check_ok(mspring_network_set_break_strains(network, s, 1, &breaking));
     }
-    fall_asleep(network);
+    support_fall_asleep(network, DT);
     check_ok(mspring_network_clone(network, NULL, &awake));
-    kick(network, IN_B, 30);
-    kick(awake, IN_B, 30);
+    support_kick(network, IN_B, 30);
+    support_kick(awake, IN_B, 30);
     uint32_t total = 0;
     for (int i = 0; i < 60; i++) {
         check_ok(mspring_network_wake(awake));
@@ -718,7 +700,7 @@ static void events_are_those_of_what_is_awake(void **state) {
         }
         total += count_a;
     }
-    assert_int_equal(sleeps(network, IN_A), 1);
+    assert_int_equal(support_sleeps(network, IN_A), 1);
     assert_true(total > 0);
     mspring_network_destroy(network);
     mspring_network_destroy(awake);
@@ -740,7 +722,7 @@ static void the_floor_bears_sleepers(void **state) {
         def.friction = 1;
         check_ok(mspring_network_set_floor(network, &def));
         check_ok(mspring_network_set_gravity(network, 0, -9.8f));
-        for (int i = 0; i < 1500 && !(sleeps(network, IN_A) && sleeps(network, IN_B)); i++) {
+        for (int i = 0; i < 1500 && !(support_sleeps(network, IN_A) && support_sleeps(network, IN_B)); i++) {
             support_steps(network, 1, DT);
         }
         const double high = 100, there = 60;
@@ -750,8 +732,8 @@ static void the_floor_bears_sleepers(void **state) {
         double sum = 0, weight = 0;
         for (int i = 0; i < 10; i++) {
             support_steps(network, 1, DT);
-            assert_int_equal(sleeps(network, IN_A), 1);
-            assert_int_equal(sleeps(network, LOOSE), 0);
+            assert_int_equal(support_sleeps(network, IN_A), 1);
+            assert_int_equal(support_sleeps(network, LOOSE), 0);
             check_ok(mspring_network_get_floor_impulses(network, 0, 160, x, y));
             sum = weight = 0;
             for (mspring_id p = 0; p < 160; p++) {

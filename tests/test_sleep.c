@@ -51,13 +51,6 @@ static void set_solver(mspring_network *network, mspring_solver which) {
 }
 
 /// Step until it sleeps: 100 s are far more than the damping needs.
-static void fall_asleep(mspring_network *network) {
-    for (int i = 0; i < 6400 && !mspring_network_is_asleep(network); i++) {
-        support_steps(network, 1, DT);
-    }
-    assert_int_equal(mspring_network_is_asleep(network), 1);
-}
-
 /* ------------------------------------------------------------------------------------------ falling asleep */
 
 static void it_sleeps_once_it_has_been_slow_for_long_enough(void **state) {
@@ -112,7 +105,7 @@ static void what_moves_does_not_sleep(void **state) {
     support_steps(network, 2000, DT);
     assert_int_equal(mspring_network_is_asleep(network), 0);
     check_ok(mspring_network_set_velocities(network, 100, 1, &none, &none));
-    fall_asleep(network);
+    support_fall_asleep(network, DT);
     mspring_network_destroy(network);
     // What falls at the speed that gravity and damping leave it.
     mspring_builder *builder = support_builder();
@@ -152,7 +145,7 @@ static void settle(mspring_network *network) {
 static void check_it_wakes(const recipe *made, const char *name, void (*general)(mspring_network *network),
                            change_fn particular) {
     mspring_network *network = make(made);
-    fall_asleep(network);
+    support_fall_asleep(network, DT);
     const uint64_t before = support_hash(network);
     if (general) {
         general(network);
@@ -189,12 +182,12 @@ static void restoring_wakes_it_and_a_ramp_keeps_it_awake(void **state) {
     recipe made = hanging_recipe(0);
     mspring_network *network = make(&made);
     change_break(network, MSPRING_NONE, 50);
-    fall_asleep(network);
+    support_fall_asleep(network, DT);
     const mspring_id spring = 50;
     check_ok(mspring_network_restore_springs(network, &spring, 1, 5));
     support_steps(network, 4 * 64, DT);
     assert_int_equal(mspring_network_is_asleep(network), 0);
-    fall_asleep(network);
+    support_fall_asleep(network, DT);
     mspring_network_destroy(network);
     recipe_free(&made);
 }
@@ -203,7 +196,7 @@ static void what_stays_the_same_wakes_nothing(void **state) {
     (void)state;
     recipe made = hanging_recipe(0);
     mspring_network *network = make(&made);
-    fall_asleep(network);
+    support_fall_asleep(network, DT);
     const uint64_t before = support_hash(network);
     float *mass = malloc(made.particle_count * sizeof *mass);
     assert_non_null(mass);
@@ -233,7 +226,7 @@ static void relative_springs_follow_another_substep(void **state) {
     (void)state;
     recipe made = hanging_recipe(MSPRING_SPRING_RELATIVE);
     mspring_network *network = make(&made);
-    fall_asleep(network);
+    support_fall_asleep(network, DT);
     support_steps(network, 3, DT);
     assert_int_equal(mspring_network_is_asleep(network), 1);
     support_steps(network, 1, DT / 2);
@@ -290,7 +283,7 @@ static void hooks_are_called_and_wake_it(void **state) {
         mspring_network *network = make(&made);
         doings what = {.force = 5};
         check_ok(support_add_hook(network, phase, do_things, &what, NULL));
-        fall_asleep(network);
+        support_fall_asleep(network, DT);
         what.calls = 0;
         support_steps(network, 3, DT);
         assert_int_equal(mspring_network_is_asleep(network), 1);
@@ -312,7 +305,7 @@ static void a_step_that_goes_wrong_leaves_it_asleep(void **state) {
     mspring_network *network = make(&made);
     doings what = {.force = 5};
     check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, do_things, &what, NULL));
-    fall_asleep(network);
+    support_fall_asleep(network, DT);
     const uint64_t before = support_hash(network);
     what.shift = NAN;
     check_error(mspring_network_step(network, DT), MSPRING_ERROR_UNSTABLE);
@@ -331,15 +324,15 @@ static uint64_t session_hash(const recipe *made, mspring_simd level, uint32_t wo
     def.worker_count = workers;
     mspring_network *network = recipe_network(made, &def);
     set_solver(network, solver);
-    fall_asleep(network);
+    support_fall_asleep(network, DT);
     check_ok(mspring_network_apply_force(network, 5, 300, 100));
     support_steps(network, 3, DT);
-    fall_asleep(network);
+    support_fall_asleep(network, DT);
     change_break(network, MSPRING_NONE, 50);
     check_ok(mspring_network_compact(network, 0, NULL));
     support_steps(network, 3, DT);
     assert_int_equal(mspring_network_is_asleep(network), 0);
-    fall_asleep(network);
+    support_fall_asleep(network, DT);
     change_shift(network, 3, MSPRING_NONE);
     support_steps(network, 3, DT);
     const uint64_t hash = support_hash(network);
@@ -452,7 +445,7 @@ static void failed_allocations_leave_nothing_behind(void **state) {
         result = mspring_network_create(builder, &def, &network);
         if (result == MSPRING_OK) {
             const size_t calls = watched.calls;
-            fall_asleep(network);
+            support_fall_asleep(network, DT);
             assert_int_equal(watched.calls, calls);
             mspring_network_destroy(network);
         } else {
@@ -496,7 +489,7 @@ static mspring_network *make_lying(uint32_t spring_flags) {
     def.plane_count = 1;
     def.friction = 1;
     check_ok(mspring_network_set_floor(network, &def));
-    fall_asleep(network);
+    support_fall_asleep(network, DT);
     return network;
 }
 
@@ -511,7 +504,7 @@ static void it_wakes_where_it_is_put(void **state) {
     }
     check_ok(mspring_network_set_positions(network, 0, 21, x, up));
     assert_int_equal(mspring_network_is_asleep(network), 0);
-    fall_asleep(network);
+    support_fall_asleep(network, DT);
     for (mspring_id p = 0; p < 21; p++) {
         check_near(support_position(network, p).y, y[p], 0.01);
     }
@@ -575,7 +568,7 @@ static void another_relax_fraction_wakes_it(void **state) {
     check_ok(mspring_network_set_relax_fraction(network, 0));
     const float kick = 20;
     check_ok(mspring_network_set_velocities(network, 50, 1, &kick, &kick));
-    fall_asleep(network);
+    support_fall_asleep(network, DT);
     mspring_event events[1000];
     uint32_t events_read;
     check_ok(mspring_network_read_events(network, events, COUNT_OF(events), &events_read, NULL));
@@ -604,7 +597,7 @@ static void idle_steps_are_taken_by_nobody(void **state) {
     def.sleep_speed = 0.5f;
     def.sleep_time = 0.05f;
     mspring_network *network = recipe_network(&made, &def);
-    fall_asleep(network);
+    support_fall_asleep(network, DT);
     const uint64_t count = mspring_network_fallback_count(network);
     assert_true(count > 0);
     support_steps(network, 40, DT);

@@ -46,24 +46,6 @@ static mspring_network *make_two(double firmness_of_a, const way *how) {
     return make(&made, how);
 }
 
-static void fall_asleep(mspring_network *network) {
-    for (int i = 0; i < 3000 && !mspring_network_is_asleep(network); i++) {
-        support_steps(network, 1, DT);
-    }
-    assert_int_equal(mspring_network_is_asleep(network), 1);
-}
-
-static uint8_t sleeps(const mspring_network *network, mspring_id particle) {
-    uint8_t asleep = 2;
-    check_ok(mspring_network_get_sleepers(network, particle, 1, &asleep));
-    return asleep;
-}
-
-static void kick(mspring_network *network, mspring_id particle, float speed) {
-    const float along = 0.3f * speed;
-    check_ok(mspring_network_set_velocities(network, particle, 1, &speed, &along));
-}
-
 /* ------------------------------------------------------------------------------------- the border of stability */
 
 /// What a lattice of mass 1 bears in a substep of DT / SUBSTEPS, N/m: mass / (2 h^2).
@@ -74,16 +56,16 @@ static const double border = 0.5 * SUBSTEPS * SUBSTEPS / (DT * DT);
 static void what_sleeps_counts(void **state) {
     (void)state;
     mspring_network *network = make_two(0.8 * border, &as_usual);
-    fall_asleep(network);
-    kick(network, IN_B, 1);
+    support_fall_asleep(network, DT);
+    support_kick(network, IN_B, 1);
     support_steps(network, 5, DT);
     const uint64_t before = support_hash(network);
     check_error(mspring_network_step(network, 2 * DT), MSPRING_ERROR_UNSTABLE); // 3.2 times what A bears
     assert_int_equal(support_hash(network), before);
-    assert_int_equal(sleeps(network, IN_A), 1);
-    assert_int_equal(sleeps(network, IN_B), 0);
+    assert_int_equal(support_sleeps(network, IN_A), 1);
+    assert_int_equal(support_sleeps(network, IN_B), 0);
     support_steps(network, 5, DT);
-    assert_int_equal(sleeps(network, IN_A), 1);
+    assert_int_equal(support_sleeps(network, IN_A), 1);
     mspring_network_destroy(network);
 }
 
@@ -103,11 +85,11 @@ static bool is_refused(double firmness) {
     support_steps(network, 128, DT / 2); // shorter ones, which A bears however firm it is here
     assert_int_equal(mspring_network_is_asleep(network), 1);
     check_ok(mspring_network_clone(network, NULL, &awake));
-    kick(network, IN_A, 0.1f);
-    kick(awake, IN_A, 0.1f);
-    for (int step = 0; result == MSPRING_OK && (step == 0 || !sleeps(network, IN_A)); step++) {
+    support_kick(network, IN_A, 0.1f);
+    support_kick(awake, IN_A, 0.1f);
+    for (int step = 0; result == MSPRING_OK && (step == 0 || !support_sleeps(network, IN_A)); step++) {
         assert_true(step < 200);
-        assert_int_equal(sleeps(network, IN_B), 1);
+        assert_int_equal(support_sleeps(network, IN_B), 1);
         check_ok(mspring_network_wake(awake));
         result = mspring_network_step(network, DT);
         assert_int_equal(mspring_network_step(awake, DT), result);
@@ -144,7 +126,7 @@ static uint64_t direct_session(mspring_simd level, uint32_t workers) {
     const mspring_id spring = 30;
     for (uint32_t frame = 0; frame < 160; frame++) {
         if (frame % 40 == 30) {
-            kick(network, frame % 80 == 30 ? IN_A : IN_B, 2);
+            support_kick(network, frame % 80 == 30 ? IN_A : IN_B, 2);
         }
         if (frame == 50) {
             check_ok(mspring_network_break_springs(network, &spring, 1));
@@ -153,8 +135,9 @@ static uint64_t direct_session(mspring_simd level, uint32_t workers) {
             check_ok(mspring_network_restore_springs(network, &spring, 1, 0.1));
         }
         support_steps(network, 1, DT);
-        print = print * 31 + support_hash(network) + sleeps(network, IN_A) + 2u * sleeps(network, IN_B);
-        apart += sleeps(network, IN_A) != sleeps(network, IN_B);
+        print =
+            print * 31 + support_hash(network) + support_sleeps(network, IN_A) + 2u * support_sleeps(network, IN_B);
+        apart += support_sleeps(network, IN_A) != support_sleeps(network, IN_B);
     }
     assert_true(apart > 10);
     mspring_network_destroy(network);
@@ -177,10 +160,10 @@ static void direct_sleepers_go_on_elsewhere(void **state) {
     (void)state;
     const way how = {MSPRING_SIMD_AUTO, 1, MSPRING_SOLVER_DIRECT, 1};
     mspring_network *all[3] = {make_two(1e5, &how), make_two(1e5, &how), NULL};
-    fall_asleep(all[0]);
-    kick(all[0], IN_B, 2);
+    support_fall_asleep(all[0], DT);
+    support_kick(all[0], IN_B, 2);
     support_steps(all[0], 3, DT);
-    assert_int_equal(sleeps(all[0], IN_A), 1);
+    assert_int_equal(support_sleeps(all[0], IN_A), 1);
     size_t size;
     check_ok(mspring_network_snapshot_size(all[0], MSPRING_SNAPSHOT_ALL, &size));
     void *bytes = malloc(size);
@@ -193,8 +176,8 @@ static void direct_sleepers_go_on_elsewhere(void **state) {
         for (int i = 0; i < 3; i++) {
             support_steps(all[i], 1, DT);
             assert_int_equal(support_hash(all[i]), support_hash(all[0]));
-            assert_int_equal(sleeps(all[i], IN_A), 1);
-            assert_int_equal(sleeps(all[i], IN_B), sleeps(all[0], IN_B));
+            assert_int_equal(support_sleeps(all[i], IN_A), 1);
+            assert_int_equal(support_sleeps(all[i], IN_B), support_sleeps(all[0], IN_B));
         }
     }
     for (int i = 0; i < 3; i++) {
@@ -223,7 +206,7 @@ static uint64_t loose_session(mspring_simd level, uint32_t workers, uint32_t sub
            *to_y = malloc(LOOSE * sizeof *y);
     assert_true(asleep && x && y && to_x && to_y);
     for (int frame = 0; frame < 90; frame++) { // from sqrt(2) m/s to 0.02 takes 46 of them
-        kick(network, IN_A, 1);
+        support_kick(network, IN_A, 1);
         support_steps(network, 1, DT);
         check_ok(mspring_network_get_sleepers(network, first, LOOSE, asleep));
         for (uint32_t i = 0; i < LOOSE; i++) {
@@ -233,13 +216,13 @@ static uint64_t loose_session(mspring_simd level, uint32_t workers, uint32_t sub
     for (uint32_t i = 0; i < LOOSE; i++) {
         assert_int_equal(asleep[i], 1);
     }
-    assert_int_equal(sleeps(network, IN_A), 0);
+    assert_int_equal(support_sleeps(network, IN_A), 0);
     print = print * 31 + support_hash(network);
 
     check_ok(mspring_network_get_positions(network, first, LOOSE, x, y));
-    kick(network, pushed, 3);
+    support_kick(network, pushed, 3);
     for (int frame = 0; frame < 10; frame++) {
-        kick(network, IN_A, 1);
+        support_kick(network, IN_A, 1);
         support_steps(network, 1, DT);
     }
     check_ok(mspring_network_get_sleepers(network, first, LOOSE, asleep));
@@ -250,7 +233,7 @@ static uint64_t loose_session(mspring_simd level, uint32_t workers, uint32_t sub
         assert_int_equal(to_x[i] == x[i] && to_y[i] == y[i], !is_pushed);
     }
     print = print * 31 + support_hash(network);
-    fall_asleep(network);
+    support_fall_asleep(network, DT);
     print = print * 31 + support_hash(network);
     mspring_network_destroy(network);
     free(asleep);
