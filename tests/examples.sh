@@ -357,6 +357,12 @@ programs() {
   done
   awk '$1 == 60 && $2 == "s" { sunk = $8 < -25 } END { exit !sunk }' 06_game.out || complain 'the ship is still afloat'
 
+  # The threads of a pool are lent to networks from two on, and the state is the same for any number of them.
+  bending=$folder/08_threads
+  succeed
+  same "$(grep -c '^[2-4] threads .* lent *[1-9][0-9]* times' "$scratch/out")" 3 'threads that are lent'
+  same "$(sed 's/.*state//' "$scratch/out" | sort -u | wc -l | tr -d ' ')" 1 'states of 08_threads'
+
   bending=$folder/05_plan
   succeed "$source/examples/data/truss.msn"
   same "$(echo "$line" | tr -s ' ' | cut -d' ' -f1-3)" "truss $(head -n 20 "$source/examples/data/truss.msn" |

@@ -1,0 +1,91 @@
+/// @file 08_threads.c
+/// A host's own threads step a network: lent by one function, and the bits stay the same whatever their number.
+///
+/// SPDX-License-Identifier: MIT
+#include "common/clock.h"
+#include "common/thread_pool.h"
+
+#include <massspring/massspring.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { COLUMNS = 400, ROWS = 100, STEPS = 64, MOST_THREADS = 4 };
+
+// A bar that hangs on its left end, 79,000 springs: enough for a step to be worth dividing.
+static mspring_result add_bar(mspring_builder *builder) {
+    static uint16_t cells[ROWS][COLUMNS];
+    mspring_material iron[2]; // 0 is free, 1 is pinned
+    for (int i = 0; i < 2; i++) {
+        mspring_material_init(&iron[i], sizeof iron[i]);
+        iron[i].mass = 70.0f;
+        iron[i].stiffness = 3e7f;
+        iron[i].damping = 500.0f;
+    }
+    iron[1].particle_flags = MSPRING_PARTICLE_PINNED;
+    for (int row = 0; row < ROWS; row++)
+        cells[row][0] = 1;
+    mspring_lattice_def bar;
+    mspring_lattice_def_init(&bar, sizeof bar);
+    bar.width = COLUMNS;
+    bar.height = ROWS;
+    bar.cells = cells[0];
+    bar.materials = iron;
+    bar.material_count = 2;
+    return mspring_builder_add_lattice(builder, &bar, NULL);
+}
+
+// A second of it, with the threads of a pool: milliseconds for a step, and the hash of what comes out.
+static bool run(mspring_builder *builder, thread_pool *pool, double *milliseconds, uint64_t *hash) {
+    const mspring_tasks tasks = thread_pool_tasks(pool);
+    mspring_network_def settings;
+    mspring_network_def_init(&settings, sizeof settings);
+    settings.substeps = 20;
+    settings.tasks = &tasks; // without it, worker_count gives the network threads of the library's
+    mspring_network *network = NULL;
+    if (mspring_network_create(builder, &settings, &network) != MSPRING_OK) {
+        fprintf(stderr, "cannot make the network: %s\n", mspring_builder_error(builder));
+        return false;
+    }
+    const double begun = clock_seconds();
+    bool ok = true;
+    for (int step = 0; ok && step < STEPS; step++)
+        ok = mspring_network_step(network, 1.0 / 64) == MSPRING_OK;
+    *milliseconds = (clock_seconds() - begun) * 1e3 / STEPS;
+    ok = ok && mspring_network_state_hash(network, hash) == MSPRING_OK;
+    if (!ok)
+        fprintf(stderr, "a step failed: %s\n", mspring_network_error(network));
+    mspring_network_destroy(network);
+    return ok;
+}
+
+int main(void) {
+    mspring_builder *builder = NULL;
+    if (mspring_builder_create(NULL, &builder) != MSPRING_OK || add_bar(builder) != MSPRING_OK) {
+        fprintf(stderr, "cannot build the bar: %s\n", mspring_builder_error(builder));
+        mspring_builder_destroy(builder);
+        return EXIT_FAILURE;
+    }
+    uint64_t first_hash = 0;
+    bool ok = true, same = true;
+    for (uint32_t threads = 1; ok && threads <= MOST_THREADS; threads++) {
+        // It stands for the job system of an engine; what the library wants of that is one parallel-for.
+        thread_pool *pool = thread_pool_create(threads);
+        double milliseconds = 0.0;
+        uint64_t hash = 0;
+        ok = pool && run(builder, pool, &milliseconds, &hash);
+        if (ok)
+            printf("%u thread%s   %6.2f ms a step   lent %4llu times   state %016llx\n", (unsigned)threads,
+                   threads == 1 ? " " : "s", milliseconds, (unsigned long long)thread_pool_runs(pool),
+                   (unsigned long long)hash);
+        else if (!pool)
+            fprintf(stderr, "cannot start %u threads\n", (unsigned)threads);
+        first_hash = threads == 1 ? hash : first_hash;
+        same = same && hash == first_hash;
+        thread_pool_destroy(pool);
+    }
+    mspring_builder_destroy(builder);
+    if (ok && !same)
+        fprintf(stderr, "the states differ, which they must not\n");
+    return ok && same ? EXIT_SUCCESS : EXIT_FAILURE;
+}
