@@ -307,7 +307,7 @@ enum {
     /// random), the solver is refused, before the memory is taken.
     /// The factor is in single precision as long as springs, seen over a substep, are not over some thousand times
     /// as stiff as their particles are heavy (4 to 8 k h^2 / m beyond 16384; 1e9 N/m between masses of 73 kg at
-    /// 1/64 s are below), and in double precision, which costs 1.3 to 2.5 times as much, beyond that. Should even
+    /// 1/64 s are below), and in double precision, which costs 1.1 to 1.8 times as much, beyond that. Should even
     /// that not do (k h^2 / m of about 1e14 and more), particles are made heavier for this substep by the least
     /// that helps: 1.4e-14 of the stiffness at them, or 64 times that, and so on up to a thousandth; then the step
     /// is refused.
