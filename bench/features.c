@@ -95,10 +95,7 @@ static bool create_variant(const variant *kind, const bench_scene *subject, cons
         bench_network_free(out);
         return false;
     }
-    if (kind->snapshots && !bench_network_save_frames(out, error)) {
-        bench_network_free(out);
-        return false;
-    }
+    out->saves_frames = kind->snapshots;
     if (kind->hooked) {
         mspring_hook_def def;
         mspring_result result = mspring_hook_def_init(&def, sizeof def);

@@ -75,6 +75,23 @@ static bool reset(void *self, scene_error *error) {
     return true;
 }
 
+/// Save a frame, into more room if it takes that: while the guard suspects a step it keeps the state before.
+static mspring_result save_frame(bench_network *network) {
+    size_t size = 0;
+    mspring_result result = mspring_network_snapshot_size(network->network, MSPRING_SNAPSHOT_FRAME, &size);
+    if (result == MSPRING_OK && size > network->snapshot_size) {
+        void *larger = realloc(network->snapshot, size);
+        if (larger == NULL) {
+            return MSPRING_ERROR_MEMORY;
+        }
+        network->snapshot = larger;
+        network->snapshot_size = size;
+    }
+    return result == MSPRING_OK ? mspring_network_save(network->network, MSPRING_SNAPSHOT_FRAME, network->snapshot,
+                                                       network->snapshot_size, NULL)
+                                : result;
+}
+
 static bool run(void *self, uint32_t steps, scene_error *error) {
     bench_network *network = self;
     mspring_result result = MSPRING_OK;
@@ -83,9 +100,8 @@ static bool run(void *self, uint32_t steps, scene_error *error) {
             result = mspring_network_apply_forces(network->network, 0, network->particle_count, network->held_x,
                                                   network->held_y);
         }
-        if (result == MSPRING_OK && network->snapshot != NULL) {
-            result = mspring_network_save(network->network, MSPRING_SNAPSHOT_FRAME, network->snapshot,
-                                          network->snapshot_size, NULL);
+        if (result == MSPRING_OK && network->saves_frames) {
+            result = save_frame(network);
         }
         if (result == MSPRING_OK) {
             result = mspring_network_step(network->network, BENCH_DT);
@@ -164,17 +180,6 @@ bool bench_network_hold_forces(bench_network *network, scene_error *error) {
         network->held_y[i] = HELD_FORCE * scatter(2 * i);
     }
     return true;
-}
-
-bool bench_network_save_frames(bench_network *network, scene_error *error) {
-    mspring_result result =
-        mspring_network_snapshot_size(network->network, MSPRING_SNAPSHOT_FRAME, &network->snapshot_size);
-    if (result != MSPRING_OK) {
-        bench_library_error(error, "asking for the size of a snapshot", result, "");
-        return false;
-    }
-    network->snapshot = bench_allocate(network->snapshot_size, 1, error);
-    return network->snapshot != NULL;
 }
 
 bench_runner bench_network_runner(bench_network *network) {

@@ -25,7 +25,8 @@ typedef struct bench_network {
     double *start_x, *start_y; ///< [particle_count] state that reset goes back to
     float *start_vx, *start_vy;
     float *held_x, *held_y; ///< [particle_count] forces given before every step, or NULL
-    void *snapshot;         ///< [snapshot_size] where a frame is saved before every step, or NULL
+    bool saves_frames;      ///< before every step
+    void *snapshot;         ///< [snapshot_size] where to
     size_t snapshot_size;
 } bench_network;
 
@@ -37,9 +38,6 @@ void bench_network_free(bench_network *network);
 
 /// From now on, give every particle a force before every step.
 bool bench_network_hold_forces(bench_network *network, scene_error *error);
-
-/// From now on, save a snapshot of a frame before every step.
-bool bench_network_save_frames(bench_network *network, scene_error *error);
 
 /// Its timing: see turns.h.
 bench_runner bench_network_runner(bench_network *network);

@@ -309,7 +309,8 @@ static void suspicion_is_saved(void **state) {
     double mass = 0;
     mspring_network *network = falling_bar(139000, MSPRING_GUARD_GROWTH, &mass);
     void *kept[KEPT] = {NULL};
-    size_t sizes[KEPT] = {0};
+    size_t sizes[KEPT] = {0}, smallest = 0, suspicious = 0;
+    check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_FRAME, &smallest));
     uint32_t step = 0;
     for (mspring_result result = MSPRING_OK; step < 3840 && result == MSPRING_OK; step++) {
         const uint32_t i = step % KEPT;
@@ -317,11 +318,13 @@ static void suspicion_is_saved(void **state) {
             test_free(kept[i]);
         }
         check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_FRAME, &sizes[i]));
+        suspicious += sizes[i] > smallest;
         kept[i] = test_malloc(sizes[i]);
         check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_FRAME, kept[i], sizes[i], NULL));
         result = mspring_network_step(network, dt);
     }
     assert_true(step > KEPT && step < 3840);
+    assert_true(suspicious > 0);
     for (uint32_t back = 1; back <= KEPT; back++) {
         mspring_network *other = falling_bar(139000, MSPRING_GUARD_GROWTH, &mass);
         const uint32_t i = (step - back) % KEPT;
