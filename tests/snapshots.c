@@ -136,9 +136,9 @@ recipe snapshots_small_recipe(void) {
 void snapshots_renew_checksum(saved *of) {
     const size_t summed = of->size - MSPRINGI_SNAPSHOT_CHECKSUM_BYTES;
     mspringi_checksum checksum = {{0}, {0}};
-    mspringi_checksum_add(&checksum, of->bytes, summed / MSPRINGI_CHECKSUM_UNIT);
+    mspringi_kernels_scalar.checksum(NULL, of->bytes, summed / MSPRINGI_CHECKSUM_UNIT, &checksum);
     const uint64_t value = mspringi_checksum_value(&checksum);
-    mspringi_writer to = mspringi_writer_begin(of->bytes + summed);
+    mspringi_writer to = mspringi_writer_begin(of->bytes + summed, &mspringi_kernels_scalar);
     mspringi_put(&to, &value, 1, sizeof value);
 }
 
@@ -173,17 +173,17 @@ saved snapshots_copy(const saved *from) {
 }
 
 void snapshots_put_word(uint8_t *at, uint32_t word) {
-    mspringi_writer to = mspringi_writer_begin(at);
+    mspringi_writer to = mspringi_writer_begin(at, &mspringi_kernels_scalar);
     mspringi_put(&to, &word, 1, sizeof word);
 }
 
 void snapshots_put_float(uint8_t *at, float value) {
-    mspringi_writer to = mspringi_writer_begin(at);
+    mspringi_writer to = mspringi_writer_begin(at, &mspringi_kernels_scalar);
     mspringi_put(&to, &value, 1, sizeof value);
 }
 
 void snapshots_put_double(uint8_t *at, double value) {
-    mspringi_writer to = mspringi_writer_begin(at);
+    mspringi_writer to = mspringi_writer_begin(at, &mspringi_kernels_scalar);
     mspringi_put(&to, &value, 1, sizeof value);
 }
 

@@ -444,7 +444,7 @@ static void check_sizes(mspring_network *network, const char *const *tags, size_
                 continue; // the sections behind it would not be found
             }
             saved bad = snapshots_copy(&good);
-            mspringi_writer to = mspringi_writer_begin(bad.bytes + at - 8);
+            mspringi_writer to = mspringi_writer_begin(bad.bytes + at - 8, &mspringi_kernels_scalar);
             mspringi_put(&to, &other, 1, sizeof other);
             snapshots_check_refused(network, &bad, "they take");
             free(bad.bytes);

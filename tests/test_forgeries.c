@@ -151,7 +151,7 @@ static void what_hides_in_other_slots_is_refused(void **state) {
         *slots = 0;
         for (uint32_t slot = 0; slot < 4 * view.slot_count; slot++) {
             if (view.particle_of_slot[slot % view.slot_count] == MSPRING_NONE) {
-                mspringi_writer to = mspringi_writer_begin(motion + (size_t)4 * slot);
+                mspringi_writer to = mspringi_writer_begin(motion + (size_t)4 * slot, &mspringi_kernels_scalar);
                 mspringi_put(&to, &bad[i], 1, sizeof bad[i]);
             }
         }
@@ -184,7 +184,7 @@ static void what_a_plan_leaves_out_stays_out(void **state) {
     forged.size += MSPRINGI_SNAPSHOT_CHECKSUM_BYTES;
     header.size = forged.size;
     header.section_count--;
-    mspringi_writer to = mspringi_writer_begin(forged.bytes);
+    mspringi_writer to = mspringi_writer_begin(forged.bytes, &mspringi_kernels_scalar);
     mspringi_put_header(&to, &header);
     snapshots_renew_checksum(&forged);
     check_error(mspring_network_load(network, forged.bytes, forged.size), MSPRING_ERROR_SNAPSHOT);
@@ -250,7 +250,7 @@ static void other_versions_say_so(void **state) {
         char expected[80];
         assert_non_null(other.bytes);
         memcpy(other.bytes, good.bytes, good.size);
-        mspringi_writer to = mspringi_writer_begin(other.bytes + 8); // behind the magic
+        mspringi_writer to = mspringi_writer_begin(other.bytes + 8, &mspringi_kernels_scalar); // behind the magic
         mspringi_put(&to, &others[i], 1, sizeof others[i]);
         snapshots_renew_checksum(&other);
         check_error(mspring_network_load(network, other.bytes, other.size), MSPRING_ERROR_SNAPSHOT);
@@ -276,7 +276,7 @@ static void checksums_tell_words_and_their_order(void **state) {
         bytes[i] = (uint8_t)(i * i + 7 * i / 64);
     }
     mspringi_checksum sum = {{0}, {0}};
-    mspringi_checksum_add(&sum, bytes, 4);
+    mspringi_kernels_scalar.checksum(NULL, bytes, 4, &sum);
     assert_true(mspringi_checksum_value(&sum) == UINT64_C(0x2abf2411296e2398));
     for (size_t a = 0; a < 4; a++) {
         for (size_t b = 0; b < a; b++) {
@@ -284,7 +284,7 @@ static void checksums_tell_words_and_their_order(void **state) {
             memcpy(other + a * MSPRINGI_CHECKSUM_UNIT, bytes + b * MSPRINGI_CHECKSUM_UNIT, MSPRINGI_CHECKSUM_UNIT);
             memcpy(other + b * MSPRINGI_CHECKSUM_UNIT, bytes + a * MSPRINGI_CHECKSUM_UNIT, MSPRINGI_CHECKSUM_UNIT);
             mspringi_checksum swapped = {{0}, {0}};
-            mspringi_checksum_add(&swapped, other, 4);
+            mspringi_kernels_scalar.checksum(NULL, other, 4, &swapped);
             assert_true(mspringi_checksum_value(&swapped) != mspringi_checksum_value(&sum));
         }
     }
@@ -305,7 +305,7 @@ static void sections_end_where_they_end(void **state) {
     const uint64_t sizes[] = {left + 1, left + 8, left + 16, left + 56, UINT64_MAX, UINT64_MAX - 6, 0};
     for (size_t i = 0; i < COUNT_OF(sizes); i++) {
         saved bad = snapshots_copy(&good);
-        mspringi_writer to = mspringi_writer_begin(bad.bytes + at - 8);
+        mspringi_writer to = mspringi_writer_begin(bad.bytes + at - 8, &mspringi_kernels_scalar);
         mspringi_put(&to, &sizes[i], 1, sizeof sizes[i]);
         snapshots_check_refused(network, &bad, "they do not fit in");
         free(bad.bytes);

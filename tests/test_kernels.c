@@ -384,6 +384,33 @@ static void largest_sees_every_lane(void **state) {
     check_largest(kernels->largest(values, before, 0).value, 0);
 }
 
+/// Copying and summing up, or summing up alone, of anything anywhere: the sums are those of the scalar kernel.
+static void checksums_are_alike(void **state) {
+    (void)state;
+    enum { UNIT = MSPRINGI_CHECKSUM_UNIT, UNITS = 5, ROOM = UNITS * UNIT + UNIT };
+    uint8_t from[ROOM], to[ROOM + 1];
+    uint64_t seed = 1;
+    for (size_t i = 0; i < ROOM; i++) {
+        from[i] = (uint8_t)support_random(&seed);
+    }
+    for (size_t units = 0; units <= UNITS; units++) {
+        for (size_t offset = 0; offset < UNIT; offset += offset % 8 == 0 ? 1 : 7) {
+            mspringi_checksum copied = {{1, 2}, {3}}, seen = copied, expected = copied;
+            const size_t first = UNIT - 1 - offset, end = first + units * UNIT;
+            memset(to, 0xc5, sizeof to);
+            kernels->checksum(to + first, from + offset, units, &copied);
+            kernels->checksum(NULL, from + offset, units, &seen);
+            mspringi_kernels_scalar.checksum(NULL, from + offset, units, &expected);
+            assert_memory_equal(&copied, &expected, sizeof expected);
+            assert_memory_equal(&seen, &expected, sizeof expected);
+            assert_memory_equal(to + first, from + offset, units * UNIT);
+            for (size_t i = 0; i < sizeof to; i++) {
+                assert_true((i >= first && i < end) || to[i] == 0xc5);
+            }
+        }
+    }
+}
+
 int main(int argc, char **argv) {
     mspring_simd level = level_from_arguments(argc, argv);
     kernels = mspringi_kernels_of(level);
@@ -392,10 +419,9 @@ int main(int argc, char **argv) {
         return 1;
     }
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lattice_kernels),
-        cmocka_unit_test(chain_kernels),
-        cmocka_unit_test(loose_kernels),
-        cmocka_unit_test(largest_sees_every_lane),
+        cmocka_unit_test(lattice_kernels),     cmocka_unit_test(chain_kernels),
+        cmocka_unit_test(loose_kernels),       cmocka_unit_test(largest_sees_every_lane),
+        cmocka_unit_test(checksums_are_alike),
     };
     return cmocka_run_group_tests_name("kernels", tests, NULL, NULL);
 }

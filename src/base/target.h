@@ -21,4 +21,11 @@
 #define MSPRINGI_WASM 1
 #endif
 
+// Snapshots are little-endian everywhere.
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+#define MSPRINGI_BIG_ENDIAN_HOST 1
+#else
+#define MSPRINGI_BIG_ENDIAN_HOST 0
+#endif
+
 #endif

@@ -122,6 +122,16 @@ typedef struct mspringi_strain_hit {
 typedef uint32_t (*mspringi_strain_fn)(const mspringi_strain_sweep *sweep, uint32_t first, uint32_t end,
                                        mspringi_strain_hit *hits);
 
+/// The checksum of a snapshot, of what has been looked at so far, in whole units: 64-bit words, little-endian.
+#define MSPRINGI_CHECKSUM_UNIT 64
+#define MSPRINGI_CHECKSUM_LANES 8
+typedef struct mspringi_checksum {
+    uint64_t sums[MSPRINGI_CHECKSUM_LANES], sums_of_sums[MSPRINGI_CHECKSUM_LANES];
+} mspringi_checksum;
+
+/// Take so many units, of any alignment, into a checksum and, unless to is NULL, copy them.
+typedef void (*mspringi_checksum_fn)(uint8_t *to, const uint8_t *from, size_t units, mspringi_checksum *checksum);
+
 typedef struct mspringi_kernels {
     mspring_simd level;
     mspringi_row_fn lattice[2][2]; ///< [with damping][with forces]
@@ -134,6 +144,7 @@ typedef struct mspringi_kernels {
     mspringi_sight_fn sight_of;
     mspringi_leaves_fn leaves;
     mspringi_strain_fn lattice_strain, chain_strain;
+    mspringi_checksum_fn checksum;
     mspringi_system_kernels system;
 } mspringi_kernels;
 

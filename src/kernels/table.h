@@ -1,11 +1,12 @@
 /// @file table.h
 /// The variants of an instruction set's lattice(), chain(), web(), loose(), attached(), pack(), largest(),
-/// sight_of(), lattice_strain() and chain_strain(), and the table of them. Included at the end of each kernel file,
-/// which defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
+/// sight_of(), lattice_strain(), chain_strain() and take_checksum(), and the table of them. Included at the end of
+/// each kernel file, which defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
 ///
 /// SPDX-License-Identifier: MIT
 
 #include "bounds.h"
+#include "checksum.h"
 #include "sight.h"
 #include "strain.h"
 #include "system_assemble.h"
@@ -62,6 +63,7 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .leaves = leaves,
     .lattice_strain = lattice_strain,
     .chain_strain = chain_strain,
+    .checksum = take_checksum,
     .system = {.weigh = weigh,
                .aim_tile = aim_tile,
                .fly = fly,

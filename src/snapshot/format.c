@@ -6,25 +6,7 @@
 
 static const char magic[8] = {'m', 's', 'p', 'r', 'i', 'n', 'g', '\n'};
 
-/// Bytes that are written before the checksum is taken: half of a first-level cache.
-#define CHUNK ((size_t)16 << 10)
-
 /* --------------------------------------------------------------------------------------------------- checksum */
-
-// Fletcher's sums (1982), of 64-bit words modulo 2^64: the first differ when a word is changed, the second when
-// words have changed places. Several of them side by side, so that the compiler has vectors to make of them.
-void mspringi_checksum_add(mspringi_checksum *checksum, const uint8_t *bytes, size_t units) {
-    mspringi_checksum c = *checksum;
-    for (size_t i = 0; i < units; ++i, bytes += MSPRINGI_CHECKSUM_UNIT) {
-        uint64_t words[MSPRINGI_CHECKSUM_LANES];
-        mspringi_get(bytes, words, MSPRINGI_CHECKSUM_LANES, sizeof words[0]);
-        for (int lane = 0; lane < MSPRINGI_CHECKSUM_LANES; ++lane) {
-            c.sums[lane] += words[lane];
-            c.sums_of_sums[lane] += c.sums[lane];
-        }
-    }
-    *checksum = c;
-}
 
 uint64_t mspringi_checksum_value(const mspringi_checksum *checksum) {
     uint64_t hash = MSPRINGI_MIX_START;
@@ -37,14 +19,8 @@ uint64_t mspringi_checksum_value(const mspringi_checksum *checksum) {
 
 /* ----------------------------------------------------------------------------------------- writing and reading */
 
-mspringi_writer mspringi_writer_begin(uint8_t *snapshot) {
-    return (mspringi_writer){.at = snapshot, .unsummed = snapshot};
-}
-
-static void sum_up(mspringi_writer *to) {
-    const size_t units = (size_t)(to->at - to->unsummed) / MSPRINGI_CHECKSUM_UNIT;
-    mspringi_checksum_add(&to->checksum, to->unsummed, units);
-    to->unsummed += units * MSPRINGI_CHECKSUM_UNIT;
+mspringi_writer mspringi_writer_begin(uint8_t *snapshot, const mspringi_kernels *kernels) {
+    return (mspringi_writer){.at = snapshot, .unsummed = snapshot, .sum = kernels->checksum};
 }
 
 void mspringi_copy_reversed(uint8_t *to, const uint8_t *from, size_t size, size_t width) {
@@ -53,19 +29,42 @@ void mspringi_copy_reversed(uint8_t *to, const uint8_t *from, size_t size, size_
             to[i + byte] = from[i + width - 1 - byte];
 }
 
+// First what fills up the unit that is begun, then whole units, then what begins the next one.
+static void put_bytes(mspringi_writer *to, const uint8_t *from, size_t size) {
+    const size_t begun = (size_t)(to->at - to->unsummed), room = MSPRINGI_CHECKSUM_UNIT - begun;
+    if (begun > 0 && size >= room) {
+        memcpy(to->at, from, room);
+        to->sum(NULL, to->unsummed, 1, &to->checksum);
+        to->unsummed = to->at += room;
+        from += room;
+        size -= room;
+    }
+    if (to->at == to->unsummed) {
+        const size_t units = size / MSPRINGI_CHECKSUM_UNIT, whole = units * MSPRINGI_CHECKSUM_UNIT;
+        to->sum(to->at, from, units, &to->checksum);
+        to->unsummed = to->at += whole;
+        from += whole;
+        size -= whole;
+    }
+    memcpy(to->at, from, size);
+    to->at += size;
+}
+
 void mspringi_put(mspringi_writer *to, const void *values, size_t count, size_t width) {
     const uint8_t *from = values;
+    if (count == 0)
+        return;
+    if (!MSPRINGI_BIG_ENDIAN_HOST) {
+        put_bytes(to, from, count * width);
+        return;
+    }
     for (size_t left = count * width; left > 0;) {
-        const size_t size = left < CHUNK ? left : CHUNK;
-        if (MSPRINGI_BIG_ENDIAN_HOST)
-            mspringi_copy_reversed(to->at, from, size, width);
-        else
-            memcpy(to->at, from, size);
-        to->at += size;
+        uint8_t reversed[256]; // whole values
+        const size_t size = left < sizeof reversed ? left : sizeof reversed;
+        mspringi_copy_reversed(reversed, from, size, width);
+        put_bytes(to, reversed, size);
         from += size;
         left -= size;
-        if (to->at - to->unsummed >= MSPRINGI_CHECKSUM_UNIT)
-            sum_up(to);
     }
 }
 

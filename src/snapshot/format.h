@@ -15,11 +15,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
-#define MSPRINGI_BIG_ENDIAN_HOST 1
-#else
-#define MSPRINGI_BIG_ENDIAN_HOST 0
-#endif
+#include "kernels/kernels.h"
 
 /// Counted up with any change of what is saved, so that no library takes what another means otherwise.
 #define MSPRINGI_SNAPSHOT_VERSION 3u
@@ -40,23 +36,17 @@ static inline size_t mspringi_round_up(size_t size, size_t unit) {
     return (size + unit - 1) / unit * unit;
 }
 
-/// A checksum of what has been looked at so far, in whole units.
-#define MSPRINGI_CHECKSUM_UNIT 64
-#define MSPRINGI_CHECKSUM_LANES 8
-typedef struct mspringi_checksum {
-    uint64_t sums[MSPRINGI_CHECKSUM_LANES], sums_of_sums[MSPRINGI_CHECKSUM_LANES];
-} mspringi_checksum;
-void mspringi_checksum_add(mspringi_checksum *checksum, const uint8_t *bytes, size_t units);
 uint64_t mspringi_checksum_value(const mspringi_checksum *checksum);
 
-/// Where the next byte goes. The checksum is taken on the way, as long as the bytes are in the nearest cache.
+/// Where the next byte goes. The checksum is taken on the way.
 typedef struct mspringi_writer {
     uint8_t *at;
-    const uint8_t *unsummed;
+    const uint8_t *unsummed; ///< the unit that is begun
+    mspringi_checksum_fn sum;
     mspringi_checksum checksum;
 } mspringi_writer;
 
-mspringi_writer mspringi_writer_begin(uint8_t *snapshot);
+mspringi_writer mspringi_writer_begin(uint8_t *snapshot, const mspringi_kernels *kernels);
 
 /// Write count values of width bytes (1, 2, 4 or 8).
 void mspringi_put(mspringi_writer *to, const void *values, size_t count, size_t width);

@@ -103,7 +103,7 @@ mspring_result mspring_network_save(const mspring_network *network, mspring_snap
     if (capacity < total)
         return MSPRING_ERROR_ARGUMENT;
     header.size = total;
-    mspringi_writer to = mspringi_writer_begin(snapshot);
+    mspringi_writer to = mspringi_writer_begin(snapshot, network->kernels);
     mspringi_put_header(&to, &header);
     for (int i = 0; i < SECTIONS; ++i) {
         const size_t of_section = section_size(network, sections[i], contents);
@@ -147,7 +147,7 @@ static mspring_result check_frame(mspring_network *network, const uint8_t *snaps
     uint64_t expected;
     mspringi_checksum checksum = {{0}, {0}};
     mspringi_get(snapshot + summed, &expected, 1, sizeof expected);
-    mspringi_checksum_add(&checksum, snapshot, summed / MSPRINGI_CHECKSUM_UNIT);
+    network->kernels->checksum(NULL, snapshot, summed / MSPRINGI_CHECKSUM_UNIT, &checksum);
     if (mspringi_checksum_value(&checksum) != expected)
         return fail(network, "is damaged: its checksum does not fit");
     return MSPRING_OK;

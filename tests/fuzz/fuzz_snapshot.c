@@ -151,7 +151,7 @@ static void renew_checksum(uint8_t *bytes, size_t size) {
         return;
     const size_t summed = size - MSPRINGI_SNAPSHOT_CHECKSUM_BYTES;
     mspringi_checksum checksum = {{0}, {0}};
-    mspringi_checksum_add(&checksum, bytes, summed / MSPRINGI_CHECKSUM_UNIT);
+    mspringi_kernels_scalar.checksum(NULL, bytes, summed / MSPRINGI_CHECKSUM_UNIT, &checksum);
     const uint64_t value = mspringi_checksum_value(&checksum);
     for (int byte = 0; byte < 8; byte++)
         bytes[summed + (size_t)byte] = (uint8_t)(value >> 8 * byte);

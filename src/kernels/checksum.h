@@ -1,0 +1,53 @@
+/// @file checksum.h
+/// The checksum of snapshots, taken of what is copied into them or read. The same source for every instruction set:
+/// compilers make vectors of it, and whole numbers have the same sums in any order.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_KERNELS_CHECKSUM_H
+#define MSPRINGI_KERNELS_CHECKSUM_H
+
+#include <string.h>
+
+#if defined(_MSC_VER)
+#define MSPRINGI_SUMMED static __forceinline
+#else
+#define MSPRINGI_SUMMED static inline __attribute__((always_inline))
+#endif
+
+static inline uint64_t little_endian(uint64_t word) {
+    if (!MSPRINGI_BIG_ENDIAN_HOST)
+        return word;
+    uint64_t turned = 0;
+    for (int byte = 0; byte < 8; ++byte)
+        turned |= (word >> 8 * byte & 0xff) << (56 - 8 * byte);
+    return turned;
+}
+
+// Fletcher's sums (1982), of 64-bit words modulo 2^64: the first differ when a word is changed, the second when
+// words have changed places. Several of them side by side.
+MSPRINGI_SUMMED void sum_words(uint8_t *to, const uint8_t *from, size_t units, mspringi_checksum *checksum,
+                               bool copies) {
+    mspringi_checksum c = *checksum;
+    for (size_t i = 0; i < units; ++i, from += MSPRINGI_CHECKSUM_UNIT) {
+        uint64_t words[MSPRINGI_CHECKSUM_LANES];
+        memcpy(words, from, sizeof words);
+        if (copies)
+            memcpy(to + i * MSPRINGI_CHECKSUM_UNIT, words, sizeof words);
+        for (int lane = 0; lane < MSPRINGI_CHECKSUM_LANES; ++lane) {
+            c.sums[lane] += little_endian(words[lane]);
+            c.sums_of_sums[lane] += c.sums[lane];
+        }
+    }
+    *checksum = c;
+}
+
+// (At AVX-512, of what is not in the second-level cache: 10 % more time than copying alone, where copying and then
+// summing up, at SSE2 and a part of the first-level cache at a time, takes twice as long.)
+static void take_checksum(uint8_t *to, const uint8_t *from, size_t units, mspringi_checksum *sums) {
+    if (to)
+        sum_words(to, from, units, sums, true);
+    else
+        sum_words(NULL, from, units, sums, false);
+}
+
+#endif
