@@ -31,12 +31,17 @@ static void edit(mspring_network *network, const edits *which) {
     }
 }
 
-/// Blocks that read a record which is not their own.
+/// Blocks that read a record which is not their own; whose it is knows how many do.
 static uint32_t shared_blocks(const mspring_network *network) {
-    uint32_t shared = 0;
+    const mspringi_alike *alike = &network->alike;
+    uint32_t shared = 0, readers = 0;
     for (uint32_t b = 0; b < network->topology.lattice_blocks; b++) {
-        shared += network->alike.of_block[b] != b;
+        shared += alike->of_block[b] != b;
+        readers += alike->readers[b];
+        assert_int_equal(alike->of_block[alike->of_block[b]], alike->of_block[b]);
+        assert_true(alike->readers[b] == 0 || alike->of_block[b] == b);
     }
+    assert_int_equal(readers, shared);
     return shared;
 }
 
@@ -54,8 +59,11 @@ static uint64_t run(const recipe *made, const edits *which, bool afterwards) {
     check_ok(mspring_network_step(network, 1.0 / 64));
     if (afterwards) {
         // Most blocks have full rows and equal springs: all but those of the last columns and of the top.
-        assert_true(shared_blocks(network) >= network->topology.lattice_blocks / 2);
+        const uint32_t shared = shared_blocks(network);
+        assert_true(shared >= network->topology.lattice_blocks / 2);
         edit(network, which);
+        // A single spring's block leaves the others, even if it is theirs that they read.
+        assert_true(shared_blocks(network) + 1 >= shared || which->first + which->step < made->spring_count);
     }
     check_ok(mspring_network_set_positions(network, 0, made->particle_count, x, y));
     check_ok(mspring_network_set_velocities(network, 0, made->particle_count, vx, vy));
@@ -71,6 +79,7 @@ static uint64_t run(const recipe *made, const edits *which, bool afterwards) {
 static void edits_count_at_once(void **state) {
     (void)state;
     const edits all[] = {{.first = 1000, .step = 100000}, {.first = 1000, .step = 100000, .breaks = true},
+                         {.first = 0, .step = 100000},    {.first = 200, .step = 100000, .breaks = true},
                          {.first = 7, .step = 97},        {.first = 7, .step = 97, .breaks = true},
                          {.first = 0, .step = 2},         {.first = 0, .step = 1}};
     const recipe_stuff *const stuffs[] = {&absolute, &relative};

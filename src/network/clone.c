@@ -218,6 +218,7 @@ static void move_parameters(const moving *m, mspring_network *n) {
     MOVE(n->rests.of_block);
     MOVE(n->lattice_springs);
     MOVE(n->alike.of_block);
+    MOVE(n->alike.readers);
     MOVE(n->chain_springs);
     MOVE(n->web_springs);
     MOVE(n->packed);

@@ -122,12 +122,12 @@ static bool reserve_rows(mspring_network *network) {
     const size_t parts = network->parts;
     mspringi_alike_begin(&network->alike, t, memory);
     network->lattice_springs =
-        mspringi_alloc(memory, (parts - 1) * (t->lattice_places + mspringi_alike_places(&network->alike)),
-                       sizeof *network->lattice_springs);
+        mspringi_alloc(memory, (parts - 1) * t->lattice_places, sizeof *network->lattice_springs);
     network->chain_springs =
         mspringi_alloc(memory, parts * (t->chain_places - t->lattice_places), sizeof *network->chain_springs);
     network->live = mspringi_alloc(memory, mspringi_place_words(t), sizeof *network->live);
-    return network->alike.of_block && network->lattice_springs && network->chain_springs && network->live;
+    return network->alike.of_block && network->alike.readers && network->lattice_springs &&
+           network->chain_springs && network->live;
 }
 
 static bool reserve_web(mspring_network *network) {
@@ -170,6 +170,7 @@ void mspringi_layout_free(const mspring_network *network, mspringi_memory *memor
     mspringi_free(memory, network->backup.x);
     mspringi_free(memory, network->inverse_mass);
     mspringi_free(memory, network->alike.of_block);
+    mspringi_free(memory, network->alike.readers);
     mspringi_free(memory, network->lattice_springs);
     mspringi_free(memory, network->chain_springs);
     mspringi_free(memory, network->web_springs);

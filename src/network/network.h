@@ -137,9 +137,9 @@ typedef struct mspringi_rests {
 
 /// Lattice blocks whose springs are alike in stiffness and damping.
 typedef struct mspringi_alike {
-    uint32_t *of_block; ///< [lattice blocks] the record that is read for each: its own, or one behind all of these
-    uint32_t count, capacity; ///< records behind
-    uint64_t changes;         ///< springs that were set since these were looked for
+    uint32_t *of_block; ///< [lattice blocks] the block whose record is read for each
+    uint32_t *readers;  ///< [lattice blocks] other blocks that each block's record is read for
+    uint64_t changes;   ///< springs that were set since these were looked for
 } mspringi_alike;
 
 /// Which islands sleep, and what they were when they fell asleep; no arrays if none ever does. An island is a
