@@ -19,8 +19,9 @@
 typedef enum content {
     ONE_PIECE,
     MANY_PIECES,       ///< of 700 particles
-    WITH_CABLES,       ///< from one end to the other, and one particle that has a hundred springs; beside a lattice
-                       ///< with a rope, a strand and loose particles
+    WITH_CABLES,       ///< and ropes from one end to the other, and one particle that has a hundred springs; beside
+                       ///< a lattice with a rope, a strand and loose particles
+    IN_RIGGING,        ///< of more particles than its own
     ON_A_TIED_LATTICE, ///< of which rows cannot be swept for several substeps
 } content;
 
@@ -46,8 +47,14 @@ static recipe heap_of(content of) {
             recipe_particle(&made, -5 - i, -9, 1, 0);
         }
         recipe_rope(&made, 5, PARTICLES - 9, 3, &stuff, &seed);
+        recipe_rope(&made, 70, PARTICLES - 4000, 30, &stuff, &seed);
+        recipe_rope(&made, PARTICLES - 2000, recipe_particle(&made, 900, -9, 1, 0), 9, &stuff, &seed);
         for (uint32_t i = 0; i < 100; i++) {
             recipe_spring(&made, 30000, i * 40, 50, 0, 0);
+        }
+    } else if (of == IN_RIGGING) {
+        for (uint32_t i = 0; i < 61; i++) {
+            recipe_rope(&made, 100 * i, 55000 + i, 1000, &stuff, &seed);
         }
     } else if (of == ON_A_TIED_LATTICE) {
         const mspring_id lattice = recipe_lattice(&made, 120, 1000, 2000, 0, 1, &stuff, &seed);
@@ -97,11 +104,13 @@ static void check_layers(const mspring_network *network) {
     free(layer_of_block);
 }
 
-static uint64_t hash_after_steps(const recipe *made, manner how) {
+static uint64_t hash_after_steps(const recipe *made, content of, manner how) {
     mspring_network_def def = support_def(-9.8f, SUBSTEPS);
     def.worker_count = how.workers;
     def.global_damping = 0.25f;
     mspring_network *network = recipe_network(made, &def);
+    // Ropes that hang on layers, or on a lattice, are no strands.
+    assert_int_equal(network->topology.chain_count, of == WITH_CABLES ? 1 : of == IN_RIGGING ? 61 : 0);
     if (how.one_by_one) {
         take_one_by_one(network);
     } else if (how.has_layers) {
@@ -128,16 +137,16 @@ static uint64_t hash_after_steps(const recipe *made, manner how) {
 
 static void layers_give_the_bits_of_single_substeps(void **state) {
     (void)state;
-    static const content contents[] = {ONE_PIECE, WITH_CABLES, ON_A_TIED_LATTICE};
+    static const content contents[] = {ONE_PIECE, WITH_CABLES, IN_RIGGING, ON_A_TIED_LATTICE};
     for (size_t i = 0; i < COUNT_OF(contents); i++) {
         const content of = contents[i];
         recipe made = heap_of(of);
         manner how = {.one_by_one = true, .forced = of == ONE_PIECE, .on_floor = of == WITH_CABLES, .workers = 1};
-        const uint64_t expected = hash_after_steps(&made, how);
+        const uint64_t expected = hash_after_steps(&made, of, how);
         how.one_by_one = false;
-        how.has_layers = of != ON_A_TIED_LATTICE;
-        for (how.workers = 1; how.workers <= 3; how.workers += 1 + (of == ON_A_TIED_LATTICE)) {
-            assert_int_equal(hash_after_steps(&made, how), expected);
+        how.has_layers = of == ONE_PIECE || of == WITH_CABLES;
+        for (how.workers = 1; how.workers <= 3; how.workers += how.has_layers ? 1 : 2) {
+            assert_int_equal(hash_after_steps(&made, of, how), expected);
         }
         recipe_free(&made);
     }

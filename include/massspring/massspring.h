@@ -1626,8 +1626,8 @@ enum {
 };
 
 /// The size of a snapshot that is saved now, in bytes. It changes with what there is to save: forces, ramps, edits,
-/// and 16 bytes for each slot of the plan while the guard suspects the last step, as it may after any. So ask before
-/// each save.
+/// and 16 bytes for each slot of the plan while the guard suspects the last step, as it may after any. So ask
+/// before each save.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL or unknown contents; MSPRING_ERROR_BUSY in a hook.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_snapshot_size(const mspring_network *network,

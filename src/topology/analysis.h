@@ -47,7 +47,8 @@ typedef struct mspringi_strands {
     uint32_t *springs;   ///< [count] the spring to the next entry, or MSPRING_NONE at a strand's end
     uint32_t count, strand_count, spring_count;
     uint32_t candidates; ///< particles that may be in a strand
-    uint32_t kept;       ///< of count, so far, while some are dropped
+    uint32_t kept;       ///< of count, so far, while some are dropped;
+    bool drops_webbed;   ///< among them those that hang on the web
     uint8_t *visited;    ///< [particles] while strands are looked for
 } mspringi_strands;
 
@@ -137,10 +138,6 @@ mspring_result mspringi_homes_prepare(mspringi_homes *homes, uint32_t workers, m
 void mspringi_homes_find(mspringi_homes *homes, mspringi_pace *pace, mspringi_memory *memory);
 void mspringi_homes_destroy(mspringi_homes *homes, mspringi_memory *memory);
 
-/// Drop the strands that have a home: their particles become loose in kinds, for the web.
-void mspringi_strands_drop(mspringi_strands *strands, const mspringi_homes *homes, uint8_t *kinds,
-                           mspringi_pace *pace);
-
 /// The particles of the web: those that are loose in kinds and have springs. They get MSPRINGI_ROW_WEB. First
 /// those with a home, by home; then those without, in whose list neighbours in space are near each other, and
 /// particles with about as many springs side by side.
@@ -168,6 +165,16 @@ void mspringi_web_list_set_keys(mspringi_web_list *list, const mspringi_graph *g
 void mspringi_web_list_sort(mspringi_web_list *list, mspringi_pace *pace);
 void mspringi_web_list_take_order(mspringi_web_list *list, mspringi_pace *pace);
 void mspringi_web_list_destroy(mspringi_web_list *list, mspringi_memory *memory);
+
+/// Particles of the web without a home from which it gets layers: with fewer, all of it is in a cache as fast as
+/// need be.
+#define MSPRINGI_FEWEST_LAYERED 60000
+
+/// After the list's particles have been counted: drop the strands that have a home, and those that hang on a web
+/// that gets layers, unless there is more of strands than of that. Their particles become loose in kinds and are
+/// counted, too.
+void mspringi_strands_drop(mspringi_strands *strands, const mspringi_graph *graph, const mspringi_homes *homes,
+                           uint8_t *kinds, mspringi_web_list *list, mspringi_pace *pace);
 
 typedef enum mspringi_layers_stage {
     MSPRINGI_LAYERS_MARKS,  ///< what there is to be found

@@ -3,13 +3,10 @@
 /// A web that does not fit the cache is read from memory once for each substep, unless several are taken in one
 /// pass over its layers, each substep one layer behind the one before (a wave, as over the strips of lattices).
 /// Layers are whole levels of a search in breadth, from a particle that is as far away as a first such search could
-/// find.
+/// find. A spring or rope from anywhere to anywhere is searched along like any other: there are fewer layers then.
 #include <string.h>
 
 #include "analysis.h"
-
-/// Particles from which a web gets layers: with fewer, all of it is in a cache as fast as need be.
-#define FEWEST_PARTICLES 60000
 
 /// Particles in a layer, or more: fewer make more calls, and levels of webs that have so many particles are wider.
 #define LAYER_PARTICLES 1024
@@ -28,7 +25,7 @@ mspring_result mspringi_layers_reserve(mspringi_layers *layers, const mspringi_w
     layers->particle_count = list->count - list->homed_count;
     layers->particles = list->particles + list->homed_count;
     layers->stage = MSPRINGI_LAYERS_DONE;
-    if (layers->particle_count < FEWEST_PARTICLES)
+    if (layers->particle_count < MSPRINGI_FEWEST_LAYERED)
         return MSPRING_OK;
     layers->layer_of = mspringi_pace_alloc(pace, memory, particles, sizeof *layers->layer_of);
     layers->queue = mspringi_pace_alloc(pace, memory, layers->particle_count, sizeof *layers->queue);

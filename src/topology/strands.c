@@ -112,26 +112,63 @@ void mspringi_strands_find(mspringi_strands *strands, const mspringi_graph *grap
     strands->visited = NULL;
 }
 
-void mspringi_strands_drop(mspringi_strands *strands, const mspringi_homes *homes, uint8_t *kinds,
-                           mspringi_pace *pace) {
-    uint32_t first, end, kept = strands->kept;
-    mspringi_pace_take(pace, strands->count, 2, &first, &end);
-    if (first == 0)
-        strands->strand_count = strands->spring_count = 0;
-    for (uint32_t i = first; i < end; ++i) {
-        const uint32_t particle = strands->particles[i], spring = strands->springs[i];
-        if (homes->home[particle] != MSPRING_NONE) {
-            kinds[particle] = MSPRINGI_ROW_LOOSE;
-            continue;
-        }
-        strands->particles[kept] = particle;
-        strands->springs[kept++] = spring;
-        strands->strand_count += spring == MSPRING_NONE;
-        strands->spring_count += spring != MSPRING_NONE;
+// Whether some spring of the particle leads to one of the web that has no home.
+static bool hangs_on_web(const mspringi_graph *graph, const mspringi_homes *homes, const uint8_t *kinds,
+                         uint32_t particle) {
+    for (uint32_t i = graph->first[particle]; i < graph->first[particle + 1]; ++i) {
+        const uint32_t other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], particle);
+        if (kinds[other] == MSPRINGI_ROW_LOOSE && homes->home[other] == MSPRING_NONE)
+            return true;
     }
-    strands->kept = kept;
+    return false;
+}
+
+static void drop_strand(mspringi_strands *strands, const mspringi_homes *homes, uint8_t *kinds,
+                        mspringi_web_list *list, uint32_t begin, uint32_t end) {
+    for (uint32_t i = begin; i < end; ++i) {
+        kinds[strands->particles[i]] = MSPRINGI_ROW_LOOSE;
+        list->homed_count += homes->home[strands->particles[i]] != MSPRING_NONE;
+    }
+    list->count += end - begin;
+}
+
+static void keep_strand(mspringi_strands *strands, uint32_t begin, uint32_t end) {
+    for (uint32_t i = begin; i < end; ++i) {
+        strands->particles[strands->kept] = strands->particles[i];
+        strands->springs[strands->kept++] = strands->springs[i];
+    }
+    strands->strand_count++;
+    strands->spring_count += end - begin - 1;
+}
+
+// Strand by strand: what has a home has it as a whole.
+void mspringi_strands_drop(mspringi_strands *strands, const mspringi_graph *graph, const mspringi_homes *homes,
+                           uint8_t *kinds, mspringi_web_list *list, mspringi_pace *pace) {
+    uint32_t begin = pace->at;
+    if (begin == 0) {
+        const uint32_t homeless = list->count - list->homed_count;
+        strands->drops_webbed = homeless >= MSPRINGI_FEWEST_LAYERED && strands->count <= homeless;
+        strands->strand_count = strands->spring_count = 0;
+    }
+    while (begin < strands->count && pace->left > 0) {
+        uint32_t last = begin;
+        while (strands->springs[last] != MSPRING_NONE)
+            ++last;
+        const uint32_t *particles = strands->particles;
+        const bool is_homed = homes->home[particles[begin]] != MSPRING_NONE;
+        const bool is_webbed = strands->drops_webbed && (hangs_on_web(graph, homes, kinds, particles[begin]) ||
+                                                         hangs_on_web(graph, homes, kinds, particles[last]));
+        mspringi_pace_spend(pace, (uint64_t)2 * (last + 1 - begin));
+        if (is_homed || is_webbed)
+            drop_strand(strands, homes, kinds, list, begin, last + 1);
+        else
+            keep_strand(strands, begin, last + 1);
+        begin = last + 1;
+    }
+    pace->at = begin;
+    pace->is_halfway = begin < strands->count;
     if (!pace->is_halfway)
-        strands->count = kept;
+        strands->count = strands->kept;
 }
 
 void mspringi_strands_destroy(mspringi_strands *strands, mspringi_memory *memory) {

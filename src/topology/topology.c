@@ -167,13 +167,13 @@ static mspring_result find_homes(mspringi_assembly *a) {
     return MSPRING_OK;
 }
 
-static mspring_result drop_strands(mspringi_assembly *a) {
-    mspringi_strands_drop(&a->strands, &a->homes, a->kinds, &a->pace);
+static mspring_result count_web(mspringi_assembly *a) {
+    mspringi_web_list_count(&a->web, &a->graph, &a->homes, a->kinds, &a->pace);
     return MSPRING_OK;
 }
 
-static mspring_result count_web(mspringi_assembly *a) {
-    mspringi_web_list_count(&a->web, &a->graph, &a->homes, a->kinds, &a->pace);
+static mspring_result drop_strands(mspringi_assembly *a) {
+    mspringi_strands_drop(&a->strands, &a->graph, &a->homes, a->kinds, &a->web, &a->pace);
     return MSPRING_OK;
 }
 
@@ -270,8 +270,8 @@ static mspring_result (*const layout_passes[])(mspringi_assembly *a) = {
     attach_homes,
     prepare_homes,
     find_homes,
-    drop_strands,
     count_web,
+    drop_strands,
     begin_web_list,
     list_web,
     set_web_keys,

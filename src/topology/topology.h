@@ -11,7 +11,8 @@
 ///
 /// A spring that lies in no lattice or chain row is left over: the web has it. Web particles that hang on a lattice
 /// have a home: the strip of lattice rows that they are swept with, so that several substeps can be taken in one
-/// pass over the strips. A large web without a home has layers for the same purpose.
+/// pass over the strips. A large web without a home has layers for the same purpose, and so have the strands that
+/// hang on it: they are part of it.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_TOPOLOGY_H
