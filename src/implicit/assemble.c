@@ -108,7 +108,7 @@ typedef struct leftover {
     float pull_x, pull_y, swing;
 } leftover;
 
-// As assemble_springs() of kernels/system_assemble.h.
+// As in kernels/system_assemble.h, in double precision throughout.
 static leftover compute_leftover(const mspringi_system *s, uint32_t base, uint32_t tip,
                                  const mspringi_spring_values *values) {
     const double dx = s->x[tip] - s->x[base], dy = s->y[tip] - s->y[base];

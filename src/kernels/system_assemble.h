@@ -3,224 +3,326 @@
 /// turn into vectors of whatever each instruction set's file is compiled for: the operations and their order are
 /// the same in all of them.
 ///
-/// In double precision as far as positions go. A stiff spring's force hangs on differences of position that single
-/// precision does not resolve: at 10^12 N/m a bar of 1 m springs bears its weight with strains of 10^-6, ten times
-/// what it can tell in a length.
+/// In double precision as far as positions and forces go. A stiff spring's force hangs on differences of position
+/// that single precision does not resolve: at 10^12 N/m a bar of 1 m springs bears its weight with strains of
+/// 10^-6, ten times what it can tell in a length.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SYSTEM_ASSEMBLE_H
 #define MSPRINGI_SYSTEM_ASSEMBLE_H
 
 #include <math.h>
+#include <string.h>
 
-/// What MSPRINGI_WIDTH springs exert on their bases, and their blocks of the matrix.
-typedef struct assembled {
-    double force_x[MSPRINGI_WIDTH], force_y[MSPRINGI_WIDTH];
-    float xx[MSPRINGI_WIDTH], xy[MSPRINGI_WIDTH], yy[MSPRINGI_WIDTH];
-} assembled;
+#include "system_iterate.h"
 
-/// What is handed on from slot to slot: [0] comes from the block before.
-typedef struct handed_force {
-    double x[MSPRINGI_WIDTH + 1], y[MSPRINGI_WIDTH + 1];
-} handed_force;
-typedef struct handed_block {
-    float xx[MSPRINGI_WIDTH + 1], xy[MSPRINGI_WIDTH + 1], yy[MSPRINGI_WIDTH + 1];
-} handed_block;
-typedef struct handed {
-    handed_force force;
-    handed_block block;
-} handed;
+/// MSPRINGI_WIDTH springs of one direction on their way to force and factors. Each is a long chain of operations
+/// that wait for each other: so what can be computed of all directions is, before the next thing is. (One spring
+/// after the other took 186 ns for a block of 544x68, AVX-512, and this 148.)
+typedef struct spring_lanes {
+    float inverse[MSPRINGI_WIDTH];                                    ///< of the length, nearly, 1/m
+    float extension[MSPRINGI_WIDTH];                                  ///< m
+    float x[MSPRINGI_WIDTH], y[MSPRINGI_WIDTH];                       ///< direction
+    double force_x[MSPRINGI_WIDTH], force_y[MSPRINGI_WIDTH];          ///< on the base
+    float xx[MSPRINGI_WIDTH], xy[MSPRINGI_WIDTH], yy[MSPRINGI_WIDTH]; ///< block of the matrix
+} spring_lanes;
 
-// Force, factors and block of the springs from the slots base ... to the slots tip ...; their dampings are behind
-// their stiffnesses.
-static inline void assemble_springs(const mspringi_system *s, size_t base, size_t tip, const float *rest_lengths,
-                                    const float *stiffnesses, float *restrict factors, assembled *restrict to,
-                                    bool damped) {
+/// Slots whose springs are computed before they are summed up. What is handed on to the next slot is read a place
+/// further on than it was written: right after it, before it has left for the cache, a processor would wait.
+#define MSPRINGI_STRIP (4 * MSPRINGI_WIDTH)
+
+/// What the springs of a strip add to one quantity: of each slot, to itself, to the slot at its right, to the one
+/// above, and to the one above and at its right. What is handed on to the right begins at the slot before the
+/// strip, at WIDTH - 1.
+typedef struct strip_of_doubles {
+    double own[MSPRINGI_STRIP], up[MSPRINGI_STRIP];
+    double right[MSPRINGI_WIDTH + MSPRINGI_STRIP], diagonal[MSPRINGI_WIDTH + MSPRINGI_STRIP];
+} strip_of_doubles;
+typedef struct strip_of_floats {
+    float own[MSPRINGI_STRIP], up[MSPRINGI_STRIP];
+    float right[MSPRINGI_WIDTH + MSPRINGI_STRIP], diagonal[MSPRINGI_WIDTH + MSPRINGI_STRIP];
+} strip_of_floats;
+typedef struct spring_strip {
+    strip_of_doubles x, y; ///< forces
+    strip_of_floats xx, xy, yy;
+} spring_strip;
+
+/// Squared length, m^2, that any spring has at least: one of no length has no direction, but a finite inverse.
+#define NO_SQUARE 1e-36f
+
+// As mspringi_swing_share().
+static inline float swing_share(float relative) {
+    const float pressed = -1.5f * relative - 0.5f;
+    const float share = relative > pressed ? relative : pressed;
+    const float positive = share > 0.0f ? share : 0.0f;
+    return positive < 1.0f ? positive : 1.0f;
+}
+
+/// Of a system, what its springs are computed of.
+typedef struct linearised {
+    const double *x, *y;
+    const float *vx, *vy;
+    float scale, damping_rate;
+} linearised;
+
+// The springs from the slots base ... to the slots tip ...
+MSPRINGI_PART_INLINE void find_inverses(const linearised *s, size_t base, size_t tip, spring_lanes *restrict to) {
     const double *const x = s->x, *const y = s->y;
-    const float *const dampings = stiffnesses + MSPRINGI_WIDTH;
-    const double scale = s->force_scale, damping_rate = s->damping_rate;
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const double dx = x[tip + i] - x[base + i], dy = y[tip + i] - y[base + i];
-        const double length = sqrt(dx * dx + dy * dy);
-        const double reciprocal = 1.0 / length, inverse = length > 0.0 ? reciprocal : 0.0;
-        const double nx = dx * inverse, ny = dy * inverse;
+        to->inverse[i] = 1.0f / sqrtf((float)(dx * dx + dy * dy) + NO_SQUARE);
+    }
+}
+
+// By a step of Newton's method for the inverse, and one more for the length.
+MSPRINGI_PART_INLINE void find_forces(const linearised *s, size_t base, size_t tip, const float *rest_lengths,
+                                      const float *stiffnesses, spring_lanes *restrict to, bool damped) {
+    const double *const x = s->x, *const y = s->y;
+    const float *const vx = s->vx, *const vy = s->vy, *const dampings = stiffnesses + MSPRINGI_WIDTH;
+    const float scale = s->scale;
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
+        const double dx = x[tip + i] - x[base + i], dy = y[tip + i] - y[base + i], square = dx * dx + dy * dy;
+        const float inverse_near = to->inverse[i], nx = (float)dx * inverse_near, ny = (float)dy * inverse_near;
+        const double guess = (double)inverse_near, half = 0.5 * guess;
+        const double inverse = guess + guess * (0.5 - half * (square * guess)), length_near = square * inverse;
+        const double length = length_near + (square - length_near * length_near) * half;
         const double extension = length - (double)rest_lengths[i];
-        const double stiffness = scale * (double)stiffnesses[i];
-        const double relative = extension * inverse, tensed = mspringi_swing_share(relative);
-        double force = stiffness * extension, along = stiffness - stiffness * tensed;
+        double force = (double)(scale * stiffnesses[i]) * extension;
         if (damped) {
-            const double dvx = (double)s->vx[tip + i] - (double)s->vx[base + i];
-            const double dvy = (double)s->vy[tip + i] - (double)s->vy[base + i];
-            const double damping = scale * (double)dampings[i];
-            force = force + damping * (dvx * nx + dvy * ny);
-            along = along + damping * damping_rate;
+            const float dvx = vx[tip + i] - vx[base + i], dvy = vy[tip + i] - vy[base + i];
+            force = force + (double)((scale * dampings[i]) * (dvx * nx + dvy * ny));
         }
-        const float root = sqrtf((float)along), swing = (float)(stiffness * tensed);
-        const float pull_x = root * (float)nx, pull_y = root * (float)ny;
+        const double pull = force * inverse;
+        to->extension[i] = (float)extension;
+        to->x[i] = nx;
+        to->y[i] = ny;
+        to->force_x[i] = pull * dx;
+        to->force_y[i] = pull * dy;
+    }
+}
+
+MSPRINGI_PART_INLINE void find_factors(const linearised *s, const float *stiffnesses, float *restrict factors,
+                                       spring_lanes *restrict to, bool damped) {
+    const float *const dampings = stiffnesses + MSPRINGI_WIDTH;
+    const float scale = s->scale, damping_rate = s->damping_rate;
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
+        const float stiffness = scale * stiffnesses[i];
+        const float swing = stiffness * swing_share(to->extension[i] * to->inverse[i]);
+        float along = stiffness - swing;
+        if (damped)
+            along = along + (scale * dampings[i]) * damping_rate;
+        const float root = sqrtf(along), pull_x = root * to->x[i], pull_y = root * to->y[i];
         factors[MSPRINGI_PULL_X * MSPRINGI_WIDTH + i] = pull_x;
         factors[MSPRINGI_PULL_Y * MSPRINGI_WIDTH + i] = pull_y;
         factors[MSPRINGI_SWING * MSPRINGI_WIDTH + i] = swing;
-        to->force_x[i] = force * nx;
-        to->force_y[i] = force * ny;
         to->xx[i] = swing + pull_x * pull_x;
         to->xy[i] = pull_x * pull_y;
         to->yy[i] = swing + pull_y * pull_y;
     }
 }
 
-// Sums of one quantity over a block's springs in the order of sweep.h: into here, carry and the two that are handed
-// on. forces change sign at the tip, blocks do not.
-#define MSPRINGI_SUM_FORCES(part)                                                                                  \
+// Into a strip's slots at ..., in the order of sweep.h. Forces change sign at the tip, blocks do not.
+#define MSPRINGI_PUT(part, value, sign)                                                                            \
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {                                                                  \
-        right->force.part[i + 1] = east->force_##part[i] + south_east->force_##part[i];                            \
-        diagonal->force.part[i + 1] = north_east->force_##part[i];                                                 \
+        to->part.up[at + i] = south_east->value[i] sign north->value[i];                                           \
+        to->part.diagonal[MSPRINGI_WIDTH + at + i] = north_east->value[i];                                         \
     }                                                                                                              \
-    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {                                                                  \
-        const double sum = (east->force_##part[i] + north->force_##part[i]) + north_east->force_##part[i];         \
-        s->force_##part[slot + i] = (float)((s->force_carry_##part[carry + i] + sum) - right->force.part[i]);      \
-        s->force_carry_##part[carry + i] =                                                                         \
-            (south_east->force_##part[i] - north->force_##part[i]) - diagonal->force.part[i];                      \
-    }                                                                                                              \
-    right->force.part[0] = right->force.part[MSPRINGI_WIDTH];                                                      \
-    diagonal->force.part[0] = diagonal->force.part[MSPRINGI_WIDTH];
+    for (size_t i = 0; !only_hand_on && i < MSPRINGI_WIDTH; ++i) {                                                 \
+        to->part.own[at + i] = (east->value[i] + north->value[i]) + north_east->value[i];                          \
+        to->part.right[MSPRINGI_WIDTH + at + i] = east->value[i] + south_east->value[i];                           \
+    }
 
-#define MSPRINGI_SUM_BLOCKS(part)                                                                                  \
-    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {                                                                  \
-        right->block.part[i + 1] = east->part[i] + south_east->part[i];                                            \
-        diagonal->block.part[i + 1] = north_east->part[i];                                                         \
-    }                                                                                                              \
-    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {                                                                  \
-        const float sum = (east->part[i] + north->part[i]) + north_east->part[i];                                  \
-        s->part[slot + i] = (s->carry_##part[carry + i] + sum) + right->block.part[i];                             \
-        s->carry_##part[carry + i] = (south_east->part[i] + north->part[i]) + diagonal->block.part[i];             \
-    }                                                                                                              \
-    right->block.part[0] = right->block.part[MSPRINGI_WIDTH];                                                      \
-    diagonal->block.part[0] = diagonal->block.part[MSPRINGI_WIDTH];
-
-static inline void sum_block(const mspringi_system *s, size_t slot, size_t carry, const assembled *east,
-                             const assembled *north, const assembled *north_east, const assembled *south_east,
-                             handed *restrict right, handed *restrict diagonal) {
-    MSPRINGI_SUM_FORCES(x)
-    MSPRINGI_SUM_FORCES(y)
-    MSPRINGI_SUM_BLOCKS(xx)
-    MSPRINGI_SUM_BLOCKS(xy)
-    MSPRINGI_SUM_BLOCKS(yy)
+MSPRINGI_PART_INLINE void put_block(const spring_lanes *lanes, size_t at, spring_strip *restrict to,
+                                    bool only_hand_on) {
+    const spring_lanes *const east = &lanes[MSPRINGI_EAST], *const north = &lanes[MSPRINGI_NORTH];
+    const spring_lanes *const north_east = &lanes[MSPRINGI_NORTH_EAST], *const south_east =
+                                                                            &lanes[MSPRINGI_SOUTH_EAST];
+    MSPRINGI_PUT(x, force_x, -)
+    MSPRINGI_PUT(y, force_y, -)
+    MSPRINGI_PUT(xx, xx, +)
+    MSPRINGI_PUT(xy, xy, +)
+    MSPRINGI_PUT(yy, yy, +)
 }
 
-#undef MSPRINGI_SUM_FORCES
-#undef MSPRINGI_SUM_BLOCKS
+#undef MSPRINGI_PUT
 
-static inline void assemble_lattice(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
-                                    bool damped) {
+// The lattice springs of the slots slot ..., below the slots up ..., into a strip's slots at ...
+MSPRINGI_PART_INLINE void assemble_block(const linearised *s, size_t slot, size_t up, const float *rests,
+                                         const float *springs, float *restrict factors, size_t at,
+                                         spring_strip *restrict to, bool damped, bool only_hand_on) {
+    const size_t part = (size_t)(damped ? 2 : 1) * MSPRINGI_WIDTH,
+                 factor = (size_t)MSPRINGI_FACTORS * MSPRINGI_WIDTH;
+    const size_t bases[] = {
+        [MSPRINGI_EAST] = slot, [MSPRINGI_NORTH] = slot, [MSPRINGI_NORTH_EAST] = slot, [MSPRINGI_SOUTH_EAST] = up};
+    const size_t tips[] = {[MSPRINGI_EAST] = slot + 1,
+                           [MSPRINGI_NORTH] = up,
+                           [MSPRINGI_NORTH_EAST] = up + 1,
+                           [MSPRINGI_SOUTH_EAST] = slot + 1};
+    float unused[MSPRINGI_FACTORS * MSPRINGI_WIDTH]; // whoever has rows that only hand on keeps theirs
+    spring_lanes lanes[MSPRINGI_DIRECTIONS];
+    const size_t first = only_hand_on ? MSPRINGI_NORTH : MSPRINGI_EAST;
+    for (size_t i = first; i < MSPRINGI_DIRECTIONS; ++i)
+        find_inverses(s, bases[i], tips[i], &lanes[i]);
+    for (size_t i = first; i < MSPRINGI_DIRECTIONS; ++i)
+        find_forces(s, bases[i], tips[i], rests + i * MSPRINGI_WIDTH, springs + i * part, &lanes[i], damped);
+    for (size_t i = first; i < MSPRINGI_DIRECTIONS; ++i)
+        find_factors(s, springs + i * part, only_hand_on ? unused : factors + i * factor, &lanes[i], damped);
+    put_block(lanes, at, to, only_hand_on);
+}
+
+// The same of a chain's springs, or those of a row that has east springs only.
+MSPRINGI_PART_INLINE void assemble_east(const linearised *s, size_t slot, const float *rests, const float *springs,
+                                        float *restrict factors, size_t at, spring_strip *restrict to,
+                                        bool damped) {
+    spring_lanes east;
+    find_inverses(s, slot, slot + 1, &east);
+    find_forces(s, slot, slot + 1, rests, springs, &east, damped);
+    find_factors(s, springs, factors, &east, damped);
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
+        to->x.own[at + i] = to->x.right[MSPRINGI_WIDTH + at + i] = east.force_x[i];
+        to->y.own[at + i] = to->y.right[MSPRINGI_WIDTH + at + i] = east.force_y[i];
+        to->xx.own[at + i] = to->xx.right[MSPRINGI_WIDTH + at + i] = east.xx[i];
+        to->xy.own[at + i] = to->xy.right[MSPRINGI_WIDTH + at + i] = east.xy[i];
+        to->yy.own[at + i] = to->yy.right[MSPRINGI_WIDTH + at + i] = east.yy[i];
+    }
+}
+
+// Of the slots of a strip, sum up one quantity: what the carry row hands to them, their own, and what comes from
+// the left.
+static inline void sum_forces(const strip_of_doubles *of, size_t count, const double *restrict carry,
+                              float *restrict to) {
+    for (size_t i = 0; i < count; ++i)
+        to[i] = (float)((carry[i] + of->own[i]) - of->right[MSPRINGI_WIDTH - 1 + i]);
+}
+static inline void sum_blocks(const strip_of_floats *of, size_t count, const float *restrict carry,
+                              float *restrict to) {
+    for (size_t i = 0; i < count; ++i)
+        to[i] = (carry[i] + of->own[i]) + of->right[MSPRINGI_WIDTH - 1 + i];
+}
+
+// What a strip hands on to the row above.
+static inline void carry_forces(const strip_of_doubles *of, size_t count, double *restrict carry) {
+    for (size_t i = 0; i < count; ++i)
+        carry[i] = of->up[i] - of->diagonal[MSPRINGI_WIDTH - 1 + i];
+}
+static inline void carry_blocks(const strip_of_floats *of, size_t count, float *restrict carry) {
+    for (size_t i = 0; i < count; ++i)
+        carry[i] = of->up[i] + of->diagonal[MSPRINGI_WIDTH - 1 + i];
+}
+
+static inline void sum_strip(const mspringi_system *s, const spring_strip *strip, size_t slot, size_t carry,
+                             size_t count) {
+    sum_forces(&strip->x, count, s->force_carry_x + carry, s->force_x + slot);
+    sum_forces(&strip->y, count, s->force_carry_y + carry, s->force_y + slot);
+    sum_blocks(&strip->xx, count, s->carry_xx + carry, s->xx + slot);
+    sum_blocks(&strip->xy, count, s->carry_xy + carry, s->xy + slot);
+    sum_blocks(&strip->yy, count, s->carry_yy + carry, s->yy + slot);
+}
+
+static inline void carry_strip(const mspringi_system *s, const spring_strip *strip, size_t carry, size_t count) {
+    carry_forces(&strip->x, count, s->force_carry_x + carry);
+    carry_forces(&strip->y, count, s->force_carry_y + carry);
+    carry_blocks(&strip->xx, count, s->carry_xx + carry);
+    carry_blocks(&strip->xy, count, s->carry_xy + carry);
+    carry_blocks(&strip->yy, count, s->carry_yy + carry);
+}
+
+// Let what the last of count slots hands on come from the slot before the next strip.
+static inline void go_on(spring_strip *strip, size_t count) {
+    const size_t before = MSPRINGI_WIDTH - 1, last = before + count;
+    strip->x.right[before] = strip->x.right[last];
+    strip->y.right[before] = strip->y.right[last];
+    strip->xx.right[before] = strip->xx.right[last];
+    strip->xy.right[before] = strip->xy.right[last];
+    strip->yy.right[before] = strip->yy.right[last];
+    strip->x.diagonal[before] = strip->x.diagonal[last];
+    strip->y.diagonal[before] = strip->y.diagonal[last];
+    strip->xx.diagonal[before] = strip->xx.diagonal[last];
+    strip->xy.diagonal[before] = strip->xy.diagonal[last];
+    strip->yy.diagonal[before] = strip->yy.diagonal[last];
+}
+
+// Nothing comes from the slot before the first strip.
+static inline void begin_strips(spring_strip *strip) {
+    const size_t before = MSPRINGI_WIDTH - 1;
+    strip->x.right[before] = strip->x.diagonal[before] = 0.0;
+    strip->y.right[before] = strip->y.diagonal[before] = 0.0;
+    strip->xx.right[before] = strip->xx.diagonal[before] = 0.0f;
+    strip->xy.right[before] = strip->xy.diagonal[before] = 0.0f;
+    strip->yy.right[before] = strip->yy.diagonal[before] = 0.0f;
+}
+
+MSPRINGI_PART_INLINE void assemble_lattice_rows(const mspringi_system *system, const mspringi_span *spans,
+                                                uint32_t count, bool damped, bool only_hand_on) {
     const mspringi_system copy = *system, *const s = &copy;
-    const size_t part = (size_t)(damped ? 2 : 1) * MSPRINGI_WIDTH;
-    const size_t factor = (size_t)MSPRINGI_FACTORS * MSPRINGI_WIDTH;
-    assembled east, north, north_east, south_east;
-    handed right = {{{0.0}, {0.0}}, {{0.0f}, {0.0f}, {0.0f}}}, diagonal = right;
+    const size_t springs = (size_t)(damped ? 2 : 1) * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
+    const size_t factors = (size_t)MSPRINGI_FACTORS * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
+    const linearised linear = {s->x, s->y, s->vx, s->vy, (float)s->force_scale, (float)s->damping_rate};
+    spring_strip strip;
+    begin_strips(&strip);
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
-        const size_t first = span->first_slot / MSPRINGI_WIDTH;
-        const size_t end = (span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
-        for (size_t block = first; block < end; ++block) {
-            const size_t slot = block * MSPRINGI_WIDTH, index = span->first_record + (block - first);
-            const size_t up = (size_t)((int64_t)slot + span->up), carry = (size_t)((int64_t)slot + span->carry);
-            const float *record = s->lattice_springs + index * MSPRINGI_DIRECTIONS * part;
-            const float *rests = mspringi_system_rests(s, index);
-            float *factors = s->lattice_factors + index * MSPRINGI_DIRECTIONS * factor;
-            assemble_springs(s, slot, slot + 1, rests + MSPRINGI_EAST * MSPRINGI_WIDTH,
-                             record + MSPRINGI_EAST * part, factors + MSPRINGI_EAST * factor, &east, damped);
-            assemble_springs(s, slot, up, rests + MSPRINGI_NORTH * MSPRINGI_WIDTH, record + MSPRINGI_NORTH * part,
-                             factors + MSPRINGI_NORTH * factor, &north, damped);
-            assemble_springs(s, slot, up + 1, rests + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH,
-                             record + MSPRINGI_NORTH_EAST * part, factors + MSPRINGI_NORTH_EAST * factor,
-                             &north_east, damped);
-            assemble_springs(s, up, slot + 1, rests + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH,
-                             record + MSPRINGI_SOUTH_EAST * part, factors + MSPRINGI_SOUTH_EAST * factor,
-                             &south_east, damped);
-            sum_block(s, slot, carry, &east, &north, &north_east, &south_east, &right, &diagonal);
+        const size_t first = span->first_slot / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+        const size_t end = (span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+        for (size_t slot = first, slots; slot < end; slot += slots) {
+            const size_t carry = (size_t)((int64_t)slot + span->carry);
+            slots = end - slot < MSPRINGI_STRIP ? end - slot : MSPRINGI_STRIP;
+            for (size_t at = 0; at < slots; at += MSPRINGI_WIDTH) {
+                const size_t index = span->first_record + (slot + at - first) / MSPRINGI_WIDTH;
+                assemble_block(&linear, slot + at, (size_t)((int64_t)(slot + at) + span->up),
+                               mspringi_system_rests(s, index), s->lattice_springs + index * springs,
+                               s->lattice_factors + index * factors, at, &strip, damped, only_hand_on);
+            }
+            if (!only_hand_on)
+                sum_strip(s, &strip, slot, carry, slots);
+            carry_strip(s, &strip, carry, slots);
+            go_on(&strip, slots);
         }
     }
 }
 
-// Forces and blocks that a block's springs hand on to the row above, in the order of sum_block().
-#define MSPRINGI_HAND_ON_FORCES(part)                                                                              \
-    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)                                                                    \
-        diagonal->force.part[i + 1] = north_east->force_##part[i];                                                 \
-    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)                                                                    \
-        s->force_carry_##part[carry + i] =                                                                         \
-            (south_east->force_##part[i] - north->force_##part[i]) - diagonal->force.part[i];                      \
-    diagonal->force.part[0] = diagonal->force.part[MSPRINGI_WIDTH];
-
-#define MSPRINGI_HAND_ON_BLOCKS(part)                                                                              \
-    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)                                                                    \
-        diagonal->block.part[i + 1] = north_east->part[i];                                                         \
-    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)                                                                    \
-        s->carry_##part[carry + i] = (south_east->part[i] + north->part[i]) + diagonal->block.part[i];             \
-    diagonal->block.part[0] = diagonal->block.part[MSPRINGI_WIDTH];
-
-static inline void hand_on_block(const mspringi_system *s, size_t carry, const assembled *north,
-                                 const assembled *north_east, const assembled *south_east,
-                                 handed *restrict diagonal) {
-    MSPRINGI_HAND_ON_FORCES(x)
-    MSPRINGI_HAND_ON_FORCES(y)
-    MSPRINGI_HAND_ON_BLOCKS(xx)
-    MSPRINGI_HAND_ON_BLOCKS(xy)
-    MSPRINGI_HAND_ON_BLOCKS(yy)
+MSPRINGI_PART_INLINE void assemble_lattice(const mspringi_system *system, const mspringi_span *spans,
+                                           uint32_t count, bool damped) {
+    assemble_lattice_rows(system, spans, count, damped, false);
 }
 
-#undef MSPRINGI_HAND_ON_FORCES
-#undef MSPRINGI_HAND_ON_BLOCKS
-
-static inline void hand_on_forces(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
-                                  bool damped) {
-    const mspringi_system copy = *system, *const s = &copy;
-    const size_t part = (size_t)(damped ? 2 : 1) * MSPRINGI_WIDTH;
-    float factors[MSPRINGI_FACTORS * MSPRINGI_WIDTH]; // whoever has these rows keeps theirs
-    assembled north, north_east, south_east;
-    handed diagonal = {{{0.0}, {0.0}}, {{0.0f}, {0.0f}, {0.0f}}};
-    for (const mspringi_span *span = spans; span < spans + count; ++span) {
-        const size_t first = span->first_slot / MSPRINGI_WIDTH;
-        const size_t end = (span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
-        for (size_t block = first; block < end; ++block) {
-            const size_t slot = block * MSPRINGI_WIDTH, index = span->first_record + (block - first);
-            const size_t up = (size_t)((int64_t)slot + span->up), carry = (size_t)((int64_t)slot + span->carry);
-            const float *record = s->lattice_springs + index * MSPRINGI_DIRECTIONS * part;
-            const float *rests = mspringi_system_rests(s, index);
-            assemble_springs(s, slot, up, rests + MSPRINGI_NORTH * MSPRINGI_WIDTH, record + MSPRINGI_NORTH * part,
-                             factors, &north, damped);
-            assemble_springs(s, slot, up + 1, rests + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH,
-                             record + MSPRINGI_NORTH_EAST * part, factors, &north_east, damped);
-            assemble_springs(s, up, slot + 1, rests + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH,
-                             record + MSPRINGI_SOUTH_EAST * part, factors, &south_east, damped);
-            hand_on_block(s, carry, &north, &north_east, &south_east, &diagonal);
-        }
-    }
+MSPRINGI_PART_INLINE void hand_on_forces(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
+                                         bool damped) {
+    assemble_lattice_rows(system, spans, count, damped, true);
 }
 
 // East springs only.
-static inline void assemble_chain(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
-                                  bool damped) {
+MSPRINGI_PART_INLINE void assemble_chain(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
+                                         bool damped) {
     const mspringi_system copy = *system, *const s = &copy;
-    assembled east;
-    const assembled none = {{0.0}, {0.0}, {0.0f}, {0.0f}, {0.0f}};
-    handed right = {{{0.0}, {0.0}}, {{0.0f}, {0.0f}, {0.0f}}}, diagonal = right;
+    const linearised linear = {s->x, s->y, s->vx, s->vy, (float)s->force_scale, (float)s->damping_rate};
+    spring_strip strip;
+    begin_strips(&strip);
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
         const bool is_chain = span->record_slots == MSPRINGI_WIDTH;
         // A chain's records have the rest lengths in front.
         const size_t parts = damped ? 2 : 1, stride = (parts + is_chain) * span->record_slots;
         const size_t factor_stride = (size_t)MSPRINGI_FACTORS * span->record_slots;
-        const float *record = (is_chain ? s->chain_springs : s->lattice_springs) + span->first_record * stride;
-        float *factors = (is_chain ? s->chain_factors : s->lattice_factors) + span->first_record * factor_stride;
-        const size_t end = (span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
-        for (size_t block = span->first_slot / MSPRINGI_WIDTH; block < end; ++block) {
-            const size_t slot = block * MSPRINGI_WIDTH, carry = (size_t)((int64_t)slot + span->carry);
-            const float *rests =
-                is_chain
-                    ? record
-                    : mspringi_system_rests(s, span->first_record + (block - span->first_slot / MSPRINGI_WIDTH));
-            assemble_springs(s, slot, slot + 1, rests, record + is_chain * MSPRINGI_WIDTH, factors, &east, damped);
-            sum_block(s, slot, carry, &east, &none, &none, &none, &right, &diagonal);
-            record += stride;
-            factors += factor_stride;
+        const float *records = is_chain ? s->chain_springs : s->lattice_springs;
+        float *factors = is_chain ? s->chain_factors : s->lattice_factors;
+        const size_t first = span->first_slot / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+        const size_t end = (span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+        for (size_t slot = first, slots; slot < end; slot += slots) {
+            const size_t carry = (size_t)((int64_t)slot + span->carry);
+            slots = end - slot < MSPRINGI_STRIP ? end - slot : MSPRINGI_STRIP;
+            for (size_t at = 0; at < slots; at += MSPRINGI_WIDTH) {
+                const size_t index = span->first_record + (slot + at - first) / MSPRINGI_WIDTH;
+                const float *record = records + index * stride;
+                const float *rests = is_chain ? record : mspringi_system_rests(s, index);
+                assemble_east(&linear, slot + at, rests, record + is_chain * MSPRINGI_WIDTH,
+                              factors + index * factor_stride, at, &strip, damped);
+            }
+            sum_strip(s, &strip, slot, carry, slots);
+            memset(s->force_carry_x + carry, 0, slots * sizeof *s->force_carry_x);
+            memset(s->force_carry_y + carry, 0, slots * sizeof *s->force_carry_y);
+            memset(s->carry_xx + carry, 0, slots * sizeof *s->carry_xx);
+            memset(s->carry_xy + carry, 0, slots * sizeof *s->carry_xy);
+            memset(s->carry_yy + carry, 0, slots * sizeof *s->carry_yy);
+            go_on(&strip, slots);
         }
     }
 }

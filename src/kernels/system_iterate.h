@@ -57,10 +57,11 @@ static void invert(const mspringi_system *s, size_t first, size_t end) {
         const double on_top = mass + 1e-6 * trace;
         const double xx = (double)block_xx[i] + on_top, yy = (double)block_yy[i] + on_top;
         const double xy = (double)block_xy[i];
-        const double reciprocal = 1.0 / (xx * yy - xy * xy), factor = mass > 0.0 ? reciprocal : 0.0;
-        block_xx[i] = (float)(mass > 0.0 ? yy * factor : 0.0);
-        block_xy[i] = (float)(mass > 0.0 ? -xy * factor : 0.0);
-        block_yy[i] = (float)(mass > 0.0 ? xx * factor : 0.0);
+        const double is_there = mass > 0.0 ? 1.0 : 0.0, determinant = xx * yy - xy * xy;
+        const double factor = is_there / (mass > 0.0 ? determinant : 1.0);
+        block_xx[i] = (float)(yy * factor);
+        block_xy[i] = (float)(-xy * factor);
+        block_yy[i] = (float)(xx * factor);
     }
 }
 
