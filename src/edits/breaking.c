@@ -36,12 +36,13 @@ mspring_result mspringi_breaking_reserve_log(mspring_network *network) {
 mspring_result mspringi_breaking_reserve(mspring_network *network) {
     const mspringi_reserve *reserve = &network->topology.reserve;
     bool any_absolute = reserve->spring_end > reserve->first_spring;
-    if (network->kept)
+    if (network->kept || network->keeps_none)
         return mspringi_breaking_reserve_log(network);
     for (mspring_id s = 0; s < reserve->first_spring && !any_absolute; ++s)
         any_absolute = !mspringi_spring_is_relative(network, s);
     if (any_absolute)
         network->kept = mspringi_alloc(&network->memory, reserve->spring_end, sizeof *network->kept);
+    network->keeps_none = !any_absolute;
     return network->kept || !any_absolute ? mspringi_breaking_reserve_log(network) : fail_for_memory(network);
 }
 

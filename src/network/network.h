@@ -239,6 +239,7 @@ struct mspring_network {
     float relative_h;        ///< the substep that relative springs were derived for; 0: not yet
     uint16_t *live;          ///< [places / 16] a bit for each place: 1 where a spring is, and is not broken
     mspringi_relative *kept; ///< [springs] N/m, N s/m of broken springs that are not relative; NULL before any
+    bool keeps_none;         ///< all springs were seen to be relative, and stay so
     uint32_t depth;          ///< substeps that may be swept in one pass over the lattice rows
     uint32_t carry_rows;     ///< depth, for each worker
     float *carry;            ///< [carry_rows] forces on the row above, all x and then all y of each
