@@ -8,18 +8,6 @@
 #include "selection.h"
 #include "sleep/sleep.h"
 
-#define SMALLEST_MASS 1e-30f
-#define LARGEST_MASS 1e30f
-#define SMALLEST_SCALE 1e-6f
-
-bool mspringi_is_mass(float mass) {
-    return mass >= SMALLEST_MASS && mass <= LARGEST_MASS;
-}
-
-bool mspringi_is_inverse_mass_scale(float scale) {
-    return scale == 0.0f || (scale >= SMALLEST_SCALE && scale <= 1.0f);
-}
-
 static float scale_of(const mspring_network *network, mspring_id particle) {
     if (network->inverse_mass_scale)
         return network->inverse_mass_scale[particle];
@@ -31,7 +19,7 @@ static float scale_of(const mspring_network *network, mspring_id particle) {
 static mspring_result check_masses(mspring_network *network, const mspringi_selection *at, const float *mass) {
     bool all = true;
     for (uint32_t i = 0; i < at->count; ++i)
-        all = all & (mass[i] >= SMALLEST_MASS) & (mass[i] <= LARGEST_MASS);
+        all = all & mspringi_is_mass(mass[i]);
     if (all)
         return MSPRING_OK;
     uint32_t i = 0;
