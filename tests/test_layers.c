@@ -5,7 +5,9 @@
 /// SPDX-License-Identifier: MIT
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "allocator.h"
 #include "network/network.h"
 #include "recipe.h"
 #include "support.h"
@@ -15,12 +17,16 @@
 
 #define SUBSTEPS 6
 
+/// So many allocations before the last, at most, the places where layers begin are listed.
+#define LAST_ALLOCATIONS 20
+
 /// What there is in a network.
 typedef enum content {
     ONE_PIECE,
     MANY_PIECES,       ///< of 700 particles
     WITH_CABLES,       ///< and ropes from one end to the other, and one particle that has a hundred springs; beside
                        ///< a lattice with a rope, a strand and loose particles
+    ON_A_RAFT,         ///< a lattice that is much smaller
     IN_RIGGING,        ///< of more particles than its own
     ON_A_TIED_LATTICE, ///< of which rows cannot be swept for several substeps
 } content;
@@ -52,6 +58,12 @@ static recipe heap_of(content of) {
         for (uint32_t i = 0; i < 100; i++) {
             recipe_spring(&made, 30000, i * 40, 50, 0, 0);
         }
+    } else if (of == ON_A_RAFT) {
+        const mspring_id raft = recipe_lattice(&made, 60, 40, 600, -50, 1, &stuff, &seed);
+        for (uint32_t i = 0; i < 60; i++) {
+            recipe_spring(&made, raft + i, 30000 + i, 500, 0, 0);
+        }
+        recipe_lattice(&made, 60, 40, 600, -200, 1, &stuff, &seed);
     } else if (of == IN_RIGGING) {
         for (uint32_t i = 0; i < 61; i++) {
             recipe_rope(&made, 100 * i, 55000 + i, 1000, &stuff, &seed);
@@ -111,6 +123,8 @@ static uint64_t hash_after_steps(const recipe *made, content of, manner how) {
     mspring_network *network = recipe_network(made, &def);
     // Ropes that hang on layers, or on a lattice, are no strands.
     assert_int_equal(network->topology.chain_count, of == WITH_CABLES ? 1 : of == IN_RIGGING ? 61 : 0);
+    // The raft is part of the web, another lattice is not.
+    assert_int_equal(network->topology.lattice_count, of == WITH_CABLES || of >= ON_A_RAFT ? of != IN_RIGGING : 0);
     if (how.one_by_one) {
         take_one_by_one(network);
     } else if (how.has_layers) {
@@ -137,15 +151,16 @@ static uint64_t hash_after_steps(const recipe *made, content of, manner how) {
 
 static void layers_give_the_bits_of_single_substeps(void **state) {
     (void)state;
-    static const content contents[] = {ONE_PIECE, WITH_CABLES, IN_RIGGING, ON_A_TIED_LATTICE};
+    static const content contents[] = {ONE_PIECE, WITH_CABLES, ON_A_RAFT, IN_RIGGING, ON_A_TIED_LATTICE};
     for (size_t i = 0; i < COUNT_OF(contents); i++) {
         const content of = contents[i];
         recipe made = heap_of(of);
         manner how = {.one_by_one = true, .forced = of == ONE_PIECE, .on_floor = of == WITH_CABLES, .workers = 1};
         const uint64_t expected = hash_after_steps(&made, of, how);
         how.one_by_one = false;
-        how.has_layers = of == ONE_PIECE || of == WITH_CABLES;
-        for (how.workers = 1; how.workers <= 3; how.workers += how.has_layers ? 1 : 2) {
+        how.has_layers = of <= ON_A_RAFT;
+        const uint32_t most_workers = of == IN_RIGGING ? 1 : 3, step = of <= WITH_CABLES ? 1 : 2;
+        for (how.workers = 1; how.workers <= most_workers; how.workers += step) {
             assert_int_equal(hash_after_steps(&made, of, how), expected);
         }
         recipe_free(&made);
@@ -204,6 +219,46 @@ static void pieces_sleep_in_layers(void **state) {
     recipe_free(&made);
 }
 
+/// Allocations that laying out takes fail once, each up to those of layers, lattices that are given up among them;
+/// and the last ones, among them where each layer begins.
+static void failing_memory_is_said_and_freed(void **state) {
+    (void)state;
+    recipe made = heap_of(ON_A_RAFT);
+    mspring_builder *builder = recipe_builder(&made, NULL);
+    const mspringi_reserve reserve = {made.particle_count, made.spring_count, made.particle_count,
+                                      made.spring_count};
+    watched_allocator watched = {0};
+    const mspring_allocator allocator = watched_interface(&watched);
+    size_t count = 0;
+    bool of_layers = false;
+    for (size_t n = 0; n <= count; n++) {
+        mspringi_memory memory;
+        mspringi_message message = {""};
+        mspringi_topology topology = {0};
+        check_ok(mspringi_memory_init(&memory, &allocator, &message));
+        watched.calls = 0;
+        watched.fail_at = n;
+        const mspring_result result = mspringi_topology_create(&topology, builder, &reserve, 1, &memory, &message);
+        if (n == 0) {
+            check_ok(result);
+            assert_true(topology.layer_count > 0);
+            count = watched.calls;
+        } else {
+            check_error(result, MSPRING_ERROR_MEMORY);
+            assert_non_null(strstr(message.text, "no memory"));
+            if (of_layers && !strstr(message.text, "layers") && n + LAST_ALLOCATIONS < count) {
+                n = count - LAST_ALLOCATIONS;
+            }
+            of_layers = strstr(message.text, "layers") != NULL;
+        }
+        mspringi_topology_destroy(&topology, &memory);
+        assert_int_equal(watched.live, 0);
+    }
+    check_watched_clean(&watched);
+    mspring_builder_destroy(builder);
+    recipe_free(&made);
+}
+
 /// A clone, and what a compaction leaves, have layers of their own.
 static void clones_and_compact_ones_have_layers(void **state) {
     (void)state;
@@ -235,6 +290,7 @@ int main(void) {
         cmocka_unit_test(layers_give_the_bits_of_single_substeps),
         cmocka_unit_test(small_webs_have_no_layers),
         cmocka_unit_test(pieces_sleep_in_layers),
+        cmocka_unit_test(failing_memory_is_said_and_freed),
         cmocka_unit_test(clones_and_compact_ones_have_layers),
     };
     return cmocka_run_group_tests_name("layers", tests, NULL, NULL);

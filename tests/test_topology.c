@@ -238,6 +238,55 @@ static void a_random_graph_is_no_lattice(void **state) {
     recipe_free(&made);
 }
 
+/// A mesh of triangles whose particles lie about the nodes of a grid, by so much off in x and y.
+static void add_sheet(recipe *made, uint32_t side, double off) {
+    uint64_t seed = 3;
+    const mspring_id first = made->particle_count;
+    for (uint32_t i = 0; i < side * side; i++) {
+        const double x = i % side + support_random_between(&seed, -off, off);
+        const double y = i / side + support_random_between(&seed, -off, off);
+        recipe_particle(made, x, y, 1, 0);
+    }
+    for (uint32_t i = first; i < first + side * side; i++) {
+        const bool has_right = (i - first) % side + 1 < side, has_above = (i - first) / side + 1 < side;
+        if (has_right) {
+            recipe_spring(made, i, i + 1, 100, 0, 0);
+        }
+        if (has_above) {
+            recipe_spring(made, i, i + side, 100, 0, 0);
+        }
+        if (has_right && has_above) {
+            recipe_spring(made, i, i + side + 1, 100, 0, 0);
+        }
+    }
+}
+
+/// Of one that is far off so much is left over that all of it is a web. Lattices elsewhere are what they were, and
+/// so is one with much rope.
+static void sheets_far_off_a_grid_are_webs(void **state) {
+    (void)state;
+    uint64_t seed = 4;
+    recipe made = {0};
+    add_sheet(&made, 45, 0.2);
+    mspring_plan plan = plan_of(&made);
+    assert_int_equal(plan.lattice_count, 1);
+    assert_true(plan.lattice_springs > plan.leftover_springs * 4);
+    recipe_free(&made);
+    add_sheet(&made, 45, 0.4);
+    plan = shuffled_plan_of(&made);
+    assert_int_equal(plan.lattice_count, 0);
+    assert_int_equal(plan.web_particles, 45 * 45);
+    recipe_lattice(&made, 70, 30, 100, 3, 1, &solid, &seed);
+    const mspring_id roped = recipe_lattice(&made, 70, 30, 100, 90, 1, &solid, &seed);
+    for (uint32_t i = 0; i < 60; i++) {
+        recipe_rope(&made, roped + i, roped + 70 * 29 + i, 30, &solid, &seed);
+    }
+    plan = shuffled_plan_of(&made);
+    assert_int_equal(plan.lattice_count, 2);
+    assert_int_equal(plan.lattice_particles, 2 * 70 * 30);
+    recipe_free(&made);
+}
+
 static void what_a_network_has_not_it_does_not_hold(void **state) {
     (void)state;
     const recipe_stuff damped = {.mass = {1, 1}, .stiffness = {100, 100}, .damping = {1, 1}};
@@ -301,6 +350,7 @@ int main(void) {
         cmocka_unit_test(a_ring_is_a_chain_but_for_one_spring),
         cmocka_unit_test(a_standing_bar_is_as_cheap_as_a_lying_one),
         cmocka_unit_test(a_random_graph_is_no_lattice),
+        cmocka_unit_test(sheets_far_off_a_grid_are_webs),
         cmocka_unit_test(what_a_network_has_not_it_does_not_hold),
         cmocka_unit_test(order_does_not_change_the_motion),
     };

@@ -1,5 +1,6 @@
 /// @file analysis.h
-/// The steps by which a topology is found: graph, then strands, then grids, then homes, then the web's list.
+/// The steps by which a topology is found: graph, then strands, then grids, less those of sheets, then homes, then
+/// the web's list.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_ANALYSIS_H
@@ -95,6 +96,35 @@ mspring_result mspringi_grids_reserve(mspringi_grids *grids, const mspringi_grap
 void mspringi_grids_find(mspringi_grids *grids, mspringi_pace *pace, mspringi_memory *memory);
 void mspringi_grids_destroy(mspringi_grids *grids, mspringi_memory *memory);
 
+/// Particles of the web without a home from which it gets layers: with fewer, all of it is in a cache as fast as
+/// need be.
+#define MSPRINGI_FEWEST_LAYERED 60000
+
+/// Pieces of the network of which the grids that were found are better given up.
+typedef struct mspringi_sheets {
+    uint32_t inner, outer;       ///< springs in all grids, and others that their particles have
+    uint32_t *piece;             ///< [particles] parent in a forest; NULL if nothing is to be given up
+    struct mspringi_sheet *sums; ///< [particles] of roots
+    uint32_t grid;               ///< the one that is looked at
+    bool gives_up;               ///< it
+    uint32_t kept_grids, kept_members;
+} mspringi_sheets;
+/// Give up the grids of pieces that cost less as a web: their particles become loose in kinds. Passes in their
+/// order.
+void mspringi_sheets_survey(mspringi_sheets *sheets, const mspringi_graph *graph, const mspringi_grids *grids,
+                            const uint8_t *kinds, mspringi_pace *pace);
+mspring_result mspringi_sheets_reserve(mspringi_sheets *sheets, const mspringi_graph *graph,
+                                       const mspringi_grids *grids, mspringi_pace *pace, mspringi_memory *memory,
+                                       mspringi_message *message);
+void mspringi_sheets_join(mspringi_sheets *sheets, const mspringi_graph *graph, mspringi_pace *pace);
+void mspringi_sheets_count_springs(mspringi_sheets *sheets, const mspringi_graph *graph,
+                                   const mspringi_grids *grids, const uint8_t *kinds, mspringi_pace *pace);
+void mspringi_sheets_count_particles(mspringi_sheets *sheets, const mspringi_graph *graph,
+                                     const mspringi_grids *grids, const uint8_t *kinds, mspringi_pace *pace);
+void mspringi_sheets_give_up(mspringi_sheets *sheets, mspringi_grids *grids, uint8_t *kinds, mspringi_pace *pace,
+                             mspringi_memory *memory);
+void mspringi_sheets_destroy(mspringi_sheets *sheets, mspringi_memory *memory);
+
 /// Put small grids side by side in the same rows, as one grid. found_count stays. Passes in their order.
 mspring_result mspringi_grids_measure(mspringi_grids *grids, mspringi_pace *pace, mspringi_memory *memory,
                                       mspringi_message *message);
@@ -165,10 +195,6 @@ void mspringi_web_list_set_keys(mspringi_web_list *list, const mspringi_graph *g
 void mspringi_web_list_sort(mspringi_web_list *list, mspringi_pace *pace);
 void mspringi_web_list_take_order(mspringi_web_list *list, mspringi_pace *pace);
 void mspringi_web_list_destroy(mspringi_web_list *list, mspringi_memory *memory);
-
-/// Particles of the web without a home from which it gets layers: with fewer, all of it is in a cache as fast as
-/// need be.
-#define MSPRINGI_FEWEST_LAYERED 60000
 
 /// After the list's particles have been counted: drop the strands that have a home, and those that hang on a web
 /// that gets layers, unless there is more of strands than of that. Their particles become loose in kinds and are

@@ -33,6 +33,7 @@ struct mspringi_assembly {
     mspringi_graph graph;
     mspringi_strands strands;
     mspringi_grids grids;
+    mspringi_sheets sheets;
     mspringi_homes homes;
     mspringi_web_list web;
     mspringi_layers layers;

@@ -135,6 +135,35 @@ static mspring_result find_grids(mspringi_assembly *a) {
     return MSPRING_OK;
 }
 
+static mspring_result survey_sheets(mspringi_assembly *a) {
+    mspringi_sheets_survey(&a->sheets, &a->graph, &a->grids, a->kinds, &a->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result begin_sheets(mspringi_assembly *a) {
+    return mspringi_sheets_reserve(&a->sheets, &a->graph, &a->grids, &a->pace, a->memory, a->message);
+}
+
+static mspring_result join_sheets(mspringi_assembly *a) {
+    mspringi_sheets_join(&a->sheets, &a->graph, &a->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result count_sheet_springs(mspringi_assembly *a) {
+    mspringi_sheets_count_springs(&a->sheets, &a->graph, &a->grids, a->kinds, &a->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result count_sheet_particles(mspringi_assembly *a) {
+    mspringi_sheets_count_particles(&a->sheets, &a->graph, &a->grids, a->kinds, &a->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result give_up_sheets(mspringi_assembly *a) {
+    mspringi_sheets_give_up(&a->sheets, &a->grids, a->kinds, &a->pace, a->memory);
+    return MSPRING_OK;
+}
+
 static mspring_result measure_grids(mspringi_assembly *a) {
     return mspringi_grids_measure(&a->grids, &a->pace, a->memory, a->message);
 }
@@ -263,6 +292,12 @@ static mspring_result (*const layout_passes[])(mspringi_assembly *a) = {
     find_strands,
     begin_grids,
     find_grids,
+    survey_sheets,
+    begin_sheets,
+    join_sheets,
+    count_sheet_springs,
+    count_sheet_particles,
+    give_up_sheets,
     measure_grids,
     shelve_grids,
     number_grids,
@@ -374,6 +409,7 @@ void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory
     mspringi_graph_destroy(&begun->graph, memory);
     mspringi_strands_destroy(&begun->strands, memory);
     mspringi_grids_destroy(&begun->grids, memory);
+    mspringi_sheets_destroy(&begun->sheets, memory);
     mspringi_homes_destroy(&begun->homes, memory);
     mspringi_web_list_destroy(&begun->web, memory);
     mspringi_layers_destroy(&begun->layers, memory);
