@@ -345,6 +345,7 @@ static void take_layout(mspring_network *to, const mspring_network *made) {
     to->attached = made->attached;
     to->carry = made->carry;
     to->carry_rows = made->carry_rows;
+    to->seams = made->seams;
     to->depth = made->depth;
     to->live = made->live;
     to->rests = made->rests;

@@ -6,6 +6,8 @@
 #include "contact/floor.h"
 #include "creep.h"
 #include "network/alike.h"
+#include "seam.h"
+#include "shares.h"
 #include "sleep/sleep.h"
 #include "strip.h"
 
@@ -19,11 +21,8 @@
 /// Most substeps in one pass: each needs a carry row of its own.
 #define DEEPEST 16
 
-/// Substeps times springs from which more than one worker is worth it.
-#define SMALLEST_SHARED_WORK 400000u
-
-/// Strips that a worker may lag behind the one before, besides those that it must, before others have to wait.
-#define SLACK 4
+/// Springs of the web times substeps from which more than one worker is worth it.
+#define SMALLEST_SHARED_WEB 400000u
 
 /// What the workers have in common.
 typedef struct job {
@@ -33,9 +32,7 @@ typedef struct job {
     uint32_t count;              ///< substeps
     uint32_t workers;            ///< bodies that run at the same time
     mspringi_progress *progress; ///< [workers]; NULL for one
-    uint32_t group;              ///< substeps in a pass (wave)
-    uint32_t fronts;             ///< steps of a pass of that many (wave)
-    uint32_t strips, lag, depth; ///< of what, by how many behind each other, so many at once (wave)
+    mspringi_shares shares;      ///< (wave)
     const mspringi_strip *web;   ///< the web row's, if that is swept in layers, as strips of a wave of its own
     mspringi_sight *sights;      ///< [workers] if the substeps are a whole step; else NULL
 } job;
@@ -61,40 +58,6 @@ uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t par
     return near_depth > FEW_SUBSTEPS ? near_depth : depth_within(topology, parts, FAR_CACHE_BYTES);
 }
 
-// How the substeps are divided: worker w makes the passes w, w + workers, ... over all strips, each pass some
-// strips behind the one before, so that what is computed, and in which order, is the same for any number of
-// workers. A pass must be short enough for each worker's next one to begin as soon as it is done with the last.
-static void plan_wave(job *wave) {
-    const mspring_network *network = wave->network;
-    const uint32_t lag = wave->lag, count = wave->count;
-    const bool shared = (uint64_t)mspringi_swept_count(&network->topology) * count >= SMALLEST_SHARED_WORK;
-    wave->workers = shared ? mspringi_tasks_concurrency(network->tasks) : 1;
-    while (wave->workers > 1 && wave->workers * (lag + 2 + SLACK) > wave->strips)
-        wave->workers--;
-    uint32_t group = wave->depth;
-    if (wave->workers > 1 && group > (wave->strips / wave->workers - 2 - SLACK) / lag)
-        group = (wave->strips / wave->workers - 2 - SLACK) / lag;
-    // Equal passes, and as many for each worker. The loop above leaves at least lag + 2 + SLACK strips to a worker.
-    // NOLINTNEXTLINE(clang-analyzer-core.DivideZero)
-    const uint32_t at_once = group * wave->workers, rounds = (count + at_once - 1) / at_once;
-    wave->group = (count + rounds * wave->workers - 1) / (rounds * wave->workers);
-    const uint32_t passes = (count + wave->group - 1) / wave->group;
-    wave->workers = passes < wave->workers ? passes : wave->workers;
-    wave->fronts = wave->strips + (wave->group - 1) * lag;
-    wave->progress = wave->workers > 1 ? mspringi_tasks_progress(network->tasks) : NULL;
-}
-
-// Wait until the pass before is so far that a pass can make its step number front: with its last substep beyond the
-// other ends of the strip's springs, and one strip more, since vectors reach into the row after the row above.
-static void wait_for_pass_before(const job *wave, uint32_t pass, uint32_t front) {
-    if (pass == 0 || !wave->progress)
-        return;
-    const uint32_t behind = front + wave->group * wave->lag + 2;
-    const uint32_t done = behind < wave->fronts ? behind : wave->fronts;
-    mspringi_progress_wait(&wave->progress[(pass - 1) % wave->workers],
-                           (pass - 1) / wave->workers * wave->fronts + done);
-}
-
 // If the substeps are a whole step, have the first one keep the state and the last one look at it.
 static void mark_ends(const job *wave, mspringi_substep *substep, uint32_t number, mspringi_watch *watch) {
     if (wave->sights && number == 0)
@@ -109,10 +72,10 @@ static void add_sight(const job *wave, uint32_t worker, mspringi_sight sight) {
 
 // Take one substep of a strip and, if it is the last of a whole step, what belongs after it.
 static void sweep_strip(const job *wave, const mspringi_substep *substep, uint32_t worker,
-                        const mspringi_strip *strip) {
+                        const mspringi_strip *strip, const mspringi_seam *seam) {
     if (mspringi_share_of_strip(wave->network, strip) == MSPRINGI_ASLEEP)
         return;
-    mspringi_strip_sweep(wave->network, substep, strip);
+    mspringi_strip_sweep(wave->network, substep, strip, seam);
     if (substep->sweep.watch)
         add_sight(wave, worker, mspringi_strip_end(wave->network, strip));
 }
@@ -140,43 +103,112 @@ static void sweep_layer(const job *wave, const mspringi_substep *substep, uint32
         mspringi_creep_stop(network, span.first_slot, span.end_slot);
 }
 
-// Make one pass: several substeps over all strips of the wave, each lag strips behind the one before, so that a
+/// What one worker does in a pass.
+typedef struct turn {
+    const job *wave;
+    uint32_t share, pass;
+    uint32_t passed; ///< what the worker's counter is at when the pass begins
+    uint32_t above;  ///< where the counter of the worker above was last
+} turn;
+
+// The counter of a worker says in how many substeps of a pass it has left its lower border behind, and one more at
+// the end of the pass.
+static void say(const turn *t, uint32_t passed) {
+    if (t->wave->progress)
+        mspringi_progress_advance(&t->wave->progress[t->share], t->passed + passed);
+}
+
+// Wait for the worker above where it and this one read what the other writes: in the last strips of the share,
+// whose springs lead to the first ones above the border, or to what is read from there.
+static void wait_for_above(turn *t, uint32_t substep, uint32_t strip) {
+    const mspringi_shares *shares = &t->wave->shares;
+    const uint32_t passed = t->passed + substep + 1;
+    if (t->share + 1 < shares->workers && t->above < passed &&
+        strip + 2 * shares->lag >= mspringi_shares_end(shares, t->share, t->pass, substep))
+        t->above = mspringi_progress_wait(&t->wave->progress[t->share + 1], passed);
+}
+
+// Take a substep of the pass for a strip of the share.
+static void take_strip(turn *t, uint32_t number, const mspringi_substep *substep, uint32_t strip) {
+    const job *wave = t->wave;
+    const mspringi_shares *shares = &wave->shares;
+    const uint32_t begin = mspringi_shares_begin(shares, t->share, t->pass, number);
+    const uint32_t end = mspringi_shares_end(shares, t->share, t->pass, number);
+    wait_for_above(t, number, strip);
+    if (wave->web) {
+        sweep_layer(wave, substep, strip);
+    } else {
+        const mspringi_strip *here = &wave->network->topology.strips[strip];
+        const mspringi_seam below = {.border = t->share - 1, .substep = number};
+        const mspringi_seam above = {.border = t->share, .substep = number};
+        if (strip == begin && t->share > 0)
+            mspringi_seam_keep(wave->network, &below, substep, here);
+        sweep_strip(wave, substep, t->share, here, strip + 1 == end && end < shares->strips ? &above : NULL);
+    }
+    if (t->share > 0 && strip + 1 == begin + shares->lag)
+        say(t, number + 1);
+}
+
+// Make one pass: several substeps over all strips of a share, each lag strips behind the one before, so that a
 // strip is in the cache for all of them. A strip's substep needs the one before of the strip itself, of the row
 // above, and of the other ends of leftover springs: all are done by then, and none is further.
-static void make_pass(const job *wave, uint32_t pass, uint32_t worker) {
+static void make_pass(turn *t) {
+    const job *wave = t->wave;
     const mspring_network *network = wave->network;
-    const uint32_t first = pass * wave->group, left = wave->count - first, lag = wave->lag;
-    const uint32_t count = left < wave->group ? left : wave->group;
+    const mspringi_shares *shares = &wave->shares;
+    const uint32_t count = mspringi_shares_substeps(shares, t->pass), lag = shares->lag;
     mspringi_substep substeps[DEEPEST];
     mspringi_watch_room room = {{0.0f}};
     mspringi_watch *const watch = mspringi_watch_in(&room);
     for (uint32_t i = 0; i < count; ++i) {
-        substeps[i] = mspringi_substep_prepare(network, wave->h, wave->base, first + i, wave->count,
-                                               wave->web ? 0 : worker * network->depth + i);
-        mark_ends(wave, &substeps[i], first + i, watch);
+        const uint32_t number = t->pass * shares->group + i;
+        substeps[i] = mspringi_substep_prepare(network, wave->h, wave->base, number, wave->count,
+                                               wave->web ? 0 : t->share * network->depth + i);
+        mark_ends(wave, &substeps[i], number, watch);
     }
-    for (uint32_t front = 0; front < wave->strips + (count - 1) * lag; ++front) {
-        wait_for_pass_before(wave, pass, front);
+    const uint32_t end = mspringi_shares_end(shares, t->share, t->pass, count - 1) + (count - 1) * lag;
+    for (uint32_t front = mspringi_shares_begin(shares, t->share, t->pass, 0); front < end; ++front)
         for (uint32_t i = 0; i < count && i * lag <= front; ++i) {
-            if (front - i * lag >= wave->strips)
-                continue;
-            if (wave->web)
-                sweep_layer(wave, &substeps[i], front - i * lag);
-            else
-                sweep_strip(wave, &substeps[i], worker, &network->topology.strips[front - i * lag]);
+            const uint32_t strip = front - i * lag;
+            if (strip >= mspringi_shares_begin(shares, t->share, t->pass, i) &&
+                strip < mspringi_shares_end(shares, t->share, t->pass, i))
+                take_strip(t, i, &substeps[i], strip);
         }
-        if (wave->progress)
-            mspringi_progress_advance(&wave->progress[worker], pass / wave->workers * wave->fronts + front + 1);
-    }
     if (wave->sights)
-        add_sight(wave, worker, wave->network->kernels->sight_of(watch));
+        add_sight(wave, t->share, network->kernels->sight_of(watch));
 }
 
-static void make_passes(void *argument, uint32_t index, uint32_t worker) {
+// Before a pass, wait for the worker below to have done with the last one and, where the border above has gone up
+// so far that strips which nobody waits for any more were the other's, for the one above.
+static void wait_for_last(const turn *t) {
+    const mspringi_shares *shares = &t->wave->shares;
+    if (t->pass == 0)
+        return;
+    if (t->share > 0)
+        mspringi_progress_wait(&t->wave->progress[t->share - 1], t->passed);
+    if (t->share + 1 < shares->workers && mspringi_shares_end(shares, t->share, t->pass, 0) >
+                                              mspringi_shares_end(shares, t->share, t->pass - 1, shares->group - 1))
+        mspringi_progress_wait(&t->wave->progress[t->share + 1], t->passed);
+}
+
+// Make all passes over a share. What is computed, and in which order, is the same for any number of workers. The
+// first bodies are those above, which wait for nobody within a pass.
+static void take_share(void *argument, uint32_t index, uint32_t worker) {
     const job *wave = argument;
+    const mspringi_shares *shares = &wave->shares;
+    turn t = {.wave = wave, .share = shares->workers - 1 - index};
     (void)worker;
-    for (uint32_t pass = index; pass * wave->group < wave->count; pass += wave->workers)
-        make_pass(wave, pass, index);
+    for (; t.pass * shares->group < shares->count; t.pass++, t.passed += shares->group + 1) {
+        wait_for_last(&t);
+        make_pass(&t);
+        say(&t, shares->group + 1);
+    }
+}
+
+static void run_wave(job *wave) {
+    const mspring_network *network = wave->network;
+    wave->progress = wave->shares.workers > 1 ? mspringi_tasks_progress(network->tasks) : NULL;
+    mspringi_tasks_run(wave->progress ? network->tasks : NULL, wave->shares.workers, take_share, wave);
 }
 
 // Pack what the first substep sees of the web's nodes.
@@ -197,14 +229,11 @@ static void sweep_wave(mspring_network *network, float h, mspringi_field base, u
                 .base = base,
                 .h = h,
                 .count = count,
-                .strips = t->wave_strips,
-                .lag = t->lag,
-                .depth = network->depth,
+                .shares = mspringi_shares_plan(network, NULL, count, network->depth),
                 .sights = sights};
-    plan_wave(&wave);
     if (t->web.group_count > 0)
         pack_wave(network, h, base, count);
-    mspringi_tasks_run(wave.progress ? network->tasks : NULL, wave.workers, make_passes, &wave);
+    run_wave(&wave);
 }
 
 /* ---------------------------------------------------------------------------------------- a web's own wave */
@@ -237,24 +266,17 @@ static bool sweep_layers(const mspring_network *network, float h, mspringi_field
     const mspringi_strip *web = find_web_strip(t);
     if (!web || t->layer_count == 0 || count == 1 || network->graft.count > 0)
         return false;
-    job wave = {.network = network,
-                .base = base,
-                .h = h,
-                .count = count,
-                .strips = t->layer_count,
-                .lag = 1,
-                .web = web,
-                .sights = sights};
+    job wave = {.network = network, .base = base, .h = h, .count = count, .web = web, .sights = sights};
     const uint32_t near_depth = web_depth_within(&wave, NEAR_CACHE_BYTES);
-    wave.depth = near_depth > FEW_SUBSTEPS ? near_depth : web_depth_within(&wave, FAR_CACHE_BYTES);
-    plan_wave(&wave);
-    if (wave.depth == 1 || wave.workers < mspringi_tasks_concurrency(network->tasks))
+    const uint32_t depth = near_depth > FEW_SUBSTEPS ? near_depth : web_depth_within(&wave, FAR_CACHE_BYTES);
+    wave.shares = mspringi_shares_plan(network, web, count, depth);
+    if (depth == 1 || wave.shares.workers < mspringi_tasks_concurrency(network->tasks))
         return false;
     if (mspringi_share_of_strip(network, web) == MSPRINGI_ASLEEP)
         return true;
     const mspringi_substep first = mspringi_substep_prepare(network, h, base, 0, count, 0);
     mspringi_web_pack(network, &first, &t->spans[t->rows[web->first_row].first_span]);
-    mspringi_tasks_run(wave.progress ? network->tasks : NULL, wave.workers, make_passes, &wave);
+    run_wave(&wave);
     return true;
 }
 
@@ -411,7 +433,7 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
         mark_ends(rest, &substep, i, watch);
         for (uint32_t s = t->wave_strips; index == 0 && s < t->strip_count; ++s)
             if (t->rows[t->strips[s].first_row].kind < MSPRINGI_ROW_WEB)
-                sweep_strip(rest, &substep, index, &t->strips[s]);
+                sweep_strip(rest, &substep, index, &t->strips[s], NULL);
     }
     if (rest->sights)
         add_sight(rest, index, rest->network->kernels->sight_of(watch));
@@ -427,7 +449,7 @@ static void sweep_rest(mspring_network *network, float h, mspringi_field base, u
         rest.web = find_web_strip(t);
     if (rest.web && t->wave_strips + 1 == t->strip_count)
         return;
-    if ((uint64_t)t->leftover_count * count >= SMALLEST_SHARED_WORK && network->graft.count == 0)
+    if ((uint64_t)t->leftover_count * count >= SMALLEST_SHARED_WEB && network->graft.count == 0)
         rest.workers = mspringi_tasks_concurrency(network->tasks);
     rest.progress = rest.workers > 1 ? mspringi_tasks_progress(network->tasks) : NULL;
     mspringi_tasks_run(rest.progress ? network->tasks : NULL, rest.workers, sweep_share, &rest);

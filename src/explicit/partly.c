@@ -8,8 +8,7 @@
 
 #include <string.h>
 
-// Clear what a run of lattice blocks has handed to blocks above that are left out.
-static void clear_carry(const mspring_network *network, const mspringi_sweep *sweep, const mspringi_span *run) {
+void mspringi_partly_clear(const mspring_network *network, const mspringi_sweep *sweep, const mspringi_span *run) {
     const mspringi_topology *t = &network->topology;
     for (uint32_t block = run->first_slot / MSPRINGI_WIDTH; block * MSPRINGI_WIDTH < run->end_slot; ++block) {
         const uint32_t i = block - t->lattice_first;
@@ -27,7 +26,7 @@ void mspringi_partly_sweep(const mspring_network *network, const mspringi_subste
         mspringi_span run[2];
         for (uint32_t at = span->first_slot; mspringi_next_swept(network, span, &at, run);) {
             sweep(&substep->sweep, run, 1);
-            clear_carry(network, &substep->sweep, run);
+            mspringi_partly_clear(network, &substep->sweep, run);
         }
     }
 }

@@ -8,6 +8,7 @@
 #include "creep.h"
 #include "decay.h"
 #include "partly.h"
+#include "seam.h"
 
 mspringi_substep mspringi_substep_prepare(const mspring_network *network, float h, mspringi_field base, uint32_t i,
                                           uint32_t count, uint32_t carry_number) {
@@ -145,15 +146,18 @@ void mspringi_strip_pack(const mspring_network *network, const mspringi_substep 
 }
 
 void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep *substep,
-                          const mspringi_strip *strip) {
-    const mspringi_row *rows = &network->topology.rows[strip->first_row];
+                          const mspringi_strip *strip, const mspringi_seam *seam) {
+    const mspringi_row *rows = &network->topology.rows[strip->first_row], *last = rows + strip->row_count - 1;
     const bool is_partly = mspringi_share_of_strip(network, strip) == MSPRINGI_PARTLY;
-    for (uint32_t first = 0, count; first < strip->row_count; first += count) {
-        for (count = 1; first + count < strip->row_count && rows[first + count].kind == rows[first].kind;)
+    const bool has_seam = seam && last->kind == MSPRINGI_ROW_LATTICE;
+    const uint32_t row_count = strip->row_count - has_seam;
+    for (uint32_t first = 0, count; first < row_count; first += count) {
+        for (count = 1; first + count < row_count && rows[first + count].kind == rows[first].kind;)
             ++count;
         sweep_rows(network, substep, &rows[first], count, is_partly);
     }
-    const mspringi_row *last = rows + strip->row_count - 1;
+    if (has_seam)
+        mspringi_seam_sweep(network, seam, substep, strip);
     if (strip->attached_count > 0)
         pull_attached(network, substep, strip);
     if (network->graft.count > 0)

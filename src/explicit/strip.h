@@ -24,9 +24,11 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
 void mspringi_strip_pack(const mspring_network *network, const mspringi_substep *substep,
                          const mspringi_strip *strip);
 
-/// Sweep a strip with everything that hangs on it.
+struct mspringi_seam;
+
+/// Sweep a strip with everything that hangs on it; with a seam (or NULL) above its last row.
 void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep *substep,
-                          const mspringi_strip *strip);
+                          const mspringi_strip *strip, const struct mspringi_seam *seam);
 
 /// Room for what is watched, aligned as vectors need it, wherever it lies.
 typedef struct mspringi_watch_room {

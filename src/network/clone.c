@@ -228,6 +228,10 @@ static void move_parameters(const moving *m, mspring_network *n) {
     MOVE(n->live);
     MOVE(n->kept);
     MOVE(n->carry);
+    MOVE(n->seams.values);
+    MOVE(n->seams.spans);
+    MOVE(n->seams.borders);
+    MOVE(n->seams.weights);
 }
 
 static void move_records(const moving *m, mspring_network *n) {

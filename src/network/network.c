@@ -8,6 +8,7 @@
 #include "base/mix.h"
 #include "edits/growth.h"
 #include "explicit/explicit.h"
+#include "explicit/seam.h"
 #include "fractions.h"
 #include "hooks.h"
 #include "implicit/implicit.h"
@@ -78,7 +79,7 @@ mspring_result mspringi_field_reserve(mspring_network *network, mspringi_field *
 mspring_result mspringi_carry_reserve(mspring_network *network) {
     const uint32_t rows = network->depth * mspringi_tasks_concurrency(network->tasks);
     if (network->carry && network->carry_rows >= rows)
-        return MSPRING_OK;
+        return mspringi_seams_reserve(network);
     const size_t values = (size_t)2 * rows * network->topology.carry_blocks * MSPRINGI_WIDTH;
     float *carry = mspringi_alloc(&network->memory, values, sizeof *carry);
     if (!carry)
@@ -86,7 +87,7 @@ mspring_result mspringi_carry_reserve(mspring_network *network) {
     mspringi_free(&network->memory, network->carry);
     network->carry = carry;
     network->carry_rows = rows;
-    return MSPRING_OK;
+    return mspringi_seams_reserve(network);
 }
 
 static bool reserve_state(mspring_network *network, mspringi_state *state) {
@@ -177,6 +178,7 @@ void mspringi_layout_free(const mspring_network *network, mspringi_memory *memor
     mspringi_free(memory, network->packed);
     mspringi_free(memory, network->attached);
     mspringi_free(memory, network->carry);
+    mspringi_seams_free(&network->seams, memory);
     mspringi_free(memory, network->live);
 }
 
@@ -186,6 +188,7 @@ void mspringi_layout_forget(mspring_network *network) {
     network->alike = (mspringi_alike){0};
     network->lattice_springs = network->chain_springs = network->web_springs = NULL;
     network->packed = network->attached = network->carry = NULL;
+    network->seams = (mspringi_seams){0};
     network->live = NULL;
 }
 

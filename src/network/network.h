@@ -142,6 +142,20 @@ typedef struct mspringi_alike {
     uint64_t changes;   ///< springs that were set since these were looked for
 } mspringi_alike;
 
+/// What workers leave to each other where they share strips, see explicit/seam.h and shares.h; no arrays for one.
+typedef struct mspringi_seams {
+    uint32_t workers;     ///< that there is room for; 0: none
+    uint32_t count;       ///< seams: borders between lattice strips
+    uint32_t substeps;    ///< in the deepest pass
+    uint32_t row_spans;   ///< spans in a row, at most
+    uint32_t strips;      ///< or layers, whichever are more
+    size_t segment;       ///< slots of the widest row, and a block to be read behind
+    float *values;        ///< [count][4][rows of a seam][segment] x, y, vx, vy
+    mspringi_span *spans; ///< [count][2][row_spans]
+    uint32_t *borders;    ///< [MSPRINGI_PLANNED_PASSES][workers]
+    uint64_t *weights;    ///< [strips + 1] of the strips below each
+} mspringi_seams;
+
 /// Which islands sleep, and what they were when they fell asleep; no arrays if none ever does. An island is a
 /// component of live springs, numbered by its lowest slot.
 typedef struct mspringi_sleep {
@@ -243,6 +257,7 @@ struct mspring_network {
     uint32_t depth;          ///< substeps that may be swept in one pass over the lattice rows
     uint32_t carry_rows;     ///< depth, for each worker
     float *carry;            ///< [carry_rows] forces on the row above, all x and then all y of each
+    mspringi_seams seams;
 
     float gravity_x, gravity_y, global_damping, max_speed;
     uint32_t substeps; ///< of the last step or, unless auto_substeps, of the next
@@ -316,7 +331,7 @@ mspring_result mspringi_check_solver(const mspring_solver_def *def, mspringi_mes
 /// Take back what a hook, or the host through a view, has written to slots without particle.
 void mspringi_clear_empty_slots(const mspring_network *network);
 
-/// Allocate the carry rows that the network's workers need, unless it has as many.
+/// Allocate the carry rows and seams that the network's workers need, unless it has as many.
 mspring_result mspringi_carry_reserve(mspring_network *network);
 
 /// Allocate what the explicit solver has by slot and by place. On error some of it is there.

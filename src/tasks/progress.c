@@ -14,11 +14,8 @@
 #define MOST_SPINS 4000
 #define FEWEST_SPINS 100
 
-/// Looks with which to try again. Two threads that have to share one core then hand on 40 sweeps of 96 rows in 1.1
-/// times the time of one thread.
-#define TRIAL_SPINS 1000
-
-/// Of so many sleeps, one makes the next wait spin for long again: the other may have got a core of its own.
+/// Of so many sleeps, one makes the next wait spin for as long as any again: the other may have got a core of its
+/// own, or what it does alone may take less than that, and more than what spins have come down to.
 #define SLEEPS_BEFORE_TRIAL 16
 
 // Tell the processor that this is a loop that waits.
@@ -80,7 +77,7 @@ void mspringi_progress_advance(mspringi_progress *progress, uint32_t value) {
 static uint32_t sleep_until(mspringi_progress *progress, uint32_t target, uint32_t spins) {
     uint32_t value;
     mspringi_mutex_lock(&progress->mutex);
-    spins = ++progress->sleeps % SLEEPS_BEFORE_TRIAL == 0 ? TRIAL_SPINS : spins / 2;
+    spins = ++progress->sleeps % SLEEPS_BEFORE_TRIAL == 0 ? MOST_SPINS : spins / 2;
     set_spins(progress, spins > FEWEST_SPINS ? spins : FEWEST_SPINS);
     atomic_fetch_add(&progress->sleepers, 1);
     while (!is_reached(value = atomic_load(&progress->value), target))
