@@ -1,7 +1,8 @@
 /// @file test_pieces.c
-/// A plan is the same however the making of it is divided.
+/// A plan is the same however the making of it is divided, and whatever the registers that it is for.
 ///
 /// SPDX-License-Identifier: MIT
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -45,8 +46,8 @@ typedef struct laid_out {
     uint32_t parts;
 } laid_out;
 
-static laid_out lay_out(const mspring_builder *builder, uint32_t effort, uint32_t workers,
-                        mspringi_memory *memory) {
+static laid_out lay_out_for(const mspring_builder *builder, uint32_t effort, uint32_t workers, uint32_t lanes,
+                            mspringi_memory *memory) {
     const mspringi_reserve reserve = {.first_particle = (uint32_t)builder->particle_count,
                                       .first_spring = (uint32_t)builder->spring_count,
                                       .particle_end = (uint32_t)builder->particle_count + 5,
@@ -54,13 +55,18 @@ static laid_out lay_out(const mspring_builder *builder, uint32_t effort, uint32_
     laid_out out = {.parts = 0};
     mspringi_message message = {0};
     mspringi_assembly *begun = NULL;
-    check_ok(mspringi_topology_begin(builder, &reserve, false, workers, memory, &message, &begun));
+    check_ok(mspringi_topology_begin(builder, &reserve, false, workers, lanes, memory, &message, &begun));
     for (bool is_done = false; !is_done; out.parts++) {
         uint32_t left = effort;
         check_ok(mspringi_topology_go_on(begun, &left, &is_done));
     }
     mspringi_topology_finish(begun, memory, &out.topology, &out.places);
     return out;
+}
+
+static laid_out lay_out(const mspring_builder *builder, uint32_t effort, uint32_t workers,
+                        mspringi_memory *memory) {
+    return lay_out_for(builder, effort, workers, MSPRINGI_WIDTH, memory);
 }
 
 static void check_same(const laid_out *a, const laid_out *b) {
@@ -147,10 +153,85 @@ static void workers_change_no_division(void **state) {
     }
 }
 
+/// Mark what has to be swept: particles, the slots that have springs, and those that hand on springs' forces.
+static void mark_busy(const laid_out *plan, uint8_t *busy) {
+    const mspringi_topology *t = &plan->topology;
+    for (uint32_t slot = 0; slot < t->chain_first * MSPRINGI_WIDTH; slot++) {
+        busy[slot] = t->particle_of_slot[slot] != MSPRING_NONE;
+    }
+    for (uint32_t s = 0; s < t->spring_count; s++) {
+        const mspringi_place place = plan->places[s];
+        if (place < t->lattice_places) {
+            const uint32_t row = place / MSPRINGI_WIDTH, direction = row % MSPRINGI_DIRECTIONS;
+            const uint32_t slot =
+                (t->lattice_first + row / MSPRINGI_DIRECTIONS) * MSPRINGI_WIDTH + place % MSPRINGI_WIDTH;
+            busy[slot] = 1;
+            busy[slot + 1] |= direction == MSPRINGI_NORTH_EAST;
+        }
+    }
+}
+
+/// Registers of the lattices that hold nothing are not swept, all others once, at the places they have anyway.
+static void check_tight(const laid_out *plan, uint32_t lanes, const uint8_t *busy, uint8_t *swept) {
+    const mspringi_topology *t = &plan->topology;
+    for (uint32_t s = 0; s < t->tightened_count; s++) {
+        const mspringi_span *span = &t->spans[s];
+        for (uint32_t i = t->first_tight[s]; i < t->first_tight[s + 1]; i++) {
+            const mspringi_span *tight = &t->tight_spans[i];
+            assert_true(tight->first_slot >= span->first_slot && tight->end_slot <= span->end_slot);
+            assert_int_equal(tight->up, span->up);
+            assert_int_equal(tight->carry, span->carry);
+            assert_int_equal(tight->first_record - span->first_record,
+                             tight->first_slot / MSPRINGI_WIDTH - span->first_slot / MSPRINGI_WIDTH);
+            for (uint32_t slot = tight->first_slot / lanes * lanes; slot < tight->end_slot; slot += lanes) {
+                assert_false(swept[slot]);
+                memset(swept + slot, 1, lanes);
+                assert_non_null(memchr(busy + slot, 1, lanes));
+            }
+        }
+    }
+    for (uint32_t slot = 0; slot < t->chain_first * MSPRINGI_WIDTH; slot++) {
+        assert_true(swept[slot] || !busy[slot]);
+    }
+}
+
+static void empty_registers_are_left_out(void **state) {
+    (void)state;
+    uint64_t seed = 5;
+    const recipe_stuff holey = {.mass = {1, 1}, .stiffness = {100, 100}, .holes = 0.5};
+    recipe made = {0};
+    recipe_lattice(&made, 200, 60, 0, 0, 1, &holey, &seed);
+    mspring_builder *builder = builder_of(&made);
+    mspringi_memory memory;
+    mspringi_message message = {0};
+    check_ok(mspringi_memory_init(&memory, NULL, &message));
+    const laid_out whole = lay_out(builder, 1000, 1, &memory);
+    assert_null(whole.topology.tight_spans);
+    const size_t slots = (size_t)whole.topology.block_count * MSPRINGI_WIDTH;
+    uint8_t *busy = calloc(slots, 1);
+    assert_non_null(busy);
+    mark_busy(&whole, busy);
+    for (uint32_t lanes = 4; lanes <= 8; lanes *= 2) {
+        const laid_out plan = lay_out_for(builder, 1000, 1, lanes, &memory);
+        uint8_t *swept = calloc(slots, 1);
+        assert_non_null(swept);
+        check_same(&whole, &plan);
+        assert_int_equal(plan.parts, whole.parts);
+        assert_non_null(plan.topology.tight_spans);
+        check_tight(&plan, lanes, busy, swept);
+        free(swept);
+    }
+    free(busy);
+    mspringi_free_all(&memory);
+    mspring_builder_destroy(builder);
+    recipe_free(&made);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plans_do_not_depend_on_parts),
         cmocka_unit_test(workers_change_no_division),
+        cmocka_unit_test(empty_registers_are_left_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -133,8 +133,8 @@ static mspring_result list_springs(mspringi_replan *r, mspring_network *network)
 
 static mspring_result begin_layout(mspringi_replan *r, mspring_network *network) {
     return mspringi_topology_begin(&r->left, &first_topology(network)->reserve, true,
-                                   mspringi_tasks_concurrency(network->tasks), &network->plan_memory,
-                                   &network->message, &r->assembly);
+                                   mspringi_tasks_concurrency(network->tasks), network->kernels->lanes,
+                                   &network->plan_memory, &network->message, &r->assembly);
 }
 
 static mspring_result lay_out(mspringi_replan *r, mspring_network *network) {

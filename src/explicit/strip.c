@@ -101,9 +101,10 @@ static void pull_attached(const mspring_network *network, const mspringi_substep
 static void sweep_rows(const mspring_network *network, const mspringi_substep *substep, const mspringi_row *rows,
                        uint32_t row_count, bool is_partly) {
     const mspringi_kernels *kernels = network->kernels;
-    const mspringi_span *spans = network->topology.spans + rows->first_span;
+    const mspringi_topology *t = &network->topology;
     const mspringi_row *last = &rows[row_count - 1];
-    const uint32_t span_count = last->first_span + last->span_count - rows->first_span;
+    uint32_t first_span = rows->first_span, end_span = last->first_span + last->span_count;
+    const mspringi_span *spans = t->spans;
     const mspringi_sweep *sweep = &substep->sweep;
     const bool damped = network->parts > MSPRINGI_DAMPING, forced = substep->base.x != NULL;
     if (rows->kind == MSPRINGI_ROW_LOOSE)
@@ -111,10 +112,16 @@ static void sweep_rows(const mspring_network *network, const mspringi_substep *s
     const mspringi_row_fn sweep_spans = rows->kind == MSPRINGI_ROW_LATTICE ? kernels->lattice[damped][forced]
                                         : rows->kind == MSPRINGI_ROW_CHAIN ? kernels->chain[damped][forced]
                                                                            : kernels->web[damped][forced];
-    if (is_partly)
-        mspringi_partly_sweep(network, substep, sweep_spans, spans, span_count);
-    else
-        sweep_spans(sweep, spans, span_count);
+    if (is_partly) {
+        mspringi_partly_sweep(network, substep, sweep_spans, spans + first_span, end_span - first_span);
+        return;
+    }
+    if (t->tight_spans && first_span < t->tightened_count) {
+        spans = t->tight_spans;
+        first_span = t->first_tight[first_span];
+        end_span = t->first_tight[end_span];
+    }
+    sweep_spans(sweep, spans + first_span, end_span - first_span);
 }
 
 void mspringi_web_pack(const mspring_network *network, const mspringi_substep *substep, const mspringi_span *span) {

@@ -134,6 +134,7 @@ typedef void (*mspringi_checksum_fn)(uint8_t *to, const uint8_t *from, size_t un
 
 typedef struct mspringi_kernels {
     mspring_simd level;
+    uint32_t lanes;                ///< that rows are swept by, at least MSPRINGI_QUARTER
     mspringi_row_fn lattice[2][2]; ///< [with damping][with forces]
     mspringi_row_fn chain[2][2];
     mspringi_row_fn web[2][2];

@@ -52,6 +52,7 @@ static void attached_damped(const mspringi_sweep *sweep, uint32_t first, uint32_
 
 const mspringi_kernels MSPRINGI_TABLE = {
     .level = MSPRINGI_LEVEL,
+    .lanes = LANES > MSPRINGI_QUARTER ? LANES : MSPRINGI_QUARTER,
     .lattice = {{lattice_plain, lattice_forced}, {lattice_damped, lattice_damped_forced}},
     .chain = {{chain_plain, chain_forced}, {chain_damped, chain_damped_forced}},
     .loose = {loose_plain, loose_forced},

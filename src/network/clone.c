@@ -44,6 +44,8 @@ static void move_topology(const moving *m, mspringi_topology *t) {
     MOVE(t->web.neighbour);
     MOVE(t->web.entry);
     MOVE(t->spans);
+    MOVE(t->tight_spans);
+    MOVE(t->first_tight);
     MOVE(t->rows);
     MOVE(t->strips);
     MOVE(t->layer_blocks);

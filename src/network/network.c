@@ -274,14 +274,15 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
                                              const mspring_network_def *def) {
     bool damped, relative;
     mspringi_reserve reserve = {0};
+    network->kernels = mspringi_kernels_of(mspringi_cpu_choose(def->simd_level));
     mspring_result result = mspringi_tasks_create(def->worker_count, def->tasks, &network->tasks_memory,
                                                   &network->message, &network->tasks);
     if (result == MSPRING_OK)
         result = make_reserve(&reserve, builder, def, &network->message);
     if (result == MSPRING_OK)
         result = mspringi_topology_create(&network->topology, builder, &reserve,
-                                          mspringi_tasks_concurrency(network->tasks), &network->memory,
-                                          &network->message);
+                                          mspringi_tasks_concurrency(network->tasks), network->kernels->lanes,
+                                          &network->memory, &network->message);
     if (result != MSPRING_OK)
         return result;
     look_at_springs(builder, &damped, &relative);
@@ -297,7 +298,6 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
                                        &network->message);
     if (result != MSPRING_OK)
         return result;
-    network->kernels = mspringi_kernels_of(mspringi_cpu_choose(def->simd_level));
     network->max_speed = def->max_speed;
     network->sleep.speed = def->sleep_speed;
     network->sleep.time = def->sleep_time;

@@ -28,7 +28,7 @@ struct mspringi_assembly {
     mspringi_memory *memory;
     mspringi_message *message;
     const mspring_builder *builder;
-    uint32_t workers;
+    uint32_t workers, lanes;
     uint8_t *kinds;
     mspringi_graph graph;
     mspringi_strands strands;
@@ -99,6 +99,7 @@ mspring_result mspringi_assembly_append_other_rows(mspringi_assembly *a);
 mspring_result mspringi_assembly_mark_particles(mspringi_assembly *a);
 mspring_result mspringi_assembly_mark_springs(mspringi_assembly *a);
 mspring_result mspringi_assembly_trim_spans(mspringi_assembly *a);
+mspring_result mspringi_assembly_tighten_spans(mspringi_assembly *a);
 mspring_result mspringi_assembly_make_strips(mspringi_assembly *a);
 
 /// The strip of each lattice and chain block, a new array of [block_count]; NULL if there is no memory.

@@ -245,6 +245,59 @@ mspring_result mspringi_assembly_trim_spans(mspringi_assembly *a) {
                (span->end_slot - 1) % MSPRINGI_WIDTH >= MSPRINGI_QUARTER && !is_busy(a->busy, span->end_slot - 1))
             span->end_slot -= MSPRINGI_QUARTER;
     }
+    return MSPRING_OK;
+}
+
+// Whether a register that is filled from this slot on has a quarter that has to be swept.
+static bool is_any_busy(const mspringi_assembly *a, uint32_t slot) {
+    for (uint32_t end = slot + a->lanes; slot < end; slot += MSPRINGI_QUARTER)
+        if (is_busy(a->busy, slot))
+            return true;
+    return false;
+}
+
+// Cut a span into runs of registers that have to be swept. Returns how many there are; cut NULL: only that.
+static uint32_t cut_span(const mspringi_assembly *a, const mspringi_span *span, mspringi_span *cut) {
+    uint32_t count = 0;
+    bool in_run = false;
+    for (uint32_t slot = span->first_slot / a->lanes * a->lanes; slot < span->end_slot; slot += a->lanes) {
+        const bool is_swept = is_any_busy(a, slot);
+        if (is_swept && cut) {
+            const uint32_t first = slot > span->first_slot ? slot : span->first_slot;
+            const uint32_t end = slot + a->lanes < span->end_slot ? slot + a->lanes : span->end_slot;
+            if (!in_run) {
+                cut[count] = *span;
+                cut[count].first_slot = first;
+                cut[count].first_record += first / MSPRINGI_WIDTH - span->first_slot / MSPRINGI_WIDTH;
+            }
+            cut[in_run ? count - 1 : count].end_slot = end;
+        }
+        count += is_swept && !in_run;
+        in_run = is_swept;
+    }
+    return count;
+}
+
+// Leave out what need not be swept within spans, too: registers that hold nothing, between what lies left and right
+// of a hole. That takes lists of their own, as spans without blocks in common are what all others want. (Of our
+// ship's 13,105 registers of four lanes 848 hold nothing, of 6,926 of eight 110, of 3,683 of sixteen one; a span
+// costs nothing to speak of.)
+mspring_result mspringi_assembly_tighten_spans(mspringi_assembly *a) {
+    mspringi_topology *t = a->topology;
+    const uint32_t lattice_end = t->chain_first * MSPRINGI_WIDTH;
+    uint32_t spans = 0, count = 0;
+    for (; spans < t->span_count && t->spans[spans].first_slot < lattice_end; ++spans)
+        count += cut_span(a, &t->spans[spans], NULL);
+    if (a->lanes < MSPRINGI_WIDTH && count > spans) {
+        t->tightened_count = spans;
+        t->tight_spans = mspringi_alloc(a->memory, count, sizeof *t->tight_spans);
+        t->first_tight = mspringi_alloc(a->memory, (size_t)spans + 1, sizeof *t->first_tight);
+        if (!t->tight_spans || !t->first_tight)
+            return mspringi_assembly_fail(a);
+        for (uint32_t s = 0; s < spans; ++s)
+            t->first_tight[s + 1] =
+                t->first_tight[s] + cut_span(a, &t->spans[s], &t->tight_spans[t->first_tight[s]]);
+    }
     mspringi_free(a->memory, a->busy);
     a->busy = NULL;
     return MSPRING_OK;

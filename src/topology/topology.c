@@ -339,6 +339,7 @@ static mspring_result (*const layout_passes[])(mspringi_assembly *a) = {
     mspringi_assembly_mark_particles,
     mspringi_assembly_mark_springs,
     mspringi_assembly_trim_spans,
+    mspringi_assembly_tighten_spans,
     mspringi_assembly_make_strips,
     begin_web,
     count_degrees,
@@ -356,7 +357,7 @@ static mspring_result (*const layout_passes[])(mspringi_assembly *a) = {
 #define LAYOUT_PASSES (sizeof layout_passes / sizeof layout_passes[0])
 
 mspring_result mspringi_topology_begin(const mspring_builder *builder, const mspringi_reserve *reserve,
-                                       bool is_checked, uint32_t workers, mspringi_memory *memory,
+                                       bool is_checked, uint32_t workers, uint32_t lanes, mspringi_memory *memory,
                                        mspringi_message *message, mspringi_assembly **begun) {
     mspringi_assembly *a = mspringi_alloc(memory, 1, sizeof *a);
     if (!a)
@@ -371,11 +372,13 @@ mspring_result mspringi_topology_begin(const mspring_builder *builder, const msp
     a->builder = builder;
     a->is_checked = is_checked;
     a->workers = workers;
+    a->lanes = lanes;
     *begun = a;
     return MSPRING_OK;
 }
 
-// No pass may spend effort on what depends on the number of workers, as strips do: when the work is done must not.
+// No pass may spend effort on what depends on the number of workers or of lanes, as strips do: when the work is
+// done must not.
 mspring_result mspringi_topology_go_on(mspringi_assembly *begun, uint32_t *effort, bool *is_done) {
     mspringi_pace *pace = &begun->pace;
     mspring_result result = MSPRING_OK;
@@ -452,10 +455,11 @@ static mspring_result keep_places(mspringi_topology *t, mspringi_place *places, 
 }
 
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
-                                        const mspringi_reserve *reserve, uint32_t workers, mspringi_memory *memory,
-                                        mspringi_message *message) {
+                                        const mspringi_reserve *reserve, uint32_t workers, uint32_t lanes,
+                                        mspringi_memory *memory, mspringi_message *message) {
     mspringi_assembly *begun = NULL;
-    mspring_result result = mspringi_topology_begin(builder, reserve, false, workers, memory, message, &begun);
+    mspring_result result =
+        mspringi_topology_begin(builder, reserve, false, workers, lanes, memory, message, &begun);
     for (bool is_done = false; result == MSPRING_OK && !is_done;) {
         uint32_t effort = MSPRINGI_PACE_ALL;
         result = mspringi_topology_go_on(begun, &effort, &is_done);
@@ -485,6 +489,8 @@ void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *mem
     mspringi_free(memory, topology->laid_slots);
     mspringi_free(memory, topology->laid_places);
     mspringi_free(memory, topology->spans);
+    mspringi_free(memory, topology->tight_spans);
+    mspringi_free(memory, topology->first_tight);
     mspringi_free(memory, topology->rows);
     mspringi_free(memory, topology->strips);
     mspringi_free(memory, topology->layer_blocks);

@@ -95,7 +95,11 @@ typedef struct mspringi_topology {
 
     mspringi_span *spans;
     uint32_t span_count;
-    mspringi_row *rows; ///< lattice rows first
+    mspringi_span *tight_spans; ///< the lattices' spans without registers that need not be swept; NULL if a
+                                ///< register is a block
+    uint32_t *first_tight;      ///< [tightened_count + 1] where those of each span begin
+    uint32_t tightened_count;   ///< spans that they are of: the lattices'
+    mspringi_row *rows;         ///< lattice rows first
     uint32_t row_count;
     mspringi_strip *strips; ///< all rows, in order
     uint32_t strip_count;
@@ -140,17 +144,18 @@ static inline uint32_t mspringi_swept_count(const mspringi_topology *topology) {
     return topology->spring_count - topology->parked_count;
 }
 
-/// Lay out what the builder holds, for steps that so many workers share, with room for spare ids.
+/// Lay out what the builder holds, for steps that so many workers share and make with registers of so many lanes
+/// (MSPRINGI_QUARTER or more), with room for spare ids. Lanes make no difference to where anything lies.
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
-                                        const mspringi_reserve *reserve, uint32_t workers, mspringi_memory *memory,
-                                        mspringi_message *message);
+                                        const mspringi_reserve *reserve, uint32_t workers, uint32_t lanes,
+                                        mspringi_memory *memory, mspringi_message *message);
 /// The same in parts: begin, go on until it is done unless that fails, then finish; or abandon at any time, which
 /// allows NULL. The builder and what memory and message point to must stay; is_checked: no two of its springs join
 /// the same particles. What is finished has its places not in itself yet but in an array of their own, for whoever
 /// asked to pack and free.
 typedef struct mspringi_assembly mspringi_assembly;
 mspring_result mspringi_topology_begin(const mspring_builder *builder, const mspringi_reserve *reserve,
-                                       bool is_checked, uint32_t workers, mspringi_memory *memory,
+                                       bool is_checked, uint32_t workers, uint32_t lanes, mspringi_memory *memory,
                                        mspringi_message *message, mspringi_assembly **begun);
 /// @param effort  how much to do, and what is left of that; see pace.h
 mspring_result mspringi_topology_go_on(mspringi_assembly *begun, uint32_t *effort, bool *is_done);
