@@ -9,9 +9,9 @@
 #include <string.h>
 
 static void print_header(void) {
-    printf("%-16s %9s %9s | %8s %9s | %6s %8s | %6s %8s | %5s %4s %5s | %7s %7s\n", "scene", "particles", "springs",
-           "lattices", "springs", "chains", "springs", "web", "springs", "rows", "lag", "depth", "damping",
-           "level");
+    printf("%-16s %9s %9s | %8s %9s | %6s %8s | %6s %8s %6s | %5s %4s %5s | %7s %7s\n", "scene", "particles",
+           "springs", "lattices", "springs", "chains", "springs", "web", "springs", "layers", "rows", "lag",
+           "depth", "damping", "level");
 }
 
 static bool print_plan(const scene *planned) {
@@ -23,10 +23,11 @@ static bool print_plan(const scene *planned) {
     }
     bool ok = mspring_network_plan(network, &plan) == MSPRING_OK;
     if (ok)
-        printf("%-16s %9u %9u | %8u %9u | %6u %8u | %6u %8u | %5u %4u %5u | %7s %7s\n", planned->name,
+        printf("%-16s %9u %9u | %8u %9u | %6u %8u | %6u %8u %6u | %5u %4u %5u | %7s %7s\n", planned->name,
                plan.particle_count, plan.spring_count, plan.lattice_count, plan.lattice_springs, plan.chain_count,
-               plan.chain_springs, plan.web_particles, plan.leftover_springs, plan.pass_rows, plan.pass_lag,
-               plan.pass_substeps, plan.has_damping ? "yes" : "no", mspring_simd_name(plan.simd_level));
+               plan.chain_springs, plan.web_particles, plan.leftover_springs, plan.web_layers, plan.pass_rows,
+               plan.pass_lag, plan.pass_substeps, plan.has_damping ? "yes" : "no",
+               mspring_simd_name(plan.simd_level));
     else
         fprintf(stderr, "%s: %s\n", planned->name, mspring_network_error(network));
     mspring_network_destroy(network);

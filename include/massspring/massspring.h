@@ -1670,7 +1670,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_load(mspring_networ
 /// Lattice rows are swept in strips of some rows, several substeps in one pass, so that a network larger than the
 /// cache is read once for all of them. What hangs on a lattice is swept with its strips, unless it joins strips
 /// more than 16 apart, or has more strand particles than the lattice has particles: then that lattice takes one
-/// substep at a time.
+/// substep at a time. A web of 60,000 particles and more that hangs on no lattice is swept in layers to the same
+/// end, with the ropes that hang on it.
 typedef struct mspring_plan {
     uint32_t struct_size;
     uint32_t particle_count, spring_count;
@@ -1703,6 +1704,8 @@ typedef struct mspring_plan {
     uint32_t coarse_period;
     uint64_t factor_values; ///< of the direct solver: numbers in its factor, which is there in both precisions,
     double factor_products; ///< and products that computing it takes
+    uint32_t web_layers;    ///< layers in which the web without a lattice is swept for several substeps in one pass,
+                            ///< whatever the solver; 0 if it takes one substep at a time
 } mspring_plan;
 
 /// Get the plan. Set struct_size first.

@@ -56,6 +56,7 @@ mspring_result mspring_network_plan(const mspring_network *network, mspring_plan
         .has_damping = network->parts > MSPRINGI_DAMPING,
         .has_relative = network->fractions.values != NULL,
         .simd_level = network->kernels->level,
+        .web_layers = t->layer_count,
     };
     mspringi_implicit_describe(network->implicit, plan);
     return MSPRING_OK;
