@@ -3,6 +3,7 @@
 ///
 /// SPDX-License-Identifier: MIT
 #include <stdbool.h>
+#include <string.h>
 
 #include "network/network.h"
 #include "recipe.h"
@@ -116,10 +117,65 @@ static void what_sleeps_beside_gives_the_same_bits(void **state) {
         assert_int_equal(run_sleepers(worker_counts[w]), expected);
 }
 
+enum { NOTCHED = 96, STILL = 60, ROWS = 60, NOTCH = 32, COUNT = NOTCHED * ROWS };
+
+/// A lattice with a wide notch, as far from the left as it is deep, so that runs of the row below or of the column
+/// at its left end and begin side by side where the notch does; and one at its right in the same rows. The
+/// positions of the first, which moves, after some steps.
+static void run_beside_sleeper(int depth, float sleep_speed, uint32_t worker_count, double *x, double *y) {
+    static uint16_t cells[ROWS][NOTCHED];
+    static const uint16_t full[ROWS][STILL];
+    const uint32_t count = COUNT - NOTCH * (uint32_t)depth;
+    memset(cells, 0, sizeof cells);
+    for (int row = 0; row < depth; row++)
+        for (int column = depth; column < depth + NOTCH; column++)
+            cells[row][column] = MSPRING_CELL_EMPTY;
+    mspring_material stuff;
+    check_ok(mspring_material_init(&stuff, sizeof stuff));
+    stuff.mass = 1, stuff.stiffness = 200, stuff.damping = 0.5f;
+    mspring_lattice_def def;
+    check_ok(mspring_lattice_def_init(&def, sizeof def));
+    def.width = NOTCHED, def.height = ROWS, def.cells = cells[0], def.materials = &stuff, def.material_count = 1;
+    mspring_builder *builder;
+    check_ok(mspring_builder_create(NULL, &builder));
+    check_ok(mspring_builder_add_lattice(builder, &def, NULL));
+    assert_int_equal(mspring_builder_particle_count(builder), count);
+    def.width = STILL, def.cells = full[0], def.x = 200;
+    check_ok(mspring_builder_add_lattice(builder, &def, NULL));
+    mspring_network_def settings = support_def(0, 10);
+    settings.worker_count = worker_count;
+    settings.sleep_speed = sleep_speed;
+    settings.sleep_time = 0.02f;
+    mspring_network *network;
+    check_ok(mspring_network_create(builder, &settings, &network));
+    mspring_builder_destroy(builder);
+    assert_int_equal(network->seams.count > 0, worker_count > 1);
+    for (mspring_id p = 0; p < count; p += 3)
+        support_kick(network, p, 1 + (float)(p % 7));
+    support_steps(network, 8, 0.01);
+    assert_true(support_sleeps(network, count) == (sleep_speed > 0) && !support_sleeps(network, 0));
+    check_ok(mspring_network_get_positions(network, 0, count, x, y));
+    mspring_network_destroy(network);
+}
+
+static void what_sleeps_beside_a_notch_changes_nothing(void **state) {
+    (void)state;
+    static double x[COUNT], y[COUNT], expected_x[COUNT], expected_y[COUNT];
+    for (int depth = 10; depth < 50; depth++) { // at one of these the notch begins where a worker's share does
+        run_beside_sleeper(depth, 0, 1, expected_x, expected_y);
+        for (uint32_t workers = 1; workers <= 3; workers++) {
+            run_beside_sleeper(depth, 1e-3f, workers, x, y);
+            assert_memory_equal(x, expected_x, sizeof x);
+            assert_memory_equal(y, expected_y, sizeof y);
+        }
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_division_gives_the_same_bits),
         cmocka_unit_test(what_sleeps_beside_gives_the_same_bits),
+        cmocka_unit_test(what_sleeps_beside_a_notch_changes_nothing),
     };
     return cmocka_run_group_tests_name("shares", tests, NULL, NULL);
 }

@@ -10,8 +10,7 @@
 /// watches changes by; then the rows above, substep by substep.
 enum { BELOW_FOR_LOWER = 0, BELOW_FOR_UPPER = 1, BEFORE = 2, ABOVE = 3 };
 
-/* ---------------------------------------------------------------------------------------------------- its memory
- */
+/* -------------------------------------------------------------------------------------------------- its memory */
 
 static uint32_t most_spans(const mspringi_topology *t) {
     uint32_t most = 0;
@@ -42,7 +41,7 @@ mspring_result mspringi_seams_reserve(mspring_network *network) {
     mspringi_memory *memory = &network->memory;
     planned.values = mspringi_alloc(memory, (size_t)planned.count * 4 * (ABOVE + planned.substeps), //
                                     planned.segment * sizeof *planned.values);
-    planned.spans = mspringi_alloc(memory, (size_t)planned.count * 2 * planned.row_spans, sizeof *planned.spans);
+    planned.spans = mspringi_alloc(memory, (size_t)planned.count * 4 * planned.row_spans, sizeof *planned.spans);
     planned.borders =
         mspringi_alloc(memory, (size_t)planned.workers * MSPRINGI_PLANNED_PASSES, sizeof *planned.borders);
     planned.weights = mspringi_alloc(memory, (size_t)planned.strips + 1, sizeof *planned.weights);
@@ -98,19 +97,21 @@ static void copy_slots(const mspringi_state *from, size_t first, const mspringi_
 typedef struct copied {
     slots below;
     mspringi_state state;
-    int64_t shift; ///< of what is above
-    mspringi_span *spans;
+    int64_t shift;               ///< of what is above
+    mspringi_span *spans, *runs; ///< [row_spans]
 } copied;
 
 static copied copy_below(const mspring_network *network, const mspringi_seam *seam, const mspringi_row *below,
                          uint32_t row) {
     const mspringi_seams *seams = &network->seams;
     const slots from = slots_of(network, below), above = slots_of(network, below + 1);
+    mspringi_span *spans = seams->spans + ((size_t)2 * seam->border + row) * 2 * seams->row_spans;
     const copied copy = {
         .below = from,
         .state = state_of(network, seam->border, row),
         .shift = (int64_t)((ABOVE + seam->substep - row) * seams->segment + from.first) - (int64_t)above.first,
-        .spans = seams->spans + ((size_t)2 * seam->border + row) * seams->row_spans,
+        .spans = spans,
+        .runs = spans + seams->row_spans,
     };
     copy_slots(&network->state, from.first, &copy.state, 0, from.count);
     return copy;
@@ -123,6 +124,13 @@ static mspringi_span move_span(const copied *copy, const mspringi_span *span) {
     moved.carry += (int64_t)copy->below.first;
     moved.up += span->up != 0 ? copy->shift : 0;
     return moved;
+}
+
+static void sweep_moved(const copied *copy, mspringi_row_fn lattice, const mspringi_sweep *sweep,
+                        const mspringi_span *spans, uint32_t count) {
+    for (uint32_t i = 0; i < count; ++i)
+        copy->spans[i] = move_span(copy, &spans[i]);
+    lattice(sweep, copy->spans, count);
 }
 
 // Sweep the copy as the row itself would be.
@@ -141,19 +149,16 @@ static void sweep_copy(const mspring_network *network, const mspringi_substep *s
         sweep->force_y += copy->below.first;
     }
     sweep->keep = NULL;
-    for (uint32_t i = 0; is_partly && i < below->span_count; ++i) {
-        mspringi_span run[2];
-        for (uint32_t at = spans[i].first_slot; mspringi_next_swept(network, &spans[i], &at, run);) {
-            const mspringi_span moved = move_span(copy, run);
-            lattice(sweep, &moved, 1);
-            mspringi_partly_clear(network, &substep->sweep, run);
-        }
-    }
-    if (is_partly)
+    if (!is_partly) {
+        sweep_moved(copy, lattice, sweep, spans, below->span_count);
         return;
-    for (uint32_t i = 0; i < below->span_count; ++i)
-        copy->spans[i] = move_span(copy, &spans[i]);
-    lattice(sweep, copy->spans, below->span_count);
+    }
+    mspringi_partly_at at = mspringi_partly_begin(spans, below->span_count);
+    for (uint32_t count; (count = mspringi_partly_next(network, &at, copy->runs)) > 0;) {
+        sweep_moved(copy, lattice, sweep, copy->runs, count);
+        for (uint32_t i = 0; i < count; ++i)
+            mspringi_partly_clear(network, &substep->sweep, &copy->runs[i]);
+    }
 }
 
 void mspringi_seam_keep(const mspring_network *network, const mspringi_seam *seam, const mspringi_substep *substep,

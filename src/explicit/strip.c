@@ -113,7 +113,8 @@ static void sweep_rows(const mspring_network *network, const mspringi_substep *s
                                         : rows->kind == MSPRINGI_ROW_CHAIN ? kernels->chain[damped][forced]
                                                                            : kernels->web[damped][forced];
     if (is_partly) {
-        mspringi_partly_sweep(network, substep, sweep_spans, spans + first_span, end_span - first_span);
+        for (const mspringi_row *row = rows; row <= last; ++row)
+            mspringi_partly_sweep_row(network, substep, sweep_spans, row);
         return;
     }
     if (t->tight_spans && first_span < t->tightened_count) {
@@ -137,7 +138,7 @@ void mspringi_web_sweep(const mspring_network *network, const mspringi_substep *
                         const mspringi_span *span) {
     const mspringi_row_fn web = network->kernels->web[network->parts > MSPRINGI_DAMPING][substep->base.x != NULL];
     if (network->sleep.sleeping > 0)
-        mspringi_partly_sweep(network, substep, web, span, 1);
+        mspringi_partly_sweep_web(network, substep, web, span);
     else
         web(&substep->sweep, span, 1);
 }

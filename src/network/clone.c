@@ -262,6 +262,7 @@ static void move_records(const moving *m, mspring_network *n) {
     MOVE(n->sleep.sleepers);
     MOVE(n->sleep.swept);
     MOVE(n->sleep.share);
+    MOVE(n->sleep.runs);
     MOVE(n->sleep.state);
     MOVE(n->sleep.inverse_mass);
     MOVE(n->sleep.held);

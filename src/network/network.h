@@ -151,7 +151,7 @@ typedef struct mspringi_seams {
     uint32_t strips;      ///< or layers, whichever are more
     size_t segment;       ///< slots of the widest row, and a block to be read behind
     float *values;        ///< [count][4][rows of a seam][segment] x, y, vx, vy
-    mspringi_span *spans; ///< [count][2][row_spans]
+    mspringi_span *spans; ///< [count][2][2][row_spans]
     uint32_t *borders;    ///< [MSPRINGI_PLANNED_PASSES][workers]
     uint64_t *weights;    ///< [strips + 1] of the strips below each
 } mspringi_seams;
@@ -175,6 +175,7 @@ typedef struct mspringi_sleep {
     uint16_t *sleepers;        ///< [blocks] a bit for each slot
     uint8_t *swept;            ///< [blocks] 1 where a particle is awake, or springs are of one that is
     uint8_t *share;            ///< [strips] mspringi_share
+    mspringi_span *runs;       ///< [spans] runs of blocks of a row while that is swept, from its first span on
     bool has_force;            ///< force is not all zero
     double origin_x, origin_y; ///< that state is relative to, m
     float *state;              ///< [4][slots]

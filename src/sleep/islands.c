@@ -105,14 +105,19 @@ static void map_block(const mspring_network *network, uint32_t block) {
     s->swept[block] = awake != 0;
 }
 
-// A spring to the lower right has its record below its upper end, where nothing may be.
-static void sweep_below(const mspring_network *network) {
+// A spring to the lower right has its record below its upper end, where nothing may be. One to the upper right, of
+// a block's last slot, hands its force on by way of the block beside, where nothing may be either.
+static void sweep_beside(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
+    const uint32_t last_lane = 1u << (MSPRINGI_WIDTH - 1);
     uint8_t *swept = network->sleep.swept;
     for (uint32_t i = 0; i < t->lattice_blocks; ++i) {
         const uint32_t block = t->lattice_first + i, up = t->up_of_block[i];
-        if (up != block && swept[up] && network->live[(size_t)i * MSPRINGI_DIRECTIONS + MSPRINGI_SOUTH_EAST] != 0)
+        const uint16_t *live = network->live + (size_t)i * MSPRINGI_DIRECTIONS;
+        if (up != block && swept[up] && live[MSPRINGI_SOUTH_EAST] != 0)
             swept[block] = 1;
+        if (swept[block] && i + 1 < t->lattice_blocks && (live[MSPRINGI_NORTH_EAST] & last_lane) != 0)
+            swept[block + 1] = 1;
     }
 }
 
@@ -148,7 +153,7 @@ void mspringi_islands_map(mspring_network *network) {
     network->sleep.is_mapped = true;
     for (uint32_t block = 0; block < t->block_count; ++block)
         map_block(network, block);
-    sweep_below(network);
+    sweep_beside(network);
     for (uint32_t strip = 0; strip < t->strip_count; ++strip)
         map_strip(network, strip);
     network->sleep.masses = network->edits.masses;

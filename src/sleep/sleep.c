@@ -32,13 +32,14 @@ mspring_result mspringi_sleep_reserve(mspring_network *network) {
     s->sleepers = mspringi_alloc(memory, t->block_count, sizeof *s->sleepers);
     s->swept = mspringi_alloc(memory, t->block_count, sizeof *s->swept);
     s->share = mspringi_alloc(memory, t->strip_count, sizeof *s->share);
+    s->runs = mspringi_alloc(memory, t->span_count, sizeof *s->runs);
     s->state = mspringi_alloc(memory, 4 * slots, sizeof *s->state);
     s->inverse_mass = mspringi_alloc(memory, slots, sizeof *s->inverse_mass);
     s->held = mspringi_alloc(memory, 2 * slots, sizeof *s->held);
     mspring_result result = mspringi_field_reserve(network, &s->force);
     if (result == MSPRING_OK &&
         !(s->island && s->lowest && s->still && s->kept && s->mark && s->scratch && s->block_island &&
-          s->free_mass && s->sleepers && s->swept && s->share && s->state && s->inverse_mass && s->held))
+          s->free_mass && s->sleepers && s->swept && s->share && s->runs && s->state && s->inverse_mass && s->held))
         result =
             mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for the sleep of %zu slots", slots);
     if (result == MSPRING_OK && !network->incidence.first)
@@ -51,9 +52,9 @@ mspring_result mspringi_sleep_reserve(mspring_network *network) {
 }
 
 void mspringi_sleep_free(const mspringi_sleep *s, mspringi_memory *memory) {
-    void *const blocks[] = {s->island,  s->lowest,       s->still,        s->kept,     s->mark,
-                            s->scratch, s->block_island, s->free_mass,    s->sleepers, s->swept,
-                            s->share,   s->state,        s->inverse_mass, s->held,     s->force.x};
+    void *const blocks[] = {s->island,       s->lowest,       s->still,    s->kept,   s->mark,  s->scratch,
+                            s->block_island, s->free_mass,    s->sleepers, s->swept,  s->share, s->runs,
+                            s->state,        s->inverse_mass, s->held,     s->force.x};
     for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; ++i)
         mspringi_free(memory, blocks[i]);
 }
