@@ -302,10 +302,12 @@ enum {
     /// for rounding, so that there is nothing to choose. Springs and dampers are linearised at x + h v itself. The
     /// cost for each particle grows with how wide the network is: a substep costs 15 to 120 explicit ones where it
     /// is thin (a bar of 5 rows of any length), 400 to 800 for 70 rows. The order of elimination is found, and all
-    /// memory taken, when the solver is chosen; broken springs and pins need no new one.
+    /// memory taken, when the solver is chosen; broken springs and pins need no new one. Where that would be over
+    /// 2^27 numbers (1.6 GB: a square of about 600 x 600 particles, a graph of some 5,000 particles with springs at
+    /// random), the solver is refused, before the memory is taken.
     /// The factor is in single precision as long as springs, seen over a substep, are not over some thousand times
     /// as stiff as their particles are heavy (4 to 8 k h^2 / m beyond 16384; 1e9 N/m between masses of 73 kg at
-    /// 1/64 s are below), and in double precision, which costs 1.3 to 2.5 times as much, beyond that. Should even
+    /// 1/64 s are below), and in double precision, which costs 1.1 to 1.8 times as much, beyond that. Should even
     /// that not do (k h^2 / m of about 1e14 and more), particles are made heavier for this substep by the least
     /// that helps: 1.4e-14 of the stiffness at them, or 64 times that, and so on up to a thousandth; then the step
     /// is refused.
@@ -352,7 +354,8 @@ typedef struct mspring_solver_def {
                             ///< 25.25 m and 23.20 m at a 64th and a 1024th of that.)
     uint32_t tile_size;     ///< rows and columns of the cells that a lattice is cut into for its tiles: 8, 16,
                             ///< 32, 64, 128 or 256; 0, the default: by plan, the smallest whose matrix is
-                            ///< cheap beside the rest
+                            ///< cheap beside the rest. (Springs at random between 40,000 particles make two
+                            ///< tiles of size 256: there they help little, and little help is needed.)
     uint32_t coarse_period; ///< substeps from one factorisation of the tiles' matrix to the next, at most 10000:
                             ///< more are cheaper, and good as long as the network does not turn far in them; 0, the
                             ///< default: 1
@@ -627,8 +630,9 @@ MSPRING_API uint32_t mspring_network_spring_count(const mspring_network *network
 
 /// Choose how the following steps are made. The state goes on from where it is.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY or MSPRING_ERROR_BUSY;
-///         MSPRING_ERROR_LIMIT if the direct solver's factor would have over 2^31 numbers. On error the solver is
-///         the one of before.
+///         MSPRING_ERROR_LIMIT if the direct solver's factor would take over 2^27 numbers, or the implicit one's
+///         tiles, of the size asked for, are so tied to each other that factoring their matrix would take over 2^34
+///         multiply-adds (the message says how many there would be). On error the solver is the one of before.
 /// @threads exclusive access to network   @allocates for an implicit or direct solver, unless only substeps,
 ///         iterations or coarse_period differ from the one of before   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_solver(mspring_network *network,
@@ -1621,7 +1625,9 @@ enum {
     MSPRING_SNAPSHOT_FRAME = 1
 };
 
-/// The size of a snapshot that is saved now, in bytes. It changes with what there is to save: forces, ramps, edits.
+/// The size of a snapshot that is saved now, in bytes. It changes with what there is to save: forces, ramps, edits,
+/// and 16 bytes for each slot of the plan while the guard suspects the last step, as it may after any. So ask
+/// before each save.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL or unknown contents; MSPRING_ERROR_BUSY in a hook.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_snapshot_size(const mspring_network *network,
@@ -1664,7 +1670,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_load(mspring_networ
 /// Lattice rows are swept in strips of some rows, several substeps in one pass, so that a network larger than the
 /// cache is read once for all of them. What hangs on a lattice is swept with its strips, unless it joins strips
 /// more than 16 apart, or has more strand particles than the lattice has particles: then that lattice takes one
-/// substep at a time.
+/// substep at a time. A web of 60,000 particles and more that hangs on no lattice is swept in layers to the same
+/// end, with the ropes that hang on it.
 typedef struct mspring_plan {
     uint32_t struct_size;
     uint32_t particle_count, spring_count;
@@ -1697,6 +1704,8 @@ typedef struct mspring_plan {
     uint32_t coarse_period;
     uint64_t factor_values; ///< of the direct solver: numbers in its factor, which is there in both precisions,
     double factor_products; ///< and products that computing it takes
+    uint32_t web_layers;    ///< layers in which the web without a lattice is swept for several substeps in one pass,
+                            ///< whatever the solver; 0 if it takes one substep at a time
 } mspring_plan;
 
 /// Get the plan. Set struct_size first.
