@@ -31,8 +31,10 @@ MSPRINGI_SUMMED void sum_words(uint8_t *to, const uint8_t *from, size_t units, m
     for (size_t i = 0; i < units; ++i, from += MSPRINGI_CHECKSUM_UNIT) {
         uint64_t words[MSPRINGI_CHECKSUM_LANES];
         memcpy(words, from, sizeof words);
-        if (copies)
-            memcpy(to + i * MSPRINGI_CHECKSUM_UNIT, words, sizeof words);
+        if (copies) {
+            memcpy(to, words, sizeof words);
+            to += MSPRINGI_CHECKSUM_UNIT;
+        }
         for (int lane = 0; lane < MSPRINGI_CHECKSUM_LANES; ++lane) {
             c.sums[lane] += little_endian(words[lane]);
             c.sums_of_sums[lane] += c.sums[lane];

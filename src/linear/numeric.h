@@ -199,6 +199,8 @@ MSPRINGI_INLINE size_t NAME(eliminate_corner)(CORNER *corner, const REAL *values
             scaled[c][i] = values[c * rows + i];
             MSPRINGI_UNROLL
             for (size_t p = 0; p < c; ++p)
+                // What is read was written in the turn of p.
+                // cppcheck-suppress uninitvar
                 scaled[c][i] = scaled[c][i] - scaled[p][i] * corner->lower[p][c];
         }
         if (!(scaled[c][c] >= SMALLEST && scaled[c][c] <= LARGEST))

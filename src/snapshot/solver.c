@@ -42,7 +42,9 @@ static void implicit_save(const mspring_network *network, mspringi_writer *to) {
     const mspringi_implicit *n = network->implicit;
     // A history of a motion that has ended is as good as none.
     const bool ended = n->seen.motion != network->edits.motion;
-    const mspringi_ledger ledger = ended ? (mspringi_ledger){0} : n->ledger;
+    mspringi_ledger ledger = {0};
+    if (!ended)
+        ledger = n->ledger;
     const uint32_t words[] = {n->history.restarts || ended,
                               (uint32_t)n->integrator,
                               n->iterations,
