@@ -226,6 +226,9 @@ static void pieces_sleep_in_layers(void **state) {
 /// and the last ones, among them where each layer begins.
 static void failing_memory_is_said_and_freed(void **state) {
     (void)state;
+#ifdef __SANITIZE_THREAD__
+    skip(); // It has one thread, and would take most of the time that looking for data races takes.
+#endif
     recipe made = heap_of(ON_A_RAFT);
     mspring_builder *builder = recipe_builder(&made, NULL);
     const mspringi_reserve reserve = {made.particle_count, made.spring_count, made.particle_count,
