@@ -329,7 +329,8 @@ static void clones_that_fail_leave_nothing(void **state) {
         mspring_result result = MSPRING_ERROR_MEMORY;
         size_t fail_at = 0;
         while (result != MSPRING_OK) {
-            watched_allocator watched = {.fail_at = ++fail_at};
+            fail_at++;
+            watched_allocator watched = {.fail_at = fail_at};
             const mspring_allocator allocator = watched_interface(&watched);
             mspring_clone_def def = clone_def();
             def.allocator = &allocator;

@@ -93,7 +93,7 @@ static void snapshots_go_back_in_a_compact_plan(void **state) {
         check_ok(mspring_network_compact(it->network, 0, NULL));
         const saved here = save(it->network, MSPRING_SNAPSHOT_ALL);
         const life then = *it;
-        uint64_t hashes[4];
+        uint64_t hashes[4] = {0};
         for (int again = 0; again <= 1; again++) {
             for (int i = 0; i < 4; i++) {
                 life_do_something(it);

@@ -123,7 +123,8 @@ static void builders_survive_every_failure(void **state) {
     size_t fail_at = 0;
     bool failed = true;
     while (failed) {
-        watched_allocator watched = {.fail_at = ++fail_at};
+        fail_at++;
+        watched_allocator watched = {.fail_at = fail_at};
         mspring_allocator allocator = watched_interface(&watched);
         mspring_builder *const untouched = (mspring_builder *)(uintptr_t)16;
         mspring_builder *builder = untouched;
@@ -165,7 +166,8 @@ static void failed_networks_leave_nothing_behind(void **state) {
     mspring_result result = MSPRING_ERROR_MEMORY;
     size_t fail_at = 0;
     while (result != MSPRING_OK) {
-        watched_allocator of_network = {.fail_at = ++fail_at};
+        fail_at++;
+        watched_allocator of_network = {.fail_at = fail_at};
         mspring_allocator networks = watched_interface(&of_network);
         mspring_network_def def = support_def(-9.8f, 1);
         def.allocator = &networks;

@@ -243,7 +243,8 @@ static void workers_survive_every_failure(void **state) {
     mspring_result result = MSPRING_ERROR_MEMORY;
     size_t fail_at = 0;
     while (result != MSPRING_OK) {
-        watched_allocator watched = {.fail_at = ++fail_at};
+        fail_at++;
+        watched_allocator watched = {.fail_at = fail_at};
         const mspring_allocator allocator = watched_interface(&watched);
         mspringi_memory memory;
         mspringi_message message = {""};

@@ -203,6 +203,7 @@ static inline void sum_blocks(const strip_of_floats *of, size_t count, const flo
 // What a strip hands on to the row above.
 static inline void carry_forces(const strip_of_doubles *of, size_t count, double *restrict carry) {
     for (size_t i = 0; i < count; ++i)
+        // NOLINTNEXTLINE(gcc-analyzer-use-of-uninitialized-value): all blocks of the strip are put before
         carry[i] = of->up[i] - of->diagonal[MSPRINGI_WIDTH - 1 + i];
 }
 static inline void carry_blocks(const strip_of_floats *of, size_t count, float *restrict carry) {
