@@ -117,58 +117,167 @@ static void what_sleeps_beside_gives_the_same_bits(void **state) {
         assert_int_equal(run_sleepers(worker_counts[w]), expected);
 }
 
-enum { NOTCHED = 96, STILL = 60, ROWS = 60, NOTCH = 32, COUNT = NOTCHED * ROWS };
+enum { WIDE = 96, STILL = 60, ROWS = 60, NOTCH = 32, COUNT = WIDE * ROWS };
 
-/// A lattice with a wide notch, as far from the left as it is deep, so that runs of the row below or of the column
-/// at its left end and begin side by side where the notch does; and one at its right in the same rows. The
-/// positions of the first, which moves, after some steps.
-static void run_beside_sleeper(int depth, float sleep_speed, uint32_t worker_count, double *x, double *y) {
-    static uint16_t cells[ROWS][NOTCHED];
-    static const uint16_t full[ROWS][STILL];
-    const uint32_t count = COUNT - NOTCH * (uint32_t)depth;
-    memset(cells, 0, sizeof cells);
-    for (int row = 0; row < depth; row++)
-        for (int column = depth; column < depth + NOTCH; column++)
-            cells[row][column] = MSPRING_CELL_EMPTY;
+/// Enough for a network of that size to be worth more than one worker.
+enum { SUBSTEPS = 40 };
+
+/// Whether workers have met: what they hand on has been in the seams.
+static bool has_used_seams(const mspring_network *network) {
+    const mspringi_seams *seams = &network->seams;
+    const size_t count = (size_t)seams->count * 4 * (3 + seams->substeps) * seams->segment;
+    for (size_t i = 0; i < count; i++)
+        if (seams->values[i] != 0)
+            return true;
+    return false;
+}
+
+static void add_cells(mspring_builder *builder, const uint16_t *cells, uint32_t width, double x) {
     mspring_material stuff;
     check_ok(mspring_material_init(&stuff, sizeof stuff));
     stuff.mass = 1, stuff.stiffness = 200, stuff.damping = 0.5f;
     mspring_lattice_def def;
     check_ok(mspring_lattice_def_init(&def, sizeof def));
-    def.width = NOTCHED, def.height = ROWS, def.cells = cells[0], def.materials = &stuff, def.material_count = 1;
-    mspring_builder *builder;
-    check_ok(mspring_builder_create(NULL, &builder));
+    def.width = width, def.height = ROWS, def.cells = cells, def.materials = &stuff, def.material_count = 1;
+    def.x = x;
     check_ok(mspring_builder_add_lattice(builder, &def, NULL));
-    assert_int_equal(mspring_builder_particle_count(builder), count);
-    def.width = STILL, def.cells = full[0], def.x = 200;
-    check_ok(mspring_builder_add_lattice(builder, &def, NULL));
-    mspring_network_def settings = support_def(0, 10);
+}
+
+static mspring_network *make_sleepy(mspring_builder *builder, float sleep_speed, uint32_t worker_count) {
+    mspring_network_def settings = support_def(0, SUBSTEPS);
     settings.worker_count = worker_count;
     settings.sleep_speed = sleep_speed;
     settings.sleep_time = 0.02f;
     mspring_network *network;
     check_ok(mspring_network_create(builder, &settings, &network));
     mspring_builder_destroy(builder);
-    assert_int_equal(network->seams.count > 0, worker_count > 1);
+    return network;
+}
+
+/// A lattice with a wide notch, as far from the left as it is deep, so that runs of the row below or of the column
+/// at its left end and begin side by side where the notch does; and one at its right in the same rows. The
+/// positions of the first, which moves, after some steps. Returns whether workers have shared it.
+static bool run_beside_sleeper(int depth, float sleep_speed, uint32_t worker_count, double *x, double *y) {
+    static uint16_t cells[ROWS][WIDE];
+    static const uint16_t full[ROWS][STILL];
+    const uint32_t count = COUNT - NOTCH * (uint32_t)depth;
+    memset(cells, 0, sizeof cells);
+    for (int row = 0; row < depth; row++)
+        for (int column = depth; column < depth + NOTCH; column++)
+            cells[row][column] = MSPRING_CELL_EMPTY;
+    mspring_builder *builder;
+    check_ok(mspring_builder_create(NULL, &builder));
+    add_cells(builder, cells[0], WIDE, 0);
+    assert_int_equal(mspring_builder_particle_count(builder), count);
+    add_cells(builder, full[0], STILL, 200);
+    mspring_network *network = make_sleepy(builder, sleep_speed, worker_count);
     for (mspring_id p = 0; p < count; p += 3)
         support_kick(network, p, 1 + (float)(p % 7));
     support_steps(network, 8, 0.01);
     assert_true(support_sleeps(network, count) == (sleep_speed > 0) && !support_sleeps(network, 0));
     check_ok(mspring_network_get_positions(network, 0, count, x, y));
+    const bool shared = has_used_seams(network);
     mspring_network_destroy(network);
+    return shared;
 }
 
 static void what_sleeps_beside_a_notch_changes_nothing(void **state) {
     (void)state;
     static double x[COUNT], y[COUNT], expected_x[COUNT], expected_y[COUNT];
+    uint32_t shared = 0;
     for (int depth = 12; depth < 50; depth += 4) { // at 12, 28 and 44 a block beside the notch is empty
         run_beside_sleeper(depth, 0, 1, expected_x, expected_y);
         for (uint32_t workers = 1; workers <= 3; workers++) {
-            run_beside_sleeper(depth, 1e-3f, workers, x, y);
+            shared += run_beside_sleeper(depth, 1e-3f, workers, x, y);
             assert_memory_equal(x, expected_x, sizeof x);
             assert_memory_equal(y, expected_y, sizeof y);
         }
     }
+    assert_true(shared > 10);
+}
+
+enum { WHITE, BLACK, NEITHER };
+enum { PATCH_WIDTH = 6, PATCH_HEIGHT = 4 };
+
+static uint8_t patch_at(uint8_t patches[ROWS / PATCH_HEIGHT][WIDE / PATCH_WIDTH], int row, int column) {
+    return patches[row / PATCH_HEIGHT][column / PATCH_WIDTH];
+}
+
+/// Make a lattice a quilt of white patches and black ones that lie loose in between, so that in each row runs end
+/// and begin elsewhere, and most blocks have particles of both. Returns how many there are.
+static uint32_t quilt(uint64_t seed, uint8_t sides[ROWS][WIDE]) {
+    uint8_t patches[ROWS / PATCH_HEIGHT][WIDE / PATCH_WIDTH];
+    uint32_t count = 0;
+    for (int row = 0; row < ROWS / PATCH_HEIGHT; row++)
+        for (int column = 0; column < WIDE / PATCH_WIDTH; column++)
+            patches[row][column] = support_random(&seed) % 2 ? BLACK : WHITE;
+    for (int row = 0; row < ROWS; row++)
+        for (int column = 0; column < WIDE; column++) {
+            uint8_t side = patch_at(patches, row, column);
+            for (int i = 0; i < 9 && side == BLACK; i++) {
+                const int y = row + i / 3 - 1, x = column + i % 3 - 1;
+                const bool is_inside = y >= 0 && y < ROWS && x >= 0 && x < WIDE;
+                if (is_inside && patch_at(patches, y, x) == WHITE)
+                    side = NEITHER;
+            }
+            sides[row][column] = side;
+            count += side != NEITHER;
+        }
+    return count;
+}
+
+/// A hash of the positions of the colour that moves, while the other one, which lies still but not unstrained, is
+/// asleep or not. Counts in shared whether workers have shared it.
+static uint64_t run_quilt(uint64_t seed, uint8_t mover, float sleep_speed, uint32_t worker_count,
+                          uint32_t *shared) {
+    static uint8_t sides[ROWS][WIDE];
+    static uint16_t cells[ROWS][WIDE];
+    static uint8_t side_of[COUNT];
+    const uint32_t count = quilt(seed, sides);
+    uint32_t p = 0;
+    for (int row = 0; row < ROWS; row++)
+        for (int column = 0; column < WIDE; column++) {
+            const uint8_t side = sides[row][column];
+            cells[row][column] = side == NEITHER ? MSPRING_CELL_EMPTY : 0;
+            if (side != NEITHER)
+                side_of[p++] = side;
+        }
+    mspring_builder *builder;
+    check_ok(mspring_builder_create(NULL, &builder));
+    add_cells(builder, cells[0], WIDE, 0);
+    assert_int_equal(mspring_builder_particle_count(builder), count);
+    mspring_network *network = make_sleepy(builder, sleep_speed, worker_count);
+    for (p = 0; p < count; p++) {
+        support_kick(network, p, side_of[p] == mover ? 1 + (float)(p % 7) : 2e-3f * (float)(p % 3));
+    }
+    support_steps(network, 8, 0.01);
+    *shared += has_used_seams(network);
+    uint64_t hash = 0;
+    for (p = 0; p < count; p++) {
+        assert_int_equal(support_sleeps(network, p), sleep_speed > 0 && side_of[p] != mover);
+        if (side_of[p] != mover)
+            continue;
+        const support_point at = support_position(network, p);
+        uint64_t bits[2];
+        memcpy(bits, &at, sizeof bits);
+        hash = (hash * 31 + bits[0]) * 31 + bits[1];
+    }
+    mspring_network_destroy(network);
+    return hash;
+}
+
+/// What sleeps in a block that is swept pulls as ever at what is not there to take it: to the right, above, and in
+/// the rows that two workers share.
+static void what_sleeps_in_between_changes_nothing(void **state) {
+    (void)state;
+    uint32_t shared = 0;
+    for (uint64_t seed = 1; seed <= 5; seed++)
+        for (uint8_t mover = WHITE; mover <= BLACK; mover++) {
+            const uint64_t expected = run_quilt(seed, mover, 0, 1, &shared);
+            for (uint32_t workers = 1; workers <= 3; workers++)
+                assert_true(run_quilt(seed, mover, 1e-2f, workers, &shared) == expected);
+        }
+    assert_true(shared > 10);
 }
 
 int main(void) {
@@ -176,6 +285,7 @@ int main(void) {
         cmocka_unit_test(any_division_gives_the_same_bits),
         cmocka_unit_test(what_sleeps_beside_gives_the_same_bits),
         cmocka_unit_test(what_sleeps_beside_a_notch_changes_nothing),
+        cmocka_unit_test(what_sleeps_in_between_changes_nothing),
     };
     return cmocka_run_group_tests_name("shares", tests, NULL, NULL);
 }
