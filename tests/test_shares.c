@@ -210,7 +210,8 @@ static uint32_t quilt(uint64_t seed, uint8_t sides[ROWS][WIDE]) {
     uint32_t count = 0;
     for (int row = 0; row < ROWS / PATCH_HEIGHT; row++)
         for (int column = 0; column < WIDE / PATCH_WIDTH; column++)
-            patches[row][column] = support_random(&seed) % 2 ? BLACK : WHITE;
+            patches[row][column] = column > 0 && support_random(&seed) % 3 ? patches[row][column - 1]
+                                                                           : (uint8_t)(support_random(&seed) % 2);
     for (int row = 0; row < ROWS; row++)
         for (int column = 0; column < WIDE; column++) {
             uint8_t side = patch_at(patches, row, column);
@@ -247,9 +248,8 @@ static uint64_t run_quilt(uint64_t seed, uint8_t mover, float sleep_speed, uint3
     add_cells(builder, cells[0], WIDE, 0);
     assert_int_equal(mspring_builder_particle_count(builder), count);
     mspring_network *network = make_sleepy(builder, sleep_speed, worker_count);
-    for (p = 0; p < count; p++) {
+    for (p = 0; p < count; p++)
         support_kick(network, p, side_of[p] == mover ? 1 + (float)(p % 7) : 2e-3f * (float)(p % 3));
-    }
     support_steps(network, 8, 0.01);
     *shared += has_used_seams(network);
     uint64_t hash = 0;
@@ -267,17 +267,19 @@ static uint64_t run_quilt(uint64_t seed, uint8_t mover, float sleep_speed, uint3
 }
 
 /// What sleeps in a block that is swept pulls as ever at what is not there to take it: to the right, above, and in
-/// the rows that two workers share.
+/// the rows that two workers share. With so much asleep borders move far from pass to pass, so that workers come to
+/// strips which one that is no neighbour had in the pass before.
 static void what_sleeps_in_between_changes_nothing(void **state) {
     (void)state;
     uint32_t shared = 0;
-    for (uint64_t seed = 1; seed <= 5; seed++)
+    for (uint64_t seed = 1; seed <= 4; seed++)
         for (uint8_t mover = WHITE; mover <= BLACK; mover++) {
             const uint64_t expected = run_quilt(seed, mover, 0, 1, &shared);
-            for (uint32_t workers = 1; workers <= 3; workers++)
-                assert_true(run_quilt(seed, mover, 1e-2f, workers, &shared) == expected);
+            assert_true(run_quilt(seed, mover, 1e-2f, 1, &shared) == expected);
+            for (size_t w = 0; w < COUNT_OF(worker_counts); w++)
+                assert_true(run_quilt(seed, mover, 1e-2f, worker_counts[w], &shared) == expected);
         }
-    assert_true(shared > 10);
+    assert_true(shared > 16); // of 32
 }
 
 int main(void) {

@@ -178,6 +178,17 @@ static void make_pass(turn *t) {
         add_sight(wave, t->share, network->kernels->sight_of(watch));
 }
 
+// Whether a share comes in a pass to strips that another one, which is no neighbour, had in the pass before, or
+// reads beside. Where most strips sleep, borders move that far.
+static bool comes_to(const turn *t, uint32_t other) {
+    const mspringi_shares *shares = &t->wave->shares;
+    const uint32_t least = mspringi_shares_least(shares->lag), last = mspringi_shares_substeps(shares, t->pass) - 1;
+    return mspringi_shares_begin(shares, t->share, t->pass, 0) <
+               mspringi_shares_end(shares, other, t->pass - 1, shares->group - 1) + least &&
+           mspringi_shares_begin(shares, other, t->pass - 1, 0) <
+               mspringi_shares_end(shares, t->share, t->pass, last) + least;
+}
+
 // Before a pass, wait for the worker below to have done with the last one and, where the border above has gone up
 // so far that strips which nobody waits for any more were the other's, for the one above.
 static void wait_for_last(const turn *t) {
@@ -189,6 +200,9 @@ static void wait_for_last(const turn *t) {
     if (t->share + 1 < shares->workers && mspringi_shares_end(shares, t->share, t->pass, 0) >
                                               mspringi_shares_end(shares, t->share, t->pass - 1, shares->group - 1))
         mspringi_progress_wait(&t->wave->progress[t->share + 1], t->passed);
+    for (uint32_t other = 0; other < shares->workers; ++other)
+        if ((other + 1 < t->share || other > t->share + 1) && comes_to(t, other))
+            mspringi_progress_wait(&t->wave->progress[other], t->passed);
 }
 
 // Make all passes over a share. What is computed, and in which order, is the same for any number of workers. The
