@@ -92,6 +92,48 @@ static void several_lattices_are_found_side_by_side(void **state) {
     recipe_free(&made);
 }
 
+/// A lattice of the cells of a box that lie in its lowest rows, or in its leftmost or rightmost columns.
+static void add_trough(recipe *made, uint32_t width, uint32_t height, uint32_t bottom, uint32_t wall, double x) {
+    mspring_id ids[16][64];
+    for (uint32_t row = 0; row < height; row++) {
+        for (uint32_t column = 0; column < width; column++) {
+            ids[row][column] = MSPRING_NONE;
+            if (row >= bottom && column >= wall && column + wall < width) {
+                continue;
+            }
+            ids[row][column] = recipe_particle(made, x + column, row, 1, 0);
+            const mspring_id before[4] = {
+                column > 0 ? ids[row][column - 1] : MSPRING_NONE,
+                row > 0 ? ids[row - 1][column] : MSPRING_NONE,
+                row > 0 && column > 0 ? ids[row - 1][column - 1] : MSPRING_NONE,
+                row > 0 && column + 1 < width ? ids[row - 1][column + 1] : MSPRING_NONE,
+            };
+            for (uint32_t i = 0; i < 4; i++) {
+                if (before[i] != MSPRING_NONE) {
+                    recipe_spring(made, before[i], ids[row][column], 100, 0, 0);
+                }
+            }
+        }
+    }
+}
+
+/// Within a trough of 48 columns there is room for boxes of twelve in the blocks of its left and of its right wall,
+/// and between them where they would take blocks of their own.
+static void small_lattices_share_blocks(void **state) {
+    (void)state;
+    recipe made = {0};
+    add_trough(&made, 48, 10, 2, 4, 0);
+    const mspring_plan trough = plan_of(&made);
+    assert_int_equal(trough.lattice_blocks, 2 * 3 + 8 * 2);
+    add_trough(&made, 12, 7, 7, 0, 100);
+    add_trough(&made, 12, 7, 7, 0, 200);
+    const mspring_plan plan = plan_of(&made);
+    assert_int_equal(plan.lattice_count, 3);
+    assert_int_equal(plan.lattice_springs, made.spring_count);
+    assert_int_equal(plan.lattice_blocks, trough.lattice_blocks);
+    recipe_free(&made);
+}
+
 /// Ten columns fill ten lanes of sixteen: twelve such lattices of ten rows would take 120 blocks one above the
 /// other. Put side by side they move as each would by itself: all are alike.
 static void small_lattices_share_rows(void **state) {
@@ -344,6 +386,7 @@ int main(void) {
         cmocka_unit_test(a_lattice_need_not_lie_on_whole_numbers),
         cmocka_unit_test(several_lattices_are_found_side_by_side),
         cmocka_unit_test(small_lattices_share_rows),
+        cmocka_unit_test(small_lattices_share_blocks),
         cmocka_unit_test(ropes_on_a_lattice_are_swept_with_it),
         cmocka_unit_test(more_rope_than_lattice_is_chains),
         cmocka_unit_test(a_strand_of_its_own_is_a_chain),
