@@ -46,6 +46,14 @@ void snapshots_load(mspring_network *network, const saved *from) {
         print_error("%s\n", mspring_network_error(network));
     }
     check_ok(result);
+    // What has been loaded is saved as it was, unless the network had come by parts before that the snapshot lacks.
+    mspringi_snapshot_header header;
+    assert_true(mspringi_get_header(from->bytes, &header));
+    saved again = snapshots_save(network, (mspring_snapshot_contents)header.contents);
+    if (again.size == from->size) {
+        assert_memory_equal(again.bytes, from->bytes, from->size);
+    }
+    free(again.bytes);
 }
 
 void snapshots_set_up(mspring_network *network) {

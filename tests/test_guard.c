@@ -343,6 +343,70 @@ static void suspicion_is_saved(void **state) {
     mspring_network_destroy(network);
 }
 
+enum { STIFFER, LIGHTER, ADDED, EDITS };
+
+/// A pair of which nothing need be watched, until that edit, and a particle beside.
+static mspring_network *calm_pair(void) {
+    recipe made = {0};
+    recipe_particle(&made, 0, 0, 1, 0);
+    recipe_particle(&made, 1, 0, 2, 0);
+    recipe_particle(&made, 2, 0, 1, 0);
+    recipe_spring(&made, 0, 1, 100, 0, 0);
+    mspring_network_def def = support_def(0, 1);
+    def.spare_springs = 1;
+    mspring_network *network = recipe_network(&made, &def);
+    recipe_free(&made);
+    return network;
+}
+
+static void edit_pair(mspring_network *network, int edit) {
+    const float stiffness = 1e5f, mass = 1e-3f;
+    mspring_spring_def spring;
+    mspring_id id;
+    check_ok(mspring_spring_def_init(&spring, sizeof spring));
+    spring.a = 1, spring.b = 2, spring.stiffness = stiffness, spring.rest_length = 1;
+    if (edit == STIFFER) {
+        check_ok(mspring_network_set_stiffnesses(network, 0, 1, &stiffness));
+    } else if (edit == LIGHTER) {
+        check_ok(mspring_network_set_masses(network, 0, 1, &mass));
+    } else {
+        check_ok(mspring_network_add_springs(network, &spring, 1, &id));
+    }
+}
+
+/// That an edit has outdated what the guard knew of any shape goes with a snapshot: what is beyond the border since
+/// is refused in the same step.
+static void what_edits_outdate_is_saved(void **state) {
+    (void)state;
+    for (int edit = 0; edit < EDITS; edit++) {
+        mspring_network *network = calm_pair(), *other = calm_pair();
+        mspring_network *const both[] = {network, other};
+        support_steps(network, 2, 0.01);
+        edit_pair(network, edit);
+        size_t size = 0;
+        check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &size));
+        void *snapshot = test_malloc(size);
+        check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_ALL, snapshot, size, NULL));
+        check_ok(mspring_network_load(other, snapshot, size));
+        test_free(snapshot);
+        mspring_result results[2] = {MSPRING_OK, MSPRING_OK};
+        support_kick(network, 0, 0.01f);
+        support_kick(other, 0, 0.01f);
+        uint32_t step = 0;
+        for (; step < 100 && results[0] == MSPRING_OK; step++) {
+            for (size_t i = 0; i < 2; i++) {
+                results[i] = mspring_network_step(both[i], 0.01);
+            }
+            assert_int_equal(results[1], results[0]);
+            assert_int_equal(support_hash(other), support_hash(network));
+        }
+        check_error(results[0], MSPRING_ERROR_UNSTABLE);
+        check_contains(mspring_network_error(other), "motion would turn round and grow");
+        mspring_network_destroy(network);
+        mspring_network_destroy(other);
+    }
+}
+
 static void more_substeps_are_tried_where_that_is_wanted(void **state) {
     (void)state;
     const double dt = 1.0 / 64;
@@ -466,6 +530,7 @@ int main(void) {
         cmocka_unit_test(what_wakes_far_out_is_seen),
         cmocka_unit_test(a_shape_that_crosses_its_border_is_refused),
         cmocka_unit_test(suspicion_is_saved),
+        cmocka_unit_test(what_edits_outdate_is_saved),
         cmocka_unit_test(more_substeps_are_tried_where_that_is_wanted),
         cmocka_unit_test(the_implicit_solver_steps_in_where_that_is_wanted),
         cmocka_unit_test(what_is_stable_is_never_refused),
