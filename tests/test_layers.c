@@ -170,6 +170,31 @@ static void layers_give_the_bits_of_single_substeps(void **state) {
     }
 }
 
+/// Particles with about as many springs share a group, so few places of rungs are empty. Here they have 2 to 8 in
+/// any order: grouped as they come, the largest of 16 would leave three places of ten empty.
+static void rungs_of_layers_are_filled(void **state) {
+    (void)state;
+    uint64_t seed = 7;
+    recipe made = {0};
+    for (uint32_t i = 0; i < PARTICLES; i++) {
+        recipe_particle(&made, 0.02 * i, support_random_between(&seed, 0, 3), 1, 0);
+        for (uint32_t back = 1; back <= 27 && back <= i; back *= 3) {
+            if (back == 1 || support_random_between(&seed, 0, 1) < 0.5) {
+                recipe_spring(&made, i, i - back, 100, 0, 0);
+            }
+        }
+    }
+    mspring_network *network = recipe_network(&made, NULL);
+    const mspringi_topology *t = &network->topology;
+    assert_true(t->layer_count > 20);
+    const double places = (double)t->web.first_rung[t->web.group_count] * MSPRINGI_WIDTH;
+    const double filled = 2.0 * t->woven_count / places;
+    print_message("%.3f of the places of rungs are filled\n", filled);
+    assert_true(filled > 0.96);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
 static void small_webs_have_no_layers(void **state) {
     (void)state;
     recipe made = {0};
@@ -295,6 +320,7 @@ static void clones_and_compact_ones_have_layers(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(layers_give_the_bits_of_single_substeps),
+        cmocka_unit_test(rungs_of_layers_are_filled),
         cmocka_unit_test(small_webs_have_no_layers),
         cmocka_unit_test(pieces_sleep_in_layers),
         cmocka_unit_test(failing_memory_is_said_and_freed),

@@ -62,12 +62,16 @@ static inline void transpose(vec *a, vec *b, vec *c, vec *d) {
     *c = _mm512_shuffle_ps(ab_high, cd_high, _MM_SHUFFLE(1, 0, 1, 0));
     *d = _mm512_shuffle_ps(ab_high, cd_high, _MM_SHUFFLE(3, 2, 3, 2));
 }
-// The nodes first, first + 4, first + 8 and first + 12 of a list.
+static inline __m256 load_two(const float *packed, uint32_t low, uint32_t high) {
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(packed + 4 * (size_t)low)),
+                                _mm_load_ps(packed + 4 * (size_t)high), 1);
+}
+// The nodes first, first + 4, first + 8 and first + 12 of a list. (Two halves take 5 % less time than quarter after
+// quarter, since an insertion into 512 bits takes two turns.)
 static inline vec load_four(const float *packed, const uint32_t *nodes) {
-    vec a = _mm512_castps128_ps512(_mm_load_ps(packed + 4 * (size_t)nodes[0]));
-    a = _mm512_insertf32x4(a, _mm_load_ps(packed + 4 * (size_t)nodes[4]), 1);
-    a = _mm512_insertf32x4(a, _mm_load_ps(packed + 4 * (size_t)nodes[8]), 2);
-    return _mm512_insertf32x4(a, _mm_load_ps(packed + 4 * (size_t)nodes[12]), 3);
+    const __m256 low = load_two(packed, nodes[0], nodes[4]), high = load_two(packed, nodes[8], nodes[12]);
+    return _mm512_castpd_ps(
+        _mm512_insertf64x4(_mm512_castps_pd(_mm512_castps256_ps512(low)), _mm256_castps_pd(high), 1));
 }
 // Four values of each of LANES nodes, from [node][4].
 static inline void load_packed(const float *packed, const uint32_t *nodes, vec *x, vec *y, vec *vx, vec *vy) {
