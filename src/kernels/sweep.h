@@ -289,7 +289,7 @@ MSPRINGI_INLINE vector add_pull(vector sum, gap to, const float *record, bool da
 }
 
 // The force of the web on LANES of its nodes. Each rung's neighbours are loaded before the forces of the one before
-// are computed, so that a processor that looks ahead a hundred operations or three has both under way: 10 to 12 %
+// are computed, so that a processor that looks ahead a hundred operations or three has both under way: 7 to 11 %
 // less time at SSE2, AVX2 and AVX-512.
 MSPRINGI_INLINE vector web_force(const mspringi_sweep *s, motion here, size_t group, size_t lane, bool damped) {
     const size_t stride = (size_t)(damped ? 3 : 2) * MSPRINGI_WIDTH;
