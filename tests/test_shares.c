@@ -119,8 +119,8 @@ static void what_sleeps_beside_gives_the_same_bits(void **state) {
 
 enum { WIDE = 96, STILL = 60, ROWS = 60, NOTCH = 32, COUNT = WIDE * ROWS };
 
-/// Enough for a network of that size to be worth more than one worker.
-enum { SUBSTEPS = 40 };
+/// Enough for networks of that size to be worth more than one worker.
+enum { SUBSTEPS_BESIDE_NOTCH = 14, SUBSTEPS_OF_QUILT = 40 };
 
 /// Whether workers have met: what they hand on has been in the seams.
 static bool has_used_seams(const mspring_network *network) {
@@ -143,8 +143,9 @@ static void add_cells(mspring_builder *builder, const uint16_t *cells, uint32_t 
     check_ok(mspring_builder_add_lattice(builder, &def, NULL));
 }
 
-static mspring_network *make_sleepy(mspring_builder *builder, float sleep_speed, uint32_t worker_count) {
-    mspring_network_def settings = support_def(0, SUBSTEPS);
+static mspring_network *make_sleepy(mspring_builder *builder, uint32_t substeps, float sleep_speed,
+                                    uint32_t worker_count) {
+    mspring_network_def settings = support_def(0, substeps);
     settings.worker_count = worker_count;
     settings.sleep_speed = sleep_speed;
     settings.sleep_time = 0.02f;
@@ -170,7 +171,7 @@ static bool run_beside_sleeper(int depth, float sleep_speed, uint32_t worker_cou
     add_cells(builder, cells[0], WIDE, 0);
     assert_int_equal(mspring_builder_particle_count(builder), count);
     add_cells(builder, full[0], STILL, 200);
-    mspring_network *network = make_sleepy(builder, sleep_speed, worker_count);
+    mspring_network *network = make_sleepy(builder, SUBSTEPS_BESIDE_NOTCH, sleep_speed, worker_count);
     for (mspring_id p = 0; p < count; p += 3)
         support_kick(network, p, 1 + (float)(p % 7));
     support_steps(network, 8, 0.01);
@@ -247,10 +248,10 @@ static uint64_t run_quilt(uint64_t seed, uint8_t mover, float sleep_speed, uint3
     check_ok(mspring_builder_create(NULL, &builder));
     add_cells(builder, cells[0], WIDE, 0);
     assert_int_equal(mspring_builder_particle_count(builder), count);
-    mspring_network *network = make_sleepy(builder, sleep_speed, worker_count);
+    mspring_network *network = make_sleepy(builder, SUBSTEPS_OF_QUILT, sleep_speed, worker_count);
     for (p = 0; p < count; p++)
         support_kick(network, p, side_of[p] == mover ? 1 + (float)(p % 7) : 2e-3f * (float)(p % 3));
-    support_steps(network, 8, 0.01);
+    support_steps(network, 5, 0.01);
     *shared += has_used_seams(network);
     uint64_t hash = 0;
     for (p = 0; p < count; p++) {
