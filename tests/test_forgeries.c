@@ -164,6 +164,36 @@ static void what_hides_in_other_slots_is_refused(void **state) {
     }
 }
 
+/// An added spring that a compact plan has laid out joins what lies at its ends there, in whatever order.
+static void a_spring_that_is_laid_out_keeps_its_ends(void **state) {
+    (void)state;
+    mspring_network *network = make_compact(1, true);
+    const uint32_t particles = mspring_network_particle_count(network);
+    const mspring_id ends[] = {particles - 2, particles - 1};
+    saved good = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
+    uint64_t size;
+    const uint8_t *growth = snapshots_section_of(&good, "grow", &size);
+    const size_t at = (size_t)(growth + size - good.bytes) - 8; // the ends of the only spare spring
+    mspring_id saved_ends[2];
+    mspringi_get(good.bytes + at, saved_ends, 2, sizeof saved_ends[0]);
+    assert_memory_equal(saved_ends, ends, sizeof ends);
+    assert_int_equal(good.bytes[at - 1], 2); // laid out
+    const mspring_id others[][2] = {{3, ends[1]}, {ends[0], 3}, {ends[1], 3}, {3, ends[0]}, {3, 4}};
+    for (size_t i = 0; i < COUNT_OF(others); i++) {
+        saved bad = snapshots_copy(&good);
+        snapshots_put_word(bad.bytes + at, others[i][0]);
+        snapshots_put_word(bad.bytes + at + 4, others[i][1]);
+        snapshots_check_refused(network, &bad, "joins particles");
+        free(bad.bytes);
+    }
+    snapshots_put_word(good.bytes + at, ends[1]);
+    snapshots_put_word(good.bytes + at + 4, ends[0]);
+    snapshots_renew_checksum(&good);
+    check_ok(mspring_network_load(network, good.bytes, good.size));
+    free(good.bytes);
+    mspring_network_destroy(network);
+}
+
 /// A plan that has left out what was removed cannot bring it back, so it does not take a snapshot that says nothing
 /// of what was removed.
 static void what_a_plan_leaves_out_stays_out(void **state) {
@@ -346,6 +376,7 @@ int main(void) {
         cmocka_unit_test(damage_is_found),
         cmocka_unit_test(forgeries_do_no_harm),
         cmocka_unit_test(what_hides_in_other_slots_is_refused),
+        cmocka_unit_test(a_spring_that_is_laid_out_keeps_its_ends),
         cmocka_unit_test(what_a_plan_leaves_out_stays_out),
         cmocka_unit_test(foreign_snapshots_are_refused),
         cmocka_unit_test(other_versions_say_so),
