@@ -1,6 +1,7 @@
 /// @file test_web_kernels.c
 /// The kernels of the web (springs outside of rows) against the scalar ones, byte for byte, with canaries around
-/// all that they may touch: 0 to 3 groups of the web's own nodes, 0 to 2 of attached ones, 0 to 5 rungs in a group.
+/// all that they may touch: 0 to 3 groups of the web's own nodes, 0 to 2 of attached ones, 0 to 5 rungs in a group,
+/// of which the first may be upright.
 ///
 /// SPDX-License-Identifier: MIT
 #include <stdbool.h>
@@ -47,6 +48,7 @@ typedef struct arena {
     float records[GROUPS * RUNGS * 3 * W];
     uint32_t neighbour[GROUPS * RUNGS * W];
     uint32_t first_rung[GROUPS + 1];
+    uint8_t is_upright[GROUPS];
     mspringi_web web;
 } arena;
 
@@ -64,6 +66,7 @@ typedef struct setup {
     uint32_t own, attached; ///< groups
     uint32_t parts;
     uint64_t seed;
+    bool stands; ///< groups may have upright rungs
 } setup;
 
 static float random_float(uint64_t *seed, double low, double high) {
@@ -76,9 +79,11 @@ static void fill_web(arena *a, const setup *s, uint64_t *seed) {
     memset(a->records, 0, sizeof a->records);
     memset(a->neighbour, 0, sizeof a->neighbour);
     memset(a->first_rung, 0, sizeof a->first_rung);
+    memset(a->is_upright, 0, sizeof a->is_upright);
     for (uint32_t group = 0; group < groups; group++) {
         const uint32_t rungs = (uint32_t)(support_random(seed) % (RUNGS + 1));
         a->first_rung[group + 1] = a->first_rung[group] + rungs;
+        a->is_upright[group] = s->stands && group + 1 < s->own && rungs > 0 && support_random(seed) % 4 > 0;
         for (uint32_t place = a->first_rung[group] * W; place < a->first_rung[group + 1] * W; place++) {
             const uint32_t lane = place % W, node = group * W + lane;
             float *record = a->records + (size_t)(place / W) * s->parts * W + lane;
@@ -98,7 +103,8 @@ static void fill_web(arena *a, const setup *s, uint64_t *seed) {
                             .attached_count = s->attached * W,
                             .group_count = groups,
                             .first_rung = a->first_rung,
-                            .neighbour = a->neighbour};
+                            .neighbour = a->neighbour,
+                            .is_upright = s->stands ? a->is_upright : NULL};
 }
 
 static arena *arena_new(const setup *s) {
@@ -165,7 +171,8 @@ static void web_kernels(void **state) {
         const setup s = {.own = variant % (OWN + 1),
                          .attached = variant / 4 % (ATTACHED + 1),
                          .parts = 2 + (variant / 12 & 1),
-                         .seed = variant};
+                         .seed = variant,
+                         .stands = variant / 48 & 1};
         const bool forced = variant / 24 & 1;
         arena *mine = arena_new(&s), *reference = arena_new(&s), *before = arena_new(&s);
         run(mine, &s, kernels, forced);

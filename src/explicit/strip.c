@@ -64,12 +64,19 @@ static void pack_attached(const mspring_network *network, const mspringi_strip *
     }
 }
 
-// Pack what the web sees of its own nodes in a span.
+// Pack what the web sees of its own nodes in a span: runs of groups that somebody reads there.
 static void pack_span(const mspring_network *network, const mspringi_sweep *sweep, const mspringi_span *span,
                       float *packed) {
-    const size_t first = span->first_slot / MSPRINGI_WIDTH;
-    const size_t end = (span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
-    network->kernels->pack(sweep, first, end - first, packed + (size_t)4 * span->first_record * MSPRINGI_WIDTH);
+    const uint8_t *is_read = network->topology.web.is_read;
+    const size_t first_block = span->first_slot / MSPRINGI_WIDTH;
+    const size_t end = (span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH - first_block + span->first_record;
+    for (size_t first = span->first_record, last = first; first < end; first = ++last) {
+        while (last < end && (!is_read || is_read[last]))
+            ++last;
+        if (last > first)
+            network->kernels->pack(sweep, first_block + (first - span->first_record), last - first,
+                                   packed + 4 * first * MSPRINGI_WIDTH);
+    }
 }
 
 // Add what the web's pull at the slots of a strip does in the substep that they have just been swept for. It could

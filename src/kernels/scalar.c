@@ -176,14 +176,14 @@ static inline motion node_at(const mspringi_sweep *s, size_t node) {
     return (motion){packed[0], packed[1], packed[2], packed[3]};
 }
 
-// The force of the web on one of its nodes: the sum over the rungs of its group, in their order.
-static inline vector web_force(const mspringi_sweep *s, size_t node, bool damped) {
+// The force of the web on one of its nodes: the sum over the rungs of its group, in their order, from a first one
+// on.
+static inline vector web_force(const mspringi_sweep *s, size_t node, motion here, uint32_t rungs, bool damped) {
     const mspringi_web *web = s->web;
     const size_t lane = node % MSPRINGI_WIDTH;
-    const motion here = node_at(s, node);
     vector sum = {0.0f, 0.0f};
-    for (size_t rung = web->first_rung[node / MSPRINGI_WIDTH]; rung < web->first_rung[node / MSPRINGI_WIDTH + 1];
-         ++rung) {
+    for (size_t rung = web->first_rung[node / MSPRINGI_WIDTH] + rungs;
+         rung < web->first_rung[node / MSPRINGI_WIDTH + 1]; ++rung) {
         const motion there = node_at(s, web->neighbour[rung * MSPRINGI_WIDTH + lane]);
         const float *record = s->web_springs + rung * s->parts * MSPRINGI_WIDTH + lane;
         const vector force = spring_force(here, there, record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
@@ -194,19 +194,46 @@ static inline vector web_force(const mspringi_sweep *s, size_t node, bool damped
     return sum;
 }
 
+static inline motion slot_at(const mspringi_sweep *s, size_t slot) {
+    return (motion){s->x[slot], s->y[slot], s->vx[slot], s->vy[slot]};
+}
+
+// The force of the first rung of a node's group, if that is upright, to the node in the same lane of the next one.
+static inline vector upright_force(const mspringi_sweep *s, size_t slot, size_t node, bool damped) {
+    const float *record = s->web_springs +
+                          (size_t)s->web->first_rung[node / MSPRINGI_WIDTH] * s->parts * MSPRINGI_WIDTH +
+                          node % MSPRINGI_WIDTH;
+    return spring_force(slot_at(s, slot), slot_at(s, slot + MSPRINGI_WIDTH),
+                        record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH], record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH,
+                        damped);
+}
+
 static inline void web(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, bool damped,
                        bool forced) {
+    const uint8_t *is_upright = s->web->is_upright;
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
-        const size_t first_node = (size_t)span->first_record * MSPRINGI_WIDTH;
-        for (size_t slot = span->first_slot; slot < span->end_slot; ++slot)
-            move(s, slot, web_force(s, first_node + (slot - span->first_slot), damped), forced);
+        vector handed[MSPRINGI_WIDTH] = {{0.0f, 0.0f}}; // by the group before
+        size_t node = (size_t)span->first_record * MSPRINGI_WIDTH;
+        for (size_t slot = span->first_slot; slot < span->end_slot; ++slot, ++node) {
+            const bool has_upright = is_upright && is_upright[node / MSPRINGI_WIDTH];
+            vector *below = &handed[slot % MSPRINGI_WIDTH];
+            vector force = web_force(s, node, slot_at(s, slot), has_upright, damped);
+            force = (vector){force.x + below->x, force.y + below->y};
+            *below = (vector){0.0f, 0.0f};
+            if (has_upright) {
+                const vector up = upright_force(s, slot, node, damped);
+                force = (vector){force.x + up.x, force.y + up.y};
+                *below = (vector){-up.x, -up.y};
+            }
+            move(s, slot, force, forced);
+        }
     }
 }
 
 static inline void attached(const mspringi_sweep *s, uint32_t first, uint32_t count, float *x, float *y,
                             bool damped) {
     for (size_t i = first; i < (size_t)first + count; ++i) {
-        const vector force = web_force(s, s->web->own_count + i, damped);
+        const vector force = web_force(s, s->web->own_count + i, node_at(s, s->web->own_count + i), 0, damped);
         x[i] = force.x;
         y[i] = force.y;
     }

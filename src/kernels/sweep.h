@@ -288,12 +288,13 @@ MSPRINGI_INLINE vector add_pull(vector sum, gap to, const float *record, bool da
     return sum;
 }
 
-// The force of the web on LANES of its nodes. Each rung's neighbours are loaded before the forces of the one before
-// are computed, so that a processor that looks ahead a hundred operations or three has both under way: 7 to 11 %
-// less time at SSE2, AVX2 and AVX-512.
-MSPRINGI_INLINE vector web_force(const mspringi_sweep *s, motion here, size_t group, size_t lane, bool damped) {
+// The force of the web on LANES of its nodes, by the rungs of their group from that number on. Each rung's
+// neighbours are loaded before the forces of the one before are computed, so that a processor that looks ahead a
+// hundred operations or three has both under way: 7 to 11 % less time at SSE2, AVX2 and AVX-512.
+MSPRINGI_INLINE vector web_force(const mspringi_sweep *s, motion here, size_t group, size_t lane, uint32_t rungs,
+                                 bool damped) {
     const size_t stride = (size_t)(damped ? 3 : 2) * MSPRINGI_WIDTH;
-    const uint32_t first = s->web->first_rung[group], end = s->web->first_rung[group + 1];
+    const uint32_t first = s->web->first_rung[group] + rungs, end = s->web->first_rung[group + 1];
     const uint32_t *neighbour = s->web->neighbour + (size_t)first * MSPRINGI_WIDTH + lane;
     const float *record = s->web_springs + first * stride + lane;
     vector sum = {zero(), zero()};
@@ -310,13 +311,54 @@ MSPRINGI_INLINE vector web_force(const mspringi_sweep *s, motion here, size_t gr
     return add_pull(sum, next, record, damped);
 }
 
+// The forces of a group's upright rung on LANES of its nodes; those on the next group's are the opposite.
+MSPRINGI_INLINE vector upright_force(const mspringi_sweep *s, size_t slot, motion here, size_t group, size_t lane,
+                                     bool damped) {
+    const float *record =
+        s->web_springs + (size_t)s->web->first_rung[group] * (damped ? 3 : 2) * MSPRINGI_WIDTH + lane;
+    const motion above = load_motion(s, slot + MSPRINGI_WIDTH, damped);
+    const extent to = spring_extent(above, here);
+    return spring_force(to, inverse_or_zero(to.length), above, here, record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH,
+                        record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, damped);
+}
+
+// A web that ropes stand in, one column of LANES nodes after the other.
+MSPRINGI_INLINE void standing_web(const mspringi_sweep *sweep, const mspringi_span *span, bool damped,
+                                  bool forced) {
+    const mspringi_sweep copy = *sweep, *const s = &copy;
+    const uint8_t *is_upright = s->web->is_upright;
+    for (size_t lane = 0; lane < MSPRINGI_WIDTH; lane += LANES) {
+        vector handed = {zero(), zero()};
+        size_t group = span->first_record;
+        for (size_t slot = span->first_slot + lane; slot < end_of(span); slot += MSPRINGI_WIDTH, ++group) {
+            const motion here = load_motion(s, slot, damped);
+            vector force = web_force(s, here, group, lane, is_upright[group], damped);
+            force.x = add(force.x, handed.x);
+            force.y = add(force.y, handed.y);
+            handed.x = handed.y = zero();
+            if (is_upright[group]) {
+                const vector up = upright_force(s, slot, here, group, lane, damped);
+                force.x = add(force.x, up.x);
+                force.y = add(force.y, up.y);
+                handed.x = sub(zero(), up.x);
+                handed.y = sub(zero(), up.y);
+            }
+            move(s, slot, here, force, damped, forced);
+        }
+    }
+}
+
 MSPRINGI_INLINE void web(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, bool damped,
                          bool forced) {
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
+        if (s->web->is_upright) {
+            standing_web(s, span, damped, forced);
+            continue;
+        }
         for (size_t slot = span->first_slot; slot < end_of(span); slot += LANES) {
             const size_t node = (size_t)span->first_record * MSPRINGI_WIDTH + (slot - span->first_slot);
             const motion here = load_motion(s, slot, damped);
-            const vector force = web_force(s, here, node / MSPRINGI_WIDTH, node % MSPRINGI_WIDTH, damped);
+            const vector force = web_force(s, here, node / MSPRINGI_WIDTH, node % MSPRINGI_WIDTH, 0, damped);
             move(s, slot, here, force, damped, forced);
         }
     }
@@ -331,7 +373,7 @@ MSPRINGI_INLINE void attached(const mspringi_sweep *s, uint32_t first_attached, 
         for (size_t lane = 0; lane < LANES; ++lane)
             nodes[lane] = (uint32_t)(first + i + lane);
         load_packed(s->packed, nodes, &here.x, &here.y, &here.vx, &here.vy);
-        const vector force = web_force(s, here, (first + i) / MSPRINGI_WIDTH, i % MSPRINGI_WIDTH, damped);
+        const vector force = web_force(s, here, (first + i) / MSPRINGI_WIDTH, i % MSPRINGI_WIDTH, 0, damped);
         store(x + i, force.x);
         store(y + i, force.y);
     }

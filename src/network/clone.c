@@ -43,6 +43,8 @@ static void move_topology(const moving *m, mspringi_topology *t) {
     MOVE(t->web.first_rung);
     MOVE(t->web.neighbour);
     MOVE(t->web.entry);
+    MOVE(t->web.is_upright);
+    MOVE(t->web.is_read);
     MOVE(t->spans);
     MOVE(t->tight_spans);
     MOVE(t->first_tight);

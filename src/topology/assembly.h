@@ -5,7 +5,7 @@
 #ifndef MSPRINGI_ASSEMBLY_H
 #define MSPRINGI_ASSEMBLY_H
 
-#include "analysis.h"
+#include "ropes.h"
 
 /// A block of a grid on its way to a number: row, then column block.
 typedef uint64_t mspringi_block_key;
@@ -35,6 +35,7 @@ struct mspringi_assembly {
     mspringi_grids grids;
     mspringi_sheets sheets;
     mspringi_homes homes;
+    mspringi_ropes ropes;
     mspringi_web_list web;
     mspringi_layers layers;
     mspringi_block_key *blocks; ///< of all grids, grid after grid in the order of their rows, each sorted
@@ -102,7 +103,7 @@ mspring_result mspringi_assembly_trim_spans(mspringi_assembly *a);
 mspring_result mspringi_assembly_tighten_spans(mspringi_assembly *a);
 mspring_result mspringi_assembly_make_strips(mspringi_assembly *a);
 
-/// The strip of each lattice and chain block, a new array of [block_count]; NULL if there is no memory.
+/// The strip of each block that one has, a new array of [block_count]; NULL if there is no memory.
 uint32_t *mspringi_assembly_list_strips_of_blocks(const mspringi_assembly *a);
 
 #endif

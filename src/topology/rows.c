@@ -187,6 +187,11 @@ uint32_t *mspringi_assembly_list_strips_of_blocks(const mspringi_assembly *a) {
         for (uint32_t i = first->first_span; i < last->first_span + last->span_count; ++i)
             for (uint32_t slot = t->spans[i].first_slot; slot < t->spans[i].end_slot; slot += MSPRINGI_QUARTER)
                 strip_of_block[slot / MSPRINGI_WIDTH] = s;
+        if (t->strips[s].home_span == MSPRING_NONE)
+            continue;
+        const mspringi_span *home = &t->spans[t->strips[s].home_span];
+        for (uint32_t slot = home->first_slot; slot < home->end_slot; slot += MSPRINGI_WIDTH)
+            strip_of_block[slot / MSPRINGI_WIDTH] = s;
     }
     return strip_of_block;
 }

@@ -21,6 +21,7 @@ static mspring_result begin_web(mspringi_assembly *a) {
                                     .count = t->leftover_count,
                                     .first_slot = t->web_first * MSPRINGI_WIDTH,
                                     .own_count = t->web_blocks * MSPRINGI_WIDTH,
+                                    .homed_count = a->homed_blocks * MSPRINGI_WIDTH,
                                     .block_count = t->block_count,
                                     .strip_of_block = mspringi_assembly_list_strips_of_blocks(a)};
     return a->weaving.strip_of_block ? mspringi_web_begin(&a->weaving, &a->pace, a->memory, a->message)
@@ -201,6 +202,21 @@ static mspring_result count_web(mspringi_assembly *a) {
     return MSPRING_OK;
 }
 
+static mspring_result begin_ropes(mspringi_assembly *a) {
+    return mspringi_ropes_reserve(&a->ropes, &a->graph, &a->grids, &a->strands, &a->homes, &a->pace, a->memory,
+                                  a->message);
+}
+
+static mspring_result settle_ropes(mspringi_assembly *a) {
+    mspringi_ropes_settle(&a->ropes, &a->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result stand_ropes(mspringi_assembly *a) {
+    mspringi_ropes_stand(&a->ropes, &a->web, &a->pace);
+    return MSPRING_OK;
+}
+
 static mspring_result drop_strands(mspringi_assembly *a) {
     mspringi_strands_drop(&a->strands, &a->graph, &a->homes, a->kinds, &a->web, &a->pace);
     return MSPRING_OK;
@@ -246,6 +262,16 @@ static mspring_result order_web_windows(mspringi_assembly *a) {
 
 static mspring_result count_degrees(mspringi_assembly *a) {
     mspringi_web_count_degrees(&a->weaving, &a->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result count_upright(mspringi_assembly *a) {
+    mspringi_web_count_upright(&a->weaving, &a->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result take_upright(mspringi_assembly *a) {
+    mspringi_web_take_upright(&a->weaving, &a->pace);
     return MSPRING_OK;
 }
 
@@ -306,12 +332,15 @@ static mspring_result (*const layout_passes[])(mspringi_assembly *a) = {
     prepare_homes,
     find_homes,
     count_web,
+    begin_ropes,
+    settle_ropes,
     drop_strands,
     begin_web_list,
     list_web,
     set_web_keys,
     sort_web,
     order_web,
+    stand_ropes,
     begin_layers,
     find_layers,
     order_web_windows,
@@ -343,6 +372,8 @@ static mspring_result (*const layout_passes[])(mspringi_assembly *a) = {
     mspringi_assembly_make_strips,
     begin_web,
     count_degrees,
+    count_upright,
+    take_upright,
     list_attached,
     reserve_web,
     list_attached,
@@ -414,6 +445,7 @@ void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory
     mspringi_grids_destroy(&begun->grids, memory);
     mspringi_sheets_destroy(&begun->sheets, memory);
     mspringi_homes_destroy(&begun->homes, memory);
+    mspringi_ropes_destroy(&begun->ropes, memory);
     mspringi_web_list_destroy(&begun->web, memory);
     mspringi_layers_destroy(&begun->layers, memory);
     mspringi_free(memory, begun);

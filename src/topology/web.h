@@ -7,6 +7,10 @@
 /// stiffness 0, which exerts nothing). So a node's force is a sum in registers, in the order of its rungs; each
 /// spring is computed at both its ends, which costs less than adding to two places in memory.
 ///
+/// Ropes stand upright, sixteen side by side: the springs of a group's nodes to those of the next one are its first
+/// rung then, and are computed once, in place and without gathering. Nodes that they join have no more than two
+/// springs, whose sum is the same in either order.
+///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_WEB_H
 #define MSPRINGI_WEB_H
@@ -26,6 +30,8 @@ typedef struct mspringi_web {
     uint32_t *first_rung;    ///< [group_count + 1]
     uint32_t *neighbour;     ///< [rungs][MSPRINGI_WIDTH] nodes
     uint32_t *entry;         ///< [2 * springs] where in neighbour the two ends of each leftover spring are
+    uint8_t *is_upright;     ///< [group_count] whether the group's first rung is upright; NULL if none is
+    uint8_t *is_read;        ///< [group_count] whether a rung that is not leads to one of its nodes, likewise
 } mspringi_web;
 
 /// What a web is made of, and what is needed meanwhile.
@@ -37,7 +43,10 @@ typedef struct mspringi_weaving {
     uint32_t block_count;                   ///< of all slots
     uint32_t *strip_of_block;               ///< [block_count] in what strip another slot is; freed with the rest
     uint32_t *degree, *node_of_slot, *used; ///< by slot, by slot and by node
+    uint32_t homed_count;                   ///< the first of these, that have a home
     uint32_t attached, strip;               ///< attached nodes so far, and the strip of the last
+    uint8_t *upright;                       ///< [own groups] springs that could stand there
+    uint32_t upright_count;                 ///< that do
 } mspringi_weaving;
 
 /// Make the web: passes in their order, the one that lists the attached nodes once before and once after they have
@@ -45,6 +54,8 @@ typedef struct mspringi_weaving {
 mspring_result mspringi_web_begin(mspringi_weaving *weaving, mspringi_pace *pace, mspringi_memory *memory,
                                   mspringi_message *message);
 void mspringi_web_count_degrees(mspringi_weaving *weaving, mspringi_pace *pace);
+void mspringi_web_count_upright(mspringi_weaving *weaving, mspringi_pace *pace);
+void mspringi_web_take_upright(mspringi_weaving *weaving, mspringi_pace *pace);
 void mspringi_web_list_attached(mspringi_weaving *weaving, mspringi_pace *pace);
 mspring_result mspringi_web_reserve(mspringi_weaving *weaving, mspringi_pace *pace, mspringi_memory *memory,
                                     mspringi_message *message);
