@@ -4,6 +4,7 @@
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
+#include <stdlib.h>
 
 #include "recipe.h"
 #include "support.h"
@@ -166,12 +167,55 @@ static void moving_the_origin_moves_no_particle(void **state) {
     mspring_network_destroy(network);
 }
 
+/// Two particles that fly past the origin, the second one faster.
+static mspring_network *two_in_flight(void) {
+    mspring_builder *builder = support_builder();
+    for (int i = 0; i < 2; i++) {
+        mspring_particle_def particle;
+        check_ok(mspring_particle_def_init(&particle, sizeof particle));
+        particle.x = particle.y = i == 0 ? 40 : -40;
+        particle.vx = particle.vy = i == 0 ? 64 : 96;
+        check_ok(mspring_builder_add_particle(builder, &particle, NULL));
+    }
+    mspring_network_def def = support_def(0, 1);
+    return support_network(builder, &def);
+}
+
+static void a_snapshot_brings_its_origin(void **state) {
+    (void)state;
+    // From step 48 to 176 the network is let go 128 m from its origin, as it was on both sides of it when it had
+    // gone 64, and from 93 on it could follow: whoever did not know of the 128 would. In step 176 it does.
+    static const int saved_after[] = {100, 200};
+    for (size_t i = 0; i < COUNT_OF(saved_after); i++) {
+        mspring_network *network = two_in_flight(), *loaded = two_in_flight();
+        support_steps(network, (uint32_t)saved_after[i], 1.0 / 128);
+        size_t size;
+        check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_FRAME, &size));
+        uint8_t *bytes = malloc(size);
+        assert_non_null(bytes);
+        check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_FRAME, bytes, size, NULL));
+        check_ok(mspring_network_load(loaded, bytes, size));
+        free(bytes);
+        mspring_view here = {.struct_size = sizeof here}, there = {.struct_size = sizeof there};
+        for (int step = 0; step < 100; step++) {
+            check_ok(mspring_network_view(network, &here));
+            check_ok(mspring_network_view(loaded, &there));
+            assert_true(here.origin_x == there.origin_x && here.origin_y == there.origin_y);
+            assert_int_equal(here.origin_x > 0 && here.origin_y > 0, saved_after[i] + step >= 176);
+            assert_int_equal(support_hash(network), support_hash(loaded));
+            support_steps(network, 1, 1.0 / 128);
+            support_steps(loaded, 1, 1.0 / 128);
+        }
+        mspring_network_destroy(network);
+        mspring_network_destroy(loaded);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(far_away_is_as_here),
-        cmocka_unit_test(at_any_offset_it_stays_as_still),
-        cmocka_unit_test(a_flying_ship_keeps_its_shape),
-        cmocka_unit_test(moving_the_origin_moves_no_particle),
+        cmocka_unit_test(far_away_is_as_here),           cmocka_unit_test(at_any_offset_it_stays_as_still),
+        cmocka_unit_test(a_flying_ship_keeps_its_shape), cmocka_unit_test(moving_the_origin_moves_no_particle),
+        cmocka_unit_test(a_snapshot_brings_its_origin),
     };
     return cmocka_run_group_tests_name("origin", tests, NULL, NULL);
 }
