@@ -85,6 +85,41 @@ static void any_division_gives_the_same_bits(void **state) {
     }
 }
 
+/// Have steps refused in which a particle is torn away, one in each fourth row, and go on. Returns what was said,
+/// and the state, in one number.
+static uint64_t run_refused(const recipe *made, uint32_t worker_count) {
+    mspring_network_def def = support_def(-9.8f, 40);
+    def.worker_count = worker_count;
+    mspring_network *network = recipe_network(made, &def);
+    support_steps(network, 1, 0.01);
+    const uint64_t before = support_hash(network);
+    uint64_t hash = before;
+    for (mspring_id p = 45; p < 15000; p += 313) {
+        if (made->particles[p].flags & MSPRING_PARTICLE_PINNED)
+            continue;
+        check_ok(mspring_network_apply_force(network, p, 3e9f, 1e9f));
+        check_error(mspring_network_step(network, 0.01), MSPRING_ERROR_UNSTABLE);
+        for (const char *said = mspring_network_error(network); *said; said++)
+            hash = hash * 31 + (uint8_t)*said;
+        check_ok(mspring_network_apply_force(network, p, -3e9f, -1e9f));
+        assert_int_equal(support_hash(network), before);
+    }
+    support_steps(network, 1, 0.01);
+    hash = hash * 31 + support_hash(network);
+    mspring_network_destroy(network);
+    return hash;
+}
+
+/// Wherever it happens, in rows that two workers share, too.
+static void what_is_refused_is_taken_back(void **state) {
+    (void)state;
+    recipe made = lattice(&ways[0]);
+    const uint64_t expected = run_refused(&made, 1);
+    for (size_t w = 0; w < COUNT_OF(worker_counts); w++)
+        assert_int_equal(run_refused(&made, worker_counts[w]), expected);
+    recipe_free(&made);
+}
+
 /// Four squares in the same rows, of which two fall asleep.
 static uint64_t run_sleepers(uint32_t worker_count) {
     uint64_t seed = 6, hash = 0;
@@ -286,6 +321,7 @@ static void what_sleeps_in_between_changes_nothing(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_division_gives_the_same_bits),
+        cmocka_unit_test(what_is_refused_is_taken_back),
         cmocka_unit_test(what_sleeps_beside_gives_the_same_bits),
         cmocka_unit_test(what_sleeps_beside_a_notch_changes_nothing),
         cmocka_unit_test(what_sleeps_in_between_changes_nothing),
