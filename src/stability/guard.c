@@ -190,9 +190,8 @@ static mspring_result explain_border(mspring_network *network, double dt, float 
     const mspring_id moved = at_base > at_tip || (at_base == at_tip && a < b) ? a : b;
     return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
                          "a step of %g s (substeps: %u): motion would turn round and grow in each, as %g s are too "
-                         "long for springs and "
-                         "masses in this shape, as for spring %u at particle %u: take a shorter step, more "
-                         "substeps or less stiffness",
+                         "long for springs and masses in this shape, as for spring %u at particle %u: take a "
+                         "shorter step, more substeps or less stiffness",
                          dt, (unsigned)network->substeps, (double)h, (unsigned)spring, (unsigned)moved);
 }
 
