@@ -265,8 +265,7 @@ static uint32_t quilt(uint64_t seed, uint8_t sides[ROWS][WIDE]) {
 
 /// A hash of the positions of the colour that moves, while the other one, which lies still but not unstrained, is
 /// asleep or not. Counts in shared whether workers have shared it.
-static uint64_t run_quilt(uint64_t seed, uint8_t mover, float sleep_speed, uint32_t worker_count,
-                          uint32_t *shared) {
+static uint64_t run_quilt(uint64_t seed, int mover, float sleep_speed, uint32_t worker_count, uint32_t *shared) {
     static uint8_t sides[ROWS][WIDE];
     static uint16_t cells[ROWS][WIDE];
     static uint8_t side_of[COUNT];
@@ -309,7 +308,7 @@ static void what_sleeps_in_between_changes_nothing(void **state) {
     (void)state;
     uint32_t shared = 0;
     for (uint64_t seed = 1; seed <= 4; seed++)
-        for (uint8_t mover = WHITE; mover <= BLACK; mover++) {
+        for (int mover = WHITE; mover <= BLACK; mover++) {
             const uint64_t expected = run_quilt(seed, mover, 0, 1, &shared);
             assert_true(run_quilt(seed, mover, 1e-2f, 1, &shared) == expected);
             for (size_t w = 0; w < COUNT_OF(worker_counts); w++)
