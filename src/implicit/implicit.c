@@ -23,7 +23,7 @@
 /// is faster alone (two workers on cores with a load of 10: 2.3 times, 1800x5). So after a substep with more than
 /// so many sleeps the next ones are taken alone: so many, and twice as many each time, up to so many. The bits are
 /// the same. Few at first, as others take a core away for a moment now and then (with 64 our ship's two workers
-/// were as fast as one, where they are 1.6 to 1.8 times).
+/// were as fast as one, where they are 1.3 to 1.7 times).
 #define BEARABLE_SLEEPS 6
 #define SHORTEST_PATIENCE 4
 #define LONGEST_PATIENCE 1024

@@ -11,7 +11,7 @@
 /// Most and fewest looks before going to sleep, 200 and 3 microseconds on a Zen 4: the most is longer than what one
 /// thread of an implicit step does alone while the others wait, as waking up costs them as much again (544 x 68
 /// with two workers: 1.4 times as fast as one with half of that, 0.95 with an eighth; a ship of 158,000 springs
-/// sleeps in one substep of ten instead of in each).
+/// sleeps in one substep of seven instead of in each).
 #define MOST_SPINS 8000
 #define FEWEST_SPINS 100
 
