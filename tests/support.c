@@ -184,6 +184,16 @@ uint64_t support_hash(const mspring_network *network) {
     return hash;
 }
 
+void support_bring(const mspring_network *from, mspring_network *to, mspring_snapshot_contents contents) {
+    size_t size = 0;
+    check_ok(mspring_network_snapshot_size(from, contents, &size));
+    void *bytes = malloc(size);
+    assert_non_null(bytes);
+    check_ok(mspring_network_save(from, contents, bytes, size, NULL));
+    check_ok(mspring_network_load(to, bytes, size));
+    free(bytes);
+}
+
 bool support_sleeps(const mspring_network *network, mspring_id particle) {
     uint8_t asleep = 2;
     check_ok(mspring_network_get_sleepers(network, particle, 1, &asleep));

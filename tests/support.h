@@ -94,6 +94,9 @@ typedef struct support_point {
 support_point support_position(const mspring_network *network, mspring_id particle);
 support_point support_velocity(const mspring_network *network, mspring_id particle);
 uint64_t support_hash(const mspring_network *network);
+
+/// Have a network go on from where another one is, by a snapshot.
+void support_bring(const mspring_network *from, mspring_network *to, mspring_snapshot_contents contents);
 bool support_sleeps(const mspring_network *network, mspring_id particle);
 
 /// What has been made of motion: kinetic and elastic energy, J.

@@ -3,7 +3,6 @@
 ///
 /// SPDX-License-Identifier: MIT
 #include <stdbool.h>
-#include <stdlib.h>
 
 #include "allocator.h"
 #include "recipe.h"
@@ -81,13 +80,7 @@ static void snapshots_bring_fractions(void **state) {
     mspring_network *edited = recipe_network(&made, NULL), *network = recipe_network(&made, NULL);
     made.springs[100].stiffness = 0.77f;
     check_ok(mspring_network_set_stiffnesses(edited, 100, 1, &made.springs[100].stiffness));
-    size_t size;
-    check_ok(mspring_network_snapshot_size(edited, MSPRING_SNAPSHOT_ALL, &size));
-    void *snapshot = malloc(size);
-    assert_non_null(snapshot);
-    check_ok(mspring_network_save(edited, MSPRING_SNAPSHOT_ALL, snapshot, size, NULL));
-    check_ok(mspring_network_load(network, snapshot, size));
-    free(snapshot);
+    support_bring(edited, network, MSPRING_SNAPSHOT_ALL);
     check_fractions(network, &made);
     assert_int_equal(support_hash(network), support_hash(edited));
     for (int i = 0; i < 3; i++) {

@@ -383,12 +383,7 @@ static void what_edits_outdate_is_saved(void **state) {
         mspring_network *const both[] = {network, other};
         support_steps(network, 2, 0.01);
         edit_pair(network, edit);
-        size_t size = 0;
-        check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &size));
-        void *snapshot = test_malloc(size);
-        check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_ALL, snapshot, size, NULL));
-        check_ok(mspring_network_load(other, snapshot, size));
-        test_free(snapshot);
+        support_bring(network, other, MSPRING_SNAPSHOT_ALL);
         mspring_result results[2] = {MSPRING_OK, MSPRING_OK};
         support_kick(network, 0, 0.01f);
         support_kick(other, 0, 0.01f);

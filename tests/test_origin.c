@@ -4,7 +4,6 @@
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
-#include <stdlib.h>
 
 #include "recipe.h"
 #include "support.h"
@@ -189,13 +188,7 @@ static void a_snapshot_brings_its_origin(void **state) {
     for (size_t i = 0; i < COUNT_OF(saved_after); i++) {
         mspring_network *network = two_in_flight(), *loaded = two_in_flight();
         support_steps(network, (uint32_t)saved_after[i], 1.0 / 128);
-        size_t size;
-        check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_FRAME, &size));
-        uint8_t *bytes = malloc(size);
-        assert_non_null(bytes);
-        check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_FRAME, bytes, size, NULL));
-        check_ok(mspring_network_load(loaded, bytes, size));
-        free(bytes);
+        support_bring(network, loaded, MSPRING_SNAPSHOT_FRAME);
         mspring_view here = {.struct_size = sizeof here}, there = {.struct_size = sizeof there};
         for (int step = 0; step < 100; step++) {
             check_ok(mspring_network_view(network, &here));
