@@ -16,8 +16,7 @@ typedef struct variant {
     bool snapshots;   ///< one of a frame before every step
     bool hooked;
     mspring_phase hook;
-    uint32_t period;  ///< of the hook; 0: 1
-    uint32_t workers; ///< 0: as the plain scene
+    uint32_t period; ///< of the hook; 0: 1
 } variant;
 
 static const variant variants[] = {
@@ -34,7 +33,6 @@ static const variant variants[] = {
     {.name = "4 ropes", .ropes = 4},
     {.name = "40 ropes", .ropes = 40},
     {.name = "400 ropes", .ropes = 400},
-    {.name = "2 workers", .workers = 2},
 };
 
 static const char *const default_scenes[] = {"bar_544x68", "ship", NULL};
@@ -71,7 +69,7 @@ static bool create_absolute(const bench_network *plain, mspring_simd level, uint
 /// Make the network of a variant of the plain scene.
 static bool create_variant(const variant *kind, const bench_scene *subject, const bench_options *options,
                            const bench_network *plain, mspring_simd level, bench_network *out, scene_error *error) {
-    const uint32_t workers = kind->workers > 0 ? kind->workers : options->workers;
+    const uint32_t workers = options->workers;
     bool ok;
     if (kind->absolute) {
         ok = create_absolute(plain, level, workers, out, error);

@@ -18,6 +18,7 @@ void bench_options_help(void) {
          "\n"
          "What to measure (default: scenes against the naive step)\n"
          "  --features           what dampers, hooks, forces and ropes cost\n"
+         "  --workers            what workers gain, next to as many threads that share nothing\n"
          "  --session            what a game's edits, events and measurements cost, next to its step\n"
          "  --linear             what the sparse direct solver costs, in explicit substeps\n"
          "  --solvers            what steps of the implicit and the direct solver cost, in explicit substeps\n"
@@ -41,7 +42,8 @@ void bench_options_help(void) {
          "  --solver explicit    the solver\n"
          "  --substeps N         substeps per step (default 40; from 2 million springs on 16)\n"
          "  --level LEVEL        scalar, sse2, avx2, avx512, neon, or all (default: the best)\n"
-         "  --threads N          workers of the library's network (default 1); the naive step has one\n"
+         "  --threads N          workers of the library's network (default 1; of --workers 2); the naive step has "
+         "one\n"
          "  --repeat N           pairs of samples (default 21; from 2 million springs on 5)\n"
          "\n"
          "Output (default: a table for people)\n"
@@ -105,10 +107,19 @@ static bool is_switch(const char *option, bench_options *out) {
     static const struct {
         const char *name;
         bench_mode mode;
-    } modes[] = {{"--features", BENCH_FEATURES}, {"--session", BENCH_SESSION},   {"--linear", BENCH_LINEAR},
-                 {"--solvers", BENCH_SOLVERS},   {"--roofline", BENCH_ROOFLINE}, {"--map", BENCH_MAP},
-                 {"--alarms", BENCH_ALARMS},     {"--guard", BENCH_GUARD},       {"--check", BENCH_CHECK},
-                 {"--list", BENCH_LIST},         {"--help", BENCH_HELP},         {"-h", BENCH_HELP}};
+    } modes[] = {{"--features", BENCH_FEATURES},
+                 {"--workers", BENCH_WORKERS},
+                 {"--session", BENCH_SESSION},
+                 {"--linear", BENCH_LINEAR},
+                 {"--solvers", BENCH_SOLVERS},
+                 {"--roofline", BENCH_ROOFLINE},
+                 {"--map", BENCH_MAP},
+                 {"--alarms", BENCH_ALARMS},
+                 {"--guard", BENCH_GUARD},
+                 {"--check", BENCH_CHECK},
+                 {"--list", BENCH_LIST},
+                 {"--help", BENCH_HELP},
+                 {"-h", BENCH_HELP}};
     for (size_t i = 0; i < sizeof modes / sizeof *modes; i++) {
         if (strcmp(option, modes[i].name) == 0) {
             out->mode = modes[i].mode;
