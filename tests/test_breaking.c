@@ -239,6 +239,142 @@ static void a_ramp_is_even_and_ends(void **state) {
     mspring_network_destroy(network);
 }
 
+static size_t snapshot_size(const mspring_network *network, mspring_snapshot_contents contents) {
+    size_t size = 0;
+    check_ok(mspring_network_snapshot_size(network, contents, &size));
+    return size;
+}
+
+static void a_ramp_ends_with_its_last_step(void **state) {
+    (void)state;
+    mspring_network *network = torn_pair();
+    const mspring_id spring = 0;
+    check_ok(mspring_network_restore_springs(network, &spring, 1, 1));
+    // Four steps of a quarter are a second, without rounding; what has no ramp any more saves none.
+    const size_t with_ramp = snapshot_size(network, MSPRING_SNAPSHOT_FRAME);
+    support_steps(network, 3, 0.25);
+    assert_int_equal(snapshot_size(network, MSPRING_SNAPSHOT_FRAME), with_ramp);
+    support_steps(network, 1, 0.25);
+    assert_true(snapshot_size(network, MSPRING_SNAPSHOT_FRAME) < with_ramp);
+    assert_true(info_of(network, 0).rest_length == 1);
+    mspring_network *same = torn_pair();
+    support_bring(network, same, MSPRING_SNAPSHOT_ALL);
+    assert_int_equal(support_hash(same), support_hash(network));
+    mspring_network_destroy(network);
+    mspring_network_destroy(same);
+}
+
+static void a_ramp_begins_at_the_distance_of_its_ends(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    support_particle(builder, 10, 20, 1);
+    support_particle(builder, 11, 20, 1);
+    support_spring(builder, 0, 1, 1000, 10);
+    mspring_network_def def = support_def(0, 20);
+    mspring_network *network = support_network(builder, &def);
+    const mspring_id spring = 0;
+    // 3 m across and 4 m up are 5 m, whichever of the ends is where.
+    const double x[] = {12, 9}, y[] = {17, 21};
+    for (int way = 0; way < 2; way++) {
+        check_ok(mspring_network_break_springs(network, &spring, 1));
+        check_ok(mspring_network_set_positions(network, 0, 1, &x[way], &y[way]));
+        check_ok(mspring_network_set_positions(network, 1, 1, &x[1 - way], &y[1 - way]));
+        check_ok(mspring_network_restore_springs(network, &spring, 1, 1));
+        assert_true(info_of(network, 0).rest_length == 5 && info_of(network, 0).force == 0);
+    }
+    // Where both ends are in one place strain divides by a length all the same: a small part of the spring's own.
+    check_ok(mspring_network_break_springs(network, &spring, 1));
+    check_ok(mspring_network_set_positions(network, 1, 1, &x[1], &y[1]));
+    check_ok(mspring_network_set_positions(network, 0, 1, &x[1], &y[1]));
+    check_ok(mspring_network_restore_springs(network, &spring, 1, 1));
+    assert_true(info_of(network, 0).rest_length > 0 && info_of(network, 0).rest_length <= 0.01f);
+    assert_true(info_of(network, 0).strain == -1);
+    mspring_network_destroy(network);
+}
+
+/// A frame of before the ramp leaves rest lengths out, so what the ramp has made of its spring's has to go with it.
+static void a_frame_of_before_a_ramp_takes_it_back(void **state) {
+    (void)state;
+    mspring_network *network = torn_pair(), *twin = torn_pair();
+    const mspring_id spring = 0;
+    // The first restoring with a ramp gives springs rest lengths of their own, which does not change them.
+    size_t size = snapshot_size(network, MSPRING_SNAPSHOT_FRAME);
+    void *frame = malloc(size);
+    assert_non_null(frame);
+    check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_FRAME, frame, size, NULL));
+    check_ok(mspring_network_restore_springs(network, &spring, 1, 1));
+    support_steps(network, 5, 0.01);
+    assert_true(info_of(network, 0).rest_length > 2.5f);
+    check_ok(mspring_network_load(network, frame, size));
+    assert_true(info_of(network, 0).rest_length == 1);
+    assert_int_equal(info_of(network, 0).flags, MSPRING_SPRING_BROKEN);
+    check_ok(mspring_network_restore_springs(network, &spring, 1, 0));
+    check_ok(mspring_network_restore_springs(twin, &spring, 1, 0));
+    support_steps(network, 5, 0.01);
+    support_steps(twin, 5, 0.01);
+    assert_int_equal(support_hash(network), support_hash(twin));
+    free(frame);
+    mspring_network_destroy(network);
+    mspring_network_destroy(twin);
+}
+
+static void what_is_whole_stays_as_it_is(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    support_particle(builder, 0, 0, 1);
+    support_particle(builder, 1, 0, 1);
+    support_spring(builder, 0, 1, 1000, 10);
+    mspring_network_def def = support_def(0, 20);
+    mspring_network *network = support_network(builder, &def);
+    const mspring_id spring = 0;
+    const double x = 3, y = 0;
+    mspring_event event;
+    uint32_t count;
+    check_ok(mspring_network_reserve_events(network, 8));
+    check_ok(mspring_network_set_positions(network, 1, 1, &x, &y));
+    // Stretched to three times its length, it goes on pulling.
+    check_ok(mspring_network_restore_springs(network, &spring, 1, 1));
+    assert_true(info_of(network, 0).rest_length == 1 && info_of(network, 0).strain == 2);
+    check_ok(mspring_network_read_events(network, &event, 1, &count, NULL));
+    assert_int_equal(count, 0);
+    mspring_network_destroy(network);
+}
+
+static void ramps_take_up_to_eleven_days(void **state) {
+    (void)state;
+    mspring_network *network = torn_pair();
+    const mspring_id spring = 0;
+    const double wrong[] = {1.0000001e6, INFINITY, NAN, -1e-9};
+    for (size_t i = 0; i < COUNT_OF(wrong); i++) {
+        check_error(mspring_network_restore_springs(network, &spring, 1, wrong[i]), MSPRING_ERROR_ARGUMENT);
+        check_contains(mspring_network_error(network), "ramp");
+        assert_int_equal(info_of(network, 0).flags, MSPRING_SPRING_BROKEN);
+    }
+    check_ok(mspring_network_restore_springs(network, &spring, 1, 1e6));
+    support_steps(network, 100, 0.01);
+    // In a second 2e-6 m of the 2 m.
+    check_near(info_of(network, 0).rest_length, 3 - 2e-6, 2.4e-7); // of a float
+    mspring_network_destroy(network);
+}
+
+/// Memory is taken at the first break, which a list of none is not.
+static void lists_of_none_take_no_memory(void **state) {
+    (void)state;
+    recipe made = mixed_recipe(0);
+    mspring_network *network = network_of(&made, MSPRING_SIMD_AUTO);
+    const size_t before = mspring_network_memory_used(network);
+    check_ok(mspring_network_break_springs(network, NULL, 0));
+    check_ok(mspring_network_restore_springs(network, NULL, 0, 0));
+    check_ok(mspring_network_detach_particles(network, NULL, 0));
+    check_ok(mspring_network_remove_springs(network, NULL, 0));
+    check_ok(mspring_network_remove_particles(network, NULL, 0));
+    check_ok(mspring_network_set_break_strains_at(network, NULL, 0, NULL));
+    check_ok(mspring_network_set_stress_strains(network, 5, 0, NULL));
+    assert_true(mspring_network_memory_used(network) == before);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
 static void a_refused_step_does_not_move_a_ramp(void **state) {
     (void)state;
     mspring_network *network = torn_pair(), *twin = torn_pair();
@@ -356,6 +492,12 @@ int main(void) {
         cmocka_unit_test(a_cut_rope_falls_in_two),
         cmocka_unit_test(a_ramp_takes_the_kick_out_of_restoring),
         cmocka_unit_test(a_ramp_is_even_and_ends),
+        cmocka_unit_test(a_ramp_ends_with_its_last_step),
+        cmocka_unit_test(a_ramp_begins_at_the_distance_of_its_ends),
+        cmocka_unit_test(a_frame_of_before_a_ramp_takes_it_back),
+        cmocka_unit_test(what_is_whole_stays_as_it_is),
+        cmocka_unit_test(ramps_take_up_to_eleven_days),
+        cmocka_unit_test(lists_of_none_take_no_memory),
         cmocka_unit_test(a_refused_step_does_not_move_a_ramp),
         cmocka_unit_test(a_detached_particle_flies_on_alone),
         cmocka_unit_test(bad_lists_are_refused_and_change_nothing),

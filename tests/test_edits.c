@@ -488,12 +488,17 @@ static void rounding_mode_of_the_host_does_not_matter(void **state) {
         const mspring_id ids[] = {3, 8};
         const float third[] = {1 / 3.0f, 1 / 3.0f};
         assert_int_equal(fesetround(modes[i]), 0);
+        const volatile float one = 1, little = 1e-10f;
+        const volatile float above = one + little, below = one - little;
         check_ok(mspring_network_set_masses(network, 0, mass.count, mass.value));
         check_ok(mspring_network_set_inverse_mass_scales_at(network, ids, 2, third));
         check_ok(mspring_network_set_stiffnesses_at(network, ids, 2, third));
         check_ok(mspring_network_break_springs(network, ids, 2));
         check_ok(mspring_network_restore_springs(network, ids, 2, 0.3));
         check_ok(mspring_network_renew_relative_springs(network));
+        // It is the thread's, and as it was; which fegetround() need not know.
+        assert_int_equal(fegetround(), modes[i]);
+        assert_true(one + little == above && one - little == below);
         fesetround(FE_TONEAREST);
         support_steps(network, 3, 0.01);
         expected = i == 0 ? support_hash(network) : expected;

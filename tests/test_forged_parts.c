@@ -127,6 +127,60 @@ static void values_have_their_ranges(void **state) {
     recipe_free(&made);
 }
 
+/// What goes for an implicit solver alone: a number of substeps that chooses itself, and what it carries on.
+static void values_of_an_implicit_solver_have_their_ranges(void **state) {
+    (void)state;
+    recipe made = snapshots_small_recipe();
+    mspring_network *network = snapshots_small_network(&made);
+    snapshots_use_solver(network, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, 7);
+    check_ok(mspring_network_step(network, 0.01));
+    saved good = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
+    uint64_t size;
+    const forged_word words[] = {{"sett", 52, 1, "substeps is"},
+                                 {"impl", 20, 2, "its scale is"},
+                                 {"impl", 28, 0, "it has 0 iterations"},
+                                 {"impl", 28, 10001, "it has 10001 iterations"},
+                                 {"impl", 28, UINT32_MAX, "iterations"},
+                                 {"impl", 32, 0, "substeps old of 0"},
+                                 {"impl", 32, 10001, "substeps old of 10001"},
+                                 {"impl", 36, 7, "7 substeps old of 7"},
+                                 {"impl", 36, UINT32_MAX, "substeps old of 7"},
+                                 {"impl", 40, UINT32_MAX, "it has gained"},
+                                 {"impl", 44, UINT32_MAX, "it has gained"},
+                                 {"impl", 48, UINT32_MAX, "it has gained"}};
+    for (size_t i = 0; i < COUNT_OF(words); i++) {
+        saved forged = snapshots_copy(&good);
+        snapshots_put_word(snapshots_section_of(&forged, words[i].tag, &size) + words[i].at, words[i].value);
+        snapshots_check_refused(network, &forged, words[i].part);
+        free(forged.bytes);
+    }
+    const float substeps[] = {-1, NAN, INFINITY};
+    for (size_t i = 0; i < COUNT_OF(substeps); i++) {
+        saved forged = snapshots_copy(&good);
+        snapshots_put_float(snapshots_section_of(&forged, "impl", &size) + 16, substeps[i]);
+        snapshots_check_refused(network, &forged, "its scale is");
+        free(forged.bytes);
+    }
+    // The scale, and energies, of which the last may be below 0.
+    const double doubles[] = {-1, NAN, INFINITY, -INFINITY};
+    const size_t places[] = {8, 52, 60, 68, 76};
+    for (size_t i = 0; i < COUNT_OF(doubles) * COUNT_OF(places); i++) {
+        const size_t at = places[i / COUNT_OF(doubles)];
+        const double value = doubles[i % COUNT_OF(doubles)];
+        if (at == 76 && value == -1) {
+            continue;
+        }
+        saved forged = snapshots_copy(&good);
+        snapshots_put_double(snapshots_section_of(&forged, "impl", &size) + at, value);
+        snapshots_check_refused(network, &forged, at == 8 ? "its scale is" : "it has gained");
+        free(forged.bytes);
+    }
+    snapshots_load(network, &good);
+    free(good.bytes);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
 /* ------------------------------------------------------------------------------------------------------ growth */
 
 enum { SPARE = 5 };
@@ -474,9 +528,13 @@ static void sections_are_as_long_as_they_must_be(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(values_have_their_ranges),     cmocka_unit_test(forged_growth_is_refused),
-        cmocka_unit_test(other_tiles_are_refused),      cmocka_unit_test(forged_sleep_is_refused),
-        cmocka_unit_test(what_nobody_has_does_nothing), cmocka_unit_test(sections_are_as_long_as_they_must_be),
+        cmocka_unit_test(values_have_their_ranges),
+        cmocka_unit_test(values_of_an_implicit_solver_have_their_ranges),
+        cmocka_unit_test(forged_growth_is_refused),
+        cmocka_unit_test(other_tiles_are_refused),
+        cmocka_unit_test(forged_sleep_is_refused),
+        cmocka_unit_test(what_nobody_has_does_nothing),
+        cmocka_unit_test(sections_are_as_long_as_they_must_be),
     };
     return cmocka_run_group_tests_name("forged_parts", tests, NULL, NULL);
 }

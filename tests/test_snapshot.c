@@ -211,6 +211,74 @@ static void all_goes_into_a_new_network(void **state) {
     recipe_free(&made);
 }
 
+/// Settings at the ends of what they may be.
+typedef struct extremes {
+    float global_damping, max_speed, relax;
+    uint32_t substeps, max_substeps, iterations, coarse_period;
+} extremes;
+
+static mspring_network *extreme_network(const extremes *set, mspring_solver kind) {
+    recipe made = {0};
+    // As far out as a network may be made, so that its origin is there, too.
+    recipe_particle(&made, MSPRING_MAX_COORDINATE, -MSPRING_MAX_COORDINATE, 1, 0);
+    recipe_particle(&made, MSPRING_MAX_COORDINATE - 4, -MSPRING_MAX_COORDINATE, 1, 0);
+    mspring_network_def def = support_def(-9.8f, 1);
+    def.global_damping = set->global_damping;
+    def.max_speed = set->max_speed;
+    mspring_network *network = recipe_network(&made, &def);
+    check_ok(mspring_network_set_relax_fraction(network, set->relax));
+    mspring_solver_def solver;
+    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    solver.solver = kind;
+    solver.substeps = set->substeps;
+    solver.max_substeps = set->max_substeps;
+    solver.iterations = set->iterations;
+    solver.coarse_period = set->coarse_period;
+    check_ok(mspring_network_set_solver(network, &solver));
+    recipe_free(&made);
+    return network;
+}
+
+/// Whatever a setting may be comes back with a snapshot, into a network that has other settings.
+static void settings_may_be_all_that_they_can_be(void **state) {
+    (void)state;
+    const extremes usual = {0.5f, 100, 0.8f, 3, 1000, 5, 3};
+    const extremes sets[] = {{0, 1e15f, 1, 1, 1, 1, 10000},
+                             {1e6f, 1e-3f, 0, 1, 2, 10000, 1},
+                             {1e6f, 1e15f, 0, MSPRING_MAX_SUBSTEPS, MSPRING_MAX_SUBSTEPS, 2, 2},
+                             {0, 1, 1, MSPRING_SUBSTEPS_AUTO, 1, 2, 2}};
+    for (size_t i = 0; i < COUNT_OF(sets); i++) {
+        for (mspring_solver kind = MSPRING_SOLVER_EXPLICIT; kind <= MSPRING_SOLVER_DIRECT; kind++) {
+            mspring_network *network = extreme_network(&sets[i], kind), *other = extreme_network(&usual, kind);
+            const double x = MSPRING_MAX_COORDINATE - 3, y = 1 - MSPRING_MAX_COORDINATE;
+            check_ok(mspring_network_set_positions(network, 0, 1, &x, &y)); // it is elsewhere in the other
+            const saved all = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
+            snapshots_load(other, &all);
+            const saved again = snapshots_save(other, MSPRING_SNAPSHOT_ALL);
+            assert_int_equal(again.size, all.size);
+            assert_memory_equal(again.bytes, all.bytes, all.size);
+            assert_int_equal(snapshots_look_at(other), snapshots_look_at(network));
+            assert_int_equal(mspring_network_substeps(other), mspring_network_substeps(network));
+            if (kind == MSPRING_SOLVER_IMPLICIT) {
+                mspring_plan plan = {.struct_size = sizeof plan};
+                check_ok(mspring_network_plan(other, &plan));
+                assert_int_equal(plan.iterations, sets[i].iterations);
+                assert_int_equal(plan.coarse_period, sets[i].coarse_period);
+            }
+            // In 0.01 s they fall to 0.098 m/s, or with much damping to 9.8e-6 m/s, unless that is too fast.
+            if (sets[i].substeps == 1) {
+                support_steps(other, 1, 0.01);
+                support_steps(network, 1, 0.01);
+                assert_int_equal(snapshots_look_at(other), snapshots_look_at(network));
+            }
+            free(all.bytes);
+            free(again.bytes);
+            mspring_network_destroy(network);
+            mspring_network_destroy(other);
+        }
+    }
+}
+
 /// What was saved when nothing had been removed brings back what was removed since.
 static void what_was_removed_comes_back(void **state) {
     (void)state;
@@ -431,6 +499,7 @@ int main(void) {
         cmocka_unit_test(solvers_have_to_be_alike),
         cmocka_unit_test(snapshots_are_the_same_everywhere),
         cmocka_unit_test(all_goes_into_a_new_network),
+        cmocka_unit_test(settings_may_be_all_that_they_can_be),
         cmocka_unit_test(what_was_removed_comes_back),
         cmocka_unit_test(a_version_has_one_format),
         cmocka_unit_test(loading_leaves_no_events_and_no_rounding_mode),

@@ -389,6 +389,46 @@ static void a_full_queue_counts_what_it_loses(void **state) {
     recipe_free(&made);
 }
 
+static void a_queue_may_be_as_short_or_as_long_as_is_said(void **state) {
+    (void)state;
+    recipe made = lively_recipe();
+    watched_allocator watched = {0};
+    mspring_allocator allocator = watched_interface(&watched);
+    mspring_network_def def = support_def(-9.8f, 4);
+    def.allocator = &allocator;
+    mspring_network *network = recipe_network(&made, &def);
+    const mspring_id ids[] = {7, 8, 9};
+    mspring_event events[2];
+    uint32_t count;
+    uint64_t lost;
+    // One of one holds the first that happens, again and again.
+    check_ok(mspring_network_reserve_events(network, 1));
+    for (uint32_t round = 0; round < 3; round++) {
+        check_ok(mspring_network_break_springs(network, ids, 3));
+        check_ok(mspring_network_read_events(network, events, 2, &count, &lost));
+        assert_true(count == 1 && events[0].id == 7 && lost == 3 * round + 2);
+        check_ok(mspring_network_restore_springs(network, ids + 1, 2, 0));
+        check_ok(mspring_network_read_events(network, events, 2, &count, &lost));
+        assert_true(count == 1 && events[0].id == 8 && events[0].kind == MSPRING_EVENT_RESTORED);
+        check_ok(mspring_network_restore_springs(network, ids, 1, 0));
+        check_ok(mspring_network_read_events(network, events, 2, &count, NULL));
+        assert_int_equal(count, 1);
+    }
+    // None takes no memory.
+    const size_t with_one = mspring_network_memory_used(network), calls = watched.calls;
+    check_ok(mspring_network_reserve_events(network, 0));
+    assert_int_equal(watched.calls, calls);
+    assert_true(mspring_network_memory_used(network) < with_one);
+    // The longest that may be asked for is not refused by its length: it is memory that lacks.
+    watched.fail_at = watched.calls + 1;
+    check_error(mspring_network_reserve_events(network, MSPRING_MAX_SPRINGS), MSPRING_ERROR_MEMORY);
+    watched.fail_at = watched.calls + 1;
+    check_error(mspring_network_reserve_events(network, 1), MSPRING_ERROR_MEMORY);
+    mspring_network_destroy(network);
+    check_watched_clean(&watched);
+    recipe_free(&made);
+}
+
 static void detachment_is_told_spring_by_spring(void **state) {
     (void)state;
     recipe made = lively_recipe();
@@ -513,6 +553,7 @@ int main(void) {
         cmocka_unit_test(a_weight_too_heavy_breaks_its_spring_and_falls),
         cmocka_unit_test(the_same_blow_breaks_the_same_springs_at_any_substeps),
         cmocka_unit_test(a_full_queue_counts_what_it_loses),
+        cmocka_unit_test(a_queue_may_be_as_short_or_as_long_as_is_said),
         cmocka_unit_test(detachment_is_told_spring_by_spring),
         cmocka_unit_test(bad_thresholds_are_refused),
         cmocka_unit_test(watching_survives_every_failure_and_steps_allocate_nothing),
