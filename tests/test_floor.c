@@ -293,6 +293,16 @@ static void slopes_hold_explicitly(void **state) {
     slopes_hold_by_friction(&(way){MSPRING_SOLVER_EXPLICIT, 0, 40});
 }
 
+/// Of a loose particle, which is no part of the linear system. (One of second order was pushed up the slope in
+/// every substep by as much as it falls in one.)
+static void slopes_hold_implicitly(void **state) {
+    (void)state;
+    for (mspring_integrator i = MSPRING_INTEGRATOR_GA0; i <= MSPRING_INTEGRATOR_EULER; i++) {
+        slopes_hold_by_friction(&(way){MSPRING_SOLVER_IMPLICIT, i, 1});
+        slopes_hold_by_friction(&(way){MSPRING_SOLVER_DIRECT, i, 3});
+    }
+}
+
 /// The n-th bounce goes as high as e^2n of the first height.
 static void bounces_lose_height(void **state) {
     (void)state;
@@ -760,6 +770,7 @@ int main(void) {
         cmocka_unit_test(what_is_inside_is_lifted),
         cmocka_unit_test(friction_slows_explicitly),
         cmocka_unit_test(slopes_hold_explicitly),
+        cmocka_unit_test(slopes_hold_implicitly),
         cmocka_unit_test(bounces_lose_height),
         cmocka_unit_test(slopes_bear_what_falls_on_them),
         cmocka_unit_test(valleys_collect),

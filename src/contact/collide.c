@@ -19,6 +19,15 @@
 /// Times that all surfaces are gone through for one particle: corners need more than one.
 #define ROUNDS 4
 
+// How far friction moves a body back along a surface, of what it has gone to the left of the way that the surface
+// faces: the most or, if it is to stop where it began, no more than that.
+static double way_back(const mspringi_line *line, const mspringi_body *b, double most) {
+    if (!b->is_stopped_at_start)
+        return most;
+    const double gone = line->nx * (b->y - b->start_y) - line->ny * (b->x - b->start_x);
+    return most > 0.0 ? fmin(most, fmax(gone, 0.0)) : fmax(most, fmin(gone, 0.0));
+}
+
 // Let one straight surface act on a body. Returns whether it did anything.
 static bool touch(const mspringi_floor *floor, const mspringi_line *line, mspringi_body *b, double h, double slop) {
     const double distance = line->nx * b->x + line->ny * b->y + line->offset;
@@ -33,8 +42,9 @@ static bool touch(const mspringi_floor *floor, const mspringi_line *line, msprin
         const double taken = along > most ? most : along < -most ? -most : along;
         b->vx += given * line->nx + taken * line->ny;
         b->vy += given * line->ny - taken * line->nx;
-        b->x += h * taken * line->ny;
-        b->y -= h * taken * line->nx;
+        const double back = way_back(line, b, h * taken);
+        b->x += back * line->ny;
+        b->y -= back * line->nx;
     }
     if (distance < 0.0) {
         b->x -= distance * line->nx;
@@ -113,8 +123,9 @@ static void collide_slot(const mspring_network *network, const mspringi_field *s
     const double vx = (double)s->vx[slot], vy = (double)s->vy[slot];
     mspringi_body b = {.x = (double)s->x[slot], .y = (double)s->y[slot], .vx = vx, .vy = vy};
     // After implicit substeps it is the springs that throw a structure back, and not the speed of a particle of it.
-    const bool bounces = !start || slot >= (size_t)network->topology.loose_first * MSPRINGI_WIDTH;
-    b.restitution = bounces ? floor->restitution : 0.0;
+    const bool is_loose = slot >= (size_t)network->topology.loose_first * MSPRINGI_WIDTH;
+    b.restitution = !start || is_loose ? floor->restitution : 0.0;
+    b.is_stopped_at_start = start && is_loose;
     b.start_x = start ? (double)start->x[slot] : b.x - h * vx;
     b.start_y = start ? (double)start->y[slot] : b.y - h * vy;
     mspringi_floor_collide(floor, &b, h);

@@ -79,6 +79,7 @@ typedef struct mspringi_floor {
 /// A particle that has moved from its start in a substep, local coordinates.
 typedef struct mspringi_body {
     double start_x, start_y, x, y, vx, vy, restitution;
+    bool is_stopped_at_start; ///< friction takes back no more of its way along a surface than there was
 } mspringi_body;
 
 void mspringi_floor_destroy(mspringi_floor *floor, mspringi_memory *memory);
