@@ -206,6 +206,16 @@ static void a_bar_cut_in_two_is_two_and_joined_again_one(void **state) {
     assert_true(parts[0].px == -40 && parts[1].px == 360 && parts[0].py == 0 && parts[1].py == 90);
     check_ok(mspring_network_get_components(network, 1, 1, parts)); // the second alone
     assert_true(parts[0].head == 8 && parts[0].mass == 180);
+    // One of the first's 40 particles goes 10 m up and 20 m to the left, held and with the velocity that it had.
+    const double x = 10000 - 20, y = -3000 + 10;
+    const float held = 0;
+    check_ok(mspring_network_set_positions(network, 0, 1, &x, &y));
+    check_ok(mspring_network_set_inverse_mass_scales(network, 0, 1, &held));
+    check_ok(mspring_network_get_components(network, 0, 1, parts)); // the first alone
+    assert_true(parts[0].head == 0 && parts[0].mass == 40 && parts[1].mass == 180);
+    check_near(parts[0].x, 10003.5 - 20.0 / 40, 1e-9);
+    check_near(parts[0].y, -2998 + 10.0 / 40, 1e-9);
+    assert_true(parts[0].px == -39 && parts[0].py == 0);
     mspring_event events[50];
     uint32_t event_count;
     check_ok(mspring_network_read_events(network, events, 50, &event_count, NULL));
@@ -267,6 +277,11 @@ static void bad_requests_are_refused(void **state) {
     check_error(mspring_network_get_components(network, 0, 1, &part), MSPRING_ERROR_STRUCT);
     assert_true(number == 77 && part.mass == 0);
     check_ok(mspring_network_get_components(network, count, 0, NULL));
+    check_ok(mspring_network_get_component_numbers(network, made.particle_count, 0, NULL));
+    check_error(mspring_network_get_component_numbers(network, made.particle_count + 1, 0, &number),
+                MSPRING_ERROR_ID);
+    check_ok(mspring_network_get_component_numbers(network, 0, 1, &number));
+    assert_int_equal(number, 0); // that of the lowest particle
     mspring_network_destroy(network);
     recipe_free(&made);
 }
@@ -283,6 +298,7 @@ static void the_first_update_survives_every_failure(void **state) {
         def.allocator = &allocator;
         mspring_network *network = recipe_network(&made, &def);
         watched.fail_at = watched.calls + fail_at;
+        const size_t used = mspring_network_memory_used(network);
         uint32_t count = 77;
         mspring_result result = mspring_network_update_components(network, &count, NULL);
         failed = result != MSPRING_OK;
@@ -290,6 +306,7 @@ static void the_first_update_survives_every_failure(void **state) {
             check_error(result, MSPRING_ERROR_MEMORY);
             check_contains(mspring_network_error(network), "memory");
             assert_int_equal(count, 77);
+            assert_true(mspring_network_memory_used(network) == used);
             check_ok(mspring_network_update_components(network, &count, NULL));
         }
         expected = fail_at == 1 ? count : expected;

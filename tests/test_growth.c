@@ -450,6 +450,53 @@ static void components_events_and_strain_know_of_it(void **state) {
     recipe_free(&made);
 }
 
+/// Two springs added between four pinned particles, 1 m each, the second one stretched and stressed.
+static void what_takes_a_springs_place_inherits_no_threshold(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    for (int p = 0; p < 4; p++) {
+        support_pinned(builder, p, 0, 1);
+    }
+    mspring_network_def def = support_def(0, 1);
+    def.spare_springs = 2;
+    mspring_network *network = support_network(builder, &def);
+    mspring_event events[10];
+    uint32_t count;
+    check_ok(mspring_network_reserve_events(network, 10));
+    mspring_spring_def springs[2];
+    mspring_id ids[2];
+    for (uint32_t i = 0; i < 2; i++) {
+        check_ok(mspring_spring_def_init(&springs[i], sizeof springs[i]));
+        springs[i].a = 2 * i;
+        springs[i].b = 2 * i + 1;
+        springs[i].stiffness = 10;
+        springs[i].rest_length = 0.5f;
+    }
+    check_ok(mspring_network_add_springs(network, springs, 2, ids));
+    const float stress[] = {0.5f, 0.5f}, limit[] = {2, 2}; // both are strained by 1
+    check_ok(mspring_network_set_stress_strains(network, ids[0], 2, stress));
+    check_ok(mspring_network_set_break_strains(network, ids[0], 2, limit));
+    support_steps(network, 1, 0.01);
+    check_ok(mspring_network_read_events(network, events, 10, &count, NULL));
+    assert_int_equal(count, 2);
+    const mspring_id first = ids[0], second = ids[1];
+    check_ok(mspring_network_remove_springs(network, &first, 1));
+    check_ok(mspring_network_recycle(network));
+    springs[0].rest_length = 0.25f; // a strain of 3
+    check_ok(mspring_network_add_springs(network, springs, 1, ids));
+    assert_int_equal(ids[0], first);
+    check_ok(mspring_network_read_events(network, events, 10, &count, NULL)); // of the removal
+    support_steps(network, 1, 0.01);
+    check_ok(mspring_network_read_events(network, events, 10, &count, NULL));
+    assert_int_equal(count, 0);
+    mspring_spring_info info = {.struct_size = sizeof info};
+    check_ok(mspring_network_get_spring(network, first, &info));
+    assert_int_equal(info.flags, 0);
+    check_ok(mspring_network_get_spring(network, second, &info));
+    assert_int_equal(info.flags, MSPRING_SPRING_STRESSED);
+    mspring_network_destroy(network);
+}
+
 static void a_sleeping_network_wakes(void **state) {
     (void)state;
     recipe made = {0};
@@ -568,6 +615,7 @@ int main(void) {
         cmocka_unit_test(wrong_springs_are_refused_and_change_nothing),
         cmocka_unit_test(ranges_leave_out_what_is_gone),
         cmocka_unit_test(components_events_and_strain_know_of_it),
+        cmocka_unit_test(what_takes_a_springs_place_inherits_no_threshold),
         cmocka_unit_test(a_sleeping_network_wakes),
         cmocka_unit_test(settles_tunes_and_is_stable),
         cmocka_unit_test(the_floor_is_under_all),

@@ -135,6 +135,93 @@ static void frames_are_of_the_same_springs(void **state) {
     recipe_free(&made);
 }
 
+/// Two bars of a spring each, and two particles that hang on nothing.
+static mspring_network *bars_and_loose_ones(void) {
+    mspring_builder *builder = support_builder();
+    support_particle(builder, 0, 0, 1);
+    support_particle(builder, 5, 5, 1);
+    for (mspring_id p = 2; p < 6; p++) {
+        support_particle(builder, p, -1, 1);
+    }
+    support_spring(builder, 2, 3, 100, 0);
+    support_spring(builder, 4, 5, 100, 0);
+    mspring_network_def def = support_def(-9.8f, 2);
+    def.flags = MSPRING_NETWORK_RESERVE_DAMPING;
+    def.spare_particles = def.spare_springs = 2;
+    return support_network(builder, &def);
+}
+
+static mspring_result load_frame_of(const mspring_network *from, mspring_network *to) {
+    const saved frame = save(from, MSPRING_SNAPSHOT_FRAME);
+    const mspring_result result = mspring_network_load(to, frame.bytes, frame.size);
+    free(frame.bytes);
+    return result;
+}
+
+/// Frames go to networks that were edited alike: what was removed, and that ids were given back, counts, and so
+/// does what springs were made like, whatever it was before.
+static void frames_are_of_networks_edited_alike(void **state) {
+    (void)state;
+    enum { NOTHING, SPRING, PARTICLE, RECYCLED, BREAK, STRESS, STIFFNESS, DAMPING, LENGTH };
+    const struct {
+        int kind;
+        mspring_id id;
+        float value;
+    } edits[] = {{NOTHING, 0, 0},    {SPRING, 0, 0},     {SPRING, 1, 0},       {PARTICLE, 0, 0},
+                 {PARTICLE, 1, 0},   {RECYCLED, 0, 0},   {BREAK, 0, 0.5f},     {BREAK, 1, 0.5f},
+                 {BREAK, 0, 0.25f},  {STRESS, 0, 0.5f},  {STRESS, 1, 0.5f},    {LENGTH, 0, 0.5f},
+                 {LENGTH, 1, 0.5f},  {LENGTH, 0, 0.25f}, {STIFFNESS, 0, 0.5f}, {STIFFNESS, 1, 0.5f},
+                 {DAMPING, 0, 0.5f}, {DAMPING, 1, 0.5f}, {DAMPING, 1, 0.25f}};
+    mspring_network *networks[COUNT_OF(edits)];
+    for (size_t i = 0; i < COUNT_OF(edits); i++) {
+        mspring_network *network = networks[i] = bars_and_loose_ones();
+        // So that all have memory for what is removed and added.
+        mspring_particle_def particle;
+        check_ok(mspring_particle_def_init(&particle, sizeof particle));
+        mspring_id id;
+        check_ok(mspring_network_add_particles(network, &particle, 1, &id));
+        check_ok(mspring_network_remove_particles(network, &id, 1));
+        id = edits[i].id;
+        const float *value = &edits[i].value;
+        switch (edits[i].kind) {
+        case SPRING:
+            check_ok(mspring_network_remove_springs(network, &id, 1));
+            break;
+        case PARTICLE:
+            check_ok(mspring_network_remove_particles(network, &id, 1));
+            break;
+        case RECYCLED:
+            check_ok(mspring_network_recycle(network));
+            break;
+        case BREAK:
+            check_ok(mspring_network_set_break_strains(network, id, 1, value));
+            break;
+        case STRESS:
+            check_ok(mspring_network_set_stress_strains(network, id, 1, value));
+            break;
+        case STIFFNESS:
+            check_ok(mspring_network_set_stiffnesses(network, id, 1, value));
+            break;
+        case DAMPING:
+            check_ok(mspring_network_set_dampings(network, id, 1, value));
+            break;
+        case LENGTH:
+            check_ok(mspring_network_set_rest_lengths(network, id, 1, value));
+            break;
+        default:
+            break;
+        }
+    }
+    for (size_t i = 0; i < COUNT_OF(edits); i++) {
+        for (size_t j = 0; j < COUNT_OF(edits); j++) {
+            check_error(load_frame_of(networks[i], networks[j]), i == j ? MSPRING_OK : MSPRING_ERROR_SNAPSHOT);
+        }
+    }
+    for (size_t i = 0; i < COUNT_OF(edits); i++) {
+        mspring_network_destroy(networks[i]);
+    }
+}
+
 // Whatever byte of a snapshot's section is another one (and the checksum right again) is refused or leads to a
 // network that can be checked and stepped.
 static void foreign_growth_is_refused_or_harmless(void **state) {
@@ -176,6 +263,7 @@ int main(void) {
         cmocka_unit_test(snapshots_go_back_and_forth),
         cmocka_unit_test(snapshots_go_back_in_a_compact_plan),
         cmocka_unit_test(frames_are_of_the_same_springs),
+        cmocka_unit_test(frames_are_of_networks_edited_alike),
         cmocka_unit_test(foreign_growth_is_refused_or_harmless),
     };
     return cmocka_run_group_tests_name("growth_snapshots", tests, NULL, NULL);

@@ -12,7 +12,7 @@
 #include "recipe.h"
 #include "support.h"
 
-enum { CAPACITY = 4096, WEB_SPRINGS = 20 };
+enum { CAPACITY = 4096, WEB_SPRINGS = 20, STRAND_SPRINGS = 24 };
 
 /// A network with springs in rows of every kind, moving about.
 static recipe lively_recipe(void) {
@@ -23,8 +23,16 @@ static recipe lively_recipe(void) {
     mspring_id end = recipe_particle(&made, 60, 20, 1, MSPRING_PARTICLE_PINNED);
     recipe_rope(&made, 2, end, 30, &stuff, &seed);
     recipe_random_springs(&made, WEB_SPRINGS, &stuff, &seed);
+    // What hangs on a lattice is swept with the web; this is a row of its own.
+    const mspring_id from = recipe_particle(&made, -30, 20, 1, MSPRING_PARTICLE_PINNED);
+    recipe_rope(&made, from, recipe_particle(&made, -30 + STRAND_SPRINGS, 20, 1, 0), STRAND_SPRINGS, &stuff, &seed);
     recipe_disturb(&made, 0.05, 6, &seed);
     return made;
+}
+
+/// The first of the web's springs: they come before those of the strand, which are the last.
+static mspring_id first_of_web(uint32_t spring_count) {
+    return spring_count - STRAND_SPRINGS - WEB_SPRINGS;
 }
 
 static mspring_network *network_of(const recipe *made, mspring_simd level) {
@@ -45,8 +53,8 @@ static thresholds random_thresholds(uint32_t count) {
     thresholds made = {malloc(count * sizeof(float)), malloc(count * sizeof(float))};
     assert_true(made.break_strain && made.stress_strain);
     for (uint32_t s = 0; s < count; s++) {
-        // The springs of the web, at the end, are long, and strained the less.
-        const double scale = s + WEB_SPRINGS < count ? 1 : 0.1;
+        // The springs of the web are long, and strained the less.
+        const double scale = s - first_of_web(count) < WEB_SPRINGS ? 0.1 : 1;
         made.break_strain[s] =
             s % 5 == 0 ? INFINITY : (float)support_random_between(&seed, 0.05 * scale, 0.6 * scale);
         made.stress_strain[s] = s % 3 == 0 ? INFINITY : (float)support_random_between(&seed, 0.03, 0.3);
@@ -142,11 +150,16 @@ static void springs_break_and_are_stressed_by_the_rules(void **state) {
         // All of it happens, in rows of every kind.
         assert_true(totals[MSPRING_EVENT_BROKEN] > 100 && totals[MSPRING_EVENT_STRESSED] > 200 &&
                     totals[MSPRING_EVENT_RELAXED] > 100);
-        uint32_t broken_in_web = 0;
-        for (mspring_id s = made.spring_count - WEB_SPRINGS; s < made.spring_count; s++) {
-            broken_in_web += conditions[s] == BROKEN;
+        mspring_plan plan = {.struct_size = sizeof plan};
+        check_ok(mspring_network_plan(network, &plan));
+        assert_int_equal(plan.chain_springs, STRAND_SPRINGS);
+        uint32_t broken_in_web = 0, broken_in_strand = 0;
+        for (mspring_id s = first_of_web(made.spring_count); s < made.spring_count; s++) {
+            uint32_t *const count =
+                s - first_of_web(made.spring_count) < WEB_SPRINGS ? &broken_in_web : &broken_in_strand;
+            *count += conditions[s] == BROKEN;
         }
-        assert_true(broken_in_web > 3);
+        assert_true(broken_in_web > 3 && broken_in_strand > 3);
         free(conditions);
         free(events);
         mspring_network_destroy(network);
@@ -246,6 +259,74 @@ static void a_swinging_weight_stresses_once_a_period(void **state) {
     mspring_network_destroy(network);
 }
 
+/// A threshold is to be passed: at it, nothing happens. The numbers are exact in floats.
+static void what_is_at_its_threshold_stays(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    support_pinned(builder, 0, 0, 1);
+    support_pinned(builder, 1, 0, 1);
+    support_spring(builder, 0, 1, 100, 0);
+    mspring_network_def def = support_def(-9.8f, 4);
+    mspring_network *network = support_network(builder, &def);
+    check_ok(mspring_network_reserve_events(network, CAPACITY));
+    const float stress = 0.5f, limit = 0.75f;
+    check_ok(mspring_network_set_stress_strains(network, 0, 1, &stress));
+    check_ok(mspring_network_set_break_strains(network, 0, 1, &limit));
+    check_ok(mspring_network_set_relax_fraction(network, 0.5f));
+    const double little = 0x1p-20, y = 0;
+    const struct {
+        double length;
+        uint32_t flags, event; ///< afterwards; what is told, if anything is
+    } ways[] = {{1.5, 0, MSPRING_NONE},
+                {0.5, 0, MSPRING_NONE},
+                {1.5 + little, MSPRING_SPRING_STRESSED, MSPRING_EVENT_STRESSED},
+                {1.25, MSPRING_SPRING_STRESSED, MSPRING_NONE},
+                {0.75, MSPRING_SPRING_STRESSED, MSPRING_NONE},
+                {1.25 - little, 0, MSPRING_EVENT_RELAXED},
+                {0.5 - little, MSPRING_SPRING_STRESSED, MSPRING_EVENT_STRESSED},
+                {1.75, MSPRING_SPRING_STRESSED, MSPRING_NONE},
+                {0.25, MSPRING_SPRING_STRESSED, MSPRING_NONE},
+                {0.25 - little, MSPRING_SPRING_BROKEN, MSPRING_EVENT_BROKEN}};
+    for (size_t i = 0; i < COUNT_OF(ways); i++) {
+        check_ok(mspring_network_set_positions(network, 1, 1, &ways[i].length, &y));
+        support_steps(network, 1, 0.01);
+        mspring_spring_info info = {.struct_size = sizeof info};
+        check_ok(mspring_network_get_spring(network, 0, &info));
+        assert_int_equal(info.flags, ways[i].flags);
+        mspring_event events[CAPACITY];
+        assert_int_equal(read_all(network, events), ways[i].event != MSPRING_NONE);
+        if (ways[i].event != MSPRING_NONE) {
+            assert_int_equal(events[0].kind, ways[i].event);
+            assert_true((double)events[0].strain == ways[i].length - 1);
+        }
+    }
+    mspring_network_destroy(network);
+}
+
+/// Thresholds of one spring, and of one kind, leave those that there are alone.
+static void thresholds_do_not_take_each_others_place(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    for (int p = 0; p < 4; p++) {
+        support_pinned(builder, p, 0, 1);
+    }
+    support_spring(builder, 0, 1, 100, 0);
+    support_spring(builder, 2, 3, 100, 0);
+    mspring_network_def def = support_def(0, 4);
+    mspring_network *network = support_network(builder, &def);
+    mspring_event events[CAPACITY];
+    check_ok(mspring_network_reserve_events(network, CAPACITY));
+    const float limit = 0.5f, stress = 0.25f;
+    const double far = -0.625, y = 0; // a strain of 0.625
+    check_ok(mspring_network_set_break_strains(network, 0, 1, &limit));
+    check_ok(mspring_network_set_stress_strains(network, 1, 1, &stress)); // the first of its kind
+    check_ok(mspring_network_set_positions(network, 0, 1, &far, &y));
+    check_ok(mspring_network_step(network, 0.01));
+    assert_int_equal(read_all(network, events), 1);
+    assert_true(events[0].kind == MSPRING_EVENT_BROKEN && events[0].id == 0);
+    mspring_network_destroy(network);
+}
+
 static void a_weight_too_heavy_breaks_its_spring_and_falls(void **state) {
     (void)state;
     mspring_network *network = swinging_weight();
@@ -269,6 +350,62 @@ static void a_weight_too_heavy_breaks_its_spring_and_falls(void **state) {
     assert_int_equal(events[0].kind, MSPRING_EVENT_RESTORED);
     assert_int_equal(events[1].kind, MSPRING_EVENT_BROKEN);
     mspring_network_destroy(network);
+}
+
+/// A wreck of springs of which every third is to break at once, the next to be stressed, and the next neither, told
+/// at the first time when its compaction has come so far (or the first part of that before it begins). Returns how
+/// many pieces were left.
+static uint32_t watch_while_compacting(uint32_t pieces, bool breaks_before) {
+    recipe made = lively_recipe();
+    uint64_t seed = 77;
+    mspring_network *network = network_of(&made, MSPRING_SIMD_AUTO);
+    static mspring_event events[CAPACITY];
+    for (mspring_id s = 0; s < made.spring_count; s++) {
+        if (support_random(&seed) % 2 == 0) {
+            check_ok(mspring_network_break_springs(network, &s, 1));
+        }
+    }
+    (void)read_all(network, events);
+    thresholds at = random_thresholds(made.spring_count);
+    for (mspring_id s = 0; s < made.spring_count; s++) {
+        at.break_strain[s] = s % 3 == 0 ? 1e-4f : INFINITY;
+        at.stress_strain[s] = s % 3 == 1 ? 1e-4f : INFINITY;
+    }
+    uint32_t left = 0;
+    if (breaks_before) {
+        check_ok(mspring_network_set_break_strains(network, 0, made.spring_count, at.break_strain));
+    }
+    check_ok(mspring_network_compact(network, pieces, &left));
+    if (!breaks_before) {
+        check_ok(mspring_network_set_break_strains(network, 0, made.spring_count, at.break_strain));
+        check_ok(mspring_network_compact(network, 1, NULL));
+    }
+    check_ok(mspring_network_set_stress_strains(network, 0, made.spring_count, at.stress_strain));
+    check_ok(mspring_network_compact(network, 0, NULL));
+    support_steps(network, 1, 1.0 / 64);
+    const uint32_t count = read_all(network, events);
+    uint32_t totals[3] = {0, 0, 0};
+    for (uint32_t e = 0; e < count; e++) {
+        assert_int_equal(events[e].kind, events[e].id % 3 == 0 ? MSPRING_EVENT_BROKEN : MSPRING_EVENT_STRESSED);
+        totals[events[e].id % 3]++;
+    }
+    // Of some 450 springs that are whole; few are strained by less.
+    assert_true(totals[0] > 100 && totals[1] > 100 && totals[2] == 0);
+    free_thresholds(&at);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+    return left;
+}
+
+static void watching_may_begin_while_the_network_is_compacted(void **state) {
+    (void)state;
+    for (int breaks_before = 0; breaks_before < 2; breaks_before++) {
+        uint32_t pieces = 1;
+        while (watch_while_compacting(pieces, breaks_before) > 0) {
+            pieces++;
+        }
+        assert_true(pieces > 4);
+    }
 }
 
 /* --------------------------------------------------------------------------------------- whatever the substeps */
@@ -517,6 +654,7 @@ static void watching_survives_every_failure_and_steps_allocate_nothing(void **st
         failed = fail_at == 0;
         for (int call = 0; call < 3; call++) {
             for (int again = 0; again < 2; again++) {
+                const size_t used = mspring_network_memory_used(network);
                 mspring_result result =
                     call == 0 ? mspring_network_reserve_events(network, CAPACITY)
                     : call == 1
@@ -528,6 +666,8 @@ static void watching_survives_every_failure_and_steps_allocate_nothing(void **st
                 check_error(result, MSPRING_ERROR_MEMORY);
                 check_contains(mspring_network_error(network), "memory");
                 assert_int_equal(again, 0);
+                // Of those of stress, both arrays or none.
+                assert_true(call < 2 || mspring_network_memory_used(network) == used);
                 failed = true;
             }
         }
@@ -550,7 +690,10 @@ int main(void) {
         cmocka_unit_test(every_level_has_the_same_events),
         cmocka_unit_test(thresholds_out_of_reach_change_nothing),
         cmocka_unit_test(a_swinging_weight_stresses_once_a_period),
+        cmocka_unit_test(what_is_at_its_threshold_stays),
+        cmocka_unit_test(thresholds_do_not_take_each_others_place),
         cmocka_unit_test(a_weight_too_heavy_breaks_its_spring_and_falls),
+        cmocka_unit_test(watching_may_begin_while_the_network_is_compacted),
         cmocka_unit_test(the_same_blow_breaks_the_same_springs_at_any_substeps),
         cmocka_unit_test(a_full_queue_counts_what_it_loses),
         cmocka_unit_test(a_queue_may_be_as_short_or_as_long_as_is_said),
