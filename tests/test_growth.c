@@ -375,6 +375,50 @@ static void ranges_leave_out_what_is_gone(void **state) {
     recipe_free(&made);
 }
 
+/// All of no spring that was removed is 0, wherever it lies; a broken one still has a length.
+static void check_extents(mspring_network *network, const mspring_id *gone, uint32_t count) {
+    const uint32_t springs = mspring_network_spring_count(network);
+    float *of[4];
+    for (int i = 0; i < 4; i++) {
+        of[i] = calloc(springs, sizeof *of[i]);
+        assert_non_null(of[i]);
+    }
+    check_ok(mspring_network_get_extents(network, of[0], of[1], of[2], of[3]));
+    for (mspring_id s = 0; s < springs; s++) {
+        bool is_gone = false;
+        for (uint32_t i = 0; i < count; i++)
+            is_gone |= s == gone[i];
+        assert_true(is_gone ? of[0][s] == 0 && of[1][s] == 0 && of[2][s] == 0 && of[3][s] == 0 : of[0][s] > 0);
+    }
+    for (int i = 0; i < 4; i++)
+        free(of[i]);
+}
+
+static void what_is_gone_has_no_length(void **state) {
+    (void)state;
+    recipe made = growth_recipe();
+    mspring_network *network = growth_network(&made, MSPRING_SIMD_AUTO, 1);
+    mspring_spring_def def;
+    mspring_id added;
+    check_ok(mspring_spring_def_init(&def, sizeof def));
+    def.a = 0;
+    def.b = made.particle_count - 1;
+    def.stiffness = 10;
+    check_ok(mspring_network_add_springs(network, &def, 1, &added));
+    check_extents(network, NULL, 0);
+    const mspring_id gone[] = {3, made.spring_count / 2, added}, broken = 5;
+    check_ok(mspring_network_remove_springs(network, gone, 3));
+    check_ok(mspring_network_break_springs(network, &broken, 1));
+    check_extents(network, gone, 3);
+    check_ok(mspring_network_compact(network, 0, NULL));
+    check_extents(network, gone, 3);
+    check_ok(mspring_network_expand(network));
+    check_ok(mspring_network_recycle(network));
+    check_extents(network, gone, 3);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
 static void components_events_and_strain_know_of_it(void **state) {
     (void)state;
     recipe made = {0};
@@ -614,6 +658,7 @@ int main(void) {
         cmocka_unit_test(ids_come_back_when_the_host_says_so),
         cmocka_unit_test(wrong_springs_are_refused_and_change_nothing),
         cmocka_unit_test(ranges_leave_out_what_is_gone),
+        cmocka_unit_test(what_is_gone_has_no_length),
         cmocka_unit_test(components_events_and_strain_know_of_it),
         cmocka_unit_test(what_takes_a_springs_place_inherits_no_threshold),
         cmocka_unit_test(a_sleeping_network_wakes),

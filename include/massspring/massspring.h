@@ -1380,6 +1380,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_recycle(mspring_net
 /// Restoring a spring that was left out takes all springs in again, as mspring_network_expand() does; then the
 /// network can be compacted anew.
 ///
+/// A snapshot goes with the plan that there was when it was saved. One from before can only be loaded after
+/// mspring_network_expand(), one of the compact network only before that: where slots change, rollback begins anew.
+///
 /// The work comes in pieces, so that it can be done over many frames: each looks at some thousands of particles or
 /// springs, however large the network, but for the memory that it sets to zero, a strand, which is found in one go,
 /// and the last piece, which copies what all particles are. How many they are depends on nothing but the network.
@@ -1585,7 +1588,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_strains(const m
                                                                          float *strain);
 
 /// Length, direction and strain of all springs at once, in id order: a pass over the network in the order in which
-/// it lies in memory. Each array is filled if it is not NULL.
+/// it lies in memory. Each array is filled if it is not NULL; all is 0 of springs that were removed.
 /// @param length       [spring count], m
 /// @param direction_x, direction_y  [spring count] the unit vector along the spring from the end with the lower id
 ///                     to the other; (0, 0) for a spring of length 0; both or none
@@ -1620,8 +1623,9 @@ enum {
     MSPRING_SNAPSHOT_ALL = 0,
     /// All but the springs' stiffness, damping, rest length, break and stress strain, which only edits change: a
     /// third of the size, and saved at nearly the speed of a copy, for rollback. It can be loaded only where these
-    /// are what they were: into the same network as long as they have not been edited since, or into another that
-    /// was made alike and edited alike, in the same order.
+    /// are what they were: into the same network as long as they have not been edited since, and nothing was added
+    /// or removed, or into another that was made alike and edited alike, in the same order. (Breaking, restoring,
+    /// with or without a ramp, and detaching are no edits of these.)
     MSPRING_SNAPSHOT_FRAME = 1
 };
 

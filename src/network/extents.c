@@ -199,6 +199,13 @@ static void read_out_others(const mspringi_topology *t, mspring_id first, uint32
     }
 }
 
+// Springs that were removed lie somewhere yet, but have nothing that could be measured.
+static void leave_out_what_is_gone(const mspring_network *network, float *of_spring) {
+    const uint8_t *there = network->growth.springs;
+    for (mspring_id s = 0; there && s < network->topology.spring_count; ++s)
+        of_spring[s] = there[s] == MSPRINGI_THERE ? of_spring[s] : 0.0f;
+}
+
 static void read_out(const mspring_network *network, uint32_t number, float *to) {
     const mspringi_topology *t = &network->topology;
     const float *plane = network->extents.scratch + number * plane_size(network);
@@ -211,6 +218,7 @@ static void read_out(const mspring_network *network, uint32_t number, float *to)
         else
             read_out_others(t, run->first, end - run->first, plane, to + run->first);
     }
+    leave_out_what_is_gone(network, to);
 }
 
 static MSPRINGI_NOINLINE void measure_all(const mspring_network *network, float *length, float *direction_x,
