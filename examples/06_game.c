@@ -105,6 +105,7 @@ static mspring_result add_float_hook(game *played) {
     def.fn = float_hook;
     def.user = played;
     def.flags = MSPRING_HOOK_CONCURRENT; // each slot for itself
+    def.range_slots = 256;               // so that even a ship as small as this one is work for several threads
     return result == MSPRING_OK ? mspring_network_add_hook(played->network, &def, NULL) : result;
 }
 

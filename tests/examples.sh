@@ -493,9 +493,10 @@ game() {
   1) same "$first" 'state after 3841 steps: f3127f0e7750fee8' 'the state after a minute' ;;
   10) same "$first" 'state after 38400 steps: 541b50aa352dbdc3' 'the state after ten minutes' ;;
   esac
-  other=$(MSPRING_SIMD=sse2 "$game" --minutes "$minutes" --host-threads 3 --out "$scratch" 2>"$scratch/err" | grep '^state') ||
+  MSPRING_SIMD=sse2 "$game" --minutes "$minutes" --host-threads 3 --out "$scratch" >"$scratch/out" 2>"$scratch/err" ||
     complain 'the game fails with threads of its own'
-  same "$other" "$first" 'the state with threads of its own'
+  same "$(grep '^state' "$scratch/out")" "$first" 'the state with threads of its own'
+  grep -q 'lent [1-9][0-9]* times' "$scratch/out" || complain 'the threads are not used'
   "$game" --implicit --out "$scratch" >"$scratch/out" 2>"$scratch/err" || complain 'the implicit game fails'
   other=$(MSPRING_SIMD=scalar "$game" --implicit --host-threads 1 --out "$scratch" 2>"$scratch/err" | grep '^state') ||
     complain 'the implicit game fails on one thread'
