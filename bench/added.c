@@ -1,8 +1,9 @@
 /// @file added.c
-/// Networks that springs are added to while they run.
+/// Networks that springs and loose particles are added to while they run.
 ///
 /// SPDX-License-Identifier: MIT
 #include "added.h"
+#include "machine.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -14,7 +15,7 @@
 #define DAMPING 0.03f
 
 bool bench_added_create(mspring_builder *builder, mspring_simd level, uint32_t workers, uint32_t substeps,
-                        uint32_t spare_springs, bench_network *out, scene_error *error) {
+                        uint32_t spare_particles, uint32_t spare_springs, bench_network *out, scene_error *error) {
     if (!bench_network_create(builder, level, workers, substeps, out, error)) {
         return false;
     }
@@ -26,15 +27,39 @@ bool bench_added_create(mspring_builder *builder, mspring_simd level, uint32_t w
     def.worker_count = workers;
     def.substeps = substeps;
     def.global_damping = BENCH_GLOBAL_DAMPING;
+    def.spare_particles = spare_particles;
     def.spare_springs = spare_springs;
     if (result == MSPRING_OK) {
         result = mspring_network_create(builder, &def, &out->network);
     }
     if (result != MSPRING_OK) {
-        bench_library_error(error, "making room for springs", result, mspring_builder_error(builder));
+        bench_library_error(error, "making room", result, mspring_builder_error(builder));
         bench_network_free(out);
     }
     return result == MSPRING_OK;
+}
+
+bool bench_added_loose(bench_network *network, uint32_t count, double height, double *seconds, scene_error *error) {
+    mspring_particle_def *particles = bench_allocate(count, sizeof *particles, error);
+    mspring_id *ids = bench_allocate(count, sizeof *ids, error);
+    bool ok = particles != NULL && ids != NULL;
+    for (uint32_t i = 0; ok && i < count; i++) {
+        ok = mspring_particle_def_init(&particles[i], sizeof particles[i]) == MSPRING_OK;
+        particles[i].x = 0.02 * i;
+        particles[i].y = height;
+    }
+    if (ok) {
+        const double start = bench_thread_seconds();
+        const mspring_result result = mspring_network_add_particles(network->network, particles, count, ids);
+        *seconds = bench_thread_seconds() - start;
+        ok = result == MSPRING_OK;
+        if (!ok) {
+            bench_library_error(error, "adding particles", result, mspring_network_error(network->network));
+        }
+    }
+    free(particles);
+    free(ids);
+    return ok;
 }
 
 /// A particle and where it is.

@@ -575,7 +575,7 @@ static bool measure_added(session *with, const bench_options *options, const ben
     mspring_spring_def *springs = bench_allocate(count, sizeof *springs, error);
     mspring_id *ids = bench_allocate(count, sizeof *ids, error);
     bool ok = springs != NULL && ids != NULL &&
-              bench_added_create(subject->made.builder, level, 1, with->step->substeps, count, &added, error);
+              bench_added_create(subject->made.builder, level, 1, with->step->substeps, 0, count, &added, error);
     if (!ok) {
         free(springs);
         free(ids);
@@ -601,6 +601,55 @@ static bool measure_added(session *with, const bench_options *options, const ben
     bench_network_free(&added);
     free(springs);
     free(ids);
+    return ok;
+}
+
+/// Bubbles and debris at once.
+#define LOOSE 16384u
+
+/// Time steps with many loose particles more in turn with steps without: far from a floor, or all lying on it.
+static bool measure_loose(const session *with, const bench_options *options, const bench_scene *subject,
+                          mspring_simd level, bool floored, uint32_t repeat, double *times, scene_error *error) {
+    double left, bottom, right, top, seconds = 0;
+    bench_network loose, plain;
+    mspring_floor_def def;
+    if (!bench_added_create(subject->made.builder, level, 1, with->step->substeps, LOOSE, 0, &loose, error)) {
+        return false;
+    }
+    if (!bench_network_create(subject->made.builder, level, 1, with->step->substeps, &plain, error)) {
+        bench_network_free(&loose);
+        return false;
+    }
+    mspring_result result = mspring_network_bounds(plain.network, &left, &bottom, &right, &top);
+    const double plane[4] = {0, bottom - 100.0, 0, 1};
+    if (result == MSPRING_OK) {
+        result = mspring_floor_def_init(&def, sizeof def);
+    }
+    def.planes = plane;
+    def.plane_count = 1;
+    def.friction = 0.5f;
+    if (result == MSPRING_OK && floored) {
+        result = mspring_network_set_floor(loose.network, &def);
+    }
+    if (result == MSPRING_OK && floored) {
+        result = mspring_network_set_floor(plain.network, &def);
+    }
+    bool ok = result == MSPRING_OK;
+    if (!ok) {
+        bench_library_error(error, "a floor below loose particles", result, mspring_network_error(loose.network));
+    }
+    bench_runner first = bench_network_runner(&plain), second = bench_network_runner(&loose);
+    ok = ok && bench_added_loose(&loose, LOOSE, plane[1], &seconds, error) &&
+         measure_steps(&first, &second, repeat, times, error);
+    if (ok && !floored) {
+        print_row(options, subject, with->step, "add 16,384 loose particles", seconds, seconds, times[0]);
+    }
+    if (ok) {
+        print_row(options, subject, with->step, floored ? "  all of them on a floor" : "  in a step",
+                  times[repeat] - times[0], times[repeat + repeat / 2] - times[repeat / 2], times[0]);
+    }
+    bench_network_free(&plain);
+    bench_network_free(&loose);
     return ok;
 }
 
@@ -758,6 +807,9 @@ static bool measure_level(const bench_scene *subject, const bench_options *optio
     }
     for (bench_wreck kind = 0; ok && kind < BENCH_WRECKS; kind++) {
         ok = measure_wreck(&with, options, subject, level, kind, repeat, times, &error);
+    }
+    for (int floored = 0; ok && floored < 2; floored++) {
+        ok = measure_loose(&with, options, subject, level, floored == 1, repeat, times, &error);
     }
     for (uint32_t count = 100; ok && count <= springs / 10; count *= 10) {
         ok = measure_added(&with, options, subject, level, count, repeat, times, &error);
