@@ -326,6 +326,54 @@ static void other_tiles_are_refused(void **state) {
     recipe_free(&made);
 }
 
+/// A network that has no such solver makes one with the tiles that the snapshot tells, instead of one that it has
+/// had from another snapshot; of no other sizes than there are.
+static void tiles_are_made_as_they_were(void **state) {
+    (void)state;
+    recipe made = snapshots_small_recipe();
+    mspring_network *guarded = snapshots_small_guarded(&made, MSPRING_GUARD_IMPLICIT),
+                    *network = snapshots_small_guarded(&made, MSPRING_GUARD_GROWTH);
+    const saved with = snapshots_save(guarded, MSPRING_SNAPSHOT_ALL),
+                without = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
+    uint64_t size;
+    const size_t at = (size_t)(snapshots_section_of(&with, "guar", &size) - with.bytes) + 40;
+    double scale;
+    mspringi_get(with.bytes + at, &scale, 1, sizeof scale);
+    const uint32_t bad[] = {0, 1, 4, 7, 9, 12, 24, 255, 257, 512, 1u << 20, 1u << 31, UINT32_MAX};
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        saved forged = snapshots_copy(&with);
+        snapshots_put_word(forged.bytes + at + 12, bad[i]);
+        snapshots_check_refused(network, &forged, "tiles of size");
+        free(forged.bytes);
+    }
+    size_t used[9] = {0}; // with tiles of 2 to the power of the index
+    for (int round = 0; round < 3; round++) {
+        for (uint32_t power = 3; power <= 8; power++) {
+            saved other = snapshots_copy(&with);
+            snapshots_put_word(other.bytes + at + 12, 1u << power);
+            snapshots_put_double(other.bytes + at, scale * power);
+            snapshots_renew_checksum(&other);
+            snapshots_load(network, &other);
+            const saved again = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
+            assert_int_equal(again.size, other.size);
+            assert_memory_equal(again.bytes, other.bytes, other.size);
+            // What an earlier one took is given back.
+            const size_t uses = mspring_network_memory_used(network);
+            assert_true(round == 0 || uses == used[power]);
+            used[power] = uses;
+            check_ok(mspring_network_step(network, 0.01));
+            snapshots_load(network, &without);
+            free(again.bytes);
+            free(other.bytes);
+        }
+    }
+    free(with.bytes);
+    free(without.bytes);
+    mspring_network_destroy(guarded);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
 static void push_always(const mspring_hook_args *args, void *user) {
     (void)user;
     for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
@@ -532,6 +580,7 @@ int main(void) {
         cmocka_unit_test(values_of_an_implicit_solver_have_their_ranges),
         cmocka_unit_test(forged_growth_is_refused),
         cmocka_unit_test(other_tiles_are_refused),
+        cmocka_unit_test(tiles_are_made_as_they_were),
         cmocka_unit_test(forged_sleep_is_refused),
         cmocka_unit_test(what_nobody_has_does_nothing),
         cmocka_unit_test(sections_are_as_long_as_they_must_be),

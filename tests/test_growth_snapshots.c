@@ -135,6 +135,87 @@ static void frames_are_of_the_same_springs(void **state) {
     recipe_free(&made);
 }
 
+/// In a compact plan an added particle has a place among the others, and who comes after it the one that was kept
+/// for the id: a snapshot brings back either.
+static void added_ones_go_back_to_where_they_were(void **state) {
+    (void)state;
+    uint64_t seed = 4;
+    const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {20, 60}};
+    recipe made = {0};
+    recipe_lattice(&made, 5, 3, 0, 0, 1, &stuff, &seed);
+    const mspring_id first = recipe_particle(&made, 0, 9, 1, 0);
+    mspring_network_def def = support_def(-9.8f, 2);
+    def.flags = MSPRING_NETWORK_RESERVE_RELATIVE;
+    def.spare_particles = def.spare_springs = 2;
+    mspring_network *network = recipe_network(&made, &def);
+    mspring_particle_def particles[2];
+    mspring_spring_def springs[2];
+    mspring_id ids[2], joints[2];
+    for (uint32_t i = 0; i < 2; i++) {
+        check_ok(mspring_particle_def_init(&particles[i], sizeof particles[i]));
+        check_ok(mspring_spring_def_init(&springs[i], sizeof springs[i]));
+        particles[i].x = 3 * i;
+        particles[i].y = 20;
+        springs[i].a = first;
+        springs[i].b = first + 1 + i;
+        springs[i].stiffness = i == 0 ? 10 : 0.001f;
+        springs[i].flags = i == 0 ? 0 : MSPRING_SPRING_RELATIVE;
+    }
+    check_ok(mspring_network_add_particles(network, particles, 2, ids));
+    check_ok(mspring_network_add_springs(network, springs, 2, joints));
+    check_ok(mspring_network_compact(network, 0, NULL));
+    support_steps(network, 3, 0.01);
+    saved states[3]; // with both of them in the plan, with one, and with one and another
+    mspring_network *clones[3];
+    states[0] = save(network, MSPRING_SNAPSHOT_ALL);
+    check_ok(mspring_network_clone(network, NULL, &clones[0]));
+    check_ok(mspring_network_remove_particles(network, &ids[0], 1));
+    check_ok(mspring_network_recycle(network));
+    support_steps(network, 3, 0.01);
+    states[1] = save(network, MSPRING_SNAPSHOT_ALL);
+    check_ok(mspring_network_clone(network, NULL, &clones[1]));
+    particles[0].x = 40;
+    const mspring_id expected = ids[0];
+    check_ok(mspring_network_add_particles(network, particles, 1, ids));
+    assert_int_equal(ids[0], expected);
+    support_steps(network, 3, 0.01);
+    states[2] = save(network, MSPRING_SNAPSHOT_ALL);
+    check_ok(mspring_network_clone(network, NULL, &clones[2]));
+    uint64_t hashes[3];
+    for (int i = 0; i < 3; i++) {
+        support_steps(clones[i], 5, 0.01);
+        hashes[i] = support_hash(clones[i]);
+    }
+    // From each to each, in the network and in its clones; once more after all have been made whole.
+    for (int turn = 0; turn < 2; turn++) {
+        for (int i = 0; i < 9; i++) {
+            const int to = (i / 3 + i) % 3;
+            check_ok(mspring_network_load(network, states[to].bytes, states[to].size));
+            support_steps(network, 5, 0.01);
+            assert_int_equal(support_hash(network), hashes[to]);
+            check_ok(mspring_network_load(clones[i % 3], states[to].bytes, states[to].size));
+            support_steps(clones[i % 3], 5, 0.01);
+            assert_int_equal(support_hash(clones[i % 3]), hashes[to]);
+        }
+    }
+    // Out of the compact plan again, all are where they were.
+    for (int i = 0; i < 3; i++) {
+        check_ok(mspring_network_load(network, states[i].bytes, states[i].size));
+        const uint64_t before = support_hash(network);
+        check_ok(mspring_network_expand(network));
+        assert_int_equal(support_hash(network), before);
+        check_ok(mspring_network_compact(network, 0, NULL));
+        mspring_network_destroy(network);
+        network = clones[i];
+        check_ok(mspring_network_load(network, states[(i + 1) % 3].bytes, states[(i + 1) % 3].size));
+    }
+    mspring_network_destroy(network);
+    for (int i = 0; i < 3; i++) {
+        free(states[i].bytes);
+    }
+    recipe_free(&made);
+}
+
 /// Two bars of a spring each, and two particles that hang on nothing.
 static mspring_network *bars_and_loose_ones(void) {
     mspring_builder *builder = support_builder();
@@ -262,6 +343,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(snapshots_go_back_and_forth),
         cmocka_unit_test(snapshots_go_back_in_a_compact_plan),
+        cmocka_unit_test(added_ones_go_back_to_where_they_were),
         cmocka_unit_test(frames_are_of_the_same_springs),
         cmocka_unit_test(frames_are_of_networks_edited_alike),
         cmocka_unit_test(foreign_growth_is_refused_or_harmless),

@@ -117,6 +117,53 @@ static void what_moves_does_not_sleep(void **state) {
     recipe_free(&made);
 }
 
+/// One particle that flies freely; numbers that are exact in floats.
+static mspring_network *make_flying(float sleep_time) {
+    mspring_builder *builder = support_builder();
+    support_particle(builder, 0, 0, 1);
+    mspring_network_def def = support_def(0, 1);
+    def.sleep_speed = 0.25f;
+    def.sleep_time = sleep_time;
+    return support_network(builder, &def);
+}
+
+static void as_slow_as_sleep_speed_is_slow_enough(void **state) {
+    (void)state;
+    const struct {
+        float vx, vy;
+        uint32_t sleeps;
+    } ways[] = {{0.25f, 0, 1},
+                {0, 0.25f, 1},
+                {-0.25f, -0.25f, 1},
+                {0.25f + 0x1p-24f, 0, 0},
+                {0, 0.25f + 0x1p-24f, 0},
+                {-0.25f - 0x1p-24f, 0, 0},
+                {0, -0.25f - 0x1p-24f, 0}};
+    for (size_t i = 0; i < COUNT_OF(ways); i++) {
+        mspring_network *network = make_flying(0.5f);
+        check_ok(mspring_network_set_velocities(network, 0, 1, &ways[i].vx, &ways[i].vy));
+        support_steps(network, 31, DT);
+        assert_int_equal(mspring_network_is_asleep(network), 0);
+        support_steps(network, 1, DT);
+        assert_int_equal(mspring_network_is_asleep(network), ways[i].sleeps);
+        mspring_network_destroy(network);
+    }
+}
+
+static void without_sleep_time_the_first_still_step_is_enough(void **state) {
+    (void)state;
+    mspring_network *network = make_flying(0);
+    const float fast = 1, slow = 0.1f, none = 0;
+    check_ok(mspring_network_set_velocities(network, 0, 1, &fast, &none));
+    support_steps(network, 10, DT);
+    assert_int_equal(mspring_network_is_asleep(network), 0);
+    check_near(support_position(network, 0).x, 10 * DT, 0);
+    check_ok(mspring_network_set_velocities(network, 0, 1, &slow, &none));
+    support_steps(network, 1, DT);
+    assert_int_equal(mspring_network_is_asleep(network), 1);
+    mspring_network_destroy(network);
+}
+
 /* -------------------------------------------------------------------------------------------------- waking */
 
 /// Changes of the network as a whole, and of its pin.
@@ -293,6 +340,7 @@ static void hooks_are_called_and_wake_it(void **state) {
         what.shift = 0.001f;
         support_steps(network, 1, DT);
         assert_int_equal(mspring_network_is_asleep(network), 0);
+        assert_int_equal(support_sleeps(network, 7), 0); // from the end of the step on
         assert_true(support_hash(network) != before);
         mspring_network_destroy(network);
     }
@@ -549,6 +597,100 @@ static void refused_steps_wake_nothing(void **state) {
     mspring_network_destroy(network);
 }
 
+/// Two weights on damped springs, each at rest on its own; the second, particle 3, has just been kicked.
+static mspring_network *make_two_weights(void) {
+    mspring_builder *builder = support_builder();
+    for (int i = 0; i < 2; i++) {
+        const mspring_id pin = support_pinned(builder, 5 * i, 0, 1),
+                         weight = support_particle(builder, 5 * i, -1, 1);
+        support_spring(builder, pin, weight, 100, 5);
+    }
+    const mspring_network_def def = def_of(SLEEP_SPEED);
+    mspring_network *network = support_network(builder, &def);
+    support_fall_asleep(network, DT);
+    support_kick(network, 3, 1);
+    support_steps(network, 1, DT);
+    assert_true(support_sleeps(network, 1) && !support_sleeps(network, 3));
+    return network;
+}
+
+/// A step that is refused as the second weight would be thrown away.
+static void try_a_step(mspring_network *network) {
+    check_ok(mspring_network_apply_force(network, 3, 0, 1e30f));
+    check_error(mspring_network_step(network, DT), MSPRING_ERROR_UNSTABLE);
+    check_ok(mspring_network_apply_force(network, 3, 0, -1e30f));
+}
+
+/// What would have woken in a step that is refused is the only sleeper then; put back, it sleeps on.
+static void the_only_sleeper_sleeps_on_after_a_refusal(void **state) {
+    (void)state;
+    mspring_network *network = make_two_weights();
+    const support_point at = support_position(network, 1);
+    change_shift(network, 1, MSPRING_NONE);
+    try_a_step(network);
+    check_ok(mspring_network_set_positions(network, 1, 1, &at.x, &at.y));
+    for (int step = 0; step < 10; step++) {
+        const support_point before = support_position(network, 3);
+        support_steps(network, 1, DT);
+        assert_true(support_position(network, 3).x != before.x);
+        assert_int_equal(support_sleeps(network, 1), 1);
+        assert_true(support_position(network, 1).x == at.x && support_position(network, 1).y == at.y);
+    }
+    mspring_network_destroy(network);
+}
+
+/// What the host has woken is awake after a step that is refused, too, though it slept in one that was refused
+/// before.
+static void what_was_woken_stays_so_after_a_refusal(void **state) {
+    (void)state;
+    mspring_network *network = make_two_weights();
+    const support_point at = support_position(network, 1);
+    change_shift(network, 1, MSPRING_NONE);
+    try_a_step(network);
+    check_ok(mspring_network_set_positions(network, 1, 1, &at.x, &at.y));
+    assert_int_equal(support_sleeps(network, 1), 1);
+    check_ok(mspring_network_wake(network));
+    assert_int_equal(support_sleeps(network, 1), 0);
+    try_a_step(network);
+    assert_int_equal(support_sleeps(network, 1), 0);
+    mspring_network_destroy(network);
+}
+
+static void put_below_zero(const mspring_hook_args *args, void *user) {
+    (void)user;
+    for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
+        if (args->particle_of_slot[slot] == 0) {
+            args->x[slot] = args->y[slot] = -0.0f;
+        }
+    }
+}
+
+/// Beside one that moves, in the same vector, a sleeper's place stays to the bit, though a hook left it at -0,
+/// which becomes 0 where 0 is added.
+static void sleepers_keep_every_bit(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    support_particle(builder, 0, 0, 1);
+    support_particle(builder, 5, 3, 1);
+    mspring_network_def def = support_def(0, 4);
+    def.sleep_speed = SLEEP_SPEED;
+    mspring_network *network = support_network(builder, &def);
+    mspring_view view = {.struct_size = sizeof view};
+    uint32_t hook;
+    check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, put_below_zero, NULL, &hook));
+    support_fall_asleep(network, DT);
+    check_ok(mspring_network_remove_hook(network, hook));
+    check_ok(mspring_network_view(network, &view));
+    const uint32_t slot = view.slot_of_particle[0];
+    const float before[] = {view.x[slot], view.y[slot], view.vx[slot], view.vy[slot]};
+    support_kick(network, 1, 1);
+    support_steps(network, 5, DT);
+    assert_true(support_sleeps(network, 0) && !support_sleeps(network, 1));
+    const float after[] = {view.x[slot], view.y[slot], view.vx[slot], view.vy[slot]};
+    assert_memory_equal(after, before, sizeof before);
+    mspring_network_destroy(network);
+}
+
 static void another_relax_fraction_wakes_it(void **state) {
     (void)state;
     recipe made = hanging_recipe(0);
@@ -604,6 +746,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_sleeps_once_it_has_been_slow_for_long_enough),
         cmocka_unit_test(what_moves_does_not_sleep),
+        cmocka_unit_test(as_slow_as_sleep_speed_is_slow_enough),
+        cmocka_unit_test(without_sleep_time_the_first_still_step_is_enough),
         cmocka_unit_test(changes_wake_it),
         cmocka_unit_test(restoring_wakes_it_and_a_ramp_keeps_it_awake),
         cmocka_unit_test(what_stays_the_same_wakes_nothing),
@@ -618,6 +762,9 @@ int main(void) {
         cmocka_unit_test(it_wakes_where_it_is_put),
         cmocka_unit_test(the_floor_bears_what_sleeps),
         cmocka_unit_test(refused_steps_wake_nothing),
+        cmocka_unit_test(the_only_sleeper_sleeps_on_after_a_refusal),
+        cmocka_unit_test(what_was_woken_stays_so_after_a_refusal),
+        cmocka_unit_test(sleepers_keep_every_bit),
         cmocka_unit_test(another_relax_fraction_wakes_it),
         cmocka_unit_test(idle_steps_are_taken_by_nobody),
     };
