@@ -117,6 +117,7 @@ void bench_baseline_free(bench_baseline *baseline) {
     free(baseline->network.particles);
     free(baseline->network.springs);
     free(baseline->start);
+    free(baseline->place_of);
     memset(baseline, 0, sizeof *baseline);
 }
 

@@ -58,7 +58,8 @@ static bool compare(bench_network *network, bench_baseline *baseline, double *mo
     double furthest = 0.0;
     double worst = 0.0;
     for (uint32_t i = 0; ok && i < count; i++) {
-        const naive_particle *p = &baseline->network.particles[i];
+        const uint32_t place = baseline->place_of != NULL ? baseline->place_of[i] : i;
+        const naive_particle *p = &baseline->network.particles[place];
         furthest = fmax(furthest, hypot(x[i] - network->start_x[i], y[i] - network->start_y[i]));
         worst = fmax(worst, hypot(x[i] - (p->x + baseline->origin_x), y[i] - (p->y + baseline->origin_y)));
     }
@@ -70,8 +71,8 @@ static bool compare(bench_network *network, bench_baseline *baseline, double *mo
 }
 
 /// Make both networks, with the state and settings that show errors best.
-static bool create(const bench_scene *subject, mspring_simd level, bench_network *network, bench_baseline *baseline,
-                   scene_error *error) {
+static bool create(const bench_scene *subject, const bench_options *options, mspring_simd level,
+                   bench_network *network, bench_baseline *baseline, scene_error *error) {
     if (!bench_network_create(subject->made.builder, level, 1, CHECK_SUBSTEPS, network, error)) {
         return false;
     }
@@ -88,6 +89,11 @@ static bool create(const bench_scene *subject, mspring_simd level, bench_network
         return false;
     }
     baseline->network.global_damping = CHECK_GLOBAL_DAMPING;
+    if (options->sorted && !bench_baseline_sort(baseline, error)) {
+        bench_baseline_free(baseline);
+        bench_network_free(network);
+        return false;
+    }
     return true;
 }
 
@@ -95,7 +101,7 @@ static bool check_level(const bench_scene *subject, const bench_options *options
                         scene_error *error) {
     bench_network network;
     bench_baseline baseline;
-    if (!create(subject, level, &network, &baseline, error)) {
+    if (!create(subject, options, level, &network, &baseline, error)) {
         return false;
     }
     double moved = 0.0;

@@ -77,6 +77,11 @@ bool bench_measure(const bench_scene *subject, const bench_options *options, msp
         bench_network_free(&network);
         return false;
     }
+    if (options->sorted && !bench_baseline_sort(&baseline, error)) {
+        bench_baseline_free(&baseline);
+        bench_network_free(&network);
+        return false;
+    }
     bench_runner ours = bench_network_runner(&network);
     bench_runner naive = bench_baseline_runner(&baseline);
     bench_measurement result = {

@@ -49,6 +49,7 @@ bool bench_network_check(const bench_network *network, scene_error *error);
 typedef struct bench_baseline {
     naive_network network;
     naive_particle *start; ///< [particle_count]
+    uint32_t *place_of;    ///< [particle_count] where each is, once they are sorted; else NULL: where its id says
     uint32_t substeps;
     double origin_x, origin_y;
 } bench_baseline;
@@ -56,6 +57,11 @@ typedef struct bench_baseline {
 /// Fill the naive network from the library's: particles and springs in the order of their ids, which is the order
 /// in which the scene lists them, with the library's local origin. Steps and resets the library's network.
 bool bench_baseline_create(bench_network *from, bench_baseline *out, scene_error *error);
+
+/// Sort particles by where they are at the start, row by row, and springs likewise (nearby.c): the order that suits
+/// the naive step best where that of the ids is a random one. Once for each baseline.
+bool bench_baseline_sort(bench_baseline *baseline, scene_error *error);
+
 void bench_baseline_free(bench_baseline *baseline);
 bench_runner bench_baseline_runner(bench_baseline *baseline);
 bool bench_baseline_check(const bench_baseline *baseline, scene_error *error);

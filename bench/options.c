@@ -44,6 +44,7 @@ void bench_options_help(void) {
          "  --level LEVEL        scalar, sse2, avx2, avx512, neon, or all (default: the best)\n"
          "  --threads N          workers of the library's network (default 1; of --workers 2); the naive step has "
          "one\n"
+         "  --sorted             give the naive step its particles and springs by place, not by id\n"
          "  --repeat N           pairs of samples (default 21; from 2 million springs on 5)\n"
          "\n"
          "Output (default: a table for people)\n"
@@ -128,6 +129,10 @@ static bool is_switch(const char *option, bench_options *out) {
     }
     if (strcmp(option, "--csv") == 0) {
         out->format = BENCH_CSV;
+        return true;
+    }
+    if (strcmp(option, "--sorted") == 0) {
+        out->sorted = true;
         return true;
     }
     if (strcmp(option, "--markdown") == 0) {

@@ -39,6 +39,7 @@ typedef struct bench_options {
     bench_scene_settings settings;
     bool all_levels;
     mspring_simd level; ///< MSPRING_SIMD_AUTO: the best
+    bool sorted;        ///< the naive network, by places
     uint32_t workers;
     uint32_t substeps, repeat; ///< 0: by the scene's size
 } bench_options;
