@@ -1,5 +1,6 @@
 /// @file test_sleepers.c
-/// Sleepers where it is close: at the border of stability, with the direct solver, among many loose particles.
+/// Sleepers where it is close: at the border of stability, with the direct solver, among many loose particles, all
+/// around a single spring.
 ///
 /// SPDX-License-Identifier: MIT
 #include <stdbool.h>
@@ -255,6 +256,83 @@ static void thousands_of_loose_ones_sleep(void **state) {
     assert_int_equal(loose_session(MSPRING_SIMD_AUTO, 3, SUBSTEPS), expected);
 }
 
+/* ----------------------------------------------------------------------------------------------- all but one */
+
+/// A lattice of three rows that end in blocks of their own, in which all springs but one are broken, or in which
+/// none sleeps.
+static mspring_network *make_wreck(const recipe *made, mspring_id whole, float sleep_speed) {
+    mspring_network_def def = support_def(0, 4);
+    def.sleep_speed = sleep_speed;
+    def.sleep_time = 0;
+    mspring_network *network = recipe_network(made, &def);
+    for (mspring_id s = 0; s < made->spring_count; s++) {
+        if (s != whole) {
+            check_ok(mspring_network_break_springs(network, &s, 1));
+        }
+    }
+    support_steps(network, 1, DT);
+    return network;
+}
+
+/// Whichever spring of a lattice is the only one that is awake, in a block, over its sides or over its corners: it
+/// moves as if nothing slept.
+static void a_spring_alone_moves_among_sleepers(void **state) {
+    (void)state;
+    uint64_t seed = 3;
+    const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {500, 1000}, .damping = {0, 5}};
+    recipe made = {0};
+    recipe_lattice(&made, 34, 3, 0, 0, 1, &stuff, &seed);
+    for (mspring_id s = 0; s < made.spring_count; s++) {
+        mspring_network *network = make_wreck(&made, s, 0.001f), *other = make_wreck(&made, s, 0);
+        assert_int_equal(mspring_network_is_asleep(network), 1);
+        support_kick(network, made.springs[s].a, 1);
+        support_kick(other, made.springs[s].a, 1);
+        for (int step = 0; step < 4; step++) {
+            support_steps(network, 1, DT);
+            support_steps(other, 1, DT);
+            assert_int_equal(support_hash(network), support_hash(other));
+        }
+        uint8_t asleep[102];
+        uint32_t sleepers = 0;
+        check_ok(mspring_network_get_sleepers(network, 0, COUNT_OF(asleep), asleep));
+        for (size_t p = 0; p < COUNT_OF(asleep); p++) {
+            sleepers += asleep[p];
+        }
+        assert_int_equal(sleepers, made.particle_count - 2);
+        mspring_network_destroy(network);
+        mspring_network_destroy(other);
+    }
+    recipe_free(&made);
+}
+
+/// A network of one island keeps asleep, and for how long it has been still, in another layout.
+static void the_only_island_goes_on_in_another_layout(void **state) {
+    (void)state;
+    uint64_t seed = 3;
+    const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {1000, 1000}, .damping = {1, 1}};
+    recipe made = {0};
+    recipe_lattice(&made, COLUMNS, ROWS, 0, 0, 1, &stuff, &seed);
+    mspring_network *network = make(&made, &as_usual);
+    const uint32_t springs = mspring_network_spring_count(network);
+    for (mspring_id s = 0; s < springs; s += 5) {
+        check_ok(mspring_network_break_springs(network, &s, 1));
+    }
+    uint32_t count;
+    check_ok(mspring_network_update_components(network, &count, NULL));
+    assert_int_equal(count, 1);
+    support_steps(network, 10, DT);
+    check_ok(mspring_network_compact(network, 0, NULL));
+    support_steps(network, 5, DT);
+    assert_int_equal(mspring_network_is_asleep(network), 0);
+    support_steps(network, 1, DT); // 0.25 s
+    assert_int_equal(mspring_network_is_asleep(network), 1);
+    check_ok(mspring_network_expand(network));
+    assert_int_equal(mspring_network_is_asleep(network), 1);
+    check_ok(mspring_network_compact(network, 0, NULL));
+    assert_int_equal(mspring_network_is_asleep(network), 1);
+    mspring_network_destroy(network);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_sleeps_counts),
@@ -262,6 +340,8 @@ int main(void) {
         cmocka_unit_test(direct_bits_are_the_same_everywhere),
         cmocka_unit_test(direct_sleepers_go_on_elsewhere),
         cmocka_unit_test(thousands_of_loose_ones_sleep),
+        cmocka_unit_test(a_spring_alone_moves_among_sleepers),
+        cmocka_unit_test(the_only_island_goes_on_in_another_layout),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
