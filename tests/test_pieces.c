@@ -55,7 +55,7 @@ static laid_out lay_out_for(const mspring_builder *builder, uint32_t effort, uin
     laid_out out = {.parts = 0};
     mspringi_message message = {0};
     mspringi_assembly *begun = NULL;
-    check_ok(mspringi_topology_begin(builder, &reserve, false, workers, lanes, memory, &message, &begun));
+    check_ok(mspringi_topology_begin(builder, &reserve, false, true, workers, lanes, memory, &message, &begun));
     for (bool is_done = false; !is_done; out.parts++) {
         uint32_t left = effort;
         check_ok(mspringi_topology_go_on(begun, &left, &is_done));

@@ -1367,15 +1367,18 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_recycle(mspring_net
 /* ------------------------------------------------------------------------------------------- compaction */
 
 /// Leave springs that are broken out of the plan, so that a wreck costs what is left of it: lattices are swept
-/// where squares are left, strands as chains, single springs as web, and particles without spring as loose ones.
-/// Until then a broken spring costs as much as a whole one. Worth it where a quarter of the springs or more has
-/// broken. Springs that were added are taken into the plan, which is worth it where they are to stay.
+/// where squares are left, strands as chains, small trees of one shape side by side, other springs as web, and
+/// particles without spring as loose ones. Until then a broken spring costs as much as a whole one. Worth it where
+/// a quarter of the springs or more has broken. Springs that were added are taken into the plan, which is worth it
+/// where they are to stay.
 ///
 /// Ids, values and thresholds of all springs stay as they are and can be read and set as before. **Slots change**:
 /// a view that was taken before is not valid any more, and hooks see other slots. Positions and velocities are
 /// moved bit for bit; but forces are summed in another order from then on, so the steps that follow differ in
 /// rounding from those of a network that was not compacted. They are the same on every machine, at every level and
-/// for any number of workers, as long as the same calls come between the same steps.
+/// for any number of workers, as long as the same calls come between the same steps. Small pieces are laid out for
+/// the solver that the network has then, the explicit or another: one that is compacted with the other takes no
+/// snapshot of it.
 ///
 /// Restoring a spring that was left out takes all springs in again, as mspring_network_expand() does; then the
 /// network can be compacted anew.

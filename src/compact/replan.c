@@ -131,8 +131,11 @@ static mspring_result list_springs(mspringi_replan *r, mspring_network *network)
     return MSPRING_OK;
 }
 
+// Herds are for the explicit solver: the implicit one takes the springs of the web one by one, and twice as long
+// for a wreck that mostly stands in such.
 static mspring_result begin_layout(mspringi_replan *r, mspring_network *network) {
-    return mspringi_topology_begin(&r->left, &first_topology(network)->reserve, true,
+    const bool has_herds = !network->implicit;
+    return mspringi_topology_begin(&r->left, &first_topology(network)->reserve, true, has_herds,
                                    mspringi_tasks_concurrency(network->tasks), network->kernels->lanes,
                                    &network->plan_memory, &network->message, &r->assembly);
 }

@@ -5,6 +5,7 @@
 
 #include "contact/floor.h"
 #include "creep.h"
+#include "herds.h"
 #include "network/alike.h"
 #include "seam.h"
 #include "shares.h"
@@ -35,6 +36,7 @@ typedef struct job {
     mspringi_shares shares;      ///< (wave)
     const mspringi_strip *web;   ///< the web row's, if that is swept in layers, as strips of a wave of its own
     mspringi_sight *sights;      ///< [workers] if the substeps are a whole step; else NULL
+    bool herds_are_apart;        ///< and not to be swept here
 } job;
 
 /* ------------------------------------------------------------------------------------------------- the wave */
@@ -403,6 +405,32 @@ static void sweep_grafted_loose(const job *rest, const mspringi_substep *substep
     }
 }
 
+// What of a strip a worker takes, if it is one of the web that is not swept apart.
+static bool share_of_web(const job *rest, uint32_t strip, uint32_t index, mspringi_span *share) {
+    const mspringi_topology *t = &rest->network->topology;
+    const mspringi_row *row = &t->rows[t->strips[strip].first_row];
+    const bool is_swept = strip == t->herd_strip ? rest->herds_are_apart : rest->web != NULL;
+    if (row->kind != MSPRINGI_ROW_WEB || is_swept)
+        return false;
+    mspringi_span all = t->spans[row->first_span];
+    all.end_slot = t->spans[row->first_span + row->span_count - 1].end_slot;
+    *share = share_of(&all, index, rest->workers);
+    return share->end_slot > share->first_slot;
+}
+
+static void sweep_web_share(const job *rest, const mspringi_substep *substep, const mspringi_strip *strip,
+                            const mspringi_span *share, uint32_t number, uint32_t index) {
+    const mspring_network *network = rest->network;
+    if (number == 0)
+        begin_share(rest, share);
+    mspringi_web_sweep(network, substep, share);
+    if (network->graft.count > 0)
+        mspringi_graft_pull(network, &substep->sweep, share->first_slot, share->end_slot);
+    mspringi_floor_touch(network, strip, share, 1, substep->sweep.h);
+    if (number + 1 == rest->count)
+        end_share(rest, share, index);
+}
+
 // Take one substep after the other: all workers pack and sweep the web, the first one everything else. Substeps
 // have the packed nodes in two places in turn, so one meeting in each keeps the next from changing what this one
 // reads.
@@ -416,34 +444,23 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
     for (uint32_t i = 0; i < rest->count; ++i) {
         mspringi_substep substep = mspringi_substep_prepare(network, rest->h, rest->base, i, rest->count, 0);
         substep.next_packed = NULL;
-        mspringi_span share = {0};
-        const mspringi_strip *strip = t->strips; // that the share is of
+        mspringi_span share;
         for (uint32_t s = t->wave_strips; s < t->strip_count; ++s) {
             const mspringi_row *row = &t->rows[t->strips[s].first_row];
             if (row->kind == MSPRINGI_ROW_LOOSE) {
                 if (i == 0 && network->graft.count == 0)
                     sweep_loose(rest, &t->strips[s], index);
             } else if (row->kind == MSPRINGI_ROW_WEB) {
-                if (rest->web)
-                    continue;
-                strip = &t->strips[s];
-                share = share_of(&t->spans[row->first_span], index, rest->workers);
-                mspringi_web_pack(network, &substep, &share);
+                if (share_of_web(rest, s, index, &share))
+                    mspringi_web_pack(network, &substep, &share);
             } else if (index == 0) {
                 mspringi_strip_pack(network, &substep, &t->strips[s]);
             }
         }
         meet(rest, index, i + 1);
-        if (share.end_slot > share.first_slot) {
-            if (i == 0)
-                begin_share(rest, &share);
-            mspringi_web_sweep(network, &substep, &share);
-            if (network->graft.count > 0)
-                mspringi_graft_pull(network, &substep.sweep, share.first_slot, share.end_slot);
-            mspringi_floor_touch(network, strip, &share, 1, substep.sweep.h);
-            if (i + 1 == rest->count)
-                end_share(rest, &share, index);
-        }
+        for (uint32_t s = t->wave_strips; s < t->strip_count; ++s)
+            if (share_of_web(rest, s, index, &share))
+                sweep_web_share(rest, &substep, &t->strips[s], &share, i, index);
         mark_ends(rest, &substep, i, watch);
         for (uint32_t s = t->wave_strips; index == 0 && s < t->strip_count; ++s)
             if (t->rows[t->strips[s].first_row].kind < MSPRINGI_ROW_WEB)
@@ -461,9 +478,11 @@ static void sweep_rest(mspring_network *network, float h, mspringi_field base, u
     job rest = {.network = network, .base = base, .h = h, .count = count, .workers = 1, .sights = sights};
     if (sweep_layers(network, h, base, count, sights))
         rest.web = find_web_strip(t);
-    if (rest.web && t->wave_strips + 1 == t->strip_count)
+    rest.herds_are_apart = mspringi_herds_are_apart(network);
+    if (t->wave_strips + (rest.web != NULL) + rest.herds_are_apart == t->strip_count)
         return;
-    if ((uint64_t)t->leftover_count * count >= SMALLEST_SHARED_WEB && network->graft.count == 0)
+    const uint32_t springs = t->leftover_count - (rest.herds_are_apart ? t->herd_springs : 0);
+    if ((uint64_t)springs * count >= SMALLEST_SHARED_WEB && network->graft.count == 0)
         rest.workers = mspringi_tasks_concurrency(network->tasks);
     rest.progress = rest.workers > 1 ? mspringi_tasks_progress(network->tasks) : NULL;
     mspringi_tasks_run(rest.progress ? network->tasks : NULL, rest.workers, sweep_share, &rest);
@@ -494,6 +513,8 @@ static void sweep_all(mspring_network *network, float h, mspringi_field base, ui
     }
     sweep_wave(network, h, base, count, sights);
     sweep_rest(network, h, base, count, sights);
+    if (mspringi_herds_are_apart(network))
+        mspringi_herds_sweep(network, h, base, count, sights);
 }
 
 mspringi_sight mspringi_explicit_step(mspring_network *network, float h, mspringi_field base, uint32_t count) {

@@ -230,6 +230,31 @@ static inline void web(const mspringi_sweep *s, const mspringi_span *spans, uint
     }
 }
 
+// The same forces as those of web(), each computed once.
+static inline void herd(const mspringi_sweep *s, const mspringi_herd *herd, bool damped, bool forced) {
+    for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
+        for (size_t i = 0; i < herd->spring_count; ++i) {
+            const mspringi_herd_spring *spring = &herd->springs[i];
+            const float *record = s->web_springs + (size_t)spring->rung * s->parts * MSPRINGI_WIDTH + lane;
+            const vector pull = spring_force(slot_at(s, spring->above + lane), slot_at(s, spring->below + lane),
+                                             record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
+                                             record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, damped);
+            s->carry_x[i * MSPRINGI_WIDTH + lane] = pull.x;
+            s->carry_y[i * MSPRINGI_WIDTH + lane] = pull.y;
+        }
+        for (size_t i = 0; i < herd->group_count; ++i) {
+            const mspringi_herd_group *group = &herd->groups[i];
+            const size_t above = group->above + lane;
+            vector force = {0.0f - s->carry_x[above], 0.0f - s->carry_y[above]};
+            for (size_t below = group->first_below + lane; below < group->end_below; below += MSPRINGI_WIDTH) {
+                force.x = force.x + s->carry_x[below];
+                force.y = force.y + s->carry_y[below];
+            }
+            move(s, herd->first_slot + i * MSPRINGI_WIDTH + lane, force, forced);
+        }
+    }
+}
+
 static inline void attached(const mspringi_sweep *s, uint32_t first, uint32_t count, float *x, float *y,
                             bool damped) {
     for (size_t i = first; i < (size_t)first + count; ++i) {

@@ -17,6 +17,9 @@
 #define MSPRINGI_INLINE static inline __attribute__((always_inline))
 #endif
 
+/// Springs of a herd that are computed together.
+#define HERD_BATCH (LANES == 16 ? 4 : 2)
+
 typedef struct vector {
     vec x, y;
 } vector;
@@ -360,6 +363,58 @@ MSPRINGI_INLINE void web(const mspringi_sweep *s, const mspringi_span *spans, ui
             const motion here = load_motion(s, slot, damped);
             const vector force = web_force(s, here, node / MSPRINGI_WIDTH, node % MSPRINGI_WIDTH, 0, damped);
             move(s, slot, here, force, damped, forced);
+        }
+    }
+}
+
+// The forces of a herd's springs on the groups above, one spring's after the other's. Several springs' roots and
+// divisions come before any force, so that more of them are under way at a time than a processor would look ahead
+// for.
+MSPRINGI_INLINE void pull_herd(const mspringi_sweep *s, const mspringi_herd *herd, size_t first, size_t count,
+                               size_t lane, float *pull_x, float *pull_y, bool damped) {
+    const size_t stride = (size_t)(damped ? 3 : 2) * MSPRINGI_WIDTH;
+    motion above[HERD_BATCH], below[HERD_BATCH];
+    extent to[HERD_BATCH];
+    vec inverse[HERD_BATCH];
+    for (size_t i = 0; i < count; ++i) {
+        above[i] = load_motion(s, herd->springs[first + i].above + lane, damped);
+        below[i] = load_motion(s, herd->springs[first + i].below + lane, damped);
+        to[i] = spring_extent(below[i], above[i]);
+    }
+    for (size_t i = 0; i < count; ++i)
+        inverse[i] = inverse_or_zero(to[i].length);
+    for (size_t i = 0; i < count; ++i) {
+        const float *record = s->web_springs + herd->springs[first + i].rung * stride + lane;
+        const vector force =
+            spring_force(to[i], inverse[i], below[i], above[i], record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH,
+                         record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, damped);
+        store(pull_x + (first + i) * MSPRINGI_WIDTH + lane, force.x);
+        store(pull_y + (first + i) * MSPRINGI_WIDTH + lane, force.y);
+    }
+}
+
+MSPRINGI_INLINE void herd(const mspringi_sweep *sweep, const mspringi_herd *herd, bool damped, bool forced) {
+    mspringi_sweep copy = *sweep;
+    copy.keep = NULL; // herds are kept and looked at apart
+    copy.watch = NULL;
+    const mspringi_sweep *const s = &copy;
+    const size_t springs = herd->spring_count, groups = herd->group_count;
+    float *pull_x = s->carry_x, *pull_y = s->carry_y;
+    for (size_t lane = 0; lane < MSPRINGI_WIDTH; lane += LANES) {
+        size_t first = 0;
+        for (; first + HERD_BATCH <= springs; first += HERD_BATCH)
+            pull_herd(s, herd, first, HERD_BATCH, lane, pull_x, pull_y, damped);
+        for (; first < springs; ++first)
+            pull_herd(s, herd, first, 1, lane, pull_x, pull_y, damped);
+        size_t slot = herd->first_slot + lane;
+        for (size_t i = 0; i < groups; ++i, slot += MSPRINGI_WIDTH) {
+            const size_t above = herd->groups[i].above + lane, end = herd->groups[i].end_below + lane;
+            vector force = {sub(zero(), load(pull_x + above)), sub(zero(), load(pull_y + above))};
+            for (size_t below = herd->groups[i].first_below + lane; below < end; below += MSPRINGI_WIDTH) {
+                force.x = add(force.x, load(pull_x + below));
+                force.y = add(force.y, load(pull_y + below));
+            }
+            move(s, slot, load_motion(s, slot, damped), force, damped, forced);
         }
     }
 }

@@ -1,5 +1,5 @@
 /// @file table.h
-/// The variants of an instruction set's lattice(), chain(), web(), loose(), attached(), pack(), largest(),
+/// The variants of an instruction set's lattice(), chain(), web(), herd(), loose(), attached(), pack(), largest(),
 /// sight_of(), lattice_strain(), chain_strain() and take_checksum(), and the table of them. Included at the end of
 /// each kernel file, which defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
 ///
@@ -34,6 +34,22 @@ MSPRINGI_VARIANT(web, forced, false, true)
 MSPRINGI_VARIANT(web, damped, true, false)
 MSPRINGI_VARIANT(web, damped_forced, true, true)
 
+static void herd_plain(const mspringi_sweep *sweep, const mspringi_herd *which) {
+    herd(sweep, which, false, false);
+}
+
+static void herd_forced(const mspringi_sweep *sweep, const mspringi_herd *which) {
+    herd(sweep, which, false, true);
+}
+
+static void herd_damped(const mspringi_sweep *sweep, const mspringi_herd *which) {
+    herd(sweep, which, true, false);
+}
+
+static void herd_damped_forced(const mspringi_sweep *sweep, const mspringi_herd *which) {
+    herd(sweep, which, true, true);
+}
+
 static void loose_plain(const mspringi_sweep *sweep, const mspringi_span *span, const mspringi_glide *glide) {
     loose(sweep, span, glide, false);
 }
@@ -57,6 +73,7 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .chain = {{chain_plain, chain_forced}, {chain_damped, chain_damped_forced}},
     .loose = {loose_plain, loose_forced},
     .web = {{web_plain, web_forced}, {web_damped, web_damped_forced}},
+    .herd = {{herd_plain, herd_forced}, {herd_damped, herd_damped_forced}},
     .pack = pack,
     .attached = {attached_plain, attached_damped},
     .largest = largest,

@@ -1,6 +1,6 @@
 /// @file analysis.h
-/// The steps by which a topology is found: graph, then strands, then grids, less those of sheets, then homes, then
-/// the web's list.
+/// The steps by which a topology is found: graph, herds, strands, grids, less those of sheets, homes, then the
+/// web's list.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_ANALYSIS_H
@@ -89,6 +89,40 @@ void mspringi_strands_find(mspringi_strands *strands, const mspringi_graph *grap
                            mspringi_pace *pace, mspringi_memory *memory);
 void mspringi_strands_destroy(mspringi_strands *strands, mspringi_memory *memory);
 
+/// Trees of a few particles that hang on nothing, sixteen of one shape side by side.
+typedef struct mspringi_herds {
+    uint32_t *particles; ///< [group_count][MSPRINGI_WIDTH] herd after herd: those of the same place in their trees
+    uint8_t *rung_above; ///< [group_count] rung, at the group above it in the tree, of the spring to it; that of
+                         ///< the spring to the group above is the first
+    uint32_t group_count;
+
+    // While they are looked for.
+    uint8_t *known;                      ///< [particles]
+    uint32_t tree_count, tree_particles; ///< all that there are
+    uint32_t *in_order;                  ///< [tree_particles] tree after tree, as their codes have them
+    uint64_t *keys, *scratch;            ///< [tree_count] code, and first of in_order
+    uint32_t listed, listed_particles, filled;
+    mspringi_sorting sorting;
+} mspringi_herds;
+
+/// What rung_above has for the first group of a tree.
+#define MSPRINGI_ROOT 0xff
+
+/// Find them: passes in their order. Their particles get MSPRINGI_ROW_WEB in kinds.
+mspring_result mspringi_herds_begin(mspringi_herds *herds, const mspringi_graph *graph, mspringi_pace *pace,
+                                    mspringi_memory *memory, mspringi_message *message);
+void mspringi_herds_explore(mspringi_herds *herds, const mspringi_graph *graph, mspringi_pace *pace);
+mspring_result mspringi_herds_reserve(mspringi_herds *herds, mspringi_pace *pace, mspringi_memory *memory,
+                                      mspringi_message *message);
+void mspringi_herds_compare(mspringi_herds *herds, const mspringi_graph *graph, mspringi_pace *pace);
+void mspringi_herds_sort(mspringi_herds *herds, mspringi_pace *pace);
+mspring_result mspringi_herds_count(mspringi_herds *herds, mspringi_pace *pace, mspringi_memory *memory,
+                                    mspringi_message *message);
+void mspringi_herds_fill(mspringi_herds *herds, uint8_t *kinds, mspringi_pace *pace, mspringi_memory *memory);
+/// Free what is needed only while they are looked for.
+void mspringi_herds_forget(mspringi_herds *herds, mspringi_memory *memory);
+void mspringi_herds_destroy(mspringi_herds *herds, mspringi_memory *memory);
+
 /// Find the grids among the particles that are loose in kinds: their particles get MSPRINGI_ROW_LATTICE. Passes in
 /// their order; the graph and kinds must stay.
 mspring_result mspringi_grids_reserve(mspringi_grids *grids, const mspringi_graph *graph, uint8_t *kinds,
@@ -170,11 +204,12 @@ void mspringi_homes_destroy(mspringi_homes *homes, mspringi_memory *memory);
 
 /// The particles of the web: those that are loose in kinds and have springs. They get MSPRINGI_ROW_WEB. First
 /// those with a home, by home; then those without, in whose list neighbours in space are near each other, and
-/// particles with about as many springs side by side.
+/// particles with about as many springs side by side. Behind those the herds.
 typedef struct mspringi_web_list {
     uint32_t *particles; ///< [count]
     uint32_t count;
     uint32_t homed_count; ///< of these have a home
+    uint32_t first_in_herds;
 
     // While it is made.
     uint32_t listed_homed, listed_free;
@@ -186,21 +221,22 @@ typedef struct mspringi_web_list {
 /// Find it: passes in their order, then its layers.
 void mspringi_web_list_count(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes,
                              const uint8_t *kinds, mspringi_pace *pace);
-mspring_result mspringi_web_list_reserve(mspringi_web_list *list, mspringi_pace *pace, mspringi_memory *memory,
-                                         mspringi_message *message);
+mspring_result mspringi_web_list_reserve(mspringi_web_list *list, const mspringi_herds *herds, mspringi_pace *pace,
+                                         mspringi_memory *memory, mspringi_message *message);
 void mspringi_web_list_fill(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes,
                             uint8_t *kinds, mspringi_pace *pace);
 void mspringi_web_list_set_keys(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes,
                                 mspringi_pace *pace);
 void mspringi_web_list_sort(mspringi_web_list *list, mspringi_pace *pace);
 void mspringi_web_list_take_order(mspringi_web_list *list, mspringi_pace *pace);
+void mspringi_web_list_append_herds(mspringi_web_list *list, const mspringi_herds *herds, mspringi_pace *pace);
 void mspringi_web_list_destroy(mspringi_web_list *list, mspringi_memory *memory);
 
-/// After the list's particles have been counted: drop the strands that have a home, and those that hang on a web
-/// that gets layers, unless there is more of strands than of that. Their particles become loose in kinds and are
-/// counted, too.
+/// After the list's particles have been counted: drop the strands that have a home, those that hang on a web that
+/// gets layers, unless there is more of strands than of that, and, if there are herds, short ones that hang on the
+/// web. Their particles become loose in kinds and are counted, too.
 void mspringi_strands_drop(mspringi_strands *strands, const mspringi_graph *graph, const mspringi_homes *homes,
-                           uint8_t *kinds, mspringi_web_list *list, mspringi_pace *pace);
+                           bool has_herds, uint8_t *kinds, mspringi_web_list *list, mspringi_pace *pace);
 
 typedef enum mspringi_layers_stage {
     MSPRINGI_LAYERS_MARKS,  ///< what there is to be found

@@ -31,6 +31,7 @@ struct mspringi_assembly {
     uint32_t workers, lanes;
     uint8_t *kinds;
     mspringi_graph graph;
+    mspringi_herds herds;
     mspringi_strands strands;
     mspringi_grids grids;
     mspringi_sheets sheets;
@@ -44,9 +45,11 @@ struct mspringi_assembly {
     uint32_t *first_block;  ///< [grids] in blocks
     uint32_t *end_block;    ///< [grids] in blocks
     mspringi_place *places; ///< [springs]
+    uint32_t herd_row;      ///< number of the row of herds, if there are any
     uint32_t home_blocks;   ///< blocks of the web that have been given to rows
     size_t row_capacity, span_capacity;
     bool is_checked; ///< no two springs join the same particles
+    bool has_herds;  ///< small trees may stand in herds
     mspringi_pace pace;
     uint32_t grid;     ///< the grid that is gone through, as a number in grid_order
     uint32_t stage;    ///< of a pass that has several: what is done with the grid
@@ -55,6 +58,7 @@ struct mspringi_assembly {
     uint32_t loose;        ///< loose particles so far, counted or placed
     uint32_t web_place;    ///< of the web's last particle so far
     uint32_t homed_blocks; ///< blocks of the web's particles with a home
+    uint32_t loner_blocks; ///< and of all that are in no herd
     uint32_t runs;         ///< of empty slots so far
     bool in_run;           ///< the slot before is in one
     uint8_t *busy;         ///< [blocks] bits of quarters that have to be swept
@@ -72,7 +76,7 @@ mspring_result mspringi_assembly_count_web_blocks(mspringi_assembly *a);
 mspring_result mspringi_assembly_number_the_rest(mspringi_assembly *a);
 
 /// Where the web's particle i goes among its slots: those of each home and of each layer begin a block, and so do
-/// those without.
+/// those without, and herds.
 uint32_t mspringi_assembly_web_place(const mspringi_assembly *a, uint32_t i, uint32_t place_before);
 /// Whether a particle lies in the loose row. One that is absent has the first slot, which holds none, or a spare
 /// one.

@@ -55,8 +55,8 @@ uint32_t mspringi_assembly_web_place(const mspringi_assembly *a, uint32_t i, uin
     if (i == 0)
         return 0;
     const uint32_t *layer_of = a->layers.count > 0 ? a->layers.layer_of : home;
-    const bool goes_on =
-        home[particles[i]] == home[particles[i - 1]] && layer_of[particles[i]] == layer_of[particles[i - 1]];
+    const bool goes_on = home[particles[i]] == home[particles[i - 1]] &&
+                         layer_of[particles[i]] == layer_of[particles[i - 1]] && i != a->web.first_in_herds;
     return goes_on ? place_before + 1 : (place_before / MSPRINGI_WIDTH + 1) * MSPRINGI_WIDTH;
 }
 
@@ -139,6 +139,8 @@ mspring_result mspringi_assembly_count_web_blocks(mspringi_assembly *a) {
         a->web_place = mspringi_assembly_web_place(a, i, a->web_place);
         if (i + 1 == a->web.homed_count)
             a->homed_blocks = a->web_place / MSPRINGI_WIDTH + 1;
+        if (i + 1 == a->web.first_in_herds)
+            a->loner_blocks = a->web_place / MSPRINGI_WIDTH + 1;
     }
     return MSPRING_OK;
 }

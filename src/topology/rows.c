@@ -58,6 +58,8 @@ static int64_t offset_between(uint32_t from_block, uint32_t to_block) {
 static uint32_t widest_row(const mspringi_assembly *a) {
     uint32_t widest =
         a->topology->chain_blocks < LONGEST_CHAIN_SPAN ? a->topology->chain_blocks : LONGEST_CHAIN_SPAN;
+    if (a->herds.group_count > 0 && widest < MSPRINGI_LONGEST_HERD)
+        widest = MSPRINGI_LONGEST_HERD;
     for (size_t i = 0; i < a->block_count; ++i)
         widest = mspringi_column_block_of_key(a->blocks[i]) + 1 > widest
                      ? mspringi_column_block_of_key(a->blocks[i]) + 1
@@ -121,6 +123,29 @@ static bool append_simple_row(mspringi_assembly *a, mspringi_row_kind kind, uint
     return append_row(a, kind) && append_span(a, &span);
 }
 
+// Append the herds, several to a span.
+static bool append_herd_row(mspringi_assembly *a) {
+    mspringi_topology *t = a->topology;
+    const uint32_t groups = a->herds.group_count;
+    if (groups == 0)
+        return true;
+    a->herd_row = t->row_count;
+    bool ok = append_row(a, MSPRINGI_ROW_WEB);
+    for (uint32_t first = 0, end; ok && first < groups; first = end) {
+        for (end = first + 1; end < groups; ++end) {
+            if (end - first >= MSPRINGI_HERD_SPAN && a->herds.rung_above[end] == MSPRINGI_ROOT)
+                break;
+            if (a->herds.rung_above[end] != MSPRINGI_ROOT)
+                t->herd_springs += MSPRINGI_WIDTH;
+        }
+        const mspringi_span span = span_of_blocks(t->web_first + a->loner_blocks + first, end - first,
+                                                  a->loner_blocks + first, MSPRINGI_WIDTH);
+        t->rows[a->herd_row].span_count++;
+        ok = store_span(a, &span);
+    }
+    return ok;
+}
+
 // Append the span of a strip's own particles of the web, of which the last is in last_slot.
 static bool append_home_span(mspringi_assembly *a, uint32_t strip, uint32_t last_slot) {
     mspringi_topology *t = a->topology;
@@ -168,6 +193,7 @@ mspring_result mspringi_assembly_make_strips(mspringi_assembly *a) {
     t->wave_rows = a->homes.row_count;
     t->wave_strips = (t->wave_rows + rows - 1) / rows;
     t->strip_count = t->wave_strips + (t->row_count - t->wave_rows);
+    t->herd_strip = a->herds.group_count > 0 ? t->wave_strips + (a->herd_row - t->wave_rows) : MSPRING_NONE;
     t->strips = mspringi_alloc(a->memory, t->strip_count, sizeof *t->strips);
     if (!t->strips)
         return mspringi_assembly_fail(a);
@@ -321,11 +347,12 @@ mspring_result mspringi_assembly_begin_rows(mspringi_assembly *a) {
 
 mspring_result mspringi_assembly_append_other_rows(mspringi_assembly *a) {
     const mspringi_topology *t = a->topology;
-    const uint32_t web_blocks = t->web_blocks - a->homed_blocks;
+    const uint32_t web_blocks = t->web_blocks - a->herds.group_count - a->homed_blocks;
     const bool has_loose_row = t->loose_blocks + t->spare_blocks > 0;
     if (!append_chain_row(a) ||
         (web_blocks > 0 &&
          !append_simple_row(a, MSPRINGI_ROW_WEB, t->web_first + a->homed_blocks, web_blocks, a->homed_blocks)) ||
+        !append_herd_row(a) ||
         (has_loose_row && !append_simple_row(a, MSPRINGI_ROW_LOOSE, t->loose_first, t->loose_blocks, 0)))
         return mspringi_assembly_fail(a);
     return MSPRING_OK;

@@ -23,6 +23,8 @@ static mspring_result begin_web(mspringi_assembly *a) {
                                     .own_count = t->web_blocks * MSPRINGI_WIDTH,
                                     .homed_count = a->homed_blocks * MSPRINGI_WIDTH,
                                     .block_count = t->block_count,
+                                    .herd_first = t->web_blocks - a->herds.group_count,
+                                    .rung_above = a->herds.rung_above,
                                     .strip_of_block = mspringi_assembly_list_strips_of_blocks(a)};
     return a->weaving.strip_of_block ? mspringi_web_begin(&a->weaving, &a->pace, a->memory, a->message)
                                      : mspringi_assembly_fail(a);
@@ -111,6 +113,39 @@ static mspring_result fill_graph(mspringi_assembly *a) {
 
 static mspring_result check_graph(mspringi_assembly *a) {
     return mspringi_graph_check(&a->graph, &a->pace, a->memory, a->message);
+}
+
+static mspring_result begin_herds(mspringi_assembly *a) {
+    return !a->has_herds ? MSPRING_OK : mspringi_herds_begin(&a->herds, &a->graph, &a->pace, a->memory, a->message);
+}
+
+static mspring_result explore_trees(mspringi_assembly *a) {
+    if (a->has_herds)
+        mspringi_herds_explore(&a->herds, &a->graph, &a->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result reserve_herds(mspringi_assembly *a) {
+    return mspringi_herds_reserve(&a->herds, &a->pace, a->memory, a->message);
+}
+
+static mspring_result compare_trees(mspringi_assembly *a) {
+    mspringi_herds_compare(&a->herds, &a->graph, &a->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result sort_trees(mspringi_assembly *a) {
+    mspringi_herds_sort(&a->herds, &a->pace);
+    return MSPRING_OK;
+}
+
+static mspring_result count_herds(mspringi_assembly *a) {
+    return mspringi_herds_count(&a->herds, &a->pace, a->memory, a->message);
+}
+
+static mspring_result fill_herds(mspringi_assembly *a) {
+    mspringi_herds_fill(&a->herds, a->kinds, &a->pace, a->memory);
+    return MSPRING_OK;
 }
 
 static mspring_result count_strands(mspringi_assembly *a) {
@@ -218,12 +253,12 @@ static mspring_result stand_ropes(mspringi_assembly *a) {
 }
 
 static mspring_result drop_strands(mspringi_assembly *a) {
-    mspringi_strands_drop(&a->strands, &a->graph, &a->homes, a->kinds, &a->web, &a->pace);
+    mspringi_strands_drop(&a->strands, &a->graph, &a->homes, a->herds.group_count > 0, a->kinds, &a->web, &a->pace);
     return MSPRING_OK;
 }
 
 static mspring_result begin_web_list(mspringi_assembly *a) {
-    return mspringi_web_list_reserve(&a->web, &a->pace, a->memory, a->message);
+    return mspringi_web_list_reserve(&a->web, &a->herds, &a->pace, a->memory, a->message);
 }
 
 static mspring_result list_web(mspringi_assembly *a) {
@@ -257,6 +292,11 @@ static mspring_result find_layers(mspringi_assembly *a) {
 
 static mspring_result order_web_windows(mspringi_assembly *a) {
     mspringi_web_list_order_windows(&a->web, &a->layers, &a->graph, &a->pace, a->memory);
+    return MSPRING_OK;
+}
+
+static mspring_result append_herds(mspringi_assembly *a) {
+    mspringi_web_list_append_herds(&a->web, &a->herds, &a->pace);
     return MSPRING_OK;
 }
 
@@ -313,6 +353,13 @@ static mspring_result (*const layout_passes[])(mspringi_assembly *a) = {
     sum_graph,
     fill_graph,
     check_graph,
+    begin_herds,
+    explore_trees,
+    reserve_herds,
+    compare_trees,
+    sort_trees,
+    count_herds,
+    fill_herds,
     count_strands,
     begin_strands,
     find_strands,
@@ -344,6 +391,7 @@ static mspring_result (*const layout_passes[])(mspringi_assembly *a) = {
     begin_layers,
     find_layers,
     order_web_windows,
+    append_herds,
     mspringi_assembly_begin_blocks,
     mspringi_assembly_number_blocks,
     mspringi_assembly_count_loose,
@@ -388,8 +436,9 @@ static mspring_result (*const layout_passes[])(mspringi_assembly *a) = {
 #define LAYOUT_PASSES (sizeof layout_passes / sizeof layout_passes[0])
 
 mspring_result mspringi_topology_begin(const mspring_builder *builder, const mspringi_reserve *reserve,
-                                       bool is_checked, uint32_t workers, uint32_t lanes, mspringi_memory *memory,
-                                       mspringi_message *message, mspringi_assembly **begun) {
+                                       bool is_checked, bool has_herds, uint32_t workers, uint32_t lanes,
+                                       mspringi_memory *memory, mspringi_message *message,
+                                       mspringi_assembly **begun) {
     mspringi_assembly *a = mspringi_alloc(memory, 1, sizeof *a);
     if (!a)
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to lay out %zu particles and %zu springs",
@@ -402,6 +451,7 @@ mspring_result mspringi_topology_begin(const mspring_builder *builder, const msp
     a->message = message;
     a->builder = builder;
     a->is_checked = is_checked;
+    a->has_herds = has_herds;
     a->workers = workers;
     a->lanes = lanes;
     *begun = a;
@@ -441,6 +491,7 @@ void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory
     mspringi_free(memory, begun->busy);
     mspringi_weaving_destroy(&begun->weaving, memory);
     mspringi_graph_destroy(&begun->graph, memory);
+    mspringi_herds_destroy(&begun->herds, memory);
     mspringi_strands_destroy(&begun->strands, memory);
     mspringi_grids_destroy(&begun->grids, memory);
     mspringi_sheets_destroy(&begun->sheets, memory);
@@ -491,7 +542,7 @@ mspring_result mspringi_topology_create(mspringi_topology *topology, const mspri
                                         mspringi_memory *memory, mspringi_message *message) {
     mspringi_assembly *begun = NULL;
     mspring_result result =
-        mspringi_topology_begin(builder, reserve, false, workers, lanes, memory, message, &begun);
+        mspringi_topology_begin(builder, reserve, false, false, workers, lanes, memory, message, &begun);
     for (bool is_done = false; result == MSPRING_OK && !is_done;) {
         uint32_t effort = MSPRINGI_PACE_ALL;
         result = mspringi_topology_go_on(begun, &effort, &is_done);

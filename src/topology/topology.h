@@ -6,7 +6,8 @@
 ///
 ///   lattice  one row of a grid; each block has a record of four springs per slot (see mspringi_direction)
 ///   chain    strands packed end to end; a record of one spring per slot, to the next slot
-///   web      particles with other springs; no record, see web.h
+///   web      particles with other springs; no record, see web.h. Herds (herds.c) have a row of their own, whose
+///            spans have nothing to do with each other
 ///   loose    particles without a spring; no record
 ///
 /// A spring that lies in no lattice or chain row is left over: the web has it. Web particles that hang on a lattice
@@ -107,6 +108,8 @@ typedef struct mspringi_topology {
     uint32_t wave_strips;  ///< the strips that they are in
     uint32_t lag;          ///< strips by which each substep of such a pass must stay behind the one before
     uint32_t carry_blocks; ///< blocks of the carry row
+    uint32_t herd_strip;   ///< strip of the web's trees that stand in herds, or MSPRING_NONE
+    uint32_t herd_springs; ///< springs of these
 
     uint32_t layer_count;   ///< of the web row, if it is swept in layers, each with springs to the next ones only
     uint32_t *layer_blocks; ///< [layer_count + 1] where each begins, counted from the row's first block
@@ -151,12 +154,13 @@ mspring_result mspringi_topology_create(mspringi_topology *topology, const mspri
                                         mspringi_memory *memory, mspringi_message *message);
 /// The same in parts: begin, go on until it is done unless that fails, then finish; or abandon at any time, which
 /// allows NULL. The builder and what memory and message point to must stay; is_checked: no two of its springs join
-/// the same particles. What is finished has its places not in itself yet but in an array of their own, for whoever
-/// asked to pack and free.
+/// the same particles; has_herds: small trees may stand in herds. What is finished has its places not in itself yet
+/// but in an array of their own, for whoever asked to pack and free.
 typedef struct mspringi_assembly mspringi_assembly;
 mspring_result mspringi_topology_begin(const mspring_builder *builder, const mspringi_reserve *reserve,
-                                       bool is_checked, uint32_t workers, uint32_t lanes, mspringi_memory *memory,
-                                       mspringi_message *message, mspringi_assembly **begun);
+                                       bool is_checked, bool has_herds, uint32_t workers, uint32_t lanes,
+                                       mspringi_memory *memory, mspringi_message *message,
+                                       mspringi_assembly **begun);
 /// @param effort  how much to do, and what is left of that; see pace.h
 mspring_result mspringi_topology_go_on(mspringi_assembly *begun, uint32_t *effort, bool *is_done);
 void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory, mspringi_topology *topology,

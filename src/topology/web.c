@@ -201,6 +201,14 @@ static uint32_t take_entry(const mspringi_weaving *w, uint32_t node) {
     return entry_at(web, node, has_upright + w->used[node]++);
 }
 
+// The entry of a node for the spring to another. Those of herds are where the shape of their trees has them.
+static uint32_t find_entry(const mspringi_weaving *w, uint32_t node, uint32_t other) {
+    const uint32_t group = node / MSPRINGI_WIDTH, group_below = other / MSPRINGI_WIDTH;
+    if (node >= w->own_count || group < w->herd_first)
+        return take_entry(w, node);
+    return entry_at(w->web, node, group_below < group ? 0 : w->rung_above[group_below - w->herd_first]);
+}
+
 void mspringi_web_fill(mspringi_weaving *w, mspringi_pace *pace, mspringi_memory *memory) {
     const mspringi_web *web = w->web;
     uint32_t first, end;
@@ -213,8 +221,8 @@ void mspringi_web_fill(mspringi_weaving *w, mspringi_pace *pace, mspringi_memory
             web->neighbour[web->entry[2 * s]] = low + MSPRINGI_WIDTH;
             continue;
         }
-        web->entry[2 * s] = take_entry(w, node_a);
-        web->entry[2 * s + 1] = take_entry(w, node_b);
+        web->entry[2 * s] = find_entry(w, node_a, node_b);
+        web->entry[2 * s + 1] = find_entry(w, node_b, node_a);
         web->neighbour[web->entry[2 * s]] = node_b;
         web->neighbour[web->entry[2 * s + 1]] = node_a;
         if (web->is_read)

@@ -11,6 +11,10 @@
 /// rung then, and are computed once, in place and without gathering. Nodes that they join have no more than two
 /// springs, whose sum is the same in either order.
 ///
+/// The last of the own nodes may stand in herds: trees of up to MSPRINGI_LARGEST_TREE groups, sixteen at a time, in
+/// which a rung leads all nodes of a group to the same other group. The first is that to the group above in the
+/// tree, which comes before; the others lead to those below.
+///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_WEB_H
 #define MSPRINGI_WEB_H
@@ -21,6 +25,14 @@
 /// Slots in a block and nodes in a group: the lanes of the widest vector register, so that every instruction set
 /// sees whole ones.
 #define MSPRINGI_WIDTH 16
+
+/// Particles of the largest tree that may stand in a herd.
+#define MSPRINGI_LARGEST_TREE 8
+
+/// Herds are swept together, about so many groups, few enough to stay in the first-level cache while all substeps
+/// are taken.
+#define MSPRINGI_HERD_SPAN 16
+#define MSPRINGI_LONGEST_HERD (MSPRINGI_HERD_SPAN - 1 + MSPRINGI_LARGEST_TREE)
 
 typedef struct mspringi_web {
     uint32_t own_count;      ///< nodes that are slots of web rows, in order
@@ -41,6 +53,8 @@ typedef struct mspringi_weaving {
     uint32_t count;
     uint32_t first_slot, own_count;         ///< the slots of the web rows
     uint32_t block_count;                   ///< of all slots
+    uint32_t herd_first;                    ///< first group that is in a herd
+    const uint8_t *rung_above;              ///< as in mspringi_herds
     uint32_t *strip_of_block;               ///< [block_count] in what strip another slot is; freed with the rest
     uint32_t *degree, *node_of_slot, *used; ///< by slot, by slot and by node
     uint32_t homed_count;                   ///< the first of these, that have a home

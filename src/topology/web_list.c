@@ -1,5 +1,6 @@
 /// The order of the web's particles.
 #include <math.h>
+#include <string.h>
 
 #include "analysis.h"
 
@@ -74,9 +75,10 @@ void mspringi_web_list_count(mspringi_web_list *list, const mspringi_graph *grap
     }
 }
 
-mspring_result mspringi_web_list_reserve(mspringi_web_list *list, mspringi_pace *pace, mspringi_memory *memory,
-                                         mspringi_message *message) {
-    list->particles = mspringi_pace_alloc(pace, memory, list->count, sizeof *list->particles);
+mspring_result mspringi_web_list_reserve(mspringi_web_list *list, const mspringi_herds *herds, mspringi_pace *pace,
+                                         mspringi_memory *memory, mspringi_message *message) {
+    list->particles = mspringi_pace_alloc(pace, memory, list->count + (size_t)herds->group_count * MSPRINGI_WIDTH,
+                                          sizeof *list->particles);
     list->keys = mspringi_pace_alloc(pace, memory, list->count, sizeof *list->keys);
     list->scratch = mspringi_pace_alloc(pace, memory, list->count, sizeof *list->scratch);
     list->min_x = list->min_y = INFINITY;
@@ -161,6 +163,15 @@ void mspringi_web_list_order_windows(mspringi_web_list *list, const mspringi_lay
     mspringi_free(memory, list->keys);
     mspringi_free(memory, list->scratch);
     list->keys = list->scratch = NULL;
+}
+
+void mspringi_web_list_append_herds(mspringi_web_list *list, const mspringi_herds *herds, mspringi_pace *pace) {
+    uint32_t first, end;
+    mspringi_pace_take(pace, herds->group_count * MSPRINGI_WIDTH, 1, &first, &end);
+    if (first == 0)
+        list->first_in_herds = list->count;
+    memcpy(list->particles + list->count, herds->particles + first, (end - first) * sizeof *list->particles);
+    list->count += end - first;
 }
 
 void mspringi_web_list_destroy(mspringi_web_list *list, mspringi_memory *memory) {

@@ -1,0 +1,423 @@
+/// @file test_herds.c
+/// Small trees that stand in herds: which do, and the same bits whatever sweeps them.
+///
+/// SPDX-License-Identifier: MIT
+#include <stdbool.h>
+#include <stdlib.h>
+
+#include "network/network.h"
+#include "recipe.h"
+#include "reference.h"
+#include "support.h"
+#include "topology/analysis.h"
+
+enum { LANES = MSPRINGI_WIDTH };
+
+/// The node that each node hangs on, of trees that all stand in herds if there are many of them.
+typedef struct shape {
+    uint32_t size, above[MSPRINGI_LARGEST_TREE];
+} shape;
+
+static const shape shapes[] = {
+    {2, {0, 0}},
+    {3, {0, 0, 1}},
+    {3, {0, 0, 0}}, // the same, from its middle
+    {4, {0, 0, 1, 2}},
+    {4, {0, 0, 0, 0}},
+    {6, {0, 0, 1, 1, 0, 4}},
+    {8, {0, 0, 1, 2, 3, 4, 5, 6}},
+    {8, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {8, {0, 0, 1, 2, 1, 2, 3, 0}},
+};
+
+static mspring_id add_tree(recipe *made, const shape *which, double x, double y, bool ring, uint64_t *seed) {
+    mspring_id first = 0;
+    for (uint32_t node = 0; node < which->size; node++) {
+        const double dx = support_random_between(seed, -1, 1), dy = support_random_between(seed, -1, 1);
+        const double mass = support_random_between(seed, 1, 2);
+        const bool is_pinned = support_random(seed) % 32 == 0;
+        const mspring_id id =
+            recipe_particle(made, x + 3 * node + dx, y + dy, mass, is_pinned ? MSPRING_PARTICLE_PINNED : 0);
+        first = node == 0 ? id : first;
+        if (node > 0) {
+            const double stiffness = support_random_between(seed, 200, 400);
+            recipe_spring(made, first + which->above[node], id, stiffness, support_random_between(seed, 0, 1), 0);
+        }
+    }
+    if (ring) {
+        recipe_spring(made, first, first + which->size - 1, 300, 0, 0);
+    }
+    return first;
+}
+
+/// Many trees of each shape, and what stands in no herd: rings, a path of nine, a lattice, loose particles.
+static recipe make_trees(uint32_t of_each, uint64_t seed) {
+    const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {200, 400}, .damping = {0, 1}};
+    recipe made = {0};
+    for (uint32_t i = 0; i < of_each; i++) {
+        for (size_t k = 0; k < COUNT_OF(shapes); k++) {
+            add_tree(&made, &shapes[k], 40.0 * (double)k, 10.0 * i, false, &seed);
+        }
+    }
+    for (uint32_t i = 0; i < 20; i++) {
+        add_tree(&made, &shapes[1], -20, 10.0 * i, true, &seed);
+        recipe_particle(&made, -30, 10.0 * i, 1, 0);
+        const mspring_id from = recipe_particle(&made, -60, 10.0 * i, 1, 0);
+        recipe_rope(&made, from, recipe_particle(&made, -52, 10.0 * i, 1, 0), 8, &stuff, &seed);
+    }
+    recipe_lattice(&made, 20, 10, 0, -20, 1, &stuff, &seed);
+    recipe_disturb(&made, 0.1, 0.5, &seed);
+    recipe_shuffle(&made, &seed, NULL);
+    return made;
+}
+
+/// A network of a recipe, one more spring broken and left out, so that what is left is laid out anew.
+static mspring_network *compact_network(const recipe *made, const mspring_network_def *def) {
+    mspring_builder *builder = recipe_builder(made, NULL);
+    const mspring_id a = support_particle(builder, -100, 0, 1), b = support_particle(builder, -100, 1, 1);
+    const mspring_id spring = support_spring(builder, a, b, 1, 0);
+    mspring_network *network = support_network(builder, def);
+    uint32_t left = 1;
+    check_ok(mspring_network_break_springs(network, &spring, 1));
+    check_ok(mspring_network_compact(network, 0, &left));
+    assert_int_equal(left, 0);
+    return network;
+}
+
+/* ---------------------------------------------------------------------------------------------- which stand so */
+
+static uint32_t groups_of(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    if (t->herd_strip == MSPRING_NONE) {
+        return 0;
+    }
+    const mspringi_row *row = &t->rows[t->strips[t->herd_strip].first_row];
+    const mspringi_span *first = &t->spans[row->first_span], *last = first + row->span_count - 1;
+    return (last->end_slot - first->first_slot) / LANES;
+}
+
+static void trees_stand_in_whole_herds(void **state) {
+    (void)state;
+    recipe made = make_trees(37, 1);
+    const mspring_network_def def = support_def(-9.8f, 4);
+    mspring_network *network = compact_network(&made, &def);
+    // Two shapes are one; of 37 trees 32 fill lanes, of 74 64.
+    uint32_t expected = 0;
+    for (size_t k = 0; k < COUNT_OF(shapes); k++) {
+        expected += 2 * shapes[k].size;
+    }
+    assert_int_equal(groups_of(network), expected);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+static void rungs_of_a_group_lead_to_one_group(void **state) {
+    (void)state;
+    recipe made = make_trees(37, 2);
+    const mspring_network_def def = support_def(-9.8f, 4);
+    mspring_network *network = compact_network(&made, &def);
+    const mspringi_web *web = &network->topology.web;
+    const uint32_t end = web->own_count / LANES;
+    uint32_t springs = 0;
+    for (uint32_t group = end - groups_of(network); group < end; group++) {
+        uint32_t before = 0;
+        for (uint32_t rung = web->first_rung[group]; rung < web->first_rung[group + 1]; rung++) {
+            const uint32_t *neighbour = web->neighbour + rung * LANES, other = neighbour[0] / LANES;
+            for (uint32_t lane = 0; lane < LANES; lane++) {
+                assert_int_equal(neighbour[lane], other * LANES + lane);
+            }
+            assert_true(other != group && other + MSPRINGI_LARGEST_TREE > group);
+            assert_true(rung == web->first_rung[group] || (other > group && other > before));
+            before = other;
+            springs += other > group ? LANES : 0;
+        }
+    }
+    assert_true(springs > 0);
+    assert_int_equal(springs, network->topology.herd_springs);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+/// 15 of each: two shapes are the same, thirty trees of three, too few particles to be worth it.
+static void few_trees_stand_in_none(void **state) {
+    (void)state;
+    recipe made = make_trees(15, 3);
+    const mspring_network_def def = support_def(-9.8f, 4);
+    mspring_network *network = compact_network(&made, &def);
+    assert_int_equal(groups_of(network), 0);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+/* -------------------------------------------------------------------------------------------------- their steps */
+
+/// Half a millimetre: a thousandth of what they move, and ten times what single precision errs at such coordinates.
+static void they_move_as_the_reference(void **state) {
+    (void)state;
+    recipe made = make_trees(40, 4);
+    reference exact = reference_of(&made, 0, -9.8, 0.3);
+    mspring_network_def def = support_def(-9.8f, 4);
+    def.global_damping = 0.3f;
+    mspring_network *network = compact_network(&made, &def);
+    assert_true(groups_of(network) > 0);
+    for (int substep = 0; substep < 100; substep++) {
+        reference_substep(&exact, 1.0 / 256);
+    }
+    support_steps(network, 25, 4.0 / 256);
+    for (mspring_id id = 0; id < made.particle_count; id++) {
+        const support_point p = support_position(network, id);
+        check_near(p.x, exact.particles[id].x, 5e-4);
+        check_near(p.y, exact.particles[id].y, 5e-4);
+    }
+    mspring_network_destroy(network);
+    reference_free(&exact);
+    recipe_free(&made);
+}
+
+typedef struct way {
+    mspring_simd level;
+    uint32_t workers;
+    bool in_web; ///< the herds are swept as any web
+    bool has_floor, has_forces, has_dampers;
+} way;
+
+static void add_floor(mspring_network *network) {
+    const double plane[4] = {0, 50, 0, 1};
+    mspring_floor_def ground;
+    check_ok(mspring_floor_def_init(&ground, sizeof ground));
+    ground.planes = plane;
+    ground.plane_count = 1;
+    ground.friction = 0.5f;
+    check_ok(mspring_network_set_floor(network, &ground));
+}
+
+static uint64_t hash_of(recipe *made, way with) {
+    mspring_network_def def = support_def(-9.8f, 130);
+    def.simd_level = with.level;
+    def.worker_count = with.workers;
+    for (uint32_t s = 0; !with.has_dampers && s < made->spring_count; s++) {
+        made->springs[s].damping = 0;
+    }
+    mspring_network *network = compact_network(made, &def);
+    assert_true(groups_of(network) > 0);
+    if (with.in_web) {
+        network->topology.herd_strip = MSPRING_NONE;
+    }
+    if (with.has_floor) {
+        add_floor(network);
+    }
+    uint64_t hash = 0;
+    for (int step = 0; step < 4; step++) {
+        if (with.has_forces) {
+            check_ok(mspring_network_apply_force(network, 100, 30, 20));
+        }
+        support_steps(network, 1, 1.0 / 64);
+        hash = hash * 31 + support_hash(network);
+    }
+    mspring_network_destroy(network);
+    return hash;
+}
+
+static void any_way_gives_the_same_bits(void **state) {
+    (void)state;
+    for (uint32_t scene = 0; scene < 8; scene++) {
+        recipe made = make_trees(100, 5);
+        way with = {.level = MSPRING_SIMD_SCALAR,
+                    .has_floor = scene & 1,
+                    .has_forces = scene >> 1 & 1,
+                    .has_dampers = scene >> 2 & 1};
+        with.workers = 1;
+        with.in_web = true;
+        const uint64_t expected = hash_of(&made, with);
+        with.in_web = false;
+        mspring_simd levels[MSPRING_SIMD_AVX512];
+        const uint32_t count = support_levels(levels);
+        for (uint32_t i = 0; i < count; i++) {
+            with.level = levels[i];
+            for (with.workers = 1; with.workers <= 3; with.workers += 2) {
+                assert_int_equal(hash_of(&made, with), expected);
+            }
+        }
+        recipe_free(&made);
+    }
+}
+
+/// What falls asleep takes those that stand beside it out of the herd's own sweep.
+static void what_is_awake_moves_the_same_beside_sleepers(void **state) {
+    (void)state;
+    uint64_t seed = 6;
+    recipe made = {0};
+    for (uint32_t i = 0; i < 600; i++) {
+        const mspring_id first = add_tree(&made, &shapes[5], 0, 10.0 * i, false, &seed);
+        for (uint32_t node = 0; node < shapes[5].size; node++) {
+            made.particles[first + node].vx = i % 2 == 0 ? 1.0f : 0.0f;
+        }
+    }
+    mspring_network_def def = support_def(0, 4);
+    mspring_network *restless = compact_network(&made, &def);
+    def.sleep_speed = 0.01f;
+    def.sleep_time = 0.1f;
+    mspring_network *network = compact_network(&made, &def);
+    assert_true(groups_of(network) > 0);
+    support_steps(restless, 40, 1.0 / 64);
+    support_steps(network, 40, 1.0 / 64);
+    uint32_t asleep = 0;
+    uint8_t *sleeps = malloc(made.particle_count);
+    assert_non_null(sleeps);
+    check_ok(mspring_network_get_sleepers(network, 0, made.particle_count, sleeps));
+    for (mspring_id id = 0; id < made.particle_count; id++) {
+        const support_point p = support_position(network, id), q = support_position(restless, id);
+        assert_true(sleeps[id] || (p.x == q.x && p.y == q.y));
+        asleep += sleeps[id] != 0;
+    }
+    free(sleeps);
+    assert_true(asleep > made.particle_count / 4 && asleep < made.particle_count);
+    mspring_network_destroy(network);
+    mspring_network_destroy(restless);
+    recipe_free(&made);
+}
+
+/* -------------------------------------------------------------------------------------------------- their lives */
+
+#ifndef MOST_LIVES
+#define MOST_LIVES 6u
+#endif
+
+enum { LIFE_STEPS = 24, LIFE_EDITS = 5 };
+
+/// Forces and blows that depend on nothing but where a particle is.
+static void blow(const mspring_hook_args *args, void *user) {
+    (void)user;
+    for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
+        if (args->phase == MSPRING_PHASE_BEFORE_SUBSTEP) {
+            args->force_x[slot] += args->y[slot];
+        } else if (args->x[slot] > 100.0f) {
+            args->vx[slot] -= 0.25f;
+        }
+    }
+}
+
+/// What a host may do between two steps.
+static void edit(mspring_network *network, uint32_t spring_count, uint64_t *seed) {
+    const uint64_t dice = support_random(seed), which = support_random(seed);
+    const mspring_id p = (mspring_id)(which % 600), s = (mspring_id)(which % spring_count);
+    const float some = (float)support_random_between(seed, 0.5, 2), none = 0.0f;
+    mspring_spring_def def;
+    mspring_id id;
+    uint32_t hook;
+    switch (dice % 16) {
+    case 0:
+    case 1:
+    case 2:
+        check_ok(mspring_network_break_springs(network, &s, 1));
+        break;
+    case 3: // one that broke before the network was compacted brings all back
+        check_ok(mspring_network_restore_springs(network, &s, 1, 0));
+        break;
+    case 4:
+    case 5:
+    case 6:
+        support_kick(network, p, some);
+        break;
+    case 7:
+        check_ok(mspring_network_set_masses_at(network, &p, 1, &some));
+        break;
+    case 8:
+        check_ok(mspring_network_set_inverse_mass_scales_at(network, &p, 1, &none));
+        break;
+    case 9:
+        check_ok(mspring_network_set_stiffnesses_at(network, &s, 1, &(float){100.0f * some}));
+        break;
+    case 10:
+        check_ok(mspring_network_apply_force(network, p, 30.0f * some, 20));
+        break;
+    case 11:
+        check_ok(mspring_spring_def_init(&def, sizeof def));
+        def.a = p;
+        def.b = p + 11;
+        def.stiffness = 50.0f * some;
+        if (mspring_network_add_springs(network, &def, 1, &id) == MSPRING_OK && dice >> 32 & 1) {
+            check_ok(mspring_network_remove_springs(network, &id, 1));
+        }
+        break;
+    case 12:
+        check_ok(support_add_hook(network,
+                                  dice >> 32 & 1 ? MSPRING_PHASE_BEFORE_SUBSTEP : MSPRING_PHASE_AFTER_SUBSTEP, blow,
+                                  NULL, &hook));
+        if (dice >> 33 & 3) {
+            support_steps(network, 1, 1.0 / 64);
+            check_ok(mspring_network_remove_hook(network, hook));
+        }
+        break;
+    case 13:
+        support_bring(network, network, MSPRING_SNAPSHOT_ALL);
+        break;
+    default:
+        check_ok(mspring_network_compact(network, 0, NULL));
+        break;
+    }
+}
+
+static void live_as(recipe *made, way with, uint64_t seed, uint64_t *hashes) {
+    const uint64_t kind = support_random(&seed);
+    mspring_network_def def = support_def(kind & 1 ? 0 : -9.8f, 4);
+    def.simd_level = with.level;
+    def.worker_count = with.workers;
+    def.spare_springs = 64;
+    if (kind >> 1 & 1) {
+        def.sleep_speed = 0.3f;
+        def.sleep_time = 0.05f;
+    }
+    mspring_network *network = compact_network(made, &def);
+    assert_true(groups_of(network) > 0);
+    if (kind >> 2 & 1) {
+        add_floor(network);
+    }
+    const float brittle = 0.5f;
+    for (mspring_id s = 0; s < made->spring_count; s += 7) {
+        check_ok(mspring_network_set_break_strains_at(network, &s, 1, &brittle));
+    }
+    for (int step = 0; step < LIFE_STEPS; step++) {
+        for (uint64_t i = support_random(&seed) % LIFE_EDITS; i > 0; i--) {
+            edit(network, made->spring_count, &seed);
+        }
+        if (with.in_web) {
+            network->topology.herd_strip = MSPRING_NONE;
+        }
+        support_steps(network, 1, 1.0 / 64);
+        hashes[step] = support_hash(network);
+    }
+    mspring_network_destroy(network);
+}
+
+static void any_way_lives_the_same(void **state) {
+    (void)state;
+    for (uint64_t life = 0; life < MOST_LIVES; life++) {
+        recipe made = make_trees(24 + 8 * (uint32_t)(life % 3), life);
+        uint64_t expected[LIFE_STEPS], hashes[LIFE_STEPS];
+        const way scalar_web = {.level = MSPRING_SIMD_SCALAR, .workers = 1, .in_web = true};
+        live_as(&made, scalar_web, life, expected);
+        mspring_simd levels[MSPRING_SIMD_AVX512];
+        const uint32_t count = support_levels(levels);
+        for (uint32_t i = 0; i < count; i++) {
+            static const uint32_t workers[] = {1, 3, 2, 8};
+            const way herds = {.level = levels[i], .workers = workers[(i + life) % COUNT_OF(workers)]};
+            live_as(&made, herds, life, hashes);
+            assert_memory_equal(hashes, expected, sizeof hashes);
+        }
+        recipe_free(&made);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(trees_stand_in_whole_herds),
+        cmocka_unit_test(rungs_of_a_group_lead_to_one_group),
+        cmocka_unit_test(few_trees_stand_in_none),
+        cmocka_unit_test(they_move_as_the_reference),
+        cmocka_unit_test(any_way_gives_the_same_bits),
+        cmocka_unit_test(what_is_awake_moves_the_same_beside_sleepers),
+        cmocka_unit_test(any_way_lives_the_same),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
