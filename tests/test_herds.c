@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
+#include "allocator.h"
 #include "network/network.h"
 #include "recipe.h"
 #include "reference.h"
@@ -135,6 +136,30 @@ static void rungs_of_a_group_lead_to_one_group(void **state) {
     assert_true(springs > 0);
     assert_int_equal(springs, network->topology.herd_springs);
     mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+/// Each allocation of a compaction fails in turn.
+static void without_memory_they_stand_as_before(void **state) {
+    (void)state;
+    recipe made = make_trees(24, 7);
+    const mspring_network_def def = support_def(-9.8f, 4);
+    mspring_result result = MSPRING_ERROR_MEMORY;
+    for (size_t fail = 1; result != MSPRING_OK; fail++) {
+        watched_allocator watched = {0};
+        const mspring_allocator allocator = watched_interface(&watched);
+        const mspring_id spring = 0;
+        mspring_network *network = support_network(recipe_builder(&made, &allocator), &def);
+        check_ok(mspring_network_break_springs(network, &spring, 1));
+        const uint64_t before = support_hash(network);
+        watched.fail_at = watched.calls + fail;
+        result = mspring_network_compact(network, 0, NULL);
+        assert_true(result == MSPRING_OK || result == MSPRING_ERROR_MEMORY);
+        assert_true(groups_of(network) > 0 || result == MSPRING_ERROR_MEMORY);
+        assert_int_equal(support_hash(network), before);
+        mspring_network_destroy(network);
+        check_watched_clean(&watched);
+    }
     recipe_free(&made);
 }
 
@@ -414,6 +439,7 @@ int main(void) {
         cmocka_unit_test(trees_stand_in_whole_herds),
         cmocka_unit_test(rungs_of_a_group_lead_to_one_group),
         cmocka_unit_test(few_trees_stand_in_none),
+        cmocka_unit_test(without_memory_they_stand_as_before),
         cmocka_unit_test(they_move_as_the_reference),
         cmocka_unit_test(any_way_gives_the_same_bits),
         cmocka_unit_test(what_is_awake_moves_the_same_beside_sleepers),
