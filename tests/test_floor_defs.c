@@ -155,6 +155,9 @@ static void all_planes_hold(void **state) {
                 assert_true(inside >= -1e-5 * (i + 1)); // of a float of some metres
             }
             farthest = fmax(farthest, hypot(at.x - centre[0], at.y - centre[1]));
+            // It is thrown back by each as fast as it came, but for the rounding of some ten bounces.
+            const support_point goes = support_velocity(network, 0);
+            check_near(hypot(goes.x, goes.y), 3, 1e-5);
         }
         assert_true(farthest > 0.9); // sides are 1 m from the middle, and it goes 0.06 m in a step
         mspring_network_destroy(network);
@@ -248,6 +251,29 @@ static void impulses_are_the_change_of_momentum(void **state) {
     mspring_network_destroy(network);
 }
 
+/// What begins on the floor and is on its way up is neither held nor slowed, however rough the floor is.
+static void who_leaves_is_let_go(void **state) {
+    (void)state;
+    const numbers rough = {0, 5, 0, 1, -1, -7, 2, {0, 0}, 10, 0};
+    mspring_network *network = two_particles();
+    check_ok(lay(network, &rough));
+    const float vx = 0.3f, vy = 0.5f;
+    check_ok(mspring_network_set_velocities(network, 0, 1, &vx, &vy));
+    support_steps(network, 4, 1e-7); // in which it goes less than rounding would
+    assert_true(support_velocity(network, 0).x == (double)vx);
+    check_near(support_velocity(network, 0).y, 0.5, 5e-6);
+    support_steps(network, 20, 1e-3);
+    const double t = 0.02;
+    assert_true(support_velocity(network, 0).x == (double)vx);
+    check_near(support_velocity(network, 0).y, 0.5 - 9.8 * t, 1e-5);
+    check_near(support_position(network, 0).y, 5 + 0.5 * t - 9.8 * t * (t + 1e-3) / 2,
+               1e-5); // floats of some metres
+    float x, y;
+    check_ok(mspring_network_get_floor_impulses(network, 0, 1, &x, &y));
+    assert_true(x == 0 && y == 0);
+    mspring_network_destroy(network);
+}
+
 /// A network has the memory of one floor, of none where it has none, and of the one before where another failed;
 /// and the thread has its rounding mode.
 static void floors_come_and_go_with_their_memory(void **state) {
@@ -304,6 +330,7 @@ int main(void) {
         cmocka_unit_test(heights_are_above_heights_y),
         cmocka_unit_test(impulses_are_asked_for_one_by_one),
         cmocka_unit_test(impulses_are_the_change_of_momentum),
+        cmocka_unit_test(who_leaves_is_let_go),
         cmocka_unit_test(floors_come_and_go_with_their_memory),
     };
     return cmocka_run_group_tests_name("floor_defs", tests, NULL, NULL);
