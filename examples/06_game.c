@@ -1,6 +1,6 @@
 /// @file 06_game.c
 /// A game loop: a ship floats, is hit, takes water, is bailed out and repaired, again and again; then it is broken,
-/// sinks and lies on the sea floor.
+/// sinks and lies on the sea floor. Ropes stay its masts and hold its anchor.
 ///
 /// Everything that a game does to its springs is here once: a fixed step behind frames of any length, forces as a
 /// hook, a sea floor, masses that change, springs that break by their strain, events, components, repair, threads
@@ -10,6 +10,7 @@
 #include "common/output.h"
 #include "common/thread_pool.h"
 #include "game/books.h"
+#include "game/ship.h"
 #include "game/strip.h"
 
 #include <math.h>
@@ -17,50 +18,43 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    WIDTH = 64,
-    HEIGHT = 12,
-    MOST = WIDTH * HEIGHT,
-    MOST_SPRINGS = 4 * MOST,
-    SUBSTEPS = 40,
-    EVENTS = 8192,
-    STAYS = 2,
-    HEIGHTS = 81
-};
+enum { MOST = SHIP_MOST, MOST_SPRINGS = SHIP_MOST_SPRINGS, SUBSTEPS = 40, EVENTS = 8192, HEIGHTS = 81 };
 
 static const double dt = 1.0 / 64;    // of a step, s
-static const float displaced = 1000;  // kg of water in the volume of a particle
-static const float hull_mass = 350;   // kg
-static const float drag = 300;        // N s/m of a particle under water
-static const double leak = 200;       // kg/s through each broken spring under water
+static const double leak = 200;       // kg/s through each broken spring of the ship under water
 static const double pump = 20000;     // kg/s that is bailed out of a ship afloat
-static const float firmness = 0.02f;  // stiffness of the ship's springs, and damping, as fractions of what
-static const float toughness = 0.03f; // substeps bear
-static const float breaking = 0.02f;  // strain
+static const float breaking = 0.02f;  // strain of the hull's springs
+static const float toughness = 0.06f; // the same of the masts'
 static const double ramp = 2;         // s that a repair takes
 static const double sinking = 45;     // s from the last blast to the end
+static const double deep = -2;        // m: no ship that floats has its centre below it
 static const double gravity = -(double)9.8f;
 
 typedef struct options {
     const char *folder;
     double minutes;
     uint32_t host_threads; // 0: the library's own
+    double rope_strain;    // at which ropes break
     bool implicit;
 } options;
 
 typedef struct game {
     mspring_network *network;
     uint32_t particles, springs;
-    mspring_id end[MOST_SPRINGS]; // one end of each spring
+    ship vessel;
+    ship_choice choice;
+    mspring_id end[MOST_SPRINGS];    // one end of each spring
+    ship_part made_of[MOST_SPRINGS]; // what each spring is part of
     bool broken_now[MOST_SPRINGS];
     float dry[MOST], wet[MOST]; // kg: masses without water and with
     uint32_t piece[MOST];       // component of each particle
     uint32_t piece_count;
-    double water[MOST], size[MOST]; // by component: kg in it, particles of it
+    double water[MOST], room[MOST]; // by component: kg in it, kg that there is room for
     double entered, bailed;         // kg
     uint32_t broken, restored, splits;
-    mspring_id stays[STAYS + 1]; // where they are to be: the mast's top, and places on deck
-    bool is_implicit, is_rigged, is_compact;
+    uint32_t lost[2][SHIP_PARTS]; // springs of each part that broke before the last blast, and since
+    uint32_t blasts;              // before the last
+    bool is_braced, is_compact, has_floated;
     double x[MOST], y[MOST], before_x[MOST], before_y[MOST]; // m, after the last step and before it
     double force_x[MOST], force_y[MOST];                     // N, of the water in the last step
     float impulse_x[MOST], impulse_y[MOST];                  // N s, of the floor in the last step
@@ -81,7 +75,8 @@ static void must(mspring_result result, const char *what, const game *played) {
 
 /* --------------------------------------------------------------------------------------------------- the world */
 
-// Before each step: what is under water is carried by the water that it displaces, and slowed by it.
+// Before each step: what is under water is carried by the water that it displaces, and slowed by it. Ropes are
+// slowed by the air, too.
 static void float_hook(const mspring_hook_args *args, void *user) {
     game *played = user;
     for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
@@ -89,8 +84,10 @@ static void float_hook(const mspring_hook_args *args, void *user) {
         if (particle == MSPRING_NONE)
             continue;
         const bool is_wet = args->origin_y + (double)args->y[slot] < 0;
-        const float x = is_wet ? -drag * args->vx[slot] : 0;
-        const float y = is_wet ? displaced * 9.8f - drag * args->vy[slot] : 0;
+        const ship_material *of = &ship_materials[played->vessel.part_of[particle]];
+        const float drag = is_wet ? of->drag : of->wind;
+        const float x = -drag * args->vx[slot];
+        const float y = (is_wet ? of->displaced * 9.8f : 0) - drag * args->vy[slot];
         args->force_x[slot] += x;
         args->force_y[slot] += y;
         played->force_x[particle] = x;
@@ -139,71 +136,31 @@ static mspring_result make_floor(mspring_network *network) {
     return result == MSPRING_OK ? mspring_network_set_floor(network, &def) : result;
 }
 
-/* ---------------------------------------------------------------------------------------------------- the ship */
+/* -------------------------------------------------------------------------------------------------- the start */
 
-// A hull with a slanted bow and stern, a deck house and a mast.
-static bool is_ship(int column, int row) {
-    const bool hull = row >= 6 && column >= row - 6 && column < WIDTH - (row - 6);
-    const bool house = row >= 3 && row < 6 && column >= 12 && column < 26;
-    const bool mast = row < 6 && (column == 40 || column == 41);
-    return hull || house || mast;
-}
-
-// For the implicit solver what the fractions come to at SUBSTEPS.
-static void strength_of_springs(bool implicit, uint32_t *flags, float *stiffness, float *damping) {
-    const double h = dt / SUBSTEPS, half_mass = 0.5 * (double)hull_mass;
-    *flags = implicit ? 0 : MSPRING_SPRING_RELATIVE;
-    *stiffness = implicit ? (float)((double)firmness * half_mass / (h * h)) : firmness;
-    *damping = implicit ? (float)((double)toughness * half_mass / h) : toughness;
-}
-
-static mspring_result build(mspring_builder *builder, bool implicit) {
-    static uint16_t cells[HEIGHT * WIDTH];
-    for (int row = 0; row < HEIGHT; row++)
-        for (int column = 0; column < WIDTH; column++)
-            cells[row * WIDTH + column] = is_ship(column, row) ? 0 : MSPRING_CELL_EMPTY;
-    mspring_material hull;
-    mspring_lattice_def def;
-    mspring_result result = mspring_material_init(&hull, sizeof hull);
-    if (result != MSPRING_OK || (result = mspring_lattice_def_init(&def, sizeof def)) != MSPRING_OK)
-        return result;
-    hull.mass = hull_mass;
-    strength_of_springs(implicit, &hull.spring_flags, &hull.stiffness, &hull.damping);
-    def.width = WIDTH;
-    def.height = HEIGHT;
-    def.y = -2;
-    def.cells = cells;
-    def.materials = &hull;
-    def.material_count = 1;
-    return mspring_builder_add_lattice(builder, &def, NULL);
-}
-
-static mspring_id nearest(const game *played, double x, double y) {
-    mspring_id found = 0;
-    double least = INFINITY;
-    for (mspring_id i = 0; i < played->particles; i++) {
-        const double dx = played->x[i] - x, dy = played->y[i] - y, distance = dx * dx + dy * dy;
-        found = distance < least ? i : found;
-        least = fmin(distance, least);
-    }
-    return found;
-}
+static const double anchor_x = 80; // m
 
 static bool start(game *played, mspring_builder *builder, const options *asked, const mspring_tasks *tasks) {
     mspring_network_def def;
     static float strains[MOST_SPRINGS];
-    if (mspring_network_def_init(&def, sizeof def) != MSPRING_OK || build(builder, asked->implicit) != MSPRING_OK)
+    const float strain_of[SHIP_PARTS] = {
+        [SHIP_HULL] = breaking, [SHIP_MAST] = toughness, [SHIP_ROPE] = (float)asked->rope_strain};
+    played->choice = (ship_choice){.implicit = asked->implicit,
+                                   .substep = dt / SUBSTEPS,
+                                   .anchor_x = anchor_x,
+                                   .anchor_y = floor_at(anchor_x)};
+    if (mspring_network_def_init(&def, sizeof def) != MSPRING_OK ||
+        ship_build(&played->vessel, builder, &played->choice) != MSPRING_OK)
         return false;
     def.substeps = asked->implicit ? 1 : SUBSTEPS;
     def.solver = asked->implicit ? MSPRING_SOLVER_IMPLICIT : MSPRING_SOLVER_EXPLICIT;
     def.worker_count = 2;
     def.tasks = tasks;
-    def.spare_springs = STAYS;
+    def.spare_springs = SHIP_BRACES;
     if (mspring_network_create(builder, &def, &played->network) != MSPRING_OK) {
         fprintf(stderr, "cannot make the ship: %s\n", mspring_builder_error(builder));
         return false;
     }
-    played->is_implicit = asked->implicit;
     played->is_compact = true;
     played->particles = mspring_network_particle_count(played->network);
     played->springs = mspring_network_spring_count(played->network);
@@ -211,7 +168,8 @@ static bool start(game *played, mspring_builder *builder, const options *asked, 
         mspring_spring_info info = {.struct_size = sizeof info};
         must(mspring_network_get_spring(played->network, s, &info), "spring", played);
         played->end[s] = info.a;
-        strains[s] = breaking;
+        played->made_of[s] = ship_part_of_spring(&played->vessel, info.a, info.b);
+        strains[s] = strain_of[played->made_of[s]];
     }
     must(mspring_network_set_break_strains(played->network, 0, played->springs, strains), "strains", played);
     must(mspring_network_reserve_events(played->network, EVENTS), "events", played);
@@ -221,9 +179,6 @@ static bool start(game *played, mspring_builder *builder, const options *asked, 
     must(add_float_hook(played), "float hook", played);
     must(make_floor(played->network), "sea floor", played);
     played->last_blast = 60 * asked->minutes - sinking;
-    played->stays[0] = nearest(played, 40, 9);
-    played->stays[1] = nearest(played, 31, 3);
-    played->stays[2] = nearest(played, 49, 3);
     books_open(&played->accounts, played->network);
     return true;
 }
@@ -262,24 +217,21 @@ static void repair(game *played, double time) {
     books_edit(&played->accounts, played->network);
 }
 
-// Stay the mast with springs that were not there before. They hold at once; taken into the plan they cost as little
+// Brace a mast with springs that were not there before. They hold at once; taken into the plan they cost as little
 // as others.
-static void rig(game *played) {
-    mspring_spring_def defs[STAYS];
-    mspring_id ids[STAYS];
-    const float strains[STAYS] = {breaking, breaking};
-    for (int i = 0; i < STAYS; i++) {
-        must(mspring_spring_def_init(&defs[i], sizeof defs[i]), "stay", played);
-        strength_of_springs(played->is_implicit, &defs[i].flags, &defs[i].stiffness, &defs[i].damping);
-        defs[i].a = played->stays[0];
-        defs[i].b = played->stays[i + 1];
-    }
-    must(mspring_network_add_springs(played->network, defs, STAYS, ids), "stays", played);
-    must(mspring_network_set_break_strains_at(played->network, ids, STAYS, strains), "stays", played);
-    for (int i = 0; i < STAYS; i++)
+static void brace(game *played) {
+    mspring_spring_def defs[SHIP_BRACES];
+    mspring_id ids[SHIP_BRACES];
+    const float strains[SHIP_BRACES] = {toughness, toughness};
+    must(ship_braces(&played->vessel, &played->choice, defs), "braces", played);
+    must(mspring_network_add_springs(played->network, defs, SHIP_BRACES, ids), "braces", played);
+    must(mspring_network_set_break_strains_at(played->network, ids, SHIP_BRACES, strains), "braces", played);
+    for (int i = 0; i < SHIP_BRACES; i++) {
         played->end[ids[i]] = defs[i].a;
+        played->made_of[ids[i]] = ship_part_of_spring(&played->vessel, defs[i].a, defs[i].b);
+    }
     played->springs = mspring_network_spring_count(played->network);
-    played->is_rigged = true;
+    played->is_braced = true;
     played->is_compact = false;
     books_edit(&played->accounts, played->network);
 }
@@ -293,18 +245,24 @@ static void make_compact(game *played) {
     played->is_compact = left == 0;
 }
 
+// What a particle has of the water in its piece, kg.
+static double water_of(const game *played, uint32_t particle) {
+    const uint32_t piece = played->piece[particle];
+    const double room = (double)ship_materials[played->vessel.part_of[particle]].room;
+    return played->room[piece] > 0 ? played->water[piece] * (room / played->room[piece]) : 0;
+}
+
 // Water comes in through broken springs below the surface and spreads over the piece of ship that they belong to,
-// as long as that has room. The largest piece is bailed out until the last blast.
+// as long as that has room: ropes have none. The roomiest piece is bailed out until the last blast.
 static void take_water(game *played, double time) {
     uint32_t largest = 0;
     for (uint32_t p = 1; p < played->piece_count; p++)
-        largest = played->size[p] > played->size[largest] ? p : largest;
+        largest = played->room[p] > played->room[largest] ? p : largest;
     for (mspring_id s = 0; s < played->springs; s++) {
         const uint32_t piece = played->piece[played->end[s]];
-        if (!played->broken_now[s] || played->y[played->end[s]] >= 0)
+        if (!played->broken_now[s] || played->made_of[s] == SHIP_ROPE || played->y[played->end[s]] >= 0)
             continue;
-        const double room = (double)displaced * played->size[piece] - played->water[piece];
-        const double comes = fmin(leak * dt, fmax(room, 0));
+        const double comes = fmin(leak * dt, fmax(played->room[piece] - played->water[piece], 0));
         played->water[piece] += comes;
         played->entered += comes;
     }
@@ -313,10 +271,8 @@ static void take_water(game *played, double time) {
         played->water[largest] -= goes;
         played->bailed += goes;
     }
-    for (uint32_t i = 0; i < played->particles; i++) {
-        const double share = played->water[played->piece[i]] / played->size[played->piece[i]];
-        played->wet[i] = played->dry[i] + (float)share;
-    }
+    for (uint32_t i = 0; i < played->particles; i++)
+        played->wet[i] = played->dry[i] + (float)water_of(played, i);
     must(mspring_network_set_masses(played->network, 0, played->particles, played->wet), "masses", played);
     books_edit(&played->accounts, played->network);
 }
@@ -327,29 +283,43 @@ static void find_pieces(game *played) {
     must(mspring_network_update_components(played->network, &played->piece_count, &changed), "pieces", played);
     if (!changed)
         return;
-    double water_of[MOST] = {0};
+    double water[MOST];
     for (uint32_t i = 0; i < played->particles; i++)
-        water_of[i] = played->size[played->piece[i]] > 0
-                          ? played->water[played->piece[i]] / played->size[played->piece[i]]
-                          : 0;
+        water[i] = water_of(played, i);
     must(mspring_network_get_component_numbers(played->network, 0, played->particles, played->piece), "pieces",
          played);
     memset(played->water, 0, sizeof played->water);
-    memset(played->size, 0, sizeof played->size);
+    memset(played->room, 0, sizeof played->room);
     for (uint32_t i = 0; i < played->particles; i++) {
-        played->water[played->piece[i]] += water_of[i];
-        played->size[played->piece[i]] += 1;
+        played->water[played->piece[i]] += water[i];
+        played->room[played->piece[i]] += (double)ship_materials[played->vessel.part_of[i]].room;
     }
 }
 
-static void read_events(game *played) {
+static uint32_t find_largest_piece(const game *played, mspring_component *largest) {
+    static mspring_component pieces[MOST];
+    for (uint32_t i = 0; i < played->piece_count; i++)
+        pieces[i].struct_size = sizeof pieces[i];
+    must(mspring_network_get_components(played->network, 0, played->piece_count, pieces), "pieces", played);
+    uint32_t found = 0;
+    for (uint32_t i = 1; i < played->piece_count; i++)
+        if (pieces[i].particle_count > pieces[found].particle_count)
+            found = i;
+    *largest = pieces[found];
+    return found;
+}
+
+static void read_events(game *played, double time) {
     static mspring_event events[EVENTS];
     uint32_t count;
     must(mspring_network_read_events(played->network, events, EVENTS, &count, NULL), "events", played);
     for (uint32_t i = 0; i < count; i++) {
         if (events[i].kind == MSPRING_EVENT_BROKEN || events[i].kind == MSPRING_EVENT_RESTORED)
             played->broken_now[events[i].id] = events[i].kind == MSPRING_EVENT_BROKEN;
-        played->broken += events[i].kind == MSPRING_EVENT_BROKEN;
+        if (events[i].kind == MSPRING_EVENT_BROKEN) {
+            played->broken++;
+            played->lost[time >= played->last_blast][played->made_of[events[i].id]]++;
+        }
         played->restored += events[i].kind == MSPRING_EVENT_RESTORED;
         played->splits += events[i].kind == MSPRING_EVENT_SPLIT;
     }
@@ -361,14 +331,20 @@ static void read_events(game *played) {
 static void let_happen(game *played, uint32_t step) {
     const uint32_t round = step / (30 * 64), within = step % (30 * 64);
     const double time = step * dt, x = 20 + round * 17 % 30;
-    if (within == 5 * 64 && time + 5 < played->last_blast)
-        blast(played, x, -4, 8, 50);
+    if (within == 5 * 64 && time + 5 < played->last_blast) {
+        blast(played, x, -5, 8, 50);
+        played->blasts++;
+    }
     if (within == 8 * 64 && time < played->last_blast)
         repair(played, time);
-    if (within == 9 * 64 && !played->is_rigged)
-        rig(played);
-    if (time == played->last_blast)
+    if (within == 9 * 64 && !played->is_braced)
+        brace(played);
+    if (time == played->last_blast) {
+        mspring_component largest;
+        (void)find_largest_piece(played, &largest);
+        played->has_floated = largest.y > deep;
         blast(played, 36, -6, 12, 220);
+    }
 }
 
 static void enter_step(game *played, double time) {
@@ -404,23 +380,10 @@ static void update(game *played, uint32_t step) {
     take_water(played, time);
     must(mspring_network_step(played->network, dt), "step", played);
     enter_step(played, time);
-    read_events(played);
+    read_events(played, time);
 }
 
 /* ----------------------------------------------------------------------------------------------------- the end */
-
-static uint32_t find_largest_piece(const game *played, mspring_component *largest) {
-    static mspring_component pieces[MOST];
-    for (uint32_t i = 0; i < played->piece_count; i++)
-        pieces[i].struct_size = sizeof pieces[i];
-    must(mspring_network_get_components(played->network, 0, played->piece_count, pieces), "pieces", played);
-    uint32_t found = 0;
-    for (uint32_t i = 1; i < played->piece_count; i++)
-        if (pieces[i].particle_count > pieces[found].particle_count)
-            found = i;
-    *largest = pieces[found];
-    return found;
-}
 
 // All water that came in is aboard or was bailed out; masses are floats, so to 1e-6.
 static bool check_water(const game *played) {
@@ -436,6 +399,22 @@ static bool check_water(const game *played) {
     return false;
 }
 
+// No blast but the last breaks a rope or a mast.
+static bool check_rigging(const game *played) {
+    const uint32_t *before = played->lost[0], *since = played->lost[1];
+    uint32_t mast_springs = 0;
+    for (mspring_id s = 0; s < played->springs; s++)
+        mast_springs += played->made_of[s] == SHIP_MAST;
+    printf("rigging:  %d ropes of %u springs, 2 masts of %u; before blast %u, the last, %u and %u of them broke, "
+           "since then %u and %u\n",
+           SHIP_ROPES, played->vessel.rope_springs, mast_springs, played->blasts + 1, before[SHIP_ROPE],
+           before[SHIP_MAST], since[SHIP_ROPE], since[SHIP_MAST]);
+    if (before[SHIP_ROPE] == 0 && before[SHIP_MAST] == 0)
+        return true;
+    fprintf(stderr, "ropes and masts do not hold\n");
+    return false;
+}
+
 // The largest piece lies on the sea floor, which bears what the water does not carry.
 static bool check_end(const game *played, double seconds) {
     mspring_component hull;
@@ -444,16 +423,19 @@ static bool check_end(const game *played, double seconds) {
     for (uint32_t i = 0; i < played->particles; i++)
         if (played->piece[i] == piece) {
             borne += played->borne[i] / seconds;
-            weight -= ((double)played->wet[i] - (double)displaced) * gravity;
+            weight -=
+                ((double)played->wet[i] - (double)ship_materials[played->vessel.part_of[i]].displaced) * gravity;
         }
     const double speed = sqrt(hull.px * hull.px + hull.py * hull.py) / hull.mass;
     printf(
         "the end:  %u particles lie at %.2f m, at %.2g m/s; the floor bears %.1f kN, they weigh %.1f kN in water\n",
         hull.particle_count, hull.y, speed, borne / 1000, weight / 1000);
-    if (speed < 0.02 && weight > 0 && fabs(borne - weight) < 0.01 * weight)
-        return true;
-    fprintf(stderr, "the ship does not rest on the sea floor\n");
-    return false;
+    const bool rests = speed < 0.02 && weight > 0 && fabs(borne - weight) < 0.01 * weight;
+    if (!played->has_floated)
+        fprintf(stderr, "the ship sank before the last blast\n");
+    if (!rests)
+        fprintf(stderr, "the ship does not rest on the sea floor\n");
+    return rests && played->has_floated;
 }
 
 /* ---------------------------------------------------------------------------------------------------- the loop */
@@ -473,7 +455,15 @@ static double frame_length(uint32_t frame) {
 // What is shown lies between the last two steps.
 static void show(const game *played, figure *pictures, uint32_t number, double accumulated, const char *title) {
     static double x[MOST], y[MOST];
-    const strip_world world = {-12, WIDTH + 12, -34, 12, floor_at, 0.01};
+    const strip_world world = {-12,
+                               SHIP_WIDTH + 20,
+                               -34,
+                               12,
+                               floor_at,
+                               0.01,
+                               played->vessel.first_rope,
+                               played->vessel.rope_springs,
+                               played->vessel.anchor};
     for (uint32_t i = 0; i < played->particles; i++) {
         x[i] = played->before_x[i] + (played->x[i] - played->before_x[i]) * accumulated / dt;
         y[i] = played->before_y[i] + (played->y[i] - played->before_y[i]) * accumulated / dt;
@@ -524,6 +514,7 @@ static bool run(const options *asked, const mspring_tasks *tasks) {
         strip_start(&pictures);
         play(&played, asked, &pictures);
         ok = check_water(&played);
+        ok = check_rigging(&played) && ok;
         // Velocities are floats, each substep rounds them: 1e-4 of all that went through in 10 minutes. Implicit
         // substeps balance forces to what their iterations leave.
         ok = books_close(&played.accounts, asked->implicit ? 0.02 : 1e-4) && ok;
@@ -540,10 +531,11 @@ static bool run(const options *asked, const mspring_tasks *tasks) {
 static int usage(FILE *to, const char *program) {
     fprintf(to,
             "06_game: a ship floats, is hit and repaired, broken, and sinks.\n\n"
-            "usage: %s [--out FOLDER] [--minutes M] [--host-threads N] [--implicit]\n\n"
+            "usage: %s [--out FOLDER] [--minutes M] [--host-threads N] [--rope-strain S] [--implicit]\n\n"
             "  --out FOLDER       where the pictures go (default: out)\n"
             "  --minutes M        of the game, 1 to 600 (default 1)\n"
             "  --host-threads N   lend the network a pool of N threads, 1 to 64 (default: two of its own)\n"
+            "  --rope-strain S    at which ropes break, up to 1 (default 0.1)\n"
             "  --implicit         one implicit substep instead of %d explicit ones\n",
             program, SUBSTEPS);
     return to == stderr ? 2 : EXIT_SUCCESS;
@@ -551,7 +543,7 @@ static int usage(FILE *to, const char *program) {
 
 // Returns whether there is something to do; else *exit_code is set.
 static bool read_arguments(int count, char **arguments, options *asked, int *exit_code) {
-    *asked = (options){.folder = "out", .minutes = 1};
+    *asked = (options){.folder = "out", .minutes = 1, .rope_strain = 0.1};
     for (int i = 1; i < count; i++) {
         const char *name = arguments[i], *value = i + 1 < count ? arguments[i + 1] : NULL;
         char *end = NULL;
@@ -570,6 +562,9 @@ static bool read_arguments(int count, char **arguments, options *asked, int *exi
             asked->minutes = strtod(value, &end);
             ok = *value && !*end && asked->minutes >= 1 && asked->minutes <= 600 &&
                  asked->minutes == floor(asked->minutes);
+        } else if (value && strcmp(name, "--rope-strain") == 0) {
+            asked->rope_strain = strtod(value, &end);
+            ok = *value && !*end && asked->rope_strain > 0 && asked->rope_strain <= 1;
         } else if (value && strcmp(name, "--host-threads") == 0) {
             asked->host_threads = (uint32_t)strtoul(value, &end, 10);
             ok = *value && !*end && asked->host_threads >= 1 && asked->host_threads <= 64;

@@ -490,9 +490,15 @@ game() {
   "$game" --minutes "$minutes" --out "$scratch" >"$scratch/out" 2>"$scratch/err" || complain 'the game fails'
   first=$(grep '^state' "$scratch/out")
   case $minutes in
-  1) same "$first" 'state after 3841 steps: f3127f0e7750fee8' 'the state after a minute' ;;
-  10) same "$first" 'state after 38400 steps: 541b50aa352dbdc3' 'the state after ten minutes' ;;
+  1) same "$first" 'state after 3841 steps: b9d96ed87ece7c16' 'the state after a minute' ;;
+  10) same "$first" 'state after 38400 steps: 76228622fa5b92d5' 'the state after ten minutes' ;;
   esac
+  # Ropes and masts hold, and the game would say so if they did not.
+  grep -q '^rigging:.* 0 and 0 of them broke' "$scratch/out" || complain 'ropes or masts break before the last blast'
+  got=0
+  "$game" --rope-strain 0.01 --out "$scratch" >"$scratch/out" 2>"$scratch/err" || got=$?
+  same "$got" 1 'the exit status with ropes too weak'
+  grep -q '^ropes and masts do not hold' "$scratch/err" || complain 'the game does not say that ropes break'
   MSPRING_SIMD=sse2 "$game" --minutes "$minutes" --host-threads 3 --out "$scratch" >"$scratch/out" 2>"$scratch/err" ||
     complain 'the game fails with threads of its own'
   same "$(grep '^state' "$scratch/out")" "$first" 'the state with threads of its own'

@@ -8,7 +8,8 @@
 
 #include <stdlib.h>
 
-static const draw_colour sky = 0xf4f6fa, water = 0xd7e6f4, sand = 0xd8c79c, ink = 0x26262e, broken_ink = 0xb0b4bc;
+static const draw_colour sky = 0xf4f6fa, water = 0xd7e6f4, sand = 0xd8c79c, ink = 0x26262e, broken_ink = 0xb0b4bc,
+                         rope_ink = 0x0f8a4a;
 
 enum { GAP = 12, TITLE = 26 };
 
@@ -46,14 +47,15 @@ static void draw_world(figure *target, const panel *in) {
     }
 }
 
-static void draw_spring(figure *target, const panel *in, const mspring_spring_info *spring, const double *x,
-                        const double *y) {
+static void draw_spring(figure *target, const panel *in, mspring_id id, const mspring_spring_info *spring,
+                        const double *x, const double *y) {
     const mspring_id a = spring->a, b = spring->b;
     if ((spring->flags & MSPRING_SPRING_BROKEN) || !is_inside(in, x[a], y[a]) || !is_inside(in, x[b], y[b]))
         return;
+    const bool is_rope = id - in->world->first_rope < in->world->rope_springs;
     const int step = colour_scale_find((double)spring->strain, in->world->strain_limit);
-    figure_line(target, to_x(in, x[a]), to_y(in, y[a]), to_x(in, x[b]), to_y(in, y[b]), 0.9,
-                colour_scale_step(step));
+    figure_line(target, to_x(in, x[a]), to_y(in, y[a]), to_x(in, x[b]), to_y(in, y[b]), is_rope ? 1.5 : 0.9,
+                is_rope ? rope_ink : colour_scale_step(step));
 }
 
 void strip_add(figure *target, uint32_t number, const strip_world *world, const mspring_network *network,
@@ -71,7 +73,9 @@ void strip_add(figure *target, uint32_t number, const strip_world *world, const 
         mspring_spring_info info = {.struct_size = sizeof info};
         if (mspring_network_get_spring(network, s, &info) != MSPRING_OK)
             abort(); // ids are those that there are
-        draw_spring(target, &in, &info, x, y);
+        draw_spring(target, &in, s, &info, x, y);
     }
+    if (is_inside(&in, x[world->anchor], y[world->anchor]))
+        figure_disc(target, to_x(&in, x[world->anchor]), to_y(&in, y[world->anchor]), 3, rope_ink);
     figure_text(target, in.x + 2, in.y - 8, 11, FIGURE_LEFT, ink, title);
 }

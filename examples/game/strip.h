@@ -16,6 +16,9 @@ typedef struct strip_world {
     double left, right, bottom, top; ///< m
     double (*floor_at)(double x);    ///< height of the sea floor, m
     double strain_limit;
+    mspring_id first_rope; ///< springs from here on are drawn as ropes
+    uint32_t rope_springs;
+    mspring_id anchor; ///< a particle
 } strip_world;
 
 /// Start the figure of all panels.
