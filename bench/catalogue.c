@@ -42,6 +42,7 @@ static const entry entries[] = {
     {"ship_ropes_4", "the ship with 4 ropes of 20 springs between random particles"},
     {"ship_ropes_40", "the ship with 40 ropes"},
     {"ship_ropes_400", "the ship with 400 ropes"},
+    {"wheel_1000x40", "ring of 1000 around by 40 deep: a lattice that is bent"},
     {"rope_1000", "rope of 1000 particles between two pins"},
     {"graph_100000", "100,000 particles at random places, each joined to about 8 near ones"},
 };
@@ -49,8 +50,9 @@ static const entry entries[] = {
 static const char *const quick[] = {"bar_80x5",      "grid_96x96", "bar_544x68", "ship",
                                     "ship_ropes_40", "rope_1000",  NULL};
 
-static const char *const checked[] = {"bar_80x5",          "bar_80x5_undamped", "bar_544x68",  "bar_1800x5",
-                                      "bar_80x5_ropes_40", "rope_1000",         "graph_10000", NULL};
+static const char *const checked[] = {"bar_80x5",   "bar_80x5_undamped", "bar_544x68",
+                                      "bar_1800x5", "bar_80x5_ropes_40", "wheel_200x20",
+                                      "rope_1000",  "graph_10000",       NULL};
 
 const char *const *bench_catalogue_quick(void) {
     return quick;
@@ -64,7 +66,7 @@ void bench_catalogue_print(void) {
     for (size_t i = 0; i < sizeof entries / sizeof *entries; i++) {
         printf("%-16s %s\n", entries[i].name, entries[i].description);
     }
-    puts("\nOther sizes go by the same names: bar_CxR, grid_CxR, rope_N, graph_N.\n"
+    puts("\nOther sizes go by the same names: bar_CxR, grid_CxR, wheel_CxR, rope_N, graph_N.\n"
          "Any scene's name may end in " ROPES "N: with N ropes; and after that in " UNDAMPED
          ": springs without dampers.");
 }
@@ -140,6 +142,9 @@ static bool make_named(const char *name, const bench_scene_settings *settings, s
     scene_options options = spring_options(settings, 1.0f);
     if (is_pair(name, "bar_", &columns, &rows) || is_pair(name, "grid_", &columns, &rows)) {
         return scene_bar(columns, rows, &options, out, error);
+    }
+    if (is_pair(name, "wheel_", &columns, &rows)) {
+        return scene_wheel(columns, rows, &options, out, error);
     }
     if (is_single(name, "rope_", &number)) {
         return scene_rope(number, &options, out, error);

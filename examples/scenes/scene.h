@@ -53,6 +53,11 @@ void scene_free(scene *unwanted);
 /// its top right. Named "bar_<columns>x<rows>". At least 2 columns.
 bool scene_bar(uint32_t columns, uint32_t rows, const scene_options *options, scene *out, scene_error *error);
 
+/// A ring of columns particles around and rows deep with all 8-neighbour springs, its innermost row pinned, the probe
+/// outermost on the right (wheel.c). Its spacing is that halfway out. Named "wheel_<columns>x<rows>". At least 8
+/// columns for each row.
+bool scene_wheel(uint32_t columns, uint32_t rows, const scene_options *options, scene *out, scene_error *error);
+
 /// A hanging rope: a horizontal chain of particles (at least 3), both ends pinned, the probe in its middle.
 /// "rope_<particles>".
 bool scene_rope(uint32_t particles, const scene_options *options, scene *out, scene_error *error);

@@ -1668,7 +1668,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_load(mspring_networ
 /* ------------------------------------------------------------------------------------- plan and SIMD level */
 
 /// How the network was laid out. A particle belongs to one of four kinds of row: a lattice row (8 neighbours on a
-/// grid), a chain (single strands), the web (any other graph, and ropes that hang on a lattice) or a loose row (no
+/// grid, which may lie at any angle, be oblong or slanted, and bend), a chain (single strands), the web (any other graph, and ropes that hang on a lattice) or a loose row (no
 /// springs). A spring between neighbours in lattice and chain rows is swept with them, without any index; the
 /// others, leftover springs, are the web's, and cost more each.
 ///

@@ -1,30 +1,45 @@
 /// Grids, found from positions and springs whatever the order in which they were added.
 ///
-/// From a seed particle the search follows springs: the offset between a spring's ends, in units of the seed's
-/// shortest axis-parallel spring, says which cell the other end is in. A grid is kept if sweeping its rows costs
-/// less than handling its springs one by one.
+/// From a seed particle the search follows springs: the way from one end of a spring to the other says, in the
+/// frame of the first, which cell the other is in. A grid is kept if sweeping its rows costs less than handling its
+/// springs one by one. There are three searches, each among what those before left: for upright grids that have
+/// nearly all springs of their particles, for such that lie at any angle, are oblong or bend, and for upright ones
+/// that have half of the springs.
 #include "analysis.h"
+#include "frame.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/// How far, in cells, an offset may lie off its cell's centre.
-#define CELL_TOLERANCE 0.3
+/// How far a spring may lead across an axis, as a fraction of how far along it, to lie along it.
+#define AXIAL_TOLERANCE 0.3f
 
 /// A grid is kept if one slot in this many of its records holds a spring: a spring on its own costs about that
 /// many times a slot of a swept record (measured: 6 to 12, by instruction set).
 #define SLOTS_PER_SPRING 6
 
+/// A grid is kept by the first two searches if one in this many of its particles' springs, or fewer, is not between
+/// neighbouring cells. (Sheets of triangles, 200 x 200, whose particles are off by up to a fraction of a cell, in
+/// ns for each spring and substep at AVX-512: 0.2 off, in upright grids 0.9, in bent ones 0.6; 0.3 off,
+/// upright 1.2, bent, in 15 pieces, 4.3; a ring of 36 x 6 1.9 and 0.7.)
+#define SPRINGS_PER_OUTER_UPRIGHT 64
+#define SPRINGS_PER_OUTER_BENT 16
+
+/// A particle with more springs is no seed of a bent grid: its neighbours have eight, and some ropes.
+#define MOST_SEED_SPRINGS 16
+
+typedef enum grid_search { FOR_UPRIGHT, FOR_BENT, FOR_PARTS, SEARCHES } grid_search;
+
 typedef enum search_stage {
     SEEKS,   ///< a seed
     FLOODS,  ///< from there
     VACATES, ///< the hash table
+    COUNTS,  ///< springs: of a grid that lacks too many nothing else
     BOUNDS,  ///< the grid: its lowest column and row
     KEYS,    ///< sets those of its blocks,
     SORTS,   ///< sorts them
     RUNS,    ///< and counts blocks and runs of them: all three transposed first, then upright
-    COUNTS,  ///< springs
     DECIDES, ///< whether to keep the grid
     STAGES
 } search_stage;
@@ -33,18 +48,20 @@ typedef struct mspringi_grid_finder {
     const mspringi_graph *graph;
     mspringi_grids *grids;
     uint8_t *kinds;
-    uint8_t *given_up; ///< [particles] was in a grid that was not worth it
+    grid_search search;
+    uint8_t *given_up; ///< [particles] 1 + the last search that had it in a grid which was not worth it
     int32_t *column;   ///< [particles] relative to the seed
     int32_t *row;      ///< [particles]
     uint32_t *cell;    ///< hash table of the current grid's particles
     size_t cell_mask;
-    uint64_t *keys, *scratch;
+    uint64_t *keys, *scratch; ///< [particles]
+    mspringi_step *steps[2];  ///< [particles] of frames, in the memory of keys and scratch, which are wanted later
+    mspringi_frame upright;   ///< the frame of all particles of an upright grid
 
     search_stage stage;
     uint32_t seed;  ///< the current grid's, or the particle to be looked at next
     uint32_t begin; ///< its first member
     uint32_t at;    ///< how far the stage has come in its members
-    double spacing;
     int32_t min_column, min_row;
     bool transposed; ///< its columns are taken along the rows
     uint64_t cost_transposed;
@@ -106,38 +123,91 @@ static void vacate(finder *f, mspringi_pace *pace) {
             i = (i + 1) & f->cell_mask;
         }
     }
-    finish_stage(f, BOUNDS);
+    finish_stage(f, COUNTS);
+    f->neighbours = f->ends = 0;
+    f->is_kept = false;
 }
 
 /* ------------------------------------------------------------------------------------------------- the search */
 
 static bool is_free(const finder *f, uint32_t particle) {
     return f->kinds[particle] == MSPRINGI_ROW_LOOSE && f->grids->grid_of[particle] == MSPRING_NONE &&
-           !f->given_up[particle];
+           f->given_up[particle] <= f->search;
 }
 
-// The shortest of a particle's springs that lie along an axis; 0 if it has none.
-static double shortest_axial_spring(const finder *f, uint32_t particle) {
+static mspringi_frame frame_of(const finder *f, uint32_t particle) {
+    return (mspringi_frame){f->steps[0][particle], f->steps[1][particle]};
+}
+
+static void set_frame(finder *f, uint32_t particle, mspringi_frame frame) {
+    f->steps[0][particle] = frame.column;
+    f->steps[1][particle] = frame.row;
+}
+
+static mspringi_step way_between(const finder *f, uint32_t from, uint32_t to) {
     const mspring_builder *builder = f->graph->builder;
-    double shortest = 0.0;
-    for (uint32_t i = f->graph->first[particle]; i < f->graph->first[particle + 1]; ++i) {
-        const mspring_id other = mspringi_other_end(&builder->springs[f->graph->springs[i]], particle);
-        const double dx = fabs(builder->particles[other].x - builder->particles[particle].x);
-        const double dy = fabs(builder->particles[other].y - builder->particles[particle].y);
-        const double along = dx > dy ? dx : dy, across = dx > dy ? dy : dx;
-        if (is_free(f, other) && across <= CELL_TOLERANCE * along && (shortest == 0.0 || along < shortest))
+    return (mspringi_step){(float)(builder->particles[to].x - builder->particles[from].x),
+                           (float)(builder->particles[to].y - builder->particles[from].y)};
+}
+
+// The frame of a seed from the shortest of its springs that lie along an axis.
+static bool find_upright_frame(finder *f, uint32_t seed) {
+    float shortest = 0.0f;
+    for (uint32_t i = f->graph->first[seed]; i < f->graph->first[seed + 1]; ++i) {
+        const mspring_id other = mspringi_other_end(&f->graph->builder->springs[f->graph->springs[i]], seed);
+        const mspringi_step way = way_between(f, seed, other);
+        const float dx = fabsf(way.x), dy = fabsf(way.y);
+        const float along = dx > dy ? dx : dy, across = dx > dy ? dy : dx;
+        if (is_free(f, other) && across <= AXIAL_TOLERANCE * along && (shortest == 0.0f || along < shortest))
             shortest = along;
     }
-    return shortest;
+    f->upright = mspringi_frame_upright(shortest);
+    return shortest > 0.0f;
 }
 
-// Round an offset to a cell; false if it lies off any of the 3 x 3 cells around.
-static bool round_offset(double offset, int32_t *cell) {
-    const double rounded = floor(offset + 0.5);
-    if (!(fabs(rounded) <= 1.0 && fabs(offset - rounded) <= CELL_TOLERANCE))
-        return false;
-    *cell = (int32_t)rounded;
-    return true;
+// The ways along a seed's springs to particles that are free, shortest first. Returns how many; 0 if they are more
+// than a seed's.
+static uint32_t list_ways(const finder *f, uint32_t seed, mspringi_step ways[MOST_SEED_SPRINGS]) {
+    const uint32_t first = f->graph->first[seed], end = f->graph->first[seed + 1];
+    uint32_t count = 0;
+    for (uint32_t i = first; end - first <= MOST_SEED_SPRINGS && i < end; ++i) {
+        const mspring_id other = mspringi_other_end(&f->graph->builder->springs[f->graph->springs[i]], seed);
+        const mspringi_step way = way_between(f, seed, other);
+        if (!is_free(f, other))
+            continue;
+        uint32_t at = count++;
+        for (; at > 0 && mspringi_step_square(way) < mspringi_step_square(ways[at - 1]); --at)
+            ways[at] = ways[at - 1];
+        ways[at] = way;
+    }
+    return count;
+}
+
+static uint32_t count_rounded(mspringi_frame frame, const mspringi_step *ways, uint32_t count) {
+    uint32_t rounded = 0;
+    int32_t columns, rows;
+    for (uint32_t i = 0; i < count; ++i)
+        rounded += mspringi_frame_round(frame, ways[i], &columns, &rows);
+    return rounded;
+}
+
+// The frame of a seed from the shortest of its springs and the one with which most of them lead to neighbouring
+// cells: of a slanted cell's side and diagonal, which may be as long, the side.
+static bool find_any_frame(finder *f, uint32_t seed) {
+    mspringi_step ways[MOST_SEED_SPRINGS];
+    const uint32_t count = list_ways(f, seed, ways);
+    uint32_t most = 0;
+    for (uint32_t i = 1; i < count; ++i) {
+        if (!mspringi_frame_is_spanned(ways[0], ways[i]))
+            continue;
+        const mspringi_frame frame = mspringi_frame_from(ways[0], ways[i]);
+        const uint32_t rounded = count_rounded(frame, ways, count);
+        if (rounded > most) {
+            most = rounded;
+            set_frame(f, seed, frame);
+        }
+    }
+    return most > 0;
 }
 
 // Look for the next particle that a grid can be found from.
@@ -146,9 +216,8 @@ static void seek(finder *f, mspringi_pace *pace) {
     mspringi_grids *grids = f->grids;
     for (; f->seed < particles && pace->left > 0; f->seed++) {
         const bool can_be = is_free(f, f->seed);
-        f->spacing = can_be ? shortest_axial_spring(f, f->seed) : 0.0;
-        mspringi_pace_spend(pace, can_be ? 8 : 1);
-        if (!(f->spacing > 0.0))
+        mspringi_pace_spend(pace, !can_be ? 1 : f->search == FOR_BENT ? 64 : 8);
+        if (!can_be || !(f->search == FOR_BENT ? find_any_frame(f, f->seed) : find_upright_frame(f, f->seed)))
             continue;
         f->begin = grids->member_count;
         f->at = 0;
@@ -160,22 +229,39 @@ static void seek(finder *f, mspringi_pace *pace) {
     }
 }
 
+// Fit a particle's frame to its neighbours, those of the nearest eight cells that are members already.
+static mspringi_frame fitted_frame(finder *f, uint32_t at) {
+    mspringi_frame_fit fit = {.count = 0};
+    for (uint32_t i = f->graph->first[at]; i < f->graph->first[at + 1]; ++i) {
+        const mspring_id other = mspringi_other_end(&f->graph->builder->springs[f->graph->springs[i]], at);
+        const bool is_member = f->grids->grid_of[other] == f->grids->count;
+        const int32_t dc = is_member ? f->column[other] - f->column[at] : 0;
+        const int32_t dr = is_member ? f->row[other] - f->row[at] : 0;
+        if ((dc != 0 || dr != 0) && abs(dc) <= 1 && abs(dr) <= 1)
+            mspringi_frame_fit_add(&fit, frame_of(f, other), way_between(f, at, other), dc, dr);
+    }
+    if (fit.count > 0)
+        set_frame(f, at, mspringi_frame_fitted(&fit));
+    return frame_of(f, at);
+}
+
 // Collect all particles that can be reached from the seed, cell by cell, behind those of the earlier grids.
 static void flood(finder *f, mspringi_pace *pace) {
     const mspringi_graph *graph = f->graph;
-    const mspring_builder *builder = graph->builder;
     mspringi_grids *grids = f->grids;
     for (; f->begin + f->at < grids->member_count && pace->left > 0; f->at++) {
         const uint32_t at = grids->members[f->begin + f->at];
         mspringi_pace_spend(pace, 2 + (uint64_t)6 * (graph->first[at + 1] - graph->first[at]));
+        const mspringi_frame frame = f->search == FOR_BENT ? fitted_frame(f, at) : f->upright;
         for (uint32_t i = graph->first[at]; i < graph->first[at + 1]; ++i) {
-            const mspring_id other = mspringi_other_end(&builder->springs[graph->springs[i]], at);
+            const mspring_id other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], at);
+            const mspringi_step way = way_between(f, at, other);
             int32_t dc = 0, dr = 0;
-            if (!is_free(f, other) ||
-                !round_offset((builder->particles[other].x - builder->particles[at].x) / f->spacing, &dc) ||
-                !round_offset((builder->particles[other].y - builder->particles[at].y) / f->spacing, &dr))
+            if (!is_free(f, other) || !mspringi_frame_round(frame, way, &dc, &dr))
                 continue;
             if ((dc != 0 || dr != 0) && occupy(f, other, f->column[at] + dc, f->row[at] + dr)) {
+                if (f->search == FOR_BENT)
+                    set_frame(f, other, frame);
                 grids->grid_of[other] = grids->count;
                 grids->members[grids->member_count++] = other;
             }
@@ -185,6 +271,39 @@ static void flood(finder *f, mspringi_pace *pace) {
 }
 
 /* --------------------------------------------------------------------------------------------- is it worth it */
+
+// Whether a grid has as many of its particles' springs as the search is for.
+static bool has_enough(const finder *f, size_t neighbours, size_t all) {
+    const size_t outer = all - neighbours;
+    switch (f->search) {
+    case FOR_UPRIGHT:
+        return outer * SPRINGS_PER_OUTER_UPRIGHT <= all;
+    case FOR_BENT:
+        return outer * SPRINGS_PER_OUTER_BENT <= all;
+    default:
+        return outer <= neighbours;
+    }
+}
+
+// Count the springs of a grid's particles: those between neighbouring cells, and all.
+static void count_springs(finder *f, mspringi_pace *pace) {
+    const mspringi_graph *graph = f->graph;
+    const uint32_t *members = f->grids->members;
+    for (uint32_t m = take_members(f, 16, pace); m < f->begin + f->at; ++m) {
+        const uint32_t at = members[m];
+        f->ends += graph->first[at + 1] - graph->first[at];
+        for (uint32_t i = graph->first[at]; i < graph->first[at + 1]; ++i) {
+            const mspring_id other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], at);
+            f->neighbours += f->grids->grid_of[other] == f->grids->grid_of[at] &&
+                             abs(f->column[other] - f->column[at]) <= 1 && abs(f->row[other] - f->row[at]) <= 1;
+        }
+    }
+    finish_stage(f, BOUNDS);
+    if (f->stage != BOUNDS)
+        return;
+    f->neighbours /= 2;
+    f->stage = has_enough(f, f->neighbours, f->ends - f->neighbours) ? BOUNDS : DECIDES;
+}
 
 static void bound(finder *f, mspringi_pace *pace) {
     const uint32_t *members = f->grids->members;
@@ -225,7 +344,7 @@ static void count_runs(finder *f, mspringi_pace *pace) {
         f->blocks += i == 0 || f->keys[i] != f->keys[i - 1];
         f->runs += i == 0 || f->keys[i] > f->keys[i - 1] + 1;
     }
-    finish_stage(f, f->transposed ? KEYS : COUNTS);
+    finish_stage(f, f->transposed ? KEYS : DECIDES);
     if (f->stage == RUNS)
         return;
     if (f->stage == KEYS) {
@@ -235,29 +354,8 @@ static void count_runs(finder *f, mspringi_pace *pace) {
         return;
     }
     f->transposed = f->cost_transposed < (uint64_t)f->blocks + f->runs;
-    f->neighbours = f->ends = 0;
-}
-
-// Count the springs of a grid's particles: those between neighbouring cells, and all.
-static void count_springs(finder *f, mspringi_pace *pace) {
-    const mspringi_graph *graph = f->graph;
-    const uint32_t *members = f->grids->members;
-    for (uint32_t m = take_members(f, 16, pace); m < f->begin + f->at; ++m) {
-        const uint32_t at = members[m];
-        f->ends += graph->first[at + 1] - graph->first[at];
-        for (uint32_t i = graph->first[at]; i < graph->first[at + 1]; ++i) {
-            const mspring_id other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], at);
-            f->neighbours += f->grids->grid_of[other] == f->grids->grid_of[at] &&
-                             abs(f->column[other] - f->column[at]) <= 1 && abs(f->row[other] - f->row[at]) <= 1;
-        }
-    }
-    finish_stage(f, DECIDES);
-    if (f->stage != DECIDES)
-        return;
     const uint32_t blocks = f->transposed ? f->blocks_transposed : f->blocks;
-    const size_t neighbours = f->neighbours / 2, all = f->ends - neighbours;
-    f->is_kept = neighbours * SLOTS_PER_SPRING >= (size_t)blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH &&
-                 2 * neighbours >= all;
+    f->is_kept = f->neighbours * SLOTS_PER_SPRING >= (size_t)blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
 }
 
 // Keep the grid that was flooded last, in its better orientation, or give it up.
@@ -268,7 +366,7 @@ static void decide(finder *f, mspringi_pace *pace) {
         const uint32_t column = (uint32_t)(f->column[p] - f->min_column), row = (uint32_t)(f->row[p] - f->min_row);
         if (!f->is_kept) {
             grids->grid_of[p] = MSPRING_NONE;
-            f->given_up[p] = 1;
+            f->given_up[p] = (uint8_t)(f->search + 1);
             continue;
         }
         grids->column[p] = f->transposed ? row : column;
@@ -323,18 +421,25 @@ mspring_result mspringi_grids_reserve(mspringi_grids *grids, const mspringi_grap
         !f->given_up || !f->column || !f->row || !f->cell || !f->keys || !f->scratch)
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to search %zu particles for grids",
                              particles);
+    f->steps[0] = (mspringi_step *)(void *)f->keys;
+    f->steps[1] = (mspringi_step *)(void *)f->scratch;
     memset(grids->grid_of, 0xff, particles * sizeof *grids->grid_of);
     return MSPRING_OK;
 }
 
 void mspringi_grids_find(mspringi_grids *grids, mspringi_pace *pace, mspringi_memory *memory) {
     static void (*const stages[STAGES])(finder *, mspringi_pace *) = {
-        seek, flood, vacate, bound, set_keys, sort, count_runs, count_springs, decide};
+        seek, flood, vacate, count_springs, bound, set_keys, sort, count_runs, decide};
     finder *f = grids->finder;
     const size_t particles = f->graph->builder->particle_count;
-    while (f->seed < particles && pace->left > 0)
+    while (f->search < SEARCHES && pace->left > 0) {
         stages[f->stage](f, pace);
-    pace->is_halfway = f->seed < particles;
+        if (f->seed < particles)
+            continue;
+        f->search++;
+        f->seed = 0;
+    }
+    pace->is_halfway = f->search < SEARCHES;
     if (pace->is_halfway)
         return;
     grids->found_count = grids->count;
