@@ -294,7 +294,7 @@ enum {
     /// (and with the stiffness across a spring clamped to 0 where it is compressed, so that the matrix is positive
     /// definite). The system is solved by a fixed number of conjugate gradient iterations with a two-level
     /// preconditioner: the blocks of the single particles, and the tiles. With eight
-    /// of them a substep costs 24 to 41 explicit ones (massspring-bench --implicit). It damps what oscillates
+    /// of them a substep costs 24 to 41 explicit ones (massspring-bench --solvers). It damps what oscillates
     /// with less than about ten substeps a period. Global damping, which explicit steps apply exactly, is as
     /// accurate as its integrator.
     MSPRING_SOLVER_IMPLICIT = 1,
@@ -788,8 +788,8 @@ MSPRING_API mspring_result mspring_settle_def_init(mspring_settle_def *def, size
 /// one place. There may be several equilibria, tangled ones among them; the one found depends on the start. One
 /// that is not stable, such as a pendulum upside down, is left by a small push. Memory and time grow with the size
 /// as those of a factorisation do: for n particles of a lattice about n log n numbers and n^1.5 operations an
-/// iteration. A bar of 80 x 5 takes four of them. Ropes that fall slack and thin masts that bend far take many, as no
-/// step may turn their springs by much: our ship's rigging comes down by 45 m in 199 iterations, which take 20 s.
+/// iteration. A bar of 80 x 5 takes four of them. Ropes that fall slack and thin masts that bend far take many, as
+/// no step may turn their springs by much: our ship's rigging comes down by 45 m in 199 iterations (20 s).
 ///
 /// Then velocities are zero (those of pinned particles stay), and forces given for the next step are still there.
 /// Parts without pinned particle have an equilibrium only if the forces on them cancel, as without gravity; others
@@ -1413,7 +1413,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_expand(mspring_netw
 
 /// Have springs break by themselves: one whose absolute strain, |length - rest_length| / rest_length, is over its
 /// break strain at the end of a step is broken then. It is the strain that decides, whatever the stiffness, the
-/// substeps or the solver; and nothing breaks, and nobody is called, in the middle of a step.
+/// substeps or the solver; but substeps too long to follow a blow, above all single implicit ones, make other
+/// strains of it. Nothing breaks, and nobody is called, in the middle of a step.
 /// @param strain  [count], > 0; INFINITY, the default, for never
 /// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the spring),
 ///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
@@ -1645,7 +1646,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_snapshot_size(const
 /// workers, but only of use to networks made of the same particles and springs by a library that lays them out
 /// alike (another refuses it): meant for rollback, replay and network play, not for archives. Of the implicit or
 /// direct solver it holds settings and history, but it can be loaded only where that solver is, with the same
-/// integrator and tiles. Hooks and unread events are not in it.
+/// integrator and tiles and, of the direct one, the same added springs. Hooks and unread events are not in it.
 /// @param snapshot  [capacity] bytes, of any alignment
 /// @param capacity  at least mspring_network_snapshot_size()
 /// @param size      receives the bytes written; may be NULL
@@ -1668,9 +1669,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_load(mspring_networ
 /* ------------------------------------------------------------------------------------- plan and SIMD level */
 
 /// How the network was laid out. A particle belongs to one of four kinds of row: a lattice row (8 neighbours on a
-/// grid, which may lie at any angle, be oblong or slanted, and bend), a chain (single strands), the web (any other graph, and ropes that hang on a lattice) or a loose row (no
-/// springs). A spring between neighbours in lattice and chain rows is swept with them, without any index; the
-/// others, leftover springs, are the web's, and cost more each.
+/// grid, which may lie at any angle, be oblong or slanted, and bend), a chain (single strands), the web (any other
+/// graph, and ropes that hang on a lattice) or a loose row (no springs). A spring between neighbours in lattice and
+/// chain rows is swept with them, without any index; the others, leftover springs, are the web's, and cost more.
 ///
 /// Lattices of at most 64 by 64 particles share rows, side by side, whose blocks one alone would leave half empty.
 ///
@@ -1711,8 +1712,8 @@ typedef struct mspring_plan {
     uint32_t coarse_period;
     uint64_t factor_values; ///< of the direct solver: numbers in its factor, which is there in both precisions,
     double factor_products; ///< and products that computing it takes
-    uint32_t web_layers;    ///< layers in which the web without a lattice is swept for several substeps in one pass,
-                            ///< whatever the solver; 0 if it takes one substep at a time
+    uint32_t web_layers; ///< layers in which the web without a lattice is swept for several substeps in one pass,
+                         ///< whatever the solver; 0 if it takes one substep at a time
 } mspring_plan;
 
 /// Get the plan. Set struct_size first.
