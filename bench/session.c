@@ -607,13 +607,19 @@ static bool measure_added(session *with, const bench_options *options, const ben
 /// Bubbles and debris at once.
 #define LOOSE 16384u
 
-/// Time steps with many loose particles more in turn with steps without: far from a floor, or all lying on it.
+/// Where loose particles are.
+typedef enum ground { WITHOUT_FLOOR, ALL_ON_FLOOR, ONE_ON_FLOOR, GROUNDS } ground;
+
+/// Time steps with many loose particles more in turn with steps without.
 static bool measure_loose(const session *with, const bench_options *options, const bench_scene *subject,
-                          mspring_simd level, bool floored, uint32_t repeat, double *times, scene_error *error) {
+                          mspring_simd level, ground on, uint32_t repeat, double *times, scene_error *error) {
+    static const char *const names[GROUNDS] = {"  in a step", "  all of them on a floor",
+                                               "  high above one more on it"};
+    const bool floored = on != WITHOUT_FLOOR;
     double left, bottom, right, top, seconds = 0;
     bench_network loose, plain;
     mspring_floor_def def;
-    if (!bench_added_create(subject->made.builder, level, 1, with->step->substeps, LOOSE, 0, &loose, error)) {
+    if (!bench_added_create(subject->made.builder, level, 1, with->step->substeps, LOOSE + 1, 0, &loose, error)) {
         return false;
     }
     if (!bench_network_create(subject->made.builder, level, 1, with->step->substeps, &plain, error)) {
@@ -639,14 +645,15 @@ static bool measure_loose(const session *with, const bench_options *options, con
         bench_library_error(error, "a floor below loose particles", result, mspring_network_error(loose.network));
     }
     bench_runner first = bench_network_runner(&plain), second = bench_network_runner(&loose);
-    ok = ok && bench_added_loose(&loose, LOOSE, plane[1], &seconds, error) &&
+    ok = ok && (on != ONE_ON_FLOOR || bench_added_loose(&loose, 1, plane[1], &seconds, error)) &&
+         bench_added_loose(&loose, LOOSE, plane[1] + (on == ONE_ON_FLOOR ? 1000.0 : 0.0), &seconds, error) &&
          measure_steps(&first, &second, repeat, times, error);
     if (ok && !floored) {
         print_row(options, subject, with->step, "add 16,384 loose particles", seconds, seconds, times[0]);
     }
     if (ok) {
-        print_row(options, subject, with->step, floored ? "  all of them on a floor" : "  in a step",
-                  times[repeat] - times[0], times[repeat + repeat / 2] - times[repeat / 2], times[0]);
+        print_row(options, subject, with->step, names[on], times[repeat] - times[0],
+                  times[repeat + repeat / 2] - times[repeat / 2], times[0]);
     }
     bench_network_free(&plain);
     bench_network_free(&loose);
@@ -808,8 +815,8 @@ static bool measure_level(const bench_scene *subject, const bench_options *optio
     for (bench_wreck kind = 0; ok && kind < BENCH_WRECKS; kind++) {
         ok = measure_wreck(&with, options, subject, level, kind, repeat, times, &error);
     }
-    for (int floored = 0; ok && floored < 2; floored++) {
-        ok = measure_loose(&with, options, subject, level, floored == 1, repeat, times, &error);
+    for (ground on = WITHOUT_FLOOR; ok && on < GROUNDS; on++) {
+        ok = measure_loose(&with, options, subject, level, on, repeat, times, &error);
     }
     for (uint32_t count = 100; ok && count <= springs / 10; count *= 10) {
         ok = measure_added(&with, options, subject, level, count, repeat, times, &error);

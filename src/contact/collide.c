@@ -151,10 +151,44 @@ static void collide_block(const mspring_network *network, const mspringi_field *
     }
 }
 
+mspringi_ground mspringi_floor_ground(const mspring_network *network, const mspringi_bounds *clear, float h) {
+    const mspringi_floor *floor = network->floor;
+    return (mspringi_ground){
+        .lines = floor->lines,
+        .line_count = floor->plane_count,
+        .height_count = floor->heights.count,
+        .heights = floor->heights.heights,
+        .normals = floor->heights.normals,
+        .left = floor->heights.local_x,
+        .bottom = floor->heights.local_y,
+        .spacing = floor->heights.spacing,
+        .friction = floor->friction,
+        .restitution = floor->restitution,
+        .h = (double)h,
+        .clear = *clear,
+        .x = network->state.x,
+        .y = network->state.y,
+        .vx = network->state.vx,
+        .vy = network->state.vy,
+        .impulse_x = floor->impulse.x,
+        .impulse_y = floor->impulse.y,
+        .inverse_mass = network->inverse_mass,
+        .free_mass = mspringi_free_mass(network),
+    };
+}
+
+void mspringi_floor_touch_block(const mspring_network *network, const mspringi_ground *ground, size_t first) {
+    uint32_t left = network->kernels->touch(ground, first);
+    for (size_t slot = first; left != 0; ++slot, left >>= 1)
+        if (left & 1)
+            collide_slot(network, NULL, slot, ground->h);
+}
+
 // Returns whether any particle was looked at.
 static bool touch_spans(const mspring_network *network, const mspringi_field *start, const mspringi_bounds *clear,
                         const mspringi_span *spans, uint32_t span_count, float h) {
     const mspringi_state *s = &network->state;
+    const mspringi_ground ground = mspringi_floor_ground(network, clear, h);
     bool any = false;
     for (const mspringi_span *span = spans; span < spans + span_count; ++span) {
         const size_t first = span->first_slot / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
@@ -163,8 +197,12 @@ static bool touch_spans(const mspring_network *network, const mspringi_field *st
             continue;
         any = true;
         for (size_t block = first; block < end; block += MSPRINGI_WIDTH)
-            if (network->kernels->leaves(s->x + block, s->y + block, MSPRINGI_WIDTH, clear))
+            if (!network->kernels->leaves(s->x + block, s->y + block, MSPRINGI_WIDTH, clear))
+                continue;
+            else if (start)
                 collide_block(network, start, block, clear, (double)h);
+            else
+                mspringi_floor_touch_block(network, &ground, block);
     }
     return any;
 }

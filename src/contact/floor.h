@@ -12,11 +12,6 @@
 
 #include "network/network.h"
 
-/// The border of a half-plane. The distance from it is n . p + offset, > 0 where particles may be.
-typedef struct mspringi_line {
-    double nx, ny, offset; ///< n of length 1, offset for local coordinates
-} mspringi_line;
-
 typedef struct mspringi_half_plane {
     double x, y;   ///< a point on its border, world coordinates
     double nx, ny; ///< of length 1
@@ -66,6 +61,7 @@ typedef struct mspringi_floor {
     mspringi_field impulse;         ///< [slot_count] N s on each slot in the last step
     mspringi_field former;          ///< [slot_count] in the step before it, as long as one is made
     size_t slot_count;
+    double reach;               ///< twice as far, m, as anything may come in the substeps of the last survey
     mspringi_bounds clear;      ///< where no surface is, around the network as it was before an implicit substep
     mspringi_contact *contacts; ///< of an implicit substep
     uint32_t contact_count, contact_capacity;
@@ -124,6 +120,9 @@ double mspringi_floor_distance(const mspringi_floor *floor, double x, double y);
 /// Look how far every strip is from the surface, and which of them stay clear of it for so many seconds.
 void mspringi_floor_survey(mspring_network *network, double seconds);
 
+/// Whether a block of a strip that may come near the surface may do so itself, in the same substeps.
+bool mspringi_floor_is_near_block(const mspring_network *network, const mspringi_strip *strip, uint32_t block);
+
 /* collide.c */
 
 /// Let the surface act on a body that a substep of h seconds has moved.
@@ -136,6 +135,12 @@ bool mspringi_floor_is_near(const mspring_network *network, const mspringi_strip
 /// that stays clear are left out.
 void mspringi_floor_touch(const mspring_network *network, const mspringi_strip *strip, const mspringi_span *spans,
                           uint32_t span_count, float h);
+
+/// A floor for substeps of h seconds, from which particles in a box are clear, as kernels see it.
+mspringi_ground mspringi_floor_ground(const mspring_network *network, const mspringi_bounds *clear, float h);
+
+/// Let it act on the particles of the block of slots that begins with first.
+void mspringi_floor_touch_block(const mspring_network *network, const mspringi_ground *ground, size_t first);
 
 /// Look once at the strips that were left out.
 void mspringi_floor_touch_far(const mspring_network *network, float h);

@@ -209,6 +209,7 @@ void mspringi_floor_survey(mspring_network *network, double seconds) {
     // Half of the reach is twice as far as the fastest particle gets by its speed and gravity.
     const double gravity = fabs((double)network->gravity_x) + fabs((double)network->gravity_y);
     const double reach = 4.0 * seconds * ((double)fastest + gravity * seconds) + 1e-6;
+    floor->reach = reach;
     for (uint32_t i = 0; i < t->strip_count; ++i) {
         if (mspringi_share_of_strip(network, &t->strips[i]) == MSPRINGI_ASLEEP)
             continue;
@@ -217,4 +218,21 @@ void mspringi_floor_survey(mspring_network *network, double seconds) {
         floor->clearances[i] = look_around(floor, &strip, reach);
         floor->has_impulse |= !floor->clearances[i].is_far;
     }
+}
+
+bool mspringi_floor_is_near_block(const mspring_network *network, const mspringi_strip *strip, uint32_t block) {
+    const mspringi_floor *floor = network->floor;
+    const mspringi_state *s = &network->state;
+    const size_t first = (size_t)block * MSPRINGI_WIDTH;
+    const mspringi_bounds *all = &floor->clearances[strip - network->topology.strips].clear;
+    const double way = 0.5 * floor->reach;
+    // Where the whole strip is clear, if that is enough.
+    const mspringi_bounds within = {bound((double)all->min_x + way), bound((double)all->max_x - way),
+                                    bound((double)all->min_y + way), bound((double)all->max_y - way)};
+    if (!network->kernels->leaves(s->x + first, s->y + first, MSPRINGI_WIDTH, &within))
+        return false;
+    box around = {INFINITY, -INFINITY, INFINITY, -INFINITY};
+    float fastest = 0.0f;
+    cover(network, first, first + MSPRINGI_WIDTH, &around, &fastest);
+    return !look_around(floor, &around, floor->reach).is_far;
 }

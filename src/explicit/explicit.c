@@ -349,15 +349,43 @@ static mspringi_glide plan_glide(const mspringi_sweep *sweep, uint32_t substeps)
                             .drift = (float)(h * (double)substeps)};
 }
 
-static void move_loose(const mspring_network *network, const mspringi_substep *substep, const mspringi_span *span,
-                       const mspringi_glide *glide) {
+/// Blocks of loose particles that go through all substeps before the next ones do: they take 10 kB.
+#define LOOSE_CHUNK 16
+
+// The end of the blocks from that one on that are all near the floor, or all far.
+static uint32_t end_of_chunk(const mspring_network *network, const mspringi_strip *strip, uint32_t block,
+                             uint32_t end, bool *is_near) {
+    *is_near = mspringi_floor_is_near_block(network, strip, block);
+    const uint32_t most = end - block < LOOSE_CHUNK ? end : block + LOOSE_CHUNK;
+    uint32_t next = block + 1;
+    while (next < most && mspringi_floor_is_near_block(network, strip, next) == *is_near)
+        ++next;
+    return next;
+}
+
+// Take so many substeps of loose particles: at once, but one after the other where a floor is near. (16,384 of them
+// of which one is near: 43 instead of 345 us for 40 substeps at AVX-512 on a Zen 4.)
+static void take_loose(const job *rest, const mspringi_substep *substep, const mspringi_strip *strip,
+                       const mspringi_span *span, uint32_t count) {
+    const mspring_network *network = rest->network;
     const mspringi_loose_fn loose = network->kernels->loose[substep->base.x != NULL];
-    mspringi_span run[2];
-    if (network->sleep.sleeping == 0)
-        loose(&substep->sweep, span, glide);
-    else
-        for (uint32_t at = span->first_slot; mspringi_next_swept(network, span, &at, run);)
-            loose(&substep->sweep, run, glide);
+    const mspringi_glide all = plan_glide(&substep->sweep, count), one = plan_glide(&substep->sweep, 1);
+    if (!mspringi_floor_is_near(network, strip)) {
+        loose(&substep->sweep, span, &all);
+        return;
+    }
+    const uint32_t end = span->end_slot / MSPRINGI_WIDTH;
+    for (uint32_t block = span->first_slot / MSPRINGI_WIDTH, next; block < end; block = next) {
+        bool is_near;
+        next = end_of_chunk(network, strip, block, end, &is_near);
+        mspringi_span chunk = *span;
+        chunk.first_slot = block * MSPRINGI_WIDTH;
+        chunk.end_slot = next * MSPRINGI_WIDTH;
+        for (uint32_t i = 0; i < (is_near ? count : 1); ++i) {
+            loose(&substep->sweep, &chunk, is_near ? &one : &all);
+            mspringi_floor_touch(network, strip, &chunk, 1, rest->h);
+        }
+    }
 }
 
 // Take all substeps of a share of the loose particles: nothing else moves them but a floor that is near.
@@ -366,15 +394,15 @@ static void sweep_loose(const job *rest, const mspringi_strip *strip, uint32_t i
     const mspringi_topology *t = &network->topology;
     const mspringi_substep substep = mspringi_substep_prepare(network, rest->h, rest->base, 0, 1, 0);
     const mspringi_span share = share_of(&t->spans[t->rows[strip->first_row].first_span], index, rest->workers);
-    const uint32_t at_once = mspringi_floor_is_near(network, strip) ? 1 : rest->count;
-    const mspringi_glide glide = plan_glide(&substep.sweep, at_once);
+    mspringi_span run[2];
     if (mspringi_share_of_strip(network, strip) == MSPRINGI_ASLEEP)
         return;
     begin_share(rest, &share);
-    for (uint32_t i = 0; i < rest->count; i += at_once) {
-        move_loose(network, &substep, &share, &glide);
-        mspringi_floor_touch(network, strip, &share, 1, rest->h);
-    }
+    if (network->sleep.sleeping == 0)
+        take_loose(rest, &substep, strip, &share, rest->count);
+    else
+        for (uint32_t at = share.first_slot; mspringi_next_swept(network, &share, &at, run);)
+            take_loose(rest, &substep, strip, run, rest->count);
     end_share(rest, &share, index);
 }
 
@@ -391,17 +419,16 @@ static void sweep_grafted_loose(const job *rest, const mspringi_substep *substep
         mspringi_span span = *all;
         span.first_slot = block * MSPRINGI_WIDTH;
         span.end_slot = next * MSPRINGI_WIDTH;
-        const uint32_t at_once = pulled || mspringi_floor_is_near(network, strip) ? 1 : count;
-        const uint32_t substeps = next == block ? 0 : pulled ? 1 : number == 0 ? count : 0;
-        if (substeps == 0)
+        if (next == block || (!pulled && number > 0))
             continue;
-        const mspringi_glide glide = plan_glide(&substep->sweep, at_once);
-        for (uint32_t i = 0; i < substeps; i += at_once) {
-            network->kernels->loose[rest->base.x != NULL](&substep->sweep, &span, &glide);
-            if (pulled)
-                mspringi_graft_pull(network, &substep->sweep, span.first_slot, span.end_slot);
-            mspringi_floor_touch(network, strip, &span, 1, rest->h);
+        if (!pulled) {
+            take_loose(rest, substep, strip, &span, count);
+            continue;
         }
+        const mspringi_glide glide = plan_glide(&substep->sweep, 1);
+        network->kernels->loose[rest->base.x != NULL](&substep->sweep, &span, &glide);
+        mspringi_graft_pull(network, &substep->sweep, span.first_slot, span.end_slot);
+        mspringi_floor_touch(network, strip, &span, 1, rest->h);
     }
 }
 

@@ -119,6 +119,32 @@ typedef struct mspringi_bounds {
 /// Whether any of count slots (a multiple of MSPRINGI_WIDTH) lies outside a box.
 typedef bool (*mspringi_leaves_fn)(const float *x, const float *y, size_t count, const mspringi_bounds *bounds);
 
+/// The border of a half-plane. The distance from it is n . p + offset, > 0 where particles may be.
+typedef struct mspringi_line {
+    double nx, ny, offset; ///< n of length 1, offset for local coordinates
+} mspringi_line;
+
+/// A floor, and the particles that it acts on, by slot.
+typedef struct mspringi_ground {
+    const mspringi_line *lines;
+    uint32_t line_count;
+    uint32_t height_count; ///< 0: there are none
+    const float *heights;
+    const double *normals;        ///< as in mspringi_heights
+    double left, bottom, spacing; ///< likewise, local
+    double friction, restitution;
+    double h;              ///< of the substep, s
+    mspringi_bounds clear; ///< particles in here are left alone
+    float *x, *y, *vx, *vy;
+    float *impulse_x, *impulse_y;
+    const float *inverse_mass, *free_mass;
+} mspringi_ground;
+
+/// Let a floor act on the particles of the block of slots that begins with slot, after a substep.
+/// @return a bit for each that nothing has been done to, as it has come from one straight part of the heights to
+///         another or is in a narrow corner: mspringi_floor_collide() is for them
+typedef uint32_t (*mspringi_touch_fn)(const mspringi_ground *ground, size_t slot);
+
 /// What a strain pass works on: arrays by slot and, by place, the least strain that anything happens at.
 typedef struct mspringi_strain_sweep {
     const float *x, *y;
@@ -167,6 +193,7 @@ typedef struct mspringi_kernels {
     mspringi_largest_fn largest;
     mspringi_sight_fn sight_of;
     mspringi_leaves_fn leaves;
+    mspringi_touch_fn touch;
     mspringi_strain_fn lattice_strain, chain_strain;
     mspringi_checksum_fn checksum;
     mspringi_system_kernels system;

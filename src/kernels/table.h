@@ -1,12 +1,13 @@
 /// @file table.h
 /// The variants of an instruction set's lattice(), chain(), web(), herd(), loose(), attached(), pack(), largest(),
-/// sight_of(), lattice_strain(), chain_strain() and take_checksum(), and the table of them. Included at the end of
-/// each kernel file, which defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
+/// sight_of(), touch(), lattice_strain(), chain_strain() and take_checksum(), and the table of them. Included at
+/// the end of each kernel file, which defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
 ///
 /// SPDX-License-Identifier: MIT
 
 #include "bounds.h"
 #include "checksum.h"
+#include "contact.h"
 #include "sight.h"
 #include "strain.h"
 #include "system_assemble.h"
@@ -79,6 +80,7 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .largest = largest,
     .sight_of = sight_of,
     .leaves = leaves,
+    .touch = touch,
     .lattice_strain = lattice_strain,
     .chain_strain = chain_strain,
     .checksum = take_checksum,
