@@ -1063,7 +1063,9 @@ MSPRING_API mspring_result mspring_floor_def_init(mspring_floor_def *def, size_t
 /// substep: a particle that was above it at the beginning is not below it at the end, whatever its speed and
 /// however long the substep, but for some last places of its coordinates (a millionth of its distance from the
 /// local origin); one that was below is put onto it. Contact takes energy and gives none. Peaks of the heights that
-/// are narrower than the way of a particle in a substep are met, too.
+/// are narrower than the way of a particle in a substep are met, too. What cannot come near in a step by the speeds
+/// at its beginning, gravity and forces from outside is looked at once, after it: a particle that springs throw
+/// from rest onto a floor which is farther away than that loses all speed there, and does not bounce.
 ///
 /// Explicit substeps treat each particle after it has moved. In implicit ones the floor is part of the linear
 /// system: a substep is solved up to four times to find which particles it holds and which of them slide, with

@@ -194,6 +194,23 @@ static mspringi_clearance look_around(const mspringi_floor *floor, const box *st
                                 is_far};
 }
 
+// What forces from outside accelerate any particle by at most, along x or y, m/s^2.
+static double hardest_push(const mspring_network *network) {
+    const mspringi_field *force = &network->sleep.in_force;
+    const float *inverse_mass = mspringi_free_mass(network);
+    const size_t slots = (size_t)network->topology.block_count * MSPRINGI_WIDTH;
+    float hardest[MSPRINGI_WIDTH] = {0.0f}, all = 0.0f;
+    for (size_t slot = 0; force->x && slot < slots; slot += MSPRINGI_WIDTH)
+        for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
+            const float x = fabsf(force->x[slot + lane]), y = fabsf(force->y[slot + lane]);
+            const float push = (x > y ? x : y) * inverse_mass[slot + lane];
+            hardest[lane] = push > hardest[lane] ? push : hardest[lane];
+        }
+    for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
+        all = hardest[lane] > all ? hardest[lane] : all;
+    return (double)all;
+}
+
 void mspringi_floor_survey(mspring_network *network, double seconds) {
     const mspringi_topology *t = &network->topology;
     mspringi_floor *floor = network->floor;
@@ -206,9 +223,9 @@ void mspringi_floor_survey(mspring_network *network, double seconds) {
         floor->clearances[i].clear =
             (mspringi_bounds){(float)all.min_x, (float)all.max_x, (float)all.min_y, (float)all.max_y};
     }
-    // Half of the reach is twice as far as the fastest particle gets by its speed and gravity.
-    const double gravity = fabs((double)network->gravity_x) + fabs((double)network->gravity_y);
-    const double reach = 4.0 * seconds * ((double)fastest + gravity * seconds) + 1e-6;
+    // Half of the reach is twice as far as the fastest particle gets by its speed, gravity and forces from outside.
+    const double push = fabs((double)network->gravity_x) + fabs((double)network->gravity_y) + hardest_push(network);
+    const double reach = 4.0 * seconds * ((double)fastest + push * seconds) + 1e-6;
     floor->reach = reach;
     for (uint32_t i = 0; i < t->strip_count; ++i) {
         if (mspringi_share_of_strip(network, &t->strips[i]) == MSPRINGI_ASLEEP)
