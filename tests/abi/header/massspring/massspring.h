@@ -294,7 +294,7 @@ enum {
     /// (and with the stiffness across a spring clamped to 0 where it is compressed, so that the matrix is positive
     /// definite). The system is solved by a fixed number of conjugate gradient iterations with a two-level
     /// preconditioner: the blocks of the single particles, and the tiles. With eight
-    /// of them a substep costs 24 to 41 explicit ones (massspring-bench --implicit). It damps what oscillates
+    /// of them a substep costs 24 to 41 explicit ones (massspring-bench --solvers). It damps what oscillates
     /// with less than about ten substeps a period. Global damping, which explicit steps apply exactly, is as
     /// accurate as its integrator.
     MSPRING_SOLVER_IMPLICIT = 1,
@@ -788,8 +788,8 @@ MSPRING_API mspring_result mspring_settle_def_init(mspring_settle_def *def, size
 /// one place. There may be several equilibria, tangled ones among them; the one found depends on the start. One
 /// that is not stable, such as a pendulum upside down, is left by a small push. Memory and time grow with the size
 /// as those of a factorisation do: for n particles of a lattice about n log n numbers and n^1.5 operations an
-/// iteration. A bar of 80 x 5 takes four of them. Ropes that fall slack and thin masts that bend far take many, as no
-/// step may turn their springs by much: our ship's rigging comes down by 45 m in 199 iterations, which take 20 s.
+/// iteration. A bar of 80 x 5 takes four of them. Ropes that fall slack and thin masts that bend far take many, as
+/// no step may turn their springs by much: our ship's rigging comes down by 45 m in 199 iterations (20 s).
 ///
 /// Then velocities are zero (those of pinned particles stay), and forces given for the next step are still there.
 /// Parts without pinned particle have an equilibrium only if the forces on them cancel, as without gravity; others
@@ -1063,7 +1063,9 @@ MSPRING_API mspring_result mspring_floor_def_init(mspring_floor_def *def, size_t
 /// substep: a particle that was above it at the beginning is not below it at the end, whatever its speed and
 /// however long the substep, but for some last places of its coordinates (a millionth of its distance from the
 /// local origin); one that was below is put onto it. Contact takes energy and gives none. Peaks of the heights that
-/// are narrower than the way of a particle in a substep are met, too.
+/// are narrower than the way of a particle in a substep are met, too. What cannot come near in a step by the speeds
+/// at its beginning, gravity and forces from outside is looked at once, after it: a particle that springs throw
+/// from rest onto a floor which is farther away than that loses all speed there, and does not bounce.
 ///
 /// Explicit substeps treat each particle after it has moved. In implicit ones the floor is part of the linear
 /// system: a substep is solved up to four times to find which particles it holds and which of them slide, with
@@ -1367,18 +1369,24 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_recycle(mspring_net
 /* ------------------------------------------------------------------------------------------- compaction */
 
 /// Leave springs that are broken out of the plan, so that a wreck costs what is left of it: lattices are swept
-/// where squares are left, strands as chains, single springs as web, and particles without spring as loose ones.
-/// Until then a broken spring costs as much as a whole one. Worth it where a quarter of the springs or more has
-/// broken. Springs that were added are taken into the plan, which is worth it where they are to stay.
+/// where squares are left, strands as chains, small trees of one shape side by side, other springs as web, and
+/// particles without spring as loose ones. Until then a broken spring costs as much as a whole one. Worth it where
+/// a quarter of the springs or more has broken. Springs that were added are taken into the plan, which is worth it
+/// where they are to stay.
 ///
 /// Ids, values and thresholds of all springs stay as they are and can be read and set as before. **Slots change**:
 /// a view that was taken before is not valid any more, and hooks see other slots. Positions and velocities are
 /// moved bit for bit; but forces are summed in another order from then on, so the steps that follow differ in
 /// rounding from those of a network that was not compacted. They are the same on every machine, at every level and
-/// for any number of workers, as long as the same calls come between the same steps.
+/// for any number of workers, as long as the same calls come between the same steps. Small pieces are laid out for
+/// the solver that the network has then, the explicit or another: one that is compacted with the other takes no
+/// snapshot of it.
 ///
 /// Restoring a spring that was left out takes all springs in again, as mspring_network_expand() does; then the
 /// network can be compacted anew.
+///
+/// A snapshot goes with the plan that there was when it was saved. One from before can only be loaded after
+/// mspring_network_expand(), one of the compact network only before that: where slots change, rollback begins anew.
 ///
 /// The work comes in pieces, so that it can be done over many frames: each looks at some thousands of particles or
 /// springs, however large the network, but for the memory that it sets to zero, a strand, which is found in one go,
@@ -1407,7 +1415,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_expand(mspring_netw
 
 /// Have springs break by themselves: one whose absolute strain, |length - rest_length| / rest_length, is over its
 /// break strain at the end of a step is broken then. It is the strain that decides, whatever the stiffness, the
-/// substeps or the solver; and nothing breaks, and nobody is called, in the middle of a step.
+/// substeps or the solver; but substeps too long to follow a blow, above all single implicit ones, make other
+/// strains of it. Nothing breaks, and nobody is called, in the middle of a step.
 /// @param strain  [count], > 0; INFINITY, the default, for never
 /// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the spring),
 ///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
@@ -1585,7 +1594,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_strains(const m
                                                                          float *strain);
 
 /// Length, direction and strain of all springs at once, in id order: a pass over the network in the order in which
-/// it lies in memory. Each array is filled if it is not NULL.
+/// it lies in memory. Each array is filled if it is not NULL; all is 0 of springs that were removed.
 /// @param length       [spring count], m
 /// @param direction_x, direction_y  [spring count] the unit vector along the spring from the end with the lower id
 ///                     to the other; (0, 0) for a spring of length 0; both or none
@@ -1620,8 +1629,9 @@ enum {
     MSPRING_SNAPSHOT_ALL = 0,
     /// All but the springs' stiffness, damping, rest length, break and stress strain, which only edits change: a
     /// third of the size, and saved at nearly the speed of a copy, for rollback. It can be loaded only where these
-    /// are what they were: into the same network as long as they have not been edited since, or into another that
-    /// was made alike and edited alike, in the same order.
+    /// are what they were: into the same network as long as they have not been edited since, and nothing was added
+    /// or removed, or into another that was made alike and edited alike, in the same order. (Breaking, restoring,
+    /// with or without a ramp, and detaching are no edits of these.)
     MSPRING_SNAPSHOT_FRAME = 1
 };
 
@@ -1638,7 +1648,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_snapshot_size(const
 /// workers, but only of use to networks made of the same particles and springs by a library that lays them out
 /// alike (another refuses it): meant for rollback, replay and network play, not for archives. Of the implicit or
 /// direct solver it holds settings and history, but it can be loaded only where that solver is, with the same
-/// integrator and tiles. Hooks and unread events are not in it.
+/// integrator and tiles and, of the direct one, the same added springs. Hooks and unread events are not in it.
 /// @param snapshot  [capacity] bytes, of any alignment
 /// @param capacity  at least mspring_network_snapshot_size()
 /// @param size      receives the bytes written; may be NULL
@@ -1661,9 +1671,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_load(mspring_networ
 /* ------------------------------------------------------------------------------------- plan and SIMD level */
 
 /// How the network was laid out. A particle belongs to one of four kinds of row: a lattice row (8 neighbours on a
-/// grid), a chain (single strands), the web (any other graph, and ropes that hang on a lattice) or a loose row (no
-/// springs). A spring between neighbours in lattice and chain rows is swept with them, without any index; the
-/// others, leftover springs, are the web's, and cost more each.
+/// grid, which may lie at any angle, be oblong or slanted, and bend), a chain (single strands), the web (any other
+/// graph, and ropes that hang on a lattice) or a loose row (no springs). A spring between neighbours in lattice and
+/// chain rows is swept with them, without any index; the others, leftover springs, are the web's, and cost more.
 ///
 /// Lattices of at most 64 by 64 particles share rows, side by side, whose blocks one alone would leave half empty.
 ///
@@ -1704,8 +1714,8 @@ typedef struct mspring_plan {
     uint32_t coarse_period;
     uint64_t factor_values; ///< of the direct solver: numbers in its factor, which is there in both precisions,
     double factor_products; ///< and products that computing it takes
-    uint32_t web_layers;    ///< layers in which the web without a lattice is swept for several substeps in one pass,
-                            ///< whatever the solver; 0 if it takes one substep at a time
+    uint32_t web_layers; ///< layers in which the web without a lattice is swept for several substeps in one pass,
+                         ///< whatever the solver; 0 if it takes one substep at a time
 } mspring_plan;
 
 /// Get the plan. Set struct_size first.
