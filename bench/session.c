@@ -9,208 +9,11 @@
 #include "added.h"
 #include "machine.h"
 #include "modes.h"
+#include "session.h"
 #include "wreck.h"
-
-/// Springs broken or restored at once: those of a blast.
-#define BURST 1000u
-
-/// Springs broken at once where the rest of a structure holds.
-#define FEW 20u
 
 /// Thresholds that no strain of the bench reaches: the pass looks at every spring, and nothing breaks.
 #define OUT_OF_REACH 1e6f
-
-/// A network and what the calls need.
-typedef struct session {
-    bench_network *step; ///< the network
-    float *values;       ///< [particles or springs, whichever are more]
-    float *more_values;
-    float *by_spring[4]; ///< [springs] each
-    double *x, *y;       ///< [particles]
-    void *snapshot;      ///< [snapshot_size]
-    size_t snapshot_size;
-    mspring_id *list; ///< [BURST] springs, scattered
-    uint32_t burst;   ///< of them: BURST, or all springs if there are fewer
-    uint32_t calls;   ///< so far
-} session;
-
-typedef mspring_result (*session_fn)(session *with);
-
-static void no_preparation(session *with) {
-    (void)with;
-}
-
-/* ----------------------------------------------------------------------------------------------------- calls */
-
-static void prepare_masses(session *with) {
-    with->calls++;
-    for (uint32_t i = 0; i < with->step->particle_count; i++) {
-        with->values[i] = 70.0f + (float)((i + with->calls) % 16);
-    }
-}
-
-static mspring_result set_masses(session *with) {
-    return mspring_network_set_masses(with->step->network, 0, with->step->particle_count, with->values);
-}
-
-static void prepare_scales(session *with) {
-    with->calls++;
-    for (uint32_t i = 0; i < with->step->particle_count; i++) {
-        with->values[i] = (i + with->calls) % 16 == 0 ? 0.5f : 1.0f;
-    }
-}
-
-static mspring_result set_scales(session *with) {
-    return mspring_network_set_inverse_mass_scales(with->step->network, 0, with->step->particle_count,
-                                                   with->values);
-}
-
-static mspring_result get_positions(session *with) {
-    return mspring_network_get_positions(with->step->network, 0, with->step->particle_count, with->x, with->y);
-}
-
-static mspring_result set_positions(session *with) {
-    return mspring_network_set_positions(with->step->network, 0, with->step->particle_count, with->x, with->y);
-}
-
-static void prepare_positions(session *with) {
-    if (get_positions(with) != MSPRING_OK) {
-        abort(); // not in a range that is all particles
-    }
-}
-
-static mspring_result get_velocities(session *with) {
-    return mspring_network_get_velocities(with->step->network, 0, with->step->particle_count, with->values,
-                                          with->more_values);
-}
-
-static mspring_result apply_forces(session *with) {
-    return mspring_network_apply_forces(with->step->network, 0, with->step->particle_count, with->values,
-                                        with->more_values);
-}
-
-static void prepare_forces(session *with) {
-    for (uint32_t i = 0; i < with->step->particle_count; i++) {
-        with->values[i] = with->more_values[i] = 0.5f;
-    }
-}
-
-static mspring_result restore(session *with) {
-    return mspring_network_restore_springs(with->step->network, with->list, with->burst, 0.0);
-}
-
-static mspring_result restore_ramped(session *with) {
-    return mspring_network_restore_springs(with->step->network, with->list, with->burst, 1.0);
-}
-
-static mspring_result break_burst(session *with) {
-    return mspring_network_break_springs(with->step->network, with->list, with->burst);
-}
-
-static void prepare_whole(session *with) {
-    (void)!restore(with);
-}
-
-static void prepare_broken(session *with) {
-    (void)!break_burst(with);
-}
-
-static mspring_result set_stiffnesses(session *with) {
-    return mspring_network_set_stiffnesses_at(with->step->network, with->list, with->burst, with->values);
-}
-
-static void prepare_stiffnesses(session *with) {
-    for (uint32_t i = 0; i < with->burst; i++) {
-        with->values[i] = 0.5f;
-    }
-}
-
-static mspring_result update_components(session *with) {
-    return mspring_network_update_components(with->step->network, NULL, NULL);
-}
-
-static void prepare_burst(session *with) {
-    (void)!restore(with);
-    (void)!update_components(with);
-    (void)!break_burst(with);
-}
-
-static void prepare_few(session *with) {
-    prepare_burst(with);
-    (void)!update_components(with);
-    (void)!mspring_network_restore_springs(with->step->network, with->list, with->burst < 20 ? with->burst : 20,
-                                           0.0);
-}
-
-static mspring_result measure_components(session *with) {
-    mspring_component component = {.struct_size = sizeof component};
-    return mspring_network_get_components(with->step->network, 0, 1, &component);
-}
-
-static mspring_result measure_strains(session *with) {
-    return mspring_network_get_extents(with->step->network, NULL, NULL, NULL, with->by_spring[0]);
-}
-
-static mspring_result measure_extents(session *with) {
-    return mspring_network_get_extents(with->step->network, with->by_spring[0], with->by_spring[1],
-                                       with->by_spring[2], with->by_spring[3]);
-}
-
-static mspring_result hash(session *with) {
-    uint64_t sum;
-    return mspring_network_state_hash(with->step->network, &sum);
-}
-
-static mspring_result save_frame(session *with) {
-    return mspring_network_save(with->step->network, MSPRING_SNAPSHOT_FRAME, with->snapshot, with->snapshot_size,
-                                NULL);
-}
-
-static void prepare_frame(session *with) {
-    (void)!save_frame(with);
-}
-
-static mspring_result load_frame(session *with) {
-    size_t size;
-    mspring_result result = mspring_network_snapshot_size(with->step->network, MSPRING_SNAPSHOT_FRAME, &size);
-    return result == MSPRING_OK ? mspring_network_load(with->step->network, with->snapshot, size) : result;
-}
-
-static mspring_result save_all(session *with) {
-    return mspring_network_save(with->step->network, MSPRING_SNAPSHOT_ALL, with->snapshot, with->snapshot_size,
-                                NULL);
-}
-
-/// A call, and what has to be so before it.
-typedef struct session_call {
-    const char *name;
-    void (*prepare)(session *with);
-    session_fn call;
-} session_call;
-
-static const session_call calls[] = {
-    {"read all positions", no_preparation, get_positions},
-    {"write all positions", prepare_positions, set_positions},
-    {"read all velocities", no_preparation, get_velocities},
-    {"a force on every particle", prepare_forces, apply_forces},
-    {"all masses", prepare_masses, set_masses},
-    {"all scales of inverse mass", prepare_scales, set_scales},
-    {"stiffness of 1,000 springs", prepare_stiffnesses, set_stiffnesses},
-    {"break 1,000 springs", prepare_whole, break_burst},
-    {"restore 1,000 springs", prepare_broken, restore},
-    {"restore 1,000 with a ramp", prepare_broken, restore_ramped},
-    {"components after that", prepare_burst, update_components},
-    {"components after 20 springs", prepare_few, update_components},
-    {"mass, centre of a component", no_preparation, measure_components},
-    {"strain of all springs", no_preparation, measure_strains},
-    {"and length and direction", no_preparation, measure_extents},
-    {"hash of the state", no_preparation, hash},
-    {"save a frame", no_preparation, save_frame},
-    {"load a frame", prepare_frame, load_frame},
-    {"save all", no_preparation, save_all},
-};
-
-#define CALL_COUNT (sizeof calls / sizeof *calls)
 
 /* --------------------------------------------------------------------------------------------------- measuring */
 
@@ -271,7 +74,7 @@ static bool measure_call(const session_call *call, session *with, const bench_op
     const double median = bench_median(seconds, repeat); // sorts
     bench_median(steps, repeat);
     print_row(options, subject, with->step, call->name, seconds[0], median, steps[0]);
-    return restore(with) == MSPRING_OK;
+    return session_restore(with) == MSPRING_OK;
 }
 
 /// Make a network in which every spring is watched.
@@ -283,7 +86,7 @@ static bool create_watched(const bench_scene *subject, mspring_simd level, bool 
     for (uint32_t i = 0; i < out->spring_count; i++) {
         with->values[i] = OUT_OF_REACH;
     }
-    mspring_result result = mspring_network_reserve_events(out->network, BURST);
+    mspring_result result = mspring_network_reserve_events(out->network, SESSION_BURST);
     if (result == MSPRING_OK) {
         result = mspring_network_set_break_strains(out->network, 0, out->spring_count, with->values);
     }
@@ -743,46 +546,6 @@ static bool measure_hook(session *with, const bench_options *options, const benc
     return ok;
 }
 
-static bool make_session(bench_network *network, session *out, scene_error *error) {
-    const uint32_t particles = network->particle_count, springs = network->spring_count;
-    const uint32_t most = particles > springs ? particles : springs;
-    out->step = network;
-    out->burst = springs < BURST ? springs : BURST;
-    out->values = bench_allocate(most, sizeof *out->values, error);
-    out->more_values = bench_allocate(particles, sizeof *out->more_values, error);
-    out->x = bench_allocate(particles, sizeof *out->x, error);
-    out->y = bench_allocate(particles, sizeof *out->y, error);
-    out->snapshot = NULL;
-    if (mspring_network_snapshot_size(network->network, MSPRING_SNAPSHOT_ALL, &out->snapshot_size) == MSPRING_OK) {
-        out->snapshot_size += (size_t)64 * (particles + springs); // and what edits bring
-        out->snapshot = bench_allocate(out->snapshot_size, 1, error);
-    }
-    out->list = bench_allocate(BURST, sizeof *out->list, error);
-    bool ok = true;
-    for (int i = 0; i < 4; i++) {
-        ok = (out->by_spring[i] = bench_allocate(springs, sizeof *out->by_spring[i], error)) != NULL && ok;
-    }
-    if (!ok || !out->values || !out->more_values || !out->x || !out->y || !out->list || !out->snapshot) {
-        return false;
-    }
-    for (uint32_t i = 0; i < out->burst; i++) {
-        out->list[i] = (mspring_id)((uint64_t)i * springs / out->burst);
-    }
-    return true;
-}
-
-static void free_session(session *unwanted) {
-    free(unwanted->values);
-    free(unwanted->more_values);
-    for (int i = 0; i < 4; i++) {
-        free(unwanted->by_spring[i]);
-    }
-    free(unwanted->x);
-    free(unwanted->y);
-    free(unwanted->list);
-    free(unwanted->snapshot);
-}
-
 static bool measure_level(const bench_scene *subject, const bench_options *options, mspring_simd level) {
     const uint32_t springs = mspring_builder_spring_count(subject->made.builder);
     const uint32_t substeps = options->substeps > 0 ? options->substeps : bench_default_substeps(springs);
@@ -795,7 +558,7 @@ static bool measure_level(const bench_scene *subject, const bench_options *optio
         return false;
     }
     double *times = bench_allocate(2 * (size_t)repeat, sizeof *times, &error);
-    bool ok = make_session(&network, &with, &error) && times != NULL;
+    bool ok = session_create(&network, &with, &error) && times != NULL;
     // Before the calls: a network that has been edited is not the plain one any more.
     for (int stress = 0; ok && stress < 2; stress++) {
         ok = measure_strain(&with, options, subject, level, stress == 1, repeat, &error);
@@ -803,8 +566,8 @@ static bool measure_level(const bench_scene *subject, const bench_options *optio
     ok = ok && measure_floor(&with, options, subject, level, "floor, out of reach", 100.0, repeat, &error);
     ok = ok && measure_floor(&with, options, subject, level, "floor, lowest rows on it", -0.5, repeat, &error);
     ok = ok && measure_hook(&with, options, subject, level, repeat, &error);
-    for (size_t i = 0; ok && i < CALL_COUNT; i++) {
-        ok = measure_call(&calls[i], &with, options, subject, repeat, times, &error);
+    for (const session_call *call = session_calls; ok && call->name != NULL; call++) {
+        ok = measure_call(call, &with, options, subject, repeat, times, &error);
     }
     for (int viewed = 0; ok && viewed < 2; viewed++) {
         ok = measure_sleep(&with, options, subject, level, viewed == 1, repeat, &error);
@@ -825,7 +588,7 @@ static bool measure_level(const bench_scene *subject, const bench_options *optio
         bench_complain(subject->label, &error);
     }
     free(times);
-    free_session(&with);
+    session_free(&with);
     bench_network_free(&network);
     return ok;
 }

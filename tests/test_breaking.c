@@ -167,14 +167,19 @@ static void a_cut_rope_falls_in_two(void **state) {
     mspring_network_destroy(network);
 }
 
+/// Two particles a metre apart, and a spring between.
+static mspring_network *one_spring(double x, double y) {
+    mspring_builder *builder = support_builder();
+    support_particle(builder, x, y, 1);
+    support_particle(builder, x + 1, y, 1);
+    support_spring(builder, 0, 1, 1000, 10);
+    const mspring_network_def def = support_def(0, 20);
+    return support_network(builder, &def);
+}
+
 /// Two masses of 1 kg, 3 m apart, on a broken damped spring of 1 m, without gravity.
 static mspring_network *torn_pair(void) {
-    mspring_builder *builder = support_builder();
-    support_particle(builder, 0, 0, 1);
-    support_particle(builder, 1, 0, 1);
-    support_spring(builder, 0, 1, 1000, 10);
-    mspring_network_def def = support_def(0, 20);
-    mspring_network *network = support_network(builder, &def);
+    mspring_network *network = one_spring(0, 0);
     const mspring_id spring = 0;
     const double x = 3, y = 0;
     check_ok(mspring_network_break_springs(network, &spring, 1));
@@ -266,12 +271,7 @@ static void a_ramp_ends_with_its_last_step(void **state) {
 
 static void a_ramp_begins_at_the_distance_of_its_ends(void **state) {
     (void)state;
-    mspring_builder *builder = support_builder();
-    support_particle(builder, 10, 20, 1);
-    support_particle(builder, 11, 20, 1);
-    support_spring(builder, 0, 1, 1000, 10);
-    mspring_network_def def = support_def(0, 20);
-    mspring_network *network = support_network(builder, &def);
+    mspring_network *network = one_spring(10, 20);
     const mspring_id spring = 0;
     // 3 m across and 4 m up are 5 m, whichever of the ends is where.
     const double x[] = {12, 9}, y[] = {17, 21};
@@ -320,12 +320,7 @@ static void a_frame_of_before_a_ramp_takes_it_back(void **state) {
 
 static void what_is_whole_stays_as_it_is(void **state) {
     (void)state;
-    mspring_builder *builder = support_builder();
-    support_particle(builder, 0, 0, 1);
-    support_particle(builder, 1, 0, 1);
-    support_spring(builder, 0, 1, 1000, 10);
-    mspring_network_def def = support_def(0, 20);
-    mspring_network *network = support_network(builder, &def);
+    mspring_network *network = one_spring(0, 0);
     const mspring_id spring = 0;
     const double x = 3, y = 0;
     mspring_event event;
