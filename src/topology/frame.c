@@ -46,11 +46,8 @@ bool mspringi_frame_is_spanned(mspringi_step column, mspringi_step row) {
 }
 
 static bool round_to_cell(float offset, int32_t *cell) {
-    const float rounded = floorf(offset + 0.5f);
-    if (!(fabsf(rounded) <= 1.0f && fabsf(offset - rounded) <= CELL_TOLERANCE))
-        return false;
-    *cell = (int32_t)rounded;
-    return true;
+    *cell = offset > 0.5f ? 1 : offset < -0.5f ? -1 : 0;
+    return fabsf(offset - (float)*cell) <= CELL_TOLERANCE;
 }
 
 bool mspringi_frame_round(mspringi_frame frame, mspringi_step way, int32_t *columns, int32_t *rows) {
