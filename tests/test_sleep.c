@@ -621,14 +621,21 @@ static void try_a_step(mspring_network *network) {
     check_ok(mspring_network_apply_force(network, 3, 0, -1e30f));
 }
 
-/// What would have woken in a step that is refused is the only sleeper then; put back, it sleeps on.
-static void the_only_sleeper_sleeps_on_after_a_refusal(void **state) {
-    (void)state;
+/// The first weight, asleep, has been moved, and put back after a step that was refused.
+static mspring_network *two_weights_after_a_refusal(void) {
     mspring_network *network = make_two_weights();
     const support_point at = support_position(network, 1);
     change_shift(network, 1, MSPRING_NONE);
     try_a_step(network);
     check_ok(mspring_network_set_positions(network, 1, 1, &at.x, &at.y));
+    return network;
+}
+
+/// What would have woken in a step that is refused is the only sleeper then; put back, it sleeps on.
+static void the_only_sleeper_sleeps_on_after_a_refusal(void **state) {
+    (void)state;
+    mspring_network *network = two_weights_after_a_refusal();
+    const support_point at = support_position(network, 1);
     for (int step = 0; step < 10; step++) {
         const support_point before = support_position(network, 3);
         support_steps(network, 1, DT);
@@ -643,11 +650,7 @@ static void the_only_sleeper_sleeps_on_after_a_refusal(void **state) {
 /// before.
 static void what_was_woken_stays_so_after_a_refusal(void **state) {
     (void)state;
-    mspring_network *network = make_two_weights();
-    const support_point at = support_position(network, 1);
-    change_shift(network, 1, MSPRING_NONE);
-    try_a_step(network);
-    check_ok(mspring_network_set_positions(network, 1, 1, &at.x, &at.y));
+    mspring_network *network = two_weights_after_a_refusal();
     assert_int_equal(support_sleeps(network, 1), 1);
     check_ok(mspring_network_wake(network));
     assert_int_equal(support_sleeps(network, 1), 0);
