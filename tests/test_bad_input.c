@@ -423,6 +423,61 @@ static void bad_rope_is_refused(void **state) {
     assert_int_equal(first_spring, 4712);
 }
 
+// A later version may give a meaning to what is reserved, so garbage in it is refused by name.
+static void no_tasks(uint32_t count, mspring_task_fn fn, void *argument, void *user) {
+    (void)user;
+    for (uint32_t i = 0; i < count; i++)
+        fn(argument, i, 0);
+}
+
+static void no_hook(const mspring_hook_args *args, void *user) {
+    (void)args;
+    (void)user;
+}
+
+static void reserved_fields_must_be_zero(void **state) {
+    (void)state;
+    mspring_builder *builder = NULL;
+    mspring_network *network = NULL, *other = NULL;
+    mspring_particle_def particle;
+    check_ok(mspring_builder_create(NULL, &builder));
+    check_ok(mspring_particle_def_init(&particle, sizeof particle));
+    check_ok(mspring_builder_add_particle(builder, &particle, NULL));
+    mspring_network_def def;
+    check_ok(mspring_network_def_init(&def, sizeof def));
+    mspring_tasks tasks = {
+        .struct_size = sizeof tasks, .worker_count = 1, .concurrent_count = 1, .reserved = 7, .run = no_tasks};
+    def.tasks = &tasks;
+    check_error(mspring_network_create(builder, &def, &network), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_builder_error(builder), "mspring_tasks.reserved is 7");
+    tasks.reserved = 0;
+    check_ok(mspring_network_create(builder, &def, &network));
+
+    mspring_hook_def hook;
+    check_ok(mspring_hook_def_init(&hook, sizeof hook));
+    hook.fn = no_hook, hook.reserved = 3;
+    check_error(mspring_network_add_hook(network, &hook, NULL), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_network_error(network), "mspring_hook_def.reserved is 3");
+    mspring_settle_def settle;
+    check_ok(mspring_settle_def_init(&settle, sizeof settle));
+    settle.reserved = 1;
+    check_error(mspring_network_settle(network, &settle, NULL), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_network_error(network), "mspring_settle_def.reserved is 1");
+    const double ground[4] = {0, 0, 0, 1};
+    mspring_floor_def floor;
+    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    floor.planes = ground, floor.plane_count = 1, floor.reserved = UINT32_MAX;
+    check_error(mspring_network_set_floor(network, &floor), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_network_error(network), "mspring_floor_def.reserved is 4294967295");
+    mspring_clone_def clone;
+    check_ok(mspring_clone_def_init(&clone, sizeof clone));
+    clone.reserved = 1;
+    check_error(mspring_network_clone(network, &clone, &other), MSPRING_ERROR_ARGUMENT);
+    assert_null(other);
+    mspring_network_destroy(network);
+    mspring_builder_destroy(builder);
+}
+
 int main(void) {
 #define REFUSAL(test) cmocka_unit_test_setup_teardown(test, make_builder, check_builder)
     const struct CMUnitTest tests[] = {
@@ -436,6 +491,7 @@ int main(void) {
         REFUSAL(bad_lattice_is_refused),
         REFUSAL(bad_material_is_refused_and_named),
         REFUSAL(bad_rope_is_refused),
+        cmocka_unit_test(reserved_fields_must_be_zero),
     };
     return cmocka_run_group_tests_name("bad_input", tests, NULL, NULL);
 }

@@ -40,7 +40,8 @@
 /// **Memory.** Functions say whether they allocate; a step never does.
 ///
 /// **ABI.** Handles are opaque, ids are integers, no struct is passed by value. Every public struct starts with
-/// struct_size; its init function fills in defaults. Structs may grow at the end in later versions, and a
+/// struct_size; its init function fills in defaults. Reserved fields of what is given must be 0, so that a later
+/// version may give them a meaning: anything else is MSPRING_ERROR_ARGUMENT. Structs may grow at the end, and a
 /// program built against an older header goes on working. A program built against a newer one is refused: by
 /// MSPRING_ERROR_STRUCT, or, where it calls what is not there, by the loader. Nothing that was released is taken
 /// away: what has something better stays, and its description says what to use instead, until the ABI is broken as

@@ -39,6 +39,13 @@ mspring_result mspringi_check_struct(mspringi_message *message, const char *name
                          name, given, first, current);
 }
 
+mspring_result mspringi_check_reserved(mspringi_message *message, const char *name, uint32_t reserved) {
+    if (reserved == 0)
+        return MSPRING_OK;
+    return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s.reserved is %u, it must be 0", name,
+                         (unsigned)reserved);
+}
+
 const char *mspring_result_string(mspring_result result) {
     switch (result) {
     case MSPRING_OK:

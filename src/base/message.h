@@ -32,4 +32,7 @@ mspring_result mspringi_fail(mspringi_message *message, mspring_result result, c
 mspring_result mspringi_check_struct(mspringi_message *message, const char *name, size_t given, size_t first,
                                      size_t current);
 
+/// Check the reserved field of a public struct: a later version may give it a meaning.
+mspring_result mspringi_check_reserved(mspringi_message *message, const char *name, uint32_t reserved);
+
 #endif

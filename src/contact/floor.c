@@ -65,6 +65,8 @@ static mspring_result check_heights(const mspring_floor_def *def, mspringi_messa
 static mspring_result check_floor(const mspring_floor_def *def, mspringi_message *message) {
     mspring_result result =
         mspringi_check_struct(message, "mspring_floor_def", def->struct_size, sizeof *def, sizeof *def);
+    if (result == MSPRING_OK)
+        result = mspringi_check_reserved(message, "mspring_floor_def", def->reserved);
     if (result != MSPRING_OK)
         return result;
     if (!(def->friction >= 0.0f && def->friction <= 1e6f))

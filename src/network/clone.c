@@ -382,7 +382,7 @@ mspring_result mspring_network_clone(const mspring_network *network, const mspri
     }
     if (def->struct_size != sizeof *def)
         return MSPRING_ERROR_STRUCT;
-    if (def->flags & ~(uint32_t)MSPRING_CLONE_HOOKS)
+    if (def->flags & ~(uint32_t)MSPRING_CLONE_HOOKS || def->reserved != 0)
         return MSPRING_ERROR_ARGUMENT;
     const uint32_t workers = def->tasks ? def->tasks->worker_count : def->worker_count;
     if (def->flags & MSPRING_CLONE_HOOKS && workers > mspringi_tasks_workers(network->tasks) &&

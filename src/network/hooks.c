@@ -14,6 +14,8 @@ static mspring_result check_hook(mspring_network *network, const mspring_hook_de
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the hook's definition is NULL");
     mspring_result result =
         mspringi_check_struct(message, "mspring_hook_def", def->struct_size, sizeof *def, sizeof *def);
+    if (result == MSPRING_OK)
+        result = mspringi_check_reserved(message, "mspring_hook_def", def->reserved);
     if (result != MSPRING_OK)
         return result;
     if (def->phase < MSPRING_PHASE_BEFORE_STEP || def->phase > MSPRING_PHASE_AFTER_SUBSTEP)

@@ -214,6 +214,8 @@ static MSPRINGI_NOINLINE mspring_result settle(mspring_network *network, const m
 static mspring_result check_def(const mspring_settle_def *def, mspringi_message *message) {
     mspring_result result =
         mspringi_check_struct(message, "mspring_settle_def", def->struct_size, sizeof *def, sizeof *def);
+    if (result == MSPRING_OK)
+        result = mspringi_check_reserved(message, "mspring_settle_def", def->reserved);
     if (result != MSPRING_OK)
         return result;
     if (def->flags & ~(uint32_t)MSPRING_SETTLE_LEAVE_FLOATING)

@@ -16,6 +16,8 @@ struct mspringi_tasks {
 static mspring_result check_host(const mspring_tasks *host, mspringi_message *message) {
     mspring_result result =
         mspringi_check_struct(message, "mspring_tasks", host->struct_size, sizeof *host, sizeof *host);
+    if (result == MSPRING_OK)
+        result = mspringi_check_reserved(message, "mspring_tasks", host->reserved);
     if (result != MSPRING_OK)
         return result;
     if (!host->run)
