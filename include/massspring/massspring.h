@@ -95,8 +95,8 @@ MSPRING_API const char *mspring_version_string(void);
 /// What a build of the library has beside what all have.
 enum {
     MSPRING_FEATURE_THREADS = 1u << 0, ///< networks may have several workers; without, they have one
-    MSPRING_FEATURE_HOSTED = 1u << 1,  ///< there is a default allocator, error messages have their numbers, and the
-                                       ///< environment variable MSPRING_SIMD is read
+    MSPRING_FEATURE_HOSTED = 1u << 1,  ///< there is a default allocator, and the environment variable MSPRING_SIMD is
+                                       ///< read
     MSPRING_FEATURE_SHARED = 1u << 2   ///< this is the shared library
 };
 

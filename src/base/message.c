@@ -1,26 +1,5 @@
 #include "message.h"
 
-#if defined(MSPRINGI_FREESTANDING)
-
-// Without stdio a message has its numbers left out: it is the format as it stands.
-void mspringi_format(char *text, size_t size, const char *format, va_list arguments) {
-    (void)arguments;
-    size_t length = 0;
-    for (; format[length] != '\0' && length + 1 < size; ++length)
-        text[length] = format[length];
-    text[length] = '\0';
-}
-
-#else
-
-#include <stdio.h>
-
-void mspringi_format(char *text, size_t size, const char *format, va_list arguments) {
-    vsnprintf(text, size, format, arguments);
-}
-
-#endif
-
 mspring_result mspringi_fail(mspringi_message *message, mspring_result result, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);

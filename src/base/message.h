@@ -5,24 +5,13 @@
 #ifndef MSPRINGI_MESSAGE_H
 #define MSPRINGI_MESSAGE_H
 
-#include <stdarg.h>
-
 #include <massspring/massspring.h>
+
+#include "format.h"
 
 typedef struct mspringi_message {
     char text[256];
 } mspringi_message;
-
-#if defined(__MINGW32__) && !defined(__clang__)
-#define MSPRINGI_PRINTF(format_index, first_index) __attribute__((format(gnu_printf, format_index, first_index)))
-#elif defined(__GNUC__)
-#define MSPRINGI_PRINTF(format_index, first_index) __attribute__((format(printf, format_index, first_index)))
-#else
-#define MSPRINGI_PRINTF(format_index, first_index)
-#endif
-
-/// Write text, cut to fit size bytes. Builds without stdio write the format itself.
-void mspringi_format(char *text, size_t size, const char *format, va_list arguments) MSPRINGI_PRINTF(3, 0);
 
 /// Write the message, cut to fit, and return result.
 mspring_result mspringi_fail(mspringi_message *message, mspring_result result, const char *format, ...)

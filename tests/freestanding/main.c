@@ -1,5 +1,6 @@
 /// @file main.c
-/// A host that gives the library nothing but memory, out of one array, and prints the hash of what it stepped.
+/// A host that gives the library nothing but memory, out of one array, and prints the hash of what it stepped and
+/// what it is told of its mistakes.
 ///
 /// SPDX-License-Identifier: MIT
 #include <inttypes.h>
@@ -62,8 +63,15 @@ int main(void) {
     uint64_t hash = 0;
     if (mspring_network_state_hash(network, &hash))
         return 7;
+    printf("%016" PRIx64 "\n", hash);
+    // Messages have their numbers without stdio, too.
+    if (mspring_network_step(network, -0.015625) != MSPRING_ERROR_ARGUMENT)
+        return 8;
+    printf("%s\n", mspring_network_error(network));
+    if (mspring_network_break_springs(network, &(mspring_id){4000000000u}, 1) != MSPRING_ERROR_ID)
+        return 9;
+    printf("%s\n", mspring_network_error(network));
     mspring_network_destroy(network);
     mspring_builder_destroy(builder);
-    printf("%016" PRIx64 "\n", hash);
     return 0;
 }
