@@ -42,6 +42,9 @@ int main(int count, char **arguments) {
     case BENCH_MAP:
         ok = bench_run_map(&options);
         break;
+    case BENCH_MAP_CASE:
+        ok = bench_run_map_case(&options);
+        break;
     case BENCH_ALARMS:
         ok = bench_run_alarms(&options);
         break;

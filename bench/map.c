@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "map_cases.h"
 #include "modes.h"
 
 /// Cases that must not be, each of which is told.
@@ -136,7 +137,8 @@ static bool draw(const map *all, const char *folder) {
     return drawn;
 }
 
-bool bench_run_map(const bench_options *options) {
+/// Networks at the extremes: what becomes of them, and their borders.
+static bool map_extremes(const bench_options *options) {
     map *all = calloc(1, sizeof *all);
     if (all == NULL) {
         fprintf(stderr, "massspring-bench: no memory for the map\n");
@@ -151,4 +153,11 @@ bool bench_run_map(const bench_options *options) {
         ok = draw(all, options->out) && ok;
     free(all);
     return ok;
+}
+
+bool bench_run_map(const bench_options *options) {
+    // The extremes are not divided: the first of several runs has them.
+    const bool extremes = options->family == NULL && options->shard == 1;
+    const bool ok = !extremes || map_extremes(options);
+    return map_run_families(options) && ok;
 }

@@ -50,7 +50,12 @@ void bench_options_help(void) {
          "Output (default: a table for people)\n"
          "  --csv                CSV\n"
          "  --markdown           a Markdown table\n"
-         "  --out FOLDER         of --map: draw its pictures into this folder");
+         "  --out FOLDER         of --map: draw its pictures into this folder\n"
+         "\n"
+         "The map\n"
+         "  --family NAME        of --map: only the cases of this family\n"
+         "  --shard I/N          of --map: every N-th part of the cases, the I-th of them, to run N at once\n"
+         "  --map-case CASE      run one case, as a fault names it (family:number), and print its energies");
 }
 
 static bool read_count(const char *option, const char *text, uint32_t most, uint32_t *out, scene_error *error) {
@@ -75,6 +80,17 @@ static bool read_fraction(const char *option, const char *text, float *out, scen
     }
     *out = value;
     return true;
+}
+
+/// I/N, I from 1 to N.
+static bool read_shard(const char *text, bench_options *out, scene_error *error) {
+    char extra = 0;
+    if (sscanf(text, "%u/%u%c", &out->shard, &out->shards, &extra) == 2 && out->shard >= 1 &&
+        out->shard <= out->shards) {
+        return true;
+    }
+    snprintf(error->text, sizeof error->text, "--shard takes I/N with I from 1 to N, not '%.80s'", text);
+    return false;
 }
 
 static bool read_level(const char *text, bench_options *out, scene_error *error) {
@@ -163,6 +179,18 @@ static bool read_value(const char *option, const char *value, bench_options *out
         out->out = value;
         return true;
     }
+    if (strcmp(option, "--family") == 0) {
+        out->family = value;
+        return true;
+    }
+    if (strcmp(option, "--map-case") == 0) {
+        out->mode = BENCH_MAP_CASE;
+        out->map_case = value;
+        return true;
+    }
+    if (strcmp(option, "--shard") == 0) {
+        return read_shard(value, out, error);
+    }
     if (strcmp(option, "--stiffness") == 0) {
         return read_fraction(option, value, &out->settings.stiffness, error);
     }
@@ -193,9 +221,9 @@ static bool read_value(const char *option, const char *value, bench_options *out
 }
 
 static bool known_with_value(const char *option) {
-    static const char *const names[] = {"--scene",     "--image",   "--materials", "--network",
-                                        "--stiffness", "--damping", "--substeps",  "--repeat",
-                                        "--level",     "--solver",  "--threads",   "--out"};
+    static const char *const names[] = {"--scene",   "--image",    "--materials", "--network",  "--stiffness",
+                                        "--damping", "--substeps", "--repeat",    "--level",    "--solver",
+                                        "--threads", "--out",      "--family",    "--map-case", "--shard"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         if (strcmp(option, names[i]) == 0) {
             return true;
@@ -205,8 +233,11 @@ static bool known_with_value(const char *option) {
 }
 
 bool bench_options_read(int count, char **arguments, bench_options *out, scene_error *error) {
-    bench_options options = {
-        .level = MSPRING_SIMD_AUTO, .workers = 1, .settings = {.stiffness = -1.0f, .damping = -1.0f}};
+    bench_options options = {.level = MSPRING_SIMD_AUTO,
+                             .workers = 1,
+                             .shard = 1,
+                             .shards = 1,
+                             .settings = {.stiffness = -1.0f, .damping = -1.0f}};
     for (int i = 1; i < count; i++) {
         const char *option = arguments[i];
         if (is_switch(option, &options)) {

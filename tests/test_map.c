@@ -4,12 +4,15 @@
 /// refused with a cause; nothing that is not finite comes out; and the explicit border is where it is said to be.
 /// The bench's --map runs every case of it.
 ///
-///   test_map [EVERY]     runs every EVERYth case; default 29
+/// And of the map's cases (bench/map), what holds: energy, momenta, contact and precision.
+///
+///   test_map [EVERY]     runs every EVERYth network at the extremes; default 29
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
 #include <stdlib.h>
 
+#include "map/run.h"
 #include "scenes/extremes.h"
 #include "support.h"
 
@@ -59,6 +62,35 @@ static void borders_are_where_they_are_said_to_be(void **state) {
     print_message("measured over predicted border: %.4f to %.4f\n", least, most);
 }
 
+/// Run every so many-th case of a family, of one solver or, with -1, of all.
+static uint32_t count_faults(map_family family, uint32_t stride, int solver) {
+    uint32_t faults = 0, count = 0;
+    for (uint32_t index = 0; index < map_family_size(family); index += stride) {
+        map_case drawn;
+        char text[MAP_TEXT];
+        map_draw_case(&drawn, family, index);
+        if (solver >= 0 && drawn.solver.solver != solver)
+            continue;
+        const map_verdict verdict = map_run_case(&drawn, text);
+        count++;
+        if (verdict >= MAP_NOT_FINITE) {
+            faults++;
+            print_error("massspring-bench --map-case %s:%u  %s: %s\n", map_family_name(family), index,
+                        map_verdict_name(verdict), text);
+        }
+    }
+    print_message("%s: %u cases\n", map_family_name(family), count);
+    assert_true(count > 0);
+    return faults;
+}
+
+static void explicit_motion_is_kept(void **state) {
+    (void)state;
+    assert_int_equal(count_faults(MAP_BLAST, 135, MSPRING_SOLVER_EXPLICIT), 0);
+    assert_int_equal(count_faults(MAP_HIT, 135, MSPRING_SOLVER_EXPLICIT), 0);
+    assert_int_equal(count_faults(MAP_WRECK, 135, MSPRING_SOLVER_EXPLICIT), 0);
+}
+
 int main(int argc, char **argv) {
     if (argc > 1) {
         every = (uint32_t)strtoul(argv[1], NULL, 10);
@@ -67,6 +99,7 @@ int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_case_is_stable_or_refused),
         cmocka_unit_test(borders_are_where_they_are_said_to_be),
+        cmocka_unit_test(explicit_motion_is_kept),
     };
     return cmocka_run_group_tests_name("map", tests, NULL, NULL);
 }

@@ -1,0 +1,103 @@
+/// @file bounce.c
+/// Judging the bounces of loose particles. Energy that appears is seen by the judge of energy; here it is seen that
+/// none is lost where restitution is 1, and as much as it says where it is less.
+///
+/// SPDX-License-Identifier: MIT
+#include "map/bounce.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/// Tolerated change of how high a particle bounces.
+static const double kept = 0.01;
+
+/// Energy of one particle: of its motion across a level floor alone where there is friction, J / kg.
+static double energy_of(const map_watch *watch, uint32_t i, bool across_only) {
+    const double gravity = (double)watch->what->network.gravity_y;
+    double vx = (double)watch->vx[i], vy = (double)watch->vy[i];
+    // An explicit substep leaves the velocity of half a substep ago.
+    if (watch->what->solver.solver == MSPRING_SOLVER_EXPLICIT)
+        vy += 0.5 * watch->substep * gravity;
+    return 0.5 * ((across_only ? 0 : vx * vx) + vy * vy) - gravity * watch->y[i];
+}
+
+static bool is_level(const map_case *what) {
+    return what->floor.plane_count == 1 && what->planes[0][2] == 0;
+}
+
+static bool is_judged(const map_case *what) {
+    return what->shape == MAP_LOOSE && what->has_floor;
+}
+
+/// Whether energy is kept: all of it or, with friction on a level floor, that of the motion across it.
+static bool is_perfect(const map_case *what) {
+    return what->floor.restitution == 1.0f && (what->floor.friction == 0 || is_level(what));
+}
+
+void map_bounce_begin(map_judge *judge) {
+    const map_case *what = judge->watch->what;
+    for (uint32_t i = 0; is_judged(what) && i < judge->watch->count; i++) {
+        const double height = map_height_over_floor(what, judge->watch->x[i], judge->watch->y[i]);
+        judge->particle_start[i] = energy_of(judge->watch, i, !is_perfect(what) || what->floor.friction > 0);
+        judge->particle_fallen[i] =
+            energy_of(judge->watch, i, false) + (double)what->network.gravity_y * (judge->watch->y[i] - height);
+    }
+}
+
+/// Height of the parabola's top over the floor at a time, of one that falls onto a level floor, m.
+static double top_at(const map_judge *judge, uint32_t i, double time) {
+    const map_case *what = judge->watch->what;
+    const double gravity = -(double)what->network.gravity_y, e = (double)what->floor.restitution;
+    double speed = sqrt(2 * judge->particle_start[i]); // of the first impact
+    time -= ((double)what->body.particles[i].vy + speed) / gravity;
+    while (time > 0 && speed > 0) {
+        speed *= e;
+        time -= 2 * speed / gravity;
+        if (speed < 1e-3)
+            speed = 0;
+    }
+    return speed * speed / (2 * gravity);
+}
+
+// Where friction and restitution are less than perfect only level floors have a closed form: in each bounce the
+// speed across is that before times the restitution.
+static map_verdict judge_level(map_judge *judge, uint32_t i) {
+    const map_watch *watch = judge->watch;
+    // Times of bounces may be off by a hundredth, and speeds below about 0.02 m/s end them.
+    const double within = 0.01 * watch->time + watch->substep, gravity = -(double)watch->what->network.gravity_y;
+    const double most = top_at(judge, i, watch->time - within), least = top_at(judge, i, watch->time + within);
+    const double top = energy_of(watch, i, true) / gravity;
+    if (top <= (1 + kept) * most + 1e-3 && top >= (1 - kept) * least - 1e-3)
+        return MAP_HOLDS;
+    snprintf(judge->text, sizeof judge->text,
+             "particle %u rises to %.4g m after %.4g s, between %.4g and %.4g m it should", i, top, watch->time,
+             least, most);
+    return MAP_BOUNCED;
+}
+
+map_verdict map_bounce_judge(map_judge *judge) {
+    const map_watch *watch = judge->watch;
+    const map_case *what = watch->what;
+    if (!is_judged(what))
+        return MAP_HOLDS;
+    const bool perfect = is_perfect(what);
+    for (uint32_t i = 0; i < watch->count; i++) {
+        if (!perfect && is_level(what)) {
+            const map_verdict verdict = judge_level(judge, i);
+            if (verdict != MAP_HOLDS)
+                return verdict;
+        }
+        if (!perfect)
+            continue;
+        const double start = judge->particle_start[i], now = energy_of(watch, i, what->floor.friction > 0);
+        // What it has over the lowest place where it was.
+        judge->particle_fallen[i] =
+            fmax(judge->particle_fallen[i], start + (double)what->network.gravity_y * watch->y[i]);
+        if (fabs(now - start) > kept * judge->particle_fallen[i]) {
+            snprintf(judge->text, sizeof judge->text, "particle %u has %.4g J/kg after %.4g s, at the start %.4g",
+                     i, now, watch->time, start);
+            return MAP_BOUNCED;
+        }
+    }
+    return MAP_HOLDS;
+}

@@ -1,0 +1,61 @@
+/// @file case.h
+/// The cases of the map: families of them, numbered. A case is drawn from its number alone.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MAP_CASE_H
+#define MAP_CASE_H
+
+#include "map/body.h"
+
+typedef enum map_family {
+    MAP_BLAST,    ///< velocities at random
+    MAP_HIT,      ///< one particle is hit
+    MAP_SPIN,     ///< a body turns
+    MAP_DROP,     ///< a body falls onto a floor
+    MAP_BOUNCE,   ///< loose particles bounce
+    MAP_HANG,     ///< pins, that may move, gravity, held forces
+    MAP_WRECK,    ///< springs are broken on the way, parts fall asleep
+    MAP_FAR,      ///< far from the world's origin, and from the local one
+    MAP_SUBSTEPS, ///< the same motion with ever more substeps
+    MAP_FAMILIES
+} map_family;
+
+const char *map_family_name(map_family family);
+
+/// How many cases there are of a family.
+uint32_t map_family_size(map_family family);
+
+enum { MAP_HEIGHTS = 40, MAP_PLANES = 4, MAP_STEPS = 48 };
+
+/// A case: everything that is to be known to run it again.
+typedef struct map_case {
+    map_family family;
+    uint32_t index;
+    map_shape shape;
+    map_body body;
+    mspring_network_def network; ///< its solver is that of solver
+    mspring_solver_def solver;
+    double share;   ///< explicit: length of a substep over what is stable in any shape; 0: dt is as it stands
+    double dt;      ///< s; explicit with a share: the most
+    uint32_t steps; ///< at most
+    bool has_floor;
+    mspring_floor_def floor; ///< its pointers are set by map_case_floor()
+    double planes[MAP_PLANES][4];
+    float heights[MAP_HEIGHTS];
+    bool has_forces, by_hook; ///< constant forces, given before each step or by a hook
+    float force_x[MAP_PARTICLES], force_y[MAP_PARTICLES];
+    double drift_x, drift_y; ///< m/s: velocity of all pinned particles
+    uint32_t break_at;       ///< step before which springs are broken; 0: none
+    uint32_t break_every;    ///< which of them: every so many-th
+} map_case;
+
+/// Draw a case.
+void map_draw_case(map_case *drawn, map_family family, uint32_t index);
+
+/// The case's floor, with pointers into the case.
+mspring_floor_def map_case_floor(const map_case *what);
+
+/// Describe a case in a line, without newline.
+void map_describe_case(const map_case *what, char *text, size_t size);
+
+#endif

@@ -1,0 +1,366 @@
+/// @file families.c
+/// How the cases of each family are drawn.
+///
+/// SPDX-License-Identifier: MIT
+#include "map/case.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "scenes/internal.h"
+
+/// What tells families apart.
+typedef struct family {
+    const char *name;
+    uint32_t size;
+    void (*draw)(map_case *drawn, uint64_t *seed);
+} family;
+
+static double sign(uint64_t *seed) {
+    return random_below(seed, 2) == 0 ? 1 : -1;
+}
+
+/// Whether something happens that happens once in so many cases.
+static bool one_in(uint64_t *seed, uint32_t count) {
+    return random_below(seed, count) == 0;
+}
+
+/* ------------------------------------------------------------------------------------------------------- parts */
+
+static const double lengths[] = {1.0 / 240, 1.0 / 120, 1.0 / 64, 1.0 / 30, 0.1, 0.23, 0.25};
+enum { LENGTHS = sizeof lengths / sizeof *lengths };
+
+/// Solvers in turn, by the case's number, so that each family has as many of each.
+static void draw_solver(map_case *drawn, uint64_t *seed) {
+    static const double shares[] = {0.05, 0.1, 0.3, 0.5, 0.7, 0.86, 0.95};
+    static const uint32_t substeps[] = {1, 1, 2, 4, 8, 16, 64, 256, 1024}, few[] = {1, 1, 1, 1, 2, 4, 16};
+    mspring_solver_def *solver = &drawn->solver;
+    const uint32_t turn = drawn->index % 8;
+    mspring_solver_def_init(solver, sizeof *solver);
+    drawn->dt = lengths[random_below(seed, LENGTHS)];
+    drawn->steps = 20 + random_below(seed, 181);
+    if (turn < 2) {
+        drawn->share = shares[random_below(seed, sizeof shares / sizeof *shares)];
+        solver->substeps = substeps[random_below(seed, sizeof substeps / sizeof *substeps)];
+        return;
+    }
+    solver->solver = turn < 5 ? MSPRING_SOLVER_IMPLICIT : MSPRING_SOLVER_DIRECT;
+    solver->integrator = (turn - 2) % 3;
+    solver->substeps = few[random_below(seed, sizeof few / sizeof *few)];
+    if (one_in(seed, 8))
+        solver->iterations = 2 + random_below(seed, 20);
+}
+
+static map_stuff draw_stuff(uint64_t *seed) {
+    static const double spreads[] = {1, 1, 1, 10}, dampers[] = {0, 0, 0, 0.01, 0.1, 1},
+                        ratios[] = {1, 1, 1, 10, 1000}, spacings[] = {1, 1, 1, 0.1, 10};
+    map_stuff stuff;
+    stuff.stiffness = map_decades(seed, 1e3, 1e12);
+    stuff.spread = spreads[random_below(seed, 4)];
+    stuff.damping_ratio = dampers[random_below(seed, 6)];
+    stuff.mass_ratio = ratios[random_below(seed, 5)];
+    stuff.spacing = spacings[random_below(seed, 5)];
+    return stuff;
+}
+
+/// A body, its solver, no gravity, nothing pinned.
+static map_stuff begin(map_case *drawn, uint64_t *seed) {
+    mspring_network_def_init(&drawn->network, sizeof drawn->network);
+    drawn->network.gravity_y = 0;
+    draw_solver(drawn, seed);
+    drawn->shape = (map_shape)random_below(seed, MAP_SHAPES);
+    const map_stuff stuff = draw_stuff(seed);
+    map_draw_body(&drawn->body, drawn->shape, &stuff, seed);
+    return stuff;
+}
+
+static void draw_velocities(map_case *drawn, double speed, uint64_t *seed) {
+    for (uint32_t i = 0; i < drawn->body.particle_count; i++) {
+        mspring_particle_def *def = &drawn->body.particles[i];
+        def->vx = (float)map_between(seed, -speed, speed);
+        def->vy = (float)map_between(seed, -speed, speed);
+    }
+}
+
+/// Pin some particles. They move with the drift.
+static void draw_pins(map_case *drawn, uint32_t most, uint64_t *seed) {
+    for (uint32_t count = 1 + random_below(seed, most); count > 0; count--) {
+        mspring_particle_def *def = &drawn->body.particles[random_below(seed, drawn->body.particle_count)];
+        def->flags = MSPRING_PARTICLE_PINNED;
+        def->vx = (float)drawn->drift_x;
+        def->vy = (float)drawn->drift_y;
+    }
+}
+
+static void draw_gravity(map_case *drawn, uint64_t *seed) {
+    drawn->network.gravity_y = one_in(seed, 8) ? -50.0f : -9.8f;
+    if (one_in(seed, 8))
+        drawn->network.gravity_x = (float)map_between(seed, -5, 5);
+}
+
+static void draw_global_damping(map_case *drawn, uint64_t *seed) {
+    if (one_in(seed, 8))
+        drawn->network.global_damping = (float)map_decades(seed, 0.1, 10);
+}
+
+/* ------------------------------------------------------------------------------------------------------ floors */
+
+static void add_plane(map_case *drawn, double x, double y, double across_x, double across_y) {
+    double *plane = drawn->planes[drawn->floor.plane_count++];
+    plane[0] = x;
+    plane[1] = y;
+    plane[2] = across_x;
+    plane[3] = across_y;
+}
+
+/// A plane (often a slope), a box that is open above, or heights below 0.
+static void draw_floor(map_case *drawn, uint64_t *seed) {
+    static const float restitutions[] = {0, 0, 0.3f, 0.6f, 0.94f, 1, 1}, frictions[] = {0, 0, 0.3f, 0.8f, 5};
+    mspring_floor_def_init(&drawn->floor, sizeof drawn->floor);
+    drawn->has_floor = true;
+    drawn->floor.restitution = restitutions[random_below(seed, 7)];
+    drawn->floor.friction = frictions[random_below(seed, 5)];
+    const uint32_t kind = random_below(seed, 4);
+    if (kind < 2)
+        add_plane(drawn, 0, 0, kind == 0 ? 0 : map_between(seed, -1, 1), 1);
+    if (kind == 2) {
+        double left, bottom, right, top;
+        map_body_box(&drawn->body, &left, &bottom, &right, &top);
+        const double half = (right - left) / 2 + map_between(seed, 0.5, 8);
+        add_plane(drawn, 0, 0, 0, 1);
+        add_plane(drawn, -half, 0, 1, 0);
+        add_plane(drawn, half, 0, -1, 0);
+    }
+    if (kind == 3) {
+        const double rough = map_between(seed, 0, 4);
+        for (uint32_t i = 0; i < MAP_HEIGHTS; i++)
+            drawn->heights[i] = (float)(-rough * random_unit(seed));
+        drawn->floor.height_count = MAP_HEIGHTS;
+        drawn->floor.spacing = map_between(seed, 0.2, 2.2);
+        drawn->floor.heights_x = -drawn->floor.spacing * MAP_HEIGHTS / 2;
+    }
+}
+
+/// Above the floor: how far a plane rises below the body is added.
+static void lift_body(map_case *drawn, double height) {
+    double left, bottom, right, top, rise = 0;
+    map_body_box(&drawn->body, &left, &bottom, &right, &top);
+    if (drawn->floor.plane_count > 0)
+        rise = fabs(drawn->planes[0][2]) * (right - left);
+    map_move_body(&drawn->body, -(left + right) / 2, height + rise - bottom);
+}
+
+/* ---------------------------------------------------------------------------------------------------- families */
+
+static void draw_blast(map_case *drawn, uint64_t *seed) {
+    begin(drawn, seed);
+    if (one_in(seed, 4))
+        draw_gravity(drawn, seed);
+    draw_velocities(drawn, map_decades(seed, 0.01, 100), seed);
+    if (one_in(seed, 4))
+        draw_pins(drawn, 2, seed);
+    draw_global_damping(drawn, seed);
+}
+
+static void draw_hit(map_case *drawn, uint64_t *seed) {
+    begin(drawn, seed);
+    if (one_in(seed, 6))
+        draw_gravity(drawn, seed);
+    mspring_particle_def *def = &drawn->body.particles[random_below(seed, drawn->body.particle_count)];
+    const double speed = map_decades(seed, 0.3, 300), angle = map_between(seed, 0, 6.3);
+    def->vx = (float)(speed * cos(angle));
+    def->vy = (float)(speed * sin(angle));
+}
+
+static void draw_spin(map_case *drawn, uint64_t *seed) {
+    const map_stuff stuff = begin(drawn, seed);
+    double left, bottom, right, top;
+    map_body_box(&drawn->body, &left, &bottom, &right, &top);
+    const double turn = sign(seed) * map_decades(seed, 0.1, 20), x = (left + right) / 2, y = (bottom + top) / 2;
+    const double speed = stuff.spacing * (one_in(seed, 3) ? map_between(seed, 0, 5) : 0);
+    for (uint32_t i = 0; i < drawn->body.particle_count; i++) {
+        mspring_particle_def *def = &drawn->body.particles[i];
+        def->vx = (float)(-turn * (def->y - y) + speed);
+        def->vy = (float)(turn * (def->x - x) - speed);
+    }
+    if (one_in(seed, 4))
+        draw_gravity(drawn, seed);
+}
+
+static void draw_drop(map_case *drawn, uint64_t *seed) {
+    begin(drawn, seed);
+    draw_gravity(drawn, seed);
+    draw_floor(drawn, seed);
+    lift_body(drawn, one_in(seed, 3) ? 0.001 : map_decades(seed, 0.01, 40));
+    if (one_in(seed, 3))
+        draw_velocities(drawn, map_decades(seed, 0.1, 20), seed);
+    if (one_in(seed, 10))
+        draw_pins(drawn, 1, seed);
+    draw_global_damping(drawn, seed);
+}
+
+static void draw_bounce(map_case *drawn, uint64_t *seed) {
+    begin(drawn, seed);
+    const map_stuff stuff = {1, 1, 0, 100, 1};
+    drawn->shape = MAP_LOOSE;
+    drawn->share = 0;
+    map_draw_body(&drawn->body, MAP_LOOSE, &stuff, seed);
+    drawn->network.gravity_y = -9.8f;
+    draw_floor(drawn, seed);
+    if (one_in(seed, 2))
+        drawn->floor.restitution = 1;
+    if (one_in(seed, 2))
+        drawn->floor.friction = 0;
+    const double height = map_decades(seed, 0.05, 20);
+    lift_body(drawn, height);
+    if (one_in(seed, 2))
+        draw_velocities(drawn, map_between(seed, 0, 5), seed);
+    if (drawn->solver.substeps > 16)
+        drawn->solver.substeps = 16;
+    // A hundred bounces of the lowest.
+    const double period = 2 * sqrt(2 * height / 9.8);
+    drawn->steps = (uint32_t)fmin(20000, fmax(100, 110 * period / drawn->dt));
+}
+
+static void draw_hang(map_case *drawn, uint64_t *seed) {
+    begin(drawn, seed);
+    draw_gravity(drawn, seed);
+    if (one_in(seed, 2)) {
+        drawn->drift_x = map_between(seed, -5, 5);
+        drawn->drift_y = map_between(seed, -2, 2);
+    } else {
+        draw_global_damping(drawn, seed);
+    }
+    if (one_in(seed, 2))
+        draw_velocities(drawn, map_decades(seed, 0.01, 20), seed);
+    draw_pins(drawn, 3, seed);
+    drawn->has_forces = one_in(seed, 2);
+    drawn->by_hook = drawn->has_forces && one_in(seed, 2);
+    for (uint32_t i = 0; drawn->has_forces && i < drawn->body.particle_count; i++) {
+        const double most = one_in(seed, 3) ? 50 * (double)drawn->body.particles[i].mass : 0;
+        drawn->force_x[i] = (float)map_between(seed, -most, most);
+        drawn->force_y[i] = (float)map_between(seed, -most, most);
+    }
+}
+
+static void draw_wreck(map_case *drawn, uint64_t *seed) {
+    begin(drawn, seed);
+    if (one_in(seed, 2))
+        draw_gravity(drawn, seed);
+    if (one_in(seed, 3)) {
+        draw_floor(drawn, seed);
+        lift_body(drawn, map_decades(seed, 0.01, 10));
+    }
+    draw_velocities(drawn, map_decades(seed, 0.01, 50), seed);
+    if (one_in(seed, 4))
+        draw_pins(drawn, 1, seed);
+    drawn->break_at = 2 + random_below(seed, 10);
+    drawn->break_every = 1 + random_below(seed, 6);
+    if (one_in(seed, 3)) {
+        drawn->network.sleep_speed = (float)map_decades(seed, 0.001, 1);
+        drawn->network.sleep_time = 0.1f;
+    }
+}
+
+/// Something far away, so that the local origin is not near the body.
+static void add_distant_pin(map_case *drawn, double distance) {
+    mspring_particle_def *def = &drawn->body.particles[drawn->body.particle_count++];
+    mspring_particle_def_init(def, sizeof *def);
+    def->flags = MSPRING_PARTICLE_PINNED;
+    def->x = drawn->body.particles[0].x + distance;
+    def->y = drawn->body.particles[0].y;
+}
+
+static void draw_far(map_case *drawn, uint64_t *seed) {
+    begin(drawn, seed);
+    if (one_in(seed, 2))
+        draw_gravity(drawn, seed);
+    draw_velocities(drawn, map_decades(seed, 0.1, 30), seed);
+    if (one_in(seed, 3))
+        draw_pins(drawn, 1, seed);
+    const double x = sign(seed) * map_decades(seed, 10, 1e7);
+    map_move_body(&drawn->body, x, sign(seed) * map_decades(seed, 1, 1e5));
+    if (one_in(seed, 2))
+        add_distant_pin(drawn, map_decades(seed, 20, 2e4));
+}
+
+// Little motion, so that it does not depend on its last digits.
+static void draw_substeps(map_case *drawn, uint64_t *seed) {
+    drawn->index *= 8; // explicit
+    const map_stuff stuff = begin(drawn, seed);
+    drawn->index /= 8;
+    drawn->share = 0.4;
+    drawn->solver.substeps = 1;
+    drawn->steps = MAP_STEPS;
+    if (one_in(seed, 2))
+        draw_pins(drawn, 2, seed);
+    if (one_in(seed, 3))
+        drawn->network.gravity_y = -9.8f;
+    double lightest = INFINITY;
+    for (uint32_t i = 0; i < drawn->body.particle_count; i++)
+        lightest = fmin(lightest, (double)drawn->body.particles[i].mass);
+    // As fast as stretches a spring by a thousandth to a fiftieth.
+    const double speed = stuff.spacing * sqrt(stuff.stiffness / lightest) * map_decades(seed, 1e-3, 0.02);
+    draw_velocities(drawn, speed, seed);
+    for (uint32_t i = 0; i < drawn->body.particle_count; i++)
+        if (drawn->body.particles[i].flags != 0)
+            drawn->body.particles[i].vx = drawn->body.particles[i].vy = 0;
+    if (one_in(seed, 2))
+        map_move_body(&drawn->body, map_decades(seed, 1, 1e6), 0);
+    if (one_in(seed, 2))
+        add_distant_pin(drawn, map_decades(seed, 20, 2e3));
+}
+
+static const family families[MAP_FAMILIES] = {
+    {"blast", 60000, draw_blast}, {"hit", 45000, draw_hit},       {"spin", 20000, draw_spin},
+    {"drop", 60000, draw_drop},   {"bounce", 16000, draw_bounce}, {"hang", 30000, draw_hang},
+    {"wreck", 20000, draw_wreck}, {"far", 16000, draw_far},       {"substeps", 3000, draw_substeps},
+};
+
+const char *map_family_name(map_family of) {
+    return families[of].name;
+}
+
+uint32_t map_family_size(map_family of) {
+    return families[of].size;
+}
+
+void map_draw_case(map_case *drawn, map_family of, uint32_t index) {
+    static const map_case none = {0};
+    uint64_t seed = ((uint64_t)of + 1) << 32 | index;
+    *drawn = none;
+    drawn->family = of;
+    drawn->index = index;
+    for (int i = 0; i < 3; i++)
+        random_next(&seed);
+    families[of].draw(drawn, &seed);
+}
+
+mspring_floor_def map_case_floor(const map_case *what) {
+    mspring_floor_def floor = what->floor;
+    floor.planes = &what->planes[0][0];
+    floor.heights = what->heights;
+    return floor;
+}
+
+void map_describe_case(const map_case *what, char *text, size_t size) {
+    static const char *const integrators[] = {"ga0", "bdf2", "euler"}, *const solvers[] = {"explicit", "implicit",
+                                                                                           "direct"};
+    const mspring_solver solver = what->solver.solver;
+    snprintf(
+        text, size,
+        "%s%s%s, %u x %.4g s of %u substeps%s, %s of %u particles, %.3g N/m, gravity %g, damping %g, floor %s, "
+        "restitution %g, friction %g",
+        solvers[solver], solver == MSPRING_SOLVER_EXPLICIT ? "" : " ",
+        solver == MSPRING_SOLVER_EXPLICIT ? "" : integrators[what->solver.integrator], what->steps, what->dt,
+        what->solver.substeps, what->share > 0 ? " (explicit: a share of what is stable)" : "",
+        map_shape_name(what->shape), what->body.particle_count,
+        what->body.spring_count > 0 ? (double)what->body.springs[0].stiffness : 0, (double)what->network.gravity_y,
+        (double)what->network.global_damping,
+        !what->has_floor               ? "none"
+        : what->floor.height_count > 0 ? "heights"
+        : what->floor.plane_count > 1  ? "box"
+        : what->planes[0][2] == 0      ? "level"
+                                       : "slope",
+        (double)what->floor.restitution, (double)what->floor.friction);
+}

@@ -1,0 +1,149 @@
+/// @file judge.c
+/// Judging a network after each step.
+///
+/// SPDX-License-Identifier: MIT
+#include "map/judge.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "map/bounce.h"
+
+const char *map_verdict_name(map_verdict verdict) {
+    static const char *const names[MAP_VERDICTS] = {"holds",    "guarded", "violent",  "not finite",
+                                                    "rejected", "energy",  "momentum", "angular",
+                                                    "floor",    "bounce",  "substeps"};
+    return names[verdict];
+}
+
+/* -------------------------------------------------------------------------------------------------- the start */
+
+static void start_flight(map_judge *judge, uint32_t number) {
+    const map_component *of = &judge->watch->components[number];
+    judge->flights[number] =
+        (map_flight){judge->watch->time, of->px, of->py, of->spin, of->momentum_scale, of->spin_scale};
+}
+
+void map_judge_begin(map_judge *judge, const map_watch *watch) {
+    static const map_judge none = {0};
+    *judge = none;
+    judge->watch = watch;
+    judge->start = map_watch_energy(watch);
+    judge->motion = watch->kinetic + watch->elastic;
+    judge->potential = watch->potential;
+    for (uint32_t i = 0; i < watch->component_count; i++) {
+        start_flight(judge, i);
+        judge->momentum_scale += watch->components[i].momentum_scale;
+    }
+    map_bounce_begin(judge);
+}
+
+void map_judge_broken(map_judge *judge, double elastic_before) {
+    // What explicit substeps keep is another sum from now on.
+    if (judge->watch->what->solver.solver == MSPRING_SOLVER_EXPLICIT)
+        judge->start = map_watch_energy(judge->watch);
+    else
+        judge->start -= elastic_before - judge->watch->elastic;
+    for (uint32_t i = 0; i < judge->watch->component_count; i++)
+        start_flight(judge, i);
+}
+
+/* ------------------------------------------------------------------------------------------------------ energy */
+
+// Kinetic, elastic and potential energy never rise above what they were at the start: where gravity, held forces
+// and pinned particles that all move alike do work, it is in the potential or in the choice of the frame. The parts
+// that may be gained: see the table of tolerances in STABILITY.md.
+static map_verdict judge_energy(map_judge *judge, uint32_t substeps) {
+    const map_watch *watch = judge->watch;
+    judge->fallen = fmax(judge->fallen, judge->potential - watch->potential);
+    judge->rounding += substeps * 1e-3 * watch->rounding;
+    judge->rounding_squares += substeps * watch->rounding_squares;
+    const double gain = map_watch_energy(watch) - judge->start;
+    const double could = judge->motion + judge->fallen;
+    judge->could = could;
+    judge->quickest = fmax(judge->quickest, watch->speed * watch->substep / watch->shortest);
+    const double rounding = 3e-6 * watch->weight + watch->rounding + 6 * sqrt(judge->rounding_squares);
+    judge->growth = fmax(judge->growth, (gain - rounding) / fmax(could, rounding));
+    const double part = watch->what->solver.solver == MSPRING_SOLVER_EXPLICIT ? 1e-2 : 1e-4;
+    if (gain - rounding <= part * could)
+        return MAP_HOLDS;
+    snprintf(judge->text, sizeof judge->text,
+             "%.4g J more than at the start, where %.4g J could move and %.2g J are rounding", gain, could,
+             rounding);
+    return MAP_GAINED;
+}
+
+/* ---------------------------------------------------------------------------------------------------- momentum */
+
+/// Tolerated change of momentum and angular momentum: a thousandth of the sums of their parts.
+static const double kept = 1e-3;
+
+static map_verdict judge_flight(map_judge *judge, uint32_t number) {
+    const map_watch *watch = judge->watch;
+    const map_component *of = &watch->components[number];
+    const map_flight *from = &judge->flights[number];
+    const double time = watch->time - from->time, random = sqrt((double)judge->substeps) * 0x1p-24;
+    const double push_x = (of->gravity_x + of->force_x) * time, push_y = (of->gravity_y + of->force_y) * time;
+    const double off = hypot(of->px - from->px - push_x, of->py - from->py - push_y);
+    const double scale = fmax(from->momentum_scale, of->momentum_scale) + hypot(push_x, push_y);
+    // A millionth of what all components have: implicit solvers find the velocities of all together.
+    if (off > kept * scale + random * scale + 1e-6 * judge->momentum_scale) {
+        snprintf(judge->text, sizeof judge->text, "momentum is off by %.4g kg m/s of %.4g", off, scale);
+        return MAP_MOMENTUM;
+    }
+    if (watch->what->has_forces)
+        return MAP_HOLDS;
+    const double turned = fabs(of->spin - from->spin), spin_scale = fmax(from->spin_scale, fabs(of->spin));
+    if (turned > kept * from->spin_scale + 6 * random * of->spin_rounding + 6 * sqrt(judge->angle_squares)) {
+        snprintf(judge->text, sizeof judge->text,
+                 "angular momentum went from %.5g to %.5g kg m^2/s, its parts come to %.4g", from->spin, of->spin,
+                 spin_scale);
+        return MAP_TURNED;
+    }
+    return MAP_HOLDS;
+}
+
+static map_verdict judge_flights(map_judge *judge) {
+    const map_watch *watch = judge->watch;
+    const mspring_network_def *def = &watch->what->network;
+    judge->angle_squares += judge->watch->substep * judge->watch->substep * watch->rounding_squares;
+    for (uint32_t i = 0; i < watch->component_count; i++) {
+        // What sleeps is stopped, and global damping stops all that moves.
+        if (watch->components[i].is_held || def->sleep_speed > 0 || def->global_damping > 0) {
+            start_flight(judge, i);
+            continue;
+        }
+        const map_verdict verdict = judge_flight(judge, i);
+        if (verdict != MAP_HOLDS)
+            return verdict;
+    }
+    return MAP_HOLDS;
+}
+
+/* ------------------------------------------------------------------------------------------------------- floor */
+
+static map_verdict judge_floor(map_judge *judge) {
+    const map_watch *watch = judge->watch;
+    for (uint32_t i = 0; i < watch->count && watch->what->has_floor; i++) {
+        const double height = map_height_over_floor(watch->what, watch->x[i], watch->y[i]);
+        // A millionth of the distance from the local origin, which may be 64 m off.
+        const double distance = fmax(fabs(watch->x[i] - watch->centre_x), fabs(watch->y[i] - watch->centre_y));
+        if (!isinf(watch->mass[i]) && height < -1e-6 * (64 + distance)) {
+            snprintf(judge->text, sizeof judge->text, "particle %u is %.3g m below the floor", i, -height);
+            return MAP_SUNK;
+        }
+    }
+    return MAP_HOLDS;
+}
+
+map_verdict map_judge_step(map_judge *judge, uint32_t substeps) {
+    judge->substeps += substeps;
+    map_verdict verdict = judge_floor(judge);
+    if (verdict == MAP_HOLDS)
+        verdict = judge_energy(judge, substeps);
+    if (verdict == MAP_HOLDS)
+        verdict = judge_flights(judge);
+    if (verdict == MAP_HOLDS)
+        verdict = map_bounce_judge(judge);
+    return verdict;
+}

@@ -1,0 +1,251 @@
+/// @file run.c
+/// Running a case.
+///
+/// SPDX-License-Identifier: MIT
+#include "map/run.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "map/trade.h"
+#include "scenes/internal.h"
+
+/// Most springs times substeps of a case, so that none takes long.
+static const double most_work = 1.5e6;
+
+/// Explicit substeps up to this share of what is stable in any shape keep their energy in any motion, and longer
+/// ones where no particle goes farther in a substep than this share of the shortest spring.
+static const double calm_share = 0.2, calm_way = 0.005;
+
+/* ------------------------------------------------------------------------------------------------------ making */
+
+static void push(const mspring_hook_args *args, void *user) {
+    const map_case *what = user;
+    for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
+        const uint32_t particle = args->particle_of_slot[slot];
+        if (particle != MSPRING_NONE) {
+            args->force_x[slot] += what->force_x[particle];
+            args->force_y[slot] += what->force_y[particle];
+        }
+    }
+}
+
+static mspring_result set_up(const map_case *what, mspring_network *network) {
+    mspring_result result = mspring_network_set_solver(network, &what->solver);
+    if (result == MSPRING_OK && what->has_floor) {
+        const mspring_floor_def floor = map_case_floor(what);
+        result = mspring_network_set_floor(network, &floor);
+    }
+    if (result == MSPRING_OK && what->by_hook) {
+        mspring_hook_def hook;
+        mspring_hook_def_init(&hook, sizeof hook);
+        hook.fn = push;
+        hook.user = (void *)what;
+        result = mspring_network_add_hook(network, &hook, NULL);
+    }
+    return result;
+}
+
+mspring_network *map_make_network(const map_case *what, char text[MAP_TEXT]) {
+    mspring_builder *builder = NULL;
+    mspring_network *network = NULL;
+    mspring_result result = mspring_builder_create(NULL, &builder);
+    if (result == MSPRING_OK)
+        result = map_build_body(&what->body, builder);
+    if (result == MSPRING_OK)
+        result = mspring_network_create(builder, &what->network, &network);
+    if (result != MSPRING_OK) {
+        snprintf(text, MAP_TEXT, "not made: %s", mspring_builder_error(builder));
+    } else {
+        result = set_up(what, network);
+        if (result != MSPRING_OK) {
+            snprintf(text, MAP_TEXT, "not set up: %s", mspring_network_error(network));
+            mspring_network_destroy(network);
+            network = NULL;
+        }
+    }
+    mspring_builder_destroy(builder);
+    return network;
+}
+
+bool map_choose_step(map_case *what, mspring_network *network) {
+    double any = INFINITY;
+    if (what->share > 0 && mspring_network_stable_dt(network, NULL, &any) != MSPRING_OK)
+        return false;
+    if (any < INFINITY) {
+        const double substep = what->share * any;
+        while (what->solver.substeps > 1 && what->solver.substeps * substep > 0.25)
+            what->solver.substeps /= 2;
+        what->dt = fmin(0.25, what->solver.substeps * substep);
+        if (mspring_network_set_solver(network, &what->solver) != MSPRING_OK)
+            return false;
+    }
+    const double work = (double)what->solver.substeps * (what->body.spring_count + 10);
+    if (work * what->steps > most_work)
+        what->steps = (uint32_t)fmax(8, most_work / work);
+    return true;
+}
+
+/* ------------------------------------------------------------------------------------------------------ running */
+
+static bool break_springs(const map_case *what, mspring_network *network, map_watch *watch, map_judge *judge) {
+    mspring_id broken[MAP_SPRINGS];
+    uint32_t count = 0;
+    for (mspring_id id = 0; id < what->body.spring_count; id += what->break_every)
+        broken[count++] = id;
+    const double before = watch->elastic;
+    if ((count > 0 && mspring_network_break_springs(network, broken, count) != MSPRING_OK) ||
+        !map_watch_springs(watch) || !map_watch_read(watch))
+        return false;
+    map_judge_broken(judge, before);
+    return true;
+}
+
+/// A step that is rejected has to be one that may be: not of explicit substeps that are stable in any shape.
+static map_verdict judge_rejection(const map_case *what, mspring_result result, const char *reason,
+                                   char text[MAP_TEXT]) {
+    const bool may_be = what->solver.solver != MSPRING_SOLVER_EXPLICIT && result == MSPRING_ERROR_UNSTABLE;
+    snprintf(text, MAP_TEXT, "%s: %s", mspring_result_string(result), reason);
+    return may_be && strlen(reason) > 0 ? MAP_GUARDED : MAP_REJECTED;
+}
+
+static map_verdict take_step(const map_case *what, mspring_network *network, map_watch *watch, map_judge *judge,
+                             char text[MAP_TEXT]) {
+    mspring_result result = MSPRING_OK;
+    if (what->has_forces && !what->by_hook)
+        result = mspring_network_apply_forces(network, 0, what->body.particle_count, what->force_x, what->force_y);
+    if (result == MSPRING_OK)
+        result = mspring_network_step(network, what->dt);
+    if (result != MSPRING_OK)
+        return judge_rejection(what, result, mspring_network_error(network), text);
+    watch->time += what->dt;
+    if (!map_watch_read(watch)) {
+        snprintf(text, MAP_TEXT, "something is not finite");
+        return MAP_NOT_FINITE;
+    }
+    const map_verdict verdict = map_judge_step(judge, what->solver.substeps);
+    if (verdict != MAP_HOLDS)
+        snprintf(text, MAP_TEXT, "%s", judge->text);
+    return verdict;
+}
+
+/// @param to_the_end  go on when energy was gained: how much it grows is wanted
+static map_verdict take_steps(const map_case *what, mspring_network *network, map_judge *judge, bool to_the_end,
+                              char text[MAP_TEXT]) {
+    map_watch watch;
+    if (!map_watch_begin(&watch, what, network, what->dt / what->solver.substeps)) {
+        snprintf(text, MAP_TEXT, "cannot be watched: %s", mspring_network_error(network));
+        return MAP_REJECTED;
+    }
+    map_judge_begin(judge, &watch);
+    map_verdict verdict = MAP_HOLDS;
+    for (uint32_t step = 1; step <= what->steps && verdict == MAP_HOLDS; step++) {
+        if (step == what->break_at && !break_springs(what, network, &watch, judge)) {
+            snprintf(text, MAP_TEXT, "springs cannot be broken: %s", mspring_network_error(network));
+            return MAP_REJECTED;
+        }
+        verdict = take_step(what, network, &watch, judge, text);
+        if (verdict == MAP_GAINED && to_the_end) {
+            verdict = MAP_HOLDS;
+        } else if (verdict != MAP_HOLDS) {
+            char cause[MAP_TEXT];
+            memcpy(cause, text, sizeof cause);
+            snprintf(text, MAP_TEXT, "step %u of %u: %.200s", step, what->steps, cause);
+        }
+    }
+    judge->watch = NULL;
+    return verdict;
+}
+
+/* -------------------------------------------------------------------------------------------------- free swing */
+
+/// How much the energy of a case grows at most, as a part of what could move.
+static double growth_of(const map_case *what) {
+    char text[MAP_TEXT];
+    map_judge judge;
+    mspring_network *network = map_make_network(what, text);
+    judge.growth = 0;
+    if (network != NULL)
+        take_steps(what, network, &judge, true, text);
+    mspring_network_destroy(network);
+    return judge.growth;
+}
+
+// The same body without floor and gravity, as fast as the energy makes it that could move.
+static double free_growth(const map_case *what, double energy, uint64_t seed) {
+    map_case swing = *what;
+    double kinetic = 0;
+    swing.has_floor = swing.has_forces = swing.by_hook = false;
+    swing.network.gravity_x = swing.network.gravity_y = 0;
+    for (uint32_t i = 0; i < swing.body.particle_count; i++) {
+        mspring_particle_def *def = &swing.body.particles[i];
+        const bool pinned = (def->flags & MSPRING_PARTICLE_PINNED) != 0;
+        const double vx = map_between(&seed, -1, 1), vy = map_between(&seed, -1, 1);
+        def->vx = pinned ? 0 : (float)vx;
+        def->vy = pinned ? 0 : (float)vy;
+        kinetic += pinned ? 0 : 0.5 * (double)def->mass * (vx * vx + vy * vy);
+    }
+    const float faster = kinetic > 0 ? (float)sqrt(energy / kinetic) : 0;
+    for (uint32_t i = 0; i < swing.body.particle_count; i++) {
+        swing.body.particles[i].vx *= faster;
+        swing.body.particles[i].vy *= faster;
+    }
+    return growth_of(&swing);
+}
+
+// What explicit substeps keep is a sum for small motion alone. In violent motion near the border it grows, without
+// any floor as well: with a floor it must not grow by more than in a free swing, and without one the case is a
+// swing itself.
+static map_verdict judge_gain(const map_case *run, const map_judge *judge) {
+    if (run->solver.solver != MSPRING_SOLVER_EXPLICIT || run->share <= calm_share || judge->quickest <= calm_way)
+        return MAP_GAINED;
+    double growth = 0;
+    for (uint64_t seed = 1; seed <= 3 && run->has_floor; seed++)
+        growth = fmax(growth, free_growth(run, judge->could, seed));
+    return !run->has_floor || growth_of(run) <= growth + 0.01 ? MAP_VIOLENT : MAP_GAINED;
+}
+
+map_verdict map_run_case(const map_case *what, char text[MAP_TEXT]) {
+    map_case run = *what;
+    map_judge judge;
+    map_verdict verdict = MAP_REJECTED;
+    text[0] = '\0';
+    mspring_network *network = map_make_network(&run, text);
+    if (network != NULL && !map_choose_step(&run, network)) {
+        snprintf(text, MAP_TEXT, "no step: %s", mspring_network_error(network));
+    } else if (network != NULL && run.family == MAP_SUBSTEPS) {
+        verdict = map_run_trade(&run, network, text);
+    } else if (network != NULL) {
+        verdict = take_steps(&run, network, &judge, false, text);
+        if (verdict == MAP_GAINED)
+            verdict = judge_gain(&run, &judge);
+    }
+    mspring_network_destroy(network);
+    return verdict;
+}
+
+void map_print_course(const map_case *what, FILE *out) {
+    map_case run = *what;
+    map_watch watch;
+    map_judge judge;
+    char text[MAP_TEXT];
+    mspring_network *network = map_make_network(&run, text);
+    bool ok = network != NULL && map_choose_step(&run, network) &&
+              map_watch_begin(&watch, &run, network, run.dt / run.solver.substeps);
+    if (ok) {
+        map_judge_begin(&judge, &watch);
+        fprintf(out, "%u steps of %.6g s, %u substeps\n%6s %12s %12s %12s %12s %12s\n", run.steps, run.dt,
+                run.solver.substeps, "step", "kinetic", "elastic", "potential", "shadow", "sum");
+    }
+    for (uint32_t step = 0; ok && step <= run.steps; step++) {
+        if (step > 0 && step == run.break_at)
+            ok = break_springs(&run, network, &watch, &judge);
+        const map_verdict verdict = step > 0 ? take_step(&run, network, &watch, &judge, text) : MAP_HOLDS;
+        if (step < 20 || step % (run.steps / 20 + 1) == 0)
+            fprintf(out, "%6u %12.6g %12.6g %12.6g %12.6g %12.8g\n", step, watch.kinetic, watch.elastic,
+                    watch.potential, watch.shadow, map_watch_energy(&watch));
+        ok = ok && verdict != MAP_GUARDED && verdict != MAP_REJECTED;
+    }
+    mspring_network_destroy(network);
+}
