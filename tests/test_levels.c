@@ -5,6 +5,7 @@
 /// SPDX-License-Identifier: MIT
 #include <fenv.h>
 #include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #if defined(__SSE__)
@@ -167,6 +168,69 @@ static void extreme_values(void **state) {
     }
 }
 
+/// What a spring by itself, or the first one of a lattice, does to a particle of 1 kg at rest within 1 s, m/s. Its
+/// other end is length away and flies off at speed.
+static double pulled(bool in_lattice, double length, double rest_length, double stiffness, double damping,
+                     float speed) {
+    recipe made = {0};
+    uint64_t seed = 1;
+    const recipe_stuff stuff = {.mass = {1, 1}};
+    if (in_lattice) {
+        recipe_lattice(&made, 2, 2, 0, 0, 0.5, &stuff, &seed); // its local origin is (0, 0)
+    } else {
+        recipe_particle(&made, 0, 0, 1, 0);
+        recipe_spring(&made, 0, recipe_particle(&made, 0.5, 0, 1, 0), 0, 0, 0);
+    }
+    uint32_t spring = 0;
+    while (made.springs[spring].a + made.springs[spring].b != 1) {
+        spring++;
+    }
+    made.springs[spring].rest_length = (float)rest_length;
+    made.springs[spring].stiffness = (float)stiffness;
+    made.springs[spring].damping = (float)damping;
+    mspring_network_def def = support_def(0, 1);
+    def.simd_level = level;
+    def.max_speed = 1e15f;
+    def.guard = MSPRING_GUARD_BOUNDS; // a spring of no length is not stable
+    mspring_network *network = recipe_network(&made, &def);
+    recipe_free(&made);
+    level_check(network, level);
+    const double x[] = {0, length}, y[] = {0, 0};
+    const float vx[] = {0, speed}, vy[] = {0, 0};
+    check_ok(mspring_network_set_positions(network, 0, 2, x, y));
+    check_ok(mspring_network_set_velocities(network, 0, 2, vx, vy));
+    check_ok(mspring_network_step(network, 1));
+    const support_point got = support_velocity(network, 0);
+    assert_true(got.y == 0.0);
+    mspring_network_destroy(network);
+    return got.x;
+}
+
+static void springs_of_any_length_obey_the_law(void **state) {
+    (void)state;
+    for (int in_lattice = 0; in_lattice < 2; in_lattice++) {
+        for (int exponent = -18; exponent <= 11; exponent++) {
+            // Stretched and pressed; so stiff that the particle moves by a thousandth of the length. As far from
+            // its origin as it is long, the network's coordinates have an error of 1 part in 2^24.
+            const double length = 4.0 * pow(10, exponent), stiffness = 1e-3;
+            for (double rest = 0.5; rest < 2; rest += 1) {
+                const double rest_length = (float)(rest * length), speed = stiffness * (length - rest_length);
+                check_near(pulled(in_lattice, length, rest_length, stiffness, 0, 0), speed,
+                           1e-6 * length * stiffness);
+            }
+            // A damper alone.
+            const float apart = (float)(1e-3 * length);
+            check_near(pulled(in_lattice, length, length, 0, 0.5, apart), 0.5 * (double)apart,
+                       1e-6 * (double)apart);
+        }
+        // So short that there is no direction, and so no force.
+        const double none[] = {3e-19, 1e-20, 1e-25, 1e-38, 1e-45, 0};
+        for (size_t i = 0; i < COUNT_OF(none); i++) {
+            assert_true(pulled(in_lattice, none[i], 1e-3, 1e3, 1e3, 1.0f) == 0.0);
+        }
+    }
+}
+
 /// Build and step a network while the host has set a rounding mode, and find that it is still set.
 static uint64_t hash_in_rounding_mode(const recipe *made, int mode) {
     mspring_network_def def = support_def(-9.8f, 3);
@@ -282,6 +346,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(loose_particles_of_every_number),
         cmocka_unit_test(mixtures_of_all),
         cmocka_unit_test(extreme_values),
+        cmocka_unit_test(springs_of_any_length_obey_the_law),
         cmocka_unit_test(speeds_out_of_bounds),
         cmocka_unit_test(rounding_mode_of_the_host_does_not_matter),
 #if defined(__SSE__)

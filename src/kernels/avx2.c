@@ -35,10 +35,10 @@ static inline vec mul(vec a, vec b) {
 static inline vec square_root(vec a) {
     return _mm256_sqrt_ps(a);
 }
-// 1 / length, or 0 where length is 0.
-static inline vec inverse_or_zero(vec length) {
-    return _mm256_and_ps(_mm256_div_ps(_mm256_set1_ps(1.0f), length),
-                         _mm256_cmp_ps(length, _mm256_setzero_ps(), _CMP_GT_OQ));
+// 1 / square, or 0 where there is no direction.
+static inline vec inverse_or_zero(vec square) {
+    return _mm256_and_ps(_mm256_div_ps(_mm256_set1_ps(1.0f), square),
+                         _mm256_cmp_ps(square, _mm256_set1_ps(MSPRINGI_NO_DIRECTION), _CMP_GT_OQ));
 }
 // a where selector > 0, b elsewhere.
 static inline vec choose_positive(vec selector, vec a, vec b) {

@@ -35,10 +35,10 @@ static inline vec mul(vec a, vec b) {
 static inline vec square_root(vec a) {
     return _mm512_sqrt_ps(a);
 }
-// 1 / length, or 0 where length is 0.
-static inline vec inverse_or_zero(vec length) {
-    return _mm512_maskz_div_ps(_mm512_cmp_ps_mask(length, _mm512_setzero_ps(), _CMP_GT_OQ), _mm512_set1_ps(1.0f),
-                               length);
+// 1 / square, or 0 where there is no direction.
+static inline vec inverse_or_zero(vec square) {
+    return _mm512_maskz_div_ps(_mm512_cmp_ps_mask(square, _mm512_set1_ps(MSPRINGI_NO_DIRECTION), _CMP_GT_OQ),
+                               _mm512_set1_ps(1.0f), square);
 }
 // a where selector > 0, b elsewhere.
 static inline vec choose_positive(vec selector, vec a, vec b) {

@@ -12,6 +12,9 @@
 #include "system.h"
 #include "topology/topology.h"
 
+/// Squared length, m^2, up to which a spring has no direction, and so no force: above, its inverse is finite.
+#define MSPRINGI_NO_DIRECTION 1e-37f
+
 /// The parts of a spring record, each one value per slot; damping only if the network has any.
 typedef enum mspringi_part { MSPRINGI_REST_LENGTH = 0, MSPRINGI_STIFFNESS = 1, MSPRINGI_DAMPING = 2 } mspringi_part;
 

@@ -35,10 +35,10 @@ static inline vec mul(vec a, vec b) {
 static inline vec square_root(vec a) {
     return vsqrtq_f32(a);
 }
-// 1 / length, or 0 where length is 0.
-static inline vec inverse_or_zero(vec length) {
-    const uint32x4_t inverse = vreinterpretq_u32_f32(vdivq_f32(vdupq_n_f32(1.0f), length));
-    return vreinterpretq_f32_u32(vandq_u32(inverse, vcgtzq_f32(length)));
+// 1 / square, or 0 where there is no direction.
+static inline vec inverse_or_zero(vec square) {
+    const uint32x4_t inverse = vreinterpretq_u32_f32(vdivq_f32(vdupq_n_f32(1.0f), square));
+    return vreinterpretq_f32_u32(vandq_u32(inverse, vcgtq_f32(square, vdupq_n_f32(MSPRINGI_NO_DIRECTION))));
 }
 // a where selector > 0, b elsewhere.
 static inline vec choose_positive(vec selector, vec a, vec b) {

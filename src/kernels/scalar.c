@@ -18,17 +18,18 @@ static inline motion at(const mspringi_sweep *s, size_t slot) {
     return (motion){s->x[slot], s->y[slot], s->vx[slot], s->vy[slot]};
 }
 
-// The force of one spring on its base, towards its tip; the force on the tip is the opposite. record is where its
-// stiffness is, with its damping behind.
+// The force of one spring on its tip; that on its base is the opposite. With d from the tip to the base
+//     F = ((L - rest_length) (k L) + c (dv . d)) / L^2 * d
+// so that the root and the division do not wait for each other. record is where its stiffness is, with its damping
+// behind.
 static inline vector spring_force(motion base, motion tip, float rest_length, const float *record, bool damped) {
-    const float dx = tip.x - base.x, dy = tip.y - base.y;
-    const float length = sqrtf(dx * dx + dy * dy);
-    const float inverse = length > 0.0f ? 1.0f / length : 0.0f; // a spring of length 0 has no direction
-    float force = (length - rest_length) * record[0];
+    const float dx = base.x - tip.x, dy = base.y - tip.y;
+    const float square = dx * dx + dy * dy, length = sqrtf(square);
+    const float inverse = square > MSPRINGI_NO_DIRECTION ? 1.0f / square : 0.0f;
+    float force = (length - rest_length) * (length * record[0]);
     if (damped) {
-        const float dvx = tip.vx - base.vx, dvy = tip.vy - base.vy;
-        const float rate = (dvx * dx + dvy * dy) * inverse; // of lengthening, m/s
-        force = force + rate * record[MSPRINGI_WIDTH];
+        const float dvx = base.vx - tip.vx, dvy = base.vy - tip.vy;
+        force = force + (dvx * dx + dvy * dy) * record[MSPRINGI_WIDTH];
     }
     force = force * inverse;
     return (vector){force * dx, force * dy};
@@ -74,7 +75,8 @@ static inline void watch_motion(const mspringi_sweep *s, size_t slot) {
     }
 }
 
-// Symplectic Euler. A pinned particle keeps its velocity.
+// Symplectic Euler: v' = (F h / m + (v + g h)) d, with d the decay. A pinned particle keeps its velocity. (As g h
+// is never -0, so is v + g h, and it does not matter which sign a force of 0 has.)
 static inline void move(const mspringi_sweep *s, size_t slot, vector force, bool forced) {
     if (forced) {
         force.x = force.x + s->force_x[slot];
@@ -85,8 +87,8 @@ static inline void move(const mspringi_sweep *s, size_t slot, vector force, bool
     const float inverse_mass = s->inverse_mass[slot];
     if (inverse_mass > 0.0f) {
         const float inverse_mass_h = inverse_mass * s->h;
-        s->vx[slot] = (s->vx[slot] + (force.x * inverse_mass_h + s->gravity_h_x)) * s->decay;
-        s->vy[slot] = (s->vy[slot] + (force.y * inverse_mass_h + s->gravity_h_y)) * s->decay;
+        s->vx[slot] = (force.x * inverse_mass_h + (s->vx[slot] + s->gravity_h_x)) * s->decay;
+        s->vy[slot] = (force.y * inverse_mass_h + (s->vy[slot] + s->gravity_h_y)) * s->decay;
     }
     s->x[slot] = s->x[slot] + s->vx[slot] * s->h;
     s->y[slot] = s->y[slot] + s->vy[slot] * s->h;
@@ -130,13 +132,13 @@ static inline void lattice(const mspringi_sweep *s, const mspringi_span *spans, 
             const vector east = lattice_force(here, next, springs, MSPRINGI_EAST, damped);
             const vector north = lattice_force(here, above, springs, MSPRINGI_NORTH, damped);
             const vector north_east = lattice_force(here, above_next, springs, MSPRINGI_NORTH_EAST, damped);
-            const vector south_east = lattice_force(above, next, springs, MSPRINGI_SOUTH_EAST, damped);
+            const vector south_east = lattice_force(next, above, springs, MSPRINGI_SOUTH_EAST, damped);
 
-            const vector force = {(s->carry_x[carry] + ((east.x + north.x) + north_east.x)) - before.right.x,
-                                  (s->carry_y[carry] + ((east.y + north.y) + north_east.y)) - before.right.y};
-            s->carry_x[carry] = (south_east.x - north.x) - before.diagonal.x;
-            s->carry_y[carry] = (south_east.y - north.y) - before.diagonal.y;
-            before.right = (vector){east.x + south_east.x, east.y + south_east.y};
+            const vector force = {((s->carry_x[carry] + before.right.x) - (east.x + north.x)) - north_east.x,
+                                  ((s->carry_y[carry] + before.right.y) - (east.y + north.y)) - north_east.y};
+            s->carry_x[carry] = (south_east.x + north.x) + before.diagonal.x;
+            s->carry_y[carry] = (south_east.y + north.y) + before.diagonal.y;
+            before.right = (vector){east.x - south_east.x, east.y - south_east.y};
             before.diagonal = north_east;
             move(s, slot, force, forced);
         }
@@ -162,7 +164,7 @@ static inline void chain(const mspringi_sweep *s, const mspringi_span *spans, ui
         for (size_t slot = span->first_slot; slot < span->end_slot; ++slot) {
             const size_t carry = (size_t)((int64_t)slot + span->carry);
             const vector east = chain_force(s, span, slot, damped);
-            const vector force = {(s->carry_x[carry] + east.x) - left.x, (s->carry_y[carry] + east.y) - left.y};
+            const vector force = {(s->carry_x[carry] - east.x) + left.x, (s->carry_y[carry] - east.y) + left.y};
             s->carry_x[carry] = 0.0f;
             s->carry_y[carry] = 0.0f;
             left = east;
@@ -186,7 +188,7 @@ static inline vector web_force(const mspringi_sweep *s, size_t node, motion here
          rung < web->first_rung[node / MSPRINGI_WIDTH + 1]; ++rung) {
         const motion there = node_at(s, web->neighbour[rung * MSPRINGI_WIDTH + lane]);
         const float *record = s->web_springs + rung * s->parts * MSPRINGI_WIDTH + lane;
-        const vector force = spring_force(here, there, record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
+        const vector force = spring_force(there, here, record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
                                           record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, damped);
         sum.x = sum.x + force.x;
         sum.y = sum.y + force.y;
@@ -203,7 +205,7 @@ static inline vector upright_force(const mspringi_sweep *s, size_t slot, size_t 
     const float *record = s->web_springs +
                           (size_t)s->web->first_rung[node / MSPRINGI_WIDTH] * s->parts * MSPRINGI_WIDTH +
                           node % MSPRINGI_WIDTH;
-    return spring_force(slot_at(s, slot), slot_at(s, slot + MSPRINGI_WIDTH),
+    return spring_force(slot_at(s, slot + MSPRINGI_WIDTH), slot_at(s, slot),
                         record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH], record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH,
                         damped);
 }
@@ -223,7 +225,7 @@ static inline void web(const mspringi_sweep *s, const mspringi_span *spans, uint
             if (has_upright) {
                 const vector up = upright_force(s, slot, node, damped);
                 force = (vector){force.x + up.x, force.y + up.y};
-                *below = (vector){-up.x, -up.y};
+                *below = (vector){0.0f - up.x, 0.0f - up.y};
             }
             move(s, slot, force, forced);
         }
@@ -236,7 +238,7 @@ static inline void herd(const mspringi_sweep *s, const mspringi_herd *herd, bool
         for (size_t i = 0; i < herd->spring_count; ++i) {
             const mspringi_herd_spring *spring = &herd->springs[i];
             const float *record = s->web_springs + (size_t)spring->rung * s->parts * MSPRINGI_WIDTH + lane;
-            const vector pull = spring_force(slot_at(s, spring->above + lane), slot_at(s, spring->below + lane),
+            const vector pull = spring_force(slot_at(s, spring->below + lane), slot_at(s, spring->above + lane),
                                              record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
                                              record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, damped);
             s->carry_x[i * MSPRINGI_WIDTH + lane] = pull.x;

@@ -35,9 +35,10 @@ static inline vec mul(vec a, vec b) {
 static inline vec square_root(vec a) {
     return _mm_sqrt_ps(a);
 }
-// 1 / length, or 0 where length is 0.
-static inline vec inverse_or_zero(vec length) {
-    return _mm_and_ps(_mm_div_ps(_mm_set1_ps(1.0f), length), _mm_cmpgt_ps(length, _mm_setzero_ps()));
+// 1 / square, or 0 where there is no direction.
+static inline vec inverse_or_zero(vec square) {
+    return _mm_and_ps(_mm_div_ps(_mm_set1_ps(1.0f), square),
+                      _mm_cmpgt_ps(square, _mm_set1_ps(MSPRINGI_NO_DIRECTION)));
 }
 // a where selector > 0, b elsewhere.
 static inline vec choose_positive(vec selector, vec a, vec b) {

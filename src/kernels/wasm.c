@@ -35,10 +35,10 @@ static inline vec mul(vec a, vec b) {
 static inline vec square_root(vec a) {
     return wasm_f32x4_sqrt(a);
 }
-// 1 / length, or 0 where length is 0.
-static inline vec inverse_or_zero(vec length) {
-    return wasm_v128_and(wasm_f32x4_div(wasm_f32x4_splat(1.0f), length),
-                         wasm_f32x4_gt(length, wasm_f32x4_splat(0.0f)));
+// 1 / square, or 0 where there is no direction.
+static inline vec inverse_or_zero(vec square) {
+    return wasm_v128_and(wasm_f32x4_div(wasm_f32x4_splat(1.0f), square),
+                         wasm_f32x4_gt(square, wasm_f32x4_splat(MSPRINGI_NO_DIRECTION)));
 }
 // a where selector > 0, b elsewhere.
 static inline vec choose_positive(vec selector, vec a, vec b) {
