@@ -62,8 +62,10 @@ extern "C" {
 
 /* ------------------------------------------------------------------------------------------ export macros */
 
-/// Marks the functions of the library. Define MSPRING_SHARED where you use the library as a Windows DLL.
-#if defined(_WIN32) && defined(MSPRING_BUILD_SHARED)
+/// Marks the functions of the library. Define MSPRING_SHARED where you use the library as a Windows DLL, or
+/// MSPRING_API itself before this header where you compile the library with your program: as `static`, for instance.
+#if defined(MSPRING_API)
+#elif defined(_WIN32) && defined(MSPRING_BUILD_SHARED)
 #define MSPRING_API __declspec(dllexport)
 #elif defined(_WIN32) && defined(MSPRING_SHARED)
 #define MSPRING_API __declspec(dllimport)

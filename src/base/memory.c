@@ -1,3 +1,7 @@
+#if defined(__unix__) && !defined(_POSIX_C_SOURCE)
+#define _POSIX_C_SOURCE 200809L // posix_memalign, which strict C hides
+#endif
+
 #include "memory.h"
 
 #include <string.h>
@@ -22,7 +26,8 @@ static void *default_alloc(size_t size, size_t alignment, void *user) {
 #if defined(_WIN32)
     return _aligned_malloc(size, alignment);
 #else
-    return aligned_alloc(alignment, size);
+    void *memory;
+    return posix_memalign(&memory, alignment, size) == 0 ? memory : NULL;
 #endif
 }
 
@@ -95,7 +100,7 @@ static char *contents_of(const block *of) {
 void *mspringi_alloc(mspringi_memory *memory, size_t count, size_t size) {
     if (size != 0 && count > (SIZE_MAX - 2 * MSPRINGI_ALIGNMENT) / size)
         return NULL;
-    // Whole units are what aligned_alloc asks for.
+    // Whole units, so that every block ends where the next may begin.
     const size_t total = (count * size + 2 * MSPRINGI_ALIGNMENT - 1) / MSPRINGI_ALIGNMENT * MSPRINGI_ALIGNMENT;
     const block *taken = take(memory, total);
     return taken ? memset(contents_of(taken), 0, total - MSPRINGI_ALIGNMENT) : NULL;

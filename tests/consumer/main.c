@@ -52,6 +52,11 @@ int main(void) {
     printf("massspring %s at %s: the weight hangs at (%g, %g)\n", mspring_version_string(),
            mspring_simd_name(mspring_network_simd_level(network)), x[1], y[1]);
     mspring_network_destroy(network);
+#if defined(EXPECT_SHARED) // the library knows which one it is
+    if (!!(mspring_features() & MSPRING_FEATURE_SHARED) != EXPECT_SHARED) {
+        return failed("features", "this is the other library");
+    }
+#endif
     // A pendulum of 1 m: after 1 s, half of its period, it has swung to the other side and is below its pin.
     return mspring_version() == MSPRING_VERSION && x[0] == 0 && y[0] == 0 && x[1] < 0 && y[1] < 0 ? 0 : 1;
 }

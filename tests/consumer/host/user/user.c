@@ -1,0 +1,5 @@
+#include <swing.h>
+
+int main(void) {
+    return swing_version() > 0 ? 0 : 1;
+}
