@@ -46,7 +46,7 @@ while read -r page; do
   while read -r program; do
     programs=$((programs + 1))
     name=${program##*/}
-    grep -qE "(add_executable|massspring_example|massspring_test)\((test_)?${name#test_}( |\)|$)" examples/CMakeLists.txt \
+    grep -qE "(add_executable|massspring_example|massspring_(levels_)?test)\((test_)?${name#test_}( |\)|$)" examples/CMakeLists.txt \
       examples/lab/CMakeLists.txt bench/CMakeLists.txt tests/CMakeLists.txt || complain "$page: nothing builds $program"
   done <"$scratch/programs"
 done <"$scratch/pages"

@@ -1,7 +1,9 @@
 #!/bin/sh
 # What is handed out.
 #
-#   packages.sh deb           SOURCE BUILD WORK   the Debian packages, in a root of their own, serve a program
+#   packages.sh archive       SOURCE BUILD WORK   the archive, unpacked somewhere, serves a program
+#   packages.sh deb           SOURCE BUILD WORK   the Debian packages, in a root of their own, serve a program, which
+#                                                 becomes a package that depends on them; lintian finds no error
 #   packages.sh reproducible  SOURCE BUILD WORK   the same sources in another folder give the same bytes as in BUILD
 #
 # CMAKE, CPACK and CC come from the environment.
@@ -14,29 +16,9 @@ skip() {
   echo "skipped: $1"
   exit 77
 }
-rm -rf "${work:?}/$check"
-mkdir -p "$work/$check"
-work=$work/$check
-
-case $check in
-deb)
-  command -v dpkg-deb >/dev/null || skip "no dpkg-deb here"
+# Build a program against what is in $work/root, and run it.
+use_package() {
   command -v pkg-config >/dev/null || skip "no pkg-config here"
-  "$CPACK" --config "$build/CPackConfig.cmake" -G DEB -B "$work" >"$work/log" 2>&1 || {
-    cat "$work/log"
-    exit 1
-  }
-  for package in "$work"/*.deb; do
-    dpkg-deb --field "$package" Package Depends
-    dpkg-deb --extract "$package" "$work/root"
-  done
-  # The runtime package is the library alone.
-  dpkg-deb --contents "$work"/libmassspring[0-9]*.deb | awk '$1 !~ /^d/ { print $6 }' >"$work/runtime"
-  cat "$work/runtime"
-  if grep -v '/libmassspring\.so\.[0-9]' "$work/runtime"; then
-    echo "these belong into the package for building"
-    exit 1
-  fi
   PKG_CONFIG_PATH=$(dirname "$(find "$work/root" -name massspring.pc)")
   export PKG_CONFIG_PATH
   libdir=$(dirname "$PKG_CONFIG_PATH")
@@ -46,9 +28,83 @@ deb)
   # shellcheck disable=SC2046
   "$CC" -static "$source/tests/consumer/main.c" -o "$work/static" $(pkg-config --static --cflags --libs massspring)
   "$work/static"
+}
+
+# Make a package of that program, as another project would, and see what it depends on.
+package_a_program() {
+  mkdir -p "$work/swing/debian/swing/usr/bin" "$work/swing/debian/swing/DEBIAN"
+  dpkg-deb --raw-extract "$work"/built/libmassspring0_*.deb "$work/swing/debian/libmassspring0"
+  cd "$work/swing"
+  cp "$work/shared" debian/swing/usr/bin/swing
+  # shellcheck disable=SC2016 # for dpkg
+  printf '%s\n' 'Source: swing' 'Maintainer: Some One <one@some.example>' '' 'Package: swing' 'Architecture: any' \
+    'Depends: ${shlibs:Depends}' 'Description: a swing' >debian/control
+  printf '%s\n' 'swing (1-1) unstable; urgency=medium' '' '  * A swing.' '' \
+    ' -- Some One <one@some.example>  Sun, 22 Nov 2026 12:00:00 +0000' >debian/changelog
+  dpkg-shlibdeps -Sdebian/libmassspring0 debian/swing/usr/bin/swing
+  dpkg-gencontrol -pswing -Pdebian/swing
+  dpkg-deb --root-owner-group --build debian/swing swing.deb
+  dpkg-deb --field swing.deb Package Depends
+  dpkg-deb --field swing.deb Depends | grep -qF 'libmassspring0 (>= 0.1.0)'
+  cd "$work"
+}
+
+rm -rf "${work:?}/$check"
+mkdir -p "$work/$check"
+work=$work/$check
+
+case $check in
+archive)
+  "$CPACK" --config "$build/CPackConfig.cmake" -G TGZ -B "$work" >"$work/log" 2>&1 || {
+    cat "$work/log"
+    exit 1
+  }
+  tar -tzf "$work"/massspring-*.tar.gz >"$work/files"
+  cat "$work/files"
+  # It is unpacked anywhere, and so has no usr in it.
+  if grep -E '^[^/]*/usr/|^/|^\./' "$work/files"; then
+    echo "these are in the wrong place"
+    exit 1
+  fi
+  for file in include/massspring/massspring.h share/doc/massspring/LICENSE share/doc/massspring/CHANGELOG.md; do
+    grep -q "^massspring-[^/]*/$file\$" "$work/files"
+  done
+  mkdir "$work/root"
+  tar -xzf "$work"/massspring-*.tar.gz --strip-components 1 -C "$work/root"
+  use_package
+  ;;
+deb)
+  DEB_BUILD_OPTIONS="nocheck parallel=2" "$source/pkgconfig/build-deb" "$work/built" >"$work/log" 2>&1 || {
+    status=$?
+    tail -50 "$work/log"
+    exit $status
+  }
+  for package in "$work"/built/*.deb; do
+    name=$(dpkg-deb --field "$package" Package)
+    dpkg-deb --field "$package" Package Depends Maintainer
+    dpkg-deb --contents "$package" | awk '$1 !~ /^d/ { print $6 }' >"$work/$name.files"
+    dpkg-deb --extract "$package" "$work/root"
+  done
+  # The runtime package is the library alone, and what is to be said of it.
+  cat "$work/libmassspring0.files"
+  if grep -vE '/lib/[^/]+/libmassspring\.so\.[0-9.]+$|/doc/libmassspring0/' "$work/libmassspring0.files"; then
+    echo "these belong into the package for building"
+    exit 1
+  fi
+  for name in libmassspring0 libmassspring-dev; do
+    grep -q "/usr/share/doc/$name/copyright" "$work/$name.files"
+    grep -q "/usr/share/doc/$name/changelog.gz" "$work/$name.files"
+  done
+  use_package
+  package_a_program
+  if command -v lintian >/dev/null; then
+    lintian --allow-root --fail-on error "$work"/built/*.changes
+  else
+    echo "no lintian here"
+  fi
   ;;
 reproducible)
-  (cd "$source" && cp -r CMakeLists.txt LICENSE README.md include src pkgconfig "$work")
+  (cd "$source" && cp -r CMakeLists.txt LICENSE README.md CHANGELOG.md include src pkgconfig "$work")
   type=$(sed -n 's/^CMAKE_BUILD_TYPE:[A-Z]*=//p' "$build/CMakeCache.txt")
   [ "$type" = Release ] || skip "only release builds have no paths in them"
   "$CMAKE" -S "$work" -B "$work/build" -DCMAKE_BUILD_TYPE=Release -DMASSSPRING_TESTS=OFF -DMASSSPRING_EXAMPLES=OFF \
