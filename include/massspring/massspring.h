@@ -35,7 +35,8 @@
 /// objects may. Where a function says "shared", several threads may call such functions on one object at once.
 /// A network steps on the caller's thread alone, unless its definition asks for workers (worker_count, tasks): then
 /// calls on it still come from one thread at a time, and it divides their work among the workers itself. The number
-/// of workers changes no bit of the result.
+/// of workers changes no bit of the result. If fork() is called between calls, the child can go on with its copies:
+/// the library's threads are started again by the first step there.
 ///
 /// **Memory.** Functions say whether they allocate; a step never does.
 ///
@@ -662,7 +663,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_global_damping(
 /// the state is the one of before the step, bit for bit, forces given for it are still there, and the error message
 /// names a particle. Take a shorter dt, more substeps or a lower stiffness.
 /// @param dt  seconds, finite, > 0, and long enough that dt / substeps is a normal float
-/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_UNSTABLE, MSPRING_ERROR_BUSY.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_UNSTABLE, MSPRING_ERROR_BUSY; in a child of fork()
+///         MSPRING_ERROR_THREAD if a worker cannot be started again.
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_step(mspring_network *network, double dt);
 

@@ -289,9 +289,12 @@ static mspring_result attempt_explicitly(mspring_network *network, double dt) {
 }
 
 static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt) {
-    if (!(dt > 0.0 && dt <= (double)FLT_MAX * MSPRING_MAX_SUBSTEPS))
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "dt is %g s, it must be finite and > 0",
-                             dt);
+    const double longest = (double)FLT_MAX * MSPRING_MAX_SUBSTEPS;
+    if (!(dt > 0.0 && dt <= longest))
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "dt is %g s, it must be > 0 and at most %g s: a substep is a float, and at most %u "
+                             "make a step",
+                             dt, longest, (unsigned)MSPRING_MAX_SUBSTEPS);
     const uint32_t substeps = network->substeps;
     if (check_given_speeds(network, dt) != MSPRING_OK)
         return MSPRING_ERROR_UNSTABLE;
@@ -326,6 +329,8 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
 
 mspring_result mspring_network_step(mspring_network *network, double dt) {
     mspring_result result = mspringi_enter(network);
+    if (result == MSPRING_OK)
+        result = mspringi_tasks_follow(network->tasks, &network->message);
     if (result != MSPRING_OK)
         return result;
     const mspringi_fp_state before = mspringi_fp_enter();

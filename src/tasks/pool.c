@@ -16,6 +16,7 @@ typedef struct pool_worker {
 } pool_worker;
 
 struct mspringi_pool {
+    uint64_t process; ///< that has the threads
     uint32_t worker_count, count;
     mspring_task_fn fn; ///< NULL: the worker is to end
     void *argument;
@@ -51,34 +52,20 @@ static bool start_worker(pool_worker *worker) {
     return worker->has_thread;
 }
 
-mspring_result mspringi_pool_create(uint32_t worker_count, mspringi_memory *memory, mspringi_message *message,
-                                    mspringi_pool **pool) {
-    mspringi_pool *created = mspringi_alloc(memory, 1, sizeof *created);
-    if (created)
-        created->workers = mspringi_alloc(memory, worker_count, sizeof *created->workers);
-    if (!created || !created->workers) {
-        mspringi_pool_destroy(created, memory);
-        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for %u workers", (unsigned)worker_count);
-    }
-    created->worker_count = worker_count;
-    for (uint32_t w = 1; w < worker_count; ++w) {
-        pool_worker *worker = &created->workers[w];
-        worker->pool = created;
-        worker->number = w;
-        if (!start_worker(worker)) {
-            mspringi_pool_destroy(created, memory);
+static mspring_result start_workers(mspringi_pool *pool, mspringi_message *message) {
+    pool->process = mspringi_process();
+    for (uint32_t w = 1; w < pool->worker_count; ++w) {
+        pool_worker *worker = &pool->workers[w];
+        *worker = (pool_worker){.pool = pool, .number = w};
+        if (!start_worker(worker))
             return mspringi_fail(message, MSPRING_ERROR_THREAD,
                                  "the system refuses the thread of worker %u (of %u: 0 to %u)", (unsigned)w,
-                                 (unsigned)worker_count, (unsigned)(worker_count - 1));
-        }
+                                 (unsigned)pool->worker_count, (unsigned)(pool->worker_count - 1));
     }
-    *pool = created;
     return MSPRING_OK;
 }
 
-void mspringi_pool_destroy(mspringi_pool *pool, mspringi_memory *memory) {
-    if (!pool)
-        return;
+static void end_workers(mspringi_pool *pool) {
     pool->fn = NULL;
     for (uint32_t w = 1; w < pool->worker_count; ++w)
         // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): without them their number is 0
@@ -92,7 +79,49 @@ void mspringi_pool_destroy(mspringi_pool *pool, mspringi_memory *memory) {
             mspringi_progress_destroy(&worker->called);
             mspringi_progress_destroy(&worker->finished);
         }
+        worker->has_thread = worker->has_counters = false;
     }
+}
+
+mspring_result mspringi_pool_create(uint32_t worker_count, mspringi_memory *memory, mspringi_message *message,
+                                    mspringi_pool **pool) {
+    mspringi_pool *created = mspringi_alloc(memory, 1, sizeof *created);
+    if (created)
+        created->workers = mspringi_alloc(memory, worker_count, sizeof *created->workers);
+    if (!created || !created->workers) {
+        mspringi_pool_destroy(created, memory);
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for %u workers", (unsigned)worker_count);
+    }
+    created->worker_count = worker_count;
+    const mspring_result result = start_workers(created, message);
+    if (result == MSPRING_OK)
+        *pool = created;
+    else
+        mspringi_pool_destroy(created, memory);
+    return result;
+}
+
+// What the parent's threads have waited on stays as it was when the process forked: nobody wakes those sleepers, so
+// it can be neither used nor destroyed, and is made anew in place.
+mspring_result mspringi_pool_follow(mspringi_pool *pool, mspringi_message *message) {
+    const uint64_t before = pool->process;
+    if (before == mspringi_process())
+        return MSPRING_OK;
+    for (uint32_t w = 1; w < pool->worker_count; ++w)
+        pool->workers[w].has_thread = pool->workers[w].has_counters = false;
+    const mspring_result result = start_workers(pool, message);
+    if (result != MSPRING_OK) {
+        end_workers(pool);
+        pool->process = before;
+    }
+    return result;
+}
+
+void mspringi_pool_destroy(mspringi_pool *pool, mspringi_memory *memory) {
+    if (!pool)
+        return;
+    if (pool->process == mspringi_process())
+        end_workers(pool);
     mspringi_free(memory, pool->workers);
     mspringi_free(memory, pool);
 }
@@ -117,6 +146,11 @@ mspring_result mspringi_pool_create(uint32_t worker_count, mspringi_memory *memo
                                     mspringi_pool **pool) {
     (void)worker_count, (void)memory, (void)pool;
     return mspringi_fail(message, MSPRING_ERROR_THREAD, "this build of the library has no threads");
+}
+
+mspring_result mspringi_pool_follow(mspringi_pool *pool, mspringi_message *message) {
+    (void)pool, (void)message;
+    return MSPRING_OK;
 }
 
 void mspringi_pool_destroy(mspringi_pool *pool, mspringi_memory *memory) {

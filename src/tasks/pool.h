@@ -14,7 +14,12 @@ typedef struct mspringi_pool mspringi_pool;
 mspring_result mspringi_pool_create(uint32_t worker_count, mspringi_memory *memory, mspringi_message *message,
                                     mspringi_pool **pool);
 
-/// End the threads. NULL is allowed.
+/// Start the threads again if this is a child that fork() has made since they were: the parent's are not in it.
+/// Nobody may be in mspringi_pool_run() when the process forks.
+/// @return MSPRING_OK; MSPRING_ERROR_THREAD, then nothing runs, and the next call tries again
+mspring_result mspringi_pool_follow(mspringi_pool *pool, mspringi_message *message);
+
+/// End the threads; in a child that has not started them again there are none. NULL is allowed.
 void mspringi_pool_destroy(mspringi_pool *pool, mspringi_memory *memory);
 
 /// Run fn(argument, index, worker) for all index below count, index i on worker i % worker_count, and return when

@@ -86,6 +86,10 @@ void mspringi_tasks_destroy(mspringi_tasks *tasks, mspringi_memory *memory) {
     mspringi_free(memory, tasks);
 }
 
+mspring_result mspringi_tasks_follow(mspringi_tasks *tasks, mspringi_message *message) {
+    return tasks && tasks->pool ? mspringi_pool_follow(tasks->pool, message) : MSPRING_OK;
+}
+
 /* --------------------------------------------------------------------------------------------------- running */
 
 typedef struct job {

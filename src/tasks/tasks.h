@@ -28,6 +28,11 @@ mspring_result mspringi_tasks_create(uint32_t worker_count, const mspring_tasks 
                                      mspringi_message *message, mspringi_tasks **tasks);
 void mspringi_tasks_destroy(mspringi_tasks *tasks, mspringi_memory *memory);
 
+/// See that there are threads to run on: fork() leaves those of the library in the parent. Before the first run in
+/// each call of the host's, while nothing has changed yet.
+/// @return MSPRING_OK; MSPRING_ERROR_THREAD
+mspring_result mspringi_tasks_follow(mspringi_tasks *tasks, mspringi_message *message);
+
 /// Number of workers: what is indexed by worker has so many elements.
 uint32_t mspringi_tasks_workers(const mspringi_tasks *tasks);
 

@@ -16,6 +16,10 @@ static unsigned __stdcall thread_main(void *argument) {
     return 0;
 }
 
+uint64_t mspringi_process(void) {
+    return 0;
+}
+
 bool mspringi_thread_create(mspringi_thread *thread, mspringi_thread_start *start) {
     *thread = (HANDLE)_beginthreadex(NULL, 0, thread_main, start, 0, NULL);
     return *thread != NULL;
@@ -64,6 +68,11 @@ void mspringi_condition_wake_all(mspringi_condition *condition) {
 
 #include <signal.h>
 #include <stddef.h>
+#include <unistd.h>
+
+uint64_t mspringi_process(void) {
+    return (uint64_t)getpid();
+}
 
 static void *thread_main(void *argument) {
     const mspringi_thread_start *start = argument;

@@ -30,6 +30,10 @@ typedef struct mspringi_thread_start {
     void *argument;
 } mspringi_thread_start;
 
+/// The number of the process: another one in a child that fork() has made, where no thread but the caller's goes on.
+/// The same in all on platforms without fork().
+uint64_t mspringi_process(void);
+
 /// Start a thread that takes no signals: they go to the host's. False if the system refuses.
 bool mspringi_thread_create(mspringi_thread *thread, mspringi_thread_start *start);
 void mspringi_thread_join(mspringi_thread thread);
