@@ -1,6 +1,7 @@
 /// @file test_fork.c
 /// Networks with workers in a child that fork() has made: the child goes on as the parent does, bit for bit, frees
-/// what it has, and says so if it gets no threads. The program is linked so that starting a thread can be made fail.
+/// what it has, and says so if it gets no threads. The program is linked so that starting a thread can be made
+/// fail.
 ///
 /// SPDX-License-Identifier: MIT
 #define _POSIX_C_SOURCE 200809L

@@ -1,7 +1,8 @@
 /// @file test_hostile.c
 /// Every public function with everything that is wrong: NULL, numbers that are none or out of range, particles and
 /// springs that do not exist, absurd counts, structs of impossible sizes, calls from inside a hook. Each is refused
-/// or, where that is documented, accepted; a refusal says why, changes nothing and touches no out-parameter.
+/// or, where that is documented, accepted; a refusal says why, changes nothing and touches no out-parameter. So
+/// does a call that gets no memory, whichever of its allocations it is. Nothing means: no byte of the snapshot.
 ///
 /// The functions are those of the header: one that is missing in the table (hostile.c) fails the test.
 ///
@@ -12,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "allocator.h"
 #include "hostile.h"
 #include "recipe.h"
 #include "support.h"
@@ -204,10 +206,16 @@ static recipe small_recipe(void) {
     return made;
 }
 
+static watched_allocator watched; // of all networks here
+
 static void begin(arguments *a) {
+    static mspring_allocator allocator;
     recipe made = small_recipe();
+    watched = (watched_allocator){0};
+    allocator = watched_interface(&watched);
     mspring_network_def def = support_def(-9.8f, 2);
     def.spare_particles = def.spare_springs = 2;
+    def.allocator = &allocator;
     memset(a, 0, sizeof *a);
     a->builder = recipe_builder(&made, NULL);
     a->network = recipe_network(&made, &def);
@@ -238,20 +246,30 @@ typedef struct before {
     mspring_builder *builder;
     uint64_t hash;
     uint32_t particles, springs;
-    size_t memory;
+    size_t snapshot_size; ///< 0: cannot be saved here
+    unsigned char snapshot[SNAPSHOT_BYTES];
     unsigned char out_bytes[OUTS][OUT_BYTES];
 } before;
 
 static before look(const arguments *a) {
-    before b = {.network = a->network,
-                .builder = a->builder,
-                .hash = support_hash(a->network),
-                .particles = mspring_builder_particle_count(a->builder),
-                .springs = mspring_builder_spring_count(a->builder)};
+    static before b;
+    b = (before){.network = a->network,
+                 .builder = a->builder,
+                 .hash = support_hash(a->network),
+                 .particles = mspring_builder_particle_count(a->builder),
+                 .springs = mspring_builder_spring_count(a->builder)};
+    const mspring_result result =
+        mspring_network_save(a->network, MSPRING_SNAPSHOT_ALL, b.snapshot, SNAPSHOT_BYTES, &b.snapshot_size);
+    assert_true(result == MSPRING_OK || result == MSPRING_ERROR_BUSY);
     return b;
 }
 
 static void check_unchanged(const before *b, const arguments *a) {
+    static unsigned char snapshot[SNAPSHOT_BYTES];
+    size_t size = 0;
+    check_ok(mspring_network_save(b->network, MSPRING_SNAPSHOT_ALL, snapshot, SNAPSHOT_BYTES, &size));
+    assert_int_equal(size, b->snapshot_size);
+    assert_memory_equal(snapshot, b->snapshot, size);
     assert_int_equal(support_hash(b->network), b->hash);
     assert_int_equal(mspring_builder_particle_count(b->builder), b->particles);
     assert_int_equal(mspring_builder_spring_count(b->builder), b->springs);
@@ -337,6 +355,43 @@ static void spoilt_calls_are_refused(void **state) {
     print_message("%u calls of %u functions, %u of them refused\n", spoilt_calls, (unsigned)hostile_function_count,
                   refused_calls);
     assert_true(refused_calls > 800);
+}
+
+/* ---------------------------------------------------------------------------------------------- without memory */
+
+/// Call with the n-th of the call's allocations failing. Returns false if there are not so many.
+static bool try_without_memory(const function *f, size_t n) {
+    static arguments a;
+    begin(&a);
+    f->prepare(&a);
+    before b = look(&a);
+    memcpy(b.out_bytes, a.out_bytes, sizeof b.out_bytes);
+    watched.fail_at = watched.calls + n;
+    const mspring_result result = f->call(&a);
+    const bool there = watched.calls >= watched.fail_at;
+    watched.fail_at = 0;
+    if (there && result == MSPRING_OK)
+        print_error("%s, allocation %zu failed: no error\n", f->name, n);
+    assert_int_equal(result, there ? MSPRING_ERROR_MEMORY : MSPRING_OK);
+    if (there) {
+        assert_true(strchr(f->kinds, 'N') == NULL || strlen(mspring_network_error(a.network)) > 0);
+        check_unchanged(&b, &a);
+        // And it succeeds when there is memory again.
+        check_ok(f->call(&a));
+    }
+    end(&b);
+    check_watched_clean(&watched);
+    return there;
+}
+
+static void calls_without_memory_change_nothing(void **state) {
+    (void)state;
+    size_t failed = 0;
+    for (size_t i = 0; i < hostile_function_count; i++)
+        for (size_t n = 1; try_without_memory(&hostile_functions[i], n); n++)
+            failed++;
+    print_message("%zu allocations, each failed once\n", failed);
+    assert_true(failed > 100);
 }
 
 /* ---------------------------------------------------------------------------------------------- inside a hook */
@@ -429,9 +484,8 @@ static void every_function_is_in_the_table(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_function_is_in_the_table),
-        cmocka_unit_test(good_calls_succeed),
-        cmocka_unit_test(spoilt_calls_are_refused),
+        cmocka_unit_test(every_function_is_in_the_table),  cmocka_unit_test(good_calls_succeed),
+        cmocka_unit_test(spoilt_calls_are_refused),        cmocka_unit_test(calls_without_memory_change_nothing),
         cmocka_unit_test(hooks_cannot_change_the_network),
     };
     return cmocka_run_group_tests_name("hostile", tests, NULL, NULL);

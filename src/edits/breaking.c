@@ -48,6 +48,7 @@ mspring_result mspringi_breaking_reserve(mspring_network *network) {
 
 static void toggle(mspring_network *network, mspring_id spring, mspringi_place place) {
     network->live[place / MSPRINGI_WIDTH] ^= (uint16_t)(1u << place % MSPRINGI_WIDTH);
+    network->edits.broke = true;
     network->edits.link_log[network->edits.links++ & network->edits.link_mask] = spring;
     if (network->mover)
         mspringi_mover_follow(network, place);

@@ -69,6 +69,7 @@ static mspring_result set_masses(mspring_network *network, const mspringi_select
     const mspringi_fp_state before = mspringi_fp_enter();
     store_masses(network, at, mass);
     mspringi_fp_leave(before);
+    network->is_reweighed = network->spring_mass != NULL;
     network->edits.masses++;
     return MSPRING_OK;
 }
@@ -138,6 +139,7 @@ static MSPRINGI_NOINLINE void store_scales(mspring_network *network, const mspri
         if (network->inverse_mass_scale)
             network->inverse_mass_scale[particle] = scale[i];
         network->inverse_mass[network->topology.slot_of_particle[particle]] = scale[i] / network->mass[particle];
+        network->is_scaled = network->is_scaled || (scale[i] > 0.0f && scale[i] < 1.0f);
     }
 }
 

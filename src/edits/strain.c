@@ -153,11 +153,11 @@ mspring_result mspringi_strain_reserve(mspring_network *network) {
         strain->hits = mspringi_alloc(&network->memory, words, sizeof *strain->hits);
     if (strain->stressed && strain->hits)
         strain->least = strain->break_strain = allocate_thresholds(network);
+    if (!strain->break_strain)
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to watch the strain of %u springs",
+                             (unsigned)network->topology.spring_count);
     mspringi_mover_drop(network);
-    return strain->break_strain ? MSPRING_OK
-                                : mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
-                                                "no memory to watch the strain of %u springs",
-                                                (unsigned)network->topology.spring_count);
+    return MSPRING_OK;
 }
 
 mspring_result mspringi_strain_reserve_stress(mspring_network *network) {
@@ -186,6 +186,8 @@ void mspringi_strain_store(mspring_network *network, mspringi_place place, bool 
         strain->stress_strain[place] = value;
     else
         strain->break_strain[place] = value;
+    strain->stresses = strain->stresses || (stress && value < INFINITY);
+    strain->breaks = strain->breaks || (!stress && value < INFINITY);
     if (strain->stress_strain)
         // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): its callers have looked for it
         strain->least[place] = fminf(strain->break_strain[place], strain->stress_strain[place]);

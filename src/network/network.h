@@ -71,6 +71,7 @@ typedef struct mspringi_edits {
     mspring_id
         *link_log; ///< the last of these springs: change n, counted from 0, is at n & link_mask; NULL before any
     uint32_t link_mask;
+    bool broke; ///< there have been such changes, here or in what was loaded
 } mspringi_edits;
 
 /// A restored spring on its way to its own rest length.
@@ -108,6 +109,7 @@ typedef struct mspringi_strain {
     float *least;              ///< the smaller of the two; break_strain itself as long as that is alone
     uint16_t *stressed;        ///< [places / MSPRINGI_WIDTH] a bit for each place
     mspringi_strain_hit *hits; ///< [places / MSPRINGI_WIDTH] for the pass to write to
+    bool breaks, stresses;     ///< a threshold of this kind has been finite: there is something to save
     float relax;               ///< fraction of its stress strain below which a stressed spring relaxes
 } mspringi_strain;
 
@@ -239,12 +241,13 @@ struct mspring_network {
     float recentre_distance;   ///< how far the network may be from its origin until that is moved along
 
     // Parameters.
-    float *inverse_mass;       ///< [slots] 0 if pinned or empty
-    float *mass;               ///< [particles]
-    float *inverse_mass_scale; ///< [particles], or NULL as long as all are 0 (where inverse_mass is) or 1
-    float *spring_mass;        ///< [particles] masses that relative springs go by, or NULL if these are mass
-    uint32_t parts;            ///< values per spring in the records: 2, or 3 with damping
-    mspringi_rests rests;      ///< of lattice_springs, whose records have stiffness and damping only
+    float *inverse_mass;          ///< [slots] 0 if pinned or empty
+    float *mass;                  ///< [particles]
+    float *inverse_mass_scale;    ///< [particles], or NULL as long as all are 0 (where inverse_mass is) or 1
+    float *spring_mass;           ///< [particles] masses that relative springs go by, or NULL if these are mass
+    bool is_scaled, is_reweighed; ///< scales, or masses, have been given that these two are needed for
+    uint32_t parts;               ///< values per spring in the records: 2, or 3 with damping
+    mspringi_rests rests;         ///< of lattice_springs, whose records have stiffness and damping only
     float *lattice_springs, *chain_springs;
     mspringi_alike alike;
     float *web_springs;
@@ -284,6 +287,7 @@ struct mspring_network {
     mspringi_growth growth;
     mspringi_graft graft;
     mspringi_any_shape any_shape;
+    mspringi_any_shape last_shape; ///< found last, maybe in a step that was refused: to find it again costs nothing
 
     mspringi_forces forces;
     mspringi_hook *hooks;

@@ -296,6 +296,7 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
                              "make a step",
                              dt, longest, (unsigned)MSPRING_MAX_SUBSTEPS);
     const uint32_t substeps = network->substeps;
+    const mspringi_any_shape any_shape = network->any_shape;
     if (check_given_speeds(network, dt) != MSPRING_OK)
         return MSPRING_ERROR_UNSTABLE;
     network->sleep.has_kept = false;
@@ -311,6 +312,7 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
     }
     if (result != MSPRING_OK) {
         network->substeps = substeps;
+        network->any_shape = any_shape;
         mspringi_sleep_undo(network);
         return result;
     }

@@ -2,6 +2,7 @@
 /// springs join.
 #include <string.h>
 
+#include "base/bytes.h"
 #include "edits/breaking.h"
 #include "edits/growth.h"
 #include "implicit/implicit.h"
@@ -27,8 +28,18 @@ static size_t size_of(const mspringi_topology *t) {
            (size_t)9 * mspringi_spare_springs(t);
 }
 
+// Without spare ids there is something to save once one has been removed.
 static size_t growth_size(const mspring_network *network) {
-    return network->growth.particles ? size_of(&network->topology) : 0;
+    const mspringi_topology *t = &network->topology;
+    const uint8_t *particles = network->growth.particles, *springs = network->growth.springs;
+    const mspringi_reserve *r = &t->reserve;
+    if (!particles)
+        return 0;
+    const bool has_spare = mspringi_spare_particles(t) + mspringi_spare_springs(t) > 0;
+    return has_spare || mspringi_find_byte(particles, MSPRINGI_GONE, 0, r->particle_end) < r->particle_end ||
+                   mspringi_find_byte(springs, MSPRINGI_GONE, 0, r->spring_end) < r->spring_end
+               ? size_of(t)
+               : 0;
 }
 
 static bool particle_is_laid_out(const mspringi_topology *t, mspring_id p) {
@@ -55,7 +66,11 @@ static void growth_save(const mspring_network *network, mspringi_writer *to) {
                                        (spring_is_laid_out(t, s) ? IS_LAID_OUT : 0));
         mspringi_put(to, &kind, 1, 1);
     }
-    mspringi_put(to, g->particle_of_end, (size_t)2 * mspringi_spare_springs(t), sizeof *g->particle_of_end);
+    for (mspring_id s = t->reserve.first_spring; s < t->reserve.spring_end; ++s) {
+        const mspring_id nobody[2] = {0, 0};
+        const uint32_t first = 2 * (s - t->reserve.first_spring);
+        mspringi_put(to, g->springs[s] == MSPRINGI_THERE ? &g->particle_of_end[first] : nobody, 2, sizeof *nobody);
+    }
 }
 
 static growth read_growth(const mspringi_topology *t, const uint8_t *from) {

@@ -24,9 +24,10 @@ static bool bit_at(const uint8_t *from, mspringi_place place) {
 
 /* ----------------------------------------------------------------------------------------------------- broken */
 
-// Nothing is broken before there is a log of it.
+// A section is there for what has been done to springs, not for memory that is there for it: a call that fails may
+// have made that.
 static size_t broken_size(const mspring_network *network) {
-    return network->edits.link_log ? words_size(network) : 0;
+    return network->edits.broke ? words_size(network) : 0;
 }
 
 static void broken_save(const mspring_network *network, mspringi_writer *to) {
@@ -61,7 +62,9 @@ static bool are_as_in(const mspring_network *network, const uint8_t *from) {
 
 static void broken_load(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_topology *t = &network->topology;
-    if ((size == 0 && !network->edits.link_log) || (size > 0 && are_as_in(network, from)))
+    const bool broke = network->edits.broke;
+    network->edits.broke = size > 0;
+    if ((size == 0 && !broke) || (size > 0 && are_as_in(network, from)))
         return;
     mspringi_place_reader reader;
     mspringi_places_begin(&reader, &t->places, 0);
@@ -170,8 +173,8 @@ const mspringi_section mspringi_section_values = {
 
 /* ------------------------------------------------------------------------------------------------ strains */
 
-static size_t thresholds_size(const mspring_network *network, const float *thresholds) {
-    return thresholds ? network->topology.reserve.spring_end * sizeof *thresholds : 0;
+static size_t thresholds_size(const mspring_network *network, bool has_any) {
+    return has_any ? network->topology.reserve.spring_end * sizeof(float) : 0;
 }
 
 static void thresholds_save(const mspring_network *network, const float *thresholds, mspringi_writer *to) {
@@ -201,7 +204,7 @@ static void thresholds_load(mspring_network *network, bool stress, const uint8_t
 }
 
 static size_t break_strains_size(const mspring_network *network) {
-    return thresholds_size(network, network->strain.break_strain);
+    return thresholds_size(network, network->strain.breaks);
 }
 
 static void break_strains_save(const mspring_network *network, mspringi_writer *to) {
@@ -215,6 +218,7 @@ static mspring_result break_strains_check(mspring_network *network, const uint8_
 }
 
 static void break_strains_load(mspring_network *network, const uint8_t *from, size_t size) {
+    network->strain.breaks = size > 0;
     if (network->strain.break_strain)
         thresholds_load(network, false, from, size);
 }
@@ -223,7 +227,7 @@ const mspringi_section mspringi_section_break_strains = {
     "brks", "break strains", true, break_strains_size, break_strains_save, break_strains_check, break_strains_load};
 
 static size_t stress_strains_size(const mspring_network *network) {
-    return thresholds_size(network, network->strain.stress_strain);
+    return thresholds_size(network, network->strain.stresses);
 }
 
 static void stress_strains_save(const mspring_network *network, mspringi_writer *to) {
@@ -239,6 +243,7 @@ static mspring_result stress_strains_check(mspring_network *network, const uint8
 }
 
 static void stress_strains_load(mspring_network *network, const uint8_t *from, size_t size) {
+    network->strain.stresses = size > 0;
     if (network->strain.stress_strain)
         thresholds_load(network, true, from, size);
 }
@@ -254,7 +259,7 @@ const mspringi_section mspringi_section_stress_strains = {"strs",
 /* --------------------------------------------------------------------------------------------------- stressed */
 
 static size_t stressed_size(const mspring_network *network) {
-    return network->strain.break_strain ? words_size(network) : 0;
+    return network->strain.stresses ? words_size(network) : 0;
 }
 
 static void stressed_save(const mspring_network *network, mspringi_writer *to) {

@@ -172,8 +172,7 @@ const mspringi_section mspringi_section_motion = {
 enum { SCALED = 1, SPRING_MASSES = 2 };
 
 static uint32_t masses_kind(const mspring_network *network) {
-    return (network->inverse_mass_scale ? (uint32_t)SCALED : 0) |
-           (network->spring_mass ? (uint32_t)SPRING_MASSES : 0);
+    return (network->is_scaled ? (uint32_t)SCALED : 0) | (network->is_reweighed ? (uint32_t)SPRING_MASSES : 0);
 }
 
 static size_t masses_size_of(const mspring_network *network, uint32_t kind) {
@@ -303,6 +302,8 @@ static void masses_load(mspring_network *network, const uint8_t *from, size_t si
     }
     if (renew)
         mspringi_renew_relative(network);
+    network->is_scaled = m.kind & SCALED;
+    network->is_reweighed = m.kind & SPRING_MASSES;
     network->edits.masses++;
 }
 

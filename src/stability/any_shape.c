@@ -86,15 +86,21 @@ static double find(mspring_network *network, mspring_id *spring) {
     return smallest * tight;
 }
 
+static bool is_of_now(const mspringi_any_shape *known, const mspringi_edits *edits) {
+    return known->is_known && known->masses == edits->masses && known->values == edits->values &&
+           known->growth == edits->growth;
+}
+
 double mspringi_stable_in_any_shape(mspring_network *network, mspring_id *spring) {
-    mspringi_any_shape *known = &network->any_shape;
-    if (!known->is_known || known->masses != network->edits.masses || known->values != network->edits.values ||
-        known->growth != network->edits.growth) {
-        known->dt = find(network, &known->spring);
-        known->masses = network->edits.masses;
-        known->values = network->edits.values;
-        known->growth = network->edits.growth;
-        known->is_known = true;
+    mspringi_any_shape *known = &network->any_shape, *last = &network->last_shape;
+    const mspringi_edits *edits = &network->edits;
+    if (!is_of_now(known, edits)) {
+        if (!is_of_now(last, edits)) {
+            *last = (mspringi_any_shape){
+                .masses = edits->masses, .values = edits->values, .growth = edits->growth, .is_known = true};
+            last->dt = find(network, &last->spring);
+        }
+        *known = *last;
         // The guard wanted the motion that was in the backup: it looks anew instead, from noise.
         if (network->guard.suspicious)
             network->guard.h = 0.0f;

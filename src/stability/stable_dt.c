@@ -80,16 +80,12 @@ static double find_border(const mspring_network *network, workspace *work, doubl
 
 static MSPRINGI_NOINLINE mspring_result find_now(mspring_network *network, double *now) {
     mspring_id spring;
-    const double any_shape = mspringi_stable_in_any_shape(network, &spring);
-    if (any_shape == INFINITY) {
-        *now = INFINITY;
-        return MSPRING_OK;
-    }
     workspace work;
     mspring_result result = reserve(network, &work);
     if (result != MSPRING_OK)
         return result;
-    *now = fmax(find_border(network, &work, any_shape), any_shape);
+    const double any_shape = mspringi_stable_in_any_shape(network, &spring);
+    *now = any_shape < INFINITY ? fmax(find_border(network, &work, any_shape), any_shape) : INFINITY;
     release(network, &work);
     return MSPRING_OK;
 }

@@ -30,8 +30,8 @@ typedef struct mspringi_thread_start {
     void *argument;
 } mspringi_thread_start;
 
-/// The number of the process: another one in a child that fork() has made, where no thread but the caller's goes on.
-/// The same in all on platforms without fork().
+/// The number of the process: another one in a child that fork() has made, where no thread but the caller's goes
+/// on. The same in all on platforms without fork().
 uint64_t mspringi_process(void);
 
 /// Start a thread that takes no signals: they go to the host's. False if the system refuses.
