@@ -45,6 +45,9 @@ int main(int count, char **arguments) {
     case BENCH_MAP_CASE:
         ok = bench_run_map_case(&options);
         break;
+    case BENCH_FRAMES:
+        ok = bench_run_frames(&options);
+        break;
     case BENCH_ALARMS:
         ok = bench_run_alarms(&options);
         break;

@@ -12,7 +12,8 @@
 /// gain (workers.c), what is done to a network
 /// between its steps (session.c), what the sparse direct solver costs (linear.c), what steps of the implicit
 /// and the direct solver cost (solvers.c), how far from the machine's bounds the scenes are (roofline.c), where
-/// networks are stable (map.c), one case of that (map_cases.c), whether the guard refuses ordinary steps (alarms.c) and what it costs (guard.c), or
+/// networks are stable (map.c), one case of that (map_cases.c), how long the worst step
+/// takes (map_frames.c), whether the guard refuses ordinary steps (alarms.c) and what it costs (guard.c), or
 /// compare positions with those of the naive step (check.c).
 /// @return false if anything failed; messages have gone to stderr
 bool bench_run_scenes(const bench_options *options);
@@ -24,6 +25,7 @@ bool bench_run_solvers(const bench_options *options);
 bool bench_run_roofline(const bench_options *options);
 bool bench_run_map(const bench_options *options);
 bool bench_run_map_case(const bench_options *options);
+bool bench_run_frames(const bench_options *options);
 bool bench_run_alarms(const bench_options *options);
 bool bench_run_guard(const bench_options *options);
 bool bench_run_check(const bench_options *options);

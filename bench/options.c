@@ -24,6 +24,7 @@ void bench_options_help(void) {
          "  --solvers            what steps of the implicit and the direct solver cost, in explicit substeps\n"
          "  --roofline           the bounds of this machine, and how near to them each scene comes\n"
          "  --map                where networks are stable, at the extremes of every setting; takes minutes\n"
+         "  --frames             how long the worst step takes next to the median\n"
          "  --alarms             whether the guard refuses any of a million ordinary steps\n"
          "  --guard              what the guard costs, and what a step costs beyond its substeps\n"
          "  --check              compare positions with those of the naive step; measures nothing\n"
@@ -124,19 +125,13 @@ static bool is_switch(const char *option, bench_options *out) {
     static const struct {
         const char *name;
         bench_mode mode;
-    } modes[] = {{"--features", BENCH_FEATURES},
-                 {"--workers", BENCH_WORKERS},
-                 {"--session", BENCH_SESSION},
-                 {"--linear", BENCH_LINEAR},
-                 {"--solvers", BENCH_SOLVERS},
-                 {"--roofline", BENCH_ROOFLINE},
-                 {"--map", BENCH_MAP},
-                 {"--alarms", BENCH_ALARMS},
-                 {"--guard", BENCH_GUARD},
-                 {"--check", BENCH_CHECK},
-                 {"--list", BENCH_LIST},
-                 {"--help", BENCH_HELP},
-                 {"-h", BENCH_HELP}};
+    } modes[] = {{"--features", BENCH_FEATURES}, {"--workers", BENCH_WORKERS},
+                 {"--session", BENCH_SESSION},   {"--linear", BENCH_LINEAR},
+                 {"--solvers", BENCH_SOLVERS},   {"--roofline", BENCH_ROOFLINE},
+                 {"--map", BENCH_MAP},           {"--frames", BENCH_FRAMES},
+                 {"--alarms", BENCH_ALARMS},     {"--guard", BENCH_GUARD},
+                 {"--check", BENCH_CHECK},       {"--list", BENCH_LIST},
+                 {"--help", BENCH_HELP},         {"-h", BENCH_HELP}};
     for (size_t i = 0; i < sizeof modes / sizeof *modes; i++) {
         if (strcmp(option, modes[i].name) == 0) {
             out->mode = modes[i].mode;

@@ -21,6 +21,7 @@ typedef enum bench_mode {
     BENCH_ROOFLINE,
     BENCH_MAP,
     BENCH_MAP_CASE,
+    BENCH_FRAMES,
     BENCH_ALARMS,
     BENCH_GUARD,
     BENCH_CHECK,

@@ -35,16 +35,17 @@ typedef struct map_flight {
 
 typedef struct map_judge {
     const map_watch *watch;
-    double start;     ///< energy at the start, less what broken springs took along, J
-    double motion;    ///< kinetic and elastic energy at the start, J
-    double potential; ///< highest and lowest potential energy
-    double fallen;    ///< J, most that the potential energy has been below that at the start
-    double rounding, rounding_squares, angle_squares; ///< sums over substeps
-    uint64_t substeps;
-    double momentum_scale; ///< kg m/s, sum of m |v| at the start
-    double could;          ///< J that can move by now
-    double growth;         ///< largest gain of energy beyond rounding over that
-    double quickest;       ///< farthest way of a particle in a substep over the shortest spring
+    double start;                           ///< energy that there was, less what broken springs took along, J
+    double motion;                          ///< kinetic and elastic energy at the start, J
+    double potential;                       ///< J, potential energy at the start
+    double fallen;                          ///< J, most that the potential energy has been below that at the start
+    double rounding;                        ///< J that reading may have been off by where start is from
+    double rounding_squares, angle_squares; ///< sums over substeps
+    uint64_t substeps, since;               ///< substeps so far, and since there was as little energy as start
+    double momentum_scale;                  ///< kg m/s, sum of m |v| at the start
+    double could;                           ///< J that can move by now
+    double growth;                          ///< largest gain of energy beyond rounding over that
+    double quickest;                        ///< farthest way of a particle in a substep over the shortest spring
     map_flight flights[MAP_PARTICLES];
     double particle_start[MAP_PARTICLES], particle_fallen[MAP_PARTICLES]; ///< J: energies of loose particles
     char text[MAP_TEXT];                                                  ///< what is wrong

@@ -1,0 +1,161 @@
+/// @file map_frames.c
+/// How long the worst step takes next to the median, with the default guard: drops, bombs and calm. Each scene runs
+/// a few times, and a step's time is the least of them, so that what others do on the machine does not count.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "common/clock.h"
+#include "modes.h"
+#include "table.h"
+
+enum { FRAMES = 240, RUNS = 3, BOMB_AT = 80 };
+
+typedef enum happening { CALM, DROP, BOMB, HAPPENINGS } happening;
+
+/// One scene: a lattice and how it is stepped.
+typedef struct frames_scene {
+    uint32_t columns, rows, substeps;
+    double share; ///< length of a substep over what is stable now
+    happening what;
+} frames_scene;
+
+static const bench_column columns[] = {
+    {"lattice", "lattice", -10},       {"springs", "springs", 8},   {"happens", "what happens", -12},
+    {"share", "substep / stable", 16}, {"substeps", "substeps", 8}, {"median_us", "median us", 10},
+    {"worst", "worst / median", 14},   {"worst_at", "at step", 8},  {"first", "first / median", 14},
+    {"rejected", "rejected", 8},
+};
+enum { COLUMNS = sizeof columns / sizeof *columns };
+
+static mspring_network *make(const frames_scene *of) {
+    mspring_builder *builder = NULL;
+    mspring_network *network = NULL;
+    mspring_material material;
+    mspring_lattice_def lattice;
+    mspring_network_def def;
+    uint16_t *cells = calloc((size_t)of->columns * of->rows, sizeof *cells);
+    mspring_material_init(&material, sizeof material);
+    material.stiffness = 1e6f;
+    mspring_lattice_def_init(&lattice, sizeof lattice);
+    lattice.width = of->columns;
+    lattice.height = of->rows;
+    lattice.cells = cells;
+    lattice.materials = &material;
+    lattice.material_count = 1;
+    lattice.y = 3;
+    mspring_network_def_init(&def, sizeof def);
+    def.gravity_y = of->what == CALM ? 0 : -9.8f;
+    if (cells == NULL || mspring_builder_create(NULL, &builder) != MSPRING_OK ||
+        mspring_builder_add_lattice(builder, &lattice, NULL) != MSPRING_OK ||
+        mspring_network_create(builder, &def, &network) != MSPRING_OK)
+        fprintf(stderr, "massspring-bench: no network: %s\n", mspring_builder_error(builder));
+    mspring_builder_destroy(builder);
+    free(cells);
+    return network;
+}
+
+static bool prepare(const frames_scene *of, mspring_network *network, double *dt) {
+    static const double plane[4] = {0, 0, 0, 1};
+    mspring_floor_def floor;
+    mspring_solver_def solver;
+    double now = 0;
+    mspring_floor_def_init(&floor, sizeof floor);
+    floor.planes = plane;
+    floor.plane_count = 1;
+    mspring_solver_def_init(&solver, sizeof solver);
+    solver.substeps = of->substeps;
+    const bool ok = mspring_network_set_solver(network, &solver) == MSPRING_OK &&
+                    mspring_network_set_floor(network, &floor) == MSPRING_OK &&
+                    mspring_network_stable_dt(network, &now, NULL) == MSPRING_OK;
+    *dt = of->share * now * of->substeps;
+    return ok;
+}
+
+/// Throw what is near the middle outwards, at 30 m/s.
+static bool explode(const frames_scene *of, mspring_network *network) {
+    bool ok = true;
+    for (uint32_t row = 0; row < of->rows; row++) {
+        for (uint32_t column = 0; column < of->columns; column++) {
+            const double x = column - of->columns / 2.0, y = of->rows / 2.0 - row, far = hypot(x, y);
+            const float vx = (float)(30 * x / (far + 1)), vy = (float)(30 * y / (far + 1));
+            if (far < 6)
+                ok = ok &&
+                     mspring_network_set_velocities(network, row * of->columns + column, 1, &vx, &vy) == MSPRING_OK;
+        }
+    }
+    return ok;
+}
+
+/// Take the steps of one run, and keep the least time of each.
+static bool take(const frames_scene *of, double *least, uint32_t *rejected) {
+    double dt = 0;
+    mspring_network *network = make(of);
+    bool ok = network != NULL && prepare(of, network, &dt);
+    *rejected = 0;
+    for (int frame = 0; ok && frame < FRAMES; frame++) {
+        if (of->what == BOMB && frame == BOMB_AT)
+            ok = explode(of, network);
+        const double start = clock_processor_seconds();
+        *rejected += mspring_network_step(network, dt) != MSPRING_OK;
+        least[frame] = fmin(least[frame], clock_processor_seconds() - start);
+    }
+    mspring_network_destroy(network);
+    return ok;
+}
+
+static int compare(const void *a, const void *b) {
+    const double first = *(const double *)a, second = *(const double *)b;
+    return first < second ? -1 : first > second;
+}
+
+/// @return whether no step takes more than twice the median, and the first at most three times
+static bool measure(const bench_options *options, const frames_scene *of) {
+    static const char *const names[HAPPENINGS] = {"calm", "drop", "bomb"};
+    double least[FRAMES], sorted[FRAMES];
+    uint32_t rejected = 0, worst = 1;
+    for (int frame = 0; frame < FRAMES; frame++)
+        least[frame] = INFINITY;
+    for (int run = 0; run < RUNS; run++)
+        if (!take(of, least, &rejected))
+            return false;
+    for (int frame = 0; frame < FRAMES; frame++) {
+        sorted[frame] = least[frame];
+        worst = frame > 0 && least[frame] > least[worst] ? (uint32_t)frame : worst;
+    }
+    qsort(sorted, FRAMES, sizeof *sorted, compare);
+    const double median = sorted[FRAMES / 2];
+    const uint32_t c = of->columns, r = of->rows;
+    const bench_cell cells[COLUMNS] = {bench_cell_of("%u x %u", c, r),
+                                       bench_cell_of("%u", 4 * c * r - 3 * (c + r) + 2),
+                                       bench_cell_of("%s", names[of->what]),
+                                       bench_cell_of("%.2f", of->share),
+                                       bench_cell_of("%u", of->substeps),
+                                       bench_cell_of("%.1f", 1e6 * median),
+                                       bench_cell_of("%.2f", least[worst] / median),
+                                       bench_cell_of("%u", worst),
+                                       bench_cell_of("%.2f", least[0] / median),
+                                       bench_cell_of("%u", rejected)};
+    bench_table_row(options->format, columns, COLUMNS, cells);
+    return least[worst] <= 2 * median && least[0] <= 3 * median;
+}
+
+bool bench_run_frames(const bench_options *options) {
+    static const uint32_t sizes[][2] = {{96, 56}, {544, 68}, {200, 200}};
+    static const double shares[] = {0.5, 0.72, 0.95};
+    bool ok = true;
+    bench_table_preamble(options->format);
+    bench_table_note(options->format, "The worst step should take at most twice the median, the first three times");
+    bench_table_head(options->format, columns, COLUMNS);
+    for (int size = 0; size < 3; size++)
+        for (int share = 0; share < 3; share++)
+            for (int what = 0; what < HAPPENINGS; what++)
+                for (uint32_t substeps = 8; substeps <= 40; substeps += 32) {
+                    const frames_scene next = {sizes[size][0], sizes[size][1], substeps, shares[share],
+                                               (happening)what};
+                    ok = measure(options, &next) && ok;
+                }
+    return ok;
+}
