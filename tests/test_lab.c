@@ -198,9 +198,26 @@ static void what_is_too_stiff_is_refused_and_goes_on_when_it_is_not(void **state
     frames(&model, 64);
     assert_true(model.sides[0].complaint[0] != 0); // explicit
     assert_true(model.sides[1].complaint[0] == 0); // implicit
+    assert_null(strstr(model.sides[0].complaint, "nan"));
+    assert_null(strstr(model.sides[0].complaint, "inf"));
     must_do(&model, "stiffness 1");
     frames(&model, 4);
     assert_true(model.sides[0].complaint[0] == 0);
+    model_end(&model);
+}
+
+static void the_cost_of_a_step_is_not_that_of_the_first(void **state) {
+    (void)state;
+    static lab_model model;
+    start(&model, "bar");
+    frames(&model, 1);
+    for (int side = 0; side < 2; side++)
+        assert_true(model.sides[side].steps == 1 && model.sides[side].measured.seconds == 0);
+    frames(&model, 1);
+    for (int side = 0; side < 2; side++)
+        assert_true(model.sides[side].steps == 2 && model.sides[side].measured.seconds > 0);
+    must_do(&model, "solver left direct");
+    assert_true(model.sides[0].measured.seconds == 0);
     model_end(&model);
 }
 
@@ -350,6 +367,41 @@ static bool overlap(lab_box a, lab_box b) {
            b.y < a.y + a.height;
 }
 
+static void draw(lab_view *view, const lab_model *model) {
+    assert_true(view_begin(view, model));
+    for (int side = 0; side < model->side_count; side++)
+        view_draw_side(view, model, side);
+    view_end(view, model, NULL, NULL);
+}
+
+static void help_leaves_nothing_behind_when_it_is_closed(void **state) {
+    (void)state;
+    static lab_model model;
+    static lab_view view;
+    start(&model, "bar");
+    assert_true(view_make(&view, 900, 600));
+    draw(&view, &model);
+    const size_t size = 900 * 600 * sizeof *view.target.pixels;
+    uint32_t *before = malloc(size);
+    assert_non_null(before);
+    memcpy(before, view.target.pixels, size);
+    must_do(&model, "help on");
+    draw(&view, &model);
+    uint32_t *shown = malloc(size);
+    assert_non_null(shown);
+    memcpy(shown, view.target.pixels, size);
+    assert_memory_not_equal(shown, before, size);
+    draw(&view, &model); // and it grows no darker
+    assert_memory_equal(view.target.pixels, shown, size);
+    must_do(&model, "help off");
+    draw(&view, &model);
+    assert_memory_equal(view.target.pixels, before, size);
+    free(before);
+    free(shown);
+    view_free(&view);
+    model_end(&model);
+}
+
 static void nothing_overlaps_in_windows_of_any_size(void **state) {
     (void)state;
     static const int sizes[][2] = {{480, 320}, {640, 480}, {1280, 720}, {720, 1280}, {1920, 1080}, {3000, 340}};
@@ -417,11 +469,13 @@ int main(void) {
         cmocka_unit_test(a_cut_makes_two_parts),
         cmocka_unit_test(undo_brings_back_the_state_of_before),
         cmocka_unit_test(what_is_too_stiff_is_refused_and_goes_on_when_it_is_not),
+        cmocka_unit_test(the_cost_of_a_step_is_not_that_of_the_first),
         cmocka_unit_test(a_scene_that_cannot_be_opened_changes_nothing),
         cmocka_unit_test(a_script_ends_in_the_same_state_everywhere),
         cmocka_unit_test(a_recording_of_the_mouse_plays_to_the_same_state),
         cmocka_unit_test(squares_side_by_side_leave_no_seam),
         cmocka_unit_test(wild_coordinates_are_drawn_nowhere),
+        cmocka_unit_test(help_leaves_nothing_behind_when_it_is_closed),
         cmocka_unit_test(nothing_overlaps_in_windows_of_any_size),
         cmocka_unit_test(sliders_give_valid_actions_from_end_to_end),
     };

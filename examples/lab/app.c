@@ -105,7 +105,9 @@ static void note_costs(lab_app *app, double begin, double end) {
     lab_costs *costs = &app->costs;
     const double seconds = end - begin, between = begin - app->last_begin;
     const bool first = app->frames == 0;
-    costs->frame = first ? seconds : costs->frame + 0.1 * (seconds - costs->frame);
+    // The first frame is the first to touch most of the memory.
+    if (!first)
+        costs->frame = costs->frame > 0 ? costs->frame + 0.1 * (seconds - costs->frame) : seconds;
     if (!first && between > 0)
         costs->per_second = costs->per_second > 0
                                 ? 1 / (1 / costs->per_second + 0.1 * (between - 1 / costs->per_second))

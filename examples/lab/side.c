@@ -58,6 +58,7 @@ uint32_t side_suggest_substeps(lab_side *side, double dt) {
 
 void side_start_measuring_time(lab_side *side) {
     side->measured.seconds = 0;
+    side->timed_steps = 0;
 }
 
 static float *scaled(const float *values, uint32_t count, double factor) {
@@ -223,8 +224,10 @@ void side_step(lab_side *side, const lab_settings *settings) {
     side->steps++;
     // The origin may have moved along.
     (void)!mspring_network_view(side->network, &side->view);
+    // The first step is not like the others: it is the first to touch the solver's memory.
     double *mean = &side->measured.seconds;
-    *mean = *mean > 0 ? *mean + 0.06 * (seconds - *mean) : seconds;
+    if (side->timed_steps++ > 0)
+        *mean = *mean > 0 ? *mean + 0.06 * (seconds - *mean) : seconds;
 }
 
 /* ----------------------------------------------------------------------------------------------- measurements */

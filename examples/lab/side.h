@@ -29,7 +29,7 @@ typedef struct lab_measures {
     double max_strain;
     double rms_strain;
     double min_x, min_y, max_x, max_y; ///< box around all particles
-    double seconds;                    ///< that a step takes, on the average of the last ones
+    double seconds;                    ///< that a step takes, on the average of the last ones; 0: not known yet
 } lab_measures;
 
 typedef struct lab_side {
@@ -48,7 +48,7 @@ typedef struct lab_side {
     uint32_t held_count;
     double pull_x, pull_y; ///< how far they are pulled from there
     double last_dt;
-    uint64_t steps;
+    uint64_t steps, timed_steps;
 } lab_side;
 
 /// Make a network of the stage with these settings.

@@ -245,7 +245,7 @@ static void draw_head(lab_view *view, const lab_model *model, int index) {
     text_draw(&view->target, head, &view->normal, after, base, TEXT_LEFT, TINT_FAINT, text);
     // Right: cost, then bending to its left.
     int right = head.x + head.width - 12;
-    if (view->shows_costs) {
+    if (view->shows_costs && side->measured.seconds > 0) {
         snprintf(text, sizeof text, "%.2f ms", 1e3 * side->measured.seconds);
         right = draw_figure(view, head, right, base, "a step", text, "00.00 ms");
     }
@@ -371,7 +371,7 @@ static void draw_top(lab_view *view, const lab_model *model, const lab_costs *co
         snprintf(text, sizeof text, "%u x", model->speed);
         text_draw(&view->target, box, &view->normal, state + (broken ? 100 : 0), 24, TEXT_LEFT, TINT_PIN, text);
     }
-    if (costs && view->shows_costs && box.width >= 640)
+    if (costs && view->shows_costs && costs->frame > 0 && box.width >= 640)
         draw_cost(view, costs, box);
 }
 

@@ -6,6 +6,8 @@
 #include "lab/tint.h"
 #include "lab/view.h"
 
+#include <string.h>
+
 void view_draw_help(lab_view *view) {
     enum { LINE = 19, WIDTH = 880, TOP = 52, KEY = 140, MARGIN = 26 };
     const lab_box all = {0, 0, view->target.width, view->target.height};
@@ -23,4 +25,6 @@ void view_draw_help(lab_view *view) {
         text_draw(&view->target, box, &view->normal, x, y, TEXT_LEFT, TINT_LEFT, keys_help[i].key);
         text_draw(&view->target, box, &view->normal, x + KEY, y, TEXT_LEFT, TINT_TEXT, keys_help[i].about);
     }
+    // It lies over gaps, too, which the next picture has to fill again.
+    memset(view->filled, 0, sizeof view->filled);
 }

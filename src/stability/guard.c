@@ -57,12 +57,18 @@ static mspring_result check_bounds(mspring_network *network, double dt) {
     if (named == MSPRING_NONE)
         return MSPRING_OK;
     const uint32_t slot = t->slot_of_particle[named];
-    return mspringi_fail(
-        &network->message, MSPRING_ERROR_UNSTABLE,
-        "a step of %g s (substeps: %u) would throw particle %u, perhaps with others, to (%g, %g) m "
-        "at (%g, %g) m/s: take a shorter step, more substeps or less stiffness",
-        dt, (unsigned)network->substeps, (unsigned)named, network->origin_x + (double)s->x[slot],
-        network->origin_y + (double)s->y[slot], (double)s->vx[slot], (double)s->vy[slot]);
+    const double x = network->origin_x + (double)s->x[slot], y = network->origin_y + (double)s->y[slot];
+    const double vx = (double)s->vx[slot], vy = (double)s->vy[slot];
+    const char *cure = "take a shorter step, more substeps or less stiffness";
+    if (!isfinite(x + y + vx + vy))
+        return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
+                             "a step of %g s (substeps: %u) would throw particle %u, perhaps with others, out of the "
+                             "range of numbers: %s",
+                             dt, (unsigned)network->substeps, (unsigned)named, cure);
+    return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
+                         "a step of %g s (substeps: %u) would throw particle %u, perhaps with others, to (%g, %g) m "
+                         "at (%g, %g) m/s: %s",
+                         dt, (unsigned)network->substeps, (unsigned)named, x, y, vx, vy, cure);
 }
 
 /* --------------------------------------------------------------------------------------------------- the border */
