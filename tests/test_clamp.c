@@ -371,30 +371,6 @@ static void what_cannot_be_helped_is_refused(void **state) {
     recipe_free(&made);
 }
 
-/// A stiff rope that falls as it lies, in steps that the implicit solvers refuse.
-static void it_helps_the_implicit_solvers_out(void **state) {
-    (void)state;
-    const mspring_solver solvers[] = {MSPRING_SOLVER_IMPLICIT, MSPRING_SOLVER_DIRECT};
-    for (size_t i = 0; i < COUNT_OF(solvers); i++) {
-        uint64_t seed = 1;
-        const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {1e12, 1e12}};
-        recipe made = {0};
-        const mspring_id start = recipe_particle(&made, 0, 0, 1, MSPRING_PARTICLE_PINNED);
-        const mspring_id end = recipe_particle(&made, 20, 0, 1, 0);
-        recipe_rope(&made, start, end, 20, &stuff, &seed);
-        mspring_network_def def = support_def(-9.8f, 1);
-        def.guard = MSPRING_GUARD_CLAMP;
-        def.solver = solvers[i];
-        mspring_network *network = recipe_network(&made, &def);
-        support_steps(network, 100, 1);
-        const uint64_t clamped = mspring_network_fallback_count(network);
-        print_message("%u of 100 steps clamped\n", (unsigned)clamped);
-        assert_true(clamped > 0);
-        mspring_network_destroy(network);
-        recipe_free(&made);
-    }
-}
-
 static void steps_allocate_nothing(void **state) {
     (void)state;
     recipe made = hanging_bar();
@@ -428,7 +404,6 @@ int main(void) {
         cmocka_unit_test(plans_make_no_difference),
         cmocka_unit_test(what_is_stable_is_not_clamped),
         cmocka_unit_test(what_cannot_be_helped_is_refused),
-        cmocka_unit_test(it_helps_the_implicit_solvers_out),
         cmocka_unit_test(steps_allocate_nothing),
     };
     return cmocka_run_group_tests_name("clamp", tests, NULL, NULL);

@@ -1,6 +1,6 @@
 /// @file test_energy.c
-/// Energy that implicit substeps would make out of nothing: they are taken in pieces, or refused with the state of
-/// before; and what is pulled, pushed, dropped and swung is never taken for it.
+/// Energy that implicit substeps would make out of nothing: they are taken in pieces, or go back; and what is
+/// pulled, pushed, dropped and swung is never taken for it.
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
@@ -81,31 +81,24 @@ static void a_stiff_rope_is_taken_in_pieces(void **state) {
     }
 }
 
-/// In a whole second not even pieces help.
-static void a_stiff_rope_is_refused(void **state) {
+/// In two seconds not even pieces follow it; still it gains nothing, and no step fails.
+static void a_stiff_rope_is_never_refused(void **state) {
     (void)state;
     for (size_t s = 0; s < COUNT_OF(solvers); s++) {
-        recipe made = rope(1e12, 0);
-        mspring_network *network = start(&made, solvers[s], MSPRING_INTEGRATOR_GA0, MSPRING_GUARD_GROWTH);
-        mspring_network *twin = start(&made, solvers[s], MSPRING_INTEGRATOR_GA0, MSPRING_GUARD_GROWTH);
-        for (int round = 0; round < 3; round++) {
-            const uint64_t before = support_hash(network);
-            for (int again = 0; again < 2; again++) {
-                check_error(mspring_network_step(network, 2), MSPRING_ERROR_UNSTABLE);
-                check_contains(mspring_network_error(network),
-                               round == 0 ? "spring 0 between particles 0 and 2" : "in 64 pieces of a substep");
-                assert_int_equal(support_hash(network), before);
+        for (mspring_integrator n = MSPRING_INTEGRATOR_GA0; n <= MSPRING_INTEGRATOR_EULER; n++) {
+            recipe made = rope(1e12, 0);
+            mspring_network *network = start(&made, solvers[s], n, MSPRING_GUARD_GROWTH);
+            course c = begin_course(network, 20 * 0.5 * 1e12 * 2e-6 * 2e-6);
+            for (int round = 0; round < 4; round++) {
+                support_steps(network, 1, 2);
+                check_course(&c, network, "a stiff rope, 2 s", round);
+                support_steps(network, 10, 1e-4);
+                support_steps(network, 1, 0.02);
+                check_course(&c, network, "a stiff rope, 0.02 s", round);
             }
-            // Steps that it can take, by themselves and in pieces, are none the worse for that.
-            support_steps(network, 10, 1e-4);
-            support_steps(twin, 10, 1e-4);
-            support_steps(network, 1, 0.02);
-            support_steps(twin, 1, 0.02);
-            assert_int_equal(support_hash(network), support_hash(twin));
+            mspring_network_destroy(network);
+            recipe_free(&made);
         }
-        mspring_network_destroy(network);
-        mspring_network_destroy(twin);
-        recipe_free(&made);
     }
 }
 
@@ -117,20 +110,6 @@ static void bounds_alone_let_it_pass(void **state) {
     assert_true(support_energy_of_motion(network) > 1e6);
     mspring_network_destroy(network);
     recipe_free(&made);
-}
-
-static void more_substeps_are_tried(void **state) {
-    (void)state;
-    for (size_t s = 0; s < COUNT_OF(solvers); s++) {
-        recipe made = rope(1e9, 0);
-        mspring_network *network = start(&made, solvers[s], MSPRING_INTEGRATOR_GA0, MSPRING_GUARD_RETRY);
-        course c = begin_course(network, 20 * 0.5 * 1e9 * 2e-6 * 2e-6);
-        support_steps(network, 1, 2);
-        check_course(&c, network, "a rope with more substeps", 0);
-        assert_in_range(mspring_network_substeps(network), 2, 1000);
-        mspring_network_destroy(network);
-        recipe_free(&made);
-    }
 }
 
 /* ------------------------------------------------------------------------------------------- what is no gain */
@@ -328,13 +307,9 @@ static void broken_springs_are_not_named(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_stiff_rope_is_taken_in_pieces),
-        cmocka_unit_test(a_stiff_rope_is_refused),
-        cmocka_unit_test(bounds_alone_let_it_pass),
-        cmocka_unit_test(more_substeps_are_tried),
-        cmocka_unit_test(work_is_no_gain),
-        cmocka_unit_test(slack_ropes_gain_nothing),
-        cmocka_unit_test(the_count_goes_along),
+        cmocka_unit_test(a_stiff_rope_is_taken_in_pieces), cmocka_unit_test(a_stiff_rope_is_never_refused),
+        cmocka_unit_test(bounds_alone_let_it_pass),        cmocka_unit_test(work_is_no_gain),
+        cmocka_unit_test(slack_ropes_gain_nothing),        cmocka_unit_test(the_count_goes_along),
         cmocka_unit_test(broken_springs_are_not_named),
     };
     return cmocka_run_group_tests_name("energy", tests, NULL, NULL);

@@ -290,9 +290,8 @@ enum {
     /// stiffness < mass / (2 h^2). See mspring_network_stable_dt().
     MSPRING_SOLVER_EXPLICIT = 0,
     /// One linear system in each substep, whatever the stiffness: stable on lattices for any dt and any springs, at
-    /// a cost that does not depend on them. Ropes and other springs outside of lattices have little stiffness
-    /// across them; where they are so stiff, and move so far in a substep, that energy would come from nowhere, the
-    /// substep is taken in pieces, and if that is not enough the step is refused (see mspring_guard).
+    /// a cost that does not depend on them. Energy never comes from nowhere, and free components keep their momentum
+    /// and angular momentum (see mspring_guard). Vibration that a substep cannot follow is damped.
     /// Springs and dampers are linearised at x + h v, with tiles of neighbouring particles turned on as rigid
     /// bodies
     /// (and with the stiffness across a spring clamped to 0 where it is compressed, so that the matrix is positive
@@ -322,11 +321,9 @@ enum {
 /// a few steps. The two of second order remember the substep before; the first substep after a change of the
 /// solver, and after the positions of all particles were set, is one of implicit Euler.
 ///
-/// Stiff ropes that hang slack, and are pulled taut within a substep, are what no integrator can follow: a substep
-/// that would gain energy there is taken in pieces of implicit Euler, of a half to a 64th, with twice the
-/// iterations, and the 15 substeps after it are ones of implicit Euler, too (unless the guard is
-/// MSPRING_GUARD_BOUNDS). Our ship falling under its own weight, with its rigging, has some fifty such substeps in
-/// 10 s.
+/// Stiff ropes that hang slack, and are pulled taut within a substep, are what no integrator can follow. A substep
+/// that would gain energy is taken again by implicit Euler, with twice the iterations, and then in halves, down to a
+/// 32nd. The next 15 substeps are ones of implicit Euler, too (unless the guard is MSPRING_GUARD_BOUNDS).
 typedef int32_t mspring_integrator;
 enum {
     MSPRING_INTEGRATOR_GA0 = 0,  ///< generalised-alpha with rho_inf = 0 (Chung and Hulbert, 1993): second order
@@ -394,19 +391,16 @@ enum {
     /// border are never refused. On the explicit solver that costs 2 to 3 % of a step of one substep, and less than
     /// 0.5 % of one of 8 or more. (That a step can be taken back at all, and bounds are looked at, takes 13 to 22 %
     /// of one substep, 2 to 3 % of 8 and less than 1 % of 40, whatever the guard: bench/STABILITY.md.)
-    /// The implicit and the direct solver count instead what energy gets beyond the work of gravity, forces, moving
-    /// pins and floor, in each substep. Since the history began (see mspring_integrator) that never comes to more
-    /// than nothing, but for rounding: what would is taken out of the velocities, by one factor for all that hang
-    /// together, relative to their mass centre or, if a pinned particle or one on the floor is among them, to rest.
-    /// (What was lost counts against it, as long as it is no more than the motion that there was: kinetic and
-    /// elastic energy, less that of flying as a whole.) Rounding is a millionth of the motion, and what lengths are
-    /// off by in the last place u of positions, about k u^2 / 12 a spring. That follows from the sums for substeps
-    /// that are summed up as a whole, as all are of networks without lattices or with broken lattice springs; in
-    /// whole lattices how far the solution lowers the linearised energy tells, by constants that were measured,
-    /// when to do so (with the direct solver never), and there the bound is measured, too: at most 5.2e-6 of the
-    /// motion in 1008 runs of 128 steps, up to 1e12 N/m. More than a hundredth of the motion at once is not let
-    /// pass so: that substep is taken with four times the iterations, as are the 3 after it, or else in pieces
-    /// (see mspring_integrator), and the step refused if 64 are not enough.
+    ///
+    /// The implicit and the direct solver keep an energy budget instead, of each component (all that live springs join)
+    /// in each substep. Kinetic and elastic energy grow by no more than the work of gravity, forces and moving pins. A
+    /// floor takes energy and gives none. A free component, with no pinned particle and no impulse from the floor,
+    /// keeps momentum and angular momentum but for what gravity, forces and global damping do. Its budget is counted
+    /// about its mass centre. What would be too much is taken out of the velocities beside its rigid motion. If that
+    /// is more than a thousandth of its energy, the substep is taken again (see mspring_integrator). If even a 32nd of
+    /// a substep is too long, the component goes only a part of its way in it. No step is refused for its energy.
+    /// In each substep the springs may have a millionth more than the budget, and what rounding adds: that of lengths,
+    /// 5e-15 k l^2 a spring, and on a floor 3e-7 m g times the distance from the local origin.
     MSPRING_GUARD_GROWTH = 0,
     /// The same, but take a step that would be refused again with twice as many substeps, four times as many, and
     /// so on up to max_substeps. Later steps keep the number that was needed, until mspring_network_set_solver().

@@ -168,7 +168,6 @@ static void move_implicit(mspring_network *to, const mspring_network *from) {
     n->history.h = had->history.h;
     n->history.restarts = had->history.restarts;
     n->seen.motion = had->seen.motion;
-    n->ledger = had->ledger;
     for (size_t i = 0; i < had->history_size / slots; ++i)
         move_values(had->history.low.x + i * slots, n->history.low.x + i * made_slots, from, to);
 }

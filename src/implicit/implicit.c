@@ -1,6 +1,5 @@
-/// Making an implicit solver, and its substep.
+/// Making an implicit solver, and what it keeps.
 #include "implicit.h"
-#include "contact/floor.h"
 
 #include <math.h>
 #include <string.h>
@@ -16,18 +15,6 @@
 /// Most that it may take at all, a few seconds.
 #define MOST_COARSE_COST 0x1p34
 
-/// Slots from which more than one worker is worth it.
-#define SMALLEST_SHARED_SLOTS 4096
-
-/// Workers meet some forty times in a substep. Where they have to share cores, these become sleeps, and one worker
-/// is faster alone (two workers on cores with a load of 10: 2.3 times, 1800x5). So after a substep with more than
-/// so many sleeps the next ones are taken alone: so many, and twice as many each time, up to so many. The bits are
-/// the same. Few at first, as others take a core away for a moment now and then (with 64 our ship's two workers
-/// were as fast as one, where they are 1.3 to 1.7 times).
-#define BEARABLE_SLEEPS 6
-#define SHORTEST_PATIENCE 4
-#define LONGEST_PATIENCE 1024
-
 /* ----------------------------------------------------------------------------------------------------- creation */
 
 static bool reserve_field(mspringi_memory *memory, mspringi_field *field, size_t slots) {
@@ -42,7 +29,7 @@ static bool reserve_history(mspringi_memory *memory, mspringi_history *history, 
     float *values = mspringi_alloc(memory, (two ? 6 : 4) * slots, sizeof *values);
     if (!values)
         return false;
-    history->restarts = true;
+    history->restarts = 1;
     history->low = (mspringi_field){values, values + slots};
     history->first = (mspringi_field){values + 2 * slots, values + 3 * slots};
     if (two)
@@ -79,9 +66,10 @@ static mspring_result allocate(mspringi_implicit *n, mspring_network *network) {
     n->diagonal = mspringi_alloc(memory, 3 * slots, sizeof *n->diagonal);
     n->sums = mspringi_alloc(memory, slots / MSPRINGI_CHUNK + 1, sizeof *n->sums);
     if (!reserve_history(memory, &n->history, slots, two) || !reserve_history(memory, &n->backup, slots, two) ||
-        !reserve_field(memory, &n->velocity, slots) || !reserve_field(memory, &n->residual, slots) ||
-        !reserve_field(memory, &n->displacement, slots) || !reserve_field(memory, &n->product, slots) ||
-        !reserve_field(memory, &n->scaled, slots) || !n->factors || !n->x || !n->mass || !n->diagonal || !n->sums)
+        !reserve_history(memory, &n->previous, slots, two) || !reserve_field(memory, &n->velocity, slots) ||
+        !reserve_field(memory, &n->residual, slots) || !reserve_field(memory, &n->displacement, slots) ||
+        !reserve_field(memory, &n->product, slots) || !reserve_field(memory, &n->scaled, slots) || !n->factors ||
+        !n->x || !n->mass || !n->diagonal || !n->sums)
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for an implicit solver of %u particles", (unsigned)t->particle_count);
     n->y = n->x + slots;
@@ -214,7 +202,6 @@ static void find_solved(mspringi_implicit *n, const mspring_network *network) {
         if (t->leftover_b[i] >= loose)
             n->is_solved[t->leftover_b[i] - loose] = 1;
     }
-    mspringi_balance_count(network, n);
 }
 
 mspring_result mspringi_implicit_create(mspring_network *network, const mspring_solver_def *def,
@@ -232,8 +219,7 @@ mspring_result mspringi_implicit_create(mspring_network *network, const mspring_
     if (result == MSPRING_OK)
         result = mspringi_panels_create(&n->panels, &network->topology, &network->memory, &network->message);
     if (result == MSPRING_OK)
-        result =
-            mspringi_balance_create(&n->balance, network, n->panels.count, &network->memory, &network->message);
+        result = mspringi_budget_create(&n->budget, network);
     if (result == MSPRING_OK)
         result = n->is_direct ? mspringi_direct_create(&n->direct, network) : make_two_level(n, network);
     if (result == MSPRING_OK)
@@ -274,13 +260,13 @@ void mspringi_implicit_destroy(mspringi_implicit *n, mspringi_memory *memory) {
         return;
     mspringi_direct_destroy(&n->direct, memory);
     mspringi_panels_destroy(&n->panels, memory);
-    mspringi_balance_destroy(&n->balance, memory);
+    mspringi_budget_destroy(&n->budget, memory);
     mspringi_tiles_destroy(&n->tiles, memory);
     mspringi_coarse_destroy(&n->coarse, memory);
-    void *const blocks[] = {n->history.low.x,  n->backup.low.x, n->x,         n->velocity.x,  n->residual.x,
-                            n->displacement.x, n->direction.x,  n->product.x, n->scaled.x,    n->arm.x,
-                            n->mass,           n->diagonal,     n->factors,   n->force_carry, n->carry,
-                            n->sums,           n->flights,      n->unknowns,  n->is_solved};
+    void *const blocks[] = {n->history.low.x, n->backup.low.x,   n->previous.low.x, n->x,         n->velocity.x,
+                            n->residual.x,    n->displacement.x, n->direction.x,    n->product.x, n->scaled.x,
+                            n->arm.x,         n->mass,           n->diagonal,       n->factors,   n->force_carry,
+                            n->carry,         n->sums,           n->flights,        n->unknowns,  n->is_solved};
     for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; ++i)
         mspringi_free(memory, blocks[i]);
     mspringi_free(memory, n);
@@ -302,11 +288,9 @@ void mspringi_implicit_keep(mspring_network *network) {
         return;
     n->is_kept = true;
     n->has_changed = false;
-    n->kept_ledger = n->ledger;
     n->kept_age = n->age;
     if (n->age > 0)
         mspringi_coarse_keep(&n->coarse);
-    n->gain.energy = 0.0;
 }
 
 void mspringi_implicit_restore(mspring_network *network) {
@@ -319,7 +303,6 @@ void mspringi_implicit_restore(mspring_network *network) {
         n->backup = failed;
     }
     n->has_changed = n->is_kept = false;
-    n->ledger = n->kept_ledger;
     n->age = n->kept_age;
     if (n->age > 0)
         mspringi_coarse_take_back(&n->coarse);
@@ -357,25 +340,12 @@ void mspringi_implicit_follow(mspring_network *network) {
         clear_outside_of_tiles(network);
         n->age = n->kept_age = 0;
     }
-    if (n->is_direct && n->seen.growth != network->edits.growth)
-        mspringi_balance_count(network, n);
-    if (n->seen.links != network->edits.links)
-        n->balance.is_dead_known = false;
     n->seen = network->edits;
 }
 
 void mspringi_implicit_forget(mspringi_implicit *n) {
     memset(n->history.low.x, 0, n->history_size * sizeof *n->history.low.x);
-    n->history.restarts = true;
-    n->ledger = (mspringi_ledger){0};
-}
-
-// Forget the history if the host has begun a new motion; cut tiles anew where springs broke or pins changed.
-static void follow_edits(mspring_network *network) {
-    mspringi_implicit *n = network->implicit;
-    if (n->seen.motion != network->edits.motion)
-        mspringi_implicit_forget(n);
-    mspringi_implicit_follow(network);
+    n->history.restarts = 1;
 }
 
 /* --------------------------------------------------------------------------------------------------------- plan */
@@ -396,7 +366,13 @@ void mspringi_implicit_describe(const mspringi_implicit *n, mspring_plan *plan) 
     plan->coarse_period = n->coarse_period;
 }
 
-/* ----------------------------------------------------------------------------------------------------- substeps */
+void mspringi_implicit_clear_place(mspringi_implicit *n, const mspringi_topology *t, mspringi_place place) {
+    for (uint32_t factor = 0; n && place >= t->chain_places && factor < MSPRINGI_FACTORS; ++factor)
+        n->factors[mspringi_factors_of_place(place) + factor * MSPRINGI_WIDTH] = 0.0f;
+}
+
+/* -------------------------------------------------------------------------------------------------------- ranges
+ */
 
 // The factorisation of the direct solver has places for all.
 bool mspringi_next_slots(const mspring_network *network, mspringi_slots slots, size_t *at, mspringi_slots *run) {
@@ -419,167 +395,4 @@ bool mspringi_next_slots(const mspring_network *network, mspringi_slots slots, s
         }
     }
     return run->end > run->first;
-}
-
-// Find d = displacement + alpha direction. Returns alpha; NaN if numbers overflowed.
-static float solve(const mspringi_substep_of *substep, mspringi_mate *mate) {
-    if (!substep->network->implicit->is_direct)
-        return mspringi_solve(substep, mate);
-    mspringi_meet(mate);
-    if (mate->index == 0)
-        mspringi_direct_solve(substep->network);
-    mspringi_meet(mate);
-    return 0.0f;
-}
-
-void mspringi_implicit_clear_place(mspringi_implicit *n, const mspringi_topology *t, mspringi_place place) {
-    for (uint32_t factor = 0; n && place >= t->chain_places && factor < MSPRINGI_FACTORS; ++factor)
-        n->factors[mspringi_factors_of_place(place) + factor * MSPRINGI_WIDTH] = 0.0f;
-}
-
-// Most times that a substep is solved to find out which particles the floor holds.
-#define MOST_PASSES 4
-
-// Solve with what the floor adds. Returns false if the substep is to be begun anew.
-static bool solve_with_floor(const mspringi_substep_of *substep, mspringi_mate *mate, float *alpha) {
-    mspring_network *network = substep->network;
-    mspringi_floor *floor = network->floor;
-    for (uint32_t pass = 0; pass < MOST_PASSES; ++pass) {
-        if (pass > 0) {
-            mspringi_predict(substep, mate);
-            mspringi_assemble(substep, mate);
-        }
-        mspringi_meet(mate);
-        if (mate->index == 0)
-            floor->has_hit = !mspringi_floor_add_terms(network, substep->h, pass);
-        mspringi_meet(mate);
-        if (floor->has_hit)
-            return false;
-        *alpha = solve(substep, mate);
-        mspringi_meet(mate);
-        if (mate->index == 0)
-            floor->again = mspringi_floor_review(network, *alpha, pass);
-        mspringi_meet(mate);
-        if (!floor->again)
-            break;
-    }
-    return true;
-}
-
-// A worker's part of a substep.
-static void run_substep(void *argument, uint32_t index, uint32_t worker) {
-    const mspringi_substep_of *substep = argument;
-    mspringi_mate mate = {.index = index, .count = substep->workers, .progress = substep->progress};
-    (void)worker;
-    mspringi_predict(substep, &mate);
-    mspringi_assemble(substep, &mate);
-    float alpha = 0.0f;
-    if (!substep->network->floor)
-        alpha = solve(substep, &mate);
-    else if (!solve_with_floor(substep, &mate, &alpha))
-        return;
-    if (substep->watches && !mspringi_energy_look(substep, &mate, alpha)) {
-        if (mate.index == 0)
-            substep->network->implicit->alpha = alpha;
-        return;
-    }
-    mspringi_land(substep, &mate, alpha);
-}
-
-static void choose_crew(mspringi_substep_of *substep) {
-    const mspring_network *network = substep->network;
-    mspringi_implicit *n = network->implicit;
-    const bool shared = mspringi_slot_count(network) >= SMALLEST_SHARED_SLOTS && n->alone == 0;
-    n->alone -= n->alone > 0;
-    substep->workers = shared ? mspringi_tasks_concurrency(network->tasks) : 1;
-    substep->progress = substep->workers > 1 ? mspringi_tasks_progress(network->tasks) : NULL;
-}
-
-// Whether the workers had a core each.
-static void judge_crew(mspringi_implicit *n, uint32_t sleeps) {
-    if (sleeps <= BEARABLE_SLEEPS) {
-        n->patience = 0;
-        return;
-    }
-    const uint32_t longer = n->patience > 0 ? 2 * n->patience : SHORTEST_PATIENCE;
-    n->patience = longer < LONGEST_PATIENCE ? longer : LONGEST_PATIENCE;
-    n->alone = n->patience;
-}
-
-static void run_crew(mspringi_substep_of *substep) {
-    mspringi_tasks *tasks = substep->progress ? substep->network->tasks : NULL;
-    mspringi_scheme_prepare(substep);
-    mspringi_tasks_run(tasks, substep->workers, run_substep, substep);
-}
-
-// Take a substep of substep->h, by implicit Euler if that is asked for. Returns false if energy would come from
-// nowhere; then it is not taken.
-static bool try_substep(mspringi_substep_of *substep, bool by_euler) {
-    mspring_network *network = substep->network;
-    mspringi_implicit *n = network->implicit;
-    const uint32_t sleeps = mspringi_tasks_sleeps(network->tasks);
-    choose_crew(substep);
-    n->is_hit = by_euler && n->integrator != MSPRING_INTEGRATOR_EULER;
-    n->balance.fails = false;
-    n->balance.surplus = n->fall = 0.0;
-    run_crew(substep);
-    if (network->floor && network->floor->has_hit) {
-        n->is_hit = true;
-        run_crew(substep);
-    }
-    if (substep->progress)
-        judge_crew(n, mspringi_tasks_sleeps(network->tasks) - sleeps);
-    if (n->balance.fails) {
-        n->is_hit = false;
-        n->age = 0;
-        return false;
-    }
-    if (network->floor)
-        mspringi_floor_bear(network, substep->h);
-    mspringi_scheme_close(substep);
-    if (n->balance.surplus > 0.0)
-        mspringi_energy_settle(substep);
-    n->age = n->age + 1 < n->coarse_period ? n->age + 1 : 0;
-    return true;
-}
-
-// Take a substep that cannot be taken as it is, in pieces of implicit Euler: halves, or halves of what is left of
-// them where even that is too long. A whole substep of implicit Euler hardly ever does (ship in free fall: never).
-static void take_pieces(mspringi_substep_of *substep) {
-    mspringi_implicit *n = substep->network->implicit;
-    const float h = substep->h, smallest = h / (float)MSPRINGI_MOST_PIECES;
-    uint32_t left = MSPRINGI_MOST_PIECES, piece = left / 2;
-    n->is_piece = true;
-    while (left > 0 && piece > 0) {
-        substep->h = smallest * (float)piece;
-        if (try_substep(substep, true))
-            left -= piece;
-        else
-            piece /= 2;
-    }
-    n->is_piece = false;
-    if (left > 0)
-        mspringi_energy_give_up(substep);
-    n->age = 0; // the coarse matrix is one of a piece
-    substep->h = h;
-}
-
-void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
-    mspringi_implicit *n = network->implicit;
-    follow_edits(network);
-    mspringi_substep_of substep = {
-        .network = network, .base = base, .h = h, .watches = mspringi_energy_is_watched(network)};
-    for (; count > 0 && !(n->gain.energy > 0.0); --count) {
-        const bool is_calm = n->ledger.calm > 0, has_more = n->is_direct || n->ledger.more > 0;
-        n->ledger.calm -= is_calm;
-        if (try_substep(&substep, is_calm)) {
-            n->ledger.more -= n->ledger.more > 0;
-            continue;
-        }
-        n->ledger.more = MSPRINGI_MORE_SUBSTEPS;
-        if (!has_more && try_substep(&substep, is_calm))
-            continue;
-        n->ledger.calm = MSPRINGI_CALM_SUBSTEPS;
-        take_pieces(&substep);
-    }
 }

@@ -6,6 +6,7 @@
 ///   solve                  two-level preconditioned conjugate gradients              solve.c, tiles.c, coarse.c
 ///                          or, for the direct solver, a factorisation                direct/direct.c
 ///   land                   positions and velocities from d                           scheme.c
+///   budget                 what no force has done is taken back                      budget.h
 ///
 /// Workers share all of it (crew.h): slots in chunks, rows in panels (panels.h), and tiles. Whatever is summed is
 /// summed in these pieces first, so that the bits do not depend on how many there are. The factorisation of the
@@ -17,12 +18,15 @@
 
 #include "network/network.h"
 
+#include "budget.h"
 #include "coarse.h"
 #include "crew.h"
 #include "direct/direct.h"
 #include "panels.h"
-#include "stability/energy.h"
 #include "tiles.h"
+
+/// Slots from which more than one worker is worth it.
+#define MSPRINGI_SMALLEST_SHARED_SLOTS 4096
 
 /// Most iterations, and most substeps with one coarse matrix.
 #define MSPRINGI_MOST_ITERATIONS 10000
@@ -33,7 +37,7 @@ typedef struct mspringi_history {
     mspringi_field first;  ///< acceleration, m/s^2; of BDF2: the last displacement beyond h v, m
     mspringi_field second; ///< of BDF2: the last change of velocity, m/s; else NULL
     float h;               ///< substep that it belongs to, s
-    bool restarts;         ///< there is none: the next substep is one of implicit Euler
+    uint32_t restarts;     ///< substeps to come that are of implicit Euler, as there is none or it says nothing
 } mspringi_history;
 
 typedef struct mspringi_implicit {
@@ -45,7 +49,9 @@ typedef struct mspringi_implicit {
     double scale;       ///< power of two that brings masses near 1
 
     mspringi_history history, backup; ///< backup is that of before the step once that has written one
+    mspringi_history previous;        ///< what the next substep is written to; that of before the last substep
     bool is_kept;                     ///< history is that of before the step
+    bool is_first;                    ///< the last substep was the first of a step, so backup is what was before it
     bool has_changed;                 ///< backup is
     size_t history_size;              ///< floats in a history
 
@@ -67,20 +73,16 @@ typedef struct mspringi_implicit {
     mspringi_tile_flight *flights;      ///< [tiles]
     uint8_t *is_solved;                 ///< [loose and spare slots] 1 where springs were added, so that A is not
                                         ///< diagonal there; NULL: nowhere
-    double fall;                        ///< by how much d lowers the energy of what is linearised, J
     double leftover_product;            ///< what leftover springs and contacts add to p . A p
     bool is_hit;                        ///< the present substep is one of implicit Euler: particles hit the floor,
                                         ///< or motion is not to be followed as the integrator would
-    bool is_piece;                      ///< it is a piece of one that made energy of nothing
+    bool is_piece;                      ///< it is a half of one that got energy from nowhere, or of such a half
     mspringi_system system;
     mspringi_iterate iterate;
     mspringi_edits seen; ///< the edits that it has followed
     uint64_t rested;     ///< edits.naps for which what sleeps is at rest in all that is kept by slot
 
-    mspringi_balance balance;
-    mspringi_ledger ledger, kept_ledger; ///< now, and before the step
-    mspringi_gain gain;                  ///< of the present step
-    float alpha;                         ///< of the last solution that energy was looked at for
+    mspringi_budget budget;
     mspringi_panels panels;
     bool is_direct;
     mspringi_direct direct; ///< all there is of it unless is_direct: zero
@@ -127,7 +129,7 @@ typedef struct mspringi_substep_of {
     mspringi_field base;
     float h;
     float mass_scale;
-    bool watches; ///< energy is looked at
+    bool watches; ///< with an energy budget
     uint32_t workers;
     mspringi_progress *progress;
     mspringi_flight flight;
@@ -177,6 +179,12 @@ void mspringi_predict(const mspringi_substep_of *substep, mspringi_mate *mate);
 void mspringi_land(const mspringi_substep_of *substep, const mspringi_mate *mate, float alpha);
 /// Let the history be that of the substep that has landed.
 void mspringi_scheme_close(const mspringi_substep_of *substep);
+/// Go back to the history of before the substep that has landed.
+void mspringi_scheme_reopen(mspring_network *network);
+/// That history.
+static inline const mspringi_history *mspringi_history_before(const mspringi_implicit *n) {
+    return n->is_first ? &n->backup : &n->previous;
+}
 
 /* assemble.c */
 

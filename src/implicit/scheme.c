@@ -39,7 +39,7 @@ mspringi_scheme mspringi_scheme_of(mspring_integrator integrator) {
 
 // Whether the substep is one of implicit Euler, whatever the integrator.
 static bool starts_anew(const mspringi_implicit *n) {
-    return n->history.restarts || n->is_hit;
+    return n->history.restarts > 0 || n->is_hit;
 }
 
 static mspring_integrator integrator_now(const mspringi_implicit *n) {
@@ -128,12 +128,10 @@ static mspringi_memory_of choose_memory(const mspringi_implicit *n) {
     }
 }
 
-// The first substep of a step writes its history to the backup, which becomes the history: what was there before is
-// the backup then.
 static void prepare_landing(mspringi_substep_of *substep, float rate) {
     const mspring_network *network = substep->network;
     const mspringi_implicit *n = network->implicit;
-    const mspringi_history *from = &n->history, *to = n->is_kept ? &n->backup : &n->history;
+    const mspringi_history *from = &n->history, *to = &n->previous;
     const mspringi_field direction = n->is_direct ? n->product : n->direction; // nothing, or what is left of d
     substep->memory = choose_memory(n);
     substep->landing[0] = (mspringi_landing){.predicted = n->x,
@@ -176,9 +174,6 @@ void mspringi_scheme_prepare(mspringi_substep_of *substep) {
     const double heavier = 1.0 + scheme.force_share * scheme.velocity_share * h * (double)network->global_damping;
     n->system.force_scale = n->scale * c;
     n->system.damping_rate = scheme.velocity_share / h;
-    n->system.parts = network->parts;
-    n->system.rest_lengths = network->rests.lengths;
-    n->system.rests_of_block = network->rests.of_block;
     substep->mass_scale = (float)(n->scale * heavier);
     substep->flight = prepare_flight(substep, integrator);
     prepare_outside(substep, c, heavier);
@@ -236,14 +231,33 @@ void mspringi_land(const mspringi_substep_of *substep, const mspringi_mate *mate
 
 void mspringi_scheme_close(const mspringi_substep_of *substep) {
     mspringi_implicit *n = substep->network->implicit;
+    const mspringi_history before = n->history;
+    n->history = n->previous;
+    n->is_first = n->is_kept;
     if (n->is_kept) {
-        const mspringi_history before = n->history;
-        n->history = n->backup;
+        n->previous = n->backup;
         n->backup = before;
         n->is_kept = false;
         n->has_changed = true;
+    } else {
+        n->previous = before;
     }
     n->history.h = substep->h;
-    n->history.restarts = n->is_hit; // a blow is no acceleration that lasts
+    n->history.restarts =
+        before.restarts > 1 ? before.restarts - 1 : n->is_hit; // a blow is no acceleration that lasts
     n->is_hit = false;
+}
+
+void mspringi_scheme_reopen(mspring_network *network) {
+    mspringi_implicit *n = network->implicit;
+    const mspringi_history failed = n->history;
+    if (n->is_first) {
+        n->history = n->backup;
+        n->backup = n->previous;
+        n->is_kept = true;
+        n->has_changed = n->is_first = false;
+    } else {
+        n->history = n->previous;
+    }
+    n->previous = failed;
 }

@@ -119,13 +119,6 @@ static double advance(const substep_of *substep, mspringi_mate *mate, float alph
     return sum;
 }
 
-// Count what an iteration takes off d . A d / 2 - d . b.
-static void note_fall(const substep_of *substep, const mspringi_mate *mate, double twice) {
-    mspringi_implicit *n = substep->network->implicit;
-    if (mate->index == 0)
-        n->fall += 0.5 * twice / n->system.force_scale;
-}
-
 // The first iteration: the tiles alone, as rigid bodies. It takes the fast changes of a heavy or a spinning part
 // off those that follow, which then leave less force unbalanced (80x5 with a tip of 1000 times the mass: no gain of
 // energy, where without it there is one of 0.1 %).
@@ -134,7 +127,6 @@ static double solve_tiles(const substep_of *substep, mspringi_mate *mate) {
     turn(substep, mate, MSPRINGI_TURN_BODIES, 0.0f);
     const double curvature = mspringi_multiply(substep, mate);
     const bool is_sound = curvature > 0.0 && curvature < INFINITY && product < INFINITY;
-    note_fall(substep, mate, is_sound ? product * (product / curvature) : 0.0);
     return advance(substep, mate, is_sound ? (float)(product / curvature) : 0.0f, true);
 }
 
@@ -156,7 +148,7 @@ float mspringi_solve(const substep_of *substep, mspringi_mate *mate) {
     // Contacts are far stiffer than all else: with the usual iterations a bar on the floor trembles, at 0.01 m/s.
     // And what a substep is in pieces for may be that iterations end too early.
     const bool has_contacts = network->floor && network->floor->contact_count > 0;
-    const uint32_t times = n->ledger.more > 0 ? MSPRINGI_MORE_ITERATIONS : has_contacts || n->is_piece ? 2 : 1;
+    const uint32_t times = has_contacts || n->is_piece ? 2 : 1;
     uint32_t left = times * n->iterations;
     invert(network, mspringi_slots_of(network, mate));
     assemble_coarse(network, mate);
@@ -169,15 +161,12 @@ float mspringi_solve(const substep_of *substep, mspringi_mate *mate) {
     turn(substep, mate, MSPRINGI_TURN_AFRESH, 0.0f);
     for (;;) {
         const double curvature = mspringi_multiply(substep, mate);
-        if (!(curvature < INFINITY && product < INFINITY)) {
-            note_fall(substep, mate, NAN);
+        if (!(curvature < INFINITY && product < INFINITY))
             return NAN;
-        }
         // Nothing is left to do, or to be done in this precision.
         if (curvature <= 0.0 || product <= least)
             return 0.0f;
         const float alpha = (float)(product / curvature);
-        note_fall(substep, mate, product * (product / curvature));
         if (--left == 0)
             return alpha;
         double next = advance(substep, mate, alpha, false);

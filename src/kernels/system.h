@@ -205,60 +205,42 @@ typedef enum mspringi_memory_of {
 
 typedef void (*mspringi_land_fn)(const mspringi_landing *landing, size_t first, size_t end);
 
-/* ----------------------------------------------------------------------------------------- energy of a substep */
+/* ------------------------------------------------------------------------------------- momenta and energies */
 
-/// A substep before it lands, in a coordinate.
-typedef struct mspringi_motion_axis {
-    const float *position, *low, *velocity; ///< before it
-    const double *predicted;
-    const float *start;                ///< velocity if d were 0
-    const float *solution, *direction; ///< d = solution + alpha direction
-    const float *force;                ///< from outside, N; NULL: none
-    float *step;                       ///< how far each slot goes, m
-} mspringi_motion_axis;
+/// Where everything is and how it moves, by slot.
 typedef struct mspringi_motion {
-    mspringi_motion_axis axes[2];
-    const float *mass; ///< scaled; 0 where there is none, or a pinned particle
-    float alpha;
-    float rate;            ///< of velocity, for a displacement
-    float stiffness_scale; ///< as the masses'
+    const float *x, *y, *vx, *vy;
+    const float *low_x, *low_y; ///< what positions have beyond single precision
+    const float *inverse_mass;
 } mspringi_motion;
 
-/// Sums over slots, with scaled masses.
+/// Sums over slots, about an origin that has a velocity.
 enum {
-    MSPRINGI_MOVE_KINETIC,   ///< m v^2 before the substep
-    MSPRINGI_MOVE_GAIN,      ///< what that gains
-    MSPRINGI_MOVE_MOMENTUM,  ///< m v before it, in x and in y
-    MSPRINGI_MOVE_PUSH = 4,  ///< what that gains
-    MSPRINGI_MOVE_WAY = 6,   ///< m times the step
-    MSPRINGI_MOVE_WORK = 8,  ///< force times the step, J
-    MSPRINGI_MOVE_FORCE,     ///< N
-    MSPRINGI_MOVE_MASS = 11, ///< m
-    MSPRINGI_MOVE_COUNT,     ///< slots with mass
-    MSPRINGI_MOVE_LARGEST,   ///< no sum: the largest coordinate of d, m
-    MSPRINGI_MOVE_DRIVEN,    ///< 0 if no pinned particle moves
-    MSPRINGI_MOVE_SUMS
+    MSPRINGI_MOMENT_MASS,    ///< m, kg
+    MSPRINGI_MOMENT_X,       ///< m x
+    MSPRINGI_MOMENT_Y,       ///< m y
+    MSPRINGI_MOMENT_PX,      ///< m vx
+    MSPRINGI_MOMENT_PY,      ///< m vy
+    MSPRINGI_MOMENT_INERTIA, ///< m (x^2 + y^2)
+    MSPRINGI_MOMENT_SPIN,    ///< m (x vy - y vx)
+    MSPRINGI_MOMENT_KINETIC, ///< m (vx^2 + vy^2)
+    MSPRINGI_MOMENTS
 };
 
-/// Compute step and the sums over the slots first to end - 1, multiples of MSPRINGI_WIDTH.
-typedef void (*mspringi_move_fn)(const mspringi_motion *motion, size_t first, size_t end, double *sums);
-
-/// Sums over springs, with scaled stiffness but for the last; e is what they are longer than at rest.
-enum {
-    MSPRINGI_STRETCH_GAIN,      ///< what k e^2 / 2 gains
-    MSPRINGI_STRETCH_ENERGY,    ///< k e^2 after the substep
-    MSPRINGI_STRETCH_PULL,      ///< k |e| after it
-    MSPRINGI_STRETCH_ERROR,     ///< squares of what an error of all of a length would change the gain by
-    MSPRINGI_STRETCH_LENGTH,    ///< k l^2 before it
-    MSPRINGI_STRETCH_GIVEN,     ///< what moving pinned particles may give
-    MSPRINGI_STRETCH_STIFFNESS, ///< k, N/m
-    MSPRINGI_STRETCH_SUMS
-};
-
-/// Compute the sums over the springs of one or more rows, all of one kind. driven: pinned particles move.
-typedef void (*mspringi_stretch_fn)(const mspringi_system *system, const mspringi_motion *motion,
-                                    const mspringi_span *spans, uint32_t count, bool is_lattice, bool driven,
+/// Sum up the slots first to end - 1, multiples of MSPRINGI_WIDTH. origin is x, y, vx, vy.
+typedef void (*mspringi_moments_fn)(const mspringi_motion *motion, size_t first, size_t end, const double *origin,
                                     double *sums);
+
+/// Of the springs of a row's block.
+typedef struct mspringi_elastic {
+    double energy; ///< J
+    double length; ///< k l^2, J: what rounding of lengths goes by
+} mspringi_elastic;
+
+/// Compute that for each block, by number, of one or more rows of one kind.
+typedef void (*mspringi_elastic_fn)(const mspringi_system *system, const mspringi_motion *motion,
+                                    const mspringi_span *spans, uint32_t count, bool is_lattice,
+                                    mspringi_elastic *of_block);
 
 /* ------------------------------------------------------------------------------------------ in double precision */
 
@@ -294,8 +276,8 @@ typedef struct mspringi_system_kernels {
     mspringi_restrict_fn restrict_to_tile;
     mspringi_turn_fn turn[MSPRINGI_TURNS];
     mspringi_land_fn land[MSPRINGI_REMEMBERS];
-    mspringi_move_fn move;
-    mspringi_stretch_fn stretch;
+    mspringi_moments_fn moments;
+    mspringi_elastic_fn elastic;
     mspringi_edges_fn add_edges;
 } mspringi_system_kernels;
 

@@ -106,7 +106,7 @@ const mspringi_kernels MSPRINGI_TABLE = {
                         [MSPRINGI_REMEMBER_CHANGE] = land_change,
                         [MSPRINGI_REMEMBER_ACCELERATION] = land_acceleration,
                         [MSPRINGI_REMEMBER_BOTH] = land_both},
-               .move = sum_moves,
-               .stretch = sum_stretches,
+               .moments = sum_moments,
+               .elastic = sum_elastic,
                .add_edges = add_edges},
 };

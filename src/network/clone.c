@@ -168,6 +168,7 @@ static void move_implicit(const moving *m, mspringi_implicit *n) {
         move_field(m, fields[i]);
     move_history(m, &n->history);
     move_history(m, &n->backup);
+    move_history(m, &n->previous);
     MOVE(n->x);
     MOVE(n->y);
     MOVE(n->mass);
@@ -181,10 +182,15 @@ static void move_implicit(const moving *m, mspringi_implicit *n) {
     MOVE(n->is_solved);
     MOVE(n->panels.list);
     MOVE(n->panels.sums);
-    MOVE(n->balance.chunks);
-    MOVE(n->balance.panels);
-    MOVE(n->balance.body);
-    MOVE(n->balance.bodies);
+    MOVE(n->budget.accounts);
+    MOVE(n->budget.of_slot);
+    MOVE(n->budget.of_block);
+    MOVE(n->budget.of_springs);
+    MOVE(n->budget.pins);
+    MOVE(n->budget.state);
+    move_field(m, &n->budget.impulse);
+    MOVE(n->budget.runs);
+    MOVE(n->budget.elastic);
     move_system(m, &n->system);
     move_iterate(m, &n->iterate);
     MOVE(n->seen.link_log);

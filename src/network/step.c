@@ -62,26 +62,9 @@ static mspringi_field prepare_base(mspring_network *network, double dt) {
 
 /* -------------------------------------------------------------------------------------------------- substeps */
 
-// Substeps of an implicit solver with a floor; those with heavy blows in pieces.
-static void take_implicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
-    for (; count > 0; --count) {
-        mspringi_floor_keep(network, h);
-        const uint32_t pieces = mspringi_floor_pieces(network, h);
-        const float piece = h / (float)pieces;
-        for (uint32_t i = 0; i < pieces; ++i) {
-            if (pieces > 1)
-                mspringi_floor_keep(network, piece);
-            mspringi_implicit_substeps(network, piece, base, 1);
-            mspringi_floor_touch_all(network, piece);
-        }
-    }
-}
-
 static void take_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
     if (network->is_clamped)
         mspringi_clamp_substeps(network, h, base, count);
-    else if (network->implicit && network->floor)
-        take_implicit_substeps(network, h, base, count);
     else if (network->implicit)
         mspringi_implicit_substeps(network, h, base, count);
     else
@@ -218,8 +201,6 @@ static mspring_result attempt(mspring_network *network, double dt) {
     mspring_result result = mspringi_guard_begin(network, dt, h);
     if (result == MSPRING_OK) {
         result = mspringi_guard_end(network, dt, h, run(network, dt, h));
-        if (result == MSPRING_OK)
-            result = mspringi_energy_verdict(network, dt);
         if (result != MSPRING_OK)
             go_back(network);
     }

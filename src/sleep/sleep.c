@@ -387,7 +387,7 @@ static void forget_motion(const mspring_network *network, size_t slot) {
     const mspringi_implicit *n = network->implicit;
     const size_t slots = mspringi_slot_count(network);
     for (size_t i = 0; n && i < n->history_size; i += slots)
-        n->history.low.x[i + slot] = n->backup.low.x[i + slot] = 0.0f;
+        n->history.low.x[i + slot] = n->backup.low.x[i + slot] = n->previous.low.x[i + slot] = 0.0f;
 }
 
 static void put_to_sleep(mspring_network *network, size_t slot, mspringi_field force) {

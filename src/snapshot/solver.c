@@ -13,10 +13,9 @@ typedef struct implicit_head {
     uint64_t tiles_print;
     double scale;
     float h;
-    uint32_t restarts, integrator, iterations, coarse_period, age, look, calm, more;
-    double gained, motion, risen, balance;
+    uint32_t restarts, integrator, iterations, coarse_period, age;
 } implicit_head;
-#define HEAD_BYTES ((size_t)84)
+#define HEAD_BYTES ((size_t)40)
 
 static size_t implicit_size_of(const mspringi_implicit *n, size_t coarse_values) {
     return HEAD_BYTES + n->history_size * sizeof(float) + coarse_values * sizeof(double);
@@ -42,23 +41,15 @@ static void implicit_save(const mspring_network *network, mspringi_writer *to) {
     const mspringi_implicit *n = network->implicit;
     // A history of a motion that has ended is as good as none.
     const bool ended = n->seen.motion != network->edits.motion;
-    mspringi_ledger ledger = {0};
-    if (!ended)
-        ledger = n->ledger;
-    const uint32_t words[] = {n->history.restarts || ended,
+    const uint32_t words[] = {ended ? 1 : n->history.restarts,
                               (uint32_t)n->integrator,
                               n->iterations,
                               n->coarse_period,
-                              age_of(network),
-                              ledger.look,
-                              ledger.calm,
-                              ledger.more};
-    const double energies[] = {ledger.gained, ledger.motion, ledger.risen, ledger.balance};
+                              age_of(network)};
     mspringi_put(to, &n->tiles.print, 1, sizeof n->tiles.print);
     mspringi_put(to, &n->scale, 1, sizeof n->scale);
     mspringi_put(to, &n->history.h, 1, sizeof n->history.h);
     mspringi_put(to, words, sizeof words / sizeof words[0], sizeof words[0]);
-    mspringi_put(to, energies, sizeof energies / sizeof energies[0], sizeof energies[0]);
     if (ended)
         mspringi_put_zeros(to, n->history_size * sizeof(float));
     else
@@ -74,18 +65,7 @@ static const uint8_t *read_head(const uint8_t *from, implicit_head *head) {
     from = mspringi_get(from, &head->integrator, 1, sizeof head->integrator);
     from = mspringi_get(from, &head->iterations, 1, sizeof head->iterations);
     from = mspringi_get(from, &head->coarse_period, 1, sizeof head->coarse_period);
-    from = mspringi_get(from, &head->age, 1, sizeof head->age);
-    from = mspringi_get(from, &head->look, 1, sizeof head->look);
-    from = mspringi_get(from, &head->calm, 1, sizeof head->calm);
-    from = mspringi_get(from, &head->more, 1, sizeof head->more);
-    from = mspringi_get(from, &head->gained, 1, sizeof head->gained);
-    from = mspringi_get(from, &head->motion, 1, sizeof head->motion);
-    from = mspringi_get(from, &head->risen, 1, sizeof head->risen);
-    return mspringi_get(from, &head->balance, 1, sizeof head->balance);
-}
-
-static bool is_energy(double value) {
-    return value >= 0.0 && value <= DBL_MAX;
+    return mspringi_get(from, &head->age, 1, sizeof head->age);
 }
 
 static mspring_result check_head(mspring_network *network, const implicit_head *head) {
@@ -95,7 +75,7 @@ static mspring_result check_head(mspring_network *network, const implicit_head *
         return mspringi_section_fail(network, section,
                                      "the network has another solver or integrator, or other tiles");
     if (!(head->scale >= DBL_MIN && head->scale <= DBL_MAX && head->h >= 0.0f && head->h <= FLT_MAX) ||
-        head->restarts > 1)
+        head->restarts > MSPRINGI_CALM_SUBSTEPS)
         return mspringi_section_fail(network, section, "its scale is %g, its substep %g s", head->scale,
                                      (double)head->h);
     if (head->iterations < 1 || head->iterations > MSPRINGI_MOST_ITERATIONS || head->coarse_period < 1 ||
@@ -103,10 +83,6 @@ static mspring_result check_head(mspring_network *network, const implicit_head *
         return mspringi_section_fail(
             network, section, "it has %u iterations, and a coarse matrix %u substeps old of %u",
             (unsigned)head->iterations, (unsigned)head->age, (unsigned)head->coarse_period);
-    if (!(is_energy(head->gained) && is_energy(head->motion) && is_energy(head->risen)) ||
-        !(fabs(head->balance) <= DBL_MAX) || head->look > MSPRINGI_LOOKS || head->calm > MSPRINGI_CALM_SUBSTEPS ||
-        head->more > MSPRINGI_MORE_SUBSTEPS)
-        return mspringi_section_fail(network, section, "it has gained %g of %g J", head->gained, head->motion);
     return MSPRING_OK;
 }
 
@@ -162,14 +138,7 @@ static void implicit_load(mspring_network *network, const uint8_t *from, size_t 
     n->history.restarts = head.restarts;
     n->iterations = head.iterations;
     n->coarse_period = head.coarse_period;
-    n->ledger = (mspringi_ledger){.gained = head.gained,
-                                  .balance = head.balance,
-                                  .motion = head.motion,
-                                  .risen = head.risen,
-                                  .look = head.look,
-                                  .calm = head.calm,
-                                  .more = head.more};
-    n->balance.is_dead_known = false;
+    n->budget.is_known = false;
     from = mspringi_get(from, n->history.low.x, n->history_size, sizeof(float));
     clear_history(network);
     mspringi_implicit_follow(network);

@@ -1,0 +1,321 @@
+/// What follows from the sums before and after a substep.
+#include "budget.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "contact/floor.h"
+#include "explicit/decay.h"
+#include "implicit.h"
+#include "sleep/sleep.h"
+
+/// Share of its energy that a component's springs may have too much: what solutions in single precision leave.
+#define TOLERATED 1e-6
+
+/// The same of m g times a coordinate, where the floor has put particles: half the last place of a float is 6e-8.
+#define PLACE_ROUNDING 3e-7
+
+/// Rounding of a length, as a share of it: half of its square times k l^2 is energy that says nothing.
+#define LENGTH_ROUNDING 1e-7
+
+/// Share of its energy that a component may get from nowhere, and is scaled out of its velocities, before the
+/// substep is taken again: scaling takes from slow motion, too, where a single rope has made the energy. (A ship
+/// with rigging held at its bow: scaled up to any share, its fall came to rest in a second; with a hundredth it
+/// lost four times as much as now.)
+#define MUCH 1e-3
+
+/// Share of the kinetic energy below which a rigid motion is lost in the rounding of velocities.
+#define LOST_MOTION 1e-15
+
+/// How often a component goes back half its way before it stays where it was.
+#define MOST_STEPS_BACK 12
+
+typedef mspringi_budget budget_of;
+typedef mspringi_account account;
+
+static mspringi_motion motion_of(const mspring_network *network) {
+    const mspringi_state *s = &network->state;
+    const mspringi_field *low = &network->implicit->history.low;
+    return (mspringi_motion){s->x, s->y, s->vx, s->vy, low->x, low->y, network->inverse_mass};
+}
+
+static mspringi_motion motion_before(const mspring_network *network) {
+    const mspringi_implicit *n = network->implicit;
+    const size_t slots = mspringi_slot_count(network);
+    const float *state = n->budget.state;
+    const mspringi_field *low = &mspringi_history_before(n)->low;
+    return (mspringi_motion){state,  state + slots, state + 2 * slots,    state + 3 * slots,
+                             low->x, low->y,        network->inverse_mass};
+}
+
+/* ------------------------------------------------------------------------------------------------- mass centres */
+
+/// A component about its mass centre, which is told from the origin.
+typedef struct centre {
+    double mass, x, y, vx, vy, inertia, spin, kinetic;
+} centre;
+
+static centre centre_of(const account *a) {
+    const double *s = a->sums, mass = s[MSPRINGI_MOMENT_MASS];
+    const double x = s[MSPRINGI_MOMENT_X] / mass, y = s[MSPRINGI_MOMENT_Y] / mass;
+    const double vx = s[MSPRINGI_MOMENT_PX] / mass, vy = s[MSPRINGI_MOMENT_PY] / mass;
+    const double inertia = s[MSPRINGI_MOMENT_INERTIA] - mass * (x * x + y * y);
+    const double kinetic = 0.5 * (s[MSPRINGI_MOMENT_KINETIC] - mass * (vx * vx + vy * vy));
+    return (centre){mass,
+                    x,
+                    y,
+                    vx,
+                    vy,
+                    inertia > 0.0 ? inertia : 0.0,
+                    s[MSPRINGI_MOMENT_SPIN] - mass * (x * vy - y * vx),
+                    kinetic > 0.0 ? kinetic : 0.0};
+}
+
+static double flight_energy(const account *a, const centre *c) {
+    const double vx = a->origin[2] + c->vx, vy = a->origin[3] + c->vy;
+    return 0.5 * c->mass * (vx * vx + vy * vy);
+}
+
+static void begin_account(const mspring_network *network, account *a) {
+    const float *const state[] = {network->state.x, network->state.y, network->state.vx, network->state.vy};
+    for (size_t i = 0; i < 4; ++i)
+        a->origin[i] = (double)state[i][a->first_slot];
+    a->is_asleep = mspringi_slot_is_asleep(network, a->first_slot);
+    a->is_driven = false;
+}
+
+static void find_driven(const mspring_network *network, budget_of *budget) {
+    const mspringi_state *s = &network->state;
+    budget->is_driven = false;
+    for (uint32_t i = 0; i < budget->pin_count; ++i) {
+        const uint32_t slot = budget->pins[i];
+        if (s->vx[slot] == 0.0f && s->vy[slot] == 0.0f)
+            continue;
+        budget->accounts[budget->of_slot[slot]].is_driven = true;
+        budget->is_driven = true;
+    }
+}
+
+void mspringi_budget_open(mspring_network *network) {
+    budget_of *budget = &network->implicit->budget;
+    for (uint32_t i = 0; i < budget->count; ++i)
+        begin_account(network, &budget->accounts[i]);
+    find_driven(network, budget);
+    mspringi_measuring all = {.network = network, .motion = motion_of(network)};
+    mspringi_budget_measure(&all);
+    for (account *a = budget->accounts; a < budget->accounts + budget->count; ++a) {
+        const centre c = centre_of(a);
+        a->x = c.x;
+        a->y = c.y;
+        a->vx = c.vx;
+        a->vy = c.vy;
+        a->spin = c.spin;
+        a->internal = c.kinetic + a->elastic;
+        a->flight = flight_energy(a, &c);
+        a->share = 1.0;
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------- the judgement
+ */
+
+/// How momenta change in a substep but for springs and floor: what is left of them, and for how long forces act.
+typedef struct outside {
+    double left, seconds;
+} outside;
+
+static outside outside_in(const mspring_network *network, double h) {
+    const double rate = (double)network->global_damping, x = rate * h;
+    const double left = (double)mspringi_decay(network->global_damping, (float)h);
+    return (outside){left, x > 0.01 ? (1.0 - left) / rate : h * (1.0 - x * (0.5 - x * (1.0 / 6.0)))};
+}
+
+// Let the scaled velocities of a free component make up for what its momenta have changed by.
+static void aim(account *a, const centre *c, double vx, double vy, double turn) {
+    const double turns = c->inertia > 0.0 ? c->spin / c->inertia : 0.0;
+    const double dvx = vx - c->vx, dvy = vy - c->vy, other = turn - turns;
+    const double motion = c->mass * (dvx * dvx + dvy * dvy) + c->inertia * (other * other);
+    a->turn = turn - a->keep * turns;
+    a->add_x = (a->origin[2] + vx) - a->keep * (a->origin[2] + c->vx);
+    a->add_y = (a->origin[3] + vy) - a->keep * (a->origin[3] + c->vy);
+    if (a->keep == 1.0 && motion <= LOST_MOTION * (c->kinetic + flight_energy(a, c)))
+        a->turn = a->add_x = a->add_y = 0.0;
+}
+
+static double keep_of(double room, double motion) {
+    return !(motion > room) ? 1.0 : room > 0.0 ? sqrt(room / motion) : 0.0;
+}
+
+static void judge_free(const mspring_network *network, account *a, const centre *c, const outside *o) {
+    const double *s = a->sums, mass = c->mass;
+    const double fx = s[MSPRINGI_EFFECT_X], fy = s[MSPRINGI_EFFECT_Y];
+    const double torque = s[MSPRINGI_EFFECT_TORQUE] - 0.5 * ((a->x + c->x) * fy - (a->y + c->y) * fx);
+    const double spin = c->inertia > 0.0 ? o->left * a->spin + o->seconds * torque : 0.0;
+    const double vx = o->left * (a->origin[2] + a->vx) + o->seconds * ((double)network->gravity_x + fx / mass);
+    const double vy = o->left * (a->origin[3] + a->vy) + o->seconds * ((double)network->gravity_y + fy / mass);
+    const double work = s[MSPRINGI_EFFECT_WORK] - (fx * (c->x - a->x) + fy * (c->y - a->y));
+    const double turns = c->inertia > 0.0 ? c->spin / c->inertia : 0.0;
+    const double turn = c->inertia > 0.0 ? spin / c->inertia : 0.0;
+    const double rest = c->kinetic - 0.5 * c->spin * turns;
+    const double room = (a->internal + work) - a->elastic - 0.5 * spin * turn;
+    a->exceeds = room < -(TOLERATED * a->internal + 0.5 * LENGTH_ROUNDING * LENGTH_ROUNDING * a->length);
+    a->keep = keep_of(room, rest);
+    a->gains = rest - room > MUCH * (a->elastic + c->kinetic);
+    aim(a, c, vx - a->origin[2], vy - a->origin[3], turn);
+}
+
+static void judge_held(const mspring_network *network, account *a, const centre *c) {
+    const double before = a->internal + a->flight;
+    const double gx = (double)network->gravity_x, gy = (double)network->gravity_y, mass = c->mass;
+    const double work = mass * (gx * (c->x - a->x) + gy * (c->y - a->y)) + a->sums[MSPRINGI_EFFECT_WORK] + a->given;
+    const double room = (before + work) - a->elastic;
+    const double far = sqrt(c->inertia / mass);
+    const double x = fabs(a->origin[0] + c->x) + far, y = fabs(a->origin[1] + c->y) + far;
+    const double places =
+        a->sums[MSPRINGI_EFFECT_TOUCH] > 0.0 ? PLACE_ROUNDING * mass * (fabs(gx) * x + fabs(gy) * y) : 0.0;
+    a->exceeds = room < -(TOLERATED * before + 0.5 * LENGTH_ROUNDING * LENGTH_ROUNDING * a->length + places);
+    const double motion = c->kinetic + flight_energy(a, c);
+    a->keep = keep_of(room, motion);
+    a->gains = motion - room > MUCH * (a->elastic + motion);
+    a->add_x = a->add_y = a->turn = 0.0;
+}
+
+// Returns whether any component has gained much; exceeds: whether the springs of any have too much.
+static bool judge_all(const mspring_network *network, const outside *o, bool *exceeds) {
+    budget_of *budget = &network->implicit->budget;
+    bool gains = false;
+    *exceeds = false;
+    for (account *a = budget->accounts; a < budget->accounts + budget->count; ++a) {
+        const centre c = centre_of(a);
+        a->exceeds = a->gains = false;
+        a->keep = 1.0;
+        a->add_x = a->add_y = a->turn = 0.0;
+        if (a->is_asleep || !(c.mass > 0.0))
+            continue;
+        if (a->is_pinned || a->sums[MSPRINGI_EFFECT_TOUCH] > 0.0)
+            judge_held(network, a, &c);
+        else
+            judge_free(network, a, &c, o);
+        *exceeds |= a->exceeds;
+        gains |= a->gains;
+    }
+    return gains;
+}
+
+/* -------------------------------------------------------------------------------------------------- the outcome */
+
+static void turn_slots(const mspring_network *network, const account *a, size_t first, size_t end) {
+    const mspringi_motion m = motion_of(network);
+    const double sums_x = a->sums[MSPRINGI_MOMENT_X], sums_y = a->sums[MSPRINGI_MOMENT_Y];
+    const double mass = a->sums[MSPRINGI_MOMENT_MASS], x = sums_x / mass, y = sums_y / mass;
+    const double keep = a->keep, turn = a->turn, add_x = a->add_x, add_y = a->add_y;
+    float *const vx = network->state.vx, *const vy = network->state.vy;
+    for (size_t slot = first; slot < end; ++slot) {
+        const double rx = (((double)m.x[slot] - a->origin[0]) + (double)m.low_x[slot]) - x;
+        const double ry = (((double)m.y[slot] - a->origin[1]) + (double)m.low_y[slot]) - y;
+        const float to_x = (float)(keep * (double)vx[slot] + (add_x - turn * ry));
+        const float to_y = (float)(keep * (double)vy[slot] + (add_y + turn * rx));
+        const bool is_free = m.inverse_mass[slot] > 0.0f;
+        vx[slot] = is_free ? to_x : vx[slot];
+        vy[slot] = is_free ? to_y : vy[slot];
+    }
+}
+
+static bool changes(const account *a) {
+    return a->keep != 1.0 || a->add_x != 0.0 || a->add_y != 0.0 || a->turn != 0.0;
+}
+
+// Give slots the velocities that they may have.
+static void turn_range(void *argument, size_t first, size_t end) {
+    const mspring_network *network = argument;
+    const budget_of *budget = &network->implicit->budget;
+    for (size_t slot = first; slot < end; slot += MSPRINGI_WIDTH) {
+        const uint32_t number = budget->of_block[slot / MSPRINGI_WIDTH];
+        if (number < MSPRINGI_SOME_ACCOUNTS && changes(&budget->accounts[number]))
+            turn_slots(network, &budget->accounts[number], slot, slot + MSPRINGI_WIDTH);
+        for (size_t i = slot; number == MSPRINGI_SOME_ACCOUNTS && i < slot + MSPRINGI_WIDTH; ++i)
+            if (budget->of_slot[i] != MSPRINGI_NO_ACCOUNT && changes(&budget->accounts[budget->of_slot[i]]))
+                turn_slots(network, &budget->accounts[budget->of_slot[i]], i, i + 1);
+    }
+}
+
+static void turn_all(mspring_network *network) {
+    const budget_of *budget = &network->implicit->budget;
+    bool any = false;
+    for (uint32_t i = 0; i < budget->count; ++i)
+        any |= changes(&budget->accounts[i]);
+    if (any)
+        mspringi_tasks_run_ranges(network->tasks, mspringi_slot_count(network), MSPRINGI_WIDTH, turn_range,
+                                  network);
+}
+
+// Keep where the substep has led to, in what the solver has predicted and needs no more.
+static void keep_ends(const mspring_network *network) {
+    const mspringi_motion m = motion_of(network);
+    const mspringi_implicit *n = network->implicit;
+    for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
+        n->x[slot] = (double)m.x[slot] + (double)m.low_x[slot];
+        n->y[slot] = (double)m.y[slot] + (double)m.low_y[slot];
+    }
+}
+
+static void go_to(float *high, float *low, size_t slot, double to) {
+    high[slot] = (float)to;
+    low[slot] = (float)(to - (double)high[slot]);
+}
+
+// Let all components that have too much go back half of their way, or all of it.
+static void step_back(mspring_network *network, const mspringi_motion *before, bool is_last) {
+    mspringi_implicit *n = network->implicit;
+    budget_of *budget = &n->budget;
+    for (account *a = budget->accounts; a < budget->accounts + budget->count; ++a)
+        if (a->exceeds)
+            a->share = is_last ? 0.0 : 0.5 * a->share;
+    for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
+        if (budget->of_slot[slot] == MSPRINGI_NO_ACCOUNT || !(network->inverse_mass[slot] > 0.0f))
+            continue;
+        const account *a = &budget->accounts[budget->of_slot[slot]];
+        if (!a->exceeds)
+            continue;
+        const double x = (double)before->x[slot] + (double)before->low_x[slot];
+        const double y = (double)before->y[slot] + (double)before->low_y[slot];
+        go_to(network->state.x, n->history.low.x, slot, x + a->share * (n->x[slot] - x));
+        go_to(network->state.y, n->history.low.y, slot, y + a->share * (n->y[slot] - y));
+    }
+    n->history.restarts = n->history.restarts > 1 ? n->history.restarts : 1;
+}
+
+bool mspringi_budget_close(mspring_network *network, float h, mspringi_field base, bool may_halve) {
+    mspringi_measuring all = {.network = network,
+                              .motion = motion_of(network),
+                              .before = motion_before(network),
+                              .base = base,
+                              .is_after = true};
+    const outside o = outside_in(network, (double)h);
+    for (int step = 0;; ++step) {
+        bool exceeds;
+        mspringi_budget_measure(&all);
+        mspringi_budget_add_given(&all);
+        const bool gains = judge_all(network, &o, &exceeds);
+        if ((exceeds || gains) && may_halve)
+            return false;
+        if (!exceeds || step > MOST_STEPS_BACK)
+            break;
+        if (step == 0)
+            keep_ends(network);
+        step_back(network, &all.before, step == MOST_STEPS_BACK);
+    }
+    turn_all(network);
+    return true;
+}
+
+void mspringi_budget_undo(mspring_network *network) {
+    const budget_of *budget = &network->implicit->budget;
+    const size_t slots = mspringi_slot_count(network);
+    float *const to[] = {network->state.x, network->state.y, network->state.vx, network->state.vy};
+    for (size_t i = 0; i < 4; ++i)
+        memcpy(to[i], budget->state + i * slots, slots * sizeof *budget->state);
+    if (network->floor)
+        memcpy(network->floor->impulse.x, budget->impulse.x, 2 * slots * sizeof *budget->impulse.x);
+    mspringi_scheme_reopen(network);
+}

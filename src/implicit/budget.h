@@ -1,0 +1,125 @@
+/// @file budget.h
+/// The energy budget of implicit substeps: no component gets energy, momentum or spin from nowhere.
+///
+/// A substep linearises every spring once. A slack rope, a lattice that turns fast, or iterations that end too
+/// early then stretch springs by more than any force has done work for. So after each substep, and after the floor
+/// has acted, every component (all that live springs join) is looked at by itself:
+///
+///   - It is held if it has a pinned particle, or if the floor has given it an impulse in this substep. Else it is
+///     free: momentum and angular momentum about its mass centre are what they were, with what forces from outside
+///     and global damping have added. Where the substep has changed them otherwise, the velocities get a rigid
+///     motion that makes up for it.
+///   - Its room is the energy from before the substep, with the work of gravity, forces and moving pins, less what
+///   its
+///     springs have now and less what its momenta demand. Work of the floor does not count: it can only take
+///     energy. A free component is seen from its mass centre, where gravity does no work.
+///   - What velocities have beyond that room is scaled out of them, about the rigid motion of a free component,
+///   about
+///     rest in a held one. Momenta stay.
+///   - If springs alone have more than the room, or a component has gained much, the whole substep is taken again
+///   by
+///     implicit Euler, with twice the iterations. If that does not help, two halves of it are taken, and so on,
+///     MSPRINGI_MOST_HALVINGS times. The shortest piece is not refused: each component whose springs have too much
+///     goes back towards where it was, as far as it must. The next MSPRINGI_CALM_SUBSTEPS are of implicit Euler,
+///     too.
+///
+/// All sums have a fixed order, whatever the number of workers: blocks by kernels, then components in the order of
+/// blocks.
+///
+///   components.c   which components there are
+///   sums.c         sums before and after
+///   budget.c       what follows from them
+///   substeps.c     substeps and their halves
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_BUDGET_H
+#define MSPRINGI_BUDGET_H
+
+#include "network/network.h"
+
+/// Times that a substep is halved.
+#define MSPRINGI_MOST_HALVINGS 5u
+
+/// Substeps of implicit Euler, at most, from one that got energy from nowhere on. Without them a falling ship with
+/// rigging had to take twice as many again.
+#define MSPRINGI_CALM_SUBSTEPS 15u
+
+/// No component, and several.
+#define MSPRINGI_NO_ACCOUNT MSPRING_NONE
+#define MSPRINGI_SOME_ACCOUNTS (MSPRING_NONE - 1)
+
+/// What is summed over a run of blocks after a substep, beside its moments.
+enum {
+    MSPRINGI_EFFECT_X = MSPRINGI_MOMENTS, ///< forces from outside, N
+    MSPRINGI_EFFECT_Y,
+    MSPRINGI_EFFECT_TORQUE, ///< of these about the origin, halfway, N m
+    MSPRINGI_EFFECT_WORK,   ///< of these, J
+    MSPRINGI_EFFECT_TOUCH,  ///< particles that the floor has given an impulse
+    MSPRINGI_EFFECTS
+};
+
+/// A component in a substep.
+typedef struct mspringi_account {
+    uint32_t first_slot;
+    bool is_pinned, is_driven, is_asleep; ///< driven: one of its pinned particles moves
+    bool exceeds;                         ///< its springs alone have too much energy
+    bool gains;                           ///< springs and velocities together have much too much
+    double origin[4];                     ///< x, y, vx, vy of its first slot before the substep
+    double sums[MSPRINGI_EFFECTS];
+    double elastic, length;  ///< J, as in mspringi_elastic
+    double given;            ///< work of moving pins, J
+    double x, y, vx, vy;     ///< mass centre before, from the origin
+    double spin;             ///< about it before, kg m^2/s
+    double internal, flight; ///< before: elastic and kinetic about it; kinetic of it, J
+    double keep;             ///< new velocities are keep v + (add_x, add_y) + turn x (r - centre)
+    double add_x, add_y, turn;
+    double share; ///< of its way that it goes
+} mspringi_account;
+
+typedef struct mspringi_budget {
+    mspringi_account *accounts; ///< [slots / 2 + 1]
+    uint32_t count;
+    uint32_t *of_slot;               ///< [slots]
+    uint32_t *of_block, *of_springs; ///< [blocks] that all particles, or springs of the row, of a block are in
+    uint32_t *pins;                  ///< [slots] those of pinned particles in components
+    uint32_t pin_count;
+    bool is_known; ///< which components and pins there are, for these edits
+    uint64_t links, growth, grafts, masses;
+    bool is_driven;                   ///< some component is
+    float *state;                     ///< [4][slots] before the substep
+    mspringi_field impulse;           ///< of the floor before it
+    double (*runs)[MSPRINGI_EFFECTS]; ///< [blocks] at the first of each run of blocks
+    mspringi_elastic *elastic;        ///< [blocks]
+} mspringi_budget;
+
+mspring_result mspringi_budget_create(mspringi_budget *budget, mspring_network *network);
+void mspringi_budget_destroy(mspringi_budget *budget, mspringi_memory *memory);
+
+/// Have the components that there are. Allocates nothing.
+void mspringi_budget_follow(mspring_network *network);
+
+/// Before a substep with these forces from outside: keep what it begins with.
+void mspringi_budget_open(mspring_network *network);
+
+/// After a substep of h seconds, and after the floor. Returns false if the substep should be taken in halves, which
+/// is only if may_halve; mspringi_budget_undo() then takes it back.
+bool mspringi_budget_close(mspring_network *network, float h, mspringi_field base, bool may_halve);
+void mspringi_budget_undo(mspring_network *network);
+
+/* sums.c */
+
+/// What the workers sum up.
+typedef struct mspringi_measuring {
+    mspring_network *network;
+    mspringi_motion motion, before; ///< before: where it was, after a substep
+    mspringi_field base;            ///< forces from outside
+    bool is_after;
+    uint32_t workers;
+} mspringi_measuring;
+
+/// Fill in the sums, elastic and length of all accounts, and before a substep keep the state. Moving pins' work is
+/// extra.
+void mspringi_budget_measure(mspringi_measuring *measuring);
+void mspringi_budget_add_given(const mspringi_measuring *measuring);
+
+#endif
