@@ -75,7 +75,7 @@ static bool reset(void *self, scene_error *error) {
     return true;
 }
 
-/// Save a frame, into more room if it takes that: while the guard suspects a step it keeps the state before.
+/// Save a frame, into more room if it takes that: forces and edits are saved, too.
 static mspring_result save_frame(bench_network *network) {
     size_t size = 0;
     mspring_result result = mspring_network_snapshot_size(network->network, MSPRING_SNAPSHOT_FRAME, &size);

@@ -4,7 +4,7 @@
 ///
 /// SPDX-License-Identifier: MIT
 #include "network/network.h"
-#include "stability/stability.h"
+#include "stability/border.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -18,12 +18,8 @@
 #define SHARPNESS 3e-3
 
 /// Whether the bound says that substeps of h are stable in the network's shape.
-static bool is_below(const mspring_network *network, double h) {
-    float *room = calloc(2 * mspringi_slot_count(network), sizeof *room);
-    assert_non_null(room);
-    const bool below = mspringi_border_is_below(network, h, 4.0, room, room + mspringi_slot_count(network));
-    free(room);
-    return below;
+static bool is_below(mspring_network *network, double h) {
+    return mspringi_border_is_below(network, h, 4.0);
 }
 
 /// The longest substep that the bound allows, as a part of the border.

@@ -6,7 +6,7 @@
 #include "support.h"
 
 /// What a particle of a full lattice may take all told: state, four springs, maps.
-#define MOST 90.0
+#define MOST 110.0
 
 static const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {100, 200}, .damping = {1, 2}};
 static const recipe_stuff relative = {

@@ -386,11 +386,14 @@ enum {
 typedef int32_t mspring_guard;
 enum {
     /// Refuse a step whose substeps are above the border of mspring_network_stable_dt(): motion would turn round
-    /// and grow in each. The border is looked at when the substep changes, and when a step changes a velocity twice
-    /// as much as one did at the last look; not at all where substeps are stable in any shape. Steps below the
-    /// border are never refused. On the explicit solver that costs 2 to 3 % of a step of one substep, and less than
-    /// 0.5 % of one of 8 or more. (That a step can be taken back at all, and bounds are looked at, takes 13 to 22 %
-    /// of one substep, 2 to 3 % of 8 and less than 1 % of 40, whatever the guard: bench/STABILITY.md.)
+    /// and grow in each. The border is looked at before a step whose substep is another one, and after a step that
+    /// changes a velocity twice as much as one did at the last look. It is never looked at where substeps are stable
+    /// in any shape. Steps below the border are never refused.
+    /// A look first bounds the border, by a pass over the springs. If that does not answer it, it searches
+    /// for a motion that grows, for as long as a part of the step's substeps takes. What such a search overlooks is
+    /// found once it has grown to a thousandth of the shortest spring in a substep: that step is refused. So a step of 8
+    /// or more substeps takes at most twice its usual time, and the first one at most three times. Watching velocities
+    /// takes 2 to 3 % of a step of one substep, less than 0.5 % of one of 8 (bench/STABILITY.md).
     ///
     /// The implicit and the direct solver keep an energy budget instead, of each component (all that live springs join)
     /// in each substep. Kinetic and elastic energy grow by no more than the work of gravity, forces and moving pins. A
@@ -719,12 +722,14 @@ MSPRING_API uint64_t mspring_network_fallback_count(const mspring_network *netwo
 ///
 /// For small motion about a shape, a substep h is stable just if the largest eigenvalue of
 ///     h^2 M^-1 K + 2 h M^-1 C
-/// is at most 2 (1 + exp(global_damping h)), with M the masses, K the tangent stiffness of the shape, C the
-/// dampers, and without pinned particles. (One mode of angular frequency omega and damping ratio zeta: omega h <= 2
-/// (sqrt(1 + zeta^2) - zeta).) The eigenvalue is found by iteration (Lanczos 1950). Relative springs follow h; a
-/// network of relative springs alone is stable at every h (infinite) or at none (0).
-/// @param now        for the shape of now, to about 0.3 % and rather below than above; stretching a network
-///                   stiffens it across and lowers this. May be NULL.
+/// is at most 2 (1 + exp(global_damping h)), with M the masses, K the stiffness of the shape, C the dampers, and
+/// without pinned particles. (One mode of angular frequency omega and damping ratio zeta: omega h <= 2 (sqrt(1 +
+/// zeta^2) - zeta).) In K a spring that is shorter than its rest length has stiffness along its direction only. The
+/// tangent stiffness would add what is below 0 across it, which stretches the limit: in a shape that is pressed
+/// together now can be as short as 0.33 of that limit, and is safe. (mspring_guard goes by the tangent stiffness.) The
+/// eigenvalue is found by iteration (Lanczos 1950). Relative springs follow h; a network of relative springs alone is stable at every h (infinite) or at none (0).
+/// @param now        for the shape of now, with K as said, to about 0.3 % and rather below than above; stretching a
+///                   network stiffens it across and lowers this. May be NULL.
 /// @param any_shape  for any shape that the network can get into, tangles included: at most now; of a full lattice
 ///                   at rest 0.71 of it, or 0.49 with dampers alone. It depends on springs (broken ones count as
 ///                   whole), masses and pins only. May be NULL.
@@ -1636,9 +1641,8 @@ enum {
     MSPRING_SNAPSHOT_FRAME = 1
 };
 
-/// The size of a snapshot that is saved now, in bytes. It changes with what there is to save: forces, ramps, edits,
-/// and 16 bytes for each slot of the plan while the guard suspects the last step, as it may after any. So ask
-/// before each save.
+/// The size of a snapshot that is saved now, in bytes. It changes with what there is to save: forces, ramps, edits.
+/// So ask before each save.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL or unknown contents; MSPRING_ERROR_BUSY in a hook.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_snapshot_size(const mspring_network *network,

@@ -12,6 +12,7 @@
 #include "network/rests.h"
 #include "network/springs.h"
 #include "sleep/sleep.h"
+#include "stability/border.h"
 
 /* ----------------------------------------------------------------------------------------------- the new parts */
 
@@ -78,6 +79,11 @@ static mspring_result make_components(mspring_network *to, const mspring_network
                                : mspringi_fail(&to->message, MSPRING_ERROR_MEMORY, "no memory for components");
 }
 
+// What the guard has learnt goes with the particles, see move_particles().
+static mspring_result make_looks(mspring_network *to, const mspring_network *from) {
+    return from->looks ? mspringi_border_reserve(to) : MSPRING_OK;
+}
+
 static mspring_result make_floor(mspring_network *to, const mspring_network *from) {
     if (!from->floor)
         return MSPRING_OK;
@@ -117,6 +123,8 @@ static void move_particles(mspring_network *to, const mspring_network *from) {
                            to->backup.y, to->backup.vx, to->backup.vy, to->inverse_mass};
     for (size_t i = 0; i < sizeof old / sizeof old[0]; ++i)
         move_values(old[i], made[i], from, to);
+    if (from->looks)
+        move_values(from->looks, to->looks, from, to);
     if (!from->forces.held_any)
         return;
     move_values(from->forces.held.x, to->forces.held.x, from, to);
@@ -191,6 +199,7 @@ static void free_layout(const mspring_network *network, mspringi_memory *memory)
     mspringi_free(memory, network->strain.stress_strain);
     mspringi_free(memory, network->strain.stressed);
     mspringi_free(memory, network->strain.hits);
+    mspringi_free(memory, network->looks);
     mspringi_free(memory, network->components.root);
     mspringi_free(memory, network->extents.scratch);
     mspringi_free(memory, network->extents.reversed);
@@ -209,6 +218,7 @@ static mspring_network without_layout(const mspring_network *network, const mspr
     to.forces.held = to.forces.base = to.forces.driven = (mspringi_field){NULL, NULL};
     to.hooks = NULL;
     to.strain = (mspringi_strain){.relax = network->strain.relax};
+    to.looks = NULL;
     to.components.root = NULL;
     to.extents = (mspringi_extents){0};
     mspringi_sleep_forget(&to.sleep);
@@ -384,6 +394,8 @@ mspring_result mspringi_move(mspring_network *network, const mspringi_topology *
         result = make_fields(&to, network);
     if (result == MSPRING_OK)
         result = make_components(&to, network);
+    if (result == MSPRING_OK)
+        result = make_looks(&to, network);
     if (result == MSPRING_OK)
         result = make_floor(&to, network);
     if (result == MSPRING_OK && network->sleep.state)

@@ -173,6 +173,20 @@ typedef struct mspringi_strain_hit {
 typedef uint32_t (*mspringi_strain_fn)(const mspringi_strain_sweep *sweep, uint32_t first, uint32_t end,
                                        mspringi_strain_hit *hits);
 
+/// What every spring adds to the stability border: see border.h. Arrays by slot, and springs as in mspringi_sweep.
+typedef struct mspringi_border {
+    const float *x, *y, *inverse_mass;
+    const float *lattice_springs, *rest_lengths, *chain_springs;
+    const uint32_t *springs_of_block, *rests_of_block;
+    const uint32_t *up_of_block; ///< [lattice blocks] block above each
+    uint32_t lattice_first, lattice_blocks, chain_first, chain_blocks;
+    bool is_damped;           ///< springs have damping
+    float stiffness, damping; ///< what a spring's are multiplied by at the substep
+    const float *in[2];       ///< to be read of both ends: weights, or a displacement
+    float *out[3];            ///< what is added to
+} mspringi_border;
+typedef void (*mspringi_border_fn)(const mspringi_border *border);
+
 /// The checksum of a snapshot, of what has been looked at so far, in whole units: 64-bit words, little-endian.
 #define MSPRINGI_CHECKSUM_UNIT 64
 #define MSPRINGI_CHECKSUM_LANES 8
@@ -198,6 +212,7 @@ typedef struct mspringi_kernels {
     mspringi_leaves_fn leaves;
     mspringi_touch_fn touch;
     mspringi_strain_fn lattice_strain, chain_strain;
+    mspringi_border_fn bound_lattice, bound_chain, image_lattice, image_chain;
     mspringi_checksum_fn checksum;
     mspringi_system_kernels system;
 } mspringi_kernels;

@@ -37,6 +37,14 @@ static inline vec mul(vec a, vec b) {
 static inline vec square_root(vec a) {
     return sqrtf(a);
 }
+// 1 / square, or 0 where there is no direction.
+static inline vec inverse_or_zero(vec square) {
+    return square > MSPRINGI_NO_DIRECTION ? 1.0f / square : 0.0f;
+}
+// a where selector > 0, b elsewhere.
+static inline vec choose_positive(vec selector, vec a, vec b) {
+    return selector > 0.0f ? a : b;
+}
 static inline float largest_lane(vec a) {
     return a;
 }

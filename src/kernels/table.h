@@ -1,10 +1,11 @@
 /// @file table.h
 /// The variants of an instruction set's lattice(), chain(), web(), herd(), loose(), attached(), pack(), largest(),
-/// sight_of(), touch(), lattice_strain(), chain_strain() and take_checksum(), and the table of them. Included at
-/// the end of each kernel file, which defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
+/// sight_of(), touch(), lattice_strain(), chain_strain(), bound_ and image_lattice() and _chain() and take_checksum(),
+/// and the table of them. Included at the end of each kernel file, which defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
 ///
 /// SPDX-License-Identifier: MIT
 
+#include "border.h"
 #include "bounds.h"
 #include "checksum.h"
 #include "contact.h"
@@ -83,6 +84,10 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .touch = touch,
     .lattice_strain = lattice_strain,
     .chain_strain = chain_strain,
+    .bound_lattice = bound_lattice,
+    .bound_chain = bound_chain,
+    .image_lattice = image_lattice,
+    .image_chain = image_chain,
     .checksum = take_checksum,
     .system = {.weigh = weigh,
                .aim_tile = aim_tile,

@@ -221,6 +221,7 @@ static void move_floor(const moving *m, mspringi_floor *floor) {
 
 static void move_parameters(const moving *m, mspring_network *n) {
     MOVE(n->inverse_mass);
+    MOVE(n->looks);
     MOVE(n->mass);
     MOVE(n->inverse_mass_scale);
     MOVE(n->spring_mass);

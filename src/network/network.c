@@ -16,6 +16,8 @@
 #include "rests.h"
 #include "sleep/sleep.h"
 #include "springs.h"
+#include "stability/border.h"
+#include "stability/guard.h"
 
 /* --------------------------------------------------------------------------------------------------- checks */
 
@@ -327,8 +329,11 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     solver.substeps = def->substeps;
     solver.max_substeps = def->max_substeps;
     result = mspring_network_set_solver(network, &solver);
-    return result == MSPRING_OK && def->guard == MSPRING_GUARD_IMPLICIT ? mspringi_fallback_reserve(network, 0)
-                                                                        : result;
+    if (result == MSPRING_OK)
+        result = mspringi_guard_reserve(network, def->guard);
+    if (result == MSPRING_OK && network->looks && !network->implicit)
+        mspringi_border_learn(network);
+    return result;
 }
 
 mspring_result mspring_network_create(mspring_builder *builder, const mspring_network_def *def,

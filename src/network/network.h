@@ -120,7 +120,6 @@ typedef struct mspringi_strain {
 typedef struct mspringi_guard {
     float h, global_damping; ///< the border was looked at for these; h is 0 at first
     bool watches;            ///< this step's substeps are longer than what is stable in any shape
-    bool suspicious;         ///< the last step changed a velocity more than usual
     uint32_t lent;           ///< steps that the fallback still takes before the explicit solver is tried again
     float peak;              ///< largest change when the border was looked at last, fading, m/s
     bool knows_speed;        ///< speed is that of the state before this step
@@ -274,6 +273,7 @@ struct mspring_network {
     mspring_guard guard_policy;
     bool is_clamped; ///< the step that is being made has its strain rates clamped
     mspringi_guard guard;
+    float *looks;    ///< [5][slots] weights of the guard's bound, and room; NULL if it never looks at the border
     double shortest; ///< smallest rest length at first, m
 
     mspringi_edits edits;

@@ -196,6 +196,7 @@ static mspring_result attempt(mspring_network *network, double dt) {
     if (mspringi_sleep_is_idle(network))
         return MSPRING_OK;
     const float relative_h = network->relative_h;
+    const mspringi_guard guard = network->guard;
     mspringi_derive_relative(network, h);
     mspringi_ramps_apply(network, dt);
     mspring_result result = mspringi_guard_begin(network, dt, h);
@@ -205,6 +206,7 @@ static mspring_result attempt(mspring_network *network, double dt) {
             go_back(network);
     }
     if (result != MSPRING_OK) {
+        network->guard = guard;
         network->sleep.in_force = (mspringi_field){NULL, NULL};
         mspringi_derive_relative(network, relative_h);
         mspringi_ramps_apply(network, 0.0);
@@ -259,6 +261,8 @@ static mspring_result fall_back(mspring_network *network, double dt) {
     const bool clamps = network->guard_policy == MSPRING_GUARD_CLAMP;
     const mspring_result result = clamps ? attempt_clamped(network, dt) : attempt_implicitly(network, dt);
     const bool took_it = result == MSPRING_OK && !mspringi_sleep_is_idle(network);
+    if (took_it)
+        network->guard.h = 0.0f; // before the solver is asked again, it is looked whether it can be
     network->guard.lent = !took_it ? lent : lent > 0 ? lent - 1 : next;
     network->fallback_count += took_it;
     return result;

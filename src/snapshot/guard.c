@@ -4,11 +4,13 @@
 
 #include "implicit/implicit.h"
 #include "sections.h"
+#include "stability/border.h"
+#include "stability/guard.h"
 
 typedef struct guard_head {
     double dt; ///< what is stable in any shape, s, and for which spring
     float h, global_damping, peak;
-    uint32_t policy, suspicious, spring, state, lent;
+    uint32_t policy, reserved, spring, state, lent;
 } guard_head;
 #define HEAD_BYTES ((size_t)40)
 
@@ -24,14 +26,8 @@ typedef struct fallback_head {
 /// Whether dt is known, and whether that was before the last edit.
 enum { UNKNOWN, OUTDATED, KNOWN };
 
-static size_t motion_floats(const mspring_network *network) {
-    return 4 * mspringi_slot_count(network);
-}
-
-// A guard that has become suspicious compares with the state before the last step.
 static size_t guard_size(const mspring_network *network) {
-    return HEAD_BYTES + (network->guard_policy == MSPRING_GUARD_IMPLICIT ? FALLBACK_BYTES : 0) +
-           (network->guard.suspicious ? motion_floats(network) * sizeof(float) : 0);
+    return HEAD_BYTES + (network->guard_policy == MSPRING_GUARD_IMPLICIT ? FALLBACK_BYTES : 0);
 }
 
 static void fallback_save(const mspringi_implicit *n, mspringi_writer *to) {
@@ -46,7 +42,7 @@ static void guard_save(const mspring_network *network, mspringi_writer *to) {
     const bool outdated = any_shape->masses != network->edits.masses ||
                           any_shape->values != network->edits.values || any_shape->growth != network->edits.growth;
     const float floats[] = {guard->h, guard->global_damping, guard->peak};
-    const uint32_t words[] = {(uint32_t)network->guard_policy, guard->suspicious, any_shape->spring,
+    const uint32_t words[] = {(uint32_t)network->guard_policy, 0, any_shape->spring,
                               !any_shape->is_known ? UNKNOWN
                               : outdated           ? OUTDATED
                                                    : KNOWN,
@@ -56,8 +52,6 @@ static void guard_save(const mspring_network *network, mspringi_writer *to) {
     mspringi_put(to, words, sizeof words / sizeof words[0], sizeof words[0]);
     if (network->guard_policy == MSPRING_GUARD_IMPLICIT)
         fallback_save(network->fallback, to);
-    if (guard->suspicious)
-        mspringi_put(to, network->backup.x, motion_floats(network), sizeof(float));
 }
 
 static const uint8_t *read_head(const uint8_t *from, guard_head *head) {
@@ -66,7 +60,7 @@ static const uint8_t *read_head(const uint8_t *from, guard_head *head) {
     from = mspringi_get(from, &head->global_damping, 1, sizeof head->global_damping);
     from = mspringi_get(from, &head->peak, 1, sizeof head->peak);
     from = mspringi_get(from, &head->policy, 1, sizeof head->policy);
-    from = mspringi_get(from, &head->suspicious, 1, sizeof head->suspicious);
+    from = mspringi_get(from, &head->reserved, 1, sizeof head->reserved);
     from = mspringi_get(from, &head->spring, 1, sizeof head->spring);
     from = mspringi_get(from, &head->state, 1, sizeof head->state);
     return mspringi_get(from, &head->lent, 1, sizeof head->lent);
@@ -104,32 +98,31 @@ static mspring_result guard_check(mspring_network *network, const uint8_t *from,
         return mspringi_section_check_size(network, section, size, HEAD_BYTES);
     from = read_head(from, &head);
     const bool falls_back = head.policy == MSPRING_GUARD_IMPLICIT;
-    const size_t floats = head.suspicious ? motion_floats(network) : 0;
-    mspring_result result = mspringi_section_check_size(
-        network, section, size, HEAD_BYTES + (falls_back ? FALLBACK_BYTES : 0) + floats * sizeof(float));
+    mspring_result result =
+        mspringi_section_check_size(network, section, size, HEAD_BYTES + (falls_back ? FALLBACK_BYTES : 0));
     if (result != MSPRING_OK)
         return result;
     if (!(head.h >= 0.0f && head.h <= FLT_MAX && head.global_damping >= 0.0f && head.global_damping <= 1e6f &&
           head.peak >= 0.0f && head.peak <= FLT_MAX && head.dt >= 0.0) ||
-        head.policy > MSPRING_GUARD_CLAMP || head.suspicious > 1 || head.state > KNOWN)
+        head.policy > MSPRING_GUARD_CLAMP || head.state > KNOWN)
         return mspringi_section_fail(network, section, "for substeps of %g s, with a peak of %g m/s and policy %u",
                                      (double)head.h, (double)head.peak, (unsigned)head.policy);
+    if (head.reserved != 0)
+        return mspringi_section_fail(network, section, "bits that have no meaning are %#x", (unsigned)head.reserved);
     fallback_head fallback = {0};
     if (falls_back)
-        from = read_fallback(from, &fallback);
-    for (size_t i = 0; i < floats; ++i)
-        if (!isfinite(mspringi_float_at(from, i)))
-            return mspringi_section_fail(network, section, "the state before the last step is not finite");
-    return falls_back ? check_fallback(network, &fallback) : MSPRING_OK;
+        (void)read_fallback(from, &fallback);
+    if (mspringi_guard_looks((mspring_guard)head.policy))
+        result = mspringi_border_reserve(network);
+    return result == MSPRING_OK && falls_back ? check_fallback(network, &fallback) : result;
 }
 
-static const uint8_t *fallback_load(mspring_network *network, const uint8_t *from) {
+static void fallback_load(mspring_network *network, const uint8_t *from) {
     mspringi_implicit *n = network->fallback;
     fallback_head head;
-    from = read_fallback(from, &head);
+    (void)read_fallback(from, &head);
     n->scale = head.scale;
     mspringi_tiles_set_inertia(&n->tiles, head.turn_inertia, mspringi_slot_count(network));
-    return from;
 }
 
 static void guard_load(mspring_network *network, const uint8_t *from, size_t size) {
@@ -142,12 +135,9 @@ static void guard_load(mspring_network *network, const uint8_t *from, size_t siz
                                       .peak = head.peak,
                                       .speed = INFINITY, // are not known
                                       .place = INFINITY,
-                                      .suspicious = head.suspicious,
                                       .lent = head.lent};
     if (head.policy == MSPRING_GUARD_IMPLICIT)
-        from = fallback_load(network, from);
-    if (head.suspicious)
-        mspringi_get(from, network->backup.x, motion_floats(network), sizeof(float));
+        fallback_load(network, from);
     // Edits of before and after are counted differently.
     mspringi_any_shape *any_shape = &network->any_shape;
     *any_shape = (mspringi_any_shape){

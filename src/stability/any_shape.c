@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "border.h"
 #include "network/springs.h"
 #include "pencil.h"
 
@@ -29,8 +30,15 @@ mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_i
                                .relative_damping = damping * reduced_mass};
 }
 
-// Sums over the springs at each slot, per mass: stiffness in x, damping in y, the relative springs' in vx of the
-// backup.
+// Where sums by slot may be written: where looks work, or else in the backup.
+static mspringi_state find_room(const mspring_network *network) {
+    if (!network->looks)
+        return network->backup;
+    return (mspringi_state){mspringi_border_room(network, 0), mspringi_border_room(network, 1),
+                            mspringi_border_room(network, 2), mspringi_border_room(network, 3)};
+}
+
+// Sums over the springs at each slot, per mass: stiffness in x, damping in y, the relative springs' in vx.
 static void sum_up(const mspring_network *network, const mspringi_state *sums) {
     memset(sums->x, 0, 4 * mspringi_slot_count(network) * sizeof *sums->x);
     mspringi_place_reader reader;
@@ -55,7 +63,7 @@ static void sum_up(const mspring_network *network, const mspringi_state *sums) {
 static double find(mspring_network *network, mspring_id *spring) {
     // Room for the rounding of the sums.
     const double tight = 1.0 - 1e-5;
-    const mspringi_state *sums = &network->backup;
+    const mspringi_state room = find_room(network), *sums = &room;
     double smallest = INFINITY;
     mspringi_quotient tightest = {0.0, 0.0, 0.0}; // whose limit is the smallest
     sum_up(network, sums);
@@ -101,10 +109,6 @@ double mspringi_stable_in_any_shape(mspring_network *network, mspring_id *spring
             last->dt = find(network, &last->spring);
         }
         *known = *last;
-        // The guard wanted the motion that was in the backup: it looks anew instead, from noise.
-        if (network->guard.suspicious)
-            network->guard.h = 0.0f;
-        network->guard.suspicious = false;
     }
     *spring = known->spring;
     return known->dt;

@@ -1,68 +1,111 @@
-/// A bound of the border (see pencil.h) that one look at each spring is enough for.
+/// A bound of the border (see pencil.h) that a sweep over the springs is enough for.
 ///
 /// With y the displacement divided by the root p of the inverse mass, a spring of direction n and tangent t between
 /// the particles a and b adds
 ///     w (n . (p_b y_b - p_a y_a))^2 + c (t . (p_b y_b - p_a y_a))^2
-/// to y . S y. As 2 |u v| <= u^2 + v^2,
-///     (p_b v - p_a u)^2 <= p_a (p_a + p_b) u^2 + p_b (p_a + p_b) v^2
-/// and S is at most block diagonal: each particle's block is the sum of p_a (p_a + p_b) (w n n' + c t t') over its
-/// springs, and no eigenvalue of S is above the largest of any block's. Of a lattice of equal particles and springs
-/// at rest, both are 8 w / m: there the bound is sharp. A spring that is pressed has c < 0, which counts as 0.
+/// to y . S y. With a weight z > 0 for each particle, 2 |u v| <= (z_b / z_a) u^2 + (z_a / z_b) v^2 gives
+///     (p_b v - p_a u)^2 <= (p_a / z_a) (p_a z_a + p_b z_b) u^2 + (p_b / z_b) (p_a z_a + p_b z_b) v^2
+/// and S is at most block diagonal: each particle's block is p / z times the sum of (p_a z_a + p_b z_b) (w n n' + c t
+/// t') over its springs, and no eigenvalue of S is above the largest of any block's. Of a lattice of equal particles
+/// and springs at rest, both are 8 w / m: there the bound is sharp. A spring that is pressed has c < 0, which counts
+/// as 0.
 ///
-/// The first step of a bar of 544 x 68 at nine tenths of the border takes 29 ms instead of 684.
+/// Any weights are right, and the best ones make all blocks alike: each look multiplies a particle's weight by the
+/// root of its block's eigenvalue. Weights only say how soon a look is sure, never what it finds.
 #include <math.h>
 #include <string.h>
 
-#include "pencil.h"
+#include "border.h"
 #include "stability.h"
 
-/// A block, symmetric, is told by its trace and by (xx - yy) / 2 and xy, whose length is what its eigenvalues are
-/// off half the trace. With room for two numbers by slot these are summed up in two rounds.
-typedef enum sum_part { OFF_HALF_TRACE, TRACE } sum_part;
+/// Rounds of a network that has just been made; a look takes one more. (Of 200 x 200 with holes, three masses and four
+/// stiffnesses, 6 prove 0.94 of the border, 12 0.95 and 50 0.965.)
+#define ROUNDS_TO_LEARN 12
 
-static void sum_up(const mspring_network *network, double h, sum_part part, float *first, float *second) {
-    const mspringi_topology *t = &network->topology;
-    mspringi_place_reader reader;
-    mspringi_places_begin(&reader, &t->places, 0);
-    for (mspring_id i = 0; i < t->spring_count; ++i) {
-        const mspringi_place place = mspringi_places_next(&reader);
-        if (!mspringi_spring_exists(network, i))
-            continue;
-        const mspringi_seen s = mspringi_see_spring(network, i, place);
-        if (!s.directed)
-            continue;
-        const uint32_t a = t->slot_of_particle[s.a], b = t->slot_of_particle[s.b];
-        const double stiffness = h * h * s.strength.stiffness + s.strength.relative_stiffness;
-        const double damping = 2.0 * (h * s.strength.damping + s.strength.relative_damping);
-        const double along = stiffness + damping, across = s.across > 0.0 ? stiffness * s.across : 0.0;
-        const double root_a = sqrt((double)network->inverse_mass[a]);
-        const double root_b = sqrt((double)network->inverse_mass[b]);
-        const double at_a = root_a * (root_a + root_b), at_b = root_b * (root_a + root_b);
-        if (part == TRACE) {
-            second[a] += (float)(at_a * (along + across));
-            second[b] += (float)(at_b * (along + across));
-            continue;
-        }
-        const double diagonal = 0.5 * (along - across) * (s.nx * s.nx - s.ny * s.ny);
-        const double beside = (along - across) * s.nx * s.ny;
-        first[a] += (float)(at_a * diagonal);
-        first[b] += (float)(at_b * diagonal);
-        second[a] += (float)(at_a * beside);
-        second[b] += (float)(at_b * beside);
+/// Smallest weight; the largest is about 1.
+#define LEAST_WEIGHT 1e-3f
+
+mspring_result mspringi_border_reserve(mspring_network *network) {
+    if (network->looks)
+        return MSPRING_OK;
+    const size_t slots = mspringi_slot_count(network);
+    network->looks =
+        mspringi_alloc(&network->memory, (1 + MSPRINGI_BORDER_ROOM) * slots, sizeof *network->looks);
+    if (!network->looks)
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                             "no memory to look at the stability of %zu slots", slots);
+    for (size_t slot = 0; slot < slots; ++slot)
+        network->looks[slot] = 1.0f;
+    return MSPRING_OK;
+}
+
+/// Largest values of all slots, lane by lane as long as they are looked for.
+typedef struct extremes {
+    float value[MSPRINGI_WIDTH], weight[MSPRINGI_WIDTH];
+    float doubt[MSPRINGI_WIDTH]; ///< NaN unless all values are finite
+} extremes;
+
+static float largest_lane(const float *lanes) {
+    float largest = lanes[0];
+    for (size_t i = 1; i < MSPRINGI_WIDTH; ++i)
+        largest = lanes[i] > largest ? lanes[i] : largest;
+    return largest;
+}
+
+// The largest eigenvalue of each block, from its sums: half the trace, and what eigenvalues are off it.
+static void find_values(const float *restrict inverse_mass, const float *restrict weights, const mspringi_border *b,
+                        size_t slot, float *restrict values, extremes *restrict found) {
+    const float *restrict half = b->out[0] + slot, *restrict off = b->out[1] + slot;
+    const float *restrict beside = b->out[2] + slot;
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
+        const float share = sqrtf(inverse_mass[i]) / weights[i], x = share * off[i], y = share * beside[i];
+        values[i] = share * half[i] + sqrtf(x * x + y * y);
+        found->value[i] = values[i] > found->value[i] ? values[i] : found->value[i];
+        found->weight[i] = weights[i] > found->weight[i] ? weights[i] : found->weight[i];
+        found->doubt[i] += values[i] - values[i];
     }
 }
 
-bool mspringi_border_is_below(const mspring_network *network, double h, double bound, float *first, float *second) {
+// What makes all blocks alike, with the largest weight at about 1.
+static void weigh(mspring_network *network, const float *restrict values, const extremes *found) {
+    const float per_value = 1.0f / largest_lane(found->value), per_weight = 1.0f / largest_lane(found->weight);
+    float *restrict weights = network->looks;
+    for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
+        const float weight = weights[slot] * per_weight * sqrtf(values[slot] * per_value);
+        weights[slot] = weight > LEAST_WEIGHT ? weight : LEAST_WEIGHT;
+    }
+}
+
+// One sweep: bound the eigenvalues, and give all blocks the same share of that. NaN if anything overflows.
+static float take_round(mspring_network *network, const float *inverse_mass, double h) {
     const size_t slots = mspringi_slot_count(network);
-    memset(first, 0, slots * sizeof *first);
-    memset(second, 0, slots * sizeof *second);
-    sum_up(network, h, OFF_HALF_TRACE, first, second);
+    float *const weights = network->looks, *const room = mspringi_border_room(network, 0);
+    mspringi_border b = mspringi_border_at(network, h);
     for (size_t slot = 0; slot < slots; ++slot)
-        first[slot] = sqrtf(first[slot] * first[slot] + second[slot] * second[slot]);
-    memset(second, 0, slots * sizeof *second);
-    sum_up(network, h, TRACE, first, second);
-    bool below = true;
-    for (size_t slot = 0; slot < slots; ++slot)
-        below = below && 0.5 * (double)second[slot] + (double)first[slot] <= bound; // not if it overflowed
-    return below;
+        room[slot] = sqrtf(inverse_mass[slot]) * weights[slot];
+    b.in[0] = room;
+    for (size_t sum = 0; sum < 3; ++sum)
+        b.out[sum] = mspringi_border_room(network, 1 + sum);
+    memset(b.out[0], 0, 3 * slots * sizeof *b.out[0]);
+    mspringi_border_bound(network, &b);
+    extremes found = {{0.0f}, {0.0f}, {0.0f}};
+    for (size_t slot = 0; slot < slots; slot += MSPRINGI_WIDTH)
+        find_values(inverse_mass + slot, weights + slot, &b, slot, room + slot, &found);
+    const float largest = largest_lane(found.value);
+    for (size_t i = 1; i < MSPRINGI_WIDTH; ++i)
+        found.doubt[0] += found.doubt[i];
+    if (largest > 0.0f && found.doubt[0] == 0.0f)
+        weigh(network, room, &found);
+    return largest + found.doubt[0];
+}
+
+bool mspringi_border_is_below(mspring_network *network, double h, double bound) {
+    return (double)take_round(network, mspringi_free_mass(network), h) <= bound;
+}
+
+void mspringi_border_learn(mspring_network *network) {
+    mspring_id spring;
+    const double h = mspringi_stable_in_any_shape(network, &spring);
+    for (int round = 0; h > 0.0 && h < INFINITY && round < ROUNDS_TO_LEARN; ++round)
+        (void)take_round(network, network->inverse_mass, h);
 }

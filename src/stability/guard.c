@@ -1,21 +1,20 @@
 /// What goes wrong, before it is to be seen: substeps above the border (see pencil.h), and numbers out of bounds.
 ///
 /// Up to the substep that is stable in any shape nothing needs to be looked at. Above it, the border of the shape
-/// that the network has is: when the substep is another one, and when a step has changed a particle's velocity
-/// twice as much as one had at the last look. A bound tells first whether it can be near at all (certificate.c). If
-/// it can, the Lanczos iteration tells with certainty: what it finds is never above the largest eigenvalue, so a
-/// network that is below the border is never refused. After such a change it starts from the motion itself,
-/// velocities less their mean over the substeps before: of what moves smoothly next to nothing is left of that, of
-/// what turns round in each substep everything, and a few iterations are enough.
+/// that the network has is: before a step whose substep is another one, and after one that has changed a particle's
+/// velocity twice as much as one had at the last look. A bound tells first whether it can be near at all
+/// (certificate.c). If it can, a search tells with certainty that it is not (search.c), if it finds that: so a step
+/// of a network that is below the border is never refused. A look is as short as a few substeps, so that no frame
+/// is late for it. What a short search overlooks grows, changes velocities more, and is looked for again in the same
+/// motion, which has more of it each time; the step in which it is found is the one that is taken back.
 #include "guard.h"
 
 #include <math.h>
-#include <string.h>
 
+#include "border.h"
 #include "explicit/decay.h"
-#include "pencil.h"
+#include "implicit/implicit.h"
 #include "stability.h"
-#include "tridiagonal.h"
 
 /// Growth of the largest change of a velocity, from look to look at the border.
 #define SUSPICIOUS 2.0f
@@ -31,8 +30,11 @@
 #define ITERATIONS 100
 #define ITERATIONS_FROM_MOTION 12
 
-/// Residual, as a part of the eigenvalue, at which that is good enough.
-#define TOLERANCE 2e-3
+/// Substeps, for each of which a step with that many may take an iteration; springs times iterations that any step
+/// may take; and iterations that each look takes.
+#define SUBSTEPS_OF_ITERATION 4
+#define SMALL_WORK 40000u
+#define LEAST_ITERATIONS 2
 
 /* --------------------------------------------------------------------------------------------------- bounds */
 
@@ -73,118 +75,6 @@ static mspring_result check_bounds(mspring_network *network, double dt) {
 
 /* --------------------------------------------------------------------------------------------------- the border */
 
-/// A displacement, x and y by slot, divided by the root of the inverse mass.
-typedef struct displacement {
-    float *x, *y;
-} displacement;
-
-// The velocity of a slot less the mean of those before it in the last step. All of them are in the distance it
-// went.
-static float turning(const mspring_network *network, float v, float v_before, float x, float x_before) {
-    if (network->substeps == 1)
-        return v - v_before;
-    const float h = network->guard.h;
-    return v - (x - x_before - h * v) / (h * (float)(network->substeps - 1));
-}
-
-// The last step's motion into the backup of the state before it.
-static displacement start_from_motion(const mspring_network *network) {
-    const mspringi_state *s = &network->state, *b = &network->backup;
-    for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
-        const float inverse_mass = network->inverse_mass[slot];
-        const float root = inverse_mass > 0.0f ? 1.0f / sqrtf(inverse_mass) : 0.0f;
-        b->x[slot] = root * turning(network, s->vx[slot], b->vx[slot], s->x[slot], b->x[slot]);
-        b->y[slot] = root * turning(network, s->vy[slot], b->vy[slot], s->y[slot], b->y[slot]);
-    }
-    return (displacement){b->x, b->y};
-}
-
-static displacement start_from_noise(const mspring_network *network) {
-    const mspringi_state *b = &network->backup;
-    for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
-        const bool moves = network->inverse_mass[slot] > 0.0f;
-        b->x[slot] = moves ? (float)mspringi_noise(2 * slot) : 0.0f;
-        b->y[slot] = moves ? (float)mspringi_noise(2 * slot + 1) : 0.0f;
-    }
-    return (displacement){b->x, b->y};
-}
-
-static double dot(const mspring_network *network, displacement a, displacement b) {
-    double sum = 0.0;
-    for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot)
-        sum += (double)a.x[slot] * (double)b.x[slot] + (double)a.y[slot] * (double)b.y[slot];
-    return sum;
-}
-
-// a = factor a + other_factor other
-static void combine(const mspring_network *network, displacement a, double factor, double other_factor,
-                    displacement other) {
-    for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
-        a.x[slot] = (float)(factor * (double)a.x[slot] + other_factor * (double)other.x[slot]);
-        a.y[slot] = (float)(factor * (double)a.y[slot] + other_factor * (double)other.y[slot]);
-    }
-}
-
-// out += (A + 2 D) in
-static void add_image(const mspring_network *network, double h, displacement in, displacement out) {
-    const mspringi_topology *t = &network->topology;
-    mspringi_place_reader reader;
-    mspringi_places_begin(&reader, &t->places, 0);
-    for (mspring_id i = 0; i < t->spring_count; ++i) {
-        const mspringi_place place = mspringi_places_next(&reader);
-        if (!mspringi_spring_exists(network, i))
-            continue;
-        const mspringi_seen s = mspringi_see_spring(network, i, place);
-        const uint32_t a = t->slot_of_particle[s.a], b = t->slot_of_particle[s.b];
-        const double root_a = sqrt((double)network->inverse_mass[a]);
-        const double root_b = sqrt((double)network->inverse_mass[b]);
-        const double dx = root_b * (double)in.x[b] - root_a * (double)in.x[a];
-        const double dy = root_b * (double)in.y[b] - root_a * (double)in.y[a];
-        const double stiffness = h * h * s.strength.stiffness + s.strength.relative_stiffness;
-        const double damping = 2.0 * (h * s.strength.damping + s.strength.relative_damping);
-        const double along = (stiffness + damping) * (s.nx * dx + s.ny * dy);
-        const double across = stiffness * s.across * (s.ny * dx - s.nx * dy);
-        const double fx = along * s.nx + across * s.ny, fy = along * s.ny - across * s.nx;
-        out.x[a] -= (float)(root_a * fx);
-        out.y[a] -= (float)(root_a * fy);
-        out.x[b] += (float)(root_b * fx);
-        out.y[b] += (float)(root_b * fy);
-    }
-}
-
-// A lower bound of the largest eigenvalue, from the start in the first half of the backup on; the second half is
-// the other vector that the iteration needs. Ends when it is above the bound or will not be.
-static double largest_eigenvalue(const mspring_network *network, double h, displacement here, double bound,
-                                 int iterations) {
-    displacement next = {network->backup.vx, network->backup.vy};
-    mspringi_tridiagonal t = {.size = 0};
-    double weights[MSPRINGI_LANCZOS_MOST], value = 0.0, beside = sqrt(dot(network, here, here));
-    if (!(beside > 0.0 && beside < INFINITY))
-        return 0.0;
-    combine(network, here, 1.0 / beside, 0.0, here);
-    memset(next.x, 0, mspringi_slot_count(network) * sizeof *next.x);
-    memset(next.y, 0, mspringi_slot_count(network) * sizeof *next.y);
-    for (;;) {
-        const int j = t.size++;
-        add_image(network, h, here, next);
-        t.diagonal[j] = dot(network, here, next);
-        combine(network, next, 1.0, -t.diagonal[j], here);
-        beside = t.beside[j] = sqrt(dot(network, next, next));
-        value = mspringi_tridiagonal_top(&t, weights);
-        const double residual = beside * fabs(weights[j]);
-        const bool stays_below = t.size >= ITERATIONS_FROM_MOTION && value + residual < bound;
-        if (value > bound || stays_below || residual <= TOLERANCE * value || t.size == iterations ||
-            !(beside > 1e-6 * value))
-            return value;
-        // The one before is not needed any more but for its share in what comes next.
-        combine(network, next, 1.0 / beside, 0.0, next);
-        combine(network, here, -beside, 0.0, here);
-        const displacement swapped = here;
-        here = next;
-        next = swapped;
-    }
-}
-
 // Name the tightest spring, and the end of it that is more easily moved.
 static mspring_result explain_border(mspring_network *network, double dt, float h) {
     const mspringi_topology *t = &network->topology;
@@ -201,55 +91,60 @@ static mspring_result explain_border(mspring_network *network, double dt, float 
                          dt, (unsigned)network->substeps, (double)h, (unsigned)spring, (unsigned)moved);
 }
 
+// Iterations that a search may take: so many that they take no longer than half of the step's substeps, unless the
+// network is small.
+static int affordable_iterations(const mspring_network *network, int most) {
+    const uint32_t by_step = network->substeps / SUBSTEPS_OF_ITERATION;
+    const uint32_t by_size = SMALL_WORK / (network->topology.spring_count + 1);
+    const uint32_t count = by_step > by_size ? by_step : by_size;
+    return count >= (uint32_t)most ? most : count > LEAST_ITERATIONS ? (int)count : LEAST_ITERATIONS;
+}
+
 static mspring_result look_at_border(mspring_network *network, double dt, float h, bool from_motion) {
     const double decay = (double)mspringi_decay(network->global_damping, h);
     // Vectors are floats: room for their rounding.
     const double sharp = 2.0 * (1.0 + 1.0 / decay), bound = sharp * (1.0 + 1e-4);
-    const displacement start = from_motion ? start_from_motion(network) : start_from_noise(network);
-    const mspringi_state *b = &network->backup;
-    const double largest = mspringi_border_is_below(network, (double)h, sharp, b->vx, b->vy)
-                               ? 0.0
-                               : largest_eigenvalue(network, (double)h, start, bound,
-                                                    from_motion ? ITERATIONS_FROM_MOTION : ITERATIONS);
-    // A step keeps the state here strip by strip, which leaves what lies between strips as it is.
-    memset(network->backup.x, 0, 4 * mspringi_slot_count(network) * sizeof *network->backup.x);
-    if (!(largest > bound))
+    if (mspringi_border_is_below(network, (double)h, sharp))
+        return MSPRING_OK;
+    const int iterations = affordable_iterations(network, from_motion ? ITERATIONS_FROM_MOTION : ITERATIONS);
+    if (!(mspringi_border_search(network, (double)h, from_motion, bound, iterations) > bound))
         return MSPRING_OK;
     return explain_border(network, dt, h);
 }
 
 /* --------------------------------------------------------------------------------------------------- the steps */
 
+bool mspringi_guard_looks(mspring_guard policy) {
+    return policy != MSPRING_GUARD_BOUNDS;
+}
+
+mspring_result mspringi_guard_reserve(mspring_network *network, mspring_guard policy) {
+    mspring_result result = MSPRING_OK;
+    if (mspringi_guard_looks(policy))
+        result = mspringi_border_reserve(network);
+    return result == MSPRING_OK && policy == MSPRING_GUARD_IMPLICIT ? mspringi_fallback_reserve(network, 0) : result;
+}
+
 mspring_result mspringi_guard_begin(mspring_network *network, double dt, float h) {
     mspringi_guard *guard = &network->guard;
     const bool same = guard->h == h && guard->global_damping == network->global_damping;
-    const bool suspicious = guard->suspicious;
-    guard->watches = guard->suspicious = false;
+    guard->watches = false;
     const bool is_same = guard->state == network->edits.state && !network->is_open;
     guard->knows_speed = is_same && guard->speed <= network->max_speed;
     guard->knows_place = is_same && guard->place <= (float)MSPRING_MAX_COORDINATE && network->substeps == 1;
-    if (network->guard_policy == MSPRING_GUARD_BOUNDS || network->implicit || network->is_clamped)
+    if (!mspringi_guard_looks(network->guard_policy) || network->implicit || network->is_clamped)
         return MSPRING_OK;
     const mspringi_any_shape *any_shape = &network->any_shape;
-    if (same && !suspicious &&
+    if (same &&
         (any_shape->masses != network->edits.masses || any_shape->values != network->edits.values)) {
         guard->watches = true; // edits cost nothing here; what they do to the border is seen in the velocities
         return MSPRING_OK;
     }
-    mspring_result result = MSPRING_OK;
-    if (same && suspicious)
-        result = look_at_border(network, dt, h, true);
     mspring_id spring;
     guard->watches = (double)h > mspringi_stable_in_any_shape(network, &spring);
-    if (guard->watches && !same)
-        result = look_at_border(network, dt, h, false);
-    if (result != MSPRING_OK) {
-        guard->h = 0.0f; // next time from noise: the motion that was is gone
-        return result;
-    }
     guard->h = h;
     guard->global_damping = network->global_damping;
-    return MSPRING_OK;
+    return guard->watches && !same ? look_at_border(network, dt, h, false) : MSPRING_OK;
 }
 
 // NaN, if there is one, counts as the largest, as in the kernels.
@@ -280,10 +175,11 @@ static float calm_change(const mspring_network *network, float h) {
 }
 
 // Whether the largest change of a velocity in a step is more than usual.
-static void judge_change(mspring_network *network, float h, float change) {
+static bool is_suspicious(mspring_network *network, float h, float change) {
     mspringi_guard *guard = &network->guard;
-    guard->suspicious = change > SUSPICIOUS * fmaxf(guard->peak, calm_change(network, h));
-    guard->peak = guard->suspicious ? change : guard->peak * FADING;
+    const bool suspicious = change > SUSPICIOUS * fmaxf(guard->peak, calm_change(network, h));
+    guard->peak = suspicious ? change : guard->peak * FADING;
+    return suspicious;
 }
 
 // What no speed is above after a step. Where changes are watched speeds are not (see sweep.h for what either
@@ -318,8 +214,11 @@ mspring_result mspringi_guard_end(mspring_network *network, double dt, float h, 
         if (result != MSPRING_OK)
             return result;
     }
-    if (guard->watches)
-        judge_change(network, h, sight.change);
+    if (guard->watches && is_suspicious(network, h, sight.change)) {
+        const mspring_result result = look_at_border(network, dt, h, true);
+        if (result != MSPRING_OK)
+            return result;
+    }
     // What sleeps is not seen, and an implicit solver's step may yet be refused.
     guard->speed = network->implicit ? INFINITY : larger(speed, network->sleep.speed);
     guard->place = network->implicit || network->sleep.sleeping > 0 ? INFINITY : place;

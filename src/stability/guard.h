@@ -7,8 +7,14 @@
 
 #include "network/network.h"
 
-/// Before a step in substeps of h: MSPRING_OK, or MSPRING_ERROR_UNSTABLE with a message if they are above the
-/// border. Works in the backup of the state, which has to be that of the step before.
+/// Whether a network with this policy looks at the border.
+bool mspringi_guard_looks(mspring_guard policy);
+
+/// Reserve what this policy needs, unless it is there.
+mspring_result mspringi_guard_reserve(mspring_network *network, mspring_guard policy);
+
+/// Before a step in substeps of h: MSPRING_OK, or MSPRING_ERROR_UNSTABLE with a message if they are found to be above
+/// the border.
 mspring_result mspringi_guard_begin(mspring_network *network, double dt, float h);
 
 /// Look at the slots first to end - 1, multiples of MSPRINGI_WIDTH, whose state before the step is in the backup.
@@ -18,7 +24,7 @@ mspringi_sight mspringi_guard_look(const mspring_network *network, size_t first,
 /// The sight of both, in whatever order they are joined.
 mspringi_sight mspringi_sight_join(mspringi_sight a, mspringi_sight b);
 
-/// Judge the state that the substeps have led to by the sight of all slots.
+/// Judge the state that the substeps have led to by the sight of all slots. That of before is in the backup.
 mspring_result mspringi_guard_end(mspring_network *network, double dt, float h, mspringi_sight sight);
 
 #endif

@@ -17,17 +17,14 @@ mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_i
 
 /// The longest substep that is stable in whatever shape the network gets into, and the spring that sets it
 /// (MSPRING_NONE: none does, and it is infinite). Broken springs count as whole, as they may be restored. Kept
-/// until springs or masses are edited. Between steps only: it works in the backup of the state.
+/// until springs or masses are edited. Works where the guard looks; without such room in the backup of the state, so
+/// between steps only.
 double mspringi_stable_in_any_shape(mspring_network *network, mspring_id *spring);
 
 /// The spring to name where substeps of h are too long: of those that share an end with the one that sets the
 /// longest substep, which says only where, the one that is stiffest or most damped for its masses. MSPRING_NONE if
-/// nothing sets it. Looks at all springs, works in the backup.
+/// nothing sets it. Looks at all springs, in the same room.
 mspring_id mspringi_tightest_spring(mspring_network *network, double h);
-
-/// Whether no eigenvalue of A + 2 D (see pencil.h) for substeps of h, in the shape that the network has, can be
-/// above bound. False says nothing. first and second are room for a number by slot each.
-bool mspringi_border_is_below(const mspring_network *network, double h, double bound, float *first, float *second);
 
 /// The smallest number of substeps of dt for which each is at most limit. Above most: most + 1.
 uint32_t mspringi_substeps_within(double dt, double limit, uint32_t most);

@@ -1,0 +1,83 @@
+/// Passes over all springs for the stability border: those of lattices and chains by kernels, the others here.
+#include "border.h"
+
+#include <math.h>
+
+/// A spring that no kernel takes, as border.h of the kernels has it.
+typedef struct single {
+    uint32_t base, tip;
+    float nx, ny, across, along, stiffness;
+} single;
+
+static single see_single(const mspring_network *network, const mspringi_border *b, uint32_t leftover) {
+    const mspringi_topology *t = &network->topology;
+    const uint32_t at = t->web.entry[2 * (size_t)leftover], parts = network->parts;
+    const float *record = network->web_springs + (size_t)(at / MSPRINGI_WIDTH) * MSPRINGI_WIDTH * parts;
+    single s = {.base = t->leftover_a[leftover], .tip = t->leftover_b[leftover]};
+    record += at % MSPRINGI_WIDTH;
+    s.along = s.stiffness = b->stiffness * record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH];
+    if (parts > MSPRINGI_DAMPING)
+        s.along += b->damping * record[MSPRINGI_DAMPING * MSPRINGI_WIDTH];
+    const float dx = b->x[s.tip] - b->x[s.base], dy = b->y[s.tip] - b->y[s.base];
+    const float square = dx * dx + dy * dy;
+    const float inverse = square > MSPRINGI_NO_DIRECTION ? sqrtf(square) * (1.0f / square) : 0.0f;
+    s.nx = dx * inverse;
+    s.ny = dy * inverse;
+    s.across = 1.0f - record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH] * inverse;
+    return s;
+}
+
+mspringi_border mspringi_border_at(const mspring_network *network, double h) {
+    const mspringi_topology *t = &network->topology;
+    return (mspringi_border){.x = network->state.x,
+                             .y = network->state.y,
+                             .lattice_springs = network->lattice_springs,
+                             .rest_lengths = network->rests.lengths,
+                             .chain_springs = network->chain_springs,
+                             .springs_of_block = network->alike.of_block,
+                             .rests_of_block = network->rests.of_block,
+                             .up_of_block = t->up_of_block,
+                             .lattice_first = t->lattice_first,
+                             .lattice_blocks = t->lattice_blocks,
+                             .chain_first = t->chain_first,
+                             .chain_blocks = t->chain_blocks,
+                             .is_damped = network->parts > MSPRINGI_DAMPING,
+                             .stiffness = (float)(h * h),
+                             .damping = (float)(2.0 * h)};
+}
+
+void mspringi_border_bound(const mspring_network *network, const mspringi_border *b) {
+    network->kernels->bound_lattice(b);
+    network->kernels->bound_chain(b);
+    for (uint32_t i = 0; i < network->topology.leftover_count; ++i) {
+        const single s = see_single(network, b, i);
+        if (!(s.along > 0.0f) || !(s.nx * s.nx + s.ny * s.ny > 0.0f))
+            continue;
+        const float both = b->in[0][s.base] + b->in[0][s.tip];
+        const float across = s.across > 0.0f ? s.stiffness * s.across : 0.0f, turned = both * (s.along - across);
+        const float sums[] = {0.5f * (both * (s.along + across)), 0.5f * turned * (s.nx * s.nx - s.ny * s.ny),
+                              turned * s.nx * s.ny};
+        for (size_t sum = 0; sum < 3; ++sum) {
+            b->out[sum][s.base] += sums[sum];
+            b->out[sum][s.tip] += sums[sum];
+        }
+    }
+}
+
+void mspringi_border_image(const mspring_network *network, const mspringi_border *b) {
+    network->kernels->image_lattice(b);
+    network->kernels->image_chain(b);
+    for (uint32_t i = 0; i < network->topology.leftover_count; ++i) {
+        const single s = see_single(network, b, i);
+        if (!(s.along > 0.0f))
+            continue;
+        const float dx = b->in[0][s.tip] - b->in[0][s.base], dy = b->in[1][s.tip] - b->in[1][s.base];
+        const float pull = s.along * (s.nx * dx + s.ny * dy);
+        const float shear = s.stiffness * s.across * (s.ny * dx - s.nx * dy);
+        const float x = pull * s.nx + shear * s.ny, y = pull * s.ny - shear * s.nx;
+        b->out[0][s.base] -= b->inverse_mass[s.base] * x;
+        b->out[1][s.base] -= b->inverse_mass[s.base] * y;
+        b->out[0][s.tip] += b->inverse_mass[s.tip] * x;
+        b->out[1][s.tip] += b->inverse_mass[s.tip] * y;
+    }
+}

@@ -1,0 +1,39 @@
+/// @file border.h
+/// The stability border (see pencil.h), as the guard looks at it: quickly, over plain arrays.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_BORDER_LOOK_H
+#define MSPRINGI_BORDER_LOOK_H
+
+#include "network/network.h"
+
+/// Reserve what looks work in, unless it is there: 20 bytes a slot.
+mspring_result mspringi_border_reserve(mspring_network *network);
+
+/// Have the bound learn where springs are stiffest for their masses, for a network that has just been made.
+void mspringi_border_learn(mspring_network *network);
+
+/// Whether no eigenvalue of A + 2 D (see pencil.h) for substeps of h, in the shape that the network has, can be
+/// above bound. False says nothing. Each call makes the next one's bound sharper; none changes anything that a step
+/// depends on.
+bool mspringi_border_is_below(mspring_network *network, double h, double bound);
+
+/// The largest eigenvalue, or less, searched for with so many iterations at most and until it is above bound. From
+/// no particular displacement, or from the motion of the last step, whose state of before is in the backup.
+double mspringi_border_search(mspring_network *network, double h, bool from_motion, double bound, int iterations);
+
+/// What the passes over all springs work on at substeps of h; in, out and inverse_mass are left to the caller.
+mspringi_border mspringi_border_at(const mspring_network *network, double h);
+/// Add up all springs' share of the bound, or of the image of a displacement.
+void mspringi_border_bound(const mspring_network *network, const mspringi_border *border);
+void mspringi_border_image(const mspring_network *network, const mspringi_border *border);
+
+/// Slots of room that looks work in: so many arrays.
+#define MSPRINGI_BORDER_ROOM 4
+
+/// One of these arrays, [slots].
+static inline float *mspringi_border_room(const mspring_network *network, size_t which) {
+    return network->looks + (1 + which) * mspringi_slot_count(network);
+}
+
+#endif
