@@ -123,14 +123,19 @@ static void find_front(cloud *of) {
 
 static void print_row(const mspring_tune_row *row) {
     char iterations[16] = "";
+    const bool steps_back = row->solver != MSPRING_SOLVER_EXPLICIT && row->integrator == MSPRING_INTEGRATOR_BDF2;
     if (row->solver == MSPRING_SOLVER_IMPLICIT)
         snprintf(iterations, sizeof iterations, "%u", row->iterations);
-    printf("%-9s %8u %10s", solver_names[row->solver], row->substeps, iterations);
+    printf("%-9s %-5s %8u %10s", solver_names[row->solver], steps_back ? "BDF2" : "", row->substeps, iterations);
     if (row->flags & MSPRING_TUNE_REFUSED) {
         printf("   refused as unstable\n");
         return;
     }
-    printf(" %11.1f %11.1f", 1e6 * row->min_cost, 1e6 * row->median_cost);
+    printf(" %11.1f %11.1f", 1e6 * row->min_cost, 1e6 * row->moving_cost);
+    if (row->resting_cost > 0)
+        printf(" %11.1f", 1e6 * row->resting_cost);
+    else
+        printf(" %11s", "-");
     if (row->flags & MSPRING_TUNE_HAS_TRAJECTORY)
         printf(" %11.5f %9.3f %9.2f", row->trajectory_error, 100 * row->trajectory_share, 100 * row->energy_drift);
     else
@@ -144,9 +149,13 @@ static void print_row(const mspring_tune_row *row) {
 }
 
 static void print_rows(const subject *about, const mspring_tune_row *rows, uint32_t count) {
-    printf("\n%s, steps of 1/64 s\n\n", about->title);
-    printf("%-9s %8s %10s %11s %11s %11s %9s %9s %10s %10s\n", "solver", "substeps", "iterations", "least, us",
-           "median, us", "error, m", "error, %", "energy, %", "bending, m", "at rest, m");
+    double duration = 0;
+    for (uint32_t i = 0; i < count; i++)
+        duration = fmax(duration, rows[i].duration);
+    printf("\n%s, steps of 1/64 s, compared for %.3g s\n\n", about->title, duration);
+    printf("%-15s %8s %10s %11s %11s %11s %11s %9s %9s %10s %10s\n", "solver", "substeps", "iterations",
+           "least, us", "moving, us", "resting, us", "error, m", "error, %", "energy, %", "bending, m",
+           "at rest, m");
     for (uint32_t i = 0; i < count; i++)
         print_row(&rows[i]);
 }
@@ -316,7 +325,7 @@ static bool draw(const subject *about, const options *how, const cloud *errors, 
     figure picture;
     snprintf(name, sizeof name, "07_tune_%s", about->name);
     figure_start(&picture, about->stiffer > 0 ? 1120 : 560, 460, 0xffffff);
-    draw_cloud(&picture, errors, about->title, "error of positions after 1/4 s, as a share of motion", true, 0);
+    draw_cloud(&picture, errors, about->title, "error of positions, as a share of the largest motion", true, 0);
     if (about->stiffer > 0)
         draw_cloud(&picture, bending, "The same, made stiffer and stiffer", "bending at rest, m", false, 560);
     const bool ok = output_figure(&picture, how->folder, name);

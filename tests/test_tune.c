@@ -57,7 +57,7 @@ static reference reference_of_network(const mspring_network *network) {
 /// reference with this many substeps.
 static double find_share(mspring_network *network, const mspring_tune_row *row, const mspring_tune_def *def,
                          uint32_t fine_substeps) {
-    const uint32_t steps = (uint32_t)(def->duration / def->dt + 0.5);
+    const uint32_t steps = (uint32_t)(row->duration / def->dt + 0.5);
     mspring_solver_def solver;
     reference net = reference_of_network(network), start = reference_of_network(network);
     double error = 0, motion = 0;
@@ -68,19 +68,21 @@ static double find_share(mspring_network *network, const mspring_tune_row *row, 
         for (uint32_t i = 0; i < fine_substeps; i++) {
             reference_substep(&net, def->dt / fine_substeps);
         }
-        if (step * 4 % steps != 0) {
-            continue;
-        }
+        double moved = 0;
+        const bool is_moment = step == steps / 4 || step == steps / 2 || step == 3 * steps / 4 || step == steps;
         for (mspring_id p = 0; p < net.particle_count; p++) {
             const support_point at = support_position(network, p);
-            error += pow(at.x - net.particles[p].x, 2) + pow(at.y - net.particles[p].y, 2);
-            motion += pow(start.particles[p].x - net.particles[p].x, 2) +
-                      pow(start.particles[p].y - net.particles[p].y, 2);
+            if (is_moment) {
+                error += pow(at.x - net.particles[p].x, 2) + pow(at.y - net.particles[p].y, 2);
+            }
+            moved += pow(start.particles[p].x - net.particles[p].x, 2) +
+                     pow(start.particles[p].y - net.particles[p].y, 2);
         }
+        motion = fmax(motion, moved);
     }
     reference_free(&net);
     reference_free(&start);
-    return sqrt(error / motion);
+    return sqrt(error / 4 / motion);
 }
 
 static void trajectory_errors_are_those_of_an_independent_reference(void **state) {
@@ -116,6 +118,68 @@ static void trajectory_errors_are_those_of_an_independent_reference(void **state
             check_near(out.rows[i].energy_drift, 0, 0.1);
         }
     }
+}
+
+/// A mass on a spring that is let go of where the spring is at ease, with this period of its swing.
+static mspring_network *swinging_mass(double period) {
+    const double turn = 2 * acos(-1.0) / period;
+    mspring_builder *builder = support_builder();
+    const mspring_id top = support_pinned(builder, 0, 0, 1), weight = support_particle(builder, 0, -20, 2);
+    support_spring(builder, top, weight, (float)(2 * turn * turn), 0);
+    const mspring_network_def def = support_def(-9.8f, 1);
+    return support_network(builder, &def);
+}
+
+/// At the four moments it is back where it was; half a period before, it was twice as far away as where it rests.
+static void who_comes_back_has_moved(void **state) {
+    (void)state;
+    const mspring_solver_def settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 100, 0),
+                                           tunes_setting(MSPRING_SOLVER_IMPLICIT, 4, 8)};
+    tunes_watch w = {.tick = 1e-3};
+    mspring_tune_def def = tunes_def(&w);
+    def.settings = settings;
+    def.setting_count = COUNT_OF(settings);
+    def.duration = 0.25;
+    def.max_error = 0.05;
+    mspring_network *network = swinging_mass(def.duration / 4);
+    const tunes_table out = tunes_run(network, &def);
+    const double farthest = 2 * 9.8 * pow(def.duration / 4 / (2 * acos(-1.0)), 2);
+    for (uint32_t i = 0; i < out.count; i++) {
+        // The fine run errs by some 1e-3 of a swing.
+        check_near(out.rows[i].trajectory_error / out.rows[i].trajectory_share, farthest, 0.01 * farthest);
+        assert_true(out.rows[i].trajectory_share < 1);
+        check_near(out.rows[i].duration, 0.25, 1e-12);
+    }
+    assert_true(tunes_has(&out.rows[0], MSPRING_TUNE_RECOMMENDED));
+    mspring_network_destroy(network);
+}
+
+/// As long as one swing takes: to a fifth, which a few steps of a swing that is damped by the solver leave open.
+static void the_motion_says_how_long(void **state) {
+    (void)state;
+    const mspring_solver_def setting = tunes_setting(MSPRING_SOLVER_EXPLICIT, 4, 0);
+    tunes_watch w = {.tick = 1e-6};
+    mspring_tune_def def = tunes_def(&w);
+    def.settings = &setting;
+    def.setting_count = 1;
+    def.max_error = INFINITY;
+    for (double period = 0.125; period < 12; period *= 2) {
+        mspring_network *network = swinging_mass(period);
+        const double expected = fmax(period, 0.25); // 16 steps at least
+        const tunes_table out = tunes_run(network, &def);
+        assert_true(tunes_has(&out.rows[0], MSPRING_TUNE_HAS_TRAJECTORY));
+        check_near(out.rows[0].duration, expected, 0.2 * expected);
+        mspring_network_destroy(network);
+    }
+    // What swings for longer than 1024 steps, or than there is time for, is cut short.
+    mspring_network *network = swinging_mass(100);
+    check_near(tunes_run(network, &def).rows[0].duration, 1024 * def.dt, 0);
+    w.tick = 1e-3;
+    def.budget = 0.5;
+    const tunes_table out = tunes_run(network, &def);
+    assert_true(tunes_has(&out.rows[0], MSPRING_TUNE_HAS_TRAJECTORY | MSPRING_TUNE_HAS_COST));
+    assert_true(out.rows[0].duration >= 4 * def.dt && out.rows[0].duration < 200 * def.dt);
+    mspring_network_destroy(network);
 }
 
 static void the_fine_run_is_of_second_order(void **state) {
@@ -244,7 +308,8 @@ static void rows_are_the_same_everywhere(void **state) {
                 MSPRING_TUNE_HAS_COST | MSPRING_TUNE_HAS_TRAJECTORY | MSPRING_TUNE_HAS_REST | MSPRING_TUNE_REFUSED;
             assert_int_equal(a->flags & measured, b->flags & measured);
             assert_memory_equal(&a->trajectory_error, &b->trajectory_error,
-                                sizeof *a - offsetof(mspring_tune_row, trajectory_error));
+                                offsetof(mspring_tune_row, moving_cost) -
+                                    offsetof(mspring_tune_row, trajectory_error));
         }
     }
 }
@@ -254,6 +319,7 @@ static void rows_are_the_same_everywhere(void **state) {
 typedef struct example_row {
     double cost, error;
     uint32_t flags, expected;
+    double drift;
 } example_row;
 
 /// Have rows of these costs and errors judged.
@@ -263,6 +329,7 @@ static void judge(const example_row *examples, uint32_t count, double max_error,
     mspringi_tuning tuning = {.trial_count = count, .trials = trials};
     tuning.def.max_error = max_error;
     tuning.def.max_cost = max_cost;
+    tuning.def.max_drift = 0.1;
     for (uint32_t i = 0; i < count; i++) {
         times[i][0] = examples[i].cost;
         times[i][1] = 10 * examples[i].cost;
@@ -271,6 +338,7 @@ static void judge(const example_row *examples, uint32_t count, double max_error,
         trials[i].time_count = 3;
         trials[i].row.flags = MSPRING_TUNE_HAS_COST | MSPRING_TUNE_HAS_TRAJECTORY | examples[i].flags;
         trials[i].row.trajectory_share = examples[i].error;
+        trials[i].row.energy_drift = examples[i].drift;
     }
     mspringi_tune_judge(&tuning);
     for (uint32_t i = 0; i < count; i++) {
@@ -285,16 +353,19 @@ static void judge(const example_row *examples, uint32_t count, double max_error,
 static void recommended_is_what_is_asked_for(void **state) {
     (void)state;
     enum { P = MSPRING_TUNE_PARETO, R = MSPRING_TUNE_RECOMMENDED, REFUSED = MSPRING_TUNE_REFUSED };
-    const example_row cheapest[] = {{1, 0.1, 0, P},       {2, 0.01, 0, P | R}, {3, 0.02, 0, 0},
-                                    {0.5, 0, REFUSED, 0}, {4, 0.001, 0, P},    {2, 0.01, 0, P}};
+    const example_row cheapest[] = {{1, 0.1, 0, P, 0},       {2, 0.01, 0, P | R, 0}, {3, 0.02, 0, 0, 0},
+                                    {0.5, 0, REFUSED, 0, 0}, {4, 0.001, 0, P, 0},    {2, 0.01, 0, P, 0}};
     judge(cheapest, COUNT_OF(cheapest), 0.01, INFINITY);
-    const example_row most_accurate[] = {{1, 0.1, 0, P}, {2, 0.01, 0, P | R}, {3, 0.02, 0, 0}, {4, 0.001, 0, P}};
+    const example_row most_accurate[] = {
+        {1, 0.1, 0, P, 0}, {2, 0.01, 0, P | R, 0}, {3, 0.02, 0, 0, 0}, {4, 0.001, 0, P, 0}};
     judge(most_accurate, COUNT_OF(most_accurate), INFINITY, 3);
-    const example_row none[] = {{1, 0.1, 0, P}, {2, 0.01, 0, P}};
+    const example_row none[] = {{1, 0.1, 0, P, 0}, {2, 0.01, 0, P, 0}};
     judge(none, COUNT_OF(none), 0.01, 1.5);
-    const example_row both[] = {{1, 0.1, 0, P}, {2, 0.01, 0, P | R}, {2.5, 0.001, 0, P}};
+    const example_row both[] = {{1, 0.1, 0, P, 0}, {2, 0.01, 0, P | R, 0}, {2.5, 0.001, 0, P, 0}};
     judge(both, COUNT_OF(both), 0.05, 3);
-    const example_row all_refused[] = {{1, 0.1, REFUSED, 0}};
+    const example_row gains[] = {{1, 0.01, 0, P, 3.0}, {2, 0.005, 0, P | R, -3.0}};
+    judge(gains, COUNT_OF(gains), 0.05, INFINITY);
+    const example_row all_refused[] = {{1, 0.1, REFUSED, 0, 0}};
     judge(all_refused, COUNT_OF(all_refused), 1, 1);
 }
 
@@ -332,12 +403,14 @@ static void usual_settings_are_tried_where_none_are_given(void **state) {
     check_ok(mspring_tune_settings(network, 1.0 / 64, settings, TUNES_MOST, &count));
     check_ok(mspring_network_suggest_substeps(network, 1.0 / 64, 0.9, &least));
     assert_int_equal(settings[0].substeps, least);
-    uint32_t implicit = 0;
+    uint32_t implicit = 0, bdf2 = 0;
     for (uint32_t i = 0; i < count; i++) {
         check_ok(mspring_network_set_solver(network, &settings[i]));
         support_steps(network, 1, 1.0 / 64);
         implicit += settings[i].solver == MSPRING_SOLVER_IMPLICIT;
+        bdf2 += settings[i].integrator == MSPRING_INTEGRATOR_BDF2;
     }
+    assert_in_range(bdf2, 4, count - 4);
     assert_in_range(implicit, 4, count - 3);
     check_error(mspring_tune_settings(NULL, 1.0 / 64, settings, TUNES_MOST, &count), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_tune_settings(network, 0, settings, TUNES_MOST, &count), MSPRING_ERROR_ARGUMENT);
@@ -367,6 +440,8 @@ static void costs_are_what_the_clock_says(void **state) {
         check_near(out.rows[i].min_cost, 0.25, 0);
         check_near(out.rows[i].median_cost, 0.25, 0);
         assert_true(out.rows[i].step_count >= 36); // 4 and twice 16
+        check_near(out.rows[i].moving_cost, 0.25, 0);
+        check_near(out.rows[i].resting_cost, 0.25, 0);
     }
     assert_true(w.told > 100 && !w.went_back);
     assert_true(w.done > 0.9);
@@ -468,6 +543,8 @@ static void the_ship_keeps_the_promise(void **state) {
 int main(int count, char **arguments) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(trajectory_errors_are_those_of_an_independent_reference),
+        cmocka_unit_test(who_comes_back_has_moved),
+        cmocka_unit_test(the_motion_says_how_long),
         cmocka_unit_test(the_fine_run_is_of_second_order),
         cmocka_unit_test(rest_is_where_settle_finds_it),
         cmocka_unit_test(relative_springs_are_as_firm_as_their_substeps),

@@ -151,7 +151,7 @@ static void bad_calls_are_refused(void **state) {
 
     const mspring_solver_def settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 1, 0),
                                            tunes_setting(MSPRING_SOLVER_EXPLICIT, 0, 0)};
-    for (int bad = 0; bad < 16; bad++) {
+    for (int bad = 0; bad < 18; bad++) {
         def = good;
         switch (bad) {
         case 0:
@@ -200,6 +200,12 @@ static void bad_calls_are_refused(void **state) {
             break;
         case 14:
             def.flags = 2;
+            break;
+        case 15:
+            def.max_drift = -0.1;
+            break;
+        case 16:
+            def.duration = NAN;
             break;
         default:
             def.settings = settings;

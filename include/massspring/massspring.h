@@ -841,7 +841,8 @@ typedef struct mspring_tune_def {
     const mspring_solver_def *settings; ///< [setting_count]; default NULL: those of mspring_tune_settings()
     double dt;                          ///< length of a step, s, as in mspring_network_step(); default 1/64
     double duration; ///< simulated time that trajectories are compared for, s, up to 100000 steps; rounded up to
-                     ///< whole steps, at least four; default 0.25
+                     ///< whole steps, at least four. Default 0: one period of the slowest swing in the motion, at
+                     ///< least 16 and at most 1024 steps, fewer if the budget is small: mspring_tune_row.duration
     double budget;   ///< s that the call may take, by the clock; default 10. It is looked at between steps, and
                      ///< between iterations of the search for an equilibrium.
     mspring_tune_measure measure; ///< default MSPRING_TUNE_BY_TRAJECTORY
@@ -851,6 +852,7 @@ typedef struct mspring_tune_def {
     mspring_clock_fn clock; ///< default NULL: the system's. A build without one (MASSSPRING_FREESTANDING) needs it.
     mspring_progress_fn progress; ///< default NULL
     void *user;                   ///< handed to both
+    double max_drift; ///< a row whose energy_drift is measured and larger is not recommended; >= 0; default 0.1
 } mspring_tune_def;
 
 /// Flags of mspring_tune_row.
@@ -876,13 +878,17 @@ typedef struct mspring_tune_row {
     double min_cost, median_cost; ///< s for a step
     double trajectory_error; ///< m, root of the mean square over the particles that are not pinned and over four
                              ///< moments, from where a fine run has them
-    double trajectory_share; ///< the same as a share of how far they have gone in the fine run
+    double trajectory_share; ///< the same as a share of the largest root mean square distance from the start that
+                             ///< they have after any step of the fine run
     double energy_drift;     ///< energy at the end beyond that of the fine run, as a share of the largest sum of
                              ///< kinetic and elastic energy that the fine run had at those moments
     double bending;          ///< m, farthest that a particle is from here when the network is at rest
     double rest_error;       ///< m, farthest that the mean position of a particle, over the steps from rest on, is
                              ///< from its place at rest
     double rest_share;       ///< the same as a share of bending
+    double duration;         ///< s, simulated time that the trajectory was compared for
+    double moving_cost;      ///< s for a step, median of those from the state given on, and
+    double resting_cost;     ///< of those from rest on: implicit and direct solver may take less there
 } mspring_tune_row;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
@@ -890,8 +896,8 @@ typedef struct mspring_tune_row {
 MSPRING_API mspring_result mspring_tune_def_init(mspring_tune_def *def, size_t size);
 
 /// The settings that are tried where none are given: explicit with some numbers of substeps from the least that is
-/// stable on (none above 1000), implicit with 4, 8 and 15 iterations in one, two and four substeps, and up to 20000
-/// particles direct in one and two.
+/// stable on (none above 1000), implicit with BDF2 and 4, 8 and 15 iterations in one, two and four substeps, and with
+/// GA0 and 8 iterations in the same. Up to 20000 particles also direct with both in one and two substeps.
 /// @param dt        seconds, finite, > 0
 /// @param settings  [capacity]; may be NULL with capacity 0, to ask how many there are
 /// @param count     receives how many there are, also if that is more than capacity
@@ -917,10 +923,11 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_tune_settings(mspring_netwo
 /// Relative springs follow the substep: each row is compared with a fine run, and an equilibrium, that have the
 /// stiffness of its own substeps, and bending says how firm that is.
 ///
-/// Recommended is, if max_error is finite, the row of the least median cost among those within both bounds; else,
-/// of those within max_cost, the one of the least error; of equal ones the first. There may be none. When the
-/// budget is used up, what is not measured is not flagged as measured: first the costs of all are taken, then what
-/// measure asks for, then the rest. All but the costs is the same whenever it is measured, and on any machine.
+/// Recommended is, if max_error is finite, the row of the least median cost among those within all bounds; else,
+/// of those within max_cost and max_drift, the one of the least error; of equal ones the first. There may be none.
+/// When the budget is used up, what is not measured is not flagged as measured: first the costs of all are taken, then
+/// what measure asks for, then the rest. For the same duration all but the costs is the same whenever it is measured,
+/// and on any machine.
 /// @param def       NULL for the defaults
 /// @param rows      [capacity], struct_size set in each; one for each setting, in their order
 /// @param capacity  at least as many as there are settings

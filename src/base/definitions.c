@@ -92,10 +92,10 @@ mspring_result mspring_settle_def_init(mspring_settle_def *def, size_t size) {
 mspring_result mspring_tune_def_init(mspring_tune_def *def, size_t size) {
     const mspring_tune_def defaults = {.struct_size = sizeof defaults,
                                        .dt = 1.0 / 64,
-                                       .duration = 0.25,
                                        .budget = 10.0,
                                        .measure = MSPRING_TUNE_BY_TRAJECTORY,
                                        .max_error = 0.01,
-                                       .max_cost = INFINITY};
+                                       .max_cost = INFINITY,
+                                       .max_drift = 0.1};
     return fill(def, size, &defaults, sizeof defaults);
 }

@@ -14,14 +14,21 @@ static void sort(double *values, uint32_t count) {
         }
 }
 
+// Sort numbers, and return their median; 0 if there are none.
+static double median_of(double *values, uint32_t count) {
+    sort(values, count);
+    return count > 0 ? 0.5 * (values[(count - 1) / 2] + values[count / 2]) : 0.0;
+}
+
 static void sum_up(mspringi_trial *trial) {
-    const uint32_t count = trial->time_count;
-    sort(trial->times, count);
-    trial->row.step_count = count;
-    if (count == 0)
-        return;
-    trial->row.min_cost = trial->times[0];
-    trial->row.median_cost = 0.5 * (trial->times[(count - 1) / 2] + trial->times[count / 2]);
+    mspring_tune_row *row = &trial->row;
+    row->moving_cost = median_of(trial->times, trial->time_count);
+    row->resting_cost = median_of(trial->rest_times, trial->rest_count);
+    for (uint32_t i = 0; i < trial->rest_count; ++i)
+        trial->times[trial->time_count + i] = trial->rest_times[i];
+    row->step_count = trial->time_count + trial->rest_count;
+    row->median_cost = median_of(trial->times, row->step_count);
+    row->min_cost = row->step_count > 0 ? trial->times[0] : 0.0;
 }
 
 static double error_of(const mspring_tune_row *row, mspring_tune_measure measure) {
@@ -64,7 +71,8 @@ void mspringi_tune_judge(const mspringi_tuning *tuning) {
         if (!is_beaten(tuning, row))
             row->flags |= MSPRING_TUNE_PARETO;
         const double error = error_of(row, def->measure);
-        if (error > def->max_error || row->median_cost > def->max_cost)
+        const bool gains = row->flags & MSPRING_TUNE_HAS_TRAJECTORY && row->energy_drift > def->max_drift;
+        if (error > def->max_error || row->median_cost > def->max_cost || gains)
             continue;
         if (!best || (cheapest ? row->median_cost < best->median_cost : error < error_of(best, def->measure)))
             best = row;

@@ -10,15 +10,20 @@
 /// Particles up to which a factorisation in each step may be worth its time.
 #define MOST_PARTICLES_OF_DIRECT 20000
 
+/// Iterations with which the default integrator is tried, beside the other one.
+#define USUAL_ITERATIONS 8
+
 typedef struct settings {
     mspring_solver_def list[MSPRINGI_TUNE_USUAL_SETTINGS];
     uint32_t count;
 } settings;
 
-static void add(settings *s, mspring_solver solver, uint32_t substeps, uint32_t iterations) {
+static void add(settings *s, mspring_solver solver, mspring_integrator integrator, uint32_t substeps,
+                uint32_t iterations) {
     mspring_solver_def def;
     (void)mspring_solver_def_init(&def, sizeof def);
     def.solver = solver;
+    def.integrator = integrator;
     def.substeps = substeps;
     def.iterations = iterations;
     s->list[s->count++] = def;
@@ -27,7 +32,7 @@ static void add(settings *s, mspring_solver solver, uint32_t substeps, uint32_t 
 // Explicit substeps, in rising order.
 static void add_explicit(settings *s, uint32_t substeps) {
     if (substeps <= MOST_SUBSTEPS && (s->count == 0 || s->list[s->count - 1].substeps < substeps))
-        add(s, MSPRING_SOLVER_EXPLICIT, substeps, 0);
+        add(s, MSPRING_SOLVER_EXPLICIT, MSPRING_INTEGRATOR_GA0, substeps, 0);
 }
 
 static void list_settings(settings *s, const mspring_network *network, uint32_t least) {
@@ -42,12 +47,16 @@ static void list_settings(settings *s, const mspring_network *network, uint32_t 
         add_explicit(s, 2 * least);
         add_explicit(s, 4 * least);
     }
-    for (uint32_t substeps = 1; substeps <= 4; substeps *= 2)
+    for (uint32_t substeps = 1; substeps <= 4; substeps *= 2) {
         for (size_t i = 0; i < sizeof iterations / sizeof iterations[0]; ++i)
-            add(s, MSPRING_SOLVER_IMPLICIT, substeps, iterations[i]);
+            add(s, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, substeps, iterations[i]);
+        add(s, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_GA0, substeps, USUAL_ITERATIONS);
+    }
     for (uint32_t substeps = 1; network->topology.particle_count <= MOST_PARTICLES_OF_DIRECT && substeps <= 2;
-         ++substeps)
-        add(s, MSPRING_SOLVER_DIRECT, substeps, 0);
+         ++substeps) {
+        add(s, MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_BDF2, substeps, 0);
+        add(s, MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_GA0, substeps, 0);
+    }
 }
 
 mspring_result mspring_tune_settings(mspring_network *network, double dt, mspring_solver_def *list,

@@ -74,8 +74,10 @@ static mspring_result step(mspringi_tuning *tuning, mspringi_trial *trial, mspri
     }
     if (result != MSPRING_OK)
         return pass_on(tuning, trial, clone, result);
-    if (trial->time_count < tuning->time_capacity)
-        trial->times[trial->time_count++] = seconds > 0.0 ? seconds : 0.0;
+    double *times = tuning->is_resting ? trial->rest_times : trial->times;
+    uint32_t *time_count = tuning->is_resting ? &trial->rest_count : &trial->time_count;
+    if (*time_count < tuning->time_capacity)
+        times[(*time_count)++] = seconds > 0.0 ? seconds : 0.0;
     trial->row.flags |= MSPRING_TUNE_HAS_COST;
     return MSPRING_OK;
 }
@@ -134,7 +136,7 @@ mspring_result mspringi_tune_costs_again(mspringi_tuning *tuning) {
 /// A fine run, and what a trial adds up.
 typedef struct comparison {
     mspringi_reference reference;
-    double motion;          ///< m, RMS distance that particles went in the fine run
+    double motion;          ///< m, largest RMS distance of particles from the start, over the steps of the fine run
     double internal, total; ///< J: largest kinetic and elastic energy, and all energy at the end
     uint32_t free_count;    ///< particles that are not pinned
     double squares;         ///< m^2, of a trial
@@ -152,17 +154,23 @@ static double *places_at(const mspringi_tuning *tuning, uint32_t moment) {
     return tuning->places + (size_t)2 * moment * tuning->base->topology.particle_count;
 }
 
-static void note_moment(const mspringi_tuning *tuning, comparison *c, uint32_t moment) {
+// After each step: a body that is back where it was at all moments has moved in between.
+static void note_motion(const mspringi_tuning *tuning, comparison *c) {
     const mspringi_reference *r = &c->reference;
-    const size_t count = r->particle_count;
     const mspringi_state *start = &tuning->base->state;
-    memcpy(places_at(tuning, moment), r->x, 2 * count * sizeof *r->x); // y lies behind x
-    for (uint32_t p = 0; p < count; ++p) {
+    double squares = 0.0;
+    for (uint32_t p = 0; p < r->particle_count; ++p) {
         const uint32_t slot = tuning->base->topology.slot_of_particle[p];
         const double dx = r->x[p] - (double)start->x[slot], dy = r->y[p] - (double)start->y[slot];
         if (r->inverse_mass[p] > 0.0)
-            c->motion += dx * dx + dy * dy;
+            squares += dx * dx + dy * dy;
     }
+    c->motion = c->free_count > 0 ? fmax(c->motion, sqrt(squares / (double)c->free_count)) : 0.0;
+}
+
+static void note_moment(const mspringi_tuning *tuning, comparison *c, uint32_t moment) {
+    const mspringi_reference *r = &c->reference;
+    memcpy(places_at(tuning, moment), r->x, 2 * (size_t)r->particle_count * sizeof *r->x); // y lies behind x
     const mspringi_reference_energy energy = mspringi_reference_measure(r);
     c->internal = fmax(c->internal, energy.internal);
     c->total = energy.internal + energy.potential;
@@ -178,6 +186,8 @@ static double fine_substeps(const mspringi_tuning *tuning, const mspringi_refere
 static bool make_fine_run(mspringi_tuning *tuning, comparison *c) {
     const double substeps = fine_substeps(tuning, &c->reference), h = tuning->def.dt / substeps;
     const uint32_t go = 1 + SPRINGS_IN_A_GO / (c->reference.spring_count + 1);
+    for (uint32_t p = 0; p < c->reference.particle_count; ++p)
+        c->free_count += c->reference.inverse_mass[p] > 0.0;
     for (uint32_t step = 1; step <= tuning->step_count; ++step) {
         for (uint32_t left = (uint32_t)substeps; left > 0;) {
             const uint32_t count = go < left ? go : left;
@@ -188,13 +198,11 @@ static bool make_fine_run(mspringi_tuning *tuning, comparison *c) {
         }
         if (step == 1)
             mspringi_reference_release(&c->reference);
+        note_motion(tuning, c);
         const uint32_t moment = moment_of(tuning, step);
         if (moment < MSPRINGI_TUNE_MOMENTS)
             note_moment(tuning, c, moment);
     }
-    for (uint32_t p = 0; p < c->reference.particle_count; ++p)
-        c->free_count += c->reference.inverse_mass[p] > 0.0;
-    c->motion = c->free_count > 0 ? sqrt(c->motion / (double)c->free_count / MSPRINGI_TUNE_MOMENTS) : 0.0;
     return true;
 }
 
@@ -226,6 +234,7 @@ static mspring_result run_trajectory(mspringi_tuning *tuning, mspringi_trial *tr
     mspring_tune_row *row = &trial->row;
     const mspringi_reference_energy energy = mspringi_reference_measure(&c->reference);
     row->flags |= MSPRING_TUNE_HAS_TRAJECTORY;
+    row->duration = tuning->step_count * tuning->def.dt;
     row->trajectory_error = sqrt(c->squares / (double)c->free_count / MSPRINGI_TUNE_MOMENTS);
     row->trajectory_share = row->trajectory_error / at_least(tuning, c->motion);
     row->energy_drift = c->internal > 0.0 ? (energy.internal + energy.potential - c->total) / c->internal : 0.0;
@@ -274,6 +283,27 @@ static mspring_result trajectories_of_group(mspringi_tuning *tuning, float relat
         for (uint32_t i = 0; result == MSPRING_OK && i < tuning->trial_count; ++i)
             if (is_waiting(&tuning->trials[i], relative_h))
                 result = run_trajectory(tuning, &tuning->trials[i], &c);
+    }
+    mspringi_tune_dismiss(fine); // with the reference's memory
+    return result;
+}
+
+mspring_result mspringi_tune_time_fine_step(mspringi_tuning *tuning, float relative_h, double *seconds) {
+    const mspring_tune_def *def = &tuning->def;
+    mspring_network *fine = NULL;
+    mspringi_reference r;
+    mspring_result result = mspringi_tune_spawn(tuning, tuning->base, &fine);
+    if (result != MSPRING_OK)
+        return result;
+    if (relative_h > 0.0f)
+        mspringi_derive_relative(fine, relative_h);
+    result = mspringi_reference_create(&r, fine);
+    if (result == MSPRING_OK) {
+        const double substeps = fine_substeps(tuning, &r), begun = def->clock(def->user);
+        mspringi_reference_run(&r, def->dt / substeps, 1);
+        *seconds = substeps * (def->clock(def->user) - begun);
+    } else {
+        result = pass_on(tuning, NULL, fine, result);
     }
     mspringi_tune_dismiss(fine); // with the reference's memory
     return result;
@@ -357,5 +387,8 @@ static mspring_result rests_of_group(mspringi_tuning *tuning, float relative_h) 
 }
 
 mspring_result mspringi_tune_rests(mspringi_tuning *tuning) {
-    return run_groups(tuning, rests_of_group);
+    tuning->is_resting = true;
+    const mspring_result result = run_groups(tuning, rests_of_group);
+    tuning->is_resting = false;
+    return result;
 }

@@ -15,15 +15,18 @@
 static mspring_result check_numbers(const mspring_tune_def *def, mspringi_message *message) {
     if (!(def->dt > 0.0 && def->dt < INFINITY))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "dt is %g s, it must be finite and > 0", def->dt);
-    if (!(def->duration > 0.0 && def->duration <= def->dt * MOST_STEPS))
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
-                             "duration is %g s, it must be > 0 and at most %d steps of %g s", def->duration,
-                             MOST_STEPS, def->dt);
+    if (!(def->duration >= 0.0 && def->duration <= def->dt * MOST_STEPS))
+        return mspringi_fail(
+            message, MSPRING_ERROR_ARGUMENT,
+            "duration is %g s, it must be at most %d steps of %g s, or 0: as long as the motion asks",
+            def->duration, MOST_STEPS, def->dt);
     if (!(def->budget > 0.0))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "budget is %g s, it must be > 0", def->budget);
     if (!(def->max_error > 0.0 && def->max_cost > 0.0))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "max_error is %g, max_cost %g s, both must be > 0",
                              def->max_error, def->max_cost);
+    if (!(def->max_drift >= 0.0))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "max_drift is %g, it must be >= 0", def->max_drift);
     if (def->measure < MSPRING_TUNE_BY_TRAJECTORY || def->measure > MSPRING_TUNE_BY_BENDING)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "measure is %d, which is none", (int)def->measure);
     if (def->flags & ~(uint32_t)MSPRING_TUNE_NOTHING_ELSE)
@@ -116,7 +119,10 @@ static mspring_result make_base(mspringi_tuning *tuning) {
     return MSPRING_OK;
 }
 
+// Steps of a trajectory; the most there can be where that is not known yet.
 static uint32_t steps_of(const mspring_tune_def *def) {
+    if (def->duration == 0.0)
+        return MSPRINGI_TUNE_MOST_STEPS;
     const double steps = def->duration / def->dt, whole = floor(steps),
                  rounded = whole < steps ? whole + 1.0 : whole;
     return rounded > MSPRINGI_TUNE_MOMENTS ? (uint32_t)rounded : MSPRINGI_TUNE_MOMENTS;
@@ -125,10 +131,10 @@ static uint32_t steps_of(const mspring_tune_def *def) {
 static mspring_result allocate(mspringi_tuning *tuning) {
     mspringi_memory *memory = &tuning->network->memory;
     const size_t particles = tuning->network->topology.particle_count;
-    tuning->time_capacity = MSPRINGI_TUNE_FIRST_STEPS + 3 * tuning->step_count;
+    tuning->time_capacity = MSPRINGI_TUNE_FIRST_STEPS + 2 * tuning->step_count;
     tuning->trials = mspringi_alloc(memory, tuning->trial_count, sizeof *tuning->trials);
     tuning->times =
-        mspringi_alloc(memory, (size_t)tuning->trial_count * tuning->time_capacity, sizeof *tuning->times);
+        mspringi_alloc(memory, (size_t)2 * tuning->trial_count * tuning->time_capacity, sizeof *tuning->times);
     tuning->places = mspringi_alloc(memory, 2 * MSPRINGI_TUNE_MOMENTS * particles, sizeof *tuning->places);
     if (!tuning->trials || !tuning->times || !tuning->places)
         return mspringi_fail(&tuning->network->message, MSPRING_ERROR_MEMORY, "no memory to try %u settings",
@@ -140,7 +146,8 @@ static void fill_trials(mspringi_tuning *tuning, const mspring_solver_def *setti
     for (uint32_t i = 0; i < tuning->trial_count; ++i) {
         mspringi_trial *trial = &tuning->trials[i];
         trial->setting = settings[i];
-        trial->times = tuning->times + (size_t)i * tuning->time_capacity;
+        trial->times = tuning->times + (size_t)2 * i * tuning->time_capacity;
+        trial->rest_times = trial->times + tuning->time_capacity;
         trial->row = (mspring_tune_row){
             .struct_size = sizeof trial->row,
             .setting = i,
@@ -160,6 +167,8 @@ static mspring_result measure(mspringi_tuning *tuning) {
     const bool by_trajectory = tuning->def.measure == MSPRING_TUNE_BY_TRAJECTORY;
     const bool all = !(tuning->def.flags & MSPRING_TUNE_NOTHING_ELSE);
     mspring_result result = mspringi_tune_costs(tuning);
+    if (result == MSPRING_OK && tuning->def.duration == 0.0)
+        result = mspringi_tune_choose_duration(tuning);
     if (result == MSPRING_OK && !by_trajectory)
         result = mspringi_tune_rests(tuning);
     if (result == MSPRING_OK && (by_trajectory || all))

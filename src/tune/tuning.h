@@ -10,6 +10,10 @@
 /// Moments at which a trajectory is compared.
 #define MSPRINGI_TUNE_MOMENTS 4
 
+/// Most steps of a trajectory, and least, where the host leaves its length to the library.
+#define MSPRINGI_TUNE_MOST_STEPS 1024
+#define MSPRINGI_TUNE_LEAST_STEPS 16
+
 /// Room for those that are tried where the host gives none.
 #define MSPRINGI_TUNE_USUAL_SETTINGS 24
 
@@ -22,8 +26,10 @@ typedef struct mspringi_trial {
     mspring_tune_row row;
     float relative_h; ///< substep that relative springs had; 0 if there are none
     bool has_run;     ///< its trajectory, or its rest, in the pass that is made now
-    double *times;    ///< [time_capacity] s for each step so far
+    double *times;    ///< [time_capacity] s for each step so far while the network moved, and
     uint32_t time_count;
+    double *rest_times; ///< [time_capacity] behind them, from rest on
+    uint32_t rest_count;
 } mspringi_trial;
 
 typedef struct mspringi_tuning {
@@ -37,11 +43,19 @@ typedef struct mspringi_tuning {
     double size;    ///< of the network, m
     double begun;   ///< s, by the clock
     double done, units; ///< parts of the work, for who watches
+    bool is_resting;    ///< the steps that are made now begin at rest
     bool is_over;       ///< the budget is used up, or who watches has had enough
 } mspringi_tuning;
 
 /// Whether there is time left to go on; part of the present unit of work is done.
 bool mspringi_tuning_goes_on(mspringi_tuning *tuning, double part);
+
+/// How many steps trajectories are to have: as many as the slowest swing takes that is in the motion, or as the
+/// budget allows. After the first costs; into step_count.
+mspring_result mspringi_tune_choose_duration(mspringi_tuning *tuning);
+
+/// Seconds that a step of a fine run takes, for springs of this relative stiffness.
+mspring_result mspringi_tune_time_fine_step(mspringi_tuning *tuning, float relative_h, double *seconds);
 
 /// Passes over all trials. What the budget does not allow is left out.
 mspring_result mspringi_tune_costs(mspringi_tuning *tuning);
