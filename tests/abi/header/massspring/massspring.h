@@ -35,12 +35,14 @@
 /// objects may. Where a function says "shared", several threads may call such functions on one object at once.
 /// A network steps on the caller's thread alone, unless its definition asks for workers (worker_count, tasks): then
 /// calls on it still come from one thread at a time, and it divides their work among the workers itself. The number
-/// of workers changes no bit of the result.
+/// of workers changes no bit of the result. If fork() is called between calls, the child can go on with its copies:
+/// the library's threads are started again by the first step there.
 ///
 /// **Memory.** Functions say whether they allocate; a step never does.
 ///
 /// **ABI.** Handles are opaque, ids are integers, no struct is passed by value. Every public struct starts with
-/// struct_size; its init function fills in defaults. Structs may grow at the end in later versions, and a
+/// struct_size; its init function fills in defaults. Reserved fields of what is given must be 0, so that a later
+/// version may give them a meaning: anything else is MSPRING_ERROR_ARGUMENT. Structs may grow at the end, and a
 /// program built against an older header goes on working. A program built against a newer one is refused: by
 /// MSPRING_ERROR_STRUCT, or, where it calls what is not there, by the loader. Nothing that was released is taken
 /// away: what has something better stays, and its description says what to use instead, until the ABI is broken as
@@ -61,8 +63,10 @@ extern "C" {
 
 /* ------------------------------------------------------------------------------------------ export macros */
 
-/// Marks the functions of the library. Define MSPRING_SHARED where you use the library as a Windows DLL.
-#if defined(_WIN32) && defined(MSPRING_BUILD_SHARED)
+/// Marks the functions of the library. Define MSPRING_SHARED where you use the library as a Windows DLL, or
+/// MSPRING_API itself before this header where you compile the library with your program: as `static`, for instance.
+#if defined(MSPRING_API)
+#elif defined(_WIN32) && defined(MSPRING_BUILD_SHARED)
 #define MSPRING_API __declspec(dllexport)
 #elif defined(_WIN32) && defined(MSPRING_SHARED)
 #define MSPRING_API __declspec(dllimport)
@@ -94,8 +98,8 @@ MSPRING_API const char *mspring_version_string(void);
 /// What a build of the library has beside what all have.
 enum {
     MSPRING_FEATURE_THREADS = 1u << 0, ///< networks may have several workers; without, they have one
-    MSPRING_FEATURE_HOSTED = 1u << 1,  ///< there is a default allocator, error messages have their numbers, and the
-                                       ///< environment variable MSPRING_SIMD is read
+    MSPRING_FEATURE_HOSTED = 1u << 1,  ///< there is a default allocator, and the environment variable MSPRING_SIMD is
+                                       ///< read
     MSPRING_FEATURE_SHARED = 1u << 2   ///< this is the shared library
 };
 
@@ -286,9 +290,8 @@ enum {
     /// stiffness < mass / (2 h^2). See mspring_network_stable_dt().
     MSPRING_SOLVER_EXPLICIT = 0,
     /// One linear system in each substep, whatever the stiffness: stable on lattices for any dt and any springs, at
-    /// a cost that does not depend on them. Ropes and other springs outside of lattices have little stiffness
-    /// across them; where they are so stiff, and move so far in a substep, that energy would come from nowhere, the
-    /// substep is taken in pieces, and if that is not enough the step is refused (see mspring_guard).
+    /// a cost that does not depend on them. Energy never comes from nowhere, and free components keep their momentum
+    /// and angular momentum (see mspring_guard). Vibration that a substep cannot follow is damped.
     /// Springs and dampers are linearised at x + h v, with tiles of neighbouring particles turned on as rigid
     /// bodies
     /// (and with the stiffness across a spring clamped to 0 where it is compressed, so that the matrix is positive
@@ -318,11 +321,9 @@ enum {
 /// a few steps. The two of second order remember the substep before; the first substep after a change of the
 /// solver, and after the positions of all particles were set, is one of implicit Euler.
 ///
-/// Stiff ropes that hang slack, and are pulled taut within a substep, are what no integrator can follow: a substep
-/// that would gain energy there is taken in pieces of implicit Euler, of a half to a 64th, with twice the
-/// iterations, and the 15 substeps after it are ones of implicit Euler, too (unless the guard is
-/// MSPRING_GUARD_BOUNDS). Our ship falling under its own weight, with its rigging, has some fifty such substeps in
-/// 10 s.
+/// Stiff ropes that hang slack, and are pulled taut within a substep, are what no integrator can follow. A substep
+/// that would gain energy is taken again by implicit Euler, with twice the iterations, and then in halves, down to a
+/// 32nd. The next 15 substeps are ones of implicit Euler, too (unless the guard is MSPRING_GUARD_BOUNDS).
 typedef int32_t mspring_integrator;
 enum {
     MSPRING_INTEGRATOR_GA0 = 0,  ///< generalised-alpha with rho_inf = 0 (Chung and Hulbert, 1993): second order
@@ -385,24 +386,24 @@ enum {
 typedef int32_t mspring_guard;
 enum {
     /// Refuse a step whose substeps are above the border of mspring_network_stable_dt(): motion would turn round
-    /// and grow in each. The border is looked at when the substep changes, and when a step changes a velocity twice
-    /// as much as one did at the last look; not at all where substeps are stable in any shape. Steps below the
-    /// border are never refused. On the explicit solver that costs 2 to 3 % of a step of one substep, and less than
-    /// 0.5 % of one of 8 or more. (That a step can be taken back at all, and bounds are looked at, takes 13 to 22 %
-    /// of one substep, 2 to 3 % of 8 and less than 1 % of 40, whatever the guard: bench/STABILITY.md.)
-    /// The implicit and the direct solver count instead what energy gets beyond the work of gravity, forces, moving
-    /// pins and floor, in each substep. Since the history began (see mspring_integrator) that never comes to more
-    /// than nothing, but for rounding: what would is taken out of the velocities, by one factor for all that hang
-    /// together, relative to their mass centre or, if a pinned particle or one on the floor is among them, to rest.
-    /// (What was lost counts against it, as long as it is no more than the motion that there was: kinetic and
-    /// elastic energy, less that of flying as a whole.) Rounding is a millionth of the motion, and what lengths are
-    /// off by in the last place u of positions, about k u^2 / 12 a spring. That follows from the sums for substeps
-    /// that are summed up as a whole, as all are of networks without lattices or with broken lattice springs; in
-    /// whole lattices how far the solution lowers the linearised energy tells, by constants that were measured,
-    /// when to do so (with the direct solver never), and there the bound is measured, too: at most 5.2e-6 of the
-    /// motion in 1008 runs of 128 steps, up to 1e12 N/m. More than a hundredth of the motion at once is not let
-    /// pass so: that substep is taken with four times the iterations, as are the 3 after it, or else in pieces
-    /// (see mspring_integrator), and the step refused if 64 are not enough.
+    /// and grow in each. The border is looked at before a step whose substep is another one, and after a step that
+    /// changes a velocity twice as much as one did at the last look. It is never looked at where substeps are stable
+    /// in any shape. Steps below the border are never refused.
+    /// A look first bounds the border, by a pass over the springs. If that does not answer it, it searches
+    /// for a motion that grows, for as long as a part of the step's substeps takes. What such a search overlooks is
+    /// found once it has grown to a thousandth of the shortest spring in a substep: that step is refused. So a step of 8
+    /// or more substeps takes at most twice its usual time, and the first one at most three times. Watching velocities
+    /// takes 2 to 3 % of a step of one substep, less than 0.5 % of one of 8 (bench/STABILITY.md).
+    ///
+    /// The implicit and the direct solver keep an energy budget instead, of each component (all that live springs join)
+    /// in each substep. Kinetic and elastic energy grow by no more than the work of gravity, forces and moving pins. A
+    /// floor takes energy and gives none. A free component, with no pinned particle and no impulse from the floor,
+    /// keeps momentum and angular momentum but for what gravity, forces and global damping do. Its budget is counted
+    /// about its mass centre. What would be too much is taken out of the velocities beside its rigid motion. If that
+    /// is more than a thousandth of its energy, the substep is taken again (see mspring_integrator). If even a 32nd of
+    /// a substep is too long, the component goes only a part of its way in it. No step is refused for its energy.
+    /// In each substep the springs may have a millionth more than the budget, and what rounding adds: that of lengths,
+    /// 5e-15 k l^2 a spring, and on a floor 3e-7 m g times the distance from the local origin.
     MSPRING_GUARD_GROWTH = 0,
     /// The same, but take a step that would be refused again with twice as many substeps, four times as many, and
     /// so on up to max_substeps. Later steps keep the number that was needed, until mspring_network_set_solver().
@@ -659,7 +660,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_global_damping(
 /// the state is the one of before the step, bit for bit, forces given for it are still there, and the error message
 /// names a particle. Take a shorter dt, more substeps or a lower stiffness.
 /// @param dt  seconds, finite, > 0, and long enough that dt / substeps is a normal float
-/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_UNSTABLE, MSPRING_ERROR_BUSY.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_UNSTABLE, MSPRING_ERROR_BUSY; in a child of fork()
+///         MSPRING_ERROR_THREAD if a worker cannot be started again.
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_step(mspring_network *network, double dt);
 
@@ -720,12 +722,14 @@ MSPRING_API uint64_t mspring_network_fallback_count(const mspring_network *netwo
 ///
 /// For small motion about a shape, a substep h is stable just if the largest eigenvalue of
 ///     h^2 M^-1 K + 2 h M^-1 C
-/// is at most 2 (1 + exp(global_damping h)), with M the masses, K the tangent stiffness of the shape, C the
-/// dampers, and without pinned particles. (One mode of angular frequency omega and damping ratio zeta: omega h <= 2
-/// (sqrt(1 + zeta^2) - zeta).) The eigenvalue is found by iteration (Lanczos 1950). Relative springs follow h; a
-/// network of relative springs alone is stable at every h (infinite) or at none (0).
-/// @param now        for the shape of now, to about 0.3 % and rather below than above; stretching a network
-///                   stiffens it across and lowers this. May be NULL.
+/// is at most 2 (1 + exp(global_damping h)), with M the masses, K the stiffness of the shape, C the dampers, and
+/// without pinned particles. (One mode of angular frequency omega and damping ratio zeta: omega h <= 2 (sqrt(1 +
+/// zeta^2) - zeta).) In K a spring that is shorter than its rest length has stiffness along its direction only. The
+/// tangent stiffness would add what is below 0 across it, which stretches the limit: in a shape that is pressed
+/// together now can be as short as 0.33 of that limit, and is safe. (mspring_guard goes by the tangent stiffness.) The
+/// eigenvalue is found by iteration (Lanczos 1950). Relative springs follow h; a network of relative springs alone is stable at every h (infinite) or at none (0).
+/// @param now        for the shape of now, with K as said, to about 0.3 % and rather below than above; stretching a
+///                   network stiffens it across and lowers this. May be NULL.
 /// @param any_shape  for any shape that the network can get into, tangles included: at most now; of a full lattice
 ///                   at rest 0.71 of it, or 0.49 with dampers alone. It depends on springs (broken ones count as
 ///                   whole), masses and pins only. May be NULL.
@@ -789,7 +793,9 @@ MSPRING_API mspring_result mspring_settle_def_init(mspring_settle_def *def, size
 /// that is not stable, such as a pendulum upside down, is left by a small push. Memory and time grow with the size
 /// as those of a factorisation do: for n particles of a lattice about n log n numbers and n^1.5 operations an
 /// iteration. A bar of 80 x 5 takes four of them. Ropes that fall slack and thin masts that bend far take many, as
-/// no step may turn their springs by much: our ship's rigging comes down by 45 m in 199 iterations (20 s).
+/// no step may turn their springs by much: the sample ship's rigging comes down by 45 m in 178 iterations. So do bars
+/// so soft that they hang down from their clamp; these have many equilibria that differ in which springs are folded.
+/// The energy of the one found may then be some parts in ten thousand above the lowest.
 ///
 /// Then velocities are zero (those of pinned particles stay), and forces given for the next step are still there.
 /// Parts without pinned particle have an equilibrium only if the forces on them cancel, as without gravity; others
@@ -835,7 +841,8 @@ typedef struct mspring_tune_def {
     const mspring_solver_def *settings; ///< [setting_count]; default NULL: those of mspring_tune_settings()
     double dt;                          ///< length of a step, s, as in mspring_network_step(); default 1/64
     double duration; ///< simulated time that trajectories are compared for, s, up to 100000 steps; rounded up to
-                     ///< whole steps, at least four; default 0.25
+                     ///< whole steps, at least four. Default 0: one period of the slowest swing in the motion, at
+                     ///< least 16 and at most 1024 steps, fewer if the budget is small: mspring_tune_row.duration
     double budget;   ///< s that the call may take, by the clock; default 10. It is looked at between steps, and
                      ///< between iterations of the search for an equilibrium.
     mspring_tune_measure measure; ///< default MSPRING_TUNE_BY_TRAJECTORY
@@ -845,6 +852,7 @@ typedef struct mspring_tune_def {
     mspring_clock_fn clock; ///< default NULL: the system's. A build without one (MASSSPRING_FREESTANDING) needs it.
     mspring_progress_fn progress; ///< default NULL
     void *user;                   ///< handed to both
+    double max_drift; ///< a row whose energy_drift is measured and larger is not recommended; >= 0; default 0.1
 } mspring_tune_def;
 
 /// Flags of mspring_tune_row.
@@ -870,13 +878,17 @@ typedef struct mspring_tune_row {
     double min_cost, median_cost; ///< s for a step
     double trajectory_error; ///< m, root of the mean square over the particles that are not pinned and over four
                              ///< moments, from where a fine run has them
-    double trajectory_share; ///< the same as a share of how far they have gone in the fine run
+    double trajectory_share; ///< the same as a share of the largest root mean square distance from the start that
+                             ///< they have after any step of the fine run
     double energy_drift;     ///< energy at the end beyond that of the fine run, as a share of the largest sum of
                              ///< kinetic and elastic energy that the fine run had at those moments
     double bending;          ///< m, farthest that a particle is from here when the network is at rest
     double rest_error;       ///< m, farthest that the mean position of a particle, over the steps from rest on, is
                              ///< from its place at rest
     double rest_share;       ///< the same as a share of bending
+    double duration;         ///< s, simulated time that the trajectory was compared for
+    double moving_cost;      ///< s for a step, median of those from the state given on, and
+    double resting_cost;     ///< of those from rest on: implicit and direct solver may take less there
 } mspring_tune_row;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
@@ -884,8 +896,8 @@ typedef struct mspring_tune_row {
 MSPRING_API mspring_result mspring_tune_def_init(mspring_tune_def *def, size_t size);
 
 /// The settings that are tried where none are given: explicit with some numbers of substeps from the least that is
-/// stable on (none above 1000), implicit with 4, 8 and 15 iterations in one, two and four substeps, and up to 20000
-/// particles direct in one and two.
+/// stable on (none above 1000), implicit with BDF2 and 4, 8 and 15 iterations in one, two and four substeps, and with
+/// GA0 and 8 iterations in the same. Up to 20000 particles also direct with both in one and two substeps.
 /// @param dt        seconds, finite, > 0
 /// @param settings  [capacity]; may be NULL with capacity 0, to ask how many there are
 /// @param count     receives how many there are, also if that is more than capacity
@@ -911,10 +923,11 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_tune_settings(mspring_netwo
 /// Relative springs follow the substep: each row is compared with a fine run, and an equilibrium, that have the
 /// stiffness of its own substeps, and bending says how firm that is.
 ///
-/// Recommended is, if max_error is finite, the row of the least median cost among those within both bounds; else,
-/// of those within max_cost, the one of the least error; of equal ones the first. There may be none. When the
-/// budget is used up, what is not measured is not flagged as measured: first the costs of all are taken, then what
-/// measure asks for, then the rest. All but the costs is the same whenever it is measured, and on any machine.
+/// Recommended is, if max_error is finite, the row of the least median cost among those within all bounds; else,
+/// of those within max_cost and max_drift, the one of the least error; of equal ones the first. There may be none.
+/// When the budget is used up, what is not measured is not flagged as measured: first the costs of all are taken, then
+/// what measure asks for, then the rest. For the same duration all but the costs is the same whenever it is measured,
+/// and on any machine.
 /// @param def       NULL for the defaults
 /// @param rows      [capacity], struct_size set in each; one for each setting, in their order
 /// @param capacity  at least as many as there are settings
@@ -1635,9 +1648,8 @@ enum {
     MSPRING_SNAPSHOT_FRAME = 1
 };
 
-/// The size of a snapshot that is saved now, in bytes. It changes with what there is to save: forces, ramps, edits,
-/// and 16 bytes for each slot of the plan while the guard suspects the last step, as it may after any. So ask
-/// before each save.
+/// The size of a snapshot that is saved now, in bytes. It changes with what there is to save: forces, ramps, edits.
+/// So ask before each save.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL or unknown contents; MSPRING_ERROR_BUSY in a hook.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_snapshot_size(const mspring_network *network,
