@@ -27,6 +27,10 @@
 /// Share of the kinetic energy below which a rigid motion is lost in the rounding of velocities.
 #define LOST_MOTION 1e-15
 
+/// How far a mass centre may be from where it should be, in m and as a share of its way.
+#define UNSEEN_WAY 1e-10
+#define SAME_WAY 1e-6
+
 /// How often a component goes back half its way before it stays where it was.
 #define MOST_STEPS_BACK 12
 
@@ -96,7 +100,7 @@ static void find_driven(const mspring_network *network, budget_of *budget) {
     }
 }
 
-void mspringi_budget_open(mspring_network *network) {
+void mspringi_budget_open(mspring_network *network, double h) {
     budget_of *budget = &network->implicit->budget;
     for (uint32_t i = 0; i < budget->count; ++i)
         begin_account(network, &budget->accounts[i]);
@@ -112,6 +116,7 @@ void mspringi_budget_open(mspring_network *network) {
         a->spin = c.spin;
         a->internal = c.kinetic + a->elastic;
         a->flight = flight_energy(a, &c);
+        a->turned = c.inertia > 0.0 ? 0.5 * h * c.spin / c.inertia : 0.0;
         a->share = 1.0;
     }
 }
@@ -119,15 +124,16 @@ void mspringi_budget_open(mspring_network *network) {
 /* ------------------------------------------------------------------------------------------------- the judgement
  */
 
-/// How momenta change in a substep but for springs and floor: what is left of them, and for how long forces act.
+/// How momenta change in a substep of h but for springs and floor: what is left of them, and for how long forces
+/// act.
 typedef struct outside {
-    double left, seconds;
+    double left, seconds, h;
 } outside;
 
 static outside outside_in(const mspring_network *network, double h) {
     const double rate = (double)network->global_damping, x = rate * h;
     const double left = (double)mspringi_decay(network->global_damping, (float)h);
-    return (outside){left, x > 0.01 ? (1.0 - left) / rate : h * (1.0 - x * (0.5 - x * (1.0 / 6.0)))};
+    return (outside){left, x > 0.01 ? (1.0 - left) / rate : h * (1.0 - x * (0.5 - x * (1.0 / 6.0))), h};
 }
 
 // Let the scaled velocities of a free component make up for what its momenta have changed by.
@@ -140,6 +146,15 @@ static void aim(account *a, const centre *c, double vx, double vy, double turn) 
     a->add_y = (a->origin[3] + vy) - a->keep * (a->origin[3] + c->vy);
     if (a->keep == 1.0 && motion <= LOST_MOTION * (c->kinetic + flight_energy(a, c)))
         a->turn = a->add_x = a->add_y = 0.0;
+}
+
+// Let the mass centre of a free component have gone that way: the parabola on which gravity's work is its energy.
+static void fly(account *a, const centre *c, double way_x, double way_y) {
+    const double x = way_x - (c->x - a->x), y = way_y - (c->y - a->y);
+    const bool is_off =
+        x * x + y * y > UNSEEN_WAY * UNSEEN_WAY + SAME_WAY * SAME_WAY * (way_x * way_x + way_y * way_y);
+    a->shift_x = is_off ? x : 0.0;
+    a->shift_y = is_off ? y : 0.0;
 }
 
 static double keep_of(double room, double motion) {
@@ -161,7 +176,9 @@ static void judge_free(const mspring_network *network, account *a, const centre 
     a->exceeds = room < -(TOLERATED * a->internal + 0.5 * LENGTH_ROUNDING * LENGTH_ROUNDING * a->length);
     a->keep = keep_of(room, rest);
     a->gains = rest - room > MUCH * (a->elastic + c->kinetic);
+    a->is_free = true;
     aim(a, c, vx - a->origin[2], vy - a->origin[3], turn);
+    fly(a, c, 0.5 * o->h * (a->origin[2] + a->vx + vx), 0.5 * o->h * (a->origin[3] + a->vy + vy));
 }
 
 static void judge_held(const mspring_network *network, account *a, const centre *c) {
@@ -189,7 +206,8 @@ static bool judge_all(const mspring_network *network, const outside *o, bool *ex
         const centre c = centre_of(a);
         a->exceeds = a->gains = false;
         a->keep = 1.0;
-        a->add_x = a->add_y = a->turn = 0.0;
+        a->add_x = a->add_y = a->turn = a->shift_x = a->shift_y = 0.0;
+        a->is_free = false;
         if (a->is_asleep || !(c.mass > 0.0))
             continue;
         if (a->is_pinned || a->sums[MSPRINGI_EFFECT_TOUCH] > 0.0)
@@ -204,7 +222,23 @@ static bool judge_all(const mspring_network *network, const outside *o, bool *ex
 
 /* -------------------------------------------------------------------------------------------------- the outcome */
 
-static void turn_slots(const mspring_network *network, const account *a, size_t first, size_t end) {
+static void go_to(float *high, float *low, size_t slot, double to) {
+    high[slot] = (float)to;
+    low[slot] = (float)(to - (double)high[slot]);
+}
+
+static void shift_slots(mspring_network *network, const account *a, size_t first, size_t end) {
+    const mspringi_motion m = motion_of(network);
+    const mspringi_field *low = &network->implicit->history.low;
+    for (size_t slot = first; slot < end; ++slot) {
+        if (!(m.inverse_mass[slot] > 0.0f))
+            continue;
+        go_to(network->state.x, low->x, slot, (double)m.x[slot] + (double)m.low_x[slot] + a->shift_x);
+        go_to(network->state.y, low->y, slot, (double)m.y[slot] + (double)m.low_y[slot] + a->shift_y);
+    }
+}
+
+static void turn_slots(mspring_network *network, const account *a, size_t first, size_t end) {
     const mspringi_motion m = motion_of(network);
     const double sums_x = a->sums[MSPRINGI_MOMENT_X], sums_y = a->sums[MSPRINGI_MOMENT_Y];
     const double mass = a->sums[MSPRINGI_MOMENT_MASS], x = sums_x / mass, y = sums_y / mass;
@@ -219,15 +253,18 @@ static void turn_slots(const mspring_network *network, const account *a, size_t 
         vx[slot] = is_free ? to_x : vx[slot];
         vy[slot] = is_free ? to_y : vy[slot];
     }
+    if (a->shift_x != 0.0 || a->shift_y != 0.0)
+        shift_slots(network, a, first, end);
 }
 
 static bool changes(const account *a) {
-    return a->keep != 1.0 || a->add_x != 0.0 || a->add_y != 0.0 || a->turn != 0.0;
+    return a->keep != 1.0 || a->add_x != 0.0 || a->add_y != 0.0 || a->turn != 0.0 || a->shift_x != 0.0 ||
+           a->shift_y != 0.0;
 }
 
 // Give slots the velocities that they may have.
 static void turn_range(void *argument, size_t first, size_t end) {
-    const mspring_network *network = argument;
+    mspring_network *network = argument;
     const budget_of *budget = &network->implicit->budget;
     for (size_t slot = first; slot < end; slot += MSPRINGI_WIDTH) {
         const uint32_t number = budget->of_block[slot / MSPRINGI_WIDTH];
@@ -259,9 +296,15 @@ static void keep_ends(const mspring_network *network) {
     }
 }
 
-static void go_to(float *high, float *low, size_t slot, double to) {
-    high[slot] = (float)to;
-    low[slot] = (float)(to - (double)high[slot]);
+// Where a slot would be if its component had gone none of its way: of a free one, as the rigid body that it was,
+// turned on. (The rotation by twice the angle whose tangent is t is of length 1, whatever t.)
+static void hold_place(const account *a, const centre *c, double *x, double *y) {
+    if (!a->is_free)
+        return;
+    const double t = a->turned, scale = 1.0 / (1.0 + t * t), cosine = (1.0 - t * t) * scale, sine = 2.0 * t * scale;
+    const double rx = (*x - a->origin[0]) - a->x, ry = (*y - a->origin[1]) - a->y;
+    *x = a->origin[0] + c->x + (cosine * rx - sine * ry);
+    *y = a->origin[1] + c->y + (sine * rx + cosine * ry);
 }
 
 // Let all components that have too much go back half of their way, or all of it.
@@ -277,8 +320,10 @@ static void step_back(mspring_network *network, const mspringi_motion *before, b
         const account *a = &budget->accounts[budget->of_slot[slot]];
         if (!a->exceeds)
             continue;
-        const double x = (double)before->x[slot] + (double)before->low_x[slot];
-        const double y = (double)before->y[slot] + (double)before->low_y[slot];
+        const centre c = centre_of(a);
+        double x = (double)before->x[slot] + (double)before->low_x[slot];
+        double y = (double)before->y[slot] + (double)before->low_y[slot];
+        hold_place(a, &c, &x, &y);
         go_to(network->state.x, n->history.low.x, slot, x + a->share * (n->x[slot] - x));
         go_to(network->state.y, n->history.low.y, slot, y + a->share * (n->y[slot] - y));
     }

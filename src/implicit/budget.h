@@ -70,9 +70,12 @@ typedef struct mspringi_account {
     double given;            ///< work of moving pins, J
     double x, y, vx, vy;     ///< mass centre before, from the origin
     double spin;             ///< about it before, kg m^2/s
+    double turned;           ///< half the angle that it would turn by as a rigid body, rad
     double internal, flight; ///< before: elastic and kinetic about it; kinetic of it, J
     double keep;             ///< new velocities are keep v + (add_x, add_y) + turn x (r - centre)
     double add_x, add_y, turn;
+    double shift_x, shift_y; ///< of all positions, m
+    bool is_free;
     double share; ///< of its way that it goes
 } mspringi_account;
 
@@ -98,8 +101,8 @@ void mspringi_budget_destroy(mspringi_budget *budget, mspringi_memory *memory);
 /// Have the components that there are. Allocates nothing.
 void mspringi_budget_follow(mspring_network *network);
 
-/// Before a substep with these forces from outside: keep what it begins with.
-void mspringi_budget_open(mspring_network *network);
+/// Before a substep of h seconds: keep what it begins with.
+void mspringi_budget_open(mspring_network *network, double h);
 
 /// After a substep of h seconds, and after the floor. Returns false if the substep should be taken in halves, which
 /// is only if may_halve; mspringi_budget_undo() then takes it back.

@@ -134,7 +134,7 @@ static void take_substep(mspringi_substep_of *substep, uint32_t tries) {
     mspring_network *network = substep->network;
     mspringi_implicit *n = network->implicit;
     if (substep->watches)
-        mspringi_budget_open(network);
+        mspringi_budget_open(network, (double)substep->h);
     run_substep(substep, tries > 0);
     if (!substep->watches ||
         mspringi_budget_close(network, substep->h, substep->base, tries <= MSPRINGI_MOST_HALVINGS))
