@@ -217,7 +217,7 @@ static void add_floor(mspring_network *network) {
 }
 
 static uint64_t hash_of(recipe *made, way with) {
-    mspring_network_def def = support_def(-9.8f, 130);
+    mspring_network_def def = support_def(-9.8f, ROUNDS(130));
     def.simd_level = with.level;
     def.worker_count = with.workers;
     for (uint32_t s = 0; !with.has_dampers && s < made->spring_count; s++) {
@@ -305,7 +305,7 @@ static void what_is_awake_moves_the_same_beside_sleepers(void **state) {
 /* -------------------------------------------------------------------------------------------------- their lives */
 
 #ifndef MOST_LIVES
-#define MOST_LIVES 6u
+#define MOST_LIVES ROUNDS(6u)
 #endif
 
 enum { LIFE_STEPS = 24, LIFE_EDITS = 5 };

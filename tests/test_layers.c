@@ -152,6 +152,13 @@ static uint64_t hash_after_steps(const recipe *made, content of, manner how) {
     return hash;
 }
 
+/// What has one thread would take most of the time that looking for data races takes.
+static void skip_where_races_are_looked_for(void) {
+#ifdef __SANITIZE_THREAD__
+    skip();
+#endif
+}
+
 static void layers_give_the_bits_of_single_substeps(void **state) {
     (void)state;
     static const content contents[] = {ONE_PIECE, WITH_CABLES, ON_A_RAFT, IN_RIGGING, ON_A_TIED_LATTICE};
@@ -174,6 +181,7 @@ static void layers_give_the_bits_of_single_substeps(void **state) {
 /// any order: grouped as they come, the largest of 16 would leave three places of ten empty.
 static void rungs_of_layers_are_filled(void **state) {
     (void)state;
+    skip_where_races_are_looked_for();
     uint64_t seed = 7;
     recipe made = {0};
     for (uint32_t i = 0; i < PARTICLES; i++) {
@@ -197,6 +205,7 @@ static void rungs_of_layers_are_filled(void **state) {
 
 static void small_webs_have_no_layers(void **state) {
     (void)state;
+    skip_where_races_are_looked_for();
     recipe made = {0};
     recipe_particle(&made, 0, 0, 1, 0);
     for (uint32_t i = 1; i < 5000; i++) {
@@ -215,6 +224,7 @@ static void small_webs_have_no_layers(void **state) {
 /// Every second piece moves, the others sleep, and a step that is refused wakes none of them.
 static void pieces_sleep_in_layers(void **state) {
     (void)state;
+    skip_where_races_are_looked_for();
     recipe made = heap_of(MANY_PIECES);
     uint64_t hashes[2][2];
     for (int one_by_one = 0; one_by_one < 2; one_by_one++) {
@@ -251,9 +261,7 @@ static void pieces_sleep_in_layers(void **state) {
 /// and the last ones, among them where each layer begins.
 static void failing_memory_is_said_and_freed(void **state) {
     (void)state;
-#ifdef __SANITIZE_THREAD__
-    skip(); // It has one thread, and would take most of the time that looking for data races takes.
-#endif
+    skip_where_races_are_looked_for();
     recipe made = heap_of(ON_A_RAFT);
     mspring_builder *builder = recipe_builder(&made, NULL);
     const mspringi_reserve reserve = {made.particle_count, made.spring_count, made.particle_count,
@@ -294,6 +302,7 @@ static void failing_memory_is_said_and_freed(void **state) {
 /// A clone, and what a compaction leaves, have layers of their own.
 static void clones_and_compact_ones_have_layers(void **state) {
     (void)state;
+    skip_where_races_are_looked_for();
     recipe made = heap_of(ONE_PIECE);
     const mspring_network_def def = support_def(-9.8f, SUBSTEPS);
     mspring_network *network = recipe_network(&made, &def), *clone = NULL;

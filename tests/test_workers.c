@@ -38,7 +38,7 @@ static recipe mixed_recipe(void) {
 
 static uint64_t hash_of_steps(mspring_network *network) {
     uint64_t hash = support_hash(network);
-    for (int step = 0; step < 4; step++) {
+    for (int step = 0; step < ROUNDS(4); step++) {
         check_ok(mspring_network_apply_force(network, 1000, 50, 100));
         support_steps(network, 1, 0.02);
         hash = hash * 31 + support_hash(network);
@@ -86,7 +86,7 @@ static void any_host_gives_the_same_bits(void **state) {
 /// Steps that are shared even where workers share a core, which else one worker takes alone.
 static uint64_t hash_of_shared_steps(mspring_network *network) {
     uint64_t hash = support_hash(network);
-    for (int step = 0; step < 3; step++) {
+    for (int step = 0; step < ROUNDS(3); step++) {
         check_ok(mspring_network_apply_force(network, 1000, 50, 100));
         network->implicit->alone = 0;
         support_steps(network, 1, 0.02);
