@@ -216,6 +216,9 @@ static double largest_difference(const mspring_network *a, const mspring_network
 
 /// A compact network moves as one that is not, but for rounding (and, if implicit, for tiles, which converge from
 /// other sides): some 1e-7 of coordinates of 60 m in each of 40 to 80 substeps, and motion that goes on from there.
+/// With an implicit solver, what has lost all its springs flies along parabolas and bounces where it meets the floor
+/// once it is in a row of its own. Before, implicit Euler takes it g h^2 / 2 = 1.2 mm off that in a substep, and it
+/// comes to lie on the floor at the end of one: at some 5 m/s, up to 0.1 m elsewhere.
 static void motion_goes_on(void **state) {
     (void)state;
     recipe made = mixed_recipe();
@@ -237,7 +240,7 @@ static void motion_goes_on(void **state) {
             compact(compacted);
             support_steps(network, 20, 1.0 / 64);
             support_steps(compacted, 20, 1.0 / 64);
-            check_near(largest_difference(network, compacted), 0, run < 2 ? 1e-3 : 1e-2);
+            check_near(largest_difference(network, compacted), 0, run < 2 ? 1e-3 : 0.1);
             mspring_network_destroy(network);
             mspring_network_destroy(compacted);
         }

@@ -1,14 +1,13 @@
-/// What the surface does to a particle after a substep.
+/// What the surface does after an implicit substep to particles with springs.
 ///
 /// A particle that touches the surface (after Moreau, 1988, and Stewart and Trinkle, 1996: contact as a condition
 /// on the velocity at the end of a substep) does not move into it, and what friction takes from its velocity along
 /// the surface is at most friction times what the surface has given it across:
 ///
-///     v_n' = max(v_n, 0), or -restitution v_n if it comes from afar;   |v_t - v_t'| <= friction (v_n' - v_n)
+///     v_n' = max(v_n, 0);   |v_t - v_t'| <= friction (v_n' - v_n)
 ///
 /// with v_t' = 0 where that is enough. The position follows: the particle lies on the surface, less far along it by
-/// what friction has taken. So a substep into the surface takes energy, and one along it under sticking friction
-/// does not move the particle at all.
+/// what friction has taken. It is the springs that throw a structure back, and not the speed of a particle of it.
 #include "floor.h"
 
 #include <math.h>
@@ -19,15 +18,6 @@
 /// Times that all surfaces are gone through for one particle: corners need more than one.
 #define ROUNDS 4
 
-// How far friction moves a body back along a surface, of what it has gone to the left of the way that the surface
-// faces: the most or, if it is to stop where it began, no more than that.
-static double way_back(const mspringi_line *line, const mspringi_body *b, double most) {
-    if (!b->is_stopped_at_start)
-        return most;
-    const double gone = line->nx * (b->y - b->start_y) - line->ny * (b->x - b->start_x);
-    return most > 0.0 ? fmin(most, fmax(gone, 0.0)) : fmax(most, fmin(gone, 0.0));
-}
-
 // Let one straight surface act on a body. Returns whether it did anything.
 static bool touch(const mspringi_floor *floor, const mspringi_line *line, mspringi_body *b, double h, double slop) {
     const double distance = line->nx * b->x + line->ny * b->y + line->offset;
@@ -36,15 +26,12 @@ static bool touch(const mspringi_floor *floor, const mspringi_line *line, msprin
     const double across = line->nx * b->vx + line->ny * b->vy;
     const bool approaches = across < 0.0;
     if (approaches) {
-        const double before = line->nx * b->start_x + line->ny * b->start_y + line->offset;
-        const double given = (before > 2.0 * slop ? -b->restitution * across : 0.0) - across;
-        const double along = line->nx * b->vy - line->ny * b->vx, most = floor->friction * given;
-        const double taken = along > most ? most : along < -most ? -most : along;
-        b->vx += given * line->nx + taken * line->ny;
-        b->vy += given * line->ny - taken * line->nx;
-        const double back = way_back(line, b, h * taken);
-        b->x += back * line->ny;
-        b->y -= back * line->nx;
+        const double along = line->nx * b->vy - line->ny * b->vx;
+        const double taken = mspringi_braked_by(along, floor->friction * -across);
+        b->vx += -across * line->nx + taken * line->ny;
+        b->vy += -across * line->ny - taken * line->nx;
+        b->x += h * taken * line->ny;
+        b->y -= h * taken * line->nx;
     }
     if (distance < 0.0) {
         b->x -= distance * line->nx;
@@ -53,53 +40,21 @@ static bool touch(const mspringi_floor *floor, const mspringi_line *line, msprin
     return approaches || distance < 0.0;
 }
 
-static int64_t touch_heights(const mspringi_floor *floor, mspringi_body *b, double h, double slop, bool *any) {
-    const mspringi_heights *heights = &floor->heights;
-    const int64_t part = mspringi_heights_part_met(heights, b->start_x, b->start_y, b->x, b->y);
-    const mspringi_line line = mspringi_heights_line(heights, part);
-    *any |= touch(floor, &line, b, h, slop);
-    return part;
-}
-
 static bool touch_all(const mspringi_floor *floor, mspringi_body *b, double h, double slop) {
+    const mspringi_heights *heights = &floor->heights;
     bool any = false;
     for (uint32_t i = 0; i < floor->plane_count; ++i)
         any |= touch(floor, &floor->lines[i], b, h, slop);
-    if (floor->heights.count > 0)
-        (void)touch_heights(floor, b, h, slop, &any);
+    if (heights->count > 0) {
+        const int64_t part = mspringi_heights_part_met(heights, b->start_x, b->start_y, b->x, b->y);
+        const mspringi_line line = mspringi_heights_line(heights, part);
+        any |= touch(floor, &line, b, h, slop);
+    }
     return any;
-}
-
-// The same where there is only one surface to look at. Returns whether that was all.
-static bool touch_one(const mspringi_floor *floor, mspringi_body *b, double h, double slop) {
-    bool any = false;
-    if (floor->plane_count == 0)
-        return touch_heights(floor, b, h, slop, &any) == mspringi_heights_part_below(&floor->heights, b->x);
-    if (floor->plane_count > 1 || floor->heights.count > 0)
-        return false;
-    (void)touch(floor, &floor->lines[0], b, h, slop);
-    return true;
-}
-
-// Put a body that was inside the surface before the substep onto it.
-static void lift(const mspringi_floor *floor, mspringi_body *b) {
-    for (uint32_t i = 0; i < floor->plane_count; ++i) {
-        const mspringi_line *line = &floor->lines[i];
-        const double distance = line->nx * b->x + line->ny * b->y + line->offset;
-        b->x -= distance < 0.0 ? distance * line->nx : 0.0;
-        b->y -= distance < 0.0 ? distance * line->ny : 0.0;
-    }
-    if (floor->heights.count > 0) {
-        const mspringi_heights *heights = &floor->heights;
-        const mspringi_line line = mspringi_heights_line(heights, mspringi_heights_part_below(heights, b->x));
-        b->y = fmax(b->y, -(line.nx * b->x + line.offset) / line.ny);
-    }
 }
 
 void mspringi_floor_collide(const mspringi_floor *floor, mspringi_body *b, double h) {
     const double slop = mspringi_floor_slop(b->x, b->y);
-    if (touch_one(floor, b, h, slop))
-        return;
     for (int round = 0; round < ROUNDS && touch_all(floor, b, h, slop);)
         ++round;
     if (!(mspringi_floor_distance(floor, b->x, b->y) < -slop))
@@ -109,25 +64,20 @@ void mspringi_floor_collide(const mspringi_floor *floor, mspringi_body *b, doubl
         b->x = b->start_x;
         b->y = b->start_y;
     } else {
-        lift(floor, b);
+        (void)mspringi_floor_put_outside(floor, &b->x, &b->y);
     }
     b->vx = b->vy = 0.0;
 }
 
 /* -------------------------------------------------------------------------------------------------------- slots */
 
-// start: where the slots were before the substep; NULL: where they come from at the velocity they have.
-static void collide_slot(const mspring_network *network, const mspringi_field *start, size_t slot, double h) {
+static void collide_slot(const mspring_network *network, size_t slot, double h) {
     const mspringi_state *s = &network->state;
     mspringi_floor *floor = network->floor;
     const double vx = (double)s->vx[slot], vy = (double)s->vy[slot];
     mspringi_body b = {.x = (double)s->x[slot], .y = (double)s->y[slot], .vx = vx, .vy = vy};
-    // After implicit substeps it is the springs that throw a structure back, and not the speed of a particle of it.
-    const bool is_loose = slot >= (size_t)network->topology.loose_first * MSPRINGI_WIDTH;
-    b.restitution = !start || is_loose ? floor->restitution : 0.0;
-    b.is_stopped_at_start = start && is_loose;
-    b.start_x = start ? (double)start->x[slot] : b.x - h * vx;
-    b.start_y = start ? (double)start->y[slot] : b.y - h * vy;
+    b.start_x = (double)floor->start.x[slot];
+    b.start_y = (double)floor->start.y[slot];
     mspringi_floor_collide(floor, &b, h);
     if (b.vx == vx && b.vy == vy && b.x == (double)s->x[slot] && b.y == (double)s->y[slot])
         return;
@@ -140,105 +90,53 @@ static void collide_slot(const mspring_network *network, const mspringi_field *s
     s->vy[slot] = after_y;
 }
 
-static void collide_block(const mspring_network *network, const mspringi_field *start, size_t first,
-                          const mspringi_bounds *clear, double h) {
+// What has no springs has been dealt with.
+static bool has_springs(const mspring_network *network, size_t slot) {
+    return slot < (size_t)network->topology.loose_first * MSPRINGI_WIDTH || mspringi_floor_is_pulled(network, slot);
+}
+
+static void collide_block(const mspring_network *network, size_t first, const mspringi_bounds *clear, double h) {
     const mspringi_state *s = &network->state;
     for (size_t slot = first; slot < first + MSPRINGI_WIDTH; ++slot) {
         const bool is_clear = s->x[slot] >= clear->min_x && s->x[slot] <= clear->max_x &&
                               s->y[slot] >= clear->min_y && s->y[slot] <= clear->max_y;
-        if (!is_clear && mspringi_free_mass(network)[slot] > 0.0f)
-            collide_slot(network, start, slot, h);
+        if (!is_clear && mspringi_free_mass(network)[slot] > 0.0f && has_springs(network, slot))
+            collide_slot(network, slot, h);
     }
 }
 
-mspringi_ground mspringi_floor_ground(const mspring_network *network, const mspringi_bounds *clear, float h) {
-    const mspringi_floor *floor = network->floor;
-    return (mspringi_ground){
-        .lines = floor->lines,
-        .line_count = floor->plane_count,
-        .height_count = floor->heights.count,
-        .heights = floor->heights.heights,
-        .normals = floor->heights.normals,
-        .left = floor->heights.local_x,
-        .bottom = floor->heights.local_y,
-        .spacing = floor->heights.spacing,
-        .friction = floor->friction,
-        .restitution = floor->restitution,
-        .h = (double)h,
-        .clear = *clear,
-        .x = network->state.x,
-        .y = network->state.y,
-        .vx = network->state.vx,
-        .vy = network->state.vy,
-        .impulse_x = floor->impulse.x,
-        .impulse_y = floor->impulse.y,
-        .inverse_mass = network->inverse_mass,
-        .free_mass = mspringi_free_mass(network),
-    };
-}
-
-void mspringi_floor_touch_block(const mspring_network *network, const mspringi_ground *ground, size_t first) {
-    uint32_t left = network->kernels->touch(ground, first);
-    for (size_t slot = first; left != 0; ++slot, left >>= 1)
-        if (left & 1)
-            collide_slot(network, NULL, slot, ground->h);
-}
-
 // Returns whether any particle was looked at.
-static bool touch_spans(const mspring_network *network, const mspringi_field *start, const mspringi_bounds *clear,
-                        const mspringi_span *spans, uint32_t span_count, float h) {
+static bool collide_spans(const mspring_network *network, const mspringi_bounds *clear, const mspringi_span *spans,
+                          uint32_t span_count, double h) {
     const mspringi_state *s = &network->state;
-    const mspringi_ground ground = mspringi_floor_ground(network, clear, h);
     bool any = false;
     for (const mspringi_span *span = spans; span < spans + span_count; ++span) {
         const size_t first = span->first_slot / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
         const size_t end = (span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
-        if (!network->kernels->leaves(s->x + first, s->y + first, end - first, clear))
-            continue;
-        any = true;
-        for (size_t block = first; block < end; block += MSPRINGI_WIDTH)
+        for (size_t block = first; block < end; block += MSPRINGI_WIDTH) {
             if (!network->kernels->leaves(s->x + block, s->y + block, MSPRINGI_WIDTH, clear))
                 continue;
-            else if (start)
-                collide_block(network, start, block, clear, (double)h);
-            else
-                mspringi_floor_touch_block(network, &ground, block);
+            any = true;
+            collide_block(network, block, clear, h);
+        }
     }
     return any;
 }
 
-bool mspringi_floor_is_near(const mspring_network *network, const mspringi_strip *strip) {
-    return network->floor && !network->floor->clearances[strip - network->topology.strips].is_far;
-}
-
-void mspringi_floor_touch(const mspring_network *network, const mspringi_strip *strip, const mspringi_span *spans,
-                          uint32_t span_count, float h) {
-    if (!mspringi_floor_is_near(network, strip))
-        return;
-    const mspringi_clearance *clearance = &network->floor->clearances[strip - network->topology.strips];
-    (void)touch_spans(network, NULL, &clearance->clear, spans, span_count, h);
-}
-
-static void touch_strip(const mspring_network *network, const mspringi_field *start, uint32_t number, float h) {
+static void collide_strip(const mspring_network *network, uint32_t number, double h) {
     const mspringi_topology *t = &network->topology;
     const mspringi_strip *strip = &t->strips[number];
     const mspringi_bounds *clear = &network->floor->clearances[number].clear;
     const mspringi_row *first = &t->rows[strip->first_row], *last = first + strip->row_count - 1;
-    bool any = touch_spans(network, start, clear, &t->spans[first->first_span],
-                           last->first_span + last->span_count - first->first_span, h);
+    bool any = collide_spans(network, clear, &t->spans[first->first_span],
+                             last->first_span + last->span_count - first->first_span, h);
     if (strip->home_span != MSPRING_NONE)
-        any |= touch_spans(network, start, clear, &t->spans[strip->home_span], 1, h);
+        any |= collide_spans(network, clear, &t->spans[strip->home_span], 1, h);
     network->floor->has_impulse |= any;
 }
 
 static bool is_asleep(const mspring_network *network, uint32_t number) {
     return mspringi_share_of_strip(network, &network->topology.strips[number]) == MSPRINGI_ASLEEP;
-}
-
-void mspringi_floor_touch_far(const mspring_network *network, float h) {
-    for (uint32_t i = 0; i < network->topology.strip_count; ++i)
-        if (network->floor->clearances[i].is_far && !is_asleep(network, i))
-            touch_strip(network, NULL, i, h);
 }
 
 void mspringi_floor_keep(mspring_network *network, float h) {
@@ -264,5 +162,5 @@ void mspringi_floor_touch_all(mspring_network *network, float h) {
     mspringi_floor_survey(network, (double)h);
     for (uint32_t i = 0; i < network->topology.strip_count; ++i)
         if (!is_asleep(network, i))
-            touch_strip(network, &network->floor->start, i, h);
+            collide_strip(network, i, (double)h);
 }

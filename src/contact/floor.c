@@ -146,6 +146,7 @@ void mspringi_floor_free_layout(mspringi_floor *floor, mspringi_memory *memory) 
     mspringi_free(memory, floor->clearances);
     mspringi_free(memory, floor->contacts);
     mspringi_free(memory, floor->start.x);
+    mspringi_free(memory, floor->before.x);
     mspringi_free(memory, floor->impulse.x);
     mspringi_free(memory, floor->former.x);
     mspringi_free(memory, floor);
@@ -175,8 +176,15 @@ static bool reserve_layout(mspringi_floor *floor, mspring_network *network) {
     floor->contact_count = 0;
     floor->contacts = mspringi_alloc(memory, floor->contact_capacity, sizeof *floor->contacts);
     floor->impulse = floor->former = floor->start = (mspringi_field){NULL, NULL};
+    floor->before = (mspringi_state){.x = mspringi_alloc(memory, 4 * floor->slot_count, sizeof *floor->before.x)};
+    if (floor->before.x) {
+        floor->before.y = floor->before.x + floor->slot_count;
+        floor->before.vx = floor->before.y + floor->slot_count;
+        floor->before.vy = floor->before.vx + floor->slot_count;
+    }
     floor->had_impulse = false;
-    return floor->clearances && floor->contacts && reserve_field(&floor->impulse, floor->slot_count, memory) &&
+    return floor->clearances && floor->contacts && floor->before.x &&
+           reserve_field(&floor->impulse, floor->slot_count, memory) &&
            reserve_field(&floor->former, floor->slot_count, memory) &&
            reserve_field(&floor->start, floor->slot_count, memory);
 }

@@ -4,12 +4,15 @@
 ///   floor.c      the definition, given by the host
 ///   surface.c    where the surface is, which way it faces, and which boxes are clear of it
 ///   terms.c      what it does in the linear system of an implicit substep
-///   collide.c    what it does to a particle after a substep
+///   bounce.c     what it does to a particle in a substep of symplectic Euler, and to one without springs
+///   explicit.c   the same of all particles of such substeps
+///   collide.c    what it does to particles with springs after an implicit substep
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_FLOOR_H
 #define MSPRINGI_FLOOR_H
 
+#include "kernels/bounce.h"
 #include "network/network.h"
 
 typedef struct mspringi_half_plane {
@@ -58,8 +61,9 @@ typedef struct mspringi_floor {
     double friction, restitution;
     mspringi_clearance *clearances; ///< [strip_count]
     mspringi_field start;           ///< [slot_count] positions before an implicit substep, m
-    mspringi_field impulse;         ///< [slot_count] N s on each slot in the last step
-    mspringi_field former;          ///< [slot_count] in the step before it, as long as one is made
+    mspringi_state before;  ///< [slot_count] before a substep: velocities, or all of particles without springs
+    mspringi_field impulse; ///< [slot_count] N s on each slot in the last step
+    mspringi_field former;  ///< [slot_count] in the step before it, as long as one is made
     size_t slot_count;
     double reach;               ///< twice as far, m, as anything may come in the substeps of the last survey
     mspringi_bounds clear;      ///< where no surface is, around the network as it was before an implicit substep
@@ -74,8 +78,7 @@ typedef struct mspringi_floor {
 
 /// A particle that has moved from its start in a substep, local coordinates.
 typedef struct mspringi_body {
-    double start_x, start_y, x, y, vx, vy, restitution;
-    bool is_stopped_at_start; ///< friction takes back no more of its way along a surface than there was
+    double start_x, start_y, x, y, vx, vy;
 } mspringi_body;
 
 void mspringi_floor_destroy(mspringi_floor *floor, mspringi_memory *memory);
@@ -123,27 +126,48 @@ void mspringi_floor_survey(mspring_network *network, double seconds);
 /// Whether a block of a strip that may come near the surface may do so itself, in the same substeps.
 bool mspringi_floor_is_near_block(const mspring_network *network, const mspringi_strip *strip, uint32_t block);
 
-/* collide.c */
+/* bounce.c */
 
-/// Let the surface act on a body that a substep of h seconds has moved.
-void mspringi_floor_collide(const mspringi_floor *floor, mspringi_body *body, double h);
+/// Have a point that is inside the surface put onto it. Returns whether it was.
+bool mspringi_floor_put_outside(const mspringi_floor *floor, double *x, double *y);
+
+/// Let the surface act on a particle that a substep of symplectic Euler of h seconds moves from (x, y) at (vx, vy),
+/// and came there at (from_vx, from_vy). Returns false if it does nothing; else it ends at p->x + h p->vx.
+bool mspringi_floor_bounce(const mspringi_floor *floor, double h, double from_vx, double from_vy,
+                           mspringi_going *p);
+
+/// Let a particle without springs fly past the surface for p->left seconds. Returns whether that did anything;
+/// (*vx, *vy) is the velocity of how->lag ago.
+bool mspringi_floor_fly(const mspringi_floor *floor, const mspringi_turning *how, mspringi_flyer *p, double *vx,
+                        double *vy);
+
+/* explicit.c */
 
 /// Whether a strip may come near the surface in the substeps that the last survey was for.
 bool mspringi_floor_is_near(const mspring_network *network, const mspringi_strip *strip);
 
-/// Let the surface act on the particles of whole blocks that a substep of h seconds has moved. Blocks of a strip
-/// that stays clear are left out.
+/// Before substeps of symplectic Euler: keep the velocities of whole blocks. Those of a strip that stays clear are
+/// left out, here and in what follows.
+void mspringi_floor_note(const mspring_network *network, const mspringi_strip *strip, const mspringi_span *spans,
+                         uint32_t span_count);
+
+/// Let the surface act on the particles of whole blocks that a substep of h seconds has moved: on those with
+/// springs, or on those without.
 void mspringi_floor_touch(const mspring_network *network, const mspringi_strip *strip, const mspringi_span *spans,
                           uint32_t span_count, float h);
-
-/// A floor for substeps of h seconds, from which particles in a box are clear, as kernels see it.
-mspringi_ground mspringi_floor_ground(const mspring_network *network, const mspringi_bounds *clear, float h);
-
-/// Let it act on the particles of the block of slots that begins with first.
-void mspringi_floor_touch_block(const mspring_network *network, const mspringi_ground *ground, size_t first);
+void mspringi_floor_touch_loose(const mspring_network *network, const mspringi_strip *strip,
+                                const mspringi_span *span, float h);
 
 /// Look once at the strips that were left out.
 void mspringi_floor_touch_far(const mspring_network *network, float h);
+
+/// Whether springs that were added pull at a particle of the loose row, or at one beside it.
+bool mspringi_floor_is_pulled(const mspring_network *network, size_t slot);
+
+/// Of a network with another solver: keep the particles without springs as they are, and take so many substeps of
+/// theirs alone from there, in force fields as these: exact parabolas, for nothing else moves them.
+void mspringi_floor_keep_loose(const mspring_network *network);
+void mspringi_floor_fly_loose(mspring_network *network, float h, mspringi_field base, uint32_t count);
 
 /* terms.c: of a network with an implicit solver; those that take a const network do nothing without a floor */
 
@@ -166,7 +190,12 @@ bool mspringi_floor_review(mspring_network *network, float alpha, uint32_t pass)
 /// Count what held particles in a substep of h among the impulses.
 void mspringi_floor_bear(const mspring_network *network, float h);
 
-/// Keep the positions before an implicit substep of h, and let the surface act after it.
+/* collide.c */
+
+/// Let the surface act on a body that an implicit substep of h seconds has moved.
+void mspringi_floor_collide(const mspringi_floor *floor, mspringi_body *body, double h);
+
+/// Keep the positions before an implicit substep of h, and let the surface act after it on particles with springs.
 void mspringi_floor_keep(mspring_network *network, float h);
 void mspringi_floor_touch_all(mspring_network *network, float h);
 

@@ -97,6 +97,7 @@ static mspringi_span layer_span(const job *wave, uint32_t layer) {
 static void sweep_layer(const job *wave, const mspringi_substep *substep, uint32_t layer) {
     const mspring_network *network = wave->network;
     const mspringi_span span = layer_span(wave, layer);
+    mspringi_floor_note(network, wave->web, &span, 1);
     mspringi_web_sweep(network, substep, &span);
     mspringi_floor_touch(network, wave->web, &span, 1, substep->sweep.h);
     if (substep->next_packed)
@@ -381,9 +382,12 @@ static void take_loose(const job *rest, const mspringi_substep *substep, const m
         mspringi_span chunk = *span;
         chunk.first_slot = block * MSPRINGI_WIDTH;
         chunk.end_slot = next * MSPRINGI_WIDTH;
-        for (uint32_t i = 0; i < (is_near ? count : 1); ++i) {
-            loose(&substep->sweep, &chunk, is_near ? &one : &all);
-            mspringi_floor_touch(network, strip, &chunk, 1, rest->h);
+        if (!is_near)
+            loose(&substep->sweep, &chunk, &all);
+        for (uint32_t i = 0; is_near && i < count; ++i) {
+            mspringi_floor_note(network, strip, &chunk, 1);
+            loose(&substep->sweep, &chunk, &one);
+            mspringi_floor_touch_loose(network, strip, &chunk, rest->h);
         }
     }
 }
@@ -426,6 +430,7 @@ static void sweep_grafted_loose(const job *rest, const mspringi_substep *substep
             continue;
         }
         const mspringi_glide glide = plan_glide(&substep->sweep, 1);
+        mspringi_floor_note(network, strip, &span, 1);
         network->kernels->loose[rest->base.x != NULL](&substep->sweep, &span, &glide);
         mspringi_graft_pull(network, &substep->sweep, span.first_slot, span.end_slot);
         mspringi_floor_touch(network, strip, &span, 1, rest->h);
@@ -450,6 +455,7 @@ static void sweep_web_share(const job *rest, const mspringi_substep *substep, co
     const mspring_network *network = rest->network;
     if (number == 0)
         begin_share(rest, share);
+    mspringi_floor_note(network, strip, share, 1);
     mspringi_web_sweep(network, substep, share);
     if (network->graft.count > 0)
         mspringi_graft_pull(network, &substep->sweep, share->first_slot, share->end_slot);

@@ -112,6 +112,7 @@ static void sweep_run(const job *herds, const mspringi_sweep *sweep, const mspri
     memset(sweep->carry_x + none, 0, MSPRINGI_WIDTH * sizeof *sweep->carry_x);
     memset(sweep->carry_y + none, 0, MSPRINGI_WIDTH * sizeof *sweep->carry_y);
     for (uint32_t i = 0; i < herds->count; ++i) {
+        mspringi_floor_note(network, strip, run, 1);
         sweep_herd(sweep, &herd);
         mspringi_floor_touch(network, strip, run, 1, herds->h);
     }

@@ -166,6 +166,9 @@ void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep
     const bool is_partly = mspringi_share_of_strip(network, strip) == MSPRINGI_PARTLY;
     const bool has_seam = seam && last->kind == MSPRINGI_ROW_LATTICE;
     const uint32_t row_count = strip->row_count - has_seam;
+    const mspringi_span *spans = &network->topology.spans[rows->first_span];
+    const uint32_t span_count = last->first_span + last->span_count - rows->first_span;
+    mspringi_floor_note(network, strip, spans, span_count);
     for (uint32_t first = 0, count; first < row_count; first += count) {
         for (count = 1; first + count < row_count && rows[first + count].kind == rows[first].kind;)
             ++count;
@@ -178,15 +181,13 @@ void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep
     if (network->graft.count > 0)
         mspringi_graft_pull(network, &substep->sweep, network->topology.spans[rows->first_span].first_slot,
                             network->topology.spans[last->first_span + last->span_count - 1].end_slot);
-    if (network->floor) {
-        mspringi_floor_touch(network, strip, &network->topology.spans[rows->first_span],
-                             last->first_span + last->span_count - rows->first_span, substep->sweep.h);
-    }
+    mspringi_floor_touch(network, strip, spans, span_count, substep->sweep.h);
     if (strip->attached_count > 0 && substep->next_packed)
         pack_attached(network, strip, substep->next_packed);
     if (strip->home_span == MSPRING_NONE)
         return;
     const mspringi_span *span = &network->topology.spans[strip->home_span];
+    mspringi_floor_note(network, strip, span, 1);
     mspringi_web_sweep(network, substep, span);
     if (network->graft.count > 0)
         mspringi_graft_pull(network, &substep->sweep, span->first_slot, span->end_slot);

@@ -137,15 +137,18 @@ typedef struct mspringi_ground {
     double left, bottom, spacing; ///< likewise, local
     double friction, restitution;
     double h;              ///< of the substep, s
+    double per_length;     ///< 4 h over the shortest spring's length, s/m
     mspringi_bounds clear; ///< particles in here are left alone
     float *x, *y, *vx, *vy;
+    const float *from_vx, *from_vy; ///< before the substep
     float *impulse_x, *impulse_y;
     const float *inverse_mass, *free_mass;
 } mspringi_ground;
 
-/// Let a floor act on the particles of the block of slots that begins with slot, after a substep.
+/// Let a floor act on the particles of the block of slots that begins with slot, after a substep of symplectic Euler:
+/// on those with springs, or on those without.
 /// @return a bit for each that nothing has been done to, as it has come from one straight part of the heights to
-///         another or is in a narrow corner: mspringi_floor_collide() is for them
+///         another or is in a corner: mspringi_floor_bounce() and mspringi_floor_fly() are for them
 typedef uint32_t (*mspringi_touch_fn)(const mspringi_ground *ground, size_t slot);
 
 /// What a strain pass works on: arrays by slot and, by place, the least strain that anything happens at.
@@ -210,7 +213,7 @@ typedef struct mspringi_kernels {
     mspringi_largest_fn largest;
     mspringi_sight_fn sight_of;
     mspringi_leaves_fn leaves;
-    mspringi_touch_fn touch;
+    mspringi_touch_fn touch, fly_past; ///< of particles with and without springs
     mspringi_strain_fn lattice_strain, chain_strain;
     mspringi_border_fn bound_lattice, bound_chain, image_lattice, image_chain;
     mspringi_checksum_fn checksum;

@@ -1,14 +1,15 @@
 /// @file table.h
 /// The variants of an instruction set's lattice(), chain(), web(), herd(), loose(), attached(), pack(), largest(),
-/// sight_of(), touch(), lattice_strain(), chain_strain(), bound_ and image_lattice() and _chain() and take_checksum(),
-/// and the table of them. Included at the end of each kernel file, which defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
+/// sight_of(), touch(), fly_past(), lattice_strain(), chain_strain(), bound_ and image_lattice() and _chain() and
+/// take_checksum(), and the table of them. Included at the end of each kernel file, which defines MSPRINGI_TABLE and
+/// MSPRINGI_LEVEL.
 ///
 /// SPDX-License-Identifier: MIT
 
 #include "border.h"
 #include "bounds.h"
 #include "checksum.h"
-#include "contact.h"
+#include "flight.h"
 #include "sight.h"
 #include "strain.h"
 #include "system_assemble.h"
@@ -82,6 +83,7 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .sight_of = sight_of,
     .leaves = leaves,
     .touch = touch,
+    .fly_past = fly_past,
     .lattice_strain = lattice_strain,
     .chain_strain = chain_strain,
     .bound_lattice = bound_lattice,

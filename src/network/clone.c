@@ -215,6 +215,7 @@ static void move_floor(const moving *m, mspringi_floor *floor) {
     MOVE(floor->clearances);
     MOVE(floor->contacts);
     move_field(m, &floor->start);
+    move_state(m, &floor->before);
     move_field(m, &floor->impulse);
     move_field(m, &floor->former);
 }

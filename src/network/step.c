@@ -63,12 +63,17 @@ static mspringi_field prepare_base(mspring_network *network, double dt) {
 /* -------------------------------------------------------------------------------------------------- substeps */
 
 static void take_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+    const bool flies_alone = network->floor && (network->implicit || network->is_clamped);
+    if (flies_alone)
+        mspringi_floor_keep_loose(network);
     if (network->is_clamped)
         mspringi_clamp_substeps(network, h, base, count);
     else if (network->implicit)
         mspringi_implicit_substeps(network, h, base, count);
     else
         mspringi_explicit_substeps(network, h, base, count);
+    if (flies_alone)
+        mspringi_floor_fly_loose(network, h, base, count);
 }
 
 static void run_substeps(mspring_network *network, double dt, float h) {

@@ -1,0 +1,235 @@
+/// The surface and the particles that substeps of symplectic Euler move, or that nothing but forces from outside
+/// does.
+#include "floor.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "explicit/decay.h"
+#include "implicit/implicit.h"
+#include "sleep/sleep.h"
+
+bool mspringi_floor_is_near(const mspring_network *network, const mspringi_strip *strip) {
+    return network->floor && !network->floor->clearances[strip - network->topology.strips].is_far;
+}
+
+static size_t first_slot(const mspringi_span *span) {
+    return span->first_slot / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+}
+
+static size_t end_slot(const mspringi_span *span) {
+    return (span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+}
+
+void mspringi_floor_note(const mspring_network *network, const mspringi_strip *strip, const mspringi_span *spans,
+                         uint32_t span_count) {
+    if (!mspringi_floor_is_near(network, strip))
+        return;
+    const mspringi_state *s = &network->state, *before = &network->floor->before;
+    for (const mspringi_span *span = spans; span < spans + span_count; ++span) {
+        const size_t first = first_slot(span), size = (end_slot(span) - first) * sizeof *s->vx;
+        memcpy(before->vx + first, s->vx + first, size);
+        memcpy(before->vy + first, s->vy + first, size);
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------- what acts */
+
+static void put(const mspring_network *network, size_t slot, double x, double y, double vx, double vy) {
+    const mspringi_state *s = &network->state;
+    const mspringi_floor *floor = network->floor;
+    const float after_x = (float)vx, after_y = (float)vy, mass = 1.0f / network->inverse_mass[slot];
+    floor->impulse.x[slot] += mass * (after_x - s->vx[slot]);
+    floor->impulse.y[slot] += mass * (after_y - s->vy[slot]);
+    s->x[slot] = (float)x;
+    s->y[slot] = (float)y;
+    s->vx[slot] = after_x;
+    s->vy[slot] = after_y;
+}
+
+static void bounce_slot(const mspring_network *network, const mspringi_ground *g, size_t slot) {
+    const double from_vx = (double)g->from_vx[slot], from_vy = (double)g->from_vy[slot];
+    mspringi_going p =
+        mspringi_going_from((double)g->x[slot], (double)g->y[slot], (double)g->vx[slot], (double)g->vy[slot],
+                            from_vx, from_vy, g->h, g->restitution, g->per_length);
+    if (mspringi_floor_bounce(network->floor, g->h, from_vx, from_vy, &p))
+        put(network, slot, p.x + g->h * p.vx, p.y + g->h * p.vy, p.vx, p.vy);
+}
+
+static void fly_slot(const mspring_network *network, const mspringi_ground *g, size_t slot) {
+    const mspringi_turning how = {
+        .friction = g->friction, .restitution = g->restitution, .h = g->h, .lag = 0.5 * g->h};
+    mspringi_flyer p =
+        mspringi_flyer_from((double)g->x[slot], (double)g->y[slot], (double)g->vx[slot], (double)g->vy[slot],
+                            (double)g->from_vx[slot], (double)g->from_vy[slot], g->h);
+    double vx, vy;
+    if (mspringi_floor_fly(network->floor, &how, &p, &vx, &vy))
+        put(network, slot, p.x, p.y, vx, vy);
+}
+
+static mspringi_ground ground_of(const mspring_network *network, const mspringi_bounds *clear, float h) {
+    const mspringi_floor *floor = network->floor;
+    return (mspringi_ground){
+        .lines = floor->lines,
+        .line_count = floor->plane_count,
+        .height_count = floor->heights.count,
+        .heights = floor->heights.heights,
+        .normals = floor->heights.normals,
+        .left = floor->heights.local_x,
+        .bottom = floor->heights.local_y,
+        .spacing = floor->heights.spacing,
+        .friction = floor->friction,
+        .restitution = floor->restitution,
+        .h = (double)h,
+        .per_length = 4.0 * (double)h / network->shortest,
+        .clear = *clear,
+        .x = network->state.x,
+        .y = network->state.y,
+        .vx = network->state.vx,
+        .vy = network->state.vy,
+        .from_vx = floor->before.vx,
+        .from_vy = floor->before.vy,
+        .impulse_x = floor->impulse.x,
+        .impulse_y = floor->impulse.y,
+        .inverse_mass = network->inverse_mass,
+        .free_mass = mspringi_free_mass(network),
+    };
+}
+
+// Returns whether any particle was looked at.
+static bool touch_spans(const mspring_network *network, const mspringi_ground *ground, bool is_loose,
+                        const mspringi_span *spans, uint32_t span_count) {
+    const mspringi_kernels *kernels = network->kernels;
+    bool any = false;
+    for (const mspringi_span *span = spans; span < spans + span_count; ++span) {
+        const size_t first = first_slot(span), end = end_slot(span);
+        if (!kernels->leaves(ground->x + first, ground->y + first, end - first, &ground->clear))
+            continue;
+        any = true;
+        for (size_t block = first; block < end; block += MSPRINGI_WIDTH) {
+            if (!kernels->leaves(ground->x + block, ground->y + block, MSPRINGI_WIDTH, &ground->clear))
+                continue;
+            uint32_t left = is_loose ? kernels->fly_past(ground, block) : kernels->touch(ground, block);
+            for (size_t slot = block; left != 0; ++slot, left >>= 1)
+                if ((left & 1) && is_loose)
+                    fly_slot(network, ground, slot);
+                else if (left & 1)
+                    bounce_slot(network, ground, slot);
+        }
+    }
+    return any;
+}
+
+static void touch(const mspring_network *network, const mspringi_strip *strip, bool is_loose,
+                  const mspringi_span *spans, uint32_t span_count, float h) {
+    if (!mspringi_floor_is_near(network, strip))
+        return;
+    const mspringi_clearance *clearance = &network->floor->clearances[strip - network->topology.strips];
+    const mspringi_ground ground = ground_of(network, &clearance->clear, h);
+    (void)touch_spans(network, &ground, is_loose, spans, span_count);
+}
+
+void mspringi_floor_touch(const mspring_network *network, const mspringi_strip *strip, const mspringi_span *spans,
+                          uint32_t span_count, float h) {
+    touch(network, strip, false, spans, span_count, h);
+}
+
+void mspringi_floor_touch_loose(const mspring_network *network, const mspringi_strip *strip,
+                                const mspringi_span *span, float h) {
+    touch(network, strip, true, span, 1, h);
+}
+
+/* ------------------------------------------------------------------------------------------------ what was far */
+
+// What it was before the last substep is not known: as if no force had changed its velocity.
+static void touch_strip(const mspring_network *network, uint32_t number, float h) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_strip *strip = &t->strips[number];
+    mspringi_ground ground = ground_of(network, &network->floor->clearances[number].clear, h);
+    ground.from_vx = ground.vx;
+    ground.from_vy = ground.vy;
+    const mspringi_row *first = &t->rows[strip->first_row], *last = first + strip->row_count - 1;
+    bool any = touch_spans(network, &ground, first->kind == MSPRINGI_ROW_LOOSE, &t->spans[first->first_span],
+                           last->first_span + last->span_count - first->first_span);
+    if (strip->home_span != MSPRING_NONE)
+        any |= touch_spans(network, &ground, false, &t->spans[strip->home_span], 1);
+    network->floor->has_impulse |= any;
+}
+
+void mspringi_floor_touch_far(const mspring_network *network, float h) {
+    for (uint32_t i = 0; i < network->topology.strip_count; ++i)
+        if (network->floor->clearances[i].is_far &&
+            mspringi_share_of_strip(network, &network->topology.strips[i]) != MSPRINGI_ASLEEP)
+            touch_strip(network, i, h);
+}
+
+/* ---------------------------------------------------------------------------------------------- other solvers */
+
+static mspringi_slots loose_slots(const mspringi_topology *t) {
+    const size_t first = (size_t)t->loose_first * MSPRINGI_WIDTH;
+    return (mspringi_slots){first, first + ((size_t)t->loose_blocks + t->spare_blocks) * MSPRINGI_WIDTH};
+}
+
+// Whether springs that were added pull at a particle of the loose row.
+bool mspringi_floor_is_pulled(const mspring_network *network, size_t slot) {
+    if (network->implicit)
+        return mspringi_is_solved(network, network->implicit, slot);
+    const uint32_t block = (uint32_t)(slot / MSPRINGI_WIDTH);
+    return mspringi_graft_find_block(&network->graft, block, block + 1, true) == block;
+}
+
+void mspringi_floor_keep_loose(const mspring_network *network) {
+    const mspringi_slots slots = loose_slots(&network->topology);
+    const mspringi_state *s = &network->state, *before = &network->floor->before;
+    const size_t size = (slots.end - slots.first) * sizeof *s->x;
+    memcpy(before->x + slots.first, s->x + slots.first, size);
+    memcpy(before->y + slots.first, s->y + slots.first, size);
+    memcpy(before->vx + slots.first, s->vx + slots.first, size);
+    memcpy(before->vy + slots.first, s->vy + slots.first, size);
+}
+
+// A substep that changes (vx, vy) to (to_vx, to_vy) where nothing is in the way.
+static void fly_free(const mspring_network *network, size_t slot, double h, double to_vx, double to_vy) {
+    const mspringi_state *s = &network->state;
+    const mspringi_floor *floor = network->floor;
+    const double vx = (double)s->vx[slot], vy = (double)s->vy[slot];
+    const bool lags = !network->implicit; // as velocities of symplectic Euler do
+    const mspringi_turning how = {
+        .friction = floor->friction, .restitution = floor->restitution, .h = h, .lag = lags ? 0.5 * h : 0.0};
+    mspringi_flyer p = {.x = (double)s->x[slot], .y = (double)s->y[slot], .left = h};
+    p.wx = lags ? 0.5 * (vx + to_vx) : vx;
+    p.wy = lags ? 0.5 * (vy + to_vy) : vy;
+    p.ax = (to_vx - vx) / h;
+    p.ay = (to_vy - vy) / h;
+    s->vx[slot] = (float)to_vx;
+    s->vy[slot] = (float)to_vy;
+    const bool acts = mspringi_floor_fly(floor, &how, &p, &to_vx, &to_vy);
+    if (acts) {
+        put(network, slot, p.x, p.y, to_vx, to_vy);
+        return;
+    }
+    s->x[slot] = (float)p.x;
+    s->y[slot] = (float)p.y;
+}
+
+void mspringi_floor_fly_loose(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+    const mspringi_state *s = &network->state, *before = &network->floor->before;
+    const mspringi_slots slots = loose_slots(&network->topology);
+    const float *inverse_mass = mspringi_free_mass(network);
+    const double step = (double)h, decay = (double)mspringi_decay(network->global_damping, h);
+    for (size_t slot = slots.first; slot < slots.end; ++slot) {
+        if (!(inverse_mass[slot] > 0.0f) || mspringi_floor_is_pulled(network, slot))
+            continue;
+        const double per_mass = (double)inverse_mass[slot];
+        const double ax = (double)network->gravity_x + (base.x ? (double)base.x[slot] * per_mass : 0.0);
+        const double ay = (double)network->gravity_y + (base.x ? (double)base.y[slot] * per_mass : 0.0);
+        s->x[slot] = before->x[slot];
+        s->y[slot] = before->y[slot];
+        s->vx[slot] = before->vx[slot];
+        s->vy[slot] = before->vy[slot];
+        for (uint32_t i = 0; i < count; ++i)
+            fly_free(network, slot, step, ((double)s->vx[slot] + step * ax) * decay,
+                     ((double)s->vy[slot] + step * ay) * decay);
+    }
+    network->floor->has_impulse = true;
+}

@@ -1,0 +1,173 @@
+/// @file flight.h
+/// What a floor does to the particles of a block that have no springs, after a substep: as contact.h, along
+/// parabolas that are turned where they meet a surface.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_FLIGHT_H
+#define MSPRINGI_FLIGHT_H
+
+#include "contact.h"
+
+/// Particles as mspringi_flyer has them, and which surface each meets next.
+typedef struct flying {
+    double x[MSPRINGI_WIDTH], y[MSPRINGI_WIDTH], wx[MSPRINGI_WIDTH], wy[MSPRINGI_WIDTH];
+    double ax[MSPRINGI_WIDTH], ay[MSPRINGI_WIDTH], left[MSPRINGI_WIDTH];
+    double slop[MSPRINGI_WIDTH], flight_slop[MSPRINGI_WIDTH];
+    double time[MSPRINGI_WIDTH], nx[MSPRINGI_WIDTH], ny[MSPRINGI_WIDTH], offset[MSPRINGI_WIDTH];
+    double is_held[MSPRINGI_WIDTH], is_hit[MSPRINGI_WIDTH], is_left[MSPRINGI_WIDTH];
+} flying;
+
+static inline mspringi_flyer flyer_at(const flying *b, size_t i) {
+    return (mspringi_flyer){b->x[i], b->y[i], b->wx[i], b->wy[i], b->ax[i], b->ay[i], b->left[i]};
+}
+
+static void load_flying(const mspringi_ground *g, size_t slot, flying *restrict b) {
+    const float *restrict x = g->x + slot, *restrict y = g->y + slot;
+    const float *restrict vx = g->vx + slot, *restrict vy = g->vy + slot;
+    const float *restrict from_vx = g->from_vx + slot, *restrict from_vy = g->from_vy + slot;
+    const double h = g->h;
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
+        const mspringi_flyer p = mspringi_flyer_from((double)x[i], (double)y[i], (double)vx[i], (double)vy[i],
+                                                     (double)from_vx[i], (double)from_vy[i], h);
+        b->x[i] = p.x;
+        b->y[i] = p.y;
+        b->wx[i] = p.wx;
+        b->wy[i] = p.wy;
+        b->ax[i] = p.ax;
+        b->ay[i] = p.ay;
+        b->left[i] = p.left;
+        b->slop[i] = 0x1p-21 * (fabs(p.x) + fabs(p.y)) + 1e-12;
+        b->flight_slop[i] = mspringi_flight_slop(p.x, p.y);
+        b->is_hit[i] = b->is_left[i] = 0.0;
+    }
+}
+
+static inline void find_flight_ends(const flying *restrict b, double *restrict x, double *restrict y) {
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
+        x[i] = b->x[i] + b->left[i] * (b->wx[i] + 0.5 * b->left[i] * b->ax[i]);
+        y[i] = b->y[i] + b->left[i] * (b->wy[i] + 0.5 * b->left[i] * b->ay[i]);
+    }
+}
+
+// Whether any that is held would end below a straight surface; those that begin beyond it are left.
+static inline bool is_met(const double *restrict all_nx, const double *restrict all_ny,
+                          const double *restrict all_offset, size_t stride, flying *restrict b) {
+    double any[MSPRINGI_WIDTH], sum = 0.0;
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
+        const double nx = all_nx[i * stride], ny = all_ny[i * stride], left = b->left[i];
+        const double distance = nx * b->x[i] + ny * b->y[i] + all_offset[i * stride];
+        const double speed = nx * b->wx[i] + ny * b->wy[i], pull = nx * b->ax[i] + ny * b->ay[i];
+        const double end = distance + left * (speed + 0.5 * left * pull);
+        any[i] = end < -b->flight_slop[i] ? b->is_held[i] : 0.0;
+        b->is_left[i] += distance < -b->slop[i] ? 1.0 : 0.0;
+    }
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
+        sum += any[i];
+    return sum > 0.0;
+}
+
+// Find which particles meet a straight surface sooner than those before.
+static inline void meet_line(const double *restrict all_nx, const double *restrict all_ny,
+                             const double *restrict all_offset, size_t stride, flying *restrict b) {
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
+        const double nx = all_nx[i * stride], ny = all_ny[i * stride], offset = all_offset[i * stride];
+        const mspringi_flyer p = flyer_at(b, i);
+        const double time = mspringi_time_to(nx, ny, offset, b->flight_slop[i], &p);
+        const bool is_sooner = time < b->time[i];
+        b->nx[i] = is_sooner ? nx : b->nx[i];
+        b->ny[i] = is_sooner ? ny : b->ny[i];
+        b->offset[i] = is_sooner ? offset : b->offset[i];
+        b->time[i] = is_sooner ? time : b->time[i];
+    }
+}
+
+static inline void turn_flying(const mspringi_turning *how, bool is_last, flying *restrict b) {
+    const mspringi_turning by = *how;
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
+        const mspringi_flyer before = flyer_at(b, i);
+        mspringi_flyer p = before;
+        const bool meets = b->time[i] < INFINITY;
+        const double time = meets ? b->time[i] : 0.0;
+        mspringi_turn_flyer(b->nx[i], b->ny[i], b->offset[i], &by, time, is_last, &p);
+        b->x[i] = meets ? p.x : before.x;
+        b->y[i] = meets ? p.y : before.y;
+        b->wx[i] = meets ? p.wx : before.wx;
+        b->wy[i] = meets ? p.wy : before.wy;
+        b->ax[i] = meets ? p.ax : before.ax;
+        b->ay[i] = meets ? p.ay : before.ay;
+        b->left[i] = meets ? p.left : before.left;
+        b->is_hit[i] = meets ? 1.0 : b->is_hit[i];
+    }
+}
+
+// Turn each where it next meets a surface. Returns whether any does.
+static bool fly_on(const mspringi_ground *g, const parts_below *parts, const mspringi_turning *how, bool is_last,
+                   flying *b) {
+    bool any = false;
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
+        b->time[i] = INFINITY;
+        b->nx[i] = b->ny[i] = b->offset[i] = 0.0;
+    }
+    for (uint32_t i = 0; i < g->line_count; ++i) {
+        const mspringi_line *line = &g->lines[i];
+        if (!is_met(&line->nx, &line->ny, &line->offset, 0, b))
+            continue;
+        any = true;
+        meet_line(&line->nx, &line->ny, &line->offset, 0, b);
+    }
+    if (g->height_count > 0 && is_met(parts->nx, parts->ny, parts->offset, 1, b)) {
+        any = true;
+        meet_line(parts->nx, parts->ny, parts->offset, 1, b);
+    }
+    if (any)
+        turn_flying(how, is_last, b);
+    return any;
+}
+
+static void leave_flown(const mspringi_ground *g, const parts_below *parts, flying *b) {
+    double x[MSPRINGI_WIDTH], y[MSPRINGI_WIDTH];
+    find_flight_ends(b, x, y);
+    leave_moved(g, parts, b->x, b->is_left);
+    leave_moved(g, parts, x, b->is_left);
+}
+
+static void begin_flown(const mspringi_ground *g, flying *b, parts_below *parts) {
+    double x[MSPRINGI_WIDTH], y[MSPRINGI_WIDTH];
+    find_flight_ends(b, x, y);
+    find_parts(g, x, parts->number);
+    find_lines(g, parts);
+    leave_moved(g, parts, b->x, b->is_left);
+}
+
+static void find_flight_end(const flying *restrict b, double lag, block_end *restrict end) {
+    find_flight_ends(b, end->x, end->y);
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
+        const double since = b->left[i] - lag;
+        end->vx[i] = b->wx[i] + since * b->ax[i];
+        end->vy[i] = b->wy[i] + since * b->ay[i];
+    }
+}
+
+static uint32_t fly_past(const mspringi_ground *g, size_t slot) {
+    flying b;
+    parts_below parts;
+    block_end end;
+    const mspringi_turning how = {
+        .friction = g->friction, .restitution = g->restitution, .h = g->h, .lag = 0.5 * g->h};
+    find_held(g, slot, b.is_held);
+    load_flying(g, slot, &b);
+    if (g->height_count > 0)
+        begin_flown(g, &b, &parts);
+    for (int turn = 1; turn <= MSPRINGI_MOST_TURNS && fly_on(g, &parts, &how, turn == MSPRINGI_MOST_TURNS, &b);
+         ++turn)
+        if (g->height_count > 0)
+            leave_flown(g, &parts, &b);
+    find_flight_end(&b, how.lag, &end);
+    if (g->line_count + (g->height_count > 0) > 1)
+        leave_stuck(g, &parts, end.x, end.y, b.slop, b.is_left);
+    const uint32_t left = find_moved(b.is_held, b.is_hit, b.is_left, end.is_moved);
+    store_block(g, slot, &end);
+    return left;
+}
+
+#endif
