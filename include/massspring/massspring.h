@@ -794,8 +794,10 @@ MSPRING_API mspring_result mspring_settle_def_init(mspring_settle_def *def, size
 /// as those of a factorisation do: for n particles of a lattice about n log n numbers and n^1.5 operations an
 /// iteration. A bar of 80 x 5 takes four of them. Ropes that fall slack and thin masts that bend far take many, as
 /// no step may turn their springs by much: the sample ship's rigging comes down by 45 m in 178 iterations. So do bars
-/// so soft that they hang down from their clamp; these have many equilibria that differ in which springs are folded.
-/// The energy of the one found may then be some parts in ten thousand above the lowest.
+/// so soft that they hang down from their clamp. These have many equilibria that differ in which cells near the clamp
+/// are folded. The energy of the one found may be above the lowest by a tenth of what the fall sets free. If that
+/// matters, step with global damping until the network is nearly at rest, and settle then: inertia carries it past
+/// them.
 ///
 /// Then velocities are zero (those of pinned particles stay), and forces given for the next step are still there.
 /// Parts without pinned particle have an equilibrium only if the forces on them cancel, as without gravity; others
