@@ -1756,12 +1756,12 @@ MSPRING_API mspring_simd mspring_network_simd_level(const mspring_network *netwo
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_network_worker_count(const mspring_network *network);
 
-/// The best instruction set that this CPU and operating system offer.
+/// The best instruction set that this CPU, operating system and build of the library offer.
 /// @threads any   @allocates never   @since 0.1
 MSPRING_API mspring_simd mspring_simd_supported(void);
 
 /// Whether a network can be made to run at this level here: 1 for MSPRING_SIMD_AUTO, MSPRING_SIMD_SCALAR and the
-/// instruction sets that this CPU and operating system offer, 0 for others.
+/// instruction sets that this CPU, operating system and build of the library offer, 0 for others.
 /// @threads any   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_simd_available(mspring_simd level);
 
