@@ -62,33 +62,37 @@ static void borders_are_where_they_are_said_to_be(void **state) {
     print_message("measured over predicted border: %.4f to %.4f\n", least, most);
 }
 
-/// Run every so many-th case of a family, of one solver or, with -1, of all.
-static uint32_t count_faults(map_family family, uint32_t stride, int solver) {
-    uint32_t faults = 0, count = 0;
-    for (uint32_t index = 0; index < map_family_size(family); index += stride) {
+enum { STRIDE = 135 }; // odd: all solvers in turn
+
+/// Run a sample of a family.
+static uint32_t count_faults(map_family family) {
+    uint32_t faults = 0, kept = 0, count = 0;
+    for (uint32_t index = 0; index < map_family_size(family); index += STRIDE) {
         map_case drawn;
         char text[MAP_TEXT];
         map_draw_case(&drawn, family, index);
-        if (solver >= 0 && drawn.solver.solver != solver)
-            continue;
         const map_verdict verdict = map_run_case(&drawn, text);
         count++;
+        kept += verdict == MAP_HOLDS;
         if (verdict >= MAP_NOT_FINITE) {
             faults++;
             print_error("massspring-bench --map-case %s:%u  %s: %s\n", map_family_name(family), index,
                         map_verdict_name(verdict), text);
         }
     }
-    print_message("%s: %u cases\n", map_family_name(family), count);
-    assert_true(count > 0);
+    print_message("%s: %u of %u cases hold\n", map_family_name(family), kept, count);
+    assert_true(2 * kept > count);
     return faults;
 }
 
-static void explicit_motion_is_kept(void **state) {
+static void motion_keeps_what_it_must(void **state) {
     (void)state;
-    assert_int_equal(count_faults(MAP_BLAST, 135, MSPRING_SOLVER_EXPLICIT), 0);
-    assert_int_equal(count_faults(MAP_HIT, 135, MSPRING_SOLVER_EXPLICIT), 0);
-    assert_int_equal(count_faults(MAP_WRECK, 135, MSPRING_SOLVER_EXPLICIT), 0);
+    static const map_family sampled[] = {MAP_BLAST,  MAP_HIT,  MAP_SPIN,  MAP_DROP,
+                                         MAP_BOUNCE, MAP_HANG, MAP_WRECK, MAP_FAR};
+    uint32_t faults = 0;
+    for (size_t i = 0; i < sizeof sampled / sizeof *sampled; i++)
+        faults += count_faults(sampled[i]);
+    assert_int_equal(faults, 0);
 }
 
 int main(int argc, char **argv) {
@@ -99,7 +103,7 @@ int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_case_is_stable_or_refused),
         cmocka_unit_test(borders_are_where_they_are_said_to_be),
-        cmocka_unit_test(explicit_motion_is_kept),
+        cmocka_unit_test(motion_keeps_what_it_must),
     };
     return cmocka_run_group_tests_name("map", tests, NULL, NULL);
 }

@@ -67,7 +67,9 @@ static map_verdict judge_level(map_judge *judge, uint32_t i) {
     const double within = 0.01 * watch->time + watch->substep, gravity = -(double)watch->what->network.gravity_y;
     const double most = top_at(judge, i, watch->time - within), least = top_at(judge, i, watch->time + within);
     const double top = energy_of(watch, i, true) / gravity;
-    if (top <= (1 + kept) * most + 1e-3 && top >= (1 - kept) * least - 1e-3)
+    // At rest an explicit substep leaves no velocity rather than that of half a substep ago.
+    const double room = 1e-3 + watch->substep * watch->substep * gravity / 8;
+    if (top <= (1 + kept) * most + room && top >= (1 - kept) * least - room)
         return MAP_HOLDS;
     snprintf(judge->text, sizeof judge->text,
              "particle %u rises to %.4g m after %.4g s, between %.4g and %.4g m it should", i, top, watch->time,

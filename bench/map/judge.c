@@ -10,9 +10,9 @@
 #include "map/bounce.h"
 
 const char *map_verdict_name(map_verdict verdict) {
-    static const char *const names[MAP_VERDICTS] = {"holds",    "guarded", "violent",  "not finite",
-                                                    "rejected", "energy",  "momentum", "angular",
-                                                    "floor",    "bounce",  "substeps"};
+    static const char *const names[MAP_VERDICTS] = {"holds",      "guarded",  "violent", "known limit",
+                                                    "not finite", "rejected", "energy",  "momentum",
+                                                    "angular",    "floor",    "bounce",  "substeps"};
     return names[verdict];
 }
 
@@ -62,18 +62,22 @@ static map_verdict judge_energy(map_judge *judge, uint32_t substeps) {
     judge->rounding_squares += is_explicit ? substeps * watch->rounding_squares : 0;
     const double energy = map_watch_energy(watch), gain = energy - judge->start;
     const double could = judge->motion + judge->fallen;
-    const double rounding =
-        3e-6 * watch->weight + watch->rounding + judge->rounding + 6 * sqrt(judge->rounding_squares);
+    // Rounded positions heat: what they stir adds up, mostly upwards. Near the border what rounding stirs in the
+    // fastest motion swings up to so much more.
+    const double swing = 1 / (1 - watch->what->share * watch->what->share);
+    const double rounding = 3e-6 * watch->weight + 4 * watch->last_place * watch->force + watch->rounding +
+                            judge->rounding + 12 * swing * sqrt(judge->rounding_squares);
     judge->could = could;
     judge->since += substeps;
     judge->quickest = fmax(judge->quickest, watch->speed * watch->substep / watch->shortest);
     judge->growth = fmax(judge->growth, (gain - rounding) / fmax(could, rounding));
-    // The library lets a substep of the implicit and the direct solver gain 1e-5, which may add up.
-    const double part = is_explicit ? 1e-2 : fmin(1e-2, 1e-4 + 1e-5 * (double)judge->since);
+    // The library lets each piece of a substep gain 1e-5 with the implicit and the direct solver, which may add up.
+    const double part = is_explicit ? 1e-2 : fmin(1e-2, 1e-3 + 1e-5 * (double)judge->since);
     if (gain - rounding > part * could) {
         snprintf(judge->text, sizeof judge->text,
-                 "%.4g J more than there were, where %.4g J could move and %.2g J are rounding", gain, could,
-                 rounding);
+                 "%.4g J more than there were, where %.4g J could move and %.2g J are rounding; ways of %.2g of a "
+                 "spring",
+                 gain, could, rounding, judge->quickest);
         return MAP_GAINED;
     }
     if (!is_explicit && energy < judge->start) {
@@ -105,7 +109,8 @@ static map_verdict judge_flight(map_judge *judge, uint32_t number) {
     if (watch->what->has_forces)
         return MAP_HOLDS;
     const double turned = fabs(of->spin - from->spin), spin_scale = fmax(from->spin_scale, fabs(of->spin));
-    if (turned > kept * from->spin_scale + 6 * random * of->spin_rounding + 6 * sqrt(judge->angle_squares)) {
+    // Velocities that grow by the same amount in each substep are rounded the same way for a while.
+    if (turned > kept * from->spin_scale + 20 * random * of->spin_rounding + 10 * sqrt(judge->angle_squares)) {
         snprintf(judge->text, sizeof judge->text,
                  "angular momentum went from %.5g to %.5g kg m^2/s, its parts come to %.4g", from->spin, of->spin,
                  spin_scale);
@@ -117,7 +122,8 @@ static map_verdict judge_flight(map_judge *judge, uint32_t number) {
 static map_verdict judge_flights(map_judge *judge) {
     const map_watch *watch = judge->watch;
     const mspring_network_def *def = &watch->what->network;
-    judge->angle_squares += judge->watch->substep * judge->watch->substep * watch->rounding_squares;
+    // Springs pull along lengths that are rounded, the same way all through a step.
+    judge->angle_squares += watch->what->dt * watch->what->dt * watch->rounding_squares;
     for (uint32_t i = 0; i < watch->component_count; i++) {
         // What sleeps is stopped, and global damping stops all that moves.
         if (watch->components[i].is_held || def->sleep_speed > 0 || def->global_damping > 0) {

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "map/limits.h"
 #include "map/trade.h"
 #include "scenes/internal.h"
 
@@ -16,7 +17,7 @@ static const double most_work = 1.5e6;
 
 /// Explicit substeps up to this share of what is stable in any shape keep their energy in any motion, and longer
 /// ones where no particle goes farther in a substep than this share of the shortest spring.
-static const double calm_share = 0.2, calm_way = 0.005;
+static const double calm_way = 0.002, calm_share = 0.2, calm_growth = 0.1;
 
 /* ------------------------------------------------------------------------------------------------------ making */
 
@@ -198,8 +199,10 @@ static double free_growth(const map_case *what, double energy, uint64_t seed) {
 // any floor as well: with a floor it must not grow by more than in a free swing, and without one the case is a
 // swing itself.
 static map_verdict judge_gain(const map_case *run, const map_judge *judge) {
-    if (run->solver.solver != MSPRING_SOLVER_EXPLICIT || run->share <= calm_share || judge->quickest <= calm_way)
+    if (run->solver.solver != MSPRING_SOLVER_EXPLICIT || judge->quickest <= calm_way)
         return MAP_GAINED;
+    if (run->share <= calm_share)
+        return growth_of(run) <= calm_growth ? MAP_VIOLENT : MAP_GAINED;
     double growth = 0;
     for (uint64_t seed = 1; seed <= 3 && run->has_floor; seed++)
         growth = fmax(growth, free_growth(run, judge->could, seed));
@@ -222,7 +225,7 @@ map_verdict map_run_case(const map_case *what, char text[MAP_TEXT]) {
             verdict = judge_gain(&run, &judge);
     }
     mspring_network_destroy(network);
-    return verdict;
+    return verdict >= MAP_NOT_FINITE && map_known_limit(&run, verdict) != NULL ? MAP_KNOWN : verdict;
 }
 
 void map_print_course(const map_case *what, FILE *out) {

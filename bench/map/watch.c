@@ -64,6 +64,7 @@ static void add_outside_forces(map_watch *watch) {
         watch->force_x[i] = weight_x + held_x;
         watch->force_y[i] = weight_y + held_y;
         watch->potential -= watch->force_x[i] * (x - watch->centre_x) + watch->force_y[i] * (y - watch->centre_y);
+        watch->force += hypot(watch->force_x[i], watch->force_y[i]);
         watch->weight +=
             fabs(watch->force_x[i] * (x - watch->centre_x)) + fabs(watch->force_y[i] * (y - watch->centre_y));
         map_component *of = &watch->components[watch->component[i]];
@@ -97,7 +98,8 @@ static void add_springs(map_watch *watch) {
         const double length = sqrt(dx * dx + dy * dy), force = s->stiffness * (length - s->rest_length);
         watch->elastic += 0.5 * force * (length - s->rest_length);
         watch->rounding += fabs(force) * off + 0.5 * s->stiffness * off * off;
-        watch->rounding_squares += force * force * off * off;
+        const double most = fabs(force) + s->stiffness * off; // what acts where the length is rounded
+        watch->rounding_squares += most * most * off * off;
         if (!(length > 0))
             continue;
         watch->force_x[s->a] += force * dx / length;
@@ -173,7 +175,7 @@ bool map_watch_read(map_watch *watch) {
     static const map_component none = {0};
     if (!read_state(watch))
         return false;
-    watch->kinetic = watch->elastic = watch->potential = watch->shadow = watch->weight = 0;
+    watch->kinetic = watch->elastic = watch->potential = watch->shadow = watch->weight = watch->force = 0;
     watch->rounding = watch->rounding_squares = watch->speed = 0;
     for (uint32_t i = 0; i < watch->component_count; i++)
         watch->components[i] = none;

@@ -47,8 +47,9 @@ typedef struct map_watch {
     double potential;       ///< of gravity and held forces
     double shadow;          ///< explicit: what its substeps keep, beyond the sum of these
     double weight;   ///< sum of m |g| |x| and likewise of held forces: what a millionth of a coordinate is worth
+    double force;    ///< N, sum of gravity and held forces
     double rounding; ///< J that the last places of positions are worth: |F| e + k e^2 / 2 of all springs
-    double rounding_squares; ///< sum of (F e)^2
+    double rounding_squares; ///< sum of ((|F| + k e) e)^2
 } map_watch;
 
 /// Begin to watch: masses, springs, components, first state.
