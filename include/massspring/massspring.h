@@ -794,8 +794,10 @@ MSPRING_API mspring_result mspring_settle_def_init(mspring_settle_def *def, size
 /// as those of a factorisation do: for n particles of a lattice about n log n numbers and n^1.5 operations an
 /// iteration. A bar of 80 x 5 takes four of them. Ropes that fall slack and thin masts that bend far take many, as
 /// no step may turn their springs by much: the sample ship's rigging comes down by 45 m in 178 iterations. So do bars
-/// so soft that they hang down from their clamp; these have many equilibria that differ in which springs are folded.
-/// The energy of the one found may then be some parts in ten thousand above the lowest.
+/// so soft that they hang down from their clamp. These have many equilibria that differ in which cells near the clamp
+/// are folded. The energy of the one found may be above the lowest by a tenth of what the fall sets free. If that
+/// matters, step with global damping until the network is nearly at rest, and settle then: inertia carries it past
+/// them.
 ///
 /// Then velocities are zero (those of pinned particles stay), and forces given for the next step are still there.
 /// Parts without pinned particle have an equilibrium only if the forces on them cancel, as without gravity; others
@@ -1754,12 +1756,12 @@ MSPRING_API mspring_simd mspring_network_simd_level(const mspring_network *netwo
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_network_worker_count(const mspring_network *network);
 
-/// The best instruction set that this CPU and operating system offer.
+/// The best instruction set that this CPU, operating system and build of the library offer.
 /// @threads any   @allocates never   @since 0.1
 MSPRING_API mspring_simd mspring_simd_supported(void);
 
 /// Whether a network can be made to run at this level here: 1 for MSPRING_SIMD_AUTO, MSPRING_SIMD_SCALAR and the
-/// instruction sets that this CPU and operating system offer, 0 for others.
+/// instruction sets that this CPU, operating system and build of the library offer, 0 for others.
 /// @threads any   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_simd_available(mspring_simd level);
 

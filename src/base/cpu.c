@@ -54,7 +54,8 @@ static uint64_t saved_registers(void) {
 #endif
 }
 
-mspring_simd mspring_simd_supported(void) {
+// The best level of the CPU, whatever this build has.
+static mspring_simd best_of_cpu(void) {
     const uint32_t osxsave = 1u << 27, avx = 1u << 28, avx2 = 1u << 5, avx512f = 1u << 16;
     const uint64_t saves_256 = 0x06, saves_512 = 0xe6;
     const cpuid_words features = cpuid(1), extended = cpuid(7);
@@ -64,6 +65,18 @@ mspring_simd mspring_simd_supported(void) {
     if (!(extended.b & avx512f) || (saved_registers() & saves_512) != saves_512)
         return MSPRING_SIMD_AVX2;
     return MSPRING_SIMD_AVX512;
+}
+
+mspring_simd mspring_simd_supported(void) {
+#if defined(MSPRINGI_WITHOUT_AVX2)
+    const mspring_simd highest = MSPRING_SIMD_SSE2;
+#elif defined(MSPRINGI_WITHOUT_AVX512)
+    const mspring_simd highest = MSPRING_SIMD_AVX2;
+#else
+    const mspring_simd highest = MSPRING_SIMD_AVX512;
+#endif
+    const mspring_simd best = best_of_cpu();
+    return best < highest ? best : highest;
 }
 
 uint32_t mspring_simd_available(mspring_simd level) {

@@ -86,8 +86,7 @@ static inline void touch_line(const mspringi_ground *g, const double *restrict a
 }
 
 // Whether a straight surface would act on any particle; those that were beyond it are left. (Of several surfaces,
-// most are far from most blocks: 16,384 particles on a plane between two others, 40 substeps: 11 instead of 17 ms
-// at AVX2, 17 instead of 41 at SSE2.)
+// most are far from most blocks.)
 static inline bool look_at_line(const mspringi_ground *g, const double *restrict all_nx,
                                 const double *restrict all_ny, const double *restrict all_offset, size_t stride,
                                 const double *restrict is_held, touching *restrict b) {

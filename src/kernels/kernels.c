@@ -14,10 +14,14 @@ const mspringi_kernels *mspringi_kernels_of(mspring_simd level) {
 #if defined(MSPRINGI_X86)
     case MSPRING_SIMD_SSE2:
         return &mspringi_kernels_sse2;
+#if !defined(MSPRINGI_WITHOUT_AVX2)
     case MSPRING_SIMD_AVX2:
         return &mspringi_kernels_avx2;
+#endif
+#if !defined(MSPRINGI_WITHOUT_AVX512)
     case MSPRING_SIMD_AVX512:
         return &mspringi_kernels_avx512;
+#endif
 #elif defined(MSPRINGI_AARCH64)
     case MSPRING_SIMD_NEON:
         return &mspringi_kernels_neon;

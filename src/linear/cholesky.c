@@ -9,10 +9,14 @@ const mspringi_cholesky_kernels *mspringi_cholesky_kernels_of(mspring_simd level
 #if defined(MSPRINGI_X86)
     case MSPRING_SIMD_SSE2:
         return &mspringi_cholesky_sse2;
+#if !defined(MSPRINGI_WITHOUT_AVX2)
     case MSPRING_SIMD_AVX2:
         return &mspringi_cholesky_avx2;
+#endif
+#if !defined(MSPRINGI_WITHOUT_AVX512)
     case MSPRING_SIMD_AVX512:
         return &mspringi_cholesky_avx512;
+#endif
 #elif defined(MSPRINGI_AARCH64)
     case MSPRING_SIMD_NEON:
         return &mspringi_cholesky_neon;
