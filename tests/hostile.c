@@ -186,6 +186,9 @@ static void add_hook(arguments *a) {
     X(mspring_simd_available, "k", NOTHING, note_size(mspring_simd_available(a->kind)))                            \
     X(mspring_simd_name, "k", NOTHING, note_text(mspring_simd_name(a->kind)))                                      \
     X(mspring_network_set_solver, "NSW", FILL(solver_def), mspring_network_set_solver(a->network, a->given))       \
+    X(mspring_network_set_guard, "NK", a->kind = MSPRING_GUARD_IMPLICIT,                                           \
+      mspring_network_set_guard(a->network, a->kind))                                                              \
+    X(mspring_network_get_guard, "v", NOTHING, note_size((size_t)mspring_network_get_guard(a->network)))           \
     X(mspring_network_set_gravity, "NXY", NOTHING, mspring_network_set_gravity(a->network, a->x, a->y))            \
     X(mspring_network_set_global_damping, "NX", NOTHING, mspring_network_set_global_damping(a->network, a->x))     \
     X(mspring_network_step, "NT", NOTHING, mspring_network_step(a->network, a->dt))                                \

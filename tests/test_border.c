@@ -133,8 +133,7 @@ static void it_is_what_springs_add_up_to(void **state) {
         double *sums = test_calloc(3 * slots, sizeof *sums), largest = 0;
         pass(network, is_image);
         for (mspring_id s = 0; s < network->topology.spring_count; s++) {
-            const mspringi_seen seen =
-                mspringi_see_spring(network, s, mspringi_place_of(&network->topology, s));
+            const mspringi_seen seen = mspringi_see_spring(network, s, mspringi_place_of(&network->topology, s));
             add_spring(network, &seen, is_image, sums);
         }
         for (size_t i = 0; i < 3 * slots; i++) {

@@ -112,7 +112,7 @@ static void values_have_their_ranges(void **state) {
                                  {"sett", 52, 2, "substeps is"},
                                  {"mass", 0, 4, "of kind 4"},
                                  {"ramp", 0, made.spring_count, "goes from"},
-                                 {"guar", 20, MSPRING_GUARD_CLAMP + 1, "for substeps of"},
+                                 {"guar", 20, MSPRING_GUARD_CLAMP_BOUNDS + 1, "for substeps of"},
                                  {"guar", 24, 1, "bits that have no meaning"},
                                  {"guar", 32, 3, "for substeps of"}};
     for (size_t i = 0; i < COUNT_OF(words); i++) {

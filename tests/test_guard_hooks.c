@@ -56,13 +56,16 @@ static const way ways[] = {{"growth", MSPRING_SOLVER_EXPLICIT, MSPRING_GUARD_GRO
                            {"retry", MSPRING_SOLVER_EXPLICIT, MSPRING_GUARD_RETRY},
                            {"fallback", MSPRING_SOLVER_EXPLICIT, MSPRING_GUARD_IMPLICIT},
                            {"clamp", MSPRING_SOLVER_EXPLICIT, MSPRING_GUARD_CLAMP},
+                           {"put back", MSPRING_SOLVER_EXPLICIT, MSPRING_GUARD_CLAMP_BOUNDS},
+                           {"put back, implicit", MSPRING_SOLVER_IMPLICIT, MSPRING_GUARD_CLAMP_BOUNDS},
+                           {"put back, direct", MSPRING_SOLVER_DIRECT, MSPRING_GUARD_CLAMP_BOUNDS},
                            {"implicit", MSPRING_SOLVER_IMPLICIT, MSPRING_GUARD_GROWTH},
                            {"direct", MSPRING_SOLVER_DIRECT, MSPRING_GUARD_GROWTH}};
 
-/// A policy that tries again calls hooks again, which then write nothing.
-static bool tries_again(const way *how) {
+/// A policy that tries again calls hooks again, which then write nothing; one puts back what they wrote.
+static bool takes_it(const way *how) {
     return how->guard == MSPRING_GUARD_RETRY || how->guard == MSPRING_GUARD_IMPLICIT ||
-           how->guard == MSPRING_GUARD_CLAMP;
+           how->guard == MSPRING_GUARD_CLAMP || how->guard == MSPRING_GUARD_CLAMP_BOUNDS;
 }
 
 static void check_write(const recipe *made, const way *how, mspring_phase phase, writing what, uint32_t substeps) {
@@ -73,7 +76,7 @@ static void check_write(const recipe *made, const way *how, mspring_phase phase,
     check_ok(support_add_hook(twin, phase, write, &nothing, NULL));
     const uint64_t before = support_hash(network);
     const mspring_result result = mspring_network_step(network, DT);
-    if (result != (tries_again(how) ? MSPRING_OK : MSPRING_ERROR_UNSTABLE)) {
+    if (result != (takes_it(how) ? MSPRING_OK : MSPRING_ERROR_UNSTABLE)) {
         print_error("%s, phase %d, %g into array %d after substep %u of %u: %d\n", how->name, (int)phase,
                     (double)what.value, what.array, (unsigned)what.substep, (unsigned)substeps, (int)result);
         fail();

@@ -652,7 +652,7 @@ static void check_refused_step(mspring_guard guard, change_fn disturb, double dt
 
 static void a_refused_step_leaves_no_trace(void **state) {
     (void)state;
-    for (mspring_guard guard = MSPRING_GUARD_GROWTH; guard <= MSPRING_GUARD_CLAMP; guard++) {
+    for (mspring_guard guard = MSPRING_GUARD_GROWTH; guard <= MSPRING_GUARD_CLAMP_BOUNDS; guard++) {
         for (size_t i = 0; i < CHANGE_COUNT; i++) {
             // Substeps that are no normal float, and some that throw everything beyond all bounds.
             check_refused_step(guard, changes[i].make, 1e-40, false);

@@ -123,7 +123,7 @@ static void bad_settings_are_refused(void **state) {
     REFUSED(substeps, 1000001, MSPRING_ERROR_ARGUMENT, "substeps");
     REFUSED(max_substeps, 0, MSPRING_ERROR_ARGUMENT, "max_substeps");
     REFUSED(guard, -1, MSPRING_ERROR_ARGUMENT, "guard");
-    REFUSED(guard, MSPRING_GUARD_CLAMP + 1, MSPRING_ERROR_ARGUMENT, "guard");
+    REFUSED(guard, MSPRING_GUARD_CLAMP_BOUNDS + 1, MSPRING_ERROR_ARGUMENT, "guard");
     REFUSED(max_substeps, 1000001, MSPRING_ERROR_ARGUMENT, "max_substeps");
     REFUSED(simd_level, -1, MSPRING_ERROR_ARGUMENT, "simd_level");
     REFUSED(simd_level, MSPRING_SIMD_WASM + 1, MSPRING_ERROR_ARGUMENT, "simd_level");

@@ -387,13 +387,13 @@ typedef int32_t mspring_guard;
 enum {
     /// Refuse a step whose substeps are above the border of mspring_network_stable_dt(): motion would turn round
     /// and grow in each. The border is looked at before a step whose substep is another one, and after a step that
-    /// changes a velocity twice as much as one did at the last look. It is never looked at where substeps are stable
-    /// in any shape. Steps below the border are never refused.
-    /// A look first bounds the border, by a pass over the springs. If that does not answer it, it searches
-    /// for a motion that grows, for as long as a part of the step's substeps takes. What such a search overlooks is
-    /// found once it has grown to a thousandth of the shortest spring in a substep: that step is refused. So a step of 8
-    /// or more substeps takes at most twice its usual time, and the first one at most three times. Watching velocities
-    /// takes 2 to 3 % of a step of one substep, less than 0.5 % of one of 8 (bench/STABILITY.md).
+    /// changes a velocity twice as much as one did at the last look. It is never looked at where substeps are
+    /// stable in any shape. Steps below the border are never refused. A look first bounds the border, by a pass
+    /// over the springs. If that does not answer it, it searches for a motion that grows, for as long as a part of
+    /// the step's substeps takes. What such a search overlooks is found once it has grown to a thousandth of the
+    /// shortest spring in a substep: that step is refused. So a step of 8 or more substeps takes at most twice its
+    /// usual time, and the first one at most three times. Watching velocities takes 2 to 3 % of a step of one
+    /// substep, less than 0.5 % of one of 8 (bench/STABILITY.md).
     ///
     /// The implicit and the direct solver keep an energy budget instead, of each component (all that live springs join)
     /// in each substep. Kinetic and elastic energy grow by no more than the work of gravity, forces and moving pins. A
@@ -428,7 +428,15 @@ enum {
     /// conserved but for rounding, angular momentum only about. A step that ends out of bounds all the same is
     /// refused. Works on one thread, at 30 to 160 explicit substeps for each substep; needs no memory. Hooks are
     /// called again. mspring_network_fallback_count() says how often that was.
-    MSPRING_GUARD_CLAMP = 4
+    MSPRING_GUARD_CLAMP = 4,
+    /// Look at nothing, and put back what ends out of bounds, instead of refusing the step. A speed becomes
+    /// max_speed at most, a local coordinate MSPRING_MAX_COORDINATE. A particle with a number that is not finite
+    /// goes back to where it was before the step, or to the local origin if it was nowhere, and stands still. So
+    /// what explodes stays bounded, but is no physics any more. No step fails with MSPRING_ERROR_UNSTABLE: with
+    /// MSPRING_SUBSTEPS_AUTO one that needs more than max_substeps takes max_substeps. Hooks may see what is out of
+    /// bounds while the step lasts. After a step that put something back floor impulses are those of the step
+    /// before, and an implicit solver begins a new history.
+    MSPRING_GUARD_CLAMP_BOUNDS = 5
 };
 
 /// A network's settings at the start. Fill with mspring_network_def_init() first.
@@ -454,7 +462,7 @@ typedef struct mspring_network_def {
                            ///< helps. With tasks, whose number counts, this is not looked at.
     uint32_t flags;        ///< bits of MSPRING_NETWORK_; default 0
     uint32_t max_substeps; ///< as in mspring_solver_def; default 1000
-    mspring_guard guard;   ///< default MSPRING_GUARD_GROWTH
+    mspring_guard guard;   ///< default MSPRING_GUARD_GROWTH; mspring_network_set_guard() changes it
     float sleep_speed; ///< m/s, 0 to 1e15: an island sleeps once none of its particles has been faster in x or y
                        ///< at the end of a step for sleep_time, see mspring_network_is_asleep(); default 0: never
     float sleep_time;  ///< s of simulated time, 0 to 1e6; default 0.5
@@ -710,6 +718,18 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_wake(mspring_networ
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_network_substeps(const mspring_network *network);
 
+/// Choose what a step does beside checking bounds, as mspring_network_def.guard does at creation.
+/// With another guard than before, the next step looks at the border of stability, if this one looks at it at all.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for a network NULL or no guard; MSPRING_ERROR_MEMORY,
+///         MSPRING_ERROR_BUSY. On error nothing changes.
+/// @threads exclusive access to network   @allocates what the guard needs, if no guard before did   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_guard(mspring_network *network,
+                                                                       mspring_guard guard);
+
+/// What a step does beside checking bounds: see mspring_network_set_guard(). NULL gives MSPRING_GUARD_GROWTH.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_API mspring_guard mspring_network_get_guard(const mspring_network *network);
+
 /// Number of steps so far that the implicit solver took for the explicit one (MSPRING_GUARD_IMPLICIT), or that were
 /// taken with strain rates clamped (MSPRING_GUARD_CLAMP). NULL: 0.
 /// @threads shared   @allocates never   @since 0.1
@@ -726,8 +746,9 @@ MSPRING_API uint64_t mspring_network_fallback_count(const mspring_network *netwo
 /// without pinned particles. (One mode of angular frequency omega and damping ratio zeta: omega h <= 2 (sqrt(1 +
 /// zeta^2) - zeta).) In K a spring that is shorter than its rest length has stiffness along its direction only. The
 /// tangent stiffness would add what is below 0 across it, which stretches the limit: in a shape that is pressed
-/// together now can be as short as 0.33 of that limit, and is safe. (mspring_guard goes by the tangent stiffness.) The
-/// eigenvalue is found by iteration (Lanczos 1950). Relative springs follow h; a network of relative springs alone is stable at every h (infinite) or at none (0).
+/// together now can be as short as 0.33 of that limit, and is safe. (mspring_guard goes by the tangent stiffness.)
+/// The eigenvalue is found by iteration (Lanczos 1950). Relative springs follow h; a network of relative springs
+/// alone is stable at every h (infinite) or at none (0).
 /// @param now        for the shape of now, with K as said, to about 0.3 % and rather below than above; stretching a
 ///                   network stiffens it across and lowers this. May be NULL.
 /// @param any_shape  for any shape that the network can get into, tangles included: at most now; of a full lattice

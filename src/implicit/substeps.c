@@ -1,6 +1,7 @@
 /// A substep: one linear system, the floor, and the energy budget; or its halves.
 #include "contact/floor.h"
 #include "implicit.h"
+#include "stability/guard.h"
 
 /// Workers meet some forty times in a substep. Where they have to share cores, these become sleeps, and one worker
 /// is faster alone (two workers on cores with a load of 10: 2.3 times, 1800x5). So after a substep with more than
@@ -180,7 +181,7 @@ static void take_pieces(mspringi_substep_of *substep) {
 void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
     follow_edits(network);
     mspringi_substep_of substep = {
-        .network = network, .base = base, .h = h, .watches = network->guard_policy != MSPRING_GUARD_BOUNDS};
+        .network = network, .base = base, .h = h, .watches = mspringi_guard_looks(network->guard_policy)};
     if (substep.watches)
         mspringi_budget_follow(network);
     for (; count > 0; --count) {

@@ -78,8 +78,7 @@ MSPRINGI_BORDER_INLINE void add_shares(const mspringi_border *b, size_t sum, siz
 // The springs of LANES slots of a lattice; before: what those of the slots before hand on to the right, and to the
 // right above.
 MSPRINGI_BORDER_INLINE void border_slots(const mspringi_border *b, size_t slot, size_t up, const float *rests,
-                                         const float *records, border_share before[2], bool damped,
-                                         bool is_image) {
+                                         const float *records, border_share before[2], bool damped, bool is_image) {
     const size_t part = (size_t)(damped ? 2 : 1) * MSPRINGI_WIDTH;
     const border_end here = border_end_at(b, slot, is_image), next = border_end_at(b, slot + 1, is_image);
     const border_end above = border_end_at(b, up, is_image), above_next = border_end_at(b, up + 1, is_image);
@@ -90,9 +89,8 @@ MSPRINGI_BORDER_INLINE void border_slots(const mspringi_border *b, size_t slot, 
     const border_share north_east =
         share_of_springs(b, here, above_next, rests + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH,
                          records + MSPRINGI_NORTH_EAST * part, damped, is_image);
-    const border_share south_east =
-        share_of_springs(b, above, next, rests + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH,
-                         records + MSPRINGI_SOUTH_EAST * part, damped, is_image);
+    const border_share south_east = share_of_springs(b, above, next, rests + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH,
+                                                     records + MSPRINGI_SOUTH_EAST * part, damped, is_image);
     for (size_t sum = 0; sum < (is_image ? 2 : 3); ++sum) {
         const vec right = add(east.sums[sum], south_east.sums[sum]);
         add_shares(b, sum, slot, add(add(east.sums[sum], north.sums[sum]), north_east.sums[sum]),
@@ -126,10 +124,10 @@ MSPRINGI_BORDER_INLINE void border_chain(const mspringi_border *border, bool dam
     for (size_t i = 0; i < (size_t)b->chain_blocks * MSPRINGI_WIDTH; i += LANES) {
         const size_t slot = b->chain_first * MSPRINGI_WIDTH + i;
         const float *record = b->chain_springs + i / MSPRINGI_WIDTH * parts * MSPRINGI_WIDTH + i % MSPRINGI_WIDTH;
-        const border_share east = share_of_springs(
-            b, border_end_at(b, slot, is_image), border_end_at(b, slot + 1, is_image),
-            record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH, record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, damped,
-            is_image);
+        const border_share east =
+            share_of_springs(b, border_end_at(b, slot, is_image), border_end_at(b, slot + 1, is_image),
+                             record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH,
+                             record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, damped, is_image);
         for (size_t sum = 0; sum < (is_image ? 2 : 3); ++sum)
             add_shares(b, sum, slot, east.sums[sum], shift_in(before.sums[sum], east.sums[sum]), is_image);
         before = east;

@@ -51,8 +51,9 @@ static mspring_result check_def(const mspring_network_def *def, mspringi_message
     if (def->flags & ~(uint32_t)(MSPRING_NETWORK_RESERVE_DAMPING | MSPRING_NETWORK_RESERVE_RELATIVE))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "network flags %#x are unknown",
                              (unsigned)def->flags);
-    if (def->guard < MSPRING_GUARD_GROWTH || def->guard > MSPRING_GUARD_CLAMP)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "guard is %d, which is none", (int)def->guard);
+    result = mspringi_guard_check(def->guard, message);
+    if (result != MSPRING_OK)
+        return result;
     if (!(def->max_speed > 0.0f && def->max_speed <= 1e15f))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "max_speed is %g m/s, it must be > 0 and at most 1e15", (double)def->max_speed);

@@ -267,7 +267,7 @@ struct mspring_network {
     uint32_t max_substeps;
     bool auto_substeps;
     struct mspringi_implicit *implicit; ///< NULL: the explicit solver
-    struct mspringi_implicit *fallback; ///< takes steps for the explicit one; NULL unless MSPRING_GUARD_IMPLICIT
+    struct mspringi_implicit *fallback; ///< takes steps for the explicit one; NULL before MSPRING_GUARD_IMPLICIT
     uint64_t fallback_count;            ///< steps that it has taken
     struct mspringi_floor *floor;       ///< NULL: there is none
     mspring_guard guard_policy;

@@ -5,6 +5,7 @@
 #include "implicit/implicit.h"
 #include "network.h"
 #include "sleep/sleep.h"
+#include "stability/guard.h"
 
 static mspring_result check_implicit(const mspring_solver_def *def, mspringi_message *message) {
     if (def->integrator < MSPRING_INTEGRATOR_GA0 || def->integrator > MSPRING_INTEGRATOR_EULER)
@@ -79,6 +80,27 @@ mspring_result mspring_network_set_solver(mspring_network *network, const msprin
     network->max_substeps = def->max_substeps;
     network->guard.lent = 0;
     return MSPRING_OK;
+}
+
+mspring_result mspring_network_set_guard(mspring_network *network, mspring_guard guard) {
+    mspring_result result = mspringi_enter(network);
+    if (result == MSPRING_OK)
+        result = mspringi_guard_check(guard, &network->message);
+    if (result != MSPRING_OK || guard == network->guard_policy)
+        return result;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    result = mspringi_guard_reserve(network, guard);
+    mspringi_fp_leave(before);
+    if (result != MSPRING_OK)
+        return result;
+    network->guard_policy = guard;
+    network->guard.h = network->guard.peak = 0.0f;
+    network->guard.lent = 0;
+    return MSPRING_OK;
+}
+
+mspring_guard mspring_network_get_guard(const mspring_network *network) {
+    return network ? network->guard_policy : MSPRING_GUARD_GROWTH;
 }
 
 mspring_result mspring_network_set_gravity(mspring_network *network, float x, float y) {

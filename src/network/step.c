@@ -143,7 +143,9 @@ void mspringi_clear_empty_slots(const mspring_network *network) {
 static mspring_result choose_substeps(mspring_network *network, double dt) {
     mspring_id spring;
     const double limit = mspringi_stable_in_any_shape(network, &spring);
-    const uint32_t substeps = mspringi_substeps_within(dt, limit, network->max_substeps);
+    uint32_t substeps = mspringi_substeps_within(dt, limit, network->max_substeps);
+    if (network->guard_policy == MSPRING_GUARD_CLAMP_BOUNDS && substeps > network->max_substeps)
+        substeps = network->max_substeps;
     if (substeps > network->max_substeps) {
         const mspring_id tightest = mspringi_tightest_spring(network, dt / (double)network->max_substeps);
         return mspringi_fail(
@@ -177,6 +179,10 @@ static void go_back(mspring_network *network) {
 static mspring_result check_given_speeds(mspring_network *network, double dt) {
     if (!network->is_open || !((double)network->global_damping * dt > STRONG_DAMPING))
         return MSPRING_OK;
+    if (network->guard_policy == MSPRING_GUARD_CLAMP_BOUNDS) {
+        mspringi_guard_put_back(network, NULL);
+        return MSPRING_OK;
+    }
     const mspringi_state *s = &network->state;
     for (mspring_id p = 0; p < network->topology.particle_count; ++p) {
         const uint32_t slot = network->topology.slot_of_particle[p];

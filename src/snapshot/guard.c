@@ -104,11 +104,12 @@ static mspring_result guard_check(mspring_network *network, const uint8_t *from,
         return result;
     if (!(head.h >= 0.0f && head.h <= FLT_MAX && head.global_damping >= 0.0f && head.global_damping <= 1e6f &&
           head.peak >= 0.0f && head.peak <= FLT_MAX && head.dt >= 0.0) ||
-        head.policy > MSPRING_GUARD_CLAMP || head.state > KNOWN)
+        head.policy > MSPRING_GUARD_CLAMP_BOUNDS || head.state > KNOWN)
         return mspringi_section_fail(network, section, "for substeps of %g s, with a peak of %g m/s and policy %u",
                                      (double)head.h, (double)head.peak, (unsigned)head.policy);
     if (head.reserved != 0)
-        return mspringi_section_fail(network, section, "bits that have no meaning are %#x", (unsigned)head.reserved);
+        return mspringi_section_fail(network, section, "bits that have no meaning are %#x",
+                                     (unsigned)head.reserved);
     fallback_head fallback = {0};
     if (falls_back)
         (void)read_fallback(from, &fallback);

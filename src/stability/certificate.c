@@ -5,10 +5,10 @@
 ///     w (n . (p_b y_b - p_a y_a))^2 + c (t . (p_b y_b - p_a y_a))^2
 /// to y . S y. With a weight z > 0 for each particle, 2 |u v| <= (z_b / z_a) u^2 + (z_a / z_b) v^2 gives
 ///     (p_b v - p_a u)^2 <= (p_a / z_a) (p_a z_a + p_b z_b) u^2 + (p_b / z_b) (p_a z_a + p_b z_b) v^2
-/// and S is at most block diagonal: each particle's block is p / z times the sum of (p_a z_a + p_b z_b) (w n n' + c t
-/// t') over its springs, and no eigenvalue of S is above the largest of any block's. Of a lattice of equal particles
-/// and springs at rest, both are 8 w / m: there the bound is sharp. A spring that is pressed has c < 0, which counts
-/// as 0.
+/// and S is at most block diagonal: each particle's block is p / z times the sum of (p_a z_a + p_b z_b) (w n n' + c
+/// t t') over its springs, and no eigenvalue of S is above the largest of any block's. Of a lattice of equal
+/// particles and springs at rest, both are 8 w / m: there the bound is sharp. A spring that is pressed has c < 0,
+/// which counts as 0.
 ///
 /// Any weights are right, and the best ones make all blocks alike: each look multiplies a particle's weight by the
 /// root of its block's eigenvalue. Weights only say how soon a look is sure, never what it finds.
@@ -18,8 +18,8 @@
 #include "border.h"
 #include "stability.h"
 
-/// Rounds of a network that has just been made; a look takes one more. (Of 200 x 200 with holes, three masses and four
-/// stiffnesses, 6 prove 0.94 of the border, 12 0.95 and 50 0.965.)
+/// Rounds of a network that has just been made; a look takes one more. (Of 200 x 200 with holes, three masses and
+/// four stiffnesses, 6 prove 0.94 of the border, 12 0.95 and 50 0.965.)
 #define ROUNDS_TO_LEARN 12
 
 /// Smallest weight; the largest is about 1.
@@ -29,8 +29,7 @@ mspring_result mspringi_border_reserve(mspring_network *network) {
     if (network->looks)
         return MSPRING_OK;
     const size_t slots = mspringi_slot_count(network);
-    network->looks =
-        mspringi_alloc(&network->memory, (1 + MSPRINGI_BORDER_ROOM) * slots, sizeof *network->looks);
+    network->looks = mspringi_alloc(&network->memory, (1 + MSPRINGI_BORDER_ROOM) * slots, sizeof *network->looks);
     if (!network->looks)
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory to look at the stability of %zu slots", slots);

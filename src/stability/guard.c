@@ -5,13 +5,14 @@
 /// velocity twice as much as one had at the last look. A bound tells first whether it can be near at all
 /// (certificate.c). If it can, a search tells with certainty that it is not (search.c), if it finds that: so a step
 /// of a network that is below the border is never refused. A look is as short as a few substeps, so that no frame
-/// is late for it. What a short search overlooks grows, changes velocities more, and is looked for again in the same
-/// motion, which has more of it each time; the step in which it is found is the one that is taken back.
+/// is late for it. What a short search overlooks grows, changes velocities more, and is looked for again in the
+/// same motion, which has more of it each time; the step in which it is found is the one that is taken back.
 #include "guard.h"
 
 #include <math.h>
 
 #include "border.h"
+#include "contact/floor.h"
 #include "explicit/decay.h"
 #include "implicit/implicit.h"
 #include "stability.h"
@@ -63,14 +64,51 @@ static mspring_result check_bounds(mspring_network *network, double dt) {
     const double vx = (double)s->vx[slot], vy = (double)s->vy[slot];
     const char *cure = "take a shorter step, more substeps or less stiffness";
     if (!isfinite(x + y + vx + vy))
-        return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
-                             "a step of %g s (substeps: %u) would throw particle %u, perhaps with others, out of the "
-                             "range of numbers: %s",
-                             dt, (unsigned)network->substeps, (unsigned)named, cure);
-    return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
-                         "a step of %g s (substeps: %u) would throw particle %u, perhaps with others, to (%g, %g) m "
-                         "at (%g, %g) m/s: %s",
-                         dt, (unsigned)network->substeps, (unsigned)named, x, y, vx, vy, cure);
+        return mspringi_fail(
+            &network->message, MSPRING_ERROR_UNSTABLE,
+            "a step of %g s (substeps: %u) would throw particle %u, perhaps with others, out of the "
+            "range of numbers: %s",
+            dt, (unsigned)network->substeps, (unsigned)named, cure);
+    return mspringi_fail(
+        &network->message, MSPRING_ERROR_UNSTABLE,
+        "a step of %g s (substeps: %u) would throw particle %u, perhaps with others, to (%g, %g) m "
+        "at (%g, %g) m/s: %s",
+        dt, (unsigned)network->substeps, (unsigned)named, x, y, vx, vy, cure);
+}
+
+static float between(float value, float most) {
+    return value > most ? most : value < -most ? -most : value;
+}
+
+static bool is_finite_in(const mspringi_state *s, uint32_t slot) {
+    return isfinite(s->x[slot]) && isfinite(s->y[slot]) && isfinite(s->vx[slot]) && isfinite(s->vy[slot]);
+}
+
+void mspringi_guard_put_back(mspring_network *network, const mspringi_state *before) {
+    const mspringi_state *s = &network->state;
+    const mspringi_topology *t = &network->topology;
+    for (mspring_id p = 0; p < t->particle_count; ++p) {
+        const uint32_t slot = t->slot_of_particle[p];
+        if (!is_finite_in(s, slot)) {
+            const bool was_there = before && isfinite(before->x[slot]) && isfinite(before->y[slot]);
+            s->x[slot] = was_there ? before->x[slot] : 0.0f;
+            s->y[slot] = was_there ? before->y[slot] : 0.0f;
+            s->vx[slot] = s->vy[slot] = 0.0f;
+        }
+        s->x[slot] = between(s->x[slot], (float)MSPRING_MAX_COORDINATE);
+        s->y[slot] = between(s->y[slot], (float)MSPRING_MAX_COORDINATE);
+        s->vx[slot] = between(s->vx[slot], network->max_speed);
+        s->vy[slot] = between(s->vy[slot], network->max_speed);
+    }
+    if (network->implicit)
+        mspringi_implicit_forget(network->implicit);
+}
+
+// The same at the end of a step.
+static mspringi_sight put_back(mspring_network *network) {
+    mspringi_guard_put_back(network, &network->backup);
+    mspringi_floor_take_back(network->floor);
+    return mspringi_guard_look(network, 0, mspringi_slot_count(network));
 }
 
 /* --------------------------------------------------------------------------------------------------- the border */
@@ -114,15 +152,22 @@ static mspring_result look_at_border(mspring_network *network, double dt, float 
 
 /* --------------------------------------------------------------------------------------------------- the steps */
 
+mspring_result mspringi_guard_check(mspring_guard policy, mspringi_message *message) {
+    return policy >= MSPRING_GUARD_GROWTH && policy <= MSPRING_GUARD_CLAMP_BOUNDS
+               ? MSPRING_OK
+               : mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "guard is %d, which is none", (int)policy);
+}
+
 bool mspringi_guard_looks(mspring_guard policy) {
-    return policy != MSPRING_GUARD_BOUNDS;
+    return policy != MSPRING_GUARD_BOUNDS && policy != MSPRING_GUARD_CLAMP_BOUNDS;
 }
 
 mspring_result mspringi_guard_reserve(mspring_network *network, mspring_guard policy) {
     mspring_result result = MSPRING_OK;
     if (mspringi_guard_looks(policy))
         result = mspringi_border_reserve(network);
-    return result == MSPRING_OK && policy == MSPRING_GUARD_IMPLICIT ? mspringi_fallback_reserve(network, 0) : result;
+    return result == MSPRING_OK && policy == MSPRING_GUARD_IMPLICIT ? mspringi_fallback_reserve(network, 0)
+                                                                    : result;
 }
 
 mspring_result mspringi_guard_begin(mspring_network *network, double dt, float h) {
@@ -135,8 +180,7 @@ mspring_result mspringi_guard_begin(mspring_network *network, double dt, float h
     if (!mspringi_guard_looks(network->guard_policy) || network->implicit || network->is_clamped)
         return MSPRING_OK;
     const mspringi_any_shape *any_shape = &network->any_shape;
-    if (same &&
-        (any_shape->masses != network->edits.masses || any_shape->values != network->edits.values)) {
+    if (same && (any_shape->masses != network->edits.masses || any_shape->values != network->edits.values)) {
         guard->watches = true; // edits cost nothing here; what they do to the border is seen in the velocities
         return MSPRING_OK;
     }
@@ -208,8 +252,13 @@ static float bound_place(const mspring_network *network, float h, float speed, m
 
 mspring_result mspringi_guard_end(mspring_network *network, double dt, float h, mspringi_sight sight) {
     mspringi_guard *guard = &network->guard;
-    const float speed = bound_speed(network, sight), place = bound_place(network, h, speed, sight);
-    if (!(place <= (float)MSPRING_MAX_COORDINATE && speed <= network->max_speed)) {
+    float speed = bound_speed(network, sight), place = bound_place(network, h, speed, sight);
+    const bool is_out = !(place <= (float)MSPRING_MAX_COORDINATE && speed <= network->max_speed);
+    if (is_out && network->guard_policy == MSPRING_GUARD_CLAMP_BOUNDS) {
+        sight = put_back(network);
+        speed = sight.speed;
+        place = sight.place;
+    } else if (is_out) {
         const mspring_result result = check_bounds(network, dt);
         if (result != MSPRING_OK)
             return result;

@@ -7,19 +7,25 @@
 
 #include "network/network.h"
 
+/// Refuse what is no policy.
+mspring_result mspringi_guard_check(mspring_guard policy, mspringi_message *message);
+
 /// Whether a network with this policy looks at the border.
 bool mspringi_guard_looks(mspring_guard policy);
 
 /// Reserve what this policy needs, unless it is there.
 mspring_result mspringi_guard_reserve(mspring_network *network, mspring_guard policy);
 
-/// Before a step in substeps of h: MSPRING_OK, or MSPRING_ERROR_UNSTABLE with a message if they are found to be above
-/// the border.
+/// Before a step in substeps of h: MSPRING_OK, or MSPRING_ERROR_UNSTABLE with a message if they are found to be
+/// above the border.
 mspring_result mspringi_guard_begin(mspring_network *network, double dt, float h);
 
 /// Look at the slots first to end - 1, multiples of MSPRINGI_WIDTH, whose state before the step is in the backup.
 /// May be called by several threads at once.
 mspringi_sight mspringi_guard_look(const mspring_network *network, size_t first, size_t end);
+
+/// Put what is out of bounds back into them: before is the state of before the step, or NULL.
+void mspringi_guard_put_back(mspring_network *network, const mspringi_state *before);
 
 /// The sight of both, in whatever order they are joined.
 mspringi_sight mspringi_sight_join(mspringi_sight a, mspringi_sight b);

@@ -53,8 +53,8 @@ static void start_from_motion(const search *f, float h, displacement to) {
     }
 }
 
-// A number for each n, as if at random; quicker than mspringi_noise(), which a search of a few iterations would wait
-// for (the last steps of MurmurHash3, Appleby 2011).
+// A number for each n, as if at random; quicker than mspringi_noise(), which a search of a few iterations would
+// wait for (the last steps of MurmurHash3, Appleby 2011).
 static inline float noise(uint32_t n) {
     n = (n + 1) * 0x9e3779b9u;
     n = (n ^ n >> 16) * 0x85ebca6bu;
@@ -71,7 +71,8 @@ static void start_from_noise(const search *f, displacement to) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- the iteration */
+/* ------------------------------------------------------------------------------------------------- the iteration
+ */
 
 // a . M b, in an order that does not depend on the machine.
 static double dot(const search *f, displacement a, displacement b) {

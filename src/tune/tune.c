@@ -105,6 +105,8 @@ static mspring_result make_base(mspringi_tuning *tuning) {
     // A setting is to be measured, not what would stand in for it.
     if (base->guard_policy == MSPRING_GUARD_IMPLICIT || base->guard_policy == MSPRING_GUARD_CLAMP)
         base->guard_policy = MSPRING_GUARD_GROWTH;
+    else if (base->guard_policy == MSPRING_GUARD_CLAMP_BOUNDS)
+        base->guard_policy = MSPRING_GUARD_BOUNDS;
     base->ramps.count = 0;
     for (mspring_id spring = 0; base->strain.break_strain && spring < base->topology.spring_count; ++spring)
         mspringi_strain_store(base, mspringi_place_of(&base->topology, spring), false, INFINITY);
