@@ -100,12 +100,31 @@ static void find_driven(const mspring_network *network, budget_of *budget) {
     }
 }
 
+static void count_edits(const mspring_network *network, uint64_t *to) {
+    const mspringi_edits *e = &network->edits;
+    const uint64_t counts[MSPRINGI_BUDGET_EDITS] = {e->state, e->values, e->growth, e->grafts, e->links, e->naps};
+    memcpy(to, counts, sizeof counts);
+}
+
+// Whether elastic energy is what it was after the last substep. Where the host may write to the state, or rest
+// lengths and stiffnesses follow from the time or the substep, it is computed again.
+static bool knows_elastic(const mspring_network *network) {
+    const budget_of *budget = &network->implicit->budget;
+    uint64_t now[MSPRINGI_BUDGET_EDITS];
+    count_edits(network, now);
+    return budget->knows_elastic && !network->is_open && network->ramps.count == 0 && !network->fractions.values &&
+           budget->origin_x == network->origin_x && budget->origin_y == network->origin_y &&
+           memcmp(now, budget->seen, sizeof now) == 0;
+}
+
 void mspringi_budget_open(mspring_network *network, double h) {
     budget_of *budget = &network->implicit->budget;
     for (uint32_t i = 0; i < budget->count; ++i)
         begin_account(network, &budget->accounts[i]);
     find_driven(network, budget);
-    mspringi_measuring all = {.network = network, .motion = motion_of(network)};
+    mspringi_measuring all = {
+        .network = network, .motion = motion_of(network), .knows_elastic = knows_elastic(network)};
+    budget->knows_elastic = false;
     mspringi_budget_measure(&all);
     for (account *a = budget->accounts; a < budget->accounts + budget->count; ++a) {
         const centre c = centre_of(a);
@@ -330,6 +349,17 @@ static void step_back(mspring_network *network, const mspringi_motion *before, b
     n->history.restarts = n->history.restarts > 1 ? n->history.restarts : 1;
 }
 
+// What was summed is that of the places that there are now, unless these were shifted since.
+static void note_elastic(const mspring_network *network) {
+    budget_of *budget = &network->implicit->budget;
+    budget->knows_elastic = true;
+    for (uint32_t i = 0; i < budget->count; ++i)
+        budget->knows_elastic &= budget->accounts[i].shift_x == 0.0 && budget->accounts[i].shift_y == 0.0;
+    count_edits(network, budget->seen);
+    budget->origin_x = network->origin_x;
+    budget->origin_y = network->origin_y;
+}
+
 bool mspringi_budget_close(mspring_network *network, float h, mspringi_field base, bool may_halve) {
     mspringi_measuring all = {.network = network,
                               .motion = motion_of(network),
@@ -351,6 +381,7 @@ bool mspringi_budget_close(mspring_network *network, float h, mspringi_field bas
         step_back(network, &all.before, step == MOST_STEPS_BACK);
     }
     turn_all(network);
+    note_elastic(network);
     return true;
 }
 

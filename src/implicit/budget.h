@@ -44,6 +44,9 @@
 /// rigging had to take twice as many again.
 #define MSPRINGI_CALM_SUBSTEPS 15u
 
+/// Counters of edits that may change elastic energy.
+#define MSPRINGI_BUDGET_EDITS 6
+
 /// No component, and several.
 #define MSPRINGI_NO_ACCOUNT MSPRING_NONE
 #define MSPRINGI_SOME_ACCOUNTS (MSPRING_NONE - 1)
@@ -88,7 +91,10 @@ typedef struct mspringi_budget {
     uint32_t pin_count;
     bool is_known; ///< which components and pins there are, for these edits
     uint64_t links, growth, grafts, masses;
-    bool is_driven;                   ///< some component is
+    bool is_driven;                       ///< some component is
+    uint64_t seen[MSPRINGI_BUDGET_EDITS]; ///< edits after the last substep, and the origin then
+    double origin_x, origin_y;
+    bool knows_elastic;               ///< elastic and length of all accounts are still those of after it
     float *state;                     ///< [4][slots] before the substep
     mspringi_field impulse;           ///< of the floor before it
     double (*runs)[MSPRINGI_EFFECTS]; ///< [blocks] at the first of each run of blocks
@@ -117,6 +123,7 @@ typedef struct mspringi_measuring {
     mspringi_motion motion, before; ///< before: where it was, after a substep
     mspringi_field base;            ///< forces from outside
     bool is_after;
+    bool knows_elastic; ///< elastic and length are there already
     uint32_t workers;
 } mspringi_measuring;
 

@@ -303,6 +303,7 @@ void mspringi_implicit_restore(mspring_network *network) {
         n->backup = failed;
     }
     n->has_changed = n->is_kept = false;
+    n->budget.knows_elastic = false;
     n->age = n->kept_age;
     if (n->age > 0)
         mspringi_coarse_take_back(&n->coarse);
@@ -346,6 +347,7 @@ void mspringi_implicit_follow(mspring_network *network) {
 void mspringi_implicit_forget(mspringi_implicit *n) {
     memset(n->history.low.x, 0, n->history_size * sizeof *n->history.low.x);
     n->history.restarts = 1;
+    n->budget.knows_elastic = false;
 }
 
 /* --------------------------------------------------------------------------------------------------------- plan */

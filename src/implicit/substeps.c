@@ -136,6 +136,8 @@ static void take_substep(mspringi_substep_of *substep, uint32_t tries) {
     mspringi_implicit *n = network->implicit;
     if (substep->watches)
         mspringi_budget_open(network, (double)substep->h);
+    else
+        n->budget.knows_elastic = false;
     run_substep(substep, tries > 0);
     if (!substep->watches ||
         mspringi_budget_close(network, substep->h, substep->base, tries <= MSPRINGI_MOST_HALVINGS))

@@ -99,8 +99,8 @@ static void measure_share(void *argument, uint32_t index, uint32_t worker) {
     size_t run_end;
     for (size_t block = slots.first / MSPRINGI_WIDTH; next_run(&n->budget, &block, end, &run_end); block = run_end)
         measure_run(all, block, run_end);
-    for (size_t i = mspringi_share_of(&mate, n->panels.count); i < mspringi_share_end(&mate, n->panels.count);
-         ++i) {
+    for (size_t i = mspringi_share_of(&mate, n->panels.count);
+         !all->knows_elastic && i < mspringi_share_end(&mate, n->panels.count); ++i) {
         const mspringi_panel *panel = &n->panels.list[i];
         if (!mspringi_panel_is_asleep(network, panel))
             network->kernels->system.elastic(&n->system, &all->motion, network->topology.spans + panel->first_span,
@@ -205,10 +205,12 @@ void mspringi_budget_measure(measuring *all) {
     mspringi_tasks_run(all->workers > 1 ? network->tasks : NULL, all->workers, measure_share, all);
     for (account *a = n->budget.accounts; a < n->budget.accounts + n->budget.count; ++a) {
         memset(a->sums, 0, sizeof a->sums);
-        a->elastic = a->length = 0.0;
+        a->elastic = all->knows_elastic ? a->elastic : 0.0;
+        a->length = all->knows_elastic ? a->length : 0.0;
     }
     add_particles(all);
-    add_springs(all);
+    if (!all->knows_elastic)
+        add_springs(all);
 }
 
 /* -------------------------------------------------------------------------------------------- work of pins */

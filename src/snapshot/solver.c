@@ -138,7 +138,7 @@ static void implicit_load(mspring_network *network, const uint8_t *from, size_t 
     n->history.restarts = head.restarts;
     n->iterations = head.iterations;
     n->coarse_period = head.coarse_period;
-    n->budget.is_known = false;
+    n->budget.is_known = n->budget.knows_elastic = false;
     from = mspringi_get(from, n->history.low.x, n->history_size, sizeof(float));
     clear_history(network);
     mspringi_implicit_follow(network);
