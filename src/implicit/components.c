@@ -60,16 +60,17 @@ static void number_components(const mspring_network *network, mspringi_budget *b
     budget->count = count;
 }
 
-// The account that all particles of a block are in; those in none do not count.
-static uint32_t account_of_block(const mspringi_budget *budget, size_t block) {
+// The account that all particles of a block are in.
+static uint32_t account_of_block(const mspring_network *network, const mspringi_budget *budget, size_t block) {
     uint32_t account = MSPRINGI_NO_ACCOUNT;
-    for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
-        const uint32_t other = budget->of_slot[block * MSPRINGI_WIDTH + lane];
-        if (other == MSPRINGI_NO_ACCOUNT || other == account)
+    bool any = false;
+    for (size_t slot = block * MSPRINGI_WIDTH; slot < (block + 1) * MSPRINGI_WIDTH; ++slot) {
+        if (network->topology.particle_of_slot[slot] == MSPRING_NONE)
             continue;
-        if (account != MSPRINGI_NO_ACCOUNT)
+        if (any && budget->of_slot[slot] != account)
             return MSPRINGI_SOME_ACCOUNTS;
-        account = other;
+        account = budget->of_slot[slot];
+        any = true;
     }
     return account;
 }
@@ -108,7 +109,7 @@ void mspringi_budget_follow(mspring_network *network) {
     if (!same) {
         number_components(network, budget);
         for (size_t block = 0; block < network->topology.block_count; ++block)
-            budget->of_block[block] = account_of_block(budget, block);
+            budget->of_block[block] = account_of_block(network, budget, block);
         for (size_t block = 0; block < network->topology.block_count; ++block)
             budget->of_springs[block] = account_of_springs(network, budget, block);
     }
