@@ -40,6 +40,10 @@ typedef struct arena {
     uint32_t after_vx[GUARD];
     float vy[SLOTS];
     uint32_t after_vy[GUARD];
+    float low_x[SLOTS];
+    uint32_t after_low_x[GUARD];
+    float low_y[SLOTS];
+    uint32_t after_low_y[GUARD];
     float inverse_mass[SLOTS];
     uint32_t after_inverse_mass[GUARD];
     float force_x[SLOTS];
@@ -56,7 +60,7 @@ typedef struct arena {
     uint32_t rests_of_block[ROW];
     uint32_t springs_of_block[ROW];
     uint32_t back[GUARD];
-    _Alignas(64) float kept[4 * STRIDE];
+    _Alignas(64) float kept[6 * STRIDE];
     uint32_t after_kept[GUARD];
     mspringi_watch watch;
     mspringi_sight sight; ///< of the watch
@@ -78,7 +82,7 @@ static void check_canaries(const arena *a) {
     const uint32_t *guards[] = {a->front,         a->after_x,       a->after_y,       a->after_vx,
                                 a->after_vy,      a->after_carry_x, a->after_records, a->after_inverse_mass,
                                 a->after_force_x, a->after_force_y, a->after_carry_y, a->back,
-                                a->after_kept};
+                                a->after_kept,    a->after_low_x,   a->after_low_y};
     for (size_t i = 0; i < COUNT_OF(guards); i++) {
         for (size_t j = 0; j < GUARD; j++) {
             assert_int_equal(guards[i][j], CANARY);
@@ -114,16 +118,18 @@ static void fill(arena *a, const setup *s) {
         a->y[i] = i % 7 == 6 && i > 0 ? a->y[i - 1] : (i >= ABOVE * W) + random_float(&seed, -0.2, 0.2);
         a->vx[i] = random_float(&seed, -5, 5);
         a->vy[i] = random_float(&seed, -5, 5);
+        a->low_x[i] = random_float(&seed, -1e-7, 1e-7);
+        a->low_y[i] = random_float(&seed, -1e-7, 1e-7);
         a->inverse_mass[i] = support_random(&seed) % 9 == 0 ? 0 : random_float(&seed, 0.1, 3);
         a->force_x[i] = random_float(&seed, -50, 50);
         a->force_y[i] = random_float(&seed, -50, 50);
         bool in_row = i >= FIRST * W + s->idle && i < FIRST * W + s->idle + s->live;
         bool in_row_above = s->has_above && i >= ABOVE * W + s->idle && i < ABOVE * W + s->idle + s->live;
         if (!in_row && !in_row_above) {
-            a->x[i] = a->y[i] = a->vx[i] = a->vy[i] = a->inverse_mass[i] = 0;
+            a->x[i] = a->y[i] = a->vx[i] = a->vy[i] = a->low_x[i] = a->low_y[i] = a->inverse_mass[i] = 0;
         }
     }
-    for (uint32_t i = 0; i < 4 * STRIDE; i++) {
+    for (uint32_t i = 0; i < 6 * STRIDE; i++) {
         const bool is_empty = i % STRIDE >= SLOTS || (a->x[i % STRIDE] == 0 && a->vx[i % STRIDE] == 0);
         a->kept[i] = is_empty || s->keeps ? 0 : random_float(&seed, -5, 5);
     }
@@ -167,6 +173,8 @@ static void run(arena *a, const setup *s, mspringi_row_fn kernel, mspringi_sight
         .y = a->y,
         .vx = a->vx,
         .vy = a->vy,
+        .low_x = a->low_x,
+        .low_y = a->low_y,
         .inverse_mass = a->inverse_mass,
         .force_x = a->force_x,
         .force_y = a->force_y,

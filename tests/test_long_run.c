@@ -57,15 +57,15 @@ static double energy_of_reference(const reference *net) {
 
 static void check_spans(const span *spans, const char *name) {
     // At omega h = 0.17 the energy of the fastest mode swings by omega h / 2, 9 %, to both sides of about 0.28 J.
-    // In single precision rounding makes the modes exchange theirs, which moves the means; up or down they must not
-    // go.
+    // In single precision rounding makes the modes exchange theirs, which moves the means by some 2.6 %; up or down
+    // they must not go: the ratio of two means of five wanders by 1.6 %, and three times as much is allowed.
     double first = 0, second = 0;
     for (int i = 0; i < SPANS; i++) {
         print_message("%s %d: mean %.5f J, %.5f to %.5f\n", name, i, spans[i].mean, spans[i].low, spans[i].high);
         assert_true(spans[i].low > 0.91 * 0.28 && spans[i].high < 1.09 * 0.28);
         *(i < SPANS / 2 ? &first : &second) += spans[i].mean / (SPANS / 2);
     }
-    check_near(second / first, 1, 0.02);
+    check_near(second / first, 1, 0.05);
 }
 
 static void energy_has_no_trend(void **state) {

@@ -38,6 +38,10 @@ typedef struct arena {
     uint32_t after_vx[GUARD];
     float vy[SLOTS];
     uint32_t after_vy[GUARD];
+    float low_x[SLOTS];
+    uint32_t after_low_x[GUARD];
+    float low_y[SLOTS];
+    uint32_t after_low_y[GUARD];
     float packed[GROUPS * W * 4];
     uint32_t after_packed[GUARD];
     float attached_x[ATTACHED * W];
@@ -53,8 +57,9 @@ typedef struct arena {
 } arena;
 
 static void check_canaries(const arena *a) {
-    const uint32_t *guards[] = {a->front,    a->after_x,      a->after_y,          a->after_vx,
-                                a->after_vy, a->after_packed, a->after_attached_x, a->after_attached_y};
+    const uint32_t *guards[] = {a->front,       a->after_x,      a->after_y,          a->after_vx,
+                                a->after_vy,    a->after_packed, a->after_attached_x, a->after_attached_y,
+                                a->after_low_x, a->after_low_y};
     for (size_t i = 0; i < COUNT_OF(guards); i++) {
         for (size_t j = 0; j < GUARD; j++) {
             assert_int_equal(guards[i][j], CANARY);
@@ -111,8 +116,9 @@ static arena *arena_new(const setup *s) {
     arena *a = support_aligned_alloc(sizeof *a);
     uint64_t seed = s->seed;
     memset(a, 0, sizeof *a);
-    uint32_t *guards[] = {a->front,    a->after_x,      a->after_y,          a->after_vx,
-                          a->after_vy, a->after_packed, a->after_attached_x, a->after_attached_y};
+    uint32_t *guards[] = {a->front,       a->after_x,      a->after_y,          a->after_vx,
+                          a->after_vy,    a->after_packed, a->after_attached_x, a->after_attached_y,
+                          a->after_low_x, a->after_low_y};
     for (size_t i = 0; i < COUNT_OF(guards); i++) {
         for (size_t j = 0; j < GUARD; j++) {
             guards[i][j] = CANARY;
@@ -123,6 +129,8 @@ static arena *arena_new(const setup *s) {
         a->y[i] = random_float(&seed, -20, 20);
         a->vx[i] = random_float(&seed, -5, 5);
         a->vy[i] = random_float(&seed, -5, 5);
+        a->low_x[i] = random_float(&seed, -1e-7, 1e-7);
+        a->low_y[i] = random_float(&seed, -1e-7, 1e-7);
         a->inverse_mass[i] = support_random(&seed) % 9 == 0 ? 0 : random_float(&seed, 0.1, 3);
         a->force_x[i] = random_float(&seed, -50, 50);
         a->force_y[i] = random_float(&seed, -50, 50);
@@ -141,6 +149,8 @@ static mspringi_sweep sweep_of(arena *a, const setup *s) {
         .y = a->y,
         .vx = a->vx,
         .vy = a->vy,
+        .low_x = a->low_x,
+        .low_y = a->low_y,
         .inverse_mass = a->inverse_mass,
         .force_x = a->force_x,
         .force_y = a->force_y,

@@ -22,7 +22,10 @@
 /// is 0 after a step, so that motion that dies away comes to an end.
 ///
 /// **Precision.** The state is single precision relative to a local origin that the network holds in double
-/// and moves along by itself, so a network behaves 10 km away from the world's origin as it does at it.
+/// and moves along by itself, so a network behaves 10 km away from the world's origin as it does at it. A position
+/// has a second word below that, so that no substep rounds away what it adds: more substeps are never less
+/// accurate. Views show the first word; the second is at most some units in its last place, and where a first one
+/// is written over it stays, unless it is too large for that.
 ///
 /// **Same bits.** The same calls give the same state, bit for bit, at every SIMD level, with every supported
 /// compiler and optimisation level. mspring_network_state_hash() is the way to check it.

@@ -118,9 +118,11 @@ static void move_values(const float *from, float *to, const mspring_network *old
 
 static void move_particles(mspring_network *to, const mspring_network *from) {
     const mspringi_state *s = &from->state, *b = &from->backup;
-    const float *const old[] = {s->x, s->y, s->vx, s->vy, b->x, b->y, b->vx, b->vy, from->inverse_mass};
-    float *const made[] = {to->state.x,  to->state.y,   to->state.vx,  to->state.vy,    to->backup.x,
-                           to->backup.y, to->backup.vx, to->backup.vy, to->inverse_mass};
+    const float *const old[] = {s->x, s->y,  s->vx, s->vy,    s->low_x, s->low_y,          b->x,
+                                b->y, b->vx, b->vy, b->low_x, b->low_y, from->inverse_mass};
+    const mspringi_state *t = &to->state, *c = &to->backup;
+    float *const made[] = {t->x, t->y,  t->vx, t->vy,    t->low_x, t->low_y,        c->x,
+                           c->y, c->vx, c->vy, c->low_x, c->low_y, to->inverse_mass};
     for (size_t i = 0; i < sizeof old / sizeof old[0]; ++i)
         move_values(old[i], made[i], from, to);
     if (from->looks)
@@ -177,7 +179,7 @@ static void move_implicit(mspring_network *to, const mspring_network *from) {
     n->history.restarts = had->history.restarts;
     n->seen.motion = had->seen.motion;
     for (size_t i = 0; i < had->history_size / slots; ++i)
-        move_values(had->history.low.x + i * slots, n->history.low.x + i * made_slots, from, to);
+        move_values(had->history.first.x + i * slots, n->history.first.x + i * made_slots, from, to);
 }
 
 /* ----------------------------------------------------------------------------------------------- the exchange */

@@ -66,9 +66,8 @@ mspring_result mspringi_growth_reserve(mspring_network *network) {
 
 /* -------------------------------------------------------------------------------------------------------- slots */
 
-static void clear_slot(const mspring_network *network, uint32_t slot) {
-    const mspringi_state *s = &network->state;
-    s->x[slot] = s->y[slot] = s->vx[slot] = s->vy[slot] = 0.0f;
+static void clear_slot(const mspringi_state *s, uint32_t slot) {
+    s->x[slot] = s->y[slot] = s->vx[slot] = s->vy[slot] = s->low_x[slot] = s->low_y[slot] = 0.0f;
 }
 
 void mspringi_growth_clear_slots(const mspring_network *network) {
@@ -77,13 +76,13 @@ void mspringi_growth_clear_slots(const mspring_network *network) {
     const uint32_t first = t->reserve.first_particle, slots = t->spare_blocks * MSPRINGI_WIDTH;
     for (uint32_t slot = t->spare_first * MSPRINGI_WIDTH, end = slot + slots; slot < end; ++slot)
         if (t->particle_of_slot[slot] == MSPRING_NONE)
-            clear_slot(network, slot);
+            clear_slot(&network->state, slot);
     // Where those of the spare particles were that had been laid out with the others.
     for (uint32_t i = 0; i < mspringi_spare_particles(t); ++i)
         if (t->particle_of_slot[t->laid_slots[i]] == MSPRING_NONE)
-            clear_slot(network, t->laid_slots[i]);
+            clear_slot(&network->state, t->laid_slots[i]);
     for (mspring_id p = 0; (p = mspringi_find_byte(marks, MSPRINGI_GONE, p, first)) < first; ++p)
-        clear_slot(network, t->slot_of_particle[p]);
+        clear_slot(&network->state, t->slot_of_particle[p]);
 }
 
 static void clear_field(mspringi_field field, uint32_t slot) {
@@ -94,16 +93,15 @@ static void clear_field(mspringi_field field, uint32_t slot) {
 static void clear_history(mspringi_implicit *implicit, uint32_t slot) {
     if (!implicit)
         return;
-    const mspringi_field fields[] = {implicit->history.low, implicit->history.first, implicit->history.second};
+    const mspringi_field fields[] = {implicit->history.first, implicit->history.second};
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i)
         clear_field(fields[i], slot);
 }
 
 void mspringi_growth_take_particle(mspring_network *network, mspring_id particle) {
     const uint32_t slot = network->topology.slot_of_particle[particle];
-    const mspringi_state *b = &network->backup;
-    clear_slot(network, slot);
-    b->x[slot] = b->y[slot] = b->vx[slot] = b->vy[slot] = 0.0f;
+    clear_slot(&network->state, slot);
+    clear_slot(&network->backup, slot);
     network->inverse_mass[slot] = 0.0f;
     if (network->inverse_mass_scale)
         network->inverse_mass_scale[particle] = 0.0f;

@@ -44,7 +44,7 @@ typedef struct job {
 // Substeps whose strips fit so much cache, at least one.
 static uint32_t depth_within(const mspringi_topology *topology, uint32_t parts, size_t cache_bytes) {
     const size_t floats_per_slot =
-        4 + 1 + (size_t)MSPRINGI_DIRECTIONS * (parts - 1); // state, inverse mass, springs
+        MSPRINGI_STATE_ARRAYS + 1 + (size_t)MSPRINGI_DIRECTIONS * (parts - 1); // state, inverse mass, springs
     const uint64_t slots = (uint64_t)topology->lattice_blocks * MSPRINGI_WIDTH;
     const uint64_t rows =
         cache_bytes / (floats_per_slot * sizeof(float)) * (uint64_t)topology->lattice_rows / slots;
@@ -268,8 +268,9 @@ static uint32_t web_depth_within(const job *wave, size_t cache_bytes) {
     const uint32_t first = t->spans[t->rows[wave->web->first_row].first_span].first_record;
     const uint32_t groups = t->layer_blocks[t->layer_count];
     const uint64_t rungs = t->web.first_rung[first + groups] - t->web.first_rung[first];
-    const uint64_t parts = wave->network->parts + 1;                            // and the neighbour
-    const uint64_t floats = rungs * parts + (uint64_t)groups * (4 + 1 + 2 * 4); // state, inverse mass, packed twice
+    const uint64_t parts = wave->network->parts + 1; // and the neighbour
+    const uint64_t floats =
+        rungs * parts + (uint64_t)groups * (MSPRINGI_STATE_ARRAYS + 1 + 2 * 4); // state, inverse mass, packed twice
     const uint64_t layers = cache_bytes * t->layer_count / (floats * MSPRINGI_WIDTH * sizeof(float) + 1);
     return layers < 3 ? 1 : layers - 2 < DEEPEST ? (uint32_t)layers - 2 : DEEPEST;
 }

@@ -165,8 +165,7 @@ void mspringi_graft_pull(const mspring_network *network, const mspringi_sweep *s
         const float dvx = force_x * change, dvy = force_y * change;
         sweep->vx[slot] = sweep->vx[slot] + dvx;
         sweep->vy[slot] = sweep->vy[slot] + dvy;
-        sweep->x[slot] = sweep->x[slot] + dvx * sweep->h;
-        sweep->y[slot] = sweep->y[slot] + dvy * sweep->h;
+        mspringi_move_by(&network->state, slot, dvx * sweep->h, dvy * sweep->h);
     }
 }
 

@@ -39,8 +39,9 @@ mspring_result mspringi_seams_reserve(mspring_network *network) {
     if (planned.workers <= seams->workers)
         return MSPRING_OK;
     mspringi_memory *memory = &network->memory;
-    planned.values = mspringi_alloc(memory, (size_t)planned.count * 4 * (ABOVE + planned.substeps), //
-                                    planned.segment * sizeof *planned.values);
+    planned.values =
+        mspringi_alloc(memory, (size_t)planned.count * MSPRINGI_STATE_ARRAYS * (ABOVE + planned.substeps),
+                       planned.segment * sizeof *planned.values);
     planned.spans = mspringi_alloc(memory, (size_t)planned.count * 4 * planned.row_spans, sizeof *planned.spans);
     planned.borders =
         mspringi_alloc(memory, (size_t)planned.workers * MSPRINGI_PLANNED_PASSES, sizeof *planned.borders);
@@ -80,8 +81,8 @@ static slots slots_of(const mspring_network *network, const mspringi_row *row) {
 static mspringi_state state_of(const mspring_network *network, uint32_t border, uint32_t row) {
     const mspringi_seams *seams = &network->seams;
     const size_t stride = (ABOVE + seams->substeps) * seams->segment;
-    float *x = seams->values + 4 * border * stride + row * seams->segment;
-    return (mspringi_state){x, x + stride, x + 2 * stride, x + 3 * stride};
+    float *x = seams->values + MSPRINGI_STATE_ARRAYS * border * stride + row * seams->segment;
+    return (mspringi_state){x, x + stride, x + 2 * stride, x + 3 * stride, x + 4 * stride, x + 5 * stride};
 }
 
 static void copy_slots(const mspringi_state *from, size_t first, const mspringi_state *to, size_t to_first,
@@ -91,6 +92,8 @@ static void copy_slots(const mspringi_state *from, size_t first, const mspringi_
     memcpy(to->y + to_first, from->y + first, size);
     memcpy(to->vx + to_first, from->vx + first, size);
     memcpy(to->vy + to_first, from->vy + first, size);
+    memcpy(to->low_x + to_first, from->low_x + first, size);
+    memcpy(to->low_y + to_first, from->low_y + first, size);
 }
 
 /// The row below, copied to one of the seam's rows, and the way from there to the row above.
@@ -143,6 +146,8 @@ static void sweep_copy(const mspring_network *network, const mspringi_substep *s
     sweep->y = copy->state.y;
     sweep->vx = copy->state.vx;
     sweep->vy = copy->state.vy;
+    sweep->low_x = copy->state.low_x;
+    sweep->low_y = copy->state.low_y;
     sweep->inverse_mass += copy->below.first;
     if (forced) {
         sweep->force_x += copy->below.first;

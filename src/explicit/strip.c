@@ -26,6 +26,8 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
                 .y = network->state.y,
                 .vx = network->state.vx,
                 .vy = network->state.vy,
+                .low_x = network->state.low_x,
+                .low_y = network->state.low_y,
                 .inverse_mass = mspringi_free_mass(network),
                 .force_x = base.x,
                 .force_y = base.y,
@@ -99,8 +101,7 @@ static void pull_attached(const mspring_network *network, const mspringi_substep
         const float dvx = pull_x[i] * change, dvy = pull_y[i] * change;
         sweep->vx[slot] = sweep->vx[slot] + dvx;
         sweep->vy[slot] = sweep->vy[slot] + dvy;
-        sweep->x[slot] = sweep->x[slot] + dvx * sweep->h;
-        sweep->y[slot] = sweep->y[slot] + dvy * sweep->h;
+        mspringi_move_by(&network->state, slot, dvx * sweep->h, dvy * sweep->h);
     }
 }
 
@@ -206,6 +207,8 @@ static void keep_slots(const mspring_network *network, size_t first, size_t end)
     memcpy(to->y + first, from->y + first, size);
     memcpy(to->vx + first, from->vx + first, size);
     memcpy(to->vy + first, from->vy + first, size);
+    memcpy(to->low_x + first, from->low_x + first, size);
+    memcpy(to->low_y + first, from->low_y + first, size);
 }
 
 static mspringi_sight look_at_slots(const mspring_network *network, size_t first, size_t end) {

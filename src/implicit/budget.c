@@ -39,17 +39,20 @@ typedef mspringi_account account;
 
 static mspringi_motion motion_of(const mspring_network *network) {
     const mspringi_state *s = &network->state;
-    const mspringi_field *low = &network->implicit->history.low;
-    return (mspringi_motion){s->x, s->y, s->vx, s->vy, low->x, low->y, network->inverse_mass};
+    return (mspringi_motion){s->x, s->y, s->vx, s->vy, s->low_x, s->low_y, network->inverse_mass};
 }
 
 static mspringi_motion motion_before(const mspring_network *network) {
     const mspringi_implicit *n = network->implicit;
     const size_t slots = mspringi_slot_count(network);
     const float *state = n->budget.state;
-    const mspringi_field *low = &mspringi_history_before(n)->low;
-    return (mspringi_motion){state,  state + slots, state + 2 * slots,    state + 3 * slots,
-                             low->x, low->y,        network->inverse_mass};
+    return (mspringi_motion){state,
+                             state + slots,
+                             state + 2 * slots,
+                             state + 3 * slots,
+                             state + 4 * slots,
+                             state + 5 * slots,
+                             network->inverse_mass};
 }
 
 /* ------------------------------------------------------------------------------------------------- mass centres */
@@ -241,19 +244,13 @@ static bool judge_all(const mspring_network *network, const outside *o, bool *ex
 
 /* -------------------------------------------------------------------------------------------------- the outcome */
 
-static void go_to(float *high, float *low, size_t slot, double to) {
-    high[slot] = (float)to;
-    low[slot] = (float)(to - (double)high[slot]);
-}
-
 static void shift_slots(mspring_network *network, const account *a, size_t first, size_t end) {
     const mspringi_motion m = motion_of(network);
-    const mspringi_field *low = &network->implicit->history.low;
     for (size_t slot = first; slot < end; ++slot) {
         if (!(m.inverse_mass[slot] > 0.0f))
             continue;
-        go_to(network->state.x, low->x, slot, (double)m.x[slot] + (double)m.low_x[slot] + a->shift_x);
-        go_to(network->state.y, low->y, slot, (double)m.y[slot] + (double)m.low_y[slot] + a->shift_y);
+        mspringi_set_x(&network->state, slot, (double)m.x[slot] + (double)m.low_x[slot] + a->shift_x);
+        mspringi_set_y(&network->state, slot, (double)m.y[slot] + (double)m.low_y[slot] + a->shift_y);
     }
 }
 
@@ -343,8 +340,8 @@ static void step_back(mspring_network *network, const mspringi_motion *before, b
         double x = (double)before->x[slot] + (double)before->low_x[slot];
         double y = (double)before->y[slot] + (double)before->low_y[slot];
         hold_place(a, &c, &x, &y);
-        go_to(network->state.x, n->history.low.x, slot, x + a->share * (n->x[slot] - x));
-        go_to(network->state.y, n->history.low.y, slot, y + a->share * (n->y[slot] - y));
+        mspringi_set_x(&network->state, slot, x + a->share * (n->x[slot] - x));
+        mspringi_set_y(&network->state, slot, y + a->share * (n->y[slot] - y));
     }
     n->history.restarts = n->history.restarts > 1 ? n->history.restarts : 1;
 }
@@ -388,9 +385,7 @@ bool mspringi_budget_close(mspring_network *network, float h, mspringi_field bas
 void mspringi_budget_undo(mspring_network *network) {
     const budget_of *budget = &network->implicit->budget;
     const size_t slots = mspringi_slot_count(network);
-    float *const to[] = {network->state.x, network->state.y, network->state.vx, network->state.vy};
-    for (size_t i = 0; i < 4; ++i)
-        memcpy(to[i], budget->state + i * slots, slots * sizeof *budget->state);
+    memcpy(network->state.x, budget->state, MSPRINGI_STATE_ARRAYS * slots * sizeof *budget->state);
     if (network->floor)
         memcpy(network->floor->impulse.x, budget->impulse.x, 2 * slots * sizeof *budget->impulse.x);
     mspringi_scheme_reopen(network);

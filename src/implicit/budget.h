@@ -95,7 +95,7 @@ typedef struct mspringi_budget {
     uint64_t seen[MSPRINGI_BUDGET_EDITS]; ///< edits after the last substep, and the origin then
     double origin_x, origin_y;
     bool knows_elastic;               ///< elastic and length of all accounts are still those of after it
-    float *state;                     ///< [4][slots] before the substep
+    float *state;                     ///< [6][slots] before the substep
     mspringi_field impulse;           ///< of the floor before it
     double (*runs)[MSPRINGI_EFFECTS]; ///< [blocks] at the first of each run of blocks
     mspringi_elastic *elastic;        ///< [blocks]

@@ -24,16 +24,15 @@ static bool reserve_field(mspringi_memory *memory, mspringi_field *field, size_t
     return field->x != NULL;
 }
 
-// A history is one block of memory: low, first and, with BDF2, second.
+// A history is one block of memory: first and, with BDF2, second.
 static bool reserve_history(mspringi_memory *memory, mspringi_history *history, size_t slots, bool two) {
-    float *values = mspringi_alloc(memory, (two ? 6 : 4) * slots, sizeof *values);
+    float *values = mspringi_alloc(memory, (two ? 4 : 2) * slots, sizeof *values);
     if (!values)
         return false;
     history->restarts = 1;
-    history->low = (mspringi_field){values, values + slots};
-    history->first = (mspringi_field){values + 2 * slots, values + 3 * slots};
+    history->first = (mspringi_field){values, values + slots};
     if (two)
-        history->second = (mspringi_field){values + 4 * slots, values + 5 * slots};
+        history->second = (mspringi_field){values + 2 * slots, values + 3 * slots};
     return true;
 }
 
@@ -59,7 +58,7 @@ static mspring_result allocate(mspringi_implicit *n, mspring_network *network) {
         if (!n->is_solved)
             return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for added springs");
     }
-    n->history_size = (two ? 6 : 4) * slots;
+    n->history_size = (two ? 4 : 2) * slots;
     n->factors = mspringi_alloc(memory, (t->chain_places + leftover) * MSPRINGI_FACTORS, sizeof *n->factors);
     n->x = mspringi_alloc(memory, 2 * slots, sizeof *n->x);
     n->mass = mspringi_alloc(memory, slots, sizeof *n->mass);
@@ -263,10 +262,11 @@ void mspringi_implicit_destroy(mspringi_implicit *n, mspringi_memory *memory) {
     mspringi_budget_destroy(&n->budget, memory);
     mspringi_tiles_destroy(&n->tiles, memory);
     mspringi_coarse_destroy(&n->coarse, memory);
-    void *const blocks[] = {n->history.low.x, n->backup.low.x,   n->previous.low.x, n->x,         n->velocity.x,
-                            n->residual.x,    n->displacement.x, n->direction.x,    n->product.x, n->scaled.x,
-                            n->arm.x,         n->mass,           n->diagonal,       n->factors,   n->force_carry,
-                            n->carry,         n->sums,           n->flights,        n->unknowns,  n->is_solved};
+    void *const blocks[] = {
+        n->history.first.x, n->backup.first.x, n->previous.first.x, n->x,         n->velocity.x,
+        n->residual.x,      n->displacement.x, n->direction.x,      n->product.x, n->scaled.x,
+        n->arm.x,           n->mass,           n->diagonal,         n->factors,   n->force_carry,
+        n->carry,           n->sums,           n->flights,          n->unknowns,  n->is_solved};
     for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; ++i)
         mspringi_free(memory, blocks[i]);
     mspringi_free(memory, n);
@@ -321,8 +321,8 @@ static void rest_sleepers(const mspring_network *network) {
     for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
         if (!mspringi_slot_is_asleep(network, slot))
             continue;
-        n->x[slot] = (double)network->state.x[slot];
-        n->y[slot] = (double)network->state.y[slot];
+        n->x[slot] = mspringi_x_of(&network->state, slot);
+        n->y[slot] = mspringi_y_of(&network->state, slot);
         n->mass[slot] = 0.0f;
         n->velocity.x[slot] = n->velocity.y[slot] = 0.0f;
         n->displacement.x[slot] = n->displacement.y[slot] = 0.0f;
@@ -345,7 +345,7 @@ void mspringi_implicit_follow(mspring_network *network) {
 }
 
 void mspringi_implicit_forget(mspringi_implicit *n) {
-    memset(n->history.low.x, 0, n->history_size * sizeof *n->history.low.x);
+    memset(n->history.first.x, 0, n->history_size * sizeof *n->history.first.x);
     n->history.restarts = 1;
     n->budget.knows_elastic = false;
 }

@@ -33,7 +33,6 @@
 
 /// What is the integrator's, apart from the state: kept from substep to substep, restored with the state.
 typedef struct mspringi_history {
-    mspringi_field low;    ///< what positions have beyond single precision, m
     mspringi_field first;  ///< acceleration, m/s^2; of BDF2: the last displacement beyond h v, m
     mspringi_field second; ///< of BDF2: the last change of velocity, m/s; else NULL
     float h;               ///< substep that it belongs to, s
@@ -181,10 +180,6 @@ void mspringi_land(const mspringi_substep_of *substep, const mspringi_mate *mate
 void mspringi_scheme_close(const mspringi_substep_of *substep);
 /// Go back to the history of before the substep that has landed.
 void mspringi_scheme_reopen(mspring_network *network);
-/// That history.
-static inline const mspringi_history *mspringi_history_before(const mspringi_implicit *n) {
-    return n->is_first ? &n->backup : &n->previous;
-}
 
 /* assemble.c */
 

@@ -76,9 +76,8 @@ static bool next_run(const budget_of *budget, size_t *first, size_t end, size_t 
 static void keep_slots(const mspring_network *network, size_t first, size_t end) {
     const budget_of *budget = &network->implicit->budget;
     const size_t slots = mspringi_slot_count(network), size = (end - first) * sizeof *budget->state;
-    const float *const from[] = {network->state.x, network->state.y, network->state.vx, network->state.vy};
-    for (size_t i = 0; i < 4; ++i)
-        memcpy(budget->state + i * slots + first, from[i] + first, size);
+    for (size_t i = 0; i < MSPRINGI_STATE_ARRAYS; ++i)
+        memcpy(budget->state + i * slots + first, network->state.x + i * slots + first, size);
     if (!network->floor)
         return;
     memcpy(budget->impulse.x + first, network->floor->impulse.x + first, size);

@@ -33,6 +33,7 @@ typedef mspringi_sight (*mspringi_sight_fn)(const mspringi_watch *watch);
 /// What a sweep works on: arrays by slot, and what is the same for all of them.
 typedef struct mspringi_sweep {
     float *x, *y, *vx, *vy;
+    float *low_x, *low_y; ///< what positions have beyond single precision
     const float *inverse_mass;
     const float *force_x, *force_y;   ///< forces from outside; read by the kernels with forces only
     float *carry_x, *carry_y;         ///< forces that the row below exerts, by column
@@ -48,10 +49,10 @@ typedef struct mspringi_sweep {
     float h;                        ///< substep, s
     float decay;                    ///< what global damping leaves of a velocity
     float gravity_h_x, gravity_h_y; ///< gravity times h
-    float *keep;                    ///< [4][slots] where the state goes that is found, as x, y, vx, vy lie; or NULL
-    mspringi_watch *watch;          ///< what is seen of the state that is made, or NULL
-    const float *before; ///< vx of before the step, vy behind, to watch changes by, which is where keep has them
-                         ///< put if there is both; or NULL
+    float *keep; ///< [6][slots] where the state goes that is found, as x, y, vx, vy, low_x, low_y lie; or NULL
+    mspringi_watch *watch; ///< what is seen of the state that is made, or NULL
+    const float *before;   ///< vx of before the step, vy behind, to watch changes by, which is where keep has them
+                           ///< put if there is both; or NULL
     bool watches_place, watches_speed; ///< whether coordinates and speeds are watched
 } mspringi_sweep;
 
@@ -65,7 +66,7 @@ typedef void (*mspringi_row_fn)(const mspringi_sweep *sweep, const mspringi_span
 
 /// What becomes of a particle that no spring pulls at in n substeps, each of which adds the same change c to its
 /// velocity v, leaves a part d of the sum, and moves it by that times h:
-///     v_n = keep v + gain c,   x_n = x + reach v + fall c
+///     v_n = keep v + gain c,   x_n = x + (reach v + fall c)
 /// with keep = d^n, gain = d + d^2 + ... + d^n, reach = h gain and fall = h times the sum of the gains of 1 to n. A
 /// pinned one keeps its velocity and moves by drift v, with drift = h n.
 typedef struct mspringi_glide {

@@ -60,6 +60,8 @@ static inline void keep_motion(const mspringi_sweep *s, size_t slot) {
     s->keep[slot + slots] = s->y[slot];
     s->keep[slot + 2 * slots] = s->vx[slot];
     s->keep[slot + 3 * slots] = s->vy[slot];
+    s->keep[slot + 4 * slots] = s->low_x[slot];
+    s->keep[slot + 5 * slots] = s->low_y[slot];
 }
 
 static inline void watch_motion(const mspringi_sweep *s, size_t slot) {
@@ -73,6 +75,17 @@ static inline void watch_motion(const mspringi_sweep *s, size_t slot) {
         const float change = larger_size(seen->change[0], s->vx[slot] - s->before[slot]);
         seen->change[0] = larger_size(change, s->vy[slot] - before_y[slot]);
     }
+}
+
+// Kahan's sum: what a position does not take of a way is left for the next.
+static inline void go(const mspringi_sweep *s, size_t slot, float way_x, float way_y) {
+    way_x = way_x + s->low_x[slot];
+    way_y = way_y + s->low_y[slot];
+    const float x = s->x[slot] + way_x, y = s->y[slot] + way_y;
+    s->low_x[slot] = way_x - (x - s->x[slot]);
+    s->low_y[slot] = way_y - (y - s->y[slot]);
+    s->x[slot] = x;
+    s->y[slot] = y;
 }
 
 // Symplectic Euler: v' = (F h / m + (v + g h)) d, with d the decay. A pinned particle keeps its velocity. (As g h
@@ -90,8 +103,7 @@ static inline void move(const mspringi_sweep *s, size_t slot, vector force, bool
         s->vx[slot] = (force.x * inverse_mass_h + (s->vx[slot] + s->gravity_h_x)) * s->decay;
         s->vy[slot] = (force.y * inverse_mass_h + (s->vy[slot] + s->gravity_h_y)) * s->decay;
     }
-    s->x[slot] = s->x[slot] + s->vx[slot] * s->h;
-    s->y[slot] = s->y[slot] + s->vy[slot] * s->h;
+    go(s, slot, s->vx[slot] * s->h, s->vy[slot] * s->h);
     if (s->watch)
         watch_motion(s, slot);
 }
@@ -288,8 +300,8 @@ static inline void loose(const mspringi_sweep *s, const mspringi_span *span, con
         }
         const float vx = s->vx[slot], vy = s->vy[slot];
         const bool is_free = inverse_mass > 0.0f;
-        s->x[slot] += is_free ? vx * glide->reach + change_x * glide->fall : vx * glide->drift;
-        s->y[slot] += is_free ? vy * glide->reach + change_y * glide->fall : vy * glide->drift;
+        go(s, slot, is_free ? vx * glide->reach + change_x * glide->fall : vx * glide->drift,
+           is_free ? vy * glide->reach + change_y * glide->fall : vy * glide->drift);
         s->vx[slot] = is_free ? vx * glide->keep + change_x * glide->gain : vx;
         s->vy[slot] = is_free ? vy * glide->keep + change_y * glide->gain : vy;
     }

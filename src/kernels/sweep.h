@@ -90,6 +90,8 @@ MSPRINGI_INLINE void keep_motion(const mspringi_sweep *s, size_t slot, vec x, ve
     store(to + slots, y);
     store(to + 2 * slots, vx);
     store(to + 3 * slots, vy);
+    store(to + 4 * slots, load(s->low_x + slot));
+    store(to + 5 * slots, load(s->low_y + slot));
 }
 
 // found: velocities before the substep; if that is the first of the step, nothing has to be loaded again.
@@ -107,6 +109,18 @@ MSPRINGI_INLINE void watch_motion(const mspringi_sweep *s, size_t slot, motion m
         const vec dvx = sub(made.vx, found.x), dvy = sub(made.vy, found.y);
         store(seen->change, larger_size(larger_size(load(seen->change), dvx), dvy));
     }
+}
+
+// Kahan's sum: what a position does not take of a way is left for the next.
+MSPRINGI_INLINE vector go(const mspringi_sweep *s, size_t slot, vec x, vec y, vec way_x, vec way_y) {
+    way_x = add(way_x, load(s->low_x + slot));
+    way_y = add(way_y, load(s->low_y + slot));
+    const vector to = {add(x, way_x), add(y, way_y)};
+    store(s->low_x + slot, sub(way_x, sub(to.x, x)));
+    store(s->low_y + slot, sub(way_y, sub(to.y, y)));
+    store(s->x + slot, to.x);
+    store(s->y + slot, to.y);
+    return to;
 }
 
 MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, motion here, vector force, bool damped,
@@ -129,12 +143,9 @@ MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, motion here, vec
     vy = choose_positive(inverse_mass, mul(add(mul(force.y, inverse_mass_h), vy), decay), found.y);
     store(s->vx + slot, vx);
     store(s->vy + slot, vy);
-    here.x = add(here.x, mul(vx, h));
-    here.y = add(here.y, mul(vy, h));
-    store(s->x + slot, here.x);
-    store(s->y + slot, here.y);
+    const vector to = go(s, slot, here.x, here.y, mul(vx, h), mul(vy, h));
     if (s->watch)
-        watch_motion(s, slot, (motion){here.x, here.y, vx, vy}, found);
+        watch_motion(s, slot, (motion){to.x, to.y, vx, vy}, found);
 }
 
 /// Forces that LANES slots' springs exert on the slots to the right and on the slots above those. Of those of the
@@ -462,8 +473,8 @@ MSPRINGI_INLINE void loose(const mspringi_sweep *s, const mspringi_span *span, c
         const motion m = load_motion(s, slot, true);
         const vec way_x = add(mul(m.vx, reach), mul(change_x, fall));
         const vec way_y = add(mul(m.vy, reach), mul(change_y, fall));
-        store(s->x + slot, add(m.x, choose_positive(inverse_mass, way_x, mul(m.vx, drift))));
-        store(s->y + slot, add(m.y, choose_positive(inverse_mass, way_y, mul(m.vy, drift))));
+        go(s, slot, m.x, m.y, choose_positive(inverse_mass, way_x, mul(m.vx, drift)),
+           choose_positive(inverse_mass, way_y, mul(m.vy, drift)));
         store(s->vx + slot, choose_positive(inverse_mass, add(mul(m.vx, keep), mul(change_x, gain)), m.vx));
         store(s->vy + slot, choose_positive(inverse_mass, add(mul(m.vy, keep), mul(change_y, gain)), m.vy));
     }

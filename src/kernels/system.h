@@ -187,9 +187,10 @@ typedef struct mspringi_landing {
     const float *start; ///< velocity if d were 0
     const float *inverse_mass;
     const float *solution, *direction; ///< d = solution + alpha direction
-    const float *low, *first;          ///< history
+    const float *low;                  ///< what positions have beyond single precision
+    const float *first;                ///< history
     float *position, *velocity;
-    float *to_low, *to_first, *to_second; ///< history; may be the same arrays
+    float *to_low, *to_first, *to_second; ///< may be the same arrays
     float alpha;
     float h, rate;
 } mspringi_landing;

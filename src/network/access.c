@@ -51,8 +51,8 @@ mspring_result mspring_network_get_positions(const mspring_network *network, msp
     mspring_result result = check_get(network, first, count, x, y);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
         const uint32_t slot = network->topology.slot_of_particle[first + i];
-        x[i] = network->origin_x + (double)network->state.x[slot];
-        y[i] = network->origin_y + (double)network->state.y[slot];
+        x[i] = network->origin_x + mspringi_x_of(&network->state, slot);
+        y[i] = network->origin_y + mspringi_y_of(&network->state, slot);
     }
     return result;
 }
@@ -62,8 +62,8 @@ mspring_result mspring_network_get_positions_float(const mspring_network *networ
     mspring_result result = check_get(network, first, count, x, y);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
         const uint32_t slot = network->topology.slot_of_particle[first + i];
-        x[i] = (float)(network->origin_x + (double)network->state.x[slot]);
-        y[i] = (float)(network->origin_y + (double)network->state.y[slot]);
+        x[i] = (float)(network->origin_x + mspringi_x_of(&network->state, slot));
+        y[i] = (float)(network->origin_y + mspringi_y_of(&network->state, slot));
     }
     return result;
 }

@@ -24,6 +24,8 @@ static void move_state(const moving *m, mspringi_state *state) {
     MOVE(state->y);
     MOVE(state->vx);
     MOVE(state->vy);
+    MOVE(state->low_x);
+    MOVE(state->low_y);
 }
 
 static void move_topology(const moving *m, mspringi_topology *t) {
@@ -56,7 +58,6 @@ static void move_topology(const moving *m, mspringi_topology *t) {
 /* --------------------------------------------------------------------------------------------- implicit solver */
 
 static void move_history(const moving *m, mspringi_history *history) {
-    move_field(m, &history->low);
     move_field(m, &history->first);
     move_field(m, &history->second);
 }

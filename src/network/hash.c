@@ -14,6 +14,8 @@ mspring_result mspring_network_state_hash(const mspring_network *network, uint64
         const uint32_t slot = t->slot_of_particle[p];
         sum = mspringi_mix_floats(sum, s->x[slot], s->y[slot]);
         sum = mspringi_mix_floats(sum, s->vx[slot], s->vy[slot]);
+        sum = mspringi_mix_floats(sum, mspringi_low_of(s->x[slot], s->low_x[slot]),
+                                  mspringi_low_of(s->y[slot], s->low_y[slot]));
     }
     *hash = sum;
     return MSPRING_OK;

@@ -10,8 +10,8 @@ static bool is_pinned(const mspring_network *network, mspring_id particle) {
 // Length of a spring, and how fast it grows.
 static double spring_length(const mspring_network *network, const mspringi_spring_values *r, double *rate) {
     const mspringi_state *s = &network->state;
-    const double dx = (double)s->x[r->tip] - (double)s->x[r->base];
-    const double dy = (double)s->y[r->tip] - (double)s->y[r->base];
+    const double dx = mspringi_x_of(s, r->tip) - mspringi_x_of(s, r->base);
+    const double dy = mspringi_y_of(s, r->tip) - mspringi_y_of(s, r->base);
     const double dvx = (double)s->vx[r->tip] - (double)s->vx[r->base];
     const double dvy = (double)s->vy[r->tip] - (double)s->vy[r->base];
     const double length = sqrt(dx * dx + dy * dy);
@@ -41,7 +41,7 @@ mspring_result mspring_network_energy(const mspring_network *network, double *ki
         if (is_pinned(network, p))
             continue;
         const double mass = (double)network->mass[p], vx = (double)s->vx[slot], vy = (double)s->vy[slot];
-        const double x = network->origin_x + (double)s->x[slot], y = network->origin_y + (double)s->y[slot];
+        const double x = network->origin_x + mspringi_x_of(s, slot), y = network->origin_y + mspringi_y_of(s, slot);
         kinetic_sum += 0.5 * mass * (vx * vx + vy * vy);
         potential_sum -= mass * ((double)network->gravity_x * x + (double)network->gravity_y * y);
     }
@@ -71,7 +71,7 @@ mspring_result mspring_network_momentum(const mspring_network *network, double *
         if (is_pinned(network, p))
             continue;
         const double mass = (double)network->mass[p];
-        const double x = network->origin_x + (double)s->x[slot], y = network->origin_y + (double)s->y[slot];
+        const double x = network->origin_x + mspringi_x_of(s, slot), y = network->origin_y + mspringi_y_of(s, slot);
         const double momentum_x = mass * (double)s->vx[slot], momentum_y = mass * (double)s->vy[slot];
         sum_x += momentum_x;
         sum_y += momentum_y;
@@ -92,24 +92,24 @@ mspring_result mspring_network_bounds(const mspring_network *network, double *mi
         return MSPRING_ERROR_ARGUMENT;
     const mspringi_topology *t = &network->topology;
     const mspringi_state *s = &network->state;
-    float low_x = INFINITY, low_y = INFINITY, high_x = -INFINITY, high_y = -INFINITY;
+    double low_x = INFINITY, low_y = INFINITY, high_x = -INFINITY, high_y = -INFINITY;
     bool any = false;
     for (mspring_id p = 0; p < t->particle_count; ++p) {
         const uint32_t slot = t->slot_of_particle[p];
         if (!mspringi_particle_exists(network, p))
             continue;
         any = true;
-        low_x = fminf(low_x, s->x[slot]);
-        low_y = fminf(low_y, s->y[slot]);
-        high_x = fmaxf(high_x, s->x[slot]);
-        high_y = fmaxf(high_y, s->y[slot]);
+        low_x = fmin(low_x, mspringi_x_of(s, slot));
+        low_y = fmin(low_y, mspringi_y_of(s, slot));
+        high_x = fmax(high_x, mspringi_x_of(s, slot));
+        high_y = fmax(high_y, mspringi_y_of(s, slot));
     }
     if (!any)
-        low_x = low_y = high_x = high_y = 0.0f;
-    *min_x = network->origin_x + (double)low_x;
-    *min_y = network->origin_y + (double)low_y;
-    *max_x = network->origin_x + (double)high_x;
-    *max_y = network->origin_y + (double)high_y;
+        low_x = low_y = high_x = high_y = 0.0;
+    *min_x = network->origin_x + low_x;
+    *min_y = network->origin_y + low_y;
+    *max_x = network->origin_x + high_x;
+    *max_y = network->origin_y + high_y;
     return MSPRING_OK;
 }
 

@@ -95,9 +95,14 @@ mspring_result mspringi_carry_reserve(mspring_network *network) {
 
 static bool reserve_state(mspring_network *network, mspringi_state *state) {
     const size_t slots = mspringi_slot_count(network);
-    float *values = mspringi_alloc(&network->memory, 4 * slots, sizeof *values);
+    float *values = mspringi_alloc(&network->memory, MSPRINGI_STATE_ARRAYS * slots, sizeof *values);
     if (values)
-        *state = (mspringi_state){values, values + slots, values + 2 * slots, values + 3 * slots};
+        *state = (mspringi_state){.x = values,
+                                  .y = values + slots,
+                                  .vx = values + 2 * slots,
+                                  .vy = values + 3 * slots,
+                                  .low_x = values + 4 * slots,
+                                  .low_y = values + 5 * slots};
     return values != NULL;
 }
 
@@ -186,7 +191,7 @@ void mspringi_layout_free(const mspring_network *network, mspringi_memory *memor
 }
 
 void mspringi_layout_forget(mspring_network *network) {
-    network->state = network->backup = (mspringi_state){NULL, NULL, NULL, NULL};
+    network->state = network->backup = (mspringi_state){0};
     network->inverse_mass = NULL;
     network->alike = (mspringi_alike){0};
     network->lattice_springs = network->chain_springs = network->web_springs = NULL;

@@ -17,11 +17,54 @@ typedef struct mspringi_field {
     float *x, *y;
 } mspringi_field;
 
-/// What a step changes. The four arrays lie behind one another in one block of memory, so that they can be
-/// copied at once.
+/// What a step changes. The arrays lie behind one another in one block of memory, so that they can be copied at
+/// once. Positions are x + low_x and y + low_y: what a substep adds to a position would be rounded away the more
+/// of, the shorter the substep is.
 typedef struct mspringi_state {
     float *x, *y, *vx, *vy;
+    float *low_x, *low_y; ///< m, beyond single precision
 } mspringi_state;
+enum { MSPRINGI_STATE_ARRAYS = 6 };
+
+/// Part of a coordinate that its low word is at most, some units in the last place. A larger one was left by
+/// another coordinate, which somebody has written over through a view, and counts as 0.
+#define MSPRINGI_LARGEST_LOW 0x1p-21f
+
+static inline float mspringi_low_of(float coordinate, float low) {
+    const float size = coordinate < 0.0f ? -coordinate : coordinate;
+    const float limit = size * MSPRINGI_LARGEST_LOW;
+    return low <= limit && -low <= limit ? low : 0.0f;
+}
+
+/// Local coordinates in full.
+static inline double mspringi_x_of(const mspringi_state *s, size_t slot) {
+    return (double)s->x[slot] + (double)mspringi_low_of(s->x[slot], s->low_x[slot]);
+}
+
+static inline double mspringi_y_of(const mspringi_state *s, size_t slot) {
+    return (double)s->y[slot] + (double)mspringi_low_of(s->y[slot], s->low_y[slot]);
+}
+
+/// Set local coordinates.
+static inline void mspringi_set_x(const mspringi_state *s, size_t slot, double x) {
+    s->x[slot] = (float)x;
+    s->low_x[slot] = mspringi_low_of(s->x[slot], (float)(x - (double)s->x[slot]));
+}
+
+static inline void mspringi_set_y(const mspringi_state *s, size_t slot, double y) {
+    s->y[slot] = (float)y;
+    s->low_y[slot] = mspringi_low_of(s->y[slot], (float)(y - (double)s->y[slot]));
+}
+
+/// Add to local coordinates in single precision: Kahan's sum, as the kernels have it.
+static inline void mspringi_move_by(const mspringi_state *s, size_t slot, float dx, float dy) {
+    const float way_x = dx + s->low_x[slot], way_y = dy + s->low_y[slot];
+    const float x = s->x[slot] + way_x, y = s->y[slot] + way_y;
+    s->low_x[slot] = way_x - (x - s->x[slot]);
+    s->low_y[slot] = way_y - (y - s->y[slot]);
+    s->x[slot] = x;
+    s->y[slot] = y;
+}
 
 /// Forces from outside, in N by slot. Fields that a network does not need are NULL.
 typedef struct mspringi_forces {
@@ -151,7 +194,7 @@ typedef struct mspringi_seams {
     uint32_t row_spans;   ///< spans in a row, at most
     uint32_t strips;      ///< or layers, whichever are more
     size_t segment;       ///< slots of the widest row, and a block to be read behind
-    float *values;        ///< [count][4][rows of a seam][segment] x, y, vx, vy
+    float *values;        ///< [count][MSPRINGI_STATE_ARRAYS][rows of a seam][segment]
     mspringi_span *spans; ///< [count][2][2][row_spans]
     uint32_t *borders;    ///< [MSPRINGI_PLANNED_PASSES][workers]
     uint64_t *weights;    ///< [strips + 1] of the strips below each
@@ -179,9 +222,9 @@ typedef struct mspringi_sleep {
     mspringi_span *runs;       ///< [spans] runs of blocks of a row while that is swept, from its first span on
     bool has_force;            ///< force is not all zero
     double origin_x, origin_y; ///< that state is relative to, m
-    float *state;              ///< [4][slots]
+    float *state;              ///< [MSPRINGI_STATE_ARRAYS][slots]
     float *inverse_mass;       ///< [slots]
-    float *held;               ///< [2][slots] positions, while substeps are taken
+    float *held;               ///< [4][slots] positions and their low words, while substeps are taken
     mspringi_field force;      ///< from outside
     mspringi_field in_force;   ///< of the step that is being made; else NULL
     uint64_t masses, links, moved; ///< edits that it has seen; the last is edits.state
@@ -335,6 +378,9 @@ mspring_result mspringi_check_solver(const mspring_solver_def *def, mspringi_mes
 
 /// Take back what a hook, or the host through a view, has written to slots without particle.
 void mspringi_clear_empty_slots(const mspring_network *network);
+
+/// Drop the low words that are too large for their coordinates.
+void mspringi_drop_stale_lows(const mspring_network *network);
 
 /// Allocate the carry rows and seams that the network's workers need, unless it has as many.
 mspring_result mspringi_carry_reserve(mspring_network *network);

@@ -31,8 +31,8 @@ void mspringi_origin_choose(mspring_network *network, const mspringi_box *box) {
 
 void mspringi_set_position(mspring_network *network, mspring_id particle, double x, double y) {
     const uint32_t slot = network->topology.slot_of_particle[particle];
-    network->state.x[slot] = (float)(x - network->origin_x);
-    network->state.y[slot] = (float)(y - network->origin_y);
+    mspringi_set_x(&network->state, slot, x - network->origin_x);
+    mspringi_set_y(&network->state, slot, y - network->origin_y);
 }
 
 // One coordinate's shift: the middle of the network, if all particles are on one side of the origin and the
@@ -67,8 +67,9 @@ void mspringi_origin_follow(mspring_network *network) {
     for (uint32_t p = 0; p < t->particle_count; ++p) {
         if (!mspringi_particle_exists(network, p))
             continue;
-        state->x[t->slot_of_particle[p]] -= shift_x;
-        state->y[t->slot_of_particle[p]] -= shift_y;
+        const uint32_t slot = t->slot_of_particle[p];
+        mspringi_set_x(state, slot, mspringi_x_of(state, slot) - (double)shift_x);
+        mspringi_set_y(state, slot, mspringi_y_of(state, slot) - (double)shift_y);
     }
     network->origin_x += (double)shift_x;
     network->origin_y += (double)shift_y;

@@ -32,7 +32,8 @@ static void copy_range(void *argument, size_t first, size_t end) {
 
 static void copy_state(const mspring_network *network, const mspringi_state *from, const mspringi_state *to) {
     copying all = {from->x, to->x};
-    mspringi_tasks_run_ranges(network->tasks, 4 * mspringi_slot_count(network), MSPRINGI_WIDTH, copy_range, &all);
+    mspringi_tasks_run_ranges(network->tasks, MSPRINGI_STATE_ARRAYS * mspringi_slot_count(network), MSPRINGI_WIDTH,
+                              copy_range, &all);
 }
 
 static void copy_field(const mspring_network *network, mspringi_field from, mspringi_field to) {
@@ -102,10 +103,20 @@ static void run_substeps(mspring_network *network, double dt, float h) {
     }
 }
 
+void mspringi_drop_stale_lows(const mspring_network *network) {
+    const mspringi_state *s = &network->state;
+    for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
+        s->low_x[slot] = mspringi_low_of(s->x[slot], s->low_x[slot]);
+        s->low_y[slot] = mspringi_low_of(s->y[slot], s->low_y[slot]);
+    }
+}
+
 // Keep the state in the backup, run all substeps, and look at what they have led to.
 static mspringi_sight run(mspring_network *network, double dt, float h) {
-    if (network->is_open)
+    if (network->is_open) {
         mspringi_clear_empty_slots(network);
+        mspringi_drop_stale_lows(network);
+    }
     if (!network->implicit)
         mspringi_graft_follow(network);
     if (network->hook_count == 0) {
@@ -131,7 +142,8 @@ static mspringi_sight run(mspring_network *network, double dt, float h) {
 
 void mspringi_clear_empty_slots(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
-    float *const arrays[] = {network->state.x, network->state.y, network->state.vx, network->state.vy};
+    const mspringi_state *s = &network->state;
+    float *const arrays[MSPRINGI_STATE_ARRAYS] = {s->x, s->y, s->vx, s->vy, s->low_x, s->low_y};
     for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
         for (uint32_t run = 0; run < t->empty_run_count; ++run)
             memset(arrays[i] + t->empty_runs[run].first_slot, 0, t->empty_runs[run].slot_count * sizeof *arrays[i]);

@@ -24,8 +24,8 @@ static void fill_particles(mspringi_statics *statics, const mspring_network *net
         const uint32_t slot = network->topology.slot_of_particle[p];
         const double inverse_mass = (double)network->inverse_mass[slot];
         statics->fixed[p] = !(inverse_mass > 0.0);
-        statics->start.x[p] = (double)network->state.x[slot];
-        statics->start.y[p] = (double)network->state.y[slot];
+        statics->start.x[p] = mspringi_x_of(&network->state, slot);
+        statics->start.y[p] = mspringi_y_of(&network->state, slot);
         if (statics->fixed[p])
             continue;
         // Where a step leaves the velocity as it is: force * inverse_mass + gravity = 0.
@@ -157,8 +157,8 @@ static double put_back(const mspringi_statics *statics, mspring_network *network
             continue;
         const uint32_t slot = network->topology.slot_of_particle[p];
         const double dx = statics->moved.x[p], dy = statics->moved.y[p];
-        network->state.x[slot] = (float)(statics->start.x[p] + dx);
-        network->state.y[slot] = (float)(statics->start.y[p] + dy);
+        mspringi_set_x(&network->state, slot, statics->start.x[p] + dx);
+        mspringi_set_y(&network->state, slot, statics->start.y[p] + dy);
         network->state.vx[slot] = network->state.vy[slot] = 0.0f;
         farthest = fmax(farthest, sqrt(dx * dx + dy * dy));
     }

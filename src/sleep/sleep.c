@@ -33,9 +33,9 @@ mspring_result mspringi_sleep_reserve(mspring_network *network) {
     s->swept = mspringi_alloc(memory, t->block_count, sizeof *s->swept);
     s->share = mspringi_alloc(memory, t->strip_count, sizeof *s->share);
     s->runs = mspringi_alloc(memory, t->span_count, sizeof *s->runs);
-    s->state = mspringi_alloc(memory, 4 * slots, sizeof *s->state);
+    s->state = mspringi_alloc(memory, MSPRINGI_STATE_ARRAYS * slots, sizeof *s->state);
     s->inverse_mass = mspringi_alloc(memory, slots, sizeof *s->inverse_mass);
-    s->held = mspringi_alloc(memory, 2 * slots, sizeof *s->held);
+    s->held = mspringi_alloc(memory, 4 * slots, sizeof *s->held);
     mspring_result result = mspringi_field_reserve(network, &s->force);
     if (result == MSPRING_OK &&
         !(s->island && s->lowest && s->still && s->kept && s->mark && s->scratch && s->block_island &&
@@ -68,7 +68,7 @@ void mspringi_sleep_forget(mspringi_sleep *s) {
 static bool state_differs(const mspring_network *network, size_t slot) {
     const size_t slots = mspringi_slot_count(network);
     const float *now = network->state.x + slot, *kept = network->sleep.state + slot;
-    for (size_t i = 0; i < 4; ++i)
+    for (size_t i = 0; i < MSPRINGI_STATE_ARRAYS; ++i)
         if (memcmp(now + i * slots, kept + i * slots, sizeof *now) != 0)
             return true;
     return false;
@@ -84,7 +84,7 @@ static bool block_differs(const mspring_network *network, size_t block, bool sta
     const mspringi_sleep *s = &network->sleep;
     const size_t size = MSPRINGI_WIDTH * sizeof *s->state;
     bool differs = masses && memcmp(network->inverse_mass + first, s->inverse_mass + first, size) != 0;
-    for (size_t i = 0; state && i < 4; ++i)
+    for (size_t i = 0; state && i < MSPRINGI_STATE_ARRAYS; ++i)
         differs |= memcmp(network->state.x + i * slots + first, s->state + i * slots + first, size) != 0;
     return differs;
 }
@@ -280,6 +280,8 @@ void mspringi_sleep_hold(const mspring_network *network) {
             continue;
         memcpy(s->held + first, network->state.x + first, size);
         memcpy(s->held + slots + first, network->state.y + first, size);
+        memcpy(s->held + 2 * slots + first, network->state.low_x + first, size);
+        memcpy(s->held + 3 * slots + first, network->state.low_y + first, size);
     }
 }
 
@@ -293,6 +295,8 @@ void mspringi_sleep_put_back(const mspring_network *network) {
                 continue;
             network->state.x[slot] = s->held[slot];
             network->state.y[slot] = s->held[slots + slot];
+            network->state.low_x[slot] = s->held[2 * slots + slot];
+            network->state.low_y[slot] = s->held[3 * slots + slot];
         }
     }
 }
@@ -309,7 +313,7 @@ void mspringi_sleep_restore(mspring_network *network) {
     const mspringi_sleep *s = &network->sleep;
     const size_t slots = mspringi_slot_count(network);
     for (size_t slot = 0; s->sleeping > 0 && slot < slots; ++slot)
-        for (size_t i = 0; i < 4 && mspringi_slot_is_asleep(network, slot); ++i)
+        for (size_t i = 0; i < MSPRINGI_STATE_ARRAYS && mspringi_slot_is_asleep(network, slot); ++i)
             network->state.x[i * slots + slot] = s->state[i * slots + slot];
 }
 
@@ -387,18 +391,20 @@ static void forget_motion(const mspring_network *network, size_t slot) {
     const mspringi_implicit *n = network->implicit;
     const size_t slots = mspringi_slot_count(network);
     for (size_t i = 0; n && i < n->history_size; i += slots)
-        n->history.low.x[i + slot] = n->backup.low.x[i + slot] = n->previous.low.x[i + slot] = 0.0f;
+        n->history.first.x[i + slot] = n->backup.first.x[i + slot] = n->previous.first.x[i + slot] = 0.0f;
 }
 
 static void put_to_sleep(mspring_network *network, size_t slot, mspringi_field force) {
     const mspringi_state *state = &network->state;
     const mspringi_sleep *s = &network->sleep;
     const size_t slots = mspringi_slot_count(network);
-    // A block that is swept for what else is in it adds 0 to the position: -0 would become +0.
-    state->x[slot] += 0.0f;
-    state->y[slot] += 0.0f;
+    // A block that is swept for what else is in it adds 0 to the position, and so to what is below it: -0 would
+    // become +0.
+    state->low_x[slot] = mspringi_low_of(state->x[slot], state->low_x[slot]);
+    state->low_y[slot] = mspringi_low_of(state->y[slot], state->low_y[slot]);
+    mspringi_move_by(state, slot, 0.0f, 0.0f);
     state->vx[slot] = state->vy[slot] = 0.0f;
-    for (size_t i = 0; i < 4; ++i)
+    for (size_t i = 0; i < MSPRINGI_STATE_ARRAYS; ++i)
         s->state[i * slots + slot] = state->x[i * slots + slot];
     s->inverse_mass[slot] = network->inverse_mass[slot];
     s->force.x[slot] = force.x ? force.x[slot] : 0.0f;
@@ -427,12 +433,14 @@ void mspringi_sleep_fall(mspring_network *network, mspringi_field force) {
     mspringi_islands_map(network);
 }
 
-// The local origin has moved along: exactly, and with all there is.
+// The local origin has moved along: exactly, with all there is.
 static void follow_origin(mspring_network *network) {
     mspringi_sleep *s = &network->sleep;
     if (s->sleeping == 0 || (s->origin_x == network->origin_x && s->origin_y == network->origin_y))
         return;
-    memcpy(s->state, network->state.x, 2 * mspringi_slot_count(network) * sizeof *s->state);
+    const size_t size = 2 * mspringi_slot_count(network) * sizeof *s->state;
+    memcpy(s->state, network->state.x, size);
+    memcpy(s->state + (size_t)(network->state.low_x - network->state.x), network->state.low_x, size);
     s->origin_x = network->origin_x;
     s->origin_y = network->origin_y;
 }
@@ -473,7 +481,7 @@ void mspringi_sleep_move(mspring_network *to, const mspring_network *from) {
         const double still = had->still[had->island[before]];
         double *now = &s->still[s->island[slot]];
         *now = still >= 0.0 && still < *now ? still : *now;
-        for (size_t i = 0; i < 4; ++i)
+        for (size_t i = 0; i < MSPRINGI_STATE_ARRAYS; ++i)
             s->state[i * slots + slot] = had->state[i * had_slots + before];
         s->inverse_mass[slot] = had->inverse_mass[before];
         s->force.x[slot] = had->force.x[before];

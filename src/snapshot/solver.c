@@ -41,11 +41,8 @@ static void implicit_save(const mspring_network *network, mspringi_writer *to) {
     const mspringi_implicit *n = network->implicit;
     // A history of a motion that has ended is as good as none.
     const bool ended = n->seen.motion != network->edits.motion;
-    const uint32_t words[] = {ended ? 1 : n->history.restarts,
-                              (uint32_t)n->integrator,
-                              n->iterations,
-                              n->coarse_period,
-                              age_of(network)};
+    const uint32_t words[] = {ended ? 1 : n->history.restarts, (uint32_t)n->integrator, n->iterations,
+                              n->coarse_period, age_of(network)};
     mspringi_put(to, &n->tiles.print, 1, sizeof n->tiles.print);
     mspringi_put(to, &n->scale, 1, sizeof n->scale);
     mspringi_put(to, &n->history.h, 1, sizeof n->history.h);
@@ -53,7 +50,7 @@ static void implicit_save(const mspring_network *network, mspringi_writer *to) {
     if (ended)
         mspringi_put_zeros(to, n->history_size * sizeof(float));
     else
-        mspringi_put(to, n->history.low.x, n->history_size, sizeof(float));
+        mspringi_put(to, n->history.first.x, n->history_size, sizeof(float));
     mspringi_put(to, n->coarse.values, coarse_values(network), sizeof(double));
 }
 
@@ -119,7 +116,7 @@ static mspring_result implicit_check(mspring_network *network, const uint8_t *fr
 
 // Slots without particle stay where they are, and have no past for a particle that is added.
 static void clear_history(const mspring_network *network) {
-    float *const history = network->implicit->history.low.x;
+    float *const history = network->implicit->history.first.x;
     const size_t slots = mspringi_slot_count(network);
     for (size_t slot = 0; slot < slots; ++slot)
         for (size_t i = slot; i < network->implicit->history_size; i += slots)
@@ -139,7 +136,7 @@ static void implicit_load(mspring_network *network, const uint8_t *from, size_t 
     n->iterations = head.iterations;
     n->coarse_period = head.coarse_period;
     n->budget.is_known = n->budget.knows_elastic = false;
-    from = mspringi_get(from, n->history.low.x, n->history_size, sizeof(float));
+    from = mspringi_get(from, n->history.first.x, n->history_size, sizeof(float));
     clear_history(network);
     mspringi_implicit_follow(network);
     // The matrix of other tiles than those that follow from the rest of the snapshot would be of no use.

@@ -115,7 +115,7 @@ static bool are_same(const uint8_t *from, const float *values, size_t count) {
 /* ----------------------------------------------------------------------------------------------------- motion */
 
 static size_t motion_floats(const mspring_network *network) {
-    return 4 * mspringi_slot_count(network);
+    return MSPRINGI_STATE_ARRAYS * mspringi_slot_count(network);
 }
 
 static size_t motion_size(const mspring_network *network) {
@@ -141,11 +141,11 @@ static mspring_result check_motion(mspring_network *network, const uint8_t *from
 // The slots that particles may be in: to which of its two a spare one goes is in another section.
 static mspring_result motion_check(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_topology *t = &network->topology;
-    const size_t half = motion_floats(network) / 2;
+    const size_t third = motion_floats(network) / MSPRINGI_STATE_ARRAYS * 2; // positions; velocities; low words
     mspring_result result =
         mspringi_section_check_size(network, &mspringi_section_motion, size, motion_size(network));
-    if (result == MSPRING_OK && are_within(from, half, (float)MSPRING_MAX_COORDINATE) &&
-        are_within(from + half * sizeof(float), half, (float)MSPRING_MAX_SPEED))
+    if (result == MSPRING_OK && are_within(from, third, (float)MSPRING_MAX_COORDINATE) &&
+        are_within(from + third * sizeof(float), third, (float)MSPRING_MAX_SPEED))
         return MSPRING_OK;
     for (mspring_id p = 0; result == MSPRING_OK && p < t->reserve.particle_end; ++p) {
         const uint32_t first = t->reserve.first_particle;
@@ -156,8 +156,10 @@ static mspring_result motion_check(mspring_network *network, const uint8_t *from
     return result;
 }
 
+// A low word that is too large for its coordinate counts as 0 as long as it is not used, and is 0 from here on.
 static void motion_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_get(from, network->state.x, size / sizeof(float), sizeof(float));
+    mspringi_drop_stale_lows(network);
     mspringi_clear_empty_slots(network);
     network->edits.state++;
 }

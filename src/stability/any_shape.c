@@ -34,8 +34,10 @@ mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_i
 static mspringi_state find_room(const mspring_network *network) {
     if (!network->looks)
         return network->backup;
-    return (mspringi_state){mspringi_border_room(network, 0), mspringi_border_room(network, 1),
-                            mspringi_border_room(network, 2), mspringi_border_room(network, 3)};
+    return (mspringi_state){.x = mspringi_border_room(network, 0),
+                            .y = mspringi_border_room(network, 1),
+                            .vx = mspringi_border_room(network, 2),
+                            .vy = mspringi_border_room(network, 3)};
 }
 
 // Sums over the springs at each slot, per mass: stiffness in x, damping in y, the relative springs' in vx.

@@ -68,8 +68,7 @@ static void move_all(const mspring_network *network, float h) {
     for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
         if (mspringi_slot_is_asleep(network, slot))
             continue;
-        s->x[slot] += s->vx[slot] * h;
-        s->y[slot] += s->vy[slot] * h;
+        mspringi_move_by(s, slot, s->vx[slot] * h, s->vy[slot] * h);
     }
 }
 

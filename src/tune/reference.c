@@ -35,8 +35,8 @@ void mspringi_reference_place(mspringi_reference *r, const mspring_network *netw
     for (mspring_id p = 0; p < r->particle_count; ++p) {
         const uint32_t slot = network->topology.slot_of_particle[p];
         // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): allocate has set it
-        r->x[p] = shift_x + (double)s->x[slot];
-        r->y[p] = shift_y + (double)s->y[slot];
+        r->x[p] = shift_x + mspringi_x_of(s, slot);
+        r->y[p] = shift_y + mspringi_y_of(s, slot);
         r->vx[p] = (double)s->vx[slot];
         r->vy[p] = (double)s->vy[slot];
     }

@@ -161,7 +161,7 @@ static void note_motion(const mspringi_tuning *tuning, comparison *c) {
     double squares = 0.0;
     for (uint32_t p = 0; p < r->particle_count; ++p) {
         const uint32_t slot = tuning->base->topology.slot_of_particle[p];
-        const double dx = r->x[p] - (double)start->x[slot], dy = r->y[p] - (double)start->y[slot];
+        const double dx = r->x[p] - mspringi_x_of(start, slot), dy = r->y[p] - mspringi_y_of(start, slot);
         if (r->inverse_mass[p] > 0.0)
             squares += dx * dx + dy * dy;
     }
@@ -322,8 +322,8 @@ static void add_places(mspringi_tuning *tuning, const mspring_network *clone, ui
     (void)step;
     for (uint32_t p = 0; p < count; ++p) {
         const uint32_t slot = clone->topology.slot_of_particle[p];
-        tuning->places[p] += clone->origin_x - settled->origin_x + (double)s->x[slot];
-        tuning->places[count + p] += clone->origin_y - settled->origin_y + (double)s->y[slot];
+        tuning->places[p] += clone->origin_x - settled->origin_x + mspringi_x_of(s, slot);
+        tuning->places[count + p] += clone->origin_y - settled->origin_y + mspringi_y_of(s, slot);
     }
 }
 
@@ -337,8 +337,9 @@ static mspring_result run_rest(mspringi_tuning *tuning, mspringi_trial *trial, m
     double farthest = 0.0;
     for (uint32_t p = 0; p < count; ++p) {
         const uint32_t slot = settled->topology.slot_of_particle[p];
-        const double dx = tuning->places[p] / (double)tuning->step_count - (double)settled->state.x[slot];
-        const double dy = tuning->places[count + p] / (double)tuning->step_count - (double)settled->state.y[slot];
+        const double dx = tuning->places[p] / (double)tuning->step_count - mspringi_x_of(&settled->state, slot);
+        const double dy =
+            tuning->places[count + p] / (double)tuning->step_count - mspringi_y_of(&settled->state, slot);
         farthest = fmax(farthest, sqrt(dx * dx + dy * dy));
     }
     trial->row.flags |= MSPRING_TUNE_HAS_REST;

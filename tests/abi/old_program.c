@@ -101,7 +101,7 @@ int main(void) {
     memset(&view, 0, sizeof view);
     view.struct_size = sizeof view;
     CALL(mspring_network_view(network, &view));
-    printf("the view agrees: %d\n", view.origin_y + (double)view.y[view.slot_of_particle[9]] == y[9]);
+    printf("the view agrees: %d\n", view.y[view.slot_of_particle[9]] == (float)(y[9] - view.origin_y));
     memset(&plan, 0, sizeof plan);
     plan.struct_size = sizeof plan;
     CALL(mspring_network_plan(network, &plan));
