@@ -99,7 +99,7 @@ static float take_round(mspring_network *network, const float *inverse_mass, dou
 }
 
 bool mspringi_border_is_below(mspring_network *network, double h, double bound) {
-    return (double)take_round(network, mspringi_free_mass(network), h) <= bound;
+    return (double)take_round(network, network->inverse_mass, h) <= bound;
 }
 
 void mspringi_border_learn(mspring_network *network) {

@@ -148,7 +148,9 @@ static double iterate(search *f, displacement here, displacement next, double bo
 double mspringi_border_search(mspring_network *network, double h, bool from_motion, double bound, int iterations) {
     const displacement here = {mspringi_border_room(network, 0), mspringi_border_room(network, 1)};
     const displacement next = {mspringi_border_room(network, 2), mspringi_border_room(network, 3)};
-    search f = {network, mspringi_free_mass(network), mspringi_border_at(network, h)};
+    // What sleeps has no motion, but counts: it may wake in any step.
+    const float *inverse_mass = from_motion ? mspringi_free_mass(network) : network->inverse_mass;
+    search f = {network, inverse_mass, mspringi_border_at(network, h)};
     f.border.inverse_mass = f.inverse_mass;
     if (from_motion)
         start_from_motion(&f, (float)h, here);
