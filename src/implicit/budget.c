@@ -88,7 +88,7 @@ static void begin_account(const mspring_network *network, account *a) {
     for (size_t i = 0; i < 4; ++i)
         a->origin[i] = (double)state[i][a->first_slot];
     a->is_asleep = mspringi_slot_is_asleep(network, a->first_slot);
-    a->is_driven = false;
+    a->is_driven = a->is_stopped = false;
 }
 
 static void find_driven(const mspring_network *network, budget_of *budget) {
@@ -232,7 +232,7 @@ static bool judge_all(const mspring_network *network, const outside *o, bool *ex
         a->is_free = false;
         if (a->is_asleep || !(c.mass > 0.0))
             continue;
-        if (a->is_pinned || a->sums[MSPRINGI_EFFECT_TOUCH] > 0.0)
+        if (a->is_pinned || a->is_stopped || a->sums[MSPRINGI_EFFECT_TOUCH] > 0.0)
             judge_held(network, a, &c);
         else
             judge_free(network, a, &c, o);
@@ -243,6 +243,32 @@ static bool judge_all(const mspring_network *network, const outside *o, bool *ex
 }
 
 /* -------------------------------------------------------------------------------------------------- the outcome */
+
+// Whether a place is below the floor, which the substep has left everything above.
+static bool is_below_floor(const mspring_network *network, double x, double y) {
+    const mspringi_floor *floor = network->floor;
+    if (!floor)
+        return false;
+    const mspringi_bounds clear = floor->clear;
+    const bool is_clear = x >= (double)clear.min_x && x <= (double)clear.max_x && y >= (double)clear.min_y &&
+                          y <= (double)clear.max_y;
+    return !is_clear && mspringi_floor_distance(floor, x, y) < -mspringi_floor_slop(x, y);
+}
+
+// Let components stay where the substep has led them that would be shifted into the floor.
+static void stay_above_floor(mspring_network *network) {
+    const budget_of *budget = &network->implicit->budget;
+    const mspringi_motion m = motion_of(network);
+    for (size_t slot = 0; network->floor && slot < mspringi_slot_count(network); ++slot) {
+        if (budget->of_slot[slot] == MSPRINGI_NO_ACCOUNT || !(m.inverse_mass[slot] > 0.0f))
+            continue;
+        account *a = &budget->accounts[budget->of_slot[slot]];
+        if ((a->shift_x != 0.0 || a->shift_y != 0.0) &&
+            is_below_floor(network, (double)m.x[slot] + (double)m.low_x[slot] + a->shift_x,
+                           (double)m.y[slot] + (double)m.low_y[slot] + a->shift_y))
+            a->shift_x = a->shift_y = 0.0;
+    }
+}
 
 static void shift_slots(mspring_network *network, const account *a, size_t first, size_t end) {
     const mspringi_motion m = motion_of(network);
@@ -315,7 +341,7 @@ static void keep_ends(const mspring_network *network) {
 // Where a slot would be if its component had gone none of its way: of a free one, as the rigid body that it was,
 // turned on. (The rotation by twice the angle whose tangent is t is of length 1, whatever t.)
 static void hold_place(const account *a, const centre *c, double *x, double *y) {
-    if (!a->is_free)
+    if (!a->is_free || a->is_stopped)
         return;
     const double t = a->turned, scale = 1.0 / (1.0 + t * t), cosine = (1.0 - t * t) * scale, sine = 2.0 * t * scale;
     const double rx = (*x - a->origin[0]) - a->x, ry = (*y - a->origin[1]) - a->y;
@@ -323,25 +349,47 @@ static void hold_place(const account *a, const centre *c, double *x, double *y) 
     *y = a->origin[1] + c->y + (sine * rx + cosine * ry);
 }
 
-// Let all components that have too much go back half of their way, or all of it.
+// Where a slot is after its component's share of the way. Returns false if it has no part in going back.
+static bool place_back(const mspring_network *network, const mspringi_motion *before, size_t slot, double *x,
+                       double *y) {
+    const mspringi_implicit *n = network->implicit;
+    const budget_of *budget = &n->budget;
+    if (budget->of_slot[slot] == MSPRINGI_NO_ACCOUNT || !(network->inverse_mass[slot] > 0.0f))
+        return false;
+    const account *a = &budget->accounts[budget->of_slot[slot]];
+    if (!a->exceeds)
+        return false;
+    const centre c = centre_of(a);
+    *x = (double)before->x[slot] + (double)before->low_x[slot];
+    *y = (double)before->y[slot] + (double)before->low_y[slot];
+    hold_place(a, &c, x, y);
+    *x += a->share * (n->x[slot] - *x);
+    *y += a->share * (n->y[slot] - *y);
+    return true;
+}
+
+// Let all components that have too much go back half of their way, or all of it. One that the floor is in the way of
+// stops where it was.
 static void step_back(mspring_network *network, const mspringi_motion *before, bool is_last) {
     mspringi_implicit *n = network->implicit;
     budget_of *budget = &n->budget;
+    const size_t slots = mspringi_slot_count(network);
+    double x, y;
     for (account *a = budget->accounts; a < budget->accounts + budget->count; ++a)
         if (a->exceeds)
             a->share = is_last ? 0.0 : 0.5 * a->share;
-    for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
-        if (budget->of_slot[slot] == MSPRINGI_NO_ACCOUNT || !(network->inverse_mass[slot] > 0.0f))
+    for (size_t slot = 0; network->floor && slot < slots; ++slot) {
+        if (!place_back(network, before, slot, &x, &y) || !is_below_floor(network, x, y))
             continue;
-        const account *a = &budget->accounts[budget->of_slot[slot]];
-        if (!a->exceeds)
+        account *a = &budget->accounts[budget->of_slot[slot]];
+        a->is_stopped = true;
+        a->share = 0.0;
+    }
+    for (size_t slot = 0; slot < slots; ++slot) {
+        if (!place_back(network, before, slot, &x, &y))
             continue;
-        const centre c = centre_of(a);
-        double x = (double)before->x[slot] + (double)before->low_x[slot];
-        double y = (double)before->y[slot] + (double)before->low_y[slot];
-        hold_place(a, &c, &x, &y);
-        mspringi_set_x(&network->state, slot, x + a->share * (n->x[slot] - x));
-        mspringi_set_y(&network->state, slot, y + a->share * (n->y[slot] - y));
+        mspringi_set_x(&network->state, slot, x);
+        mspringi_set_y(&network->state, slot, y);
     }
     n->history.restarts = n->history.restarts > 1 ? n->history.restarts : 1;
 }
@@ -377,6 +425,7 @@ bool mspringi_budget_close(mspring_network *network, float h, mspringi_field bas
             keep_ends(network);
         step_back(network, &all.before, step == MOST_STEPS_BACK);
     }
+    stay_above_floor(network);
     turn_all(network);
     note_elastic(network);
     return true;

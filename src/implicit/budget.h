@@ -78,7 +78,8 @@ typedef struct mspringi_account {
     double keep;             ///< new velocities are keep v + (add_x, add_y) + turn x (r - centre)
     double add_x, add_y, turn;
     double shift_x, shift_y; ///< of all positions, m
-    bool is_free;
+    bool is_free;    ///< neither a pin nor the floor holds it
+    bool is_stopped; ///< it is where it was before, as the floor was in its way back
     double share; ///< of its way that it goes
 } mspringi_account;
 
