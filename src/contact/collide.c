@@ -84,8 +84,8 @@ static void collide_slot(const mspring_network *network, size_t slot, double h) 
     const float after_x = (float)b.vx, after_y = (float)b.vy, mass = 1.0f / network->inverse_mass[slot];
     floor->impulse.x[slot] += mass * (after_x - s->vx[slot]);
     floor->impulse.y[slot] += mass * (after_y - s->vy[slot]);
-    s->x[slot] = (float)b.x;
-    s->y[slot] = (float)b.y;
+    mspringi_set_x(s, slot, b.x);
+    mspringi_set_y(s, slot, b.y);
     s->vx[slot] = after_x;
     s->vy[slot] = after_y;
 }

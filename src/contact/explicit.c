@@ -41,8 +41,8 @@ static void put(const mspring_network *network, size_t slot, double x, double y,
     const float after_x = (float)vx, after_y = (float)vy, mass = 1.0f / network->inverse_mass[slot];
     floor->impulse.x[slot] += mass * (after_x - s->vx[slot]);
     floor->impulse.y[slot] += mass * (after_y - s->vy[slot]);
-    s->x[slot] = (float)x;
-    s->y[slot] = (float)y;
+    mspringi_set_x(s, slot, x);
+    mspringi_set_y(s, slot, y);
     s->vx[slot] = after_x;
     s->vy[slot] = after_y;
 }
@@ -208,8 +208,8 @@ static void fly_free(const mspring_network *network, size_t slot, double h, doub
         put(network, slot, p.x, p.y, to_vx, to_vy);
         return;
     }
-    s->x[slot] = (float)p.x;
-    s->y[slot] = (float)p.y;
+    mspringi_set_x(s, slot, p.x);
+    mspringi_set_y(s, slot, p.y);
 }
 
 void mspringi_floor_fly_loose(mspring_network *network, float h, mspringi_field base, uint32_t count) {
