@@ -1,4 +1,4 @@
-#if defined(__unix__) && !defined(_POSIX_C_SOURCE)
+#if !defined(_WIN32) && !defined(__APPLE__) && !defined(_POSIX_C_SOURCE)
 #define _POSIX_C_SOURCE 200809L // posix_memalign, which strict C hides
 #endif
 

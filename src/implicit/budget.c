@@ -208,8 +208,8 @@ static void judge_held(const mspring_network *network, account *a, const centre 
     const double gx = (double)network->gravity_x, gy = (double)network->gravity_y, mass = c->mass;
     const double work = mass * (gx * (c->x - a->x) + gy * (c->y - a->y)) + a->sums[MSPRINGI_EFFECT_WORK] + a->given;
     const double room = (before + work) - a->elastic;
-    const double far = sqrt(c->inertia / mass);
-    const double x = fabs(a->origin[0] + c->x) + far, y = fabs(a->origin[1] + c->y) + far;
+    const double radius = sqrt(c->inertia / mass);
+    const double x = fabs(a->origin[0] + c->x) + radius, y = fabs(a->origin[1] + c->y) + radius;
     const double places =
         a->sums[MSPRINGI_EFFECT_TOUCH] > 0.0 ? PLACE_ROUNDING * mass * (fabs(gx) * x + fabs(gy) * y) : 0.0;
     a->exceeds = room < -(TOLERATED * before + 0.5 * LENGTH_ROUNDING * LENGTH_ROUNDING * a->length + places);
