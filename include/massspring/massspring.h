@@ -394,8 +394,8 @@ enum {
     /// stable in any shape. Steps below the border are never refused. A look first bounds the border, by a pass
     /// over the springs. If that does not answer it, it searches for a motion that grows, for as long as a part of
     /// the step's substeps takes. What such a search overlooks is found once it has grown to a thousandth of the
-    /// shortest spring in a substep: that step is refused. So a step of 8 or more substeps takes at most twice its
-    /// usual time, and the first one at most three times. Watching velocities takes 2 to 3 % of a step of one
+    /// shortest spring in a substep: that step is refused. Up to 0.95 of the border a step of 8 or more substeps
+    /// takes at most twice its usual time, and the first one at most three times; closer to it, three and four. Watching velocities takes 2 to 3 % of a step of one
     /// substep, less than 0.5 % of one of 8 (bench/STABILITY.md).
     ///
     /// The implicit and the direct solver keep an energy budget instead, of each component (all that live springs join)
