@@ -30,12 +30,23 @@ typedef struct block {
     _Alignas(64) float free_mass[W];
 } block;
 
-static float heights[HEIGHTS];
+static float heights[2 * HEIGHTS + 8]; // and the highest of 2, of 4 and so on
 static double normals[2 * (HEIGHTS - 1)];
 static uint64_t seed = 1;
 
 static double between(double low, double high) {
     return support_random_between(&seed, low, high);
+}
+
+static void lay_pyramid(mspringi_heights *to) {
+    float *level = heights;
+    for (uint32_t i = 0, count = HEIGHTS; count > 0; i++, count /= 2) {
+        to->highest[i] = level;
+        for (uint32_t k = 0; k < count / 2; k++) {
+            level[count + k] = fmaxf(level[2 * k], level[2 * k + 1]);
+        }
+        level += count;
+    }
 }
 
 /// A rough field of heights, walls and a lid, as far as they are asked for.
@@ -59,6 +70,7 @@ static mspringi_floor make_floor(uint32_t planes, bool has_heights) {
         made.heights = (mspringi_heights){
             .local_x = -8, .local_y = 0.1, .spacing = spacing, .count = HEIGHTS, .heights = heights};
         made.heights.normals = normals;
+        lay_pyramid(&made.heights);
     }
     return made;
 }

@@ -5,8 +5,12 @@
 
 #include "sleep/sleep.h"
 
-/// Most straight parts of a field of heights that are looked at on the way of one particle in one substep.
-#define MOST_PARTS 4096
+/// Most looks at a field of heights on the way of one particle in one substep; a way that grazes a long slope is one
+/// that could take more.
+#define MOST_LOOKS 4096
+
+/// What a way meets that meets nothing.
+#define NO_KNOT ((int64_t)-1)
 
 /* ---------------------------------------------------------------------------------------------------- distances */
 
@@ -54,18 +58,57 @@ mspringi_line mspringi_heights_line(const mspringi_heights *h, int64_t part) {
     return (mspringi_line){nx, ny, -(nx * knot_x(h, part) + ny * knot_y(h, part))};
 }
 
-int64_t mspringi_heights_part_met(const mspringi_heights *h, double start_x, double start_y, double x, double y) {
-    const int64_t last = mspringi_heights_part_below(h, x);
-    int64_t part = mspringi_heights_part_below(h, start_x);
-    const int64_t onward = part < last ? 1 : -1;
-    // Find where the way first comes below the end of a part.
-    for (uint32_t i = 0; part != last && i < MOST_PARTS; ++i, part += onward) {
-        const int64_t end = onward > 0 ? part + 1 : part;
-        const double share = (knot_x(h, end) - start_x) / (x - start_x);
-        if (start_y + share * (y - start_y) < knot_y(h, end) - mspringi_floor_slop(x, y))
-            break;
+/// The way of a particle, straight from its start.
+typedef struct passage {
+    const mspringi_heights *heights;
+    double start_x, start_y, along_x, along_y;
+    double slop;
+} passage;
+
+static bool is_below(const passage *w, int64_t knot, double y) {
+    const double share = (knot_x(w->heights, knot) - w->start_x) / w->along_x;
+    return w->start_y + share * w->along_y < y - w->slop;
+}
+
+// Whether the way comes below any of 2^level knots may be; where it is above the highest of them at both ends, it
+// is above each: each operation of is_below keeps the order of the knots, rounded, too.
+static bool may_meet(const passage *w, int64_t first, uint32_t level) {
+    const mspringi_heights *h = w->heights;
+    const double highest = h->local_y + (double)h->highest[level][first >> level];
+    const int64_t last = first + ((int64_t)1 << level) - 1;
+    return is_below(w, first, highest) || is_below(w, last, highest);
+}
+
+// The first knot that the way comes below, on the way from one edge between knots to another; edge i is left of knot
+// i. NO_KNOT: none. Looks at blocks of knots that double while the way is above them: an explosion above
+// 60,000 heights looks at 30 blocks a particle, not at thousands of knots.
+static int64_t knot_met(const passage *w, int64_t edge, int64_t stop) {
+    const int64_t onward = edge < stop ? 1 : -1;
+    uint32_t level = 0;
+    for (uint32_t looks = 0; edge != stop && looks < MOST_LOOKS; ++looks) {
+        const int64_t size = (int64_t)1 << level, first = onward > 0 ? edge : edge - size;
+        const bool fits = size <= onward * (stop - edge);
+        if (fits && !may_meet(w, first, level)) {
+            edge += onward * size;
+            level += edge % (2 * size) == 0;
+        } else if (fits && level == 0) {
+            return first;
+        } else {
+            --level;
+        }
     }
-    return part;
+    return NO_KNOT;
+}
+
+int64_t mspringi_heights_part_met(const mspringi_heights *h, double start_x, double start_y, double x, double y) {
+    const int64_t first = mspringi_heights_part_below(h, start_x), last = mspringi_heights_part_below(h, x);
+    if (first == last)
+        return last;
+    const passage w = {h, start_x, start_y, x - start_x, y - start_y, mspringi_floor_slop(x, y)};
+    const int64_t knot = knot_met(&w, first + 1, last + 1);
+    if (knot == NO_KNOT)
+        return last;
+    return first < last ? knot - 1 : knot;
 }
 
 // The highest of the knots first ... end - 1.
