@@ -85,10 +85,14 @@ void bench_table_note(bench_format format, const char *text, ...) {
     va_end(arguments);
 }
 
-void bench_table_preamble(bench_format format) {
+void bench_table_machine(bench_format format) {
     char cpu[128];
     bench_table_note(format, "massspring %s on %s", mspring_version_string(), bench_cpu_name(cpu, sizeof cpu));
     bench_table_note(format, "bench built by %s; baseline compiled with %s", bench_compiler(), BENCH_NAIVE_FLAGS);
+}
+
+void bench_table_preamble(bench_format format) {
+    bench_table_machine(format);
     bench_table_note(format, "a step is %g s; times are wall time", BENCH_DT);
     if (format != BENCH_CSV) {
         putchar('\n');

@@ -34,7 +34,10 @@ __attribute__((format(printf, 2, 3)))
 #endif
 void bench_table_note(bench_format format, const char *text, ...);
 
-/// Print what every table needs to be understood: library, processor, compiler, baseline, clock of the scene.
+/// Print the library, processor, compiler and baseline.
+void bench_table_machine(bench_format format);
+
+/// Print what most tables need to be understood: that, and the clock of the scene.
 void bench_table_preamble(bench_format format);
 
 #endif
