@@ -6,6 +6,8 @@
 
 #include <string.h>
 
+#include "assert.h"
+
 #if !defined(MSPRINGI_FREESTANDING)
 #include <stdlib.h>
 #if defined(_WIN32)
@@ -81,6 +83,9 @@ static block *take(mspringi_memory *memory, size_t size) {
 }
 
 static void give_back(mspringi_memory *memory, block *taken) {
+    // Neither freed already nor another memory's.
+    MSPRINGI_ASSERT(taken->previous ? taken->previous->next == taken : memory->first == taken);
+    MSPRINGI_ASSERT(taken->next ? taken->next->previous == taken : memory->last == taken);
     if (taken->previous)
         taken->previous->next = taken->next;
     else
@@ -117,6 +122,7 @@ void mspringi_free_all(mspringi_memory *memory) {
 }
 
 void mspringi_memory_hand_over(mspringi_memory *from, mspringi_memory *to) {
+    MSPRINGI_ASSERT(from->allocator.user == to->allocator.user && from->allocator.free == to->allocator.free);
     if (!from->first)
         return;
     from->first->previous = to->last;
@@ -131,6 +137,7 @@ void mspringi_memory_hand_over(mspringi_memory *from, mspringi_memory *to) {
 }
 
 bool mspringi_memory_copy(const mspringi_memory *from, mspringi_memory *to) {
+    MSPRINGI_ASSERT(!to->first);
     for (const block *of = from->first; of; of = of->next) {
         const block *copy = take(to, of->size);
         if (!copy)
@@ -144,6 +151,7 @@ void *mspringi_memory_moved(const mspringi_memory *from, const mspringi_memory *
     const uintptr_t place = (uintptr_t)pointer;
     const block *copy = to->first;
     for (const block *of = from->first; pointer && of; of = of->next, copy = copy->next) {
+        MSPRINGI_ASSERT(copy && copy->size >= of->size);
         // The end counts, too: an array may begin where its block ends if it has no element.
         const uintptr_t begin = (uintptr_t)contents_of(of), end = (uintptr_t)of + of->size;
         if (place >= begin && place <= end)

@@ -1,5 +1,12 @@
 #include "message.h"
 
+#include "assert.h"
+
+#if defined(MSPRINGI_ASSERTS) && !defined(MSPRINGI_FREESTANDING)
+#include <stdio.h>
+#include <stdlib.h>
+#endif
+
 mspring_result mspringi_fail(mspringi_message *message, mspring_result result, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
@@ -55,3 +62,16 @@ const char *mspring_result_string(mspring_result result) {
         return "unknown result code";
     }
 }
+
+#if defined(MSPRINGI_ASSERTS)
+void mspringi_assert_failed(const char *condition, const char *file, int line) {
+#if defined(MSPRINGI_FREESTANDING)
+    (void)condition, (void)file, (void)line;
+    for (;;) {
+    }
+#else
+    (void)fprintf(stderr, "%s:%d: massspring is wrong: %s\n", file, line, condition);
+    abort();
+#endif
+}
+#endif

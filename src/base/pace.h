@@ -9,6 +9,7 @@
 #ifndef MSPRINGI_PACE_H
 #define MSPRINGI_PACE_H
 
+#include "assert.h"
 #include "memory.h"
 
 /// One unit of effort is a particle or spring that is looked at and found in the cache: about 3 ns. Where something
@@ -35,6 +36,7 @@ static inline void mspringi_pace_spend(mspringi_pace *pace, uint64_t effort) {
 static inline void mspringi_pace_take(mspringi_pace *pace, uint32_t count, uint32_t weight, uint32_t *first,
                                       uint32_t *end) {
     const uint64_t most = (uint64_t)pace->left / weight + 1;
+    MSPRINGI_ASSERT(pace->at <= count); // a pass goes over as many things as when it began
     *first = pace->at;
     *end = count - *first > most ? *first + (uint32_t)most : count;
     mspringi_pace_spend(pace, (uint64_t)(*end - *first) * weight);

@@ -112,6 +112,7 @@ static mspring_result make_implicit(mspring_network *to, const mspring_network *
 
 static void move_values(const float *from, float *to, const mspring_network *old, const mspring_network *made) {
     const uint32_t *here = old->topology.slot_of_particle, *there = made->topology.slot_of_particle;
+    MSPRINGI_ASSERT(made->topology.particle_count == old->topology.particle_count);
     for (mspring_id p = 0; p < old->topology.particle_count; ++p)
         to[there[p]] = from[here[p]];
 }
@@ -259,6 +260,7 @@ static mspring_result with_plan_memory(mspring_network *network,
 mspring_result mspringi_mover_begin(mspring_network *network, const mspringi_topology *topology,
                                     mspringi_pace *pace) {
     const size_t places = mspringi_place_words(&network->topology) * MSPRINGI_WIDTH;
+    MSPRINGI_ASSERT(!network->mover);
     mspringi_mover *mover = mspringi_alloc(&network->plan_memory, 1, sizeof *mover);
     if (!mover)
         return no_memory_to_move(network);
@@ -328,6 +330,7 @@ void mspringi_mover_copy(const mspring_network *network, const mspringi_place *p
 
 void mspringi_mover_follow(const mspring_network *network, mspringi_place place) {
     mspringi_mover *mover = network->mover;
+    MSPRINGI_ASSERT(mover);
     if (mover->there[place] != MSPRING_NONE)
         copy_spring(&mover->to, mover->there[place], network, place);
 }

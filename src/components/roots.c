@@ -111,6 +111,7 @@ static bool have_common_neighbour(const mspring_network *network, pair ends) {
 bool mspringi_links_change_nothing(const mspring_network *network, uint64_t seen, const uint32_t *number,
                                    const uint32_t *index) {
     const mspringi_edits *edits = &network->edits;
+    MSPRINGI_ASSERT(network->incidence.first && seen <= edits->links);
     if (edits->links - seen > FEW_CHANGES || !mspringi_edits_have_link(edits, seen))
         return edits->links == seen;
     for (uint64_t n = seen; n < edits->links; ++n) {

@@ -49,6 +49,7 @@ mspring_result mspringi_breaking_reserve(mspring_network *network) {
 static void toggle(mspring_network *network, mspring_id spring, mspringi_place place) {
     network->live[place / MSPRINGI_WIDTH] ^= (uint16_t)(1u << place % MSPRINGI_WIDTH);
     network->edits.broke = true;
+    MSPRINGI_ASSERT(network->edits.link_log); // mspringi_breaking_reserve() has been called
     network->edits.link_log[network->edits.links++ & network->edits.link_mask] = spring;
     if (network->mover)
         mspringi_mover_follow(network, place);
@@ -65,6 +66,7 @@ bool mspringi_spring_break(mspring_network *network, mspring_id spring) {
         return false;
     mspringi_ramp_drop(network, spring);
     const mspringi_spring_values values = mspringi_place_get(network, place);
+    MSPRINGI_ASSERT(network->kept || network->keeps_none);
     if (!mspringi_spring_is_relative(network, spring))
         network->kept[spring] = (mspringi_relative){values.stiffness, values.damping};
     mspringi_place_set(network, place, 0.0f, 0.0f);

@@ -100,6 +100,7 @@ static void clear_history(mspringi_implicit *implicit, uint32_t slot) {
 
 void mspringi_growth_take_particle(mspring_network *network, mspring_id particle) {
     const uint32_t slot = network->topology.slot_of_particle[particle];
+    MSPRINGI_ASSERT(network->growth.particles);
     clear_slot(&network->state, slot);
     clear_slot(&network->backup, slot);
     network->inverse_mass[slot] = 0.0f;
@@ -150,6 +151,7 @@ void mspringi_growth_count(mspring_network *network, uint32_t particle_count, ui
 
 void mspringi_growth_link(mspring_network *network, mspring_id spring, mspring_id a, mspring_id b) {
     mspringi_growth *g = &network->growth;
+    MSPRINGI_ASSERT(g->particles && spring >= network->topology.reserve.first_spring);
     const uint32_t first = 2 * (spring - network->topology.reserve.first_spring);
     const mspring_id ends[] = {a, b};
     for (uint32_t i = 0; i < 2; ++i) {
@@ -182,6 +184,7 @@ mspring_result mspringi_incidence_reserve(mspring_network *network) {
 
 mspringi_around mspringi_around_begin(const mspring_network *network, mspring_id particle) {
     const mspringi_incidence *incidence = &network->incidence;
+    MSPRINGI_ASSERT(incidence->first);
     return (mspringi_around){
         .next = incidence->first[particle],
         .end = incidence->first[particle + 1],
@@ -205,7 +208,9 @@ mspring_id mspringi_around_next(const mspring_network *network, mspringi_around 
 mspring_id mspringi_around_find(const mspring_network *network, mspring_id particle, mspringi_place place) {
     mspringi_around around = mspringi_around_begin(network, particle);
     mspring_id spring = mspringi_around_next(network, &around);
-    while (mspringi_place_of(&network->topology, spring) != place)
+    while (mspringi_place_of(&network->topology, spring) != place) {
         spring = mspringi_around_next(network, &around);
+        MSPRINGI_ASSERT(spring != MSPRING_NONE);
+    }
     return spring;
 }

@@ -182,6 +182,7 @@ mspring_result mspringi_strain_reserve_stress(mspring_network *network) {
 
 void mspringi_strain_store(mspring_network *network, mspringi_place place, bool stress, float value) {
     mspringi_strain *strain = &network->strain;
+    MSPRINGI_ASSERT(strain->break_strain && (strain->stress_strain || !stress));
     if (stress)
         strain->stress_strain[place] = value;
     else

@@ -21,10 +21,13 @@ static inline mspringi_relative mspringi_fractions_of(const mspringi_fractions *
     return fractions->values[fractions->of_spring ? fractions->of_spring[spring] : spring];
 }
 
-/// After mspringi_fractions_separate() only, unless it is what the spring has.
+/// After mspringi_fractions_separate(), unless it is what the spring has.
 static inline void mspringi_fractions_set(const mspringi_fractions *fractions, mspring_id spring,
                                           mspringi_relative value) {
-    if (!fractions->of_spring)
+    if (fractions->of_spring)
+        MSPRINGI_ASSERT(mspringi_fractions_of(fractions, spring).stiffness == value.stiffness &&
+                        mspringi_fractions_of(fractions, spring).damping == value.damping);
+    else
         fractions->values[spring] = value;
 }
 

@@ -5,6 +5,7 @@
 #ifndef MSPRINGI_NETWORK_H
 #define MSPRINGI_NETWORK_H
 
+#include "base/assert.h"
 #include "components/components.h"
 #include "explicit/graft.h"
 #include "kernels/kernels.h"
@@ -356,6 +357,7 @@ static inline bool mspringi_edits_have_link(const mspringi_edits *edits, uint64_
 
 /// The spring that was broken or restored in change number n.
 static inline mspring_id mspringi_edits_link(const mspringi_edits *edits, uint64_t n) {
+    MSPRINGI_ASSERT(edits->link_log && n < edits->links && mspringi_edits_have_link(edits, n));
     return edits->link_log[n & edits->link_mask];
 }
 

@@ -26,6 +26,11 @@ mspring_result mspringi_rests_reserve(mspringi_rests *rests, const mspringi_rest
 /// Give every lattice spring a rest length of its own, which mspringi_rests_at() may then set. Allocates, once.
 mspring_result mspringi_rests_separate(mspring_network *network);
 
+/// Whether several blocks have the rest length at a lattice place.
+static inline bool mspringi_rests_are_shared(const mspringi_rests *rests, mspringi_place place) {
+    return rests->of_block[place / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH)] < rests->shared_count;
+}
+
 /// The rest length at a lattice place.
 float *mspringi_rests_at(const mspringi_rests *rests, mspringi_place place);
 

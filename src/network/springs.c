@@ -64,6 +64,7 @@ void mspringi_place_set(mspring_network *network, mspringi_place place, float st
     const spring_records records = find_records(network, place);
     mspringi_alike_part(network, place);
     for (int i = 0; i < records.count; ++i) {
+        MSPRINGI_ASSERT(records.ends[i].damping || damping == 0.0f);
         *records.ends[i].stiffness = stiffness;
         if (records.ends[i].damping)
             *records.ends[i].damping = damping;
@@ -74,6 +75,9 @@ void mspringi_place_set(mspring_network *network, mspringi_place place, float st
 
 void mspringi_place_set_rest_length(mspring_network *network, mspringi_place place, float rest_length) {
     const spring_records records = find_records(network, place);
+    MSPRINGI_ASSERT(place >= network->topology.lattice_places ||
+                    !mspringi_rests_are_shared(&network->rests, place) ||
+                    *records.ends[0].rest_length == rest_length);
     for (int i = 0; i < records.count; ++i)
         *records.ends[i].rest_length = rest_length;
     if (network->mover)
@@ -84,6 +88,9 @@ void mspringi_place_copy(const mspring_network *from, mspringi_place had_place, 
                          mspringi_place place) {
     const spring_record had = find_records(from, had_place).ends[0];
     const spring_records records = find_records(to, place);
+    MSPRINGI_ASSERT(to->parts == from->parts);
+    MSPRINGI_ASSERT(place >= to->topology.lattice_places || !mspringi_rests_are_shared(&to->rests, place) ||
+                    *records.ends[0].rest_length == *had.rest_length);
     mspringi_alike_part(to, place);
     for (int i = 0; i < records.count; ++i) {
         const spring_record *record = &records.ends[i];
@@ -112,8 +119,10 @@ mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, ms
                                               mspringi_place place) {
     if (mspringi_spring_is_relative(network, spring))
         return mspringi_fractions_of(&network->fractions, spring);
-    if (!mspringi_place_is_live(network, place))
+    if (!mspringi_place_is_live(network, place)) {
+        MSPRINGI_ASSERT(network->kept);
         return network->kept[spring];
+    }
     const mspringi_spring_values values = mspringi_place_get(network, place);
     return (mspringi_relative){values.stiffness, values.damping};
 }

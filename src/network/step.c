@@ -250,6 +250,7 @@ static bool has_fallback(const mspring_network *network) {
 // each time, so that there is none to keep.
 static mspring_result attempt_implicitly(mspring_network *network, double dt) {
     const uint32_t substeps = network->substeps;
+    MSPRINGI_ASSERT(network->fallback && !network->implicit);
     mspringi_implicit_forget(network->fallback);
     network->implicit = network->fallback;
     network->substeps = 1;
@@ -343,8 +344,10 @@ mspring_result mspring_network_step(mspring_network *network, double dt) {
         result = mspringi_tasks_follow(network->tasks, &network->message);
     if (result != MSPRING_OK)
         return result;
+    const size_t used = network->memory.used;
     const mspringi_fp_state before = mspringi_fp_enter();
     result = step(network, dt);
     mspringi_fp_leave(before);
+    MSPRINGI_ASSERT(network->memory.used == used); // a step allocates nothing
     return result;
 }

@@ -36,6 +36,7 @@ static inline bool mspringi_sleep_is_whole(const mspring_network *network) {
 /// Whether a slot's island sleeps.
 static inline bool mspringi_slot_is_asleep(const mspring_network *network, size_t slot) {
     const mspringi_sleep *sleep = &network->sleep;
+    MSPRINGI_ASSERT(sleep->sleeping == 0 || sleep->is_mapped);
     return sleep->sleeping > 0 && sleep->sleepers[slot / MSPRINGI_WIDTH] >> slot % MSPRINGI_WIDTH & 1;
 }
 

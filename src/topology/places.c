@@ -182,6 +182,7 @@ void mspringi_places_destroy(mspringi_places *places, mspringi_memory *memory) {
 
 void mspringi_places_set(const mspringi_places *places, mspring_id spring, mspringi_place place) {
     const mspringi_place_run *run = &places->runs[places->run_count - 1];
+    MSPRINGI_ASSERT(run->kind == MSPRINGI_RUN_LISTED && spring >= run->first);
     places->listed[run->start[0] + (spring - run->first)] = place;
 }
 

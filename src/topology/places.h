@@ -10,6 +10,7 @@
 #ifndef MSPRINGI_PLACES_H
 #define MSPRINGI_PLACES_H
 
+#include "base/assert.h"
 #include "base/memory.h"
 #include "web.h"
 
@@ -123,6 +124,7 @@ static inline mspringi_place mspringi_places_at(const mspringi_places *places, m
     const mspringi_place_run *run = &places->runs[places->run_of_page[spring / MSPRINGI_PLACES_PAGE]];
     while (spring >= run[1].first)
         ++run;
+    MSPRINGI_ASSERT(run < places->runs + places->run_count); // there is such a spring
     const uint32_t i = spring - run->first;
     if (run->kind == MSPRINGI_RUN_LISTED)
         return places->listed[run->start[0] + i];
