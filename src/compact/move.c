@@ -4,6 +4,7 @@
 /// when it is complete it takes the first one's place.
 #include "move.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "contact/floor.h"
@@ -13,6 +14,7 @@
 #include "network/springs.h"
 #include "sleep/sleep.h"
 #include "stability/border.h"
+#include "store/store.h"
 
 /* ----------------------------------------------------------------------------------------------- the new parts */
 
@@ -39,20 +41,12 @@ static mspring_result make_rests(mspring_network *to, const mspring_network *fro
     return result;
 }
 
-static mspring_result make_fields(mspring_network *to, const mspring_network *from) {
+// What follows from the layout alone, and the forces of hooks.
+static mspring_result make_others(mspring_network *to, const mspring_network *from) {
     mspring_result result = MSPRING_OK;
-    const mspringi_forces *had = &from->forces;
-    if (had->held.x)
-        result = mspringi_field_reserve(to, &to->forces.held);
-    if (result == MSPRING_OK && had->base.x)
-        result = mspringi_field_reserve(to, &to->forces.base);
-    if (result == MSPRING_OK && had->driven.x)
-        result = mspringi_field_reserve(to, &to->forces.driven);
-    if (result == MSPRING_OK && from->hook_capacity > 0) {
-        to->hooks = mspringi_alloc(&to->memory, from->hook_capacity, sizeof *to->hooks);
-        if (!to->hooks)
-            return mspringi_fail(&to->message, MSPRING_ERROR_MEMORY, "no memory for %zu hooks", from->hook_count);
-    }
+    if (!mspringi_store_match_layout(to, from))
+        return mspringi_fail(&to->message, MSPRING_ERROR_MEMORY, "no memory to move %u particles",
+                             (unsigned)to->topology.particle_count);
     for (size_t i = 0; result == MSPRING_OK && i < from->hook_count; ++i) {
         to->hooks[i] = from->hooks[i];
         to->hooks[i].held = (mspringi_field){NULL, NULL};
@@ -71,15 +65,7 @@ static mspring_result make_strain(mspring_network *to, const mspring_network *fr
     return result;
 }
 
-static mspring_result make_components(mspring_network *to, const mspring_network *from) {
-    if (!from->components.number)
-        return MSPRING_OK;
-    to->components.root = mspringi_alloc(&to->memory, mspringi_slot_count(to), sizeof *to->components.root);
-    return to->components.root ? MSPRING_OK
-                               : mspringi_fail(&to->message, MSPRING_ERROR_MEMORY, "no memory for components");
-}
-
-// What the guard has learnt goes with the particles, see move_particles().
+// What the guard has learnt goes with the particles.
 static mspring_result make_looks(mspring_network *to, const mspring_network *from) {
     return from->looks ? mspringi_border_reserve(to) : MSPRING_OK;
 }
@@ -117,38 +103,13 @@ static void move_values(const float *from, float *to, const mspring_network *old
         to[there[p]] = from[here[p]];
 }
 
-static void move_particles(mspring_network *to, const mspring_network *from) {
-    const mspringi_state *s = &from->state, *b = &from->backup;
-    const float *const old[] = {s->x, s->y,  s->vx, s->vy,    s->low_x, s->low_y,          b->x,
-                                b->y, b->vx, b->vy, b->low_x, b->low_y, from->inverse_mass};
-    const mspringi_state *t = &to->state, *c = &to->backup;
-    float *const made[] = {t->x, t->y,  t->vx, t->vy,    t->low_x, t->low_y,        c->x,
-                           c->y, c->vx, c->vy, c->low_x, c->low_y, to->inverse_mass};
-    for (size_t i = 0; i < sizeof old / sizeof old[0]; ++i)
-        move_values(old[i], made[i], from, to);
-    if (from->looks)
-        move_values(from->looks, to->looks, from, to);
-    if (!from->forces.held_any)
-        return;
-    move_values(from->forces.held.x, to->forces.held.x, from, to);
-    move_values(from->forces.held.y, to->forces.held.y, from, to);
-}
-
 // Copy all that there is of a spring, from its place here to its place there, whatever is there.
 static void copy_spring(mspring_network *to, mspringi_place place, const mspring_network *from,
                         mspringi_place before) {
-    const uint16_t bit = (uint16_t)(1u << place % MSPRINGI_WIDTH);
-    uint16_t *live = &to->live[place / MSPRINGI_WIDTH];
     mspringi_place_copy(from, before, to, place);
-    *live = (uint16_t)(mspringi_place_is_live(from, before) ? *live | bit : *live & ~bit);
-    if (to->strain.stressed) {
-        uint16_t *stressed = &to->strain.stressed[place / MSPRINGI_WIDTH];
-        *stressed = (uint16_t)(mspringi_place_is_stressed(from, before) ? *stressed | bit : *stressed & ~bit);
-    }
-    if (to->strain.break_strain)
-        mspringi_strain_store(to, place, false, from->strain.break_strain[before]);
-    if (to->strain.stress_strain)
-        mspringi_strain_store(to, place, true, from->strain.stress_strain[before]);
+    mspringi_store_copy_spring(to, place, from, before);
+    if (to->strain.least)
+        to->strain.least[place] = fminf(to->strain.break_strain[place], to->strain.stress_strain[place]);
 }
 
 static void move_springs(mspring_network *to, const mspring_network *from) {
@@ -186,27 +147,10 @@ static void move_implicit(mspring_network *to, const mspring_network *from) {
 /* ----------------------------------------------------------------------------------------------- the exchange */
 
 // Free what lies by slot or by place, with the memory of whoever is left.
-static void free_layout(const mspring_network *network, mspringi_memory *memory) {
-    mspringi_layout_free(network, memory);
-    mspringi_free(memory, network->rests.of_block);
-    mspringi_free(memory, network->rests.lengths);
-    mspringi_free(memory, network->forces.held.x);
-    mspringi_free(memory, network->forces.base.x);
-    mspringi_free(memory, network->forces.driven.x);
+static void free_layout(mspring_network *network, mspringi_memory *memory) {
     for (size_t i = 0; network->hooks && i < network->hook_count; ++i)
         mspringi_free(memory, network->hooks[i].held.x);
-    mspringi_free(memory, network->hooks);
-    if (network->strain.least != network->strain.break_strain)
-        mspringi_free(memory, network->strain.least);
-    mspringi_free(memory, network->strain.break_strain);
-    mspringi_free(memory, network->strain.stress_strain);
-    mspringi_free(memory, network->strain.stressed);
-    mspringi_free(memory, network->strain.hits);
-    mspringi_free(memory, network->looks);
-    mspringi_free(memory, network->components.root);
-    mspringi_free(memory, network->extents.scratch);
-    mspringi_free(memory, network->extents.reversed);
-    mspringi_sleep_free(&network->sleep, memory);
+    mspringi_store_free_layout(network, memory);
     mspringi_floor_free_layout(network->floor, memory);
     mspringi_implicit_destroy(network->implicit, memory);
     mspringi_implicit_destroy(network->fallback, memory);
@@ -216,14 +160,9 @@ static void free_layout(const mspring_network *network, mspringi_memory *memory)
 static mspring_network without_layout(const mspring_network *network, const mspringi_topology *topology) {
     mspring_network to = *network;
     to.topology = *topology;
-    mspringi_layout_forget(&to);
+    mspringi_store_forget_layout(&to);
+    to.seams = (mspringi_seams){0};
     to.rests = (mspringi_rests){0};
-    to.forces.held = to.forces.base = to.forces.driven = (mspringi_field){NULL, NULL};
-    to.hooks = NULL;
-    to.strain = (mspringi_strain){.relax = network->strain.relax};
-    to.looks = NULL;
-    to.components.root = NULL;
-    to.extents = (mspringi_extents){0};
     mspringi_sleep_forget(&to.sleep);
     to.implicit = to.fallback = NULL;
     to.floor = NULL;
@@ -348,22 +287,12 @@ void mspringi_mover_drop(mspring_network *network) {
 
 // Take over what a mover has made. Its memory has been handed over.
 static void take_layout(mspring_network *to, const mspring_network *made) {
-    to->state = made->state;
-    to->backup = made->backup;
-    to->inverse_mass = made->inverse_mass;
-    to->alike = made->alike;
-    to->lattice_springs = made->lattice_springs;
-    to->chain_springs = made->chain_springs;
-    to->web_springs = made->web_springs;
-    to->packed = made->packed;
-    to->attached = made->attached;
-    to->carry = made->carry;
-    to->carry_rows = made->carry_rows;
-    to->seams = made->seams;
-    to->depth = made->depth;
-    to->live = made->live;
+    mspringi_store_take_layout(to, made);
+    to->alike.changes = made->alike.changes;
     to->rests = made->rests;
-    to->strain = made->strain;
+    to->seams = made->seams;
+    to->carry_rows = made->carry_rows;
+    to->depth = made->depth;
 }
 
 /* ------------------------------------------------------------------------------------------------- at once */
@@ -387,7 +316,6 @@ mspring_result mspringi_move(mspring_network *network, const mspringi_topology *
     mspring_result result = MSPRING_OK;
     if (mover) {
         take_layout(&to, &mover->to);
-        to.strain.relax = network->strain.relax;
         mspringi_free(&to.memory, mover->there);
         mspringi_free(&to.memory, mover->of_block);
         mspringi_free(&to.memory, mover);
@@ -396,17 +324,15 @@ mspring_result mspringi_move(mspring_network *network, const mspringi_topology *
         result = make_springs(&to, network);
     }
     if (result == MSPRING_OK)
-        result = make_fields(&to, network);
-    if (result == MSPRING_OK)
-        result = make_components(&to, network);
-    if (result == MSPRING_OK)
         result = make_looks(&to, network);
     if (result == MSPRING_OK)
+        result = make_others(&to, network);
+    if (result == MSPRING_OK)
         result = make_floor(&to, network);
-    if (result == MSPRING_OK && network->sleep.state)
-        result = mspringi_sleep_reserve(&to);
     if (result == MSPRING_OK) {
-        move_particles(&to, network);
+        mspringi_store_move_slots(&to, network);
+        if (network->looks)
+            move_values(network->looks, to.looks, network, &to);
         mspringi_sleep_move(&to, network);
         result = make_implicit(&to, network, tile_size);
         if (result == MSPRING_OK && network->fallback)
@@ -420,7 +346,7 @@ mspring_result mspringi_move(mspring_network *network, const mspringi_topology *
     }
     move_implicit(&to, network);
     mspringi_graft_forget(&to.graft);
-    const mspring_network old = *network;
+    mspring_network old = *network;
     *network = to;
     free_layout(&old, &network->memory);
     return MSPRING_OK;

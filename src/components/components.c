@@ -8,43 +8,25 @@
 #include "edits/events.h"
 #include "edits/growth.h"
 #include "roots.h"
-
-void mspringi_components_destroy(mspringi_components *components, mspringi_memory *memory) {
-    mspringi_free(memory, components->number);
-    mspringi_free(memory, components->old);
-    mspringi_free(memory, components->head);
-    mspringi_free(memory, components->old_head);
-    mspringi_free(memory, components->size);
-    mspringi_free(memory, components->root);
-    *components = (mspringi_components){0};
-}
+#include "store/store.h"
 
 static mspring_result reserve(mspring_network *network) {
     if (network->components.number)
         return MSPRING_OK;
-    mspringi_memory *memory = &network->memory;
     const size_t particles = network->topology.reserve.particle_end;
-    mspringi_components made = {
-        .number = mspringi_alloc(memory, particles, sizeof *made.number),
-        .old = mspringi_alloc(memory, particles, sizeof *made.old),
-        .head = mspringi_alloc(memory, particles, sizeof *made.head),
-        .old_head = mspringi_alloc(memory, particles, sizeof *made.old_head),
-        .size = mspringi_alloc(memory, particles, sizeof *made.size),
-        .root = mspringi_alloc(memory, mspringi_slot_count(network), sizeof *made.root),
-    };
-    mspring_result result = MSPRING_OK;
-    if (!made.number || !made.old || !made.head || !made.old_head || !made.size || !made.root)
-        result = mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
-                               "no memory for the components of %zu particles", particles);
-    if (result == MSPRING_OK)
-        result = mspringi_incidence_reserve(network);
+    mspringi_components *made = &network->components;
+    const bool is_there = mspringi_store_reserve(network, MSPRINGI_STORE_COMPONENTS) &&
+                          mspringi_store_reserve(network, MSPRINGI_STORE_ROOT);
+    mspring_result result =
+        is_there ? mspringi_incidence_reserve(network)
+                 : mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                                 "no memory for the components of %zu particles", particles);
     for (size_t p = 0; result == MSPRING_OK && p < particles; ++p)
-        // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): they are there, or result says otherwise
-        made.number[p] = made.old[p] = MSPRING_NONE;
-    if (result == MSPRING_OK)
-        network->components = made;
-    else
-        mspringi_components_destroy(&made, memory);
+        made->number[p] = made->old[p] = MSPRING_NONE;
+    if (result != MSPRING_OK) {
+        mspringi_store_free(network, MSPRINGI_STORE_COMPONENTS);
+        mspringi_store_free(network, MSPRINGI_STORE_ROOT);
+    }
     return result;
 }
 

@@ -20,6 +20,4 @@ typedef struct mspringi_components {
     uint64_t seen, seen_growth; ///< edits.links and edits.growth that they account for
 } mspringi_components;
 
-void mspringi_components_destroy(mspringi_components *components, mspringi_memory *memory);
-
 #endif

@@ -9,33 +9,14 @@
 #include "implicit/implicit.h"
 #include "network/springs.h"
 #include "sleep/sleep.h"
+#include "store/store.h"
 #include "topology/spare.h"
 
 /* ------------------------------------------------------------------------------------------------------- memory */
 
-static uint8_t *make_marks(mspring_network *network, uint32_t first_spare, uint32_t end) {
-    uint8_t *marks = mspringi_alloc(&network->memory, end, sizeof *marks);
-    if (marks) {
-        memset(marks, MSPRINGI_THERE, first_spare);
-        memset(marks + first_spare, MSPRINGI_SPARE, end - first_spare);
-    }
-    return marks;
-}
-
-static bool reserve_ends(mspring_network *network) {
-    mspringi_growth *g = &network->growth;
-    const mspringi_topology *t = &network->topology;
-    const size_t ends = (size_t)2 * mspringi_spare_springs(t);
-    if (!g->first_end)
-        g->first_end = mspringi_alloc(&network->memory, t->reserve.particle_end, sizeof *g->first_end);
-    if (!g->next_end)
-        g->next_end = mspringi_alloc(&network->memory, ends, sizeof *g->next_end);
-    if (!g->particle_of_end)
-        g->particle_of_end = mspringi_alloc(&network->memory, ends, sizeof *g->particle_of_end);
-    if (!g->first_end || !g->next_end || !g->particle_of_end)
-        return false;
-    memset(g->first_end, 0xff, t->reserve.particle_end * sizeof *g->first_end);
-    return true;
+static void fill_marks(uint8_t *marks, uint32_t first_spare, uint32_t end) {
+    memset(marks, MSPRINGI_THERE, first_spare);
+    memset(marks + first_spare, MSPRINGI_SPARE, end - first_spare);
 }
 
 mspring_result mspringi_growth_reserve(mspring_network *network) {
@@ -52,16 +33,18 @@ mspring_result mspringi_growth_reserve(mspring_network *network) {
         result = mspringi_graft_reserve(network);
     if (result != MSPRING_OK)
         return result;
-    if (!g->springs)
-        g->springs = make_marks(network, reserve->first_spring, reserve->spring_end);
+    if ((has_spare && !mspringi_store_reserve(network, MSPRINGI_STORE_ENDS)) ||
+        !mspringi_store_reserve(network, MSPRINGI_STORE_MARKS))
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                             "no memory for what is added to and removed from %u particles",
+                             (unsigned)reserve->particle_end);
+    if (has_spare)
+        memset(g->first_end, 0xff, reserve->particle_end * sizeof *g->first_end);
+    fill_marks(g->particles, reserve->first_particle, reserve->particle_end);
+    fill_marks(g->springs, reserve->first_spring, reserve->spring_end);
     g->lowest_particle = reserve->first_particle;
     g->lowest_spring = reserve->first_spring;
-    if (g->springs && (!has_spare || reserve_ends(network)))
-        g->particles = make_marks(network, reserve->first_particle, reserve->particle_end);
-    return g->particles ? MSPRING_OK
-                        : mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
-                                        "no memory for what is added to and removed from %u particles",
-                                        (unsigned)reserve->particle_end);
+    return MSPRING_OK;
 }
 
 /* -------------------------------------------------------------------------------------------------------- slots */
@@ -177,9 +160,13 @@ void mspringi_growth_unlink(mspring_network *network, mspring_id spring) {
 /* ------------------------------------------------------------------------------------ the springs of a particle */
 
 mspring_result mspringi_incidence_reserve(mspring_network *network) {
-    return network->incidence.first ? MSPRING_OK
-                                    : mspringi_incidence_create(&network->incidence, &network->topology,
-                                                                &network->memory, &network->message);
+    if (network->incidence.first)
+        return MSPRING_OK;
+    if (!mspringi_store_reserve(network, MSPRINGI_STORE_INCIDENCE))
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to list %u springs by particle",
+                             (unsigned)network->topology.reserve.first_spring);
+    mspringi_incidence_fill(&network->incidence, &network->topology);
+    return MSPRING_OK;
 }
 
 mspringi_around mspringi_around_begin(const mspring_network *network, mspring_id particle) {

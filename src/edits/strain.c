@@ -12,6 +12,7 @@
 #include "network/springs.h"
 #include "selection.h"
 #include "sleep/sleep.h"
+#include "store/store.h"
 
 /* ---------------------------------------------------------------------------------------------------- the pass */
 
@@ -19,6 +20,11 @@ static float stretch_of(const mspring_network *network, const mspringi_spring_va
     const mspringi_state *s = &network->state;
     const float dx = s->x[values->tip] - s->x[values->base], dy = s->y[values->tip] - s->y[values->base];
     return fabsf(sqrtf(dx * dx + dy * dy) - values->rest_length);
+}
+
+// Until a spring is to be stressed, the least strain that anything happens at is the one that it breaks at.
+static const float *least_of(const mspringi_strain *strain) {
+    return strain->least ? strain->least : strain->break_strain;
 }
 
 static bool has_bit(const uint16_t *words, mspringi_place place) {
@@ -39,7 +45,7 @@ static uint32_t leftover_strain(const mspring_network *network, mspringi_strain_
                 continue;
             const mspringi_spring_values values = mspringi_place_get(network, place);
             if (has_bit(network->live, place) &&
-                stretch_of(network, &values) > strain->least[place] * values.rest_length)
+                stretch_of(network, &values) > least_of(strain)[place] * values.rest_length)
                 bits |= 1u << (i - first);
         }
         if (bits)
@@ -108,7 +114,7 @@ void mspringi_strain_pass(mspring_network *network) {
         .lattice_first = t->lattice_first,
         .chain_first = t->chain_first,
         .chain_word = t->lattice_places / MSPRINGI_WIDTH,
-        .least = strain->least,
+        .least = least_of(strain),
         .live = network->live,
         .stressed = strain->stressed,
     };
@@ -128,54 +134,40 @@ void mspringi_strain_pass(mspring_network *network) {
 
 /* -------------------------------------------------------------------------------------------------- thresholds */
 
-static float *allocate_thresholds(mspring_network *network) {
+static void set_infinite(const mspring_network *network, float *thresholds) {
     const size_t count = mspringi_place_words(&network->topology) * MSPRINGI_WIDTH;
-    float *thresholds = mspringi_alloc(&network->memory, count, sizeof *thresholds);
-    for (size_t place = 0; thresholds && place < count; ++place)
+    for (size_t place = 0; place < count; ++place)
         thresholds[place] = INFINITY;
-    return thresholds;
 }
 
-// Until a spring is to be stressed, the least strain that anything happens at is the one that it breaks at.
 mspring_result mspringi_strain_reserve(mspring_network *network) {
-    mspringi_strain *strain = &network->strain;
+    const mspringi_strain *strain = &network->strain;
     if (strain->break_strain)
         return MSPRING_OK;
-    const size_t words = mspringi_place_words(&network->topology);
     mspring_result result = mspringi_breaking_reserve(network);
     if (result == MSPRING_OK)
         result = mspringi_incidence_reserve(network);
     if (result != MSPRING_OK)
         return result;
-    if (!strain->stressed)
-        strain->stressed = mspringi_alloc(&network->memory, words, sizeof *strain->stressed);
-    if (!strain->hits)
-        strain->hits = mspringi_alloc(&network->memory, words, sizeof *strain->hits);
-    if (strain->stressed && strain->hits)
-        strain->least = strain->break_strain = allocate_thresholds(network);
-    if (!strain->break_strain)
+    if (!mspringi_store_reserve(network, MSPRINGI_STORE_STRAIN))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to watch the strain of %u springs",
                              (unsigned)network->topology.spring_count);
+    set_infinite(network, strain->break_strain);
     mspringi_mover_drop(network);
     return MSPRING_OK;
 }
 
 mspring_result mspringi_strain_reserve_stress(mspring_network *network) {
-    mspringi_strain *strain = &network->strain;
+    const mspringi_strain *strain = &network->strain;
     if (strain->stress_strain)
         return MSPRING_OK;
-    const size_t count = mspringi_place_words(&network->topology) * MSPRINGI_WIDTH;
-    float *stress_strain = allocate_thresholds(network), *least = allocate_thresholds(network);
-    if (!stress_strain || !least) {
-        mspringi_free(&network->memory, stress_strain);
-        mspringi_free(&network->memory, least);
+    if (!mspringi_store_reserve(network, MSPRINGI_STORE_STRESS))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for the stress strains of %u springs",
                              (unsigned)network->topology.spring_count);
-    }
-    memcpy(least, strain->break_strain, count * sizeof *least);
-    strain->stress_strain = stress_strain;
-    strain->least = least;
+    set_infinite(network, strain->stress_strain);
+    memcpy(strain->least, strain->break_strain,
+           mspringi_place_words(&network->topology) * MSPRINGI_WIDTH * sizeof *strain->least);
     mspringi_mover_drop(network);
     return MSPRING_OK;
 }

@@ -2,28 +2,16 @@
 #include "graft.h"
 
 #include "network/springs.h"
+#include "store/store.h"
 #include "topology/analysis.h"
 #include "topology/spare.h"
 
 mspring_result mspringi_graft_reserve(mspring_network *network) {
     mspringi_graft *graft = &network->graft;
-    mspringi_memory *memory = &network->memory;
     const uint32_t springs = mspringi_spare_springs(&network->topology);
     const uint32_t groups = (uint32_t)(((uint64_t)2 * springs + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH);
     const size_t capacity = (size_t)groups * MSPRINGI_WIDTH;
-    graft->web.attached_slot = mspringi_alloc(memory, capacity, sizeof *graft->web.attached_slot);
-    graft->web.first_rung = mspringi_alloc(memory, (size_t)groups + 1, sizeof *graft->web.first_rung);
-    graft->web.neighbour = mspringi_alloc(memory, capacity, sizeof *graft->web.neighbour);
-    graft->springs = mspringi_alloc(memory, capacity, sizeof *graft->springs);
-    graft->records = mspringi_alloc(memory, capacity * network->parts, sizeof *graft->records);
-    graft->packed = mspringi_alloc(memory, 4 * capacity, sizeof *graft->packed);
-    graft->pulls = mspringi_alloc(memory, 2 * capacity, sizeof *graft->pulls);
-    graft->keys = mspringi_alloc(memory, capacity, sizeof *graft->keys);
-    graft->scratch = mspringi_alloc(memory, capacity, sizeof *graft->scratch);
-    graft->node_of_end = mspringi_alloc(memory, capacity, sizeof *graft->node_of_end);
-    if (!graft->web.attached_slot || !graft->web.first_rung || !graft->web.neighbour || !graft->springs ||
-        !graft->records || !graft->packed || !graft->pulls || !graft->keys || !graft->scratch ||
-        !graft->node_of_end)
+    if (!mspringi_store_reserve(network, MSPRINGI_STORE_GRAFT))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for %u spare springs",
                              (unsigned)springs);
     for (uint32_t group = 0; group <= groups; ++group)

@@ -9,11 +9,9 @@
 #define ENTRIES 2048u
 #define PROBES 4u
 
-void mspringi_alike_begin(mspringi_alike *alike, const mspringi_topology *topology, mspringi_memory *memory) {
-    const uint32_t blocks = topology->lattice_blocks;
-    *alike = (mspringi_alike){.of_block = mspringi_alloc(memory, blocks, sizeof *alike->of_block),
-                              .readers = mspringi_alloc(memory, blocks, sizeof *alike->readers)};
-    for (uint32_t b = 0; alike->of_block && b < blocks; ++b)
+void mspringi_alike_begin(mspringi_alike *alike, uint32_t blocks) {
+    alike->changes = 0;
+    for (uint32_t b = 0; b < blocks; ++b)
         alike->of_block[b] = b;
 }
 

@@ -10,8 +10,8 @@
 
 #include "network.h"
 
-/// Allocate what says which record is read for each block: its own at first. On error some of it is NULL.
-void mspringi_alike_begin(mspringi_alike *alike, const mspringi_topology *topology, mspringi_memory *memory);
+/// For each block its own record is read at first.
+void mspringi_alike_begin(mspringi_alike *alike, uint32_t blocks);
 
 /// A block's record is about to change: have it read for no other, and be read for it.
 void mspringi_alike_part_block(mspring_network *network, uint32_t block);

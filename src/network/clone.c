@@ -1,10 +1,11 @@
 /// A copy of a network: all its blocks of memory, and then every pointer from one block into another.
 ///
-/// Whoever adds such a pointer to what a network holds adds it here. One that is forgotten leads back into the
-/// original, which test_clone finds by looking at every word of a clone.
+/// Those of the network itself are in store/network.def, those of its topologies, floor and solvers here. One that
+/// is forgotten leads back into the original, which test_clone finds by looking at every word of a clone.
 #include "contact/floor.h"
 #include "implicit/implicit.h"
 #include "network.h"
+#include "store/store.h"
 
 /// The original's memory and the copy's.
 typedef struct moving {
@@ -221,101 +222,12 @@ static void move_floor(const moving *m, mspringi_floor *floor) {
     move_field(m, &floor->former);
 }
 
-static void move_parameters(const moving *m, mspring_network *n) {
-    MOVE(n->inverse_mass);
-    MOVE(n->looks);
-    MOVE(n->mass);
-    MOVE(n->inverse_mass_scale);
-    MOVE(n->spring_mass);
-    MOVE(n->rests.lengths);
-    MOVE(n->rests.of_block);
-    MOVE(n->lattice_springs);
-    MOVE(n->alike.of_block);
-    MOVE(n->alike.readers);
-    MOVE(n->chain_springs);
-    MOVE(n->web_springs);
-    MOVE(n->packed);
-    MOVE(n->attached);
-    MOVE(n->fractions.values);
-    MOVE(n->fractions.of_spring);
-    MOVE(n->live);
-    MOVE(n->kept);
-    MOVE(n->carry);
-    MOVE(n->seams.values);
-    MOVE(n->seams.spans);
-    MOVE(n->seams.borders);
-    MOVE(n->seams.weights);
-}
-
-static void move_records(const moving *m, mspring_network *n) {
-    MOVE(n->edits.link_log);
-    MOVE(n->ramps.list);
-    MOVE(n->strain.break_strain);
-    MOVE(n->strain.stress_strain);
-    MOVE(n->strain.least);
-    MOVE(n->strain.stressed);
-    MOVE(n->strain.hits);
-    MOVE(n->events.ring);
-    MOVE(n->components.number);
-    MOVE(n->components.old);
-    MOVE(n->components.head);
-    MOVE(n->components.old_head);
-    MOVE(n->components.size);
-    MOVE(n->components.root);
-    MOVE(n->sleep.island);
-    MOVE(n->sleep.lowest);
-    MOVE(n->sleep.still);
-    MOVE(n->sleep.kept);
-    MOVE(n->sleep.mark);
-    MOVE(n->sleep.scratch);
-    MOVE(n->sleep.block_island);
-    MOVE(n->sleep.free_mass);
-    MOVE(n->sleep.sleepers);
-    MOVE(n->sleep.swept);
-    MOVE(n->sleep.share);
-    MOVE(n->sleep.runs);
-    MOVE(n->sleep.state);
-    MOVE(n->sleep.inverse_mass);
-    MOVE(n->sleep.held);
-    move_field(m, &n->sleep.force);
-    MOVE(n->extents.scratch);
-    MOVE(n->extents.reversed);
-    MOVE(n->incidence.first);
-    MOVE(n->incidence.springs);
-    MOVE(n->growth.particles);
-    MOVE(n->growth.springs);
-    MOVE(n->growth.first_end);
-    MOVE(n->growth.next_end);
-    MOVE(n->growth.particle_of_end);
-    MOVE(n->graft.web.attached_slot);
-    MOVE(n->graft.web.first_rung);
-    MOVE(n->graft.web.neighbour);
-    MOVE(n->graft.springs);
-    MOVE(n->graft.records);
-    MOVE(n->graft.packed);
-    MOVE(n->graft.pulls);
-    MOVE(n->graft.keys);
-    MOVE(n->graft.scratch);
-    MOVE(n->graft.node_of_end);
-}
-
-static void move_forces(const moving *m, mspring_network *n) {
-    move_field(m, &n->forces.held);
-    move_field(m, &n->forces.base);
-    move_field(m, &n->forces.driven);
-    MOVE(n->hooks);
-    for (size_t i = 0; i < n->hook_count; ++i)
-        move_field(m, &n->hooks[i].held);
-}
-
 static void move_network(const moving *m, mspring_network *n) {
     move_topology(m, &n->topology);
     move_topology(m, &n->whole);
-    move_state(m, &n->state);
-    move_state(m, &n->backup);
-    move_parameters(m, n);
-    move_records(m, n);
-    move_forces(m, n);
+    mspringi_store_relocate(n, m->from, m->to);
+    for (size_t i = 0; i < n->hook_count; ++i)
+        move_field(m, &n->hooks[i].held);
     MOVE(n->floor);
     if (n->floor)
         move_floor(m, n->floor);

@@ -11,6 +11,7 @@
 
 #include "base/cpu.h"
 #include "springs.h"
+#include "store/store.h"
 
 /// What is computed in one pass, into one plane or two.
 typedef enum measure { LENGTHS, STRAINS, LENGTHS_AND_STRAINS, DIRECTIONS } measure;
@@ -39,11 +40,7 @@ static mspring_result reserve(mspring_network *network) {
     mspringi_extents *made = &network->extents;
     if (made->reversed)
         return MSPRING_OK;
-    if (!made->scratch)
-        made->scratch = mspringi_alloc(&network->memory, PLANE_COUNT * plane_size(network), sizeof *made->scratch);
-    if (made->scratch)
-        made->reversed = mspringi_alloc(&network->memory, mspringi_place_words(t), sizeof *made->reversed);
-    if (!made->reversed)
+    if (!mspringi_store_reserve(network, MSPRINGI_STORE_EXTENTS))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to measure %u springs at once",
                              (unsigned)t->spring_count);
     mspringi_place_reader reader;

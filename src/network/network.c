@@ -18,6 +18,7 @@
 #include "springs.h"
 #include "stability/border.h"
 #include "stability/guard.h"
+#include "store/store.h"
 
 /* --------------------------------------------------------------------------------------------------- checks */
 
@@ -93,19 +94,6 @@ mspring_result mspringi_carry_reserve(mspring_network *network) {
     return mspringi_seams_reserve(network);
 }
 
-static bool reserve_state(mspring_network *network, mspringi_state *state) {
-    const size_t slots = mspringi_slot_count(network);
-    float *values = mspringi_alloc(&network->memory, MSPRINGI_STATE_ARRAYS * slots, sizeof *values);
-    if (values)
-        *state = (mspringi_state){.x = values,
-                                  .y = values + slots,
-                                  .vx = values + 2 * slots,
-                                  .vy = values + 3 * slots,
-                                  .low_x = values + 4 * slots,
-                                  .low_y = values + 5 * slots};
-    return values != NULL;
-}
-
 // What the springs have in common decides what a network has to hold for them.
 static void look_at_springs(const mspring_builder *builder, bool *damped, bool *relative) {
     *damped = *relative = false;
@@ -115,52 +103,16 @@ static void look_at_springs(const mspring_builder *builder, bool *damped, bool *
     }
 }
 
-static bool reserve_particles(mspring_network *network) {
-    network->inverse_mass =
-        mspringi_alloc(&network->memory, mspringi_slot_count(network), sizeof *network->inverse_mass);
-    return network->inverse_mass && reserve_state(network, &network->state);
-}
-
-static bool reserve_backup(mspring_network *network) {
-    return reserve_state(network, &network->backup);
-}
-
-static bool reserve_rows(mspring_network *network) {
-    const mspringi_topology *t = &network->topology;
-    mspringi_memory *memory = &network->memory;
-    const size_t parts = network->parts;
-    mspringi_alike_begin(&network->alike, t, memory);
-    network->lattice_springs =
-        mspringi_alloc(memory, (parts - 1) * t->lattice_places, sizeof *network->lattice_springs);
-    network->chain_springs =
-        mspringi_alloc(memory, parts * (t->chain_places - t->lattice_places), sizeof *network->chain_springs);
-    network->live = mspringi_alloc(memory, mspringi_place_words(t), sizeof *network->live);
-    return network->alike.of_block && network->alike.readers && network->lattice_springs &&
-           network->chain_springs && network->live;
-}
-
-static bool reserve_web(mspring_network *network) {
-    const mspringi_topology *t = &network->topology;
-    mspringi_memory *memory = &network->memory;
-    const size_t parts = network->parts;
-    const size_t rungs =
-        (t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0) +
-        ((size_t)(t->leftover_capacity - t->woven_count) + t->parked_count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
-    network->web_springs = mspringi_alloc(memory, parts * rungs * MSPRINGI_WIDTH, sizeof *network->web_springs);
-    network->packed =
-        mspringi_alloc(memory, (size_t)8 * t->web.group_count * MSPRINGI_WIDTH, sizeof *network->packed);
-    network->attached = mspringi_alloc(memory, (size_t)2 * t->web.attached_count, sizeof *network->attached);
-    return network->web_springs && network->packed && network->attached;
-}
-
 mspring_result mspringi_layout_reserve_part(mspring_network *network, uint32_t part) {
-    static bool (*const reserve[MSPRINGI_LAYOUT_PARTS])(mspring_network *) = {reserve_particles, reserve_backup,
-                                                                              reserve_rows, reserve_web};
+    static const mspringi_group groups[MSPRINGI_LAYOUT_PARTS] = {MSPRINGI_STORE_PARTICLES, MSPRINGI_STORE_BACKUP,
+                                                                 MSPRINGI_STORE_ROWS, MSPRINGI_STORE_WEB};
     const mspringi_topology *t = &network->topology;
-    if (!reserve[part](network))
+    if (!mspringi_store_reserve(network, groups[part]))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for a network of %u particles and %u springs", (unsigned)t->particle_count,
                              (unsigned)t->spring_count);
+    if (groups[part] == MSPRINGI_STORE_ROWS)
+        mspringi_alike_begin(&network->alike, t->lattice_blocks);
     if (part + 1 < MSPRINGI_LAYOUT_PARTS)
         return MSPRING_OK;
     network->depth = mspringi_explicit_depth(t, network->parts);
@@ -172,32 +124,6 @@ mspring_result mspringi_layout_reserve(mspring_network *network) {
     for (uint32_t part = 0; result == MSPRING_OK && part < MSPRINGI_LAYOUT_PARTS; ++part)
         result = mspringi_layout_reserve_part(network, part);
     return result;
-}
-
-void mspringi_layout_free(const mspring_network *network, mspringi_memory *memory) {
-    mspringi_free(memory, network->state.x);
-    mspringi_free(memory, network->backup.x);
-    mspringi_free(memory, network->inverse_mass);
-    mspringi_free(memory, network->alike.of_block);
-    mspringi_free(memory, network->alike.readers);
-    mspringi_free(memory, network->lattice_springs);
-    mspringi_free(memory, network->chain_springs);
-    mspringi_free(memory, network->web_springs);
-    mspringi_free(memory, network->packed);
-    mspringi_free(memory, network->attached);
-    mspringi_free(memory, network->carry);
-    mspringi_seams_free(&network->seams, memory);
-    mspringi_free(memory, network->live);
-}
-
-void mspringi_layout_forget(mspring_network *network) {
-    network->state = network->backup = (mspringi_state){0};
-    network->inverse_mass = NULL;
-    network->alike = (mspringi_alike){0};
-    network->lattice_springs = network->chain_springs = network->web_springs = NULL;
-    network->packed = network->attached = network->carry = NULL;
-    network->seams = (mspringi_seams){0};
-    network->live = NULL;
 }
 
 static mspring_result make_reserve(mspringi_reserve *reserve, const mspring_builder *builder,
@@ -218,8 +144,7 @@ static mspring_result make_reserve(mspringi_reserve *reserve, const mspring_buil
 
 static mspring_result allocate(mspring_network *network) {
     const mspringi_topology *t = &network->topology;
-    network->mass = mspringi_alloc(&network->memory, t->reserve.particle_end, sizeof *network->mass);
-    if (!network->mass)
+    if (!mspringi_store_reserve(network, MSPRINGI_STORE_MASS))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for %u particles and %u springs",
                              (unsigned)t->particle_count, (unsigned)t->spring_count);
     return mspringi_layout_reserve(network);

@@ -150,7 +150,7 @@ typedef struct mspringi_events {
 /// What springs break and are stressed at, by place; NULL as long as none does.
 typedef struct mspringi_strain {
     float *break_strain, *stress_strain;
-    float *least;              ///< the smaller of the two; break_strain itself as long as that is alone
+    float *least;              ///< the smaller of the two; NULL as long as break_strain is alone
     uint16_t *stressed;        ///< [places / MSPRINGI_WIDTH] a bit for each place
     mspringi_strain_hit *hits; ///< [places / MSPRINGI_WIDTH] for the pass to write to
     bool breaks, stresses;     ///< a threshold of this kind has been finite: there is something to save
@@ -257,7 +257,7 @@ typedef struct mspringi_extents {
     uint16_t *reversed; ///< [place words] a bit for each place: 1 where its base is the end with the higher id
 } mspringi_extents;
 
-/// A pointer added here, or to what hangs on it, goes into clone.c, too.
+/// An array that is added here goes into store/network.def, a pointer in what hangs on it into clone.c.
 struct mspring_network {
     mspringi_memory memory;       ///< the network itself and all that it holds, but for
     mspringi_memory tasks_memory; ///< what its workers are, which a copy of the network has none of
@@ -392,10 +392,6 @@ mspring_result mspringi_layout_reserve(mspring_network *network);
 /// The same part by part: all of them in their order.
 #define MSPRINGI_LAYOUT_PARTS 4u
 mspring_result mspringi_layout_reserve_part(mspring_network *network, uint32_t part);
-/// Free that from this memory, or forget it.
-void mspringi_layout_free(const mspring_network *network, mspringi_memory *memory);
-void mspringi_layout_forget(mspring_network *network);
-
 /// Allocate a field of all slots, zeroed; leaves it alone if it is there.
 mspring_result mspringi_field_reserve(mspring_network *network, mspringi_field *field);
 

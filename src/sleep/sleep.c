@@ -8,55 +8,20 @@
 #include <math.h>
 #include <string.h>
 
+#include "edits/growth.h"
 #include "implicit/implicit.h"
+#include "store/store.h"
 
 /* ---------------------------------------------------------------------------------------------------- memory */
 
 mspring_result mspringi_sleep_reserve(mspring_network *network) {
-    mspringi_sleep *s = &network->sleep;
-    mspringi_memory *memory = &network->memory;
-    const mspringi_topology *t = &network->topology;
-    const size_t slots = mspringi_slot_count(network), particles = t->reserve.particle_end;
-    if (s->state && s->share)
+    if (network->sleep.state)
         return MSPRING_OK;
-    mspringi_sleep_free(s, memory);
-    mspringi_sleep_forget(s);
-    s->island = mspringi_alloc(memory, slots, sizeof *s->island);
-    s->lowest = mspringi_alloc(memory, particles, sizeof *s->lowest);
-    s->still = mspringi_alloc(memory, particles, sizeof *s->still);
-    s->kept = mspringi_alloc(memory, particles, sizeof *s->kept);
-    s->mark = mspringi_alloc(memory, particles, sizeof *s->mark);
-    s->scratch = mspringi_alloc(memory, slots, sizeof *s->scratch);
-    s->block_island = mspringi_alloc(memory, t->block_count, sizeof *s->block_island);
-    s->free_mass = mspringi_alloc(memory, slots, sizeof *s->free_mass);
-    s->sleepers = mspringi_alloc(memory, t->block_count, sizeof *s->sleepers);
-    s->swept = mspringi_alloc(memory, t->block_count, sizeof *s->swept);
-    s->share = mspringi_alloc(memory, t->strip_count, sizeof *s->share);
-    s->runs = mspringi_alloc(memory, t->span_count, sizeof *s->runs);
-    s->state = mspringi_alloc(memory, MSPRINGI_STATE_ARRAYS * slots, sizeof *s->state);
-    s->inverse_mass = mspringi_alloc(memory, slots, sizeof *s->inverse_mass);
-    s->held = mspringi_alloc(memory, 4 * slots, sizeof *s->held);
-    mspring_result result = mspringi_field_reserve(network, &s->force);
-    if (result == MSPRING_OK &&
-        !(s->island && s->lowest && s->still && s->kept && s->mark && s->scratch && s->block_island &&
-          s->free_mass && s->sleepers && s->swept && s->share && s->runs && s->state && s->inverse_mass && s->held))
-        result =
-            mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for the sleep of %zu slots", slots);
-    if (result == MSPRING_OK && !network->incidence.first)
-        result = mspringi_incidence_create(&network->incidence, t, memory, &network->message);
-    if (result != MSPRING_OK) {
-        mspringi_sleep_free(s, memory);
-        mspringi_sleep_forget(s);
-    }
+    mspring_result result = mspringi_incidence_reserve(network);
+    if (result == MSPRING_OK && !mspringi_store_reserve(network, MSPRINGI_STORE_SLEEP))
+        result = mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for the sleep of %zu slots",
+                               mspringi_slot_count(network));
     return result;
-}
-
-void mspringi_sleep_free(const mspringi_sleep *s, mspringi_memory *memory) {
-    void *const blocks[] = {s->island,       s->lowest,       s->still,    s->kept,   s->mark,  s->scratch,
-                            s->block_island, s->free_mass,    s->sleepers, s->swept,  s->share, s->runs,
-                            s->state,        s->inverse_mass, s->held,     s->force.x};
-    for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; ++i)
-        mspringi_free(memory, blocks[i]);
 }
 
 void mspringi_sleep_forget(mspringi_sleep *s) {

@@ -19,7 +19,6 @@ typedef enum mspringi_share {
 
 /// Allocate what a network that may sleep needs, unless it is there.
 mspring_result mspringi_sleep_reserve(mspring_network *network);
-void mspringi_sleep_free(const mspringi_sleep *sleep, mspringi_memory *memory);
 /// Forget what lies by slot, which was freed or is another's.
 void mspringi_sleep_forget(mspringi_sleep *sleep);
 /// Have what sleeps in another network of the same particles and springs sleep in this one, which has the same

@@ -14,8 +14,7 @@ typedef struct mspringi_incidence {
     uint32_t *springs; ///< [2 * springs]
 } mspringi_incidence;
 
-mspring_result mspringi_incidence_create(mspringi_incidence *incidence, const mspringi_topology *topology,
-                                         mspringi_memory *memory, mspringi_message *message);
-void mspringi_incidence_destroy(mspringi_incidence *incidence, mspringi_memory *memory);
+/// List a topology's springs in arrays that are there, zeroed.
+void mspringi_incidence_fill(const mspringi_incidence *incidence, const mspringi_topology *topology);
 
 #endif

@@ -1,0 +1,33 @@
+/// What is done to all arrays of a struct alike.
+#include "columns.h"
+
+#include <string.h>
+
+void *mspringi_column_get(const mspringi_column *column, const void *owner) {
+    void *array;
+    memcpy(&array, (const char *)owner + column->offset, sizeof array);
+    return array;
+}
+
+void mspringi_column_set(const mspringi_column *column, void *owner, void *array) {
+    memcpy((char *)owner + column->offset, &array, sizeof array);
+}
+
+void mspringi_columns_free(mspringi_columns columns, void *owner, mspringi_memory *memory) {
+    for (size_t i = 0; i < columns.count; ++i) {
+        const mspringi_column *c = &columns.list[i];
+        if (c->kind == MSPRINGI_ARRAY || c->kind == MSPRINGI_PLANES)
+            mspringi_free(memory, mspringi_column_get(c, owner));
+        if (c->kind != MSPRINGI_GROUP)
+            mspringi_column_set(c, owner, NULL);
+    }
+}
+
+void mspringi_columns_relocate(mspringi_columns columns, void *owner, const mspringi_memory *from,
+                               const mspringi_memory *to) {
+    for (size_t i = 0; i < columns.count; ++i) {
+        const mspringi_column *c = &columns.list[i];
+        if (c->kind != MSPRINGI_GROUP)
+            mspringi_column_set(c, owner, mspringi_memory_moved(from, to, mspringi_column_get(c, owner)));
+    }
+}

@@ -1,0 +1,192 @@
+/// What is done to all arrays of a network alike.
+#include "store.h"
+
+#include <string.h>
+
+#include "base/columns.h"
+#include "topology/spare.h"
+
+/// Elements of an array that its owner reserves.
+#define UNKNOWN SIZE_MAX
+
+#define STATE(member)                                                                                              \
+    PLANES(member.x, MSPRINGI_STATE_ARRAYS)                                                                        \
+    VIEW(member.y, slots)                                                                                          \
+    VIEW(member.vx, 2 * slots)                                                                                     \
+    VIEW(member.vy, 3 * slots)                                                                                     \
+    VIEW(member.low_x, 4 * slots)                                                                                  \
+    VIEW(member.low_y, 5 * slots)
+#define PLACES(member) ARRAY(member, places)
+#define BITS(member) ARRAY(member, words)
+#define END(name)
+
+#define GROUP(name) {0, 0, MSPRINGI_GROUP},
+#define ARRAY(member, elements) MSPRINGI_COLUMN(mspring_network, member, MSPRINGI_ARRAY),
+#define PLANES(member, planes) MSPRINGI_COLUMN(mspring_network, member, MSPRINGI_PLANES),
+#define VIEW(member, elements) MSPRINGI_COLUMN(mspring_network, member, MSPRINGI_VIEW),
+static const mspringi_column list[] = {
+#include "network.def"
+};
+#undef GROUP
+#undef ARRAY
+#undef PLANES
+#undef VIEW
+
+#define COLUMN_COUNT (sizeof list / sizeof list[0])
+
+/* ---------------------------------------------------------------------------------------------------- elements */
+
+static size_t web_places(const mspringi_topology *t) {
+    const size_t own = t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0;
+    const size_t others = (size_t)(t->leftover_capacity - t->woven_count) + t->parked_count;
+    return (own + (others + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH) * MSPRINGI_WIDTH;
+}
+
+static size_t spare_ends(const mspringi_topology *t) {
+    return (size_t)2 * mspringi_spare_springs(t);
+}
+
+static size_t graft_nodes(const mspringi_topology *t) {
+    return (spare_ends(t) + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+}
+
+// Elements of each column; of a view those before it.
+static void count_elements(const mspring_network *n, size_t elements[COLUMN_COUNT]) {
+    const mspringi_topology *t = &n->topology;
+    const size_t slots = mspringi_slot_count(n), words = mspringi_place_words(t), places = words * MSPRINGI_WIDTH;
+    const size_t particles = t->reserve.particle_end, springs = t->reserve.spring_end;
+#define GROUP(name) *elements++ = 0;
+#define ARRAY(member, count) *elements++ = (size_t)(count);
+#define PLANES(member, planes) *elements++ = (size_t)(planes)*slots;
+#define VIEW(member, count) *elements++ = (size_t)(count);
+#include "network.def"
+#undef GROUP
+#undef ARRAY
+#undef PLANES
+#undef VIEW
+}
+
+/* ------------------------------------------------------------------------------------------------------- groups */
+
+// The rows of the groups first ... end - 1, with the heads of these.
+static mspringi_columns rows_of(uint32_t first, uint32_t end) {
+    size_t from = 0, to = COLUMN_COUNT;
+    uint32_t group = 0;
+    for (size_t i = 0; i < COLUMN_COUNT; ++i) {
+        if (list[i].kind != MSPRINGI_GROUP)
+            continue;
+        if (group == first)
+            from = i;
+        if (group == end)
+            to = i;
+        group++;
+    }
+    return (mspringi_columns){list + from, to - from};
+}
+
+bool mspringi_store_reserve(mspring_network *network, mspringi_group group) {
+    const mspringi_columns rows = rows_of(group, group + 1u);
+    size_t elements[COLUMN_COUNT];
+    char *array = NULL;
+    count_elements(network, elements);
+    for (const mspringi_column *c = rows.list; c < rows.list + rows.count; ++c) {
+        const size_t count = elements[c - list];
+        if (c->kind == MSPRINGI_GROUP || count == UNKNOWN)
+            continue;
+        if (c->kind == MSPRINGI_VIEW) {
+            mspringi_column_set(c, network, array + count * c->size);
+            continue;
+        }
+        array = mspringi_column_get(c, network);
+        if (!array)
+            array = mspringi_alloc(&network->memory, count, c->size);
+        mspringi_column_set(c, network, array);
+        if (!array) {
+            mspringi_store_free(network, group);
+            return false;
+        }
+    }
+    return true;
+}
+
+void mspringi_store_free(mspring_network *network, mspringi_group group) {
+    mspringi_columns_free(rows_of(group, group + 1u), network, &network->memory);
+}
+
+void mspringi_store_relocate(mspring_network *network, const mspringi_memory *from, const mspringi_memory *to) {
+    mspringi_columns_relocate(rows_of(0, MSPRINGI_STORE_GROUPS), network, from, to);
+}
+
+/* ------------------------------------------------------------------------------------------------------ layouts */
+
+void mspringi_store_free_layout(mspring_network *network, mspringi_memory *memory) {
+    mspringi_columns_free(rows_of(0, MSPRINGI_LAYOUT_END), network, memory);
+}
+
+void mspringi_store_forget_layout(mspring_network *network) {
+    const mspringi_columns rows = rows_of(0, MSPRINGI_LAYOUT_END);
+    for (const mspringi_column *c = rows.list; c < rows.list + rows.count; ++c)
+        if (c->kind != MSPRINGI_GROUP)
+            mspringi_column_set(c, network, NULL);
+}
+
+void mspringi_store_take_layout(mspring_network *to, const mspring_network *from) {
+    const mspringi_columns rows = rows_of(0, MSPRINGI_LAYOUT_END);
+    for (const mspringi_column *c = rows.list; c < rows.list + rows.count; ++c)
+        if (c->kind != MSPRINGI_GROUP)
+            mspringi_column_set(c, to, mspringi_column_get(c, from));
+}
+
+bool mspringi_store_match_layout(mspring_network *to, const mspring_network *from) {
+    for (uint32_t group = 0; group < MSPRINGI_REMADE_END; ++group) {
+        const mspringi_column *first = rows_of(group, group + 1u).list + 1;
+        if (mspringi_column_get(first, from) && !mspringi_column_get(first, to) &&
+            !mspringi_store_reserve(to, (mspringi_group)group))
+            return false;
+    }
+    return true;
+}
+
+/* ------------------------------------------------------------------------------------------------------- moving */
+
+void mspringi_store_move_slots(mspring_network *to, const mspring_network *from) {
+    const uint32_t *here = from->topology.slot_of_particle, *there = to->topology.slot_of_particle;
+    const uint32_t particles = from->topology.particle_count;
+    const size_t slots = mspringi_slot_count(from), made_slots = mspringi_slot_count(to);
+    size_t elements[COLUMN_COUNT];
+    MSPRINGI_ASSERT(to->topology.particle_count == particles);
+    count_elements(from, elements);
+    for (size_t i = 0; i < COLUMN_COUNT; ++i) {
+        const float *old = list[i].kind == MSPRINGI_PLANES ? mspringi_column_get(&list[i], from) : NULL;
+        float *made = old ? mspringi_column_get(&list[i], to) : NULL;
+        for (size_t plane = 0; made && plane < elements[i] / slots; ++plane, old += slots, made += made_slots)
+            for (mspring_id p = 0; p < particles; ++p)
+                made[there[p]] = old[here[p]];
+    }
+}
+
+static void copy_value(float *to, mspringi_place place, const float *from, mspringi_place before) {
+    if (to && from)
+        to[place] = from[before];
+}
+
+static void copy_bit(uint16_t *to, mspringi_place place, const uint16_t *from, mspringi_place before) {
+    const uint16_t bit = (uint16_t)(1u << place % MSPRINGI_WIDTH);
+    if (!to || !from)
+        return;
+    to += place / MSPRINGI_WIDTH;
+    *to = (uint16_t)(from[before / MSPRINGI_WIDTH] >> before % MSPRINGI_WIDTH & 1 ? *to | bit : *to & ~bit);
+}
+
+#undef PLACES
+#undef BITS
+#define GROUP(name)
+#define ARRAY(member, elements)
+#define PLANES(member, planes)
+#define VIEW(member, elements)
+#define PLACES(member) copy_value(to->member, place, from->member, before);
+#define BITS(member) copy_bit(to->member, place, from->member, before);
+void mspringi_store_copy_spring(mspring_network *to, mspringi_place place, const mspring_network *from,
+                                mspringi_place before) {
+#include "network.def"
+}
