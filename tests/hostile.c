@@ -198,6 +198,8 @@ static void add_hook(arguments *a) {
     X(mspring_network_settle, "NsWo", (FILL(settle_def), OUT_STRUCT(0, settle_result)),                            \
       mspring_network_settle(a->network, a->given, a->out[0]))                                                     \
     X(mspring_tune_def_init, "Z0", a->size = sizeof(mspring_tune_def), mspring_tune_def_init(a->out[0], a->size))  \
+    X(mspring_tune_scene_init, "Z0", a->size = sizeof(mspring_tune_scene),                                         \
+      mspring_tune_scene_init(a->out[0], a->size))                                                                 \
     X(mspring_tune_settings, "NT0", NOTHING, mspring_tune_settings(a->network, a->dt, NULL, 0, a->out[0]))         \
     X(mspring_network_tune, "NsP1", (make_tune(a), OUT_STRUCT(0, tune_row)),                                       \
       mspring_network_tune(a->network, a->given, a->out[0], 1, a->out[1]))                                         \

@@ -98,6 +98,11 @@ static void every_allocation_may_fail(void **state) {
         def.settings = settings;
         def.setting_count = COUNT_OF(settings);
         def.duration = 4 * def.dt;
+        mspring_tune_scene scene;
+        check_ok(mspring_tune_scene_init(&scene, sizeof scene));
+        scene.start_count = 4;
+        scene.duration = 2 * def.dt;
+        def.scene = &scene;
         tunes_table out, untouched;
         tunes_clear(&out);
         tunes_clear(&untouched);
@@ -179,7 +184,7 @@ static void bad_calls_are_refused(void **state) {
             def.max_cost = NAN;
             break;
         case 8:
-            def.measure = 3;
+            def.measure = 4;
             break;
         case 9:
             def.measure = -1;
@@ -233,12 +238,103 @@ static void bad_calls_are_refused(void **state) {
     mspring_network_destroy(network);
 }
 
+static mspring_result refuse(mspring_network *run, uint32_t start, void *user) {
+    (void)run;
+    (void)user;
+    return start == 2 ? MSPRING_ERROR_ID : MSPRING_OK;
+}
+
+static void bad_scenes_are_refused(void **state) {
+    (void)state;
+    mspring_network *network = tunes_bar(TUNES_STIFFNESS, 0, 0, NULL);
+    const uint64_t hash = support_hash(network);
+    const size_t used = mspring_network_memory_used(network);
+    tunes_watch w = {.tick = 1e-3};
+    tunes_table out;
+    uint32_t count = 77;
+    tunes_clear(&out);
+    mspring_tune_def def = tunes_def(&w);
+    mspring_tune_scene good, scene;
+    check_error(mspring_tune_scene_init(NULL, sizeof good), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_tune_scene_init(&good, sizeof good - 8), MSPRING_ERROR_STRUCT);
+    check_ok(mspring_tune_scene_init(&good, sizeof good));
+    def.measure = MSPRING_TUNE_BY_SCENE;
+    check_error(mspring_network_tune(network, &def, out.rows, TUNES_MOST, &count), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_network_error(network), "scene");
+    def.scene = &scene;
+    for (int bad = 0; bad < 14; bad++) {
+        scene = good;
+        switch (bad) {
+        case 0:
+            scene.flags = 8;
+            break;
+        case 1:
+            scene.start_count = 3;
+            break;
+        case 2:
+            scene.start_count = 65;
+            break;
+        case 3:
+            scene.duration = 0;
+            break;
+        case 4:
+            scene.duration = NAN;
+            break;
+        case 5:
+            scene.duration = 1e9;
+            break;
+        case 6:
+            scene.kick = 0;
+            break;
+        case 7:
+            scene.kick = INFINITY;
+            break;
+        case 8:
+            scene.max_distance = 0;
+            break;
+        case 9:
+            scene.max_distance = NAN;
+            break;
+        case 10:
+            scene.tolerance = -1;
+            break;
+        case 11:
+            scene.tolerance = NAN;
+            break;
+        case 12:
+            scene.kick = NAN;
+            break;
+        default:
+            scene.reserved = 1;
+        }
+        check_error(mspring_network_tune(network, &def, out.rows, TUNES_MOST, &count), MSPRING_ERROR_ARGUMENT);
+        assert_true(strlen(mspring_network_error(network)) > 10);
+    }
+    scene = good;
+    scene.struct_size--;
+    check_error(mspring_network_tune(network, &def, out.rows, TUNES_MOST, &count), MSPRING_ERROR_STRUCT);
+    scene = good;
+    scene.prepare = refuse;
+    scene.duration = 2 * def.dt;
+    check_error(mspring_network_tune(network, &def, out.rows, TUNES_MOST, &count), MSPRING_ERROR_ID);
+    check_contains(mspring_network_error(network), "prepare returned");
+    assert_int_equal(count, 77);
+    assert_int_equal(support_hash(network), hash);
+    assert_int_equal(mspring_network_memory_used(network), used);
+    mspring_network_destroy(network);
+
+    network = tunes_bar(0.5, 0, MSPRING_SPRING_RELATIVE, NULL);
+    scene.prepare = NULL;
+    check_error(mspring_network_tune(network, &def, out.rows, TUNES_MOST, &count), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_network_error(network), "relative springs");
+    mspring_network_destroy(network);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_happens_to_the_network),
-        cmocka_unit_test(networks_that_may_sleep_stay_awake),
-        cmocka_unit_test(every_allocation_may_fail),
-        cmocka_unit_test(bad_calls_are_refused),
+        cmocka_unit_test(nothing_happens_to_the_network), cmocka_unit_test(networks_that_may_sleep_stay_awake),
+        cmocka_unit_test(every_allocation_may_fail),      cmocka_unit_test(bad_calls_are_refused),
+        cmocka_unit_test(bad_scenes_are_refused),
     };
     return cmocka_run_group_tests_name("tune_calls", tests, NULL, NULL);
 }

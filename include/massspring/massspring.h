@@ -844,8 +844,9 @@ typedef int32_t mspring_tune_measure;
 enum {
     MSPRING_TUNE_BY_TRAJECTORY = 0, ///< mspring_tune_row.trajectory_share
     MSPRING_TUNE_BY_REST = 1,       ///< mspring_tune_row.rest_share
-    MSPRING_TUNE_BY_BENDING = 2 ///< mspring_tune_row.bending, m: for networks with relative springs, which are as
-                                ///< firm as their substeps allow
+    MSPRING_TUNE_BY_BENDING = 2, ///< mspring_tune_row.bending, m: for networks with relative springs, which are as
+                                 ///< firm as their substeps allow
+    MSPRING_TUNE_BY_SCENE = 3    ///< mspring_tune_row.scene_distance: for networks that break; needs a scene
 };
 
 /// Flags of mspring_tune_def.
@@ -859,6 +860,42 @@ typedef uint32_t (*mspring_progress_fn)(double done, void *user);
 
 /// Seconds since some moment, never going back.
 typedef double (*mspring_clock_fn)(void *user);
+
+/// Flags of mspring_tune_scene.
+enum {
+    MSPRING_TUNE_SCENE_FLOOR = 1u << 0,    ///< the network's floor is there
+    MSPRING_TUNE_SCENE_BREAKING = 1u << 1, ///< springs break at their break strains
+    MSPRING_TUNE_SCENE_HOOKS = 1u << 2     ///< the network's hooks are called, with their user pointers and storage
+};
+
+/// Called for each run of a scene before its first step. It may do to the run what the host does to the network:
+/// add hooks, give forces or velocities, break springs, reset what its hooks keep. It must not step or destroy the
+/// run, and leave the network that is tuned alone.
+/// @param run    a clone of the network, destroyed after the run
+/// @param start  0 ... start_count - 1. The same start of all settings and of the fine run should be the same.
+/// @param user   mspring_tune_def.user
+/// @return MSPRING_OK; mspring_network_tune() fails with anything else
+typedef mspring_result (*mspring_tune_prepare_fn)(mspring_network *run, uint32_t start, void *user);
+
+/// A scene that settings are tried in: what the network does beside swinging. Fill with mspring_tune_scene_init()
+/// first.
+typedef struct mspring_tune_scene {
+    uint32_t struct_size;
+    uint32_t flags;       ///< default MSPRING_TUNE_SCENE_FLOOR | MSPRING_TUNE_SCENE_BREAKING
+    uint32_t start_count; ///< runs of each setting, which start a little different; 4 to 64; default 16
+    uint32_t reserved;    ///< 0
+    double duration;      ///< simulated time of a run, s; > 0, up to 100000 steps, rounded up to whole ones; default 1
+    double kick; ///< m/s, > 0: in all starts but the first the velocities of particles that are not pinned differ
+                 ///< by up to this in x and y, each by another amount; default 0.1. Too small for what breaks to
+                 ///< come out differently, it tells how one crash goes, not what crashes have in common.
+    double tolerance;    ///< share of a mean that makes no difference; >= 0; default 0.05
+    double max_distance; ///< with MSPRING_TUNE_BY_SCENE, in place of mspring_tune_def.max_error; > 0; default 1
+    mspring_tune_prepare_fn prepare; ///< default NULL
+} mspring_tune_scene;
+
+/// Fill a definition with its defaults, as mspring_network_def_init().
+/// @threads any   @allocates never   @since 0.1
+MSPRING_API mspring_result mspring_tune_scene_init(mspring_tune_scene *scene, size_t size);
 
 /// What is to be tried, and what is wanted. Fill with mspring_tune_def_init() first.
 typedef struct mspring_tune_def {
@@ -877,8 +914,9 @@ typedef struct mspring_tune_def {
     double max_cost;        ///< likewise, s for a step; > 0; default INFINITY
     mspring_clock_fn clock; ///< default NULL: the system's. A build without one (MASSSPRING_FREESTANDING) needs it.
     mspring_progress_fn progress; ///< default NULL
-    void *user;                   ///< handed to both
+    void *user;                   ///< handed to both, and to the scene's prepare
     double max_drift; ///< a row whose energy_drift is measured and larger is not recommended; >= 0; default 0.1
+    const mspring_tune_scene *scene; ///< default NULL: none
 } mspring_tune_def;
 
 /// Flags of mspring_tune_row.
@@ -888,8 +926,17 @@ enum {
     MSPRING_TUNE_HAS_REST = 1u << 2,       ///< bending, rest_error and rest_share are measured
     MSPRING_TUNE_REFUSED = 1u << 3, ///< a step was refused as unstable, or the solver cannot have this network
     MSPRING_TUNE_PARETO = 1u << 4,  ///< no other row has both less cost and less error
-    MSPRING_TUNE_RECOMMENDED = 1u << 5
+    MSPRING_TUNE_RECOMMENDED = 1u << 5,
+    MSPRING_TUNE_HAS_SCENE = 1u << 6 ///< the numbers of the scene are measured, from at least four starts
 };
+
+/// What is counted at the end of each run of a scene.
+enum {
+    MSPRING_TUNE_BROKEN = 0, ///< springs that broke in the run, less those that were restored
+    MSPRING_TUNE_ENERGY = 1, ///< kinetic and elastic energy, J
+    MSPRING_TUNE_EXTENT = 2  ///< larger side of the box around all particles, m
+};
+#define MSPRING_TUNE_QUANTITIES 3
 
 /// A setting, and what came of it. Numbers that are not measured are 0. Set struct_size first.
 typedef struct mspring_tune_row {
@@ -915,6 +962,14 @@ typedef struct mspring_tune_row {
     double duration;         ///< s, simulated time that the trajectory was compared for
     double moving_cost;      ///< s for a step, median of those from the state given on, and
     double resting_cost;     ///< of those from rest on: implicit and direct solver may take less there
+    uint32_t scene_starts;   ///< starts that were compared
+    uint32_t fine_substeps;  ///< explicit substeps that a step of the fine run took
+    double scene_cost;       ///< s for a step: median over the starts of the mean over the steps
+    double scene_distance;   ///< difference of scene_mean and fine_mean, in spreads; of the quantity with the largest
+    double scene_mean[MSPRING_TUNE_QUANTITIES];   ///< over the starts, of MSPRING_TUNE_BROKEN and so on
+    double scene_spread[MSPRING_TUNE_QUANTITIES]; ///< standard deviations
+    double fine_mean[MSPRING_TUNE_QUANTITIES];    ///< the same of the fine runs from the same starts
+    double fine_spread[MSPRING_TUNE_QUANTITIES];
 } mspring_tune_row;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
@@ -942,25 +997,40 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_tune_settings(mspring_netwo
 ///               of at least a millionth of the network's size.
 ///   rest        where the network comes to rest (mspring_network_settle()), and how it stays there when the
 ///               setting goes on from it. Not for networks without an equilibrium.
+///   scene       what a def's scene switches on, from starts that differ a little: see below
 ///
-/// Have the network in a state as it is to be simulated: just made and falling, or moving. Hooks are not called,
-/// there is no floor, ramps stand still, nothing breaks by strain, it does not sleep, and no solver stands in for
-/// another (MSPRING_GUARD_IMPLICIT), and nothing is clamped. Forces given for the next step act in the first one.
+/// Have the network in a state as it is to be simulated: just made and falling, or moving. Outside of a scene hooks
+/// are not called, there is no floor, ramps stand still and nothing breaks by strain. The network does not sleep, no
+/// solver stands in for another (MSPRING_GUARD_IMPLICIT), and nothing is clamped. Forces given for the next step act
+/// in the first one.
 /// Relative springs follow the substep: each row is compared with a fine run, and an equilibrium, that have the
 /// stiffness of its own substeps, and bending says how firm that is.
 ///
+/// Once springs break, no two runs keep together: the smallest difference leads elsewhere. Settings are then compared
+/// by what many runs have in common. A scene runs each setting from start_count starts, and so an explicit fine run of
+/// the same dt: at most a third of the substep that is stable in any shape, and at most half of any explicit setting's.
+/// Three quantities are taken at the end of each run. A row's distance is the difference of its mean from the fine
+/// runs', divided by their standard deviation; or by their mean's share in the scene's tolerance, or one spring, if
+/// that is more. The largest of the three counts. By chance alone two samples of 16 starts differ by 0.35 (standard
+/// deviation), of 64 by 0.18. If the budget is small there are fewer starts, with at most one more for rows that come
+/// first. If the fine run is rejected, no row has the scene's numbers. A network with relative springs cannot have a
+/// scene: they would follow the fine run's substeps.
+///
 /// Recommended is, if max_error is finite, the row of the least median cost among those within all bounds; else,
 /// of those within max_cost and max_drift, the one of the least error; of equal ones the first. There may be none.
+/// MSPRING_TUNE_BY_SCENE judges by scene_cost in place of the median cost, and by max_distance.
 /// When the budget is used up, what is not measured is not flagged as measured: first the costs of all are taken, then
-/// what measure asks for, then the rest. For the same duration all but the costs is the same whenever it is measured,
-/// and on any machine.
+/// what measure asks for, then the rest. For the same duration and number of starts all but the costs is the same
+/// whenever it is measured, and on any machine.
 /// @param def       NULL for the defaults
 /// @param rows      [capacity], struct_size set in each; one for each setting, in their order
 /// @param capacity  at least as many as there are settings
 /// @param count     receives how many there are
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT (the message says what, or names the setting), MSPRING_ERROR_STRUCT,
-///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY. On error nothing is written, and the network is as it was.
-/// @threads exclusive access to network   @allocates yes, and frees it   @since 0.1
+///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY; what the scene's prepare returns. On error nothing is written,
+///         and the network is as it was.
+/// @threads exclusive access to network; prepare is called on the calling thread   @allocates yes, and frees it
+/// @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_tune(mspring_network *network,
                                                                   const mspring_tune_def *def,
                                                                   mspring_tune_row *rows, uint32_t capacity,

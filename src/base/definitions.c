@@ -89,6 +89,17 @@ mspring_result mspring_settle_def_init(mspring_settle_def *def, size_t size) {
     return fill(def, size, &defaults, sizeof defaults);
 }
 
+mspring_result mspring_tune_scene_init(mspring_tune_scene *scene, size_t size) {
+    const mspring_tune_scene defaults = {.struct_size = sizeof defaults,
+                                         .flags = MSPRING_TUNE_SCENE_FLOOR | MSPRING_TUNE_SCENE_BREAKING,
+                                         .start_count = 16,
+                                         .duration = 1.0,
+                                         .kick = 0.1,
+                                         .tolerance = 0.05,
+                                         .max_distance = 1.0};
+    return fill(scene, size, &defaults, sizeof defaults);
+}
+
 mspring_result mspring_tune_def_init(mspring_tune_def *def, size_t size) {
     const mspring_tune_def defaults = {.struct_size = sizeof defaults,
                                        .dt = 1.0 / 64,

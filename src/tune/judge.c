@@ -14,32 +14,37 @@ static void sort(double *values, uint32_t count) {
         }
 }
 
-// Sort numbers, and return their median; 0 if there are none.
-static double median_of(double *values, uint32_t count) {
+double mspringi_tune_median(double *values, uint32_t count) {
     sort(values, count);
     return count > 0 ? 0.5 * (values[(count - 1) / 2] + values[count / 2]) : 0.0;
 }
 
 static void sum_up(mspringi_trial *trial) {
     mspring_tune_row *row = &trial->row;
-    row->moving_cost = median_of(trial->times, trial->time_count);
-    row->resting_cost = median_of(trial->rest_times, trial->rest_count);
+    row->moving_cost = mspringi_tune_median(trial->times, trial->time_count);
+    row->resting_cost = mspringi_tune_median(trial->rest_times, trial->rest_count);
     for (uint32_t i = 0; i < trial->rest_count; ++i)
         trial->times[trial->time_count + i] = trial->rest_times[i];
     row->step_count = trial->time_count + trial->rest_count;
-    row->median_cost = median_of(trial->times, row->step_count);
+    row->median_cost = mspringi_tune_median(trial->times, row->step_count);
     row->min_cost = row->step_count > 0 ? trial->times[0] : 0.0;
 }
 
 static double error_of(const mspring_tune_row *row, mspring_tune_measure measure) {
     return measure == MSPRING_TUNE_BY_TRAJECTORY ? row->trajectory_share
            : measure == MSPRING_TUNE_BY_REST     ? row->rest_share
+           : measure == MSPRING_TUNE_BY_SCENE    ? row->scene_distance
                                                  : row->bending;
+}
+
+static double cost_of(const mspring_tune_row *row, mspring_tune_measure measure) {
+    return measure == MSPRING_TUNE_BY_SCENE ? row->scene_cost : row->median_cost;
 }
 
 static bool is_measured(const mspring_tune_row *row, mspring_tune_measure measure) {
     const uint32_t needed =
         MSPRING_TUNE_HAS_COST | (measure == MSPRING_TUNE_BY_TRAJECTORY ? (uint32_t)MSPRING_TUNE_HAS_TRAJECTORY
+                                 : measure == MSPRING_TUNE_BY_SCENE    ? (uint32_t)MSPRING_TUNE_HAS_SCENE
                                                                        : (uint32_t)MSPRING_TUNE_HAS_REST);
     return (row->flags & needed) == needed && !(row->flags & MSPRING_TUNE_REFUSED);
 }
@@ -50,7 +55,7 @@ static bool is_beaten(const mspringi_tuning *tuning, const mspring_tune_row *row
         const mspring_tune_row *other = &tuning->trials[i].row;
         if (!is_measured(other, measure))
             continue;
-        const double cost = other->median_cost - row->median_cost;
+        const double cost = cost_of(other, measure) - cost_of(row, measure);
         const double error = error_of(other, measure) - error_of(row, measure);
         if (cost <= 0.0 && error <= 0.0 && (cost < 0.0 || error < 0.0))
             return true;
@@ -60,7 +65,7 @@ static bool is_beaten(const mspringi_tuning *tuning, const mspring_tune_row *row
 
 void mspringi_tune_judge(const mspringi_tuning *tuning) {
     const mspring_tune_def *def = &tuning->def;
-    const bool cheapest = def->max_error < INFINITY;
+    const double most = def->measure == MSPRING_TUNE_BY_SCENE ? tuning->scene.max_distance : def->max_error;
     mspring_tune_row *best = NULL;
     for (uint32_t i = 0; i < tuning->trial_count; ++i)
         sum_up(&tuning->trials[i]);
@@ -70,11 +75,11 @@ void mspringi_tune_judge(const mspringi_tuning *tuning) {
             continue;
         if (!is_beaten(tuning, row))
             row->flags |= MSPRING_TUNE_PARETO;
-        const double error = error_of(row, def->measure);
+        const double error = error_of(row, def->measure), cost = cost_of(row, def->measure);
         const bool gains = row->flags & MSPRING_TUNE_HAS_TRAJECTORY && row->energy_drift > def->max_drift;
-        if (error > def->max_error || row->median_cost > def->max_cost || gains)
+        if (error > most || cost > def->max_cost || gains)
             continue;
-        if (!best || (cheapest ? row->median_cost < best->median_cost : error < error_of(best, def->measure)))
+        if (!best || (most < INFINITY ? cost < cost_of(best, def->measure) : error < error_of(best, def->measure)))
             best = row;
     }
     if (best)

@@ -25,12 +25,25 @@ static mspring_result pass_on(mspringi_tuning *tuning, const mspringi_trial *tri
     return result;
 }
 
-mspring_result mspringi_tune_spawn(mspringi_tuning *tuning, mspring_network *from, mspring_network **clone) {
-    const mspring_result result = mspring_network_clone(from, NULL, clone);
+static mspring_result spawn(mspringi_tuning *tuning, mspring_network *from, uint32_t flags,
+                            mspring_network **clone) {
+    mspring_clone_def def;
+    (void)mspring_clone_def_init(&def, sizeof def);
+    def.flags = flags;
+    const mspring_result result = mspring_network_clone(from, &def, clone);
     if (result != MSPRING_OK)
         return mspringi_fail(&tuning->network->message, result, "no memory for a clone of the network");
     (*clone)->tasks = from->tasks;
     return MSPRING_OK;
+}
+
+mspring_result mspringi_tune_spawn(mspringi_tuning *tuning, mspring_network *from, mspring_network **clone) {
+    return spawn(tuning, from, 0, clone);
+}
+
+mspring_result mspringi_tune_spawn_with_hooks(mspringi_tuning *tuning, mspring_network *from,
+                                              mspring_network **clone) {
+    return spawn(tuning, from, MSPRING_CLONE_HOOKS, clone);
 }
 
 void mspringi_tune_dismiss(mspring_network *clone) {

@@ -27,12 +27,51 @@ static mspring_result check_numbers(const mspring_tune_def *def, mspringi_messag
                              def->max_error, def->max_cost);
     if (!(def->max_drift >= 0.0))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "max_drift is %g, it must be >= 0", def->max_drift);
-    if (def->measure < MSPRING_TUNE_BY_TRAJECTORY || def->measure > MSPRING_TUNE_BY_BENDING)
+    if (def->measure < MSPRING_TUNE_BY_TRAJECTORY || def->measure > MSPRING_TUNE_BY_SCENE)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "measure is %d, which is none", (int)def->measure);
+    if (def->measure == MSPRING_TUNE_BY_SCENE && !def->scene)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "measure is MSPRING_TUNE_BY_SCENE, but scene NULL");
     if (def->flags & ~(uint32_t)MSPRING_TUNE_NOTHING_ELSE)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "flags of mspring_tune_def are 0x%x",
                              (unsigned)def->flags);
     return MSPRING_OK;
+}
+
+static mspring_result check_scene_numbers(const mspring_tune_scene *scene, double dt, mspringi_message *message) {
+    const uint32_t known = MSPRING_TUNE_SCENE_FLOOR | MSPRING_TUNE_SCENE_BREAKING | MSPRING_TUNE_SCENE_HOOKS;
+    if (scene->flags & ~known)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "flags of mspring_tune_scene are 0x%x",
+                             (unsigned)scene->flags);
+    if (scene->start_count < MSPRINGI_TUNE_LEAST_STARTS || scene->start_count > MSPRINGI_TUNE_MOST_STARTS)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the scene's start_count is %u, it must be %d to %d",
+                             (unsigned)scene->start_count, MSPRINGI_TUNE_LEAST_STARTS, MSPRINGI_TUNE_MOST_STARTS);
+    if (!(scene->duration > 0.0 && scene->duration <= dt * MOST_STEPS))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "the scene's duration is %g s, it must be > 0 and at most %d steps of %g s",
+                             scene->duration, MOST_STEPS, dt);
+    if (!(scene->kick > 0.0 && scene->kick < INFINITY && scene->max_distance > 0.0))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "the scene's kick is %g m/s, its max_distance %g, both must be > 0, kick finite",
+                             scene->kick, scene->max_distance);
+    if (!(scene->tolerance >= 0.0 && scene->tolerance < INFINITY))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "the scene's tolerance is %g, it must be finite and >= 0", scene->tolerance);
+    return MSPRING_OK;
+}
+
+static mspring_result check_scene(const mspring_tune_scene *scene, double dt, mspring_network *network) {
+    mspringi_message *message = &network->message;
+    mspring_result result =
+        mspringi_check_struct(message, "mspring_tune_scene", scene->struct_size, sizeof *scene, sizeof *scene);
+    if (result == MSPRING_OK)
+        result = mspringi_check_reserved(message, "mspring_tune_scene", scene->reserved);
+    if (result == MSPRING_OK)
+        result = check_scene_numbers(scene, dt, message);
+    if (result == MSPRING_OK && network->fractions.values)
+        result = mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                               "the network has relative springs, which would follow the substeps of the scene's "
+                               "fine run: give stiffness in N/m, or no scene");
+    return result;
 }
 
 static mspring_result check_def(const mspring_tune_def *def, mspringi_message *message) {
@@ -90,6 +129,21 @@ bool mspringi_tuning_goes_on(mspringi_tuning *tuning, double part) {
 
 /* -------------------------------------------------------------------------------------------------- setting up */
 
+// A setting is to be measured, not what would stand in for it.
+void mspringi_tune_expose(mspring_network *clone) {
+    mspringi_wake(clone);
+    clone->sleep.speed = 0.0f;
+    if (clone->guard_policy == MSPRING_GUARD_IMPLICIT || clone->guard_policy == MSPRING_GUARD_CLAMP)
+        clone->guard_policy = MSPRING_GUARD_GROWTH;
+    else if (clone->guard_policy == MSPRING_GUARD_CLAMP_BOUNDS)
+        clone->guard_policy = MSPRING_GUARD_BOUNDS;
+}
+
+void mspringi_tune_make_unbreakable(mspring_network *clone) {
+    for (mspring_id spring = 0; clone->strain.break_strain && spring < clone->topology.spring_count; ++spring)
+        mspringi_strain_store(clone, mspringi_place_of(&clone->topology, spring), false, INFINITY);
+}
+
 // A clone that only springs, gravity and the forces given move: ramps stand still, springs do not break, and there
 // is no floor.
 static mspring_result make_base(mspringi_tuning *tuning) {
@@ -100,16 +154,9 @@ static mspring_result make_base(mspringi_tuning *tuning) {
     result = mspring_network_set_floor(base, NULL);
     if (result != MSPRING_OK)
         return result;
-    mspringi_wake(base);
-    base->sleep.speed = 0.0f;
-    // A setting is to be measured, not what would stand in for it.
-    if (base->guard_policy == MSPRING_GUARD_IMPLICIT || base->guard_policy == MSPRING_GUARD_CLAMP)
-        base->guard_policy = MSPRING_GUARD_GROWTH;
-    else if (base->guard_policy == MSPRING_GUARD_CLAMP_BOUNDS)
-        base->guard_policy = MSPRING_GUARD_BOUNDS;
+    mspringi_tune_expose(base);
+    mspringi_tune_make_unbreakable(base);
     base->ramps.count = 0;
-    for (mspring_id spring = 0; base->strain.break_strain && spring < base->topology.spring_count; ++spring)
-        mspringi_strain_store(base, mspringi_place_of(&base->topology, spring), false, INFINITY);
     mspringi_box box = mspringi_box_empty();
     for (mspring_id p = 0; p < base->topology.particle_count; ++p) {
         const uint32_t slot = base->topology.slot_of_particle[p];
@@ -121,13 +168,17 @@ static mspring_result make_base(mspringi_tuning *tuning) {
     return MSPRING_OK;
 }
 
+uint32_t mspringi_tune_steps_in(double duration, double dt) {
+    const double steps = duration / dt, whole = floor(steps);
+    return (uint32_t)(whole < steps ? whole + 1.0 : whole);
+}
+
 // Steps of a trajectory; the most there can be where that is not known yet.
 static uint32_t steps_of(const mspring_tune_def *def) {
     if (def->duration == 0.0)
         return MSPRINGI_TUNE_MOST_STEPS;
-    const double steps = def->duration / def->dt, whole = floor(steps),
-                 rounded = whole < steps ? whole + 1.0 : whole;
-    return rounded > MSPRINGI_TUNE_MOMENTS ? (uint32_t)rounded : MSPRINGI_TUNE_MOMENTS;
+    const uint32_t steps = mspringi_tune_steps_in(def->duration, def->dt);
+    return steps > MSPRINGI_TUNE_MOMENTS ? steps : MSPRINGI_TUNE_MOMENTS;
 }
 
 static mspring_result allocate(mspringi_tuning *tuning) {
@@ -138,7 +189,9 @@ static mspring_result allocate(mspringi_tuning *tuning) {
     tuning->times =
         mspringi_alloc(memory, (size_t)2 * tuning->trial_count * tuning->time_capacity, sizeof *tuning->times);
     tuning->places = mspringi_alloc(memory, 2 * MSPRINGI_TUNE_MOMENTS * particles, sizeof *tuning->places);
-    if (!tuning->trials || !tuning->times || !tuning->places)
+    tuning->runs =
+        mspringi_alloc(memory, ((size_t)tuning->trial_count + 1) * tuning->scene.start_count, sizeof *tuning->runs);
+    if (!tuning->trials || !tuning->times || !tuning->places || !tuning->runs)
         return mspringi_fail(&tuning->network->message, MSPRING_ERROR_MEMORY, "no memory to try %u settings",
                              (unsigned)tuning->trial_count);
     return MSPRING_OK;
@@ -150,6 +203,7 @@ static void fill_trials(mspringi_tuning *tuning, const mspring_solver_def *setti
         trial->setting = settings[i];
         trial->times = tuning->times + (size_t)2 * i * tuning->time_capacity;
         trial->rest_times = trial->times + tuning->time_capacity;
+        trial->runs = tuning->runs + (size_t)i * tuning->scene.start_count;
         trial->row = (mspring_tune_row){
             .struct_size = sizeof trial->row,
             .setting = i,
@@ -165,18 +219,34 @@ static void fill_trials(mspringi_tuning *tuning, const mspring_solver_def *setti
 
 /* --------------------------------------------------------------------------------------------------- measuring */
 
+static mspring_result measure_swings(mspringi_tuning *tuning) {
+    const mspring_tune_measure by = tuning->def.measure;
+    const bool all = !(tuning->def.flags & MSPRING_TUNE_NOTHING_ELSE);
+    const bool rests_first = by == MSPRING_TUNE_BY_REST || by == MSPRING_TUNE_BY_BENDING;
+    mspring_result result = MSPRING_OK;
+    if (tuning->def.duration == 0.0)
+        result = mspringi_tune_choose_duration(tuning);
+    if (result == MSPRING_OK && rests_first)
+        result = mspringi_tune_rests(tuning);
+    if (result == MSPRING_OK && (!rests_first || all))
+        result = mspringi_tune_trajectories(tuning);
+    if (result == MSPRING_OK && !rests_first && all)
+        result = mspringi_tune_rests(tuning);
+    return result;
+}
+
 static mspring_result measure(mspringi_tuning *tuning) {
-    const bool by_trajectory = tuning->def.measure == MSPRING_TUNE_BY_TRAJECTORY;
+    const bool by_scene = tuning->def.measure == MSPRING_TUNE_BY_SCENE;
     const bool all = !(tuning->def.flags & MSPRING_TUNE_NOTHING_ELSE);
     mspring_result result = mspringi_tune_costs(tuning);
-    if (result == MSPRING_OK && tuning->def.duration == 0.0)
-        result = mspringi_tune_choose_duration(tuning);
-    if (result == MSPRING_OK && !by_trajectory)
-        result = mspringi_tune_rests(tuning);
-    if (result == MSPRING_OK && (by_trajectory || all))
-        result = mspringi_tune_trajectories(tuning);
-    if (result == MSPRING_OK && by_trajectory && all)
-        result = mspringi_tune_rests(tuning);
+    if (result == MSPRING_OK && by_scene)
+        result = mspringi_tune_scenes(tuning);
+    if (by_scene && !all)
+        return result;
+    if (result == MSPRING_OK)
+        result = measure_swings(tuning);
+    if (result == MSPRING_OK && !by_scene && all && tuning->def.scene)
+        result = mspringi_tune_scenes(tuning);
     return result == MSPRING_OK ? mspringi_tune_costs_again(tuning) : result;
 }
 
@@ -202,6 +272,10 @@ static mspring_result run(mspring_network *network, const mspring_tune_def *def,
         .step_count = steps_of(def),
         .units = (def->flags & MSPRING_TUNE_NOTHING_ELSE ? 3.0 : 4.0) * (double)setting_count,
     };
+    if (def->scene) {
+        tuning.scene = *def->scene;
+        tuning.units += (double)def->scene->start_count * ((double)setting_count + 1.0);
+    }
     if (!tuning.def.clock)
         tuning.def.clock = mspringi_clock();
     tuning.begun = tuning.def.clock(def->user);
@@ -212,6 +286,7 @@ static mspring_result run(mspring_network *network, const mspring_tune_def *def,
         *count = setting_count;
     }
     mspringi_tune_dismiss(tuning.base);
+    mspringi_free(&network->memory, tuning.runs);
     mspringi_free(&network->memory, tuning.places);
     mspringi_free(&network->memory, tuning.times);
     mspringi_free(&network->memory, tuning.trials);
@@ -235,6 +310,8 @@ mspring_result mspring_network_tune(mspring_network *network, const mspring_tune
     const mspring_solver_def *settings = def->settings;
     uint32_t setting_count = def->setting_count;
     result = check_def(def, &network->message);
+    if (result == MSPRING_OK && def->scene)
+        result = check_scene(def->scene, def->dt, network);
     if (result == MSPRING_OK && !settings) {
         settings = usual;
         result = mspring_tune_settings(network, def->dt, usual, MSPRINGI_TUNE_USUAL_SETTINGS, &setting_count);
