@@ -3,7 +3,8 @@
 ///
 /// For each network mspring_network_tune() measures the usual settings from the moment that it is let go of. Then
 /// the setting that it recommends is run, to see whether the promise is kept. Then its springs are made stiffer,
-/// again and again: what is paid for less bending?
+/// again and again: what is paid for less bending? At last a lattice is thrown onto a slope, where it breaks: which
+/// settings break as many springs as a fine run?
 ///
 /// SPDX-License-Identifier: MIT
 #include "common/clock.h"
@@ -28,13 +29,15 @@ typedef struct subject {
     const char *name, *title;
     uint32_t columns, rows;
     int stiffer;
+    bool crashes;
 } subject;
 
 static const subject subjects[] = {
-    {"bar_80x5", "Bar of 80 x 5 particles", 80, 5, 7},
-    {"bar_544x68", "Bar of 544 x 68 particles", 544, 68, 4},
-    {"bar_1800x5", "Bar of 1800 x 5 particles", 1800, 5, 8},
-    {"ship", "Our ship: 157,962 springs, damped", 0, 0, 0},
+    {"bar_80x5", "Bar of 80 x 5 particles", 80, 5, 7, false},
+    {"bar_544x68", "Bar of 544 x 68 particles", 544, 68, 4, false},
+    {"bar_1800x5", "Bar of 1800 x 5 particles", 1800, 5, 8, false},
+    {"ship", "Our ship: 157,962 springs, damped", 0, 0, 0, false},
+    {"crash", "Lattice of 40 x 10 particles that breaks on a slope", 40, 10, 0, true},
 };
 
 static const char *const solver_names[SOLVERS] = {"explicit", "implicit", "direct"};
@@ -160,17 +163,23 @@ static void print_rows(const subject *about, const mspring_tune_row *rows, uint3
         print_row(&rows[i]);
 }
 
+// How a setting is called in a plot.
+static void print_label(char *label, size_t size, const mspring_tune_row *row) {
+    const bool ga0 = row->solver != MSPRING_SOLVER_EXPLICIT && row->integrator == MSPRING_INTEGRATOR_GA0;
+    if (row->solver == MSPRING_SOLVER_IMPLICIT)
+        snprintf(label, size, "%u x %u%s", row->substeps, row->iterations, ga0 ? " GA0" : "");
+    else
+        snprintf(label, size, "%u%s", row->substeps, ga0 ? " GA0" : "");
+}
+
 static void collect_errors(const mspring_tune_row *rows, uint32_t count, cloud *to) {
     char label[16];
     for (uint32_t i = 0; i < count; i++) {
         const mspring_tune_row *row = &rows[i];
         if (!(row->flags & MSPRING_TUNE_HAS_TRAJECTORY))
             continue;
-        if (row->solver == MSPRING_SOLVER_IMPLICIT)
-            snprintf(label, sizeof label, "%u x %u", row->substeps, row->iterations);
-        else
-            snprintf(label, sizeof label, "%u", row->substeps);
-        add_point(to, row->solver, 1e6 * row->min_cost, row->trajectory_share, label,
+        print_label(label, sizeof label, row);
+        add_point(to, row->solver, 1e6 * row->median_cost, row->trajectory_share, label,
                   row->flags & MSPRING_TUNE_RECOMMENDED);
     }
     find_front(to);
@@ -272,7 +281,7 @@ static bool measure_bending(const subject *about, const options *how, mspring_ne
     def.measure = MSPRING_TUNE_BY_BENDING;
     def.flags = MSPRING_TUNE_NOTHING_ELSE;
     def.settings = settings;
-    printf("\n%12s %12s %-9s %8s %11s\n", "stiffness", "bending, m", "solver", "substeps", "least, us");
+    printf("\n%12s %12s %-9s %8s %11s\n", "stiffness", "bending, m", "solver", "substeps", "a step, us");
     for (int i = 0; i <= about->stiffer; i++) {
         def.setting_count = list_solvers(network, settings);
         if (!tune(network, how, &def, rows, &def.setting_count))
@@ -282,10 +291,10 @@ static bool measure_bending(const subject *about, const options *how, mspring_ne
             if (!(rows[r].flags & MSPRING_TUNE_HAS_REST))
                 continue;
             printf("%12.0f %12.4g %-9s %8u %11.1f\n", pow(4, i), rows[r].bending, solver_names[rows[r].solver],
-                   rows[r].substeps, 1e6 * rows[r].min_cost);
+                   rows[r].substeps, 1e6 * rows[r].median_cost);
             if (rows[r].solver == MSPRING_SOLVER_EXPLICIT)
                 snprintf(label, sizeof label, "%u", rows[r].substeps);
-            add_point(bending, rows[r].solver, 1e6 * rows[r].min_cost, rows[r].bending, label, false);
+            add_point(bending, rows[r].solver, 1e6 * rows[r].median_cost, rows[r].bending, label, false);
         }
         if (!make_stiffer(network))
             return false;
@@ -294,10 +303,91 @@ static bool measure_bending(const subject *about, const options *how, mspring_ne
     return true;
 }
 
+/* ------------------------------------------------------------------------------------------------------- crash */
+
+// Let go of the pinned column, throw it all at a slope, and let springs break at a strain of 1 %.
+static bool throw_at_slope(mspring_network *network, uint32_t columns, uint32_t rows) {
+    const double slope[4] = {0, -3, 0.1, 1};
+    const float one = 1, still = 0, down = -10, strain = 0.01f;
+    mspring_floor_def floor;
+    mspring_floor_def_init(&floor, sizeof floor);
+    floor.planes = slope, floor.plane_count = 1, floor.friction = 0.3f, floor.restitution = 0.2f;
+    bool ok = mspring_network_set_floor(network, &floor) == MSPRING_OK;
+    for (uint32_t p = 0; ok && p < columns * rows; p++)
+        ok = mspring_network_set_inverse_mass_scales(network, p, 1, &one) == MSPRING_OK &&
+             mspring_network_set_velocities(network, p, 1, &still, &down) == MSPRING_OK;
+    for (uint32_t s = 0; ok && s < mspring_network_spring_count(network); s++)
+        ok = mspring_network_set_break_strains(network, s, 1, &strain) == MSPRING_OK;
+    if (!ok)
+        fprintf(stderr, "cannot throw the lattice: %s\n", mspring_network_error(network));
+    return ok;
+}
+
+static void print_quantities(const double *mean, const double *spread) {
+    printf(" %8.1f +- %4.1f %8.1f +- %4.1f %8.2f +- %4.2f", mean[MSPRING_TUNE_BROKEN], spread[MSPRING_TUNE_BROKEN],
+           1e-3 * mean[MSPRING_TUNE_ENERGY], 1e-3 * spread[MSPRING_TUNE_ENERGY], mean[MSPRING_TUNE_EXTENT],
+           spread[MSPRING_TUNE_EXTENT]);
+}
+
+static void print_crash(const subject *about, const mspring_tune_scene *crash, const mspring_tune_row *rows,
+                        uint32_t count) {
+    printf("\n%s, steps of 1/64 s, %g s\n\n%-15s %8s %10s %11s %6s %16s %16s %16s %9s\n", about->title,
+           crash->duration, "solver", "substeps", "iterations", "mean, us", "starts", "broken", "energy, kJ",
+           "extent, m", "distance");
+    bool told = false;
+    for (uint32_t i = 0; i < count; i++) {
+        char iterations[16] = "";
+        const mspring_tune_row *row = &rows[i];
+        if (!(row->flags & MSPRING_TUNE_HAS_SCENE))
+            continue;
+        if (row->solver == MSPRING_SOLVER_IMPLICIT)
+            snprintf(iterations, sizeof iterations, "%u", row->iterations);
+        if (!told) {
+            told = true;
+            printf("%-15s %8u %10s %11s %6u", "the fine run", row->fine_substeps, "", "", row->scene_starts);
+            print_quantities(row->fine_mean, row->fine_spread);
+            printf("\n");
+        }
+        printf("%-9s %-5s %8u %10s %11.1f %6u", solver_names[row->solver],
+               row->solver != MSPRING_SOLVER_EXPLICIT && row->integrator == MSPRING_INTEGRATOR_BDF2 ? "BDF2" : "",
+               row->substeps, iterations, 1e6 * row->scene_cost, row->scene_starts);
+        print_quantities(row->scene_mean, row->scene_spread);
+        printf(" %9.2f  %s%s\n", row->scene_distance, row->flags & MSPRING_TUNE_PARETO ? "front" : "",
+               row->flags & MSPRING_TUNE_RECOMMENDED ? ", recommended" : "");
+    }
+}
+
+static bool measure_crash(const subject *about, const options *how, mspring_network *network, cloud *distances) {
+    char label[16];
+    mspring_tune_scene crash;
+    mspring_tune_def def;
+    mspring_tune_row rows[MOST_ROWS];
+    uint32_t count = 0;
+    mspring_tune_scene_init(&crash, sizeof crash);
+    mspring_tune_def_init(&def, sizeof def);
+    def.dt = dt;
+    def.budget = how->budget;
+    def.scene = &crash;
+    def.measure = MSPRING_TUNE_BY_SCENE;
+    def.flags = MSPRING_TUNE_NOTHING_ELSE;
+    if (!throw_at_slope(network, about->columns, about->rows) || !tune(network, how, &def, rows, &count))
+        return false;
+    print_crash(about, &crash, rows, count);
+    for (uint32_t i = 0; i < count; i++) {
+        if (!(rows[i].flags & MSPRING_TUNE_HAS_SCENE))
+            continue;
+        print_label(label, sizeof label, &rows[i]);
+        add_point(distances, rows[i].solver, 1e6 * rows[i].scene_cost, rows[i].scene_distance, label,
+                  rows[i].flags & MSPRING_TUNE_RECOMMENDED);
+    }
+    find_front(distances);
+    return true;
+}
+
 /* ----------------------------------------------------------------------------------------------------- drawing */
 
-static void draw_cloud(figure *target, const cloud *drawn, const char *title, const char *y_label, bool percent,
-                       double left) {
+static void draw_cloud(figure *target, const cloud *drawn, const char *title, const char *x_label,
+                       const char *y_label, bool percent, double left) {
     scatter_series series[SOLVERS];
     size_t count = 0;
     for (int s = 0; s < SOLVERS; s++) {
@@ -310,7 +400,7 @@ static void draw_cloud(figure *target, const cloud *drawn, const char *title, co
         count += drawn->counts[s] > 0;
     }
     const scatter plot = {.title = title,
-                          .x_label = "a step of 1/64 s takes at least, microseconds",
+                          .x_label = x_label,
                           .y_label = y_label,
                           .series = series,
                           .series_count = count,
@@ -323,11 +413,16 @@ static void draw_cloud(figure *target, const cloud *drawn, const char *title, co
 static bool draw(const subject *about, const options *how, const cloud *errors, const cloud *bending) {
     char name[64];
     figure picture;
+    const char *cost = "a step of 1/64 s takes, microseconds";
     snprintf(name, sizeof name, "07_tune_%s", about->name);
     figure_start(&picture, about->stiffer > 0 ? 1120 : 560, 460, 0xffffff);
-    draw_cloud(&picture, errors, about->title, "error of positions, as a share of the largest motion", true, 0);
+    if (about->crashes)
+        draw_cloud(&picture, errors, about->title, cost, "distance from the fine run, in its spreads", false, 0);
+    else
+        draw_cloud(&picture, errors, about->title, cost, "error of positions, as a share of the largest motion",
+                   true, 0);
     if (about->stiffer > 0)
-        draw_cloud(&picture, bending, "The same, made stiffer and stiffer", "bending at rest, m", false, 560);
+        draw_cloud(&picture, bending, "The same, made stiffer and stiffer", cost, "bending at rest, m", false, 560);
     const bool ok = output_figure(&picture, how->folder, name);
     figure_free(&picture);
     return ok;
@@ -365,7 +460,9 @@ static bool show(const subject *about, const options *how) {
     bool ok = mspring_network_create(made.builder, NULL, &network) == MSPRING_OK;
     if (!ok)
         fprintf(stderr, "%s: %s\n", about->name, mspring_builder_error(made.builder));
-    ok = ok && measure_errors(about, how, network, &errors) &&
+    ok = ok &&
+         (about->crashes ? measure_crash(about, how, network, &errors)
+                         : measure_errors(about, how, network, &errors)) &&
          (about->stiffer == 0 || measure_bending(about, how, network, &bending)) &&
          draw(about, how, &errors, &bending);
     mspring_network_destroy(network);
@@ -374,11 +471,11 @@ static bool show(const subject *about, const options *how) {
 }
 
 static int print_help(const char *program, int exit_code) {
-    printf("07_tune: what speed costs in accuracy, for three bars and, if --images is given, our ship.\n\n"
+    printf("07_tune: what speed costs in accuracy, for three bars, a crash and, if --images is given, our ship.\n\n"
            "usage: %s [--out FOLDER] [--images FOLDER] [--only NAME] [--budget SECONDS] [--clock wall|cpu]\n\n"
            "  --out FOLDER      where pictures go (default: out)\n"
            "  --images FOLDER   where ship.png and ship_materials.csv are, such as examples/data\n"
-           "  --only NAME       bar_80x5, bar_544x68, bar_1800x5 or ship\n"
+           "  --only NAME       bar_80x5, bar_544x68, bar_1800x5, ship or crash\n"
            "  --budget SECONDS  for each table (default: 60)\n"
            "  --clock cpu       time that the processor gave, where others have it, too (default: wall)\n",
            program);
