@@ -73,14 +73,6 @@ static void clear_field(mspringi_field field, uint32_t slot) {
         field.x[slot] = field.y[slot] = 0.0f;
 }
 
-static void clear_history(mspringi_implicit *implicit, uint32_t slot) {
-    if (!implicit)
-        return;
-    const mspringi_field fields[] = {implicit->history.first, implicit->history.second};
-    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i)
-        clear_field(fields[i], slot);
-}
-
 void mspringi_growth_take_particle(mspring_network *network, mspring_id particle) {
     const uint32_t slot = network->topology.slot_of_particle[particle];
     MSPRINGI_ASSERT(network->growth.particles);
@@ -90,8 +82,8 @@ void mspringi_growth_take_particle(mspring_network *network, mspring_id particle
     if (network->inverse_mass_scale)
         network->inverse_mass_scale[particle] = 0.0f;
     clear_field(network->forces.held, slot);
-    clear_history(network->implicit, slot);
-    clear_history(network->fallback, slot);
+    mspringi_implicit_forget_slot(network, network->implicit, slot);
+    mspringi_implicit_forget_slot(network, network->fallback, slot);
     if (network->floor) {
         clear_field(network->floor->impulse, slot);
         clear_field(network->floor->former, slot);

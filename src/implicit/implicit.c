@@ -350,6 +350,20 @@ void mspringi_implicit_forget(mspringi_implicit *n) {
     n->budget.knows_elastic = false;
 }
 
+// With BDF2 a parabola is x - x(t-h) = h v - h^2 g / 2.
+void mspringi_implicit_forget_slot(const mspring_network *network, mspringi_implicit *n, uint32_t slot) {
+    if (!n || !n->history.first.x)
+        return;
+    const bool two = n->integrator == MSPRING_INTEGRATOR_BDF2, falls = network->inverse_mass[slot] > 0.0f;
+    const float h = n->history.h, share = !falls ? 0.0f : two ? -0.5f * h * h : 1.0f;
+    n->history.first.x[slot] = share * network->gravity_x;
+    n->history.first.y[slot] = share * network->gravity_y;
+    if (!n->history.second.x)
+        return;
+    n->history.second.x[slot] = falls ? h * network->gravity_x : 0.0f;
+    n->history.second.y[slot] = falls ? h * network->gravity_y : 0.0f;
+}
+
 /* --------------------------------------------------------------------------------------------------------- plan */
 
 void mspringi_implicit_describe(const mspringi_implicit *n, mspring_plan *plan) {

@@ -103,6 +103,9 @@ mspring_result mspringi_fallback_reserve(mspring_network *network, uint32_t tile
 /// Forget the history, as if a new motion began.
 void mspringi_implicit_forget(mspringi_implicit *implicit);
 
+/// Forget that of one particle, as if it had fallen freely: forces that it holds act no more. NULL is allowed.
+void mspringi_implicit_forget_slot(const mspring_network *network, mspringi_implicit *implicit, uint32_t slot);
+
 /// Take count substeps of length h, all with the forces from outside that are in base (x NULL: none).
 void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count);
 
