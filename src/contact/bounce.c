@@ -114,7 +114,10 @@ typedef struct meeting {
     double time;
 } meeting;
 
+// (A part of the heights that it is below ends before it, where it would be lifted for nothing.)
 static void meet(const mspringi_line *line, double slop, const mspringi_flyer *p, meeting *first) {
+    if (distance_from(line, p->x, p->y) < -mspringi_floor_slop(p->x, p->y))
+        return;
     const double time = mspringi_time_to(line->nx, line->ny, line->offset, slop, p);
     if (time < first->time)
         *first = (meeting){*line, time};
@@ -140,31 +143,59 @@ static meeting find_meeting(const mspringi_floor *floor, double slop, const mspr
     return first;
 }
 
+// What a particle is lifted by its speed pays for.
+static bool put_flyer_outside(const mspringi_floor *floor, mspringi_flyer *p) {
+    const double x = p->x, y = p->y, square = p->wx * p->wx + p->wy * p->wy;
+    if (!mspringi_floor_put_outside(floor, &p->x, &p->y))
+        return false;
+    const double left = square + 2.0 * (p->ax * (p->x - x) + p->ay * (p->y - y));
+    const double keep = !(left < square) ? 1.0 : left > 0.0 ? sqrt(left / square) : 0.0;
+    p->wx *= keep;
+    p->wy *= keep;
+    return true;
+}
+
+// What of its velocity at the end a particle may keep: what lies on a surface has the speed of the end of the substep
+// at once, and may meet another surface by it. (Blocks leave such ones: flight.h.) 0: it would be higher than its energy allows.
+static double kept_of(const mspringi_flyer *start, const mspringi_flyer *end, double since, double x, double y) {
+    const double vx = end->wx + since * end->ax, vy = end->wy + since * end->ay, square = vx * vx + vy * vy;
+    const double late = end->left - since, wx = vx + late * end->ax, wy = vy + late * end->ay;
+    const double fallen = start->ax * (x - start->x) + start->ay * (y - start->y);
+    const double most = start->wx * start->wx + start->wy * start->wy + 2.0 * fallen;
+    const double gained = wx * wx + wy * wy - most * MSPRINGI_NO_LARGER;
+    return !(gained > 0.0) ? 1.0 : square > gained ? sqrt(1.0 - gained / square) : 0.0;
+}
+
 bool mspringi_floor_fly(const mspringi_floor *floor, const mspringi_turning *how, mspringi_flyer *p, double *vx,
                         double *vy) {
     const double slop = mspringi_flight_slop(p->x, p->y);
     double x, y;
     find_end(p, &x, &y);
-    bool acts = mspringi_floor_distance(floor, x, y) < 0.0 && mspringi_floor_put_outside(floor, &p->x, &p->y);
-    const double start_x = p->x, start_y = p->y;
+    bool acts = mspringi_floor_distance(floor, x, y) < 0.0 && put_flyer_outside(floor, p);
+    const mspringi_flyer start = *p;
+    bool has_slid = false;
     for (int turns = 1; turns <= MSPRINGI_MOST_TURNS; ++turns) {
         const meeting first = find_meeting(floor, slop, p);
         if (!(first.time < INFINITY))
             break;
         acts = true;
+        has_slid |= turns > 1 && p->ax == 0.0 && p->ay == 0.0;
         mspringi_turn_flyer(first.line.nx, first.line.ny, first.line.offset, how, first.time,
                             turns == MSPRINGI_MOST_TURNS, p);
     }
     find_end(p, &x, &y);
-    const double since = p->left - how->lag;
-    *vx = p->wx + since * p->ax;
-    *vy = p->wy + since * p->ay;
+    const double since = p->left - how->lag, keep = has_slid ? kept_of(&start, p, since, x, y) : 1.0;
+    *vx = keep * (p->wx + since * p->ax);
+    *vy = keep * (p->wy + since * p->ay);
     p->x = x;
     p->y = y;
-    if (acts && !(mspringi_floor_distance(floor, x, y) >= -mspringi_floor_slop(x, y))) {
-        p->x = start_x;
-        p->y = start_y;
-        *vx = *vy = 0.0;
+    if (acts && (keep == 0.0 || !(mspringi_floor_distance(floor, x, y) >= -mspringi_floor_slop(x, y)))) {
+        // A corner that leads nowhere: it stays, and turns back as fast as it bounces.
+        const double e = how->restitution > MSPRINGI_LEAST_RESTITUTION ? how->restitution : 0.0;
+        p->x = start.x;
+        p->y = start.y;
+        *vx = e > 0.0 ? -e * start.wx - how->lag * start.ax : 0.0;
+        *vy = e > 0.0 ? -e * start.wy - how->lag * start.ay : 0.0;
     }
     return acts;
 }

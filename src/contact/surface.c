@@ -172,10 +172,10 @@ static void cover(const mspring_network *network, size_t first, size_t end, box 
             fast[lane] = vy > fast[lane] ? vy : fast[lane];
         }
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
-        all->min_x = fmin(all->min_x, (double)min_x[lane]);
-        all->max_x = fmax(all->max_x, (double)max_x[lane]);
-        all->min_y = fmin(all->min_y, (double)min_y[lane]);
-        all->max_y = fmax(all->max_y, (double)max_y[lane]);
+        all->min_x = (double)min_x[lane] < all->min_x ? (double)min_x[lane] : all->min_x;
+        all->max_x = (double)max_x[lane] > all->max_x ? (double)max_x[lane] : all->max_x;
+        all->min_y = (double)min_y[lane] < all->min_y ? (double)min_y[lane] : all->min_y;
+        all->max_y = (double)max_y[lane] > all->max_y ? (double)max_y[lane] : all->max_y;
         *fastest = fast[lane] > *fastest ? fast[lane] : *fastest;
     }
 }

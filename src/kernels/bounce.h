@@ -146,8 +146,8 @@ static inline double mspringi_time_to(double nx, double ny, double offset, doubl
 
 /// Turn it where it meets a surface after so many seconds: it bounces, or lies on the surface for the rest of the
 /// substep if that is the last turn, or if the bounce would be shorter than a substep. (At rest v = 0, so that w =
-/// h a / 2: what presses it on counts as friction takes it, and no bounce.)
-static inline void mspringi_turn_flyer(double nx, double ny, double offset, const mspringi_turning *how,
+/// h a / 2: what presses it on counts as friction takes it, and no bounce.) Returns whether it bounces.
+static inline bool mspringi_turn_flyer(double nx, double ny, double offset, const mspringi_turning *how,
                                        double time, bool is_last, mspringi_flyer *p) {
     const double x = p->x + time * (p->wx + 0.5 * time * p->ax), y = p->y + time * (p->wy + 0.5 * time * p->ay);
     const double wx = p->wx + time * p->ax, wy = p->wy + time * p->ay, left = p->left - time;
@@ -168,6 +168,7 @@ static inline void mspringi_turn_flyer(double nx, double ny, double offset, cons
     p->ax = lies ? 0.0 : p->ax;
     p->ay = lies ? 0.0 : p->ay;
     p->left = is_last ? 0.0 : left;
+    return !lies;
 }
 
 /// Turns of a particle in a substep.

@@ -9,6 +9,8 @@
 
 #include "bounce.h"
 
+#include <string.h>
+
 /// Particles as mspringi_going has them, and 1 or 0 for what is true of them or not.
 typedef struct touching {
     double x[MSPRINGI_WIDTH], y[MSPRINGI_WIDTH], vx[MSPRINGI_WIDTH], vy[MSPRINGI_WIDTH];
@@ -32,6 +34,15 @@ static inline mspringi_going going_at(const touching *b, size_t i) {
                             .half_x = b->half_x[i],
                             .half_y = b->half_y[i],
                             .restitution = b->restitution[i]};
+}
+
+// Whether any flag is 1: by their bits, since adding them up would take one after the other.
+static inline bool is_any(const double *flags) {
+    uint64_t bits[MSPRINGI_WIDTH], all = 0;
+    memcpy(bits, flags, sizeof bits);
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
+        all |= bits[i];
+    return all != 0;
 }
 
 // Which particles a floor may act on.
@@ -91,7 +102,7 @@ static inline bool look_at_line(const mspringi_ground *g, const double *restrict
                                 const double *restrict all_ny, const double *restrict all_offset, size_t stride,
                                 const double *restrict is_held, touching *restrict b) {
     const double h = g->h;
-    double any[MSPRINGI_WIDTH], sum = 0.0;
+    double any[MSPRINGI_WIDTH];
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const double nx = all_nx[i * stride], ny = all_ny[i * stride];
         const double distance = nx * b->x[i] + ny * b->y[i] + all_offset[i * stride];
@@ -99,9 +110,7 @@ static inline bool look_at_line(const mspringi_ground *g, const double *restrict
         any[i] = distance + h * across < 0.0 ? is_held[i] : 0.0;
         b->is_left[i] += distance < -b->slop[i] ? 1.0 : 0.0;
     }
-    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
-        sum += any[i];
-    return sum > 0.0;
+    return is_any(any);
 }
 
 /* ------------------------------------------------------------------------------------------------------ heights */

@@ -52,7 +52,7 @@ static inline void find_flight_ends(const flying *restrict b, double *restrict x
 // Whether any that is held would end below a straight surface; those that begin beyond it are left.
 static inline bool is_met(const double *restrict all_nx, const double *restrict all_ny,
                           const double *restrict all_offset, size_t stride, flying *restrict b) {
-    double any[MSPRINGI_WIDTH], sum = 0.0;
+    double any[MSPRINGI_WIDTH];
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const double nx = all_nx[i * stride], ny = all_ny[i * stride], left = b->left[i];
         const double distance = nx * b->x[i] + ny * b->y[i] + all_offset[i * stride];
@@ -61,9 +61,7 @@ static inline bool is_met(const double *restrict all_nx, const double *restrict 
         any[i] = end < -b->flight_slop[i] ? b->is_held[i] : 0.0;
         b->is_left[i] += distance < -b->slop[i] ? 1.0 : 0.0;
     }
-    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
-        sum += any[i];
-    return sum > 0.0;
+    return is_any(any);
 }
 
 // Find which particles meet a straight surface sooner than those before.
@@ -81,14 +79,19 @@ static inline void meet_line(const double *restrict all_nx, const double *restri
     }
 }
 
-static inline void turn_flying(const mspringi_turning *how, bool is_last, flying *restrict b) {
+// Returns whether any bounces, and so may meet the same surface again.
+static inline bool turn_flying(const mspringi_turning *how, bool is_last, flying *restrict b) {
     const mspringi_turning by = *how;
+    double any[MSPRINGI_WIDTH];
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const mspringi_flyer before = flyer_at(b, i);
         mspringi_flyer p = before;
         const bool meets = b->time[i] < INFINITY;
         const double time = meets ? b->time[i] : 0.0;
-        mspringi_turn_flyer(b->nx[i], b->ny[i], b->offset[i], &by, time, is_last, &p);
+        const bool bounces = mspringi_turn_flyer(b->nx[i], b->ny[i], b->offset[i], &by, time, is_last, &p);
+        any[i] = (meets & bounces) ? 1.0 : 0.0;
+        const bool has_slid = (before.ax == 0.0) & (before.ay == 0.0);
+        b->is_left[i] += (meets & has_slid) ? b->is_hit[i] : 0.0;
         b->x[i] = meets ? p.x : before.x;
         b->y[i] = meets ? p.y : before.y;
         b->wx[i] = meets ? p.wx : before.wx;
@@ -98,11 +101,13 @@ static inline void turn_flying(const mspringi_turning *how, bool is_last, flying
         b->left[i] = meets ? p.left : before.left;
         b->is_hit[i] = meets ? 1.0 : b->is_hit[i];
     }
+    return is_any(any);
 }
 
-// Turn each where it next meets a surface. Returns whether any does.
+// Turn each where it next meets a surface. Returns whether any may meet one again: what lies on the only one does not.
 static bool fly_on(const mspringi_ground *g, const parts_below *parts, const mspringi_turning *how, bool is_last,
                    flying *b) {
+    const bool is_only_one = g->line_count + (g->height_count > 0) == 1;
     bool any = false;
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         b->time[i] = INFINITY;
@@ -119,9 +124,7 @@ static bool fly_on(const mspringi_ground *g, const parts_below *parts, const msp
         any = true;
         meet_line(parts->nx, parts->ny, parts->offset, 1, b);
     }
-    if (any)
-        turn_flying(how, is_last, b);
-    return any;
+    return any && (turn_flying(how, is_last, b) || !is_only_one);
 }
 
 static void leave_flown(const mspringi_ground *g, const parts_below *parts, flying *b) {
@@ -158,10 +161,12 @@ static uint32_t fly_past(const mspringi_ground *g, size_t slot) {
     load_flying(g, slot, &b);
     if (g->height_count > 0)
         begin_flown(g, &b, &parts);
-    for (int turn = 1; turn <= MSPRINGI_MOST_TURNS && fly_on(g, &parts, &how, turn == MSPRINGI_MOST_TURNS, &b);
-         ++turn)
+    bool goes_on = true;
+    for (int turn = 1; turn <= MSPRINGI_MOST_TURNS && goes_on; ++turn) {
+        goes_on = fly_on(g, &parts, &how, turn == MSPRINGI_MOST_TURNS, &b);
         if (g->height_count > 0)
             leave_flown(g, &parts, &b);
+    }
     find_flight_end(&b, how.lag, &end);
     if (g->line_count + (g->height_count > 0) > 1)
         leave_stuck(g, &parts, end.x, end.y, b.slop, b.is_left);
