@@ -298,6 +298,64 @@ static void a_scene_leaves_the_rest_as_it_is(void **state) {
     mspring_network_destroy(network);
 }
 
+static uint32_t runs_prepared;
+
+static mspring_result count_run(mspring_network *run, uint32_t start, void *user) {
+    (void)run;
+    (void)user;
+    runs_prepared += 1 + start;
+    return MSPRING_OK;
+}
+
+/// A setting that is rejected takes no more time, and none at all is left to be compared with a fine run.
+static void who_is_rejected_is_out(void **state) {
+    (void)state;
+    mspring_network *network = falling_lattice(NULL);
+    const mspring_solver_def setting = tunes_setting(MSPRING_SOLVER_EXPLICIT, 3, 0);
+    mspring_tune_scene scene = short_scene();
+    scene.prepare = count_run;
+    tunes_watch w = {.tick = 1e-3};
+    const mspring_tune_def def = def_of(&w, &scene, &setting, 1);
+    runs_prepared = 0;
+    const tunes_table out = tunes_run(network, &def);
+    assert_true(tunes_has(&out.rows[0], MSPRING_TUNE_REFUSED));
+    assert_false(tunes_has(&out.rows[0], MSPRING_TUNE_HAS_SCENE));
+    assert_true(runs_prepared <= 2); // the first fine run, and the one that was rejected
+    mspring_network_destroy(network);
+}
+
+/// Hooks that keep something for each worker, and work side by side.
+static void sum_up(const mspring_hook_args *args, void *user) {
+    (void)user;
+    ++*(uint32_t *)args->storage;
+}
+
+static void hooks_have_their_storage(void **state) {
+    (void)state;
+    uint32_t storage[3][16] = {{0}};
+    mspring_network_def how = support_def(-9.8f, 1);
+    how.worker_count = 3;
+    mspring_network *network = falling_lattice(&how);
+    mspring_hook_def hook;
+    check_ok(mspring_hook_def_init(&hook, sizeof hook));
+    hook.phase = MSPRING_PHASE_BEFORE_SUBSTEP;
+    hook.fn = sum_up;
+    hook.flags = MSPRING_HOOK_CONCURRENT;
+    hook.storage = storage, hook.storage_stride = sizeof storage[0], hook.range_slots = 16;
+    check_ok(mspring_network_add_hook(network, &hook, NULL));
+    const mspring_solver_def settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 12, 0),
+                                           tunes_setting(MSPRING_SOLVER_IMPLICIT, 1, 4)};
+    mspring_tune_scene scene = short_scene();
+    scene.flags |= MSPRING_TUNE_SCENE_HOOKS;
+    tunes_watch w = {.tick = 1e-3};
+    const mspring_tune_def def = def_of(&w, &scene, settings, COUNT_OF(settings));
+    const tunes_table out = tunes_run(network, &def);
+    assert_true(tunes_has(&out.rows[0], MSPRING_TUNE_HAS_SCENE) && tunes_has(&out.rows[1], MSPRING_TUNE_HAS_SCENE));
+    // Each substep of each run calls it at least once.
+    assert_true(storage[0][0] + storage[1][0] + storage[2][0] >= 5 * 24 * (12 + out.rows[0].fine_substeps + 1));
+    mspring_network_destroy(network);
+}
+
 static void judged_by_the_scene(void **state) {
     (void)state;
     const struct {
@@ -329,7 +387,8 @@ int main(void) {
         cmocka_unit_test(what_is_switched_on_acts), cmocka_unit_test(rows_tell_what_runs_by_hand_give),
         cmocka_unit_test(starts_are_kicked),        cmocka_unit_test(scenes_are_the_same_everywhere),
         cmocka_unit_test(the_budget_is_heeded),     cmocka_unit_test(a_scene_leaves_the_rest_as_it_is),
-        cmocka_unit_test(judged_by_the_scene),
+        cmocka_unit_test(judged_by_the_scene),      cmocka_unit_test(who_is_rejected_is_out),
+        cmocka_unit_test(hooks_have_their_storage),
     };
     return cmocka_run_group_tests_name("tune_scene", tests, NULL, NULL);
 }

@@ -152,6 +152,13 @@ static mspring_result choose_fine(mspringi_tuning *tuning, mspring_solver_def *s
     return MSPRING_OK;
 }
 
+static bool is_any_in(const mspringi_tuning *tuning) {
+    bool is_any = false;
+    for (uint32_t i = 0; i < tuning->trial_count; ++i)
+        is_any = is_any || is_in(&tuning->trials[i]);
+    return is_any;
+}
+
 // One start, by the fine run and all settings. Not whole: no further start is to be made.
 static mspring_result run_start(mspringi_tuning *tuning, const mspring_solver_def *fine, uint32_t start,
                                 mspringi_scene_run *fine_runs, ending *end) {
@@ -215,7 +222,8 @@ mspring_result mspringi_tune_scenes(mspringi_tuning *tuning) {
     mspring_result result = choose_fine(tuning, &fine);
     if (result != MSPRING_OK || fine.substeps == 0)
         return result;
-    for (uint32_t start = 0; result == MSPRING_OK && end == WHOLE && start < tuning->scene.start_count; ++start)
+    const uint32_t starts = tuning->scene.start_count;
+    for (uint32_t start = 0; result == MSPRING_OK && end == WHOLE && start < starts && is_any_in(tuning); ++start)
         result = run_start(tuning, &fine, start, fine_runs, &end);
     for (uint32_t i = 0; result == MSPRING_OK && i < tuning->trial_count; ++i) {
         mspringi_trial *trial = &tuning->trials[i];
