@@ -886,8 +886,8 @@ typedef struct mspring_tune_scene {
     uint32_t reserved;    ///< 0
     double duration;      ///< simulated time of a run, s; > 0, up to 100000 steps, rounded up to whole ones; default 1
     double kick; ///< m/s, > 0: in all starts but the first the velocities of particles that are not pinned differ
-                 ///< by up to this in x and y, each by another amount; default 0.1. Too small for what breaks to
-                 ///< come out differently, it tells how one crash goes, not what crashes have in common.
+                 ///< by up to this in x and y, each by another amount; default 0.1. If it is so small that all
+                 ///< runs break in the same way, the spread tells nothing.
     double tolerance;    ///< share of a mean that makes no difference; >= 0; default 0.05
     double max_distance; ///< with MSPRING_TUNE_BY_SCENE, in place of mspring_tune_def.max_error; > 0; default 1
     mspring_tune_prepare_fn prepare; ///< default NULL
@@ -1006,15 +1006,16 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_tune_settings(mspring_netwo
 /// Relative springs follow the substep: each row is compared with a fine run, and an equilibrium, that have the
 /// stiffness of its own substeps, and bending says how firm that is.
 ///
-/// Once springs break, no two runs keep together: the smallest difference leads elsewhere. Settings are then compared
-/// by what many runs have in common. A scene runs each setting from start_count starts, and so an explicit fine run of
-/// the same dt: at most a third of the substep that is stable in any shape, and at most half of any explicit setting's.
+/// Once springs break, no two runs keep together: the smallest difference leads elsewhere. So a scene compares what
+/// many runs have in common. It runs each setting from start_count starts, and an explicit fine run from the same. A
+/// fine substep is at most a third of the one that is stable in any shape, and half of any explicit setting's.
 /// Three quantities are taken at the end of each run. A row's distance is the difference of its mean from the fine
-/// runs', divided by their standard deviation; or by their mean's share in the scene's tolerance, or one spring, if
-/// that is more. The largest of the three counts. By chance alone two samples of 16 starts differ by 0.35 (standard
-/// deviation), of 64 by 0.18. If the budget is small there are fewer starts, with at most one more for rows that come
-/// first. If the fine run is rejected, no row has the scene's numbers. A network with relative springs cannot have a
-/// scene: they would follow the fine run's substeps.
+/// runs', in units. A unit is the standard deviation of the fine runs. It is at least the tolerance's share of their
+/// mean, and one spring. The largest distance of the three counts. By chance alone two samples of 16 starts differ by
+/// 0.35 (standard deviation), of 64 by 0.18.
+/// If the budget is small there are fewer starts, with at most one more for rows that come first. If the fine run is
+/// rejected, no row has the scene's numbers. A network with relative springs cannot have a scene: they would follow
+/// the fine run's substeps.
 ///
 /// Recommended is, if max_error is finite, the row of the least median cost among those within all bounds; else,
 /// of those within max_cost and max_drift, the one of the least error; of equal ones the first. There may be none.
