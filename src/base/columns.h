@@ -29,6 +29,10 @@ typedef struct mspringi_columns {
 #define MSPRINGI_COLUMN(type, member, kind)                                                                        \
     { offsetof(type, member), sizeof *((type *)0)->member, (kind) }
 
+/// The table of an array of rows.
+#define MSPRINGI_COLUMNS(rows)                                                                                     \
+    { rows, sizeof(rows) / sizeof(rows)[0] }
+
 /// The pointer itself. (All pointers to objects are represented alike where the library runs.)
 void *mspringi_column_get(const mspringi_column *column, const void *owner);
 void mspringi_column_set(const mspringi_column *column, void *owner, void *array);

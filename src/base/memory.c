@@ -157,6 +157,7 @@ void *mspringi_memory_moved(const mspringi_memory *from, const mspringi_memory *
         if (place >= begin && place <= end)
             return contents_of(copy) + (place - begin);
     }
+    MSPRINGI_ASSERT(!pointer); // it was in none of from's blocks
     return NULL;
 }
 

@@ -192,17 +192,20 @@ mspring_result mspringi_direct_create(mspringi_direct *direct, mspring_network *
                          (unsigned)t->particle_count);
 }
 
+#define ARRAY(member) MSPRINGI_COLUMN(mspringi_direct, member, MSPRINGI_ARRAY)
+#define VIEW(member) MSPRINGI_COLUMN(mspringi_direct, member, MSPRINGI_VIEW)
+static const mspringi_column columns[] = {
+    ARRAY(end_a),         ARRAY(end_b),          ARRAY(edge_blocks),   ARRAY(edges.xx),      VIEW(edges.xy),
+    VIEW(edges.yy),       ARRAY(edges_twice.xx), VIEW(edges_twice.xy), VIEW(edges_twice.yy), ARRAY(nodes_twice.xx),
+    VIEW(nodes_twice.xy), VIEW(nodes_twice.yy),  ARRAY(solution),
+};
+const mspringi_columns mspringi_direct_columns = MSPRINGI_COLUMNS(columns);
+
 void mspringi_direct_destroy(mspringi_direct *direct, mspringi_memory *memory) {
     mspringi_cholesky_float_destroy(&direct->single, memory);
     mspringi_cholesky_double_destroy(&direct->twice, memory);
     mspringi_cholesky_plan_destroy(&direct->plan, memory);
-    mspringi_free(memory, direct->end_a);
-    mspringi_free(memory, direct->end_b);
-    mspringi_free(memory, direct->edge_blocks);
-    mspringi_free(memory, direct->edges.xx);
-    mspringi_free(memory, direct->edges_twice.xx);
-    mspringi_free(memory, direct->nodes_twice.xx);
-    mspringi_free(memory, direct->solution);
+    mspringi_columns_free(mspringi_direct_columns, direct, memory);
     *direct = (mspringi_direct){0};
 }
 

@@ -37,6 +37,7 @@ typedef struct mspringi_direct {
 /// Analyse the network's springs and reserve memory for their factor.
 /// @return MSPRING_OK; MSPRING_ERROR_MEMORY; MSPRING_ERROR_LIMIT if the factor would be too large.
 mspring_result mspringi_direct_create(mspringi_direct *direct, mspring_network *network);
+extern const mspringi_columns mspringi_direct_columns;
 void mspringi_direct_destroy(mspringi_direct *direct, mspringi_memory *memory);
 
 /// Solve the system that mspringi_assemble() has left in the network's implicit solver.

@@ -103,6 +103,7 @@ typedef struct mspringi_budget {
 } mspringi_budget;
 
 mspring_result mspringi_budget_create(mspringi_budget *budget, mspring_network *network);
+extern const mspringi_columns mspringi_budget_columns;
 void mspringi_budget_destroy(mspringi_budget *budget, mspringi_memory *memory);
 
 /// Have the components that there are. Allocates nothing.

@@ -337,14 +337,14 @@ mspring_result mspringi_cells_create(mspringi_cells *cells, const mspring_networ
                          (unsigned)network->topology.particle_count);
 }
 
+#define ARRAY(member) MSPRINGI_COLUMN(mspringi_cells, member, MSPRINGI_ARRAY)
+static const mspringi_column columns[] = {
+    ARRAY(of_slot), ARRAY(first_slot), ARRAY(slots),       ARRAY(first_inner),
+    ARRAY(inner),   ARRAY(joints),     ARRAY(first_joint), ARRAY(lowest),
+};
+const mspringi_columns mspringi_cells_columns = MSPRINGI_COLUMNS(columns);
+
 void mspringi_cells_destroy(mspringi_cells *cells, mspringi_memory *memory) {
-    mspringi_free(memory, cells->of_slot);
-    mspringi_free(memory, cells->first_slot);
-    mspringi_free(memory, cells->slots);
-    mspringi_free(memory, cells->first_inner);
-    mspringi_free(memory, cells->inner);
-    mspringi_free(memory, cells->joints);
-    mspringi_free(memory, cells->first_joint);
-    mspringi_free(memory, cells->lowest);
+    mspringi_columns_free(mspringi_cells_columns, cells, memory);
     *cells = (mspringi_cells){0};
 }

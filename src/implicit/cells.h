@@ -39,6 +39,7 @@ typedef struct mspringi_cells {
 /// Cut a network into cells of size x size particles, numbered so that neighbours have near numbers.
 mspring_result mspringi_cells_create(mspringi_cells *cells, const mspring_network *network, uint32_t size,
                                      mspringi_memory *memory, mspringi_message *message);
+extern const mspringi_columns mspringi_cells_columns;
 void mspringi_cells_destroy(mspringi_cells *cells, mspringi_memory *memory);
 
 /// Where the factors of a spring begin: lattice, chain and leftover records one behind the other.

@@ -61,13 +61,14 @@ mspring_result mspringi_coarse_create(mspringi_coarse *coarse, const mspringi_ti
                          (unsigned)tiles->count);
 }
 
+#define ARRAY(member) MSPRINGI_COLUMN(mspringi_coarse, member, MSPRINGI_ARRAY)
+static const mspringi_column columns[] = {
+    ARRAY(first), ARRAY(row), ARRAY(values), ARRAY(kept), ARRAY(far_turns), ARRAY(restricted),
+};
+const mspringi_columns mspringi_coarse_columns = MSPRINGI_COLUMNS(columns);
+
 void mspringi_coarse_destroy(mspringi_coarse *coarse, mspringi_memory *memory) {
-    mspringi_free(memory, coarse->first);
-    mspringi_free(memory, coarse->row);
-    mspringi_free(memory, coarse->values);
-    mspringi_free(memory, coarse->kept);
-    mspringi_free(memory, coarse->far_turns);
-    mspringi_free(memory, coarse->restricted);
+    mspringi_columns_free(mspringi_coarse_columns, coarse, memory);
     *coarse = (mspringi_coarse){0};
 }
 

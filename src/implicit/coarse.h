@@ -29,6 +29,7 @@ double mspringi_coarse_cost(const mspringi_tiles *tiles);
 /// Make a matrix for these tiles, and for what they may become.
 mspring_result mspringi_coarse_create(mspringi_coarse *coarse, const mspringi_tiles *tiles, mspringi_memory *memory,
                                       mspringi_message *message);
+extern const mspringi_columns mspringi_coarse_columns;
 void mspringi_coarse_destroy(mspringi_coarse *coarse, mspringi_memory *memory);
 
 /// Take over the tiles that there are now.

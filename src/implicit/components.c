@@ -28,16 +28,16 @@ mspring_result mspringi_budget_create(mspringi_budget *budget, mspring_network *
     return MSPRING_OK;
 }
 
+#define ARRAY(member) MSPRINGI_COLUMN(mspringi_budget, member, MSPRINGI_ARRAY)
+#define VIEW(member) MSPRINGI_COLUMN(mspringi_budget, member, MSPRINGI_VIEW)
+static const mspringi_column columns[] = {
+    ARRAY(accounts), ARRAY(of_slot),   ARRAY(of_block), ARRAY(of_springs), ARRAY(pins),
+    ARRAY(state),    ARRAY(impulse.x), VIEW(impulse.y), ARRAY(runs),       ARRAY(elastic),
+};
+const mspringi_columns mspringi_budget_columns = MSPRINGI_COLUMNS(columns);
+
 void mspringi_budget_destroy(mspringi_budget *budget, mspringi_memory *memory) {
-    mspringi_free(memory, budget->accounts);
-    mspringi_free(memory, budget->of_slot);
-    mspringi_free(memory, budget->of_block);
-    mspringi_free(memory, budget->of_springs);
-    mspringi_free(memory, budget->pins);
-    mspringi_free(memory, budget->state);
-    mspringi_free(memory, budget->impulse.x);
-    mspringi_free(memory, budget->runs);
-    mspringi_free(memory, budget->elastic);
+    mspringi_columns_free(mspringi_budget_columns, budget, memory);
     *budget = (mspringi_budget){0};
 }
 

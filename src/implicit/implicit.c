@@ -71,24 +71,6 @@ static mspring_result allocate(mspringi_implicit *n, mspring_network *network) {
         !n->x || !n->mass || !n->diagonal || !n->sums)
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for an implicit solver of %u particles", (unsigned)t->particle_count);
-    n->y = n->x + slots;
-    n->leftover_factors = n->factors + (size_t)t->chain_places * MSPRINGI_FACTORS;
-    n->system = (mspringi_system){
-        .x = n->x,
-        .y = n->y,
-        .vx = n->velocity.x,
-        .vy = n->velocity.y,
-        .mass = n->mass,
-        .lattice_springs = network->lattice_springs,
-        .chain_springs = network->chain_springs,
-        .lattice_factors = n->factors,
-        .chain_factors = n->factors + (size_t)t->lattice_places * MSPRINGI_FACTORS,
-        .force_x = n->residual.x,
-        .force_y = n->residual.y,
-        .xx = n->diagonal,
-        .xy = n->diagonal + slots,
-        .yy = n->diagonal + 2 * slots,
-    };
     return MSPRING_OK;
 }
 
@@ -101,6 +83,33 @@ static mspring_result allocate_iterate(mspringi_implicit *n, mspring_network *ne
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for the iterations of %u particles",
                              (unsigned)network->topology.particle_count);
+    return MSPRING_OK;
+}
+
+// Pointers into arrays of its own, and into those of the network that do not change from substep to substep.
+static void wire(mspringi_implicit *n, const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    const size_t slots = mspringi_slot_count(network);
+    mspringi_system *s = &n->system;
+    n->y = n->x + slots;
+    n->leftover_factors = n->factors + (size_t)t->chain_places * MSPRINGI_FACTORS;
+    n->seen.link_log = network->edits.link_log;
+    s->x = n->x;
+    s->y = n->y;
+    s->vx = n->velocity.x;
+    s->vy = n->velocity.y;
+    s->mass = n->mass;
+    s->lattice_springs = network->lattice_springs;
+    s->chain_springs = network->chain_springs;
+    s->rest_lengths = network->rests.lengths;
+    s->rests_of_block = network->rests.of_block;
+    s->lattice_factors = n->factors;
+    s->chain_factors = n->factors + (size_t)t->lattice_places * MSPRINGI_FACTORS;
+    s->force_x = n->residual.x;
+    s->force_y = n->residual.y;
+    s->xx = n->diagonal;
+    s->xy = n->diagonal + slots;
+    s->yy = n->diagonal + 2 * slots;
     n->iterate = (mspringi_iterate){
         .solution_x = n->displacement.x,
         .solution_y = n->displacement.y,
@@ -115,7 +124,6 @@ static mspring_result allocate_iterate(mspringi_implicit *n, mspring_network *ne
         .arm_x = n->arm.x,
         .arm_y = n->arm.y,
     };
-    return MSPRING_OK;
 }
 
 // What each of the workers that there are now has for itself.
@@ -223,12 +231,13 @@ mspring_result mspringi_implicit_create(mspring_network *network, const mspring_
         result = n->is_direct ? mspringi_direct_create(&n->direct, network) : make_two_level(n, network);
     if (result == MSPRING_OK)
         result = reserve_crew(n, network);
-    if (result == MSPRING_OK)
+    if (result == MSPRING_OK) {
+        wire(n, network);
         find_solved(n, network);
-    if (result == MSPRING_OK)
         *implicit = n;
-    else
+    } else {
         mspringi_implicit_destroy(n, &network->memory);
+    }
     return result;
 }
 
@@ -254,6 +263,18 @@ mspring_result mspringi_fallback_reserve(mspring_network *network, uint32_t tile
     return mspringi_implicit_create(network, &def, &network->fallback);
 }
 
+#define ARRAY(member) MSPRINGI_COLUMN(mspringi_implicit, member, MSPRINGI_ARRAY)
+#define VIEW(member) MSPRINGI_COLUMN(mspringi_implicit, member, MSPRINGI_VIEW)
+#define FIELD(member) ARRAY(member.x), VIEW(member.y)
+#define HISTORY(member) FIELD(member.first), VIEW(member.second.x), VIEW(member.second.y)
+static const mspringi_column list[] = {
+    HISTORY(history), HISTORY(backup),     HISTORY(previous), ARRAY(x),        FIELD(velocity),
+    FIELD(residual),  FIELD(displacement), FIELD(direction),  FIELD(product),  FIELD(scaled),
+    FIELD(arm),       ARRAY(mass),         ARRAY(diagonal),   ARRAY(factors),  ARRAY(force_carry),
+    ARRAY(carry),     ARRAY(sums),         ARRAY(flights),    ARRAY(unknowns), ARRAY(is_solved),
+};
+static const mspringi_columns columns = MSPRINGI_COLUMNS(list);
+
 void mspringi_implicit_destroy(mspringi_implicit *n, mspringi_memory *memory) {
     if (!n)
         return;
@@ -262,14 +283,23 @@ void mspringi_implicit_destroy(mspringi_implicit *n, mspringi_memory *memory) {
     mspringi_budget_destroy(&n->budget, memory);
     mspringi_tiles_destroy(&n->tiles, memory);
     mspringi_coarse_destroy(&n->coarse, memory);
-    void *const blocks[] = {
-        n->history.first.x, n->backup.first.x, n->previous.first.x, n->x,         n->velocity.x,
-        n->residual.x,      n->displacement.x, n->direction.x,      n->product.x, n->scaled.x,
-        n->arm.x,           n->mass,           n->diagonal,         n->factors,   n->force_carry,
-        n->carry,           n->sums,           n->flights,          n->unknowns,  n->is_solved};
-    for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; ++i)
-        mspringi_free(memory, blocks[i]);
+    mspringi_columns_free(columns, n, memory);
     mspringi_free(memory, n);
+}
+
+void mspringi_implicit_relocate(mspringi_implicit *n, const mspring_network *network, const mspringi_memory *from,
+                                const mspringi_memory *to) {
+    mspringi_columns_relocate(columns, n, from, to);
+    mspringi_columns_relocate(mspringi_panels_columns, &n->panels, from, to);
+    mspringi_columns_relocate(mspringi_budget_columns, &n->budget, from, to);
+    mspringi_columns_relocate(mspringi_cells_columns, &n->tiles.cells, from, to);
+    mspringi_columns_relocate(mspringi_tiles_columns, &n->tiles, from, to);
+    mspringi_columns_relocate(mspringi_coarse_columns, &n->coarse, from, to);
+    mspringi_columns_relocate(mspringi_direct_columns, &n->direct, from, to);
+    mspringi_columns_relocate(mspringi_cholesky_plan_columns, &n->direct.plan, from, to);
+    mspringi_columns_relocate(mspringi_cholesky_float_columns, &n->direct.single, from, to);
+    mspringi_columns_relocate(mspringi_cholesky_double_columns, &n->direct.twice, from, to);
+    wire(n, network);
 }
 
 /* ------------------------------------------------------------------------------------------------------ history */

@@ -96,6 +96,9 @@ mspring_result mspringi_implicit_create(mspring_network *network, const mspring_
 bool mspringi_implicit_fits(const mspringi_implicit *implicit, const mspring_solver_def *def);
 void mspringi_implicit_adjust(mspringi_implicit *implicit, const mspring_solver_def *def);
 void mspringi_implicit_destroy(mspringi_implicit *implicit, mspringi_memory *memory);
+/// Have a copied solver's pointers lead into the copy of its network.
+void mspringi_implicit_relocate(mspringi_implicit *implicit, const mspring_network *network,
+                                const mspringi_memory *from, const mspringi_memory *to);
 
 /// Make the solver that takes steps for the explicit one, if it is not there, with tiles of that size (0: by plan).
 /// It keeps nothing from step to step.

@@ -52,8 +52,14 @@ mspring_result mspringi_panels_create(mspringi_panels *panels, const mspringi_to
     return MSPRING_OK;
 }
 
+#define ARRAY(member) MSPRINGI_COLUMN(mspringi_panels, member, MSPRINGI_ARRAY)
+static const mspringi_column columns[] = {
+    ARRAY(list),
+    ARRAY(sums),
+};
+const mspringi_columns mspringi_panels_columns = MSPRINGI_COLUMNS(columns);
+
 void mspringi_panels_destroy(mspringi_panels *panels, mspringi_memory *memory) {
-    mspringi_free(memory, panels->list);
-    mspringi_free(memory, panels->sums);
+    mspringi_columns_free(mspringi_panels_columns, panels, memory);
     *panels = (mspringi_panels){0};
 }

@@ -389,17 +389,15 @@ void mspringi_tiles_set_inertia(mspringi_tiles *tiles, float turn_inertia, size_
     take_print(tiles, slots);
 }
 
+#define ARRAY(member) MSPRINGI_COLUMN(mspringi_tiles, member, MSPRINGI_ARRAY)
+static const mspringi_column columns[] = {
+    ARRAY(first_part),    ARRAY(parts),  ARRAY(parts_by_slot), ARRAY(first_by_slot), ARRAY(of_slot),
+    ARRAY(first_of_cell), ARRAY(parent), ARRAY(anchors),       ARRAY(dirty),         ARRAY(is_dirty),
+};
+const mspringi_columns mspringi_tiles_columns = MSPRINGI_COLUMNS(columns);
+
 void mspringi_tiles_destroy(mspringi_tiles *tiles, mspringi_memory *memory) {
     mspringi_cells_destroy(&tiles->cells, memory);
-    mspringi_free(memory, tiles->first_part);
-    mspringi_free(memory, tiles->parts);
-    mspringi_free(memory, tiles->parts_by_slot);
-    mspringi_free(memory, tiles->first_by_slot);
-    mspringi_free(memory, tiles->of_slot);
-    mspringi_free(memory, tiles->first_of_cell);
-    mspringi_free(memory, tiles->parent);
-    mspringi_free(memory, tiles->anchors);
-    mspringi_free(memory, tiles->dirty);
-    mspringi_free(memory, tiles->is_dirty);
+    mspringi_columns_free(mspringi_tiles_columns, tiles, memory);
     *tiles = (mspringi_tiles){0};
 }

@@ -37,6 +37,7 @@ mspring_result mspringi_tiles_create(mspringi_tiles *tiles, const mspring_networ
 /// Have the bodies turn as hard as those of other tiles of the same network, in which rest lengths may have been
 /// others.
 void mspringi_tiles_set_inertia(mspringi_tiles *tiles, float turn_inertia, size_t slots);
+extern const mspringi_columns mspringi_tiles_columns;
 void mspringi_tiles_destroy(mspringi_tiles *tiles, mspringi_memory *memory);
 
 /// Parts by slot.

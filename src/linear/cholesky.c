@@ -54,14 +54,20 @@ const mspringi_cholesky_kernels *mspringi_cholesky_kernels_of(mspring_simd level
                              plan->panel_reals);                                                                   \
     }                                                                                                              \
                                                                                                                    \
+    static const mspringi_column columns_##real[] = {                                                              \
+        MSPRINGI_COLUMN(mspringi_cholesky_##real, plan, MSPRINGI_VIEW),                                            \
+        MSPRINGI_COLUMN(mspringi_cholesky_##real, panels, MSPRINGI_ARRAY),                                         \
+        MSPRINGI_COLUMN(mspringi_cholesky_##real, reciprocal, MSPRINGI_ARRAY),                                     \
+        MSPRINGI_COLUMN(mspringi_cholesky_##real, updates[0], MSPRINGI_ARRAY),                                     \
+        MSPRINGI_COLUMN(mspringi_cholesky_##real, updates[1], MSPRINGI_ARRAY),                                     \
+        MSPRINGI_COLUMN(mspringi_cholesky_##real, scaled, MSPRINGI_ARRAY),                                         \
+        MSPRINGI_COLUMN(mspringi_cholesky_##real, vector, MSPRINGI_ARRAY),                                         \
+        MSPRINGI_COLUMN(mspringi_cholesky_##real, part, MSPRINGI_ARRAY),                                           \
+    };                                                                                                             \
+    const mspringi_columns mspringi_cholesky_##real##_columns = MSPRINGI_COLUMNS(columns_##real);                  \
+                                                                                                                   \
     void mspringi_cholesky_##real##_destroy(mspringi_cholesky_##real *factor, mspringi_memory *memory) {           \
-        mspringi_free(memory, factor->panels);                                                                     \
-        mspringi_free(memory, factor->reciprocal);                                                                 \
-        mspringi_free(memory, factor->updates[0]);                                                                 \
-        mspringi_free(memory, factor->updates[1]);                                                                 \
-        mspringi_free(memory, factor->scaled);                                                                     \
-        mspringi_free(memory, factor->vector);                                                                     \
-        mspringi_free(memory, factor->part);                                                                       \
+        mspringi_columns_free(mspringi_cholesky_##real##_columns, factor, memory);                                 \
         *factor = (mspringi_cholesky_##real){0};                                                                   \
     }                                                                                                              \
                                                                                                                    \

@@ -25,6 +25,7 @@
 #ifndef MSPRINGI_CHOLESKY_H
 #define MSPRINGI_CHOLESKY_H
 
+#include "base/columns.h"
 #include "base/memory.h"
 #include "base/message.h"
 
@@ -69,6 +70,7 @@ typedef struct mspringi_cholesky_plan {
 ///         the plan is as it was, zero, but for predicted_numbers.
 mspring_result mspringi_cholesky_plan_create(mspringi_cholesky_plan *plan, const mspringi_cholesky_graph *graph,
                                              mspringi_memory *memory, mspringi_message *message);
+extern const mspringi_columns mspringi_cholesky_plan_columns;
 void mspringi_cholesky_plan_destroy(mspringi_cholesky_plan *plan, mspringi_memory *memory);
 
 typedef struct mspringi_cholesky_kernels mspringi_cholesky_kernels;
@@ -96,6 +98,7 @@ typedef struct mspringi_cholesky_kernels mspringi_cholesky_kernels;
     mspring_result mspringi_cholesky_##real##_create(mspringi_cholesky_##real *factor,                             \
                                                      const mspringi_cholesky_plan *plan, mspring_simd level,       \
                                                      mspringi_memory *memory, mspringi_message *message);          \
+    extern const mspringi_columns mspringi_cholesky_##real##_columns;                                              \
     void mspringi_cholesky_##real##_destroy(mspringi_cholesky_##real *factor, mspringi_memory *memory);            \
                                                                                                                    \
     /** Factor A. Returns MSPRING_NONE, or the node whose pivot is not positive (or not a finite number): */       \

@@ -119,13 +119,13 @@ mspring_result mspringi_cholesky_plan_create(mspringi_cholesky_plan *plan, const
     return result;
 }
 
+#define ARRAY(member) MSPRINGI_COLUMN(mspringi_cholesky_plan, member, MSPRINGI_ARRAY)
+static const mspringi_column columns[] = {
+    ARRAY(order), ARRAY(band_entries), ARRAY(fronts), ARRAY(children), ARRAY(border), ARRAY(runs), ARRAY(entries),
+};
+const mspringi_columns mspringi_cholesky_plan_columns = MSPRINGI_COLUMNS(columns);
+
 void mspringi_cholesky_plan_destroy(mspringi_cholesky_plan *plan, mspringi_memory *memory) {
-    mspringi_free(memory, plan->order);
-    mspringi_free(memory, plan->band_entries);
-    mspringi_free(memory, plan->fronts);
-    mspringi_free(memory, plan->children);
-    mspringi_free(memory, plan->border);
-    mspringi_free(memory, plan->runs);
-    mspringi_free(memory, plan->entries);
+    mspringi_columns_free(mspringi_cholesky_plan_columns, plan, memory);
     *plan = (mspringi_cholesky_plan){0};
 }

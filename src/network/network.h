@@ -257,7 +257,7 @@ typedef struct mspringi_extents {
     uint16_t *reversed; ///< [place words] a bit for each place: 1 where its base is the end with the higher id
 } mspringi_extents;
 
-/// An array that is added here goes into store/network.def, a pointer in what hangs on it into clone.c.
+/// An array that is added here goes into store/network.def.
 struct mspring_network {
     mspringi_memory memory;       ///< the network itself and all that it holds, but for
     mspringi_memory tasks_memory; ///< what its workers are, which a copy of the network has none of

@@ -560,23 +560,36 @@ mspring_result mspringi_topology_create(mspringi_topology *topology, const mspri
     return result;
 }
 
+#define ARRAY(member) MSPRINGI_COLUMN(mspringi_topology, member, MSPRINGI_ARRAY)
+static const mspringi_column columns[] = {
+    ARRAY(slot_of_particle),
+    ARRAY(particle_of_slot),
+    ARRAY(places.runs),
+    ARRAY(places.run_of_page),
+    ARRAY(places.listed),
+    ARRAY(up_of_block),
+    ARRAY(grid_of_row),
+    ARRAY(empty_runs),
+    ARRAY(leftover_a),
+    ARRAY(leftover_b),
+    ARRAY(laid_slots),
+    ARRAY(laid_places),
+    ARRAY(web.attached_slot),
+    ARRAY(web.first_rung),
+    ARRAY(web.neighbour),
+    ARRAY(web.entry),
+    ARRAY(web.is_upright),
+    ARRAY(web.is_read),
+    ARRAY(spans),
+    ARRAY(tight_spans),
+    ARRAY(first_tight),
+    ARRAY(rows),
+    ARRAY(strips),
+    ARRAY(layer_blocks),
+};
+const mspringi_columns mspringi_topology_columns = MSPRINGI_COLUMNS(columns);
+
 void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *memory) {
-    mspringi_free(memory, topology->slot_of_particle);
-    mspringi_free(memory, topology->particle_of_slot);
-    mspringi_places_destroy(&topology->places, memory);
-    mspringi_free(memory, topology->up_of_block);
-    mspringi_free(memory, topology->grid_of_row);
-    mspringi_web_destroy(&topology->web, memory);
-    mspringi_free(memory, topology->leftover_a);
-    mspringi_free(memory, topology->leftover_b);
-    mspringi_free(memory, topology->laid_slots);
-    mspringi_free(memory, topology->laid_places);
-    mspringi_free(memory, topology->spans);
-    mspringi_free(memory, topology->tight_spans);
-    mspringi_free(memory, topology->first_tight);
-    mspringi_free(memory, topology->rows);
-    mspringi_free(memory, topology->strips);
-    mspringi_free(memory, topology->layer_blocks);
-    mspringi_free(memory, topology->empty_runs);
+    mspringi_columns_free(mspringi_topology_columns, topology, memory);
     *topology = (mspringi_topology){0};
 }

@@ -19,6 +19,7 @@
 #ifndef MSPRINGI_TOPOLOGY_H
 #define MSPRINGI_TOPOLOGY_H
 
+#include "base/columns.h"
 #include "builder/builder.h"
 #include "places.h"
 #include "web.h"
@@ -167,6 +168,8 @@ void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory,
                               mspringi_place **places);
 void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory);
 
+/// Its arrays.
+extern const mspringi_columns mspringi_topology_columns;
 void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *memory);
 
 /// The two slots that a spring joins; where the place has a direction, base and tip in its sense.

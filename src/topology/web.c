@@ -235,13 +235,3 @@ void mspringi_web_fill(mspringi_weaving *w, mspringi_pace *pace, mspringi_memory
 void mspringi_weaving_destroy(mspringi_weaving *w, mspringi_memory *memory) {
     free_scratch(w, memory);
 }
-
-void mspringi_web_destroy(mspringi_web *web, mspringi_memory *memory) {
-    mspringi_free(memory, web->attached_slot);
-    mspringi_free(memory, web->first_rung);
-    mspringi_free(memory, web->neighbour);
-    mspringi_free(memory, web->entry);
-    mspringi_free(memory, web->is_upright);
-    mspringi_free(memory, web->is_read);
-    *web = (mspringi_web){0};
-}

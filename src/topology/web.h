@@ -80,6 +80,5 @@ mspring_result mspringi_web_reserve_rungs(mspringi_weaving *weaving, mspringi_pa
 void mspringi_web_lay_rungs(mspringi_weaving *weaving, mspringi_pace *pace);
 void mspringi_web_fill(mspringi_weaving *weaving, mspringi_pace *pace, mspringi_memory *memory);
 void mspringi_weaving_destroy(mspringi_weaving *weaving, mspringi_memory *memory);
-void mspringi_web_destroy(mspringi_web *web, mspringi_memory *memory);
 
 #endif
