@@ -39,10 +39,9 @@ static mspring_builder *builder_of(const recipe *made) {
     return builder;
 }
 
-/// A topology with its places in an array, made with so much effort at a time; counts how often.
+/// A topology, made with so much effort at a time; counts how often.
 typedef struct laid_out {
     mspringi_topology topology;
-    mspringi_place *places;
     uint32_t parts;
 } laid_out;
 
@@ -60,7 +59,7 @@ static laid_out lay_out_for(const mspring_builder *builder, uint32_t effort, uin
         uint32_t left = effort;
         check_ok(mspringi_topology_go_on(begun, &left, &is_done));
     }
-    mspringi_topology_finish(begun, memory, &out.topology, &out.places);
+    mspringi_topology_finish(begun, memory, &out.topology);
     return out;
 }
 
@@ -79,7 +78,7 @@ static void check_same(const laid_out *a, const laid_out *b) {
     assert_int_equal(s->strip_count, t->strip_count);
     assert_int_equal(s->lag, t->lag);
     assert_int_equal(s->empty_run_count, t->empty_run_count);
-    assert_memory_equal(a->places, b->places, s->spring_count * sizeof *a->places);
+    assert_memory_equal(s->place_of_spring, t->place_of_spring, s->spring_count * sizeof *s->place_of_spring);
     assert_memory_equal(s->slot_of_particle, t->slot_of_particle,
                         s->reserve.particle_end * sizeof *s->slot_of_particle);
     assert_memory_equal(s->particle_of_slot, t->particle_of_slot,
@@ -160,7 +159,7 @@ static void mark_busy(const laid_out *plan, uint8_t *busy) {
         busy[slot] = t->particle_of_slot[slot] != MSPRING_NONE;
     }
     for (uint32_t s = 0; s < t->spring_count; s++) {
-        const mspringi_place place = plan->places[s];
+        const mspringi_place place = t->place_of_spring[s];
         if (place < t->lattice_places) {
             const uint32_t row = place / MSPRINGI_WIDTH, direction = row % MSPRINGI_DIRECTIONS;
             const uint32_t slot =

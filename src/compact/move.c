@@ -26,11 +26,8 @@ static mspring_result make_rests(mspring_network *to, const mspring_network *fro
     if (!lengths.springs)
         return mspringi_fail(&to->message, MSPRING_ERROR_MEMORY, "no memory for the rest lengths of %u springs",
                              (unsigned)springs);
-    mspringi_place_reader places, old_places;
-    mspringi_places_begin(&places, &to->topology.places, 0);
-    mspringi_places_begin(&old_places, &from->topology.places, 0);
     for (mspring_id s = 0; s < springs; ++s) {
-        const mspringi_place place = mspringi_places_next(&places), before = mspringi_places_next(&old_places);
+        const mspringi_place place = to->topology.place_of_spring[s], before = from->topology.place_of_spring[s];
         if (place < to->topology.lattice_places)
             lengths.springs[s].rest_length = mspringi_place_get(from, before).rest_length;
     }
@@ -114,11 +111,8 @@ static void copy_spring(mspring_network *to, mspringi_place place, const mspring
 
 static void move_springs(mspring_network *to, const mspring_network *from) {
     const mspringi_topology *t = &to->topology, *old = &from->topology;
-    mspringi_place_reader places, old_places;
-    mspringi_places_begin(&places, &t->places, 0);
-    mspringi_places_begin(&old_places, &old->places, 0);
     for (mspring_id s = 0; s < t->spring_count; ++s) {
-        const mspringi_place place = mspringi_places_next(&places), before = mspringi_places_next(&old_places);
+        const mspringi_place place = t->place_of_spring[s], before = old->place_of_spring[s];
         copy_spring(to, place, from, before);
     }
 }
@@ -256,12 +250,10 @@ mspring_result mspringi_mover_reserve_strain(mspring_network *network, mspringi_
 
 void mspringi_mover_copy(const mspring_network *network, const mspringi_place *places, mspringi_pace *pace) {
     mspringi_mover *mover = network->mover;
-    mspringi_place_reader old_places;
     uint32_t first, end;
     mspringi_pace_take(pace, network->topology.spring_count, 12, &first, &end);
-    mspringi_places_begin(&old_places, &network->topology.places, first);
     for (mspring_id s = first; s < end; ++s) {
-        const mspringi_place before = mspringi_places_next(&old_places);
+        const mspringi_place before = network->topology.place_of_spring[s];
         copy_spring(&mover->to, places[s], network, before);
         mover->there[before] = places[s];
     }

@@ -19,10 +19,9 @@ struct mspringi_replan {
     uint32_t live, listed;       ///< of these counted, and listed so far
     uint32_t slot;               ///< in the lattice row that is gone through
     mspringi_assembly *assembly;
-    mspringi_topology topology;            ///< once the assembly has made it
-    mspringi_place *woven_places, *places; ///< of the live springs, and of all
+    mspringi_topology topology;   ///< once the assembly has made it
+    mspringi_place *woven_places; ///< [left.spring_count] of the live springs
     mspringi_place next_parked;
-    mspringi_packing packing;
     uint64_t print; ///< of the plan, so far
 };
 
@@ -47,12 +46,10 @@ static mspring_result begin(mspringi_replan *r, mspring_network *network) {
 
 static mspring_result look_for_live(mspringi_replan *r, mspring_network *network) {
     const mspringi_topology *t = &network->topology;
-    mspringi_place_reader places;
     uint32_t first, end;
     mspringi_pace_take(&r->pace, t->spring_count, 2, &first, &end);
-    mspringi_places_begin(&places, &t->places, first);
     for (mspring_id s = first; s < end; ++s) {
-        const mspringi_place place = mspringi_places_next(&places);
+        const mspringi_place place = t->place_of_spring[s];
         const bool is_live = mspringi_place_is_live(network, place);
         r->was_live[s / MSPRINGI_WIDTH] |= (uint16_t)(is_live << s % MSPRINGI_WIDTH);
         r->live += is_live;
@@ -114,12 +111,10 @@ static mspring_result place_in_grids(mspringi_replan *r, mspring_network *networ
 
 static mspring_result list_springs(mspringi_replan *r, mspring_network *network) {
     const mspringi_topology *t = first_topology(network);
-    mspringi_place_reader places;
     uint32_t first, end;
     mspringi_pace_take(&r->pace, t->spring_count, 3, &first, &end);
-    mspringi_places_begin(&places, &t->places, first);
     for (mspring_id s = first; s < end; ++s) {
-        const mspringi_place place = mspringi_places_next(&places);
+        const mspringi_place place = t->place_of_spring[s];
         uint32_t base, tip;
         if (!(r->was_live[s / MSPRINGI_WIDTH] >> s % MSPRINGI_WIDTH & 1))
             continue;
@@ -165,11 +160,13 @@ static uint32_t count_woven(const mspringi_replan *r, uint32_t first_spare) {
 
 static mspring_result finish_layout(mspringi_replan *r, mspring_network *network) {
     mspringi_topology *t = &r->topology;
-    mspringi_topology_finish(r->assembly, &network->plan_memory, t, &r->woven_places);
+    mspringi_topology_finish(r->assembly, &network->plan_memory, t);
     r->assembly = NULL;
+    r->woven_places = t->place_of_spring;
     const uint32_t parked = t->reserve.first_spring - count_woven(r, t->reserve.first_spring);
-    r->places = mspringi_pace_alloc(&r->pace, &network->plan_memory, t->reserve.spring_end, sizeof *r->places);
-    if (!r->places)
+    t->place_of_spring =
+        mspringi_pace_alloc(&r->pace, &network->plan_memory, t->reserve.spring_end, sizeof *t->place_of_spring);
+    if (!t->place_of_spring)
         return out_of_memory(network);
     t->spring_count = first_topology(network)->spring_count;
     mspringi_pace_spend(&r->pace, ((uint64_t)t->woven_count + parked) * 16 / MSPRINGI_PACE_BYTES);
@@ -187,9 +184,9 @@ static mspring_result number_places(mspringi_replan *r, mspring_network *network
     mspringi_pace_take(&r->pace, t->spring_count, 1, &first, &end);
     for (mspring_id s = first; s < end; ++s) {
         if (r->was_live[s / MSPRINGI_WIDTH] >> s % MSPRINGI_WIDTH & 1)
-            r->places[s] = r->woven_places[r->listed++];
+            t->place_of_spring[s] = r->woven_places[r->listed++];
         else
-            r->places[s] = s < t->reserve.first_spring ? r->next_parked++ : mspringi_spare_place(t, s);
+            t->place_of_spring[s] = s < t->reserve.first_spring ? r->next_parked++ : mspringi_spare_place(t, s);
     }
     return MSPRING_OK;
 }
@@ -205,12 +202,10 @@ static mspring_result enter_spare(mspringi_replan *r, mspring_network *network) 
 static mspring_result note_ends(mspringi_replan *r, mspring_network *network) {
     const mspringi_topology *first_one = first_topology(network);
     mspringi_topology *t = &r->topology;
-    mspringi_place_reader first_places;
     uint32_t first, end;
     mspringi_pace_take(&r->pace, t->spring_count, 4, &first, &end);
-    mspringi_places_begin(&first_places, &first_one->places, first);
     for (mspring_id s = first; s < end; ++s) {
-        const mspringi_place first_place = mspringi_places_next(&first_places), place = r->places[s];
+        const mspringi_place first_place = first_one->place_of_spring[s], place = t->place_of_spring[s];
         uint32_t base, tip;
         if (mspringi_place_is_woven(t, place) || !mspringi_spring_exists(network, s))
             continue;
@@ -221,28 +216,13 @@ static mspring_result note_ends(mspringi_replan *r, mspring_network *network) {
     return MSPRING_OK;
 }
 
-static mspring_result begin_packing(mspringi_replan *r, mspring_network *network) {
+static mspring_result keep_spare(mspringi_replan *r, mspring_network *network) {
     mspringi_topology *t = &r->topology;
-    r->packing = (mspringi_packing){.of_spring = r->places,
-                                    .count = t->reserve.first_spring,
-                                    .all = t->reserve.spring_end,
-                                    .lattice_places = t->lattice_places,
-                                    .memory = &network->plan_memory};
-    mspring_result result = mspringi_spare_keep(t, r->places, &network->plan_memory, &network->message);
+    mspring_result result = mspringi_spare_keep(t, &network->plan_memory, &network->message);
     if (result == MSPRING_OK)
         mspringi_spare_count(t, t->particle_count, t->spring_count);
-    return result;
-}
-
-static mspring_result pack_places(mspringi_replan *r, mspring_network *network) {
-    return mspringi_places_pack(&r->packing, &r->pace) ? MSPRING_OK : out_of_memory(network);
-}
-
-static mspring_result keep_places(mspringi_replan *r, mspring_network *network) {
-    if (!mspringi_places_keep(&r->packing, &r->topology.places))
-        return out_of_memory(network);
     r->print = network->is_compact ? network->whole_print : network->topology_print;
-    return MSPRING_OK;
+    return result;
 }
 
 /* ------------------------------------------------------------------------------------------------- the print */
@@ -262,7 +242,7 @@ static mspring_result print_places(mspringi_replan *r, mspring_network *network)
     (void)network;
     mspringi_pace_take(&r->pace, r->topology.spring_count, 1, &first, &end);
     for (mspring_id s = first; s < end; ++s)
-        r->print = mspringi_mix(r->print, r->places[s]);
+        r->print = mspringi_mix(r->print, r->topology.place_of_spring[s]);
     return MSPRING_OK;
 }
 
@@ -291,7 +271,7 @@ static mspring_result reserve_strain(mspringi_replan *r, mspring_network *networ
 }
 
 static mspring_result copy_springs(mspringi_replan *r, mspring_network *network) {
-    mspringi_mover_copy(network, r->places, &r->pace);
+    mspringi_mover_copy(network, r->topology.place_of_spring, &r->pace);
     return MSPRING_OK;
 }
 
@@ -310,10 +290,10 @@ static mspring_result free_lists(mspringi_replan *r, mspring_network *network) {
 /* ---------------------------------------------------------------------------------------------- piece by piece */
 
 static mspring_result (*const replan_passes[])(mspringi_replan *, mspring_network *) = {
-    begin,         look_for_live, reserve_lists, place_on_diagonal, place_in_grids, list_springs,
-    begin_layout,  lay_out,       finish_layout, number_places,     enter_spare,    note_ends,
-    begin_packing, pack_places,   keep_places,   print_slots,       print_places,   free_lists,
-    begin_move,    reserve_move,  note_rests,    reserve_rests,     reserve_strain, copy_springs,
+    begin,        look_for_live, reserve_lists,  place_on_diagonal, place_in_grids, list_springs,
+    begin_layout, lay_out,       finish_layout,  number_places,     enter_spare,    note_ends,
+    keep_spare,   print_slots,   print_places,   free_lists,        begin_move,     reserve_move,
+    note_rests,   reserve_rests, reserve_strain, copy_springs,
 };
 
 #define REPLAN_PASSES (sizeof replan_passes / sizeof replan_passes[0])
@@ -398,13 +378,8 @@ void mspringi_replan_take(mspringi_replan *replan, mspring_network *network, msp
                           uint64_t *print) {
     *topology = replan->topology;
     *print = replan->print;
-    void *const blocks[] = {replan->was_live,
-                            replan->left.particles,
-                            replan->left.springs,
-                            replan->ids,
-                            replan->woven_places,
-                            replan->places,
-                            replan};
+    void *const blocks[] = {replan->was_live, replan->left.particles, replan->left.springs,
+                            replan->ids,      replan->woven_places,   replan};
     for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; ++i)
         mspringi_free(&network->plan_memory, blocks[i]);
     mspringi_memory_hand_over(&network->plan_memory, &network->memory);

@@ -61,10 +61,8 @@ static void list_ends(const mspring_network *network, mspringi_direct *direct) {
     const uint32_t nowhere = (uint32_t)mspringi_slot_count(network);
     for (uint32_t place = 0; place < direct->place_count; ++place)
         direct->end_a[place] = direct->end_b[place] = nowhere;
-    mspringi_place_reader reader;
-    mspringi_places_begin(&reader, &t->places, 0);
     for (mspring_id spring = 0; spring < t->spring_count; ++spring) {
-        const mspringi_place place = mspringi_places_next(&reader);
+        const mspringi_place place = t->place_of_spring[spring];
         if (!mspringi_place_is_parked(t, place) && mspringi_spring_exists(network, spring))
             mspringi_topology_ends(t, place, &direct->end_a[place], &direct->end_b[place]);
     }

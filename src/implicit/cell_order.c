@@ -22,15 +22,13 @@ static bool ends_of(const mspringi_cells *cells, const mspring_network *network,
 static bool make_graph(cell_graph *graph, const mspringi_cells *cells, const mspring_network *network,
                        mspringi_memory *memory) {
     const uint32_t springs = network->topology.spring_count;
-    mspringi_place_reader reader;
     uint32_t a, b, total = 0;
     graph->count = cells->count;
     graph->first = mspringi_alloc(memory, (size_t)graph->count + 2, sizeof *graph->first);
     if (!graph->first)
         return false;
-    mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id s = 0; s < springs; ++s) {
-        if (!ends_of(cells, network, mspringi_places_next(&reader), &a, &b))
+        if (!ends_of(cells, network, network->topology.place_of_spring[s], &a, &b))
             continue;
         graph->first[a + 2]++;
         graph->first[b + 2]++;
@@ -41,9 +39,8 @@ static bool make_graph(cell_graph *graph, const mspringi_cells *cells, const msp
         return false;
     for (uint32_t i = 2; i < graph->count + 2; ++i)
         graph->first[i] += graph->first[i - 1];
-    mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id s = 0; s < springs; ++s) {
-        if (!ends_of(cells, network, mspringi_places_next(&reader), &a, &b))
+        if (!ends_of(cells, network, network->topology.place_of_spring[s], &a, &b))
             continue;
         graph->neighbour[graph->first[a + 1]++] = b;
         graph->neighbour[graph->first[b + 1]++] = a;

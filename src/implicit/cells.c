@@ -209,10 +209,8 @@ static bool list_inner(cutting *g) {
     if (!cells->first_inner)
         return false;
     for (int pass = 0; pass < 2; ++pass) { // first count, then fill
-        mspringi_place_reader reader;
-        mspringi_places_begin(&reader, &t->places, 0);
         for (mspring_id s = 0; s < t->spring_count; ++s) {
-            const mspringi_place place = mspringi_places_next(&reader);
+            const mspringi_place place = t->place_of_spring[s];
             if (!mspringi_place_is_woven(t, place))
                 continue;
             mspringi_topology_ends(t, place, &a, &b);
@@ -256,10 +254,8 @@ static bool list_joints(cutting *g) {
     uint32_t *first = mspringi_alloc(g->memory, (size_t)cells->count + 2, sizeof *first);
     const bool ok = cells->joints && scratch && first;
     uint32_t count = 0, a, b;
-    mspringi_place_reader reader;
-    mspringi_places_begin(&reader, &t->places, 0);
     for (mspring_id s = 0; ok && s < t->spring_count; ++s) {
-        const mspringi_place place = mspringi_places_next(&reader);
+        const mspringi_place place = t->place_of_spring[s];
         if (!mspringi_place_is_woven(t, place))
             continue;
         mspringi_topology_ends(t, place, &a, &b);

@@ -1,11 +1,7 @@
 /// Length, direction and strain of all springs at once.
 ///
-/// Springs are computed in the order of their places, sixteen of a record at a time, into planes of scratch, of
-/// which each has one direction of the lattice after the other, by slot. There the springs of a pattern of ids are
-/// streams that lie one behind the other in memory, and read out they are woven together: loops without branches
-/// or indices, which the compiler can vectorise. (Of a lattice with few holes strain takes a third and all four
-/// arrays a quarter of what they took with an index for each spring; of our ship, a third of whose ids lie in no
-/// pattern, an eighth and a fifth less.)
+/// Springs are computed in the order of their places, sixteen of a record at a time, into planes of scratch by
+/// place.
 #include <math.h>
 #include <string.h>
 
@@ -17,9 +13,6 @@
 typedef enum measure { LENGTHS, STRAINS, LENGTHS_AND_STRAINS, DIRECTIONS } measure;
 
 enum { PLANE_COUNT = 2 };
-
-/// Springs whose places are asked for at once.
-enum { TOGETHER = 64 };
 
 static size_t plane_size(const mspring_network *network) {
     return mspringi_place_words(&network->topology) * MSPRINGI_WIDTH;
@@ -43,10 +36,8 @@ static mspring_result reserve(mspring_network *network) {
     if (!mspringi_store_reserve(network, MSPRINGI_STORE_EXTENTS))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to measure %u springs at once",
                              (unsigned)t->spring_count);
-    mspringi_place_reader reader;
-    mspringi_places_begin(&reader, &t->places, 0);
     for (mspring_id s = 0; s < t->spring_count; ++s)
-        turn(network, mspringi_places_next(&reader));
+        turn(network, t->place_of_spring[s]);
     return MSPRING_OK;
 }
 
@@ -56,14 +47,6 @@ void mspringi_extents_turn(mspring_network *network, mspring_id spring) {
 }
 
 /* ---------------------------------------------------------------------------------------------------- computing */
-
-// Where in a plane the value of the spring in a place is: those of the lattice by direction and slot.
-static inline size_t index_in_plane(const mspringi_topology *t, mspringi_place place) {
-    if (place >= t->lattice_places)
-        return place;
-    const size_t word = place / MSPRINGI_WIDTH, lane = place % MSPRINGI_WIDTH;
-    return ((word % MSPRINGI_DIRECTIONS) * t->lattice_blocks + word / MSPRINGI_DIRECTIONS) * MSPRINGI_WIDTH + lane;
-}
 
 // Change the lanes that have a bit: what all have is no matter of lanes, and what none has is done.
 static inline void set_strain_of_broken(float *strain, uint32_t live) {
@@ -86,7 +69,7 @@ static inline void compute_word(const mspring_network *network, size_t word, con
                                 size_t base, size_t tip, const float *rest_lengths, measure what) {
     const mspringi_extents *extents = &network->extents;
     const float sign = what == DIRECTIONS && extents->reversed[word] == UINT16_MAX ? -1.0f : 1.0f;
-    const size_t at = index_in_plane(&network->topology, (mspringi_place)(word * MSPRINGI_WIDTH));
+    const size_t at = word * MSPRINGI_WIDTH;
     float first[MSPRINGI_WIDTH],
         second[MSPRINGI_WIDTH]; // not in the planes, which for all the compiler knows are x
     for (uint32_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
@@ -160,42 +143,6 @@ static inline void compute(const mspring_network *network, measure what) {
 /* ---------------------------------------------------------------------------------------------------- reading out
  */
 
-// Weave streams, of which each goes on by step: period of them, a constant where it is inlined.
-static inline void weave(const float *const *streams, uint32_t period, ptrdiff_t step, uint32_t turns, float *to) {
-    for (uint32_t turn = 0; turn < turns; ++turn)
-        for (uint32_t member = 0; member < period; ++member)
-            to[turn * period + member] = streams[member][(ptrdiff_t)turn * step];
-}
-
-static void read_out_pattern(const mspringi_topology *t, const mspringi_place_run *run, uint32_t count,
-                             const float *plane, float *to) {
-    const float *streams[MSPRINGI_DIRECTIONS];
-    const uint32_t period = run->period, turns = count / period;
-    const ptrdiff_t step = (int32_t)run->step;
-    for (uint32_t i = 0; i < period; ++i)
-        streams[i] = plane + index_in_plane(t, mspringi_lattice_place(run->start[i] / MSPRINGI_DIRECTIONS,
-                                                                      run->start[i] % MSPRINGI_DIRECTIONS));
-    if (period == 4 && step == 1)
-        weave(streams, 4, 1, turns, to);
-    else if (period == 4)
-        weave(streams, 4, step, turns, to);
-    else
-        weave(streams, period, step, turns, to);
-    for (uint32_t i = 0; i < count - turns * period; ++i)
-        to[turns * period + i] = streams[i][(ptrdiff_t)turns * step];
-}
-
-static void read_out_others(const mspringi_topology *t, mspring_id first, uint32_t count, const float *plane,
-                            float *to) {
-    mspringi_place places[TOGETHER];
-    for (uint32_t done = 0, now; done < count; done += now) {
-        now = count - done < TOGETHER ? count - done : TOGETHER;
-        mspringi_places_read(&t->places, first + done, now, places);
-        for (uint32_t i = 0; i < now; ++i)
-            to[done + i] = plane[index_in_plane(t, places[i])];
-    }
-}
-
 // Springs that were removed lie somewhere yet, but have nothing that could be measured.
 static void leave_out_what_is_gone(const mspring_network *network, float *of_spring) {
     const uint8_t *there = network->growth.springs;
@@ -203,19 +150,27 @@ static void leave_out_what_is_gone(const mspring_network *network, float *of_spr
         of_spring[s] = there[s] == MSPRINGI_THERE ? of_spring[s] : 0.0f;
 }
 
-static void read_out(const mspring_network *network, uint32_t number, float *to) {
-    const mspringi_topology *t = &network->topology;
-    const float *plane = network->extents.scratch + number * plane_size(network);
-    if (!to)
-        return;
-    for (const mspringi_place_run *run = t->places.runs; run->first < t->spring_count; ++run) {
-        const uint32_t end = run[1].first < t->spring_count ? run[1].first : t->spring_count;
-        if (run->kind == MSPRINGI_RUN_PATTERN)
-            read_out_pattern(t, run, end - run->first, plane, to + run->first);
-        else
-            read_out_others(t, run->first, end - run->first, plane, to + run->first);
-    }
-    leave_out_what_is_gone(network, to);
+// From the two planes; either place to write to may be NULL.
+static void read_out(const mspring_network *network, float *restrict first, float *restrict second) {
+    const mspring_id springs = network->topology.spring_count;
+    const mspringi_place *restrict place = network->topology.place_of_spring;
+    const float *restrict planes[PLANE_COUNT] = {network->extents.scratch,
+                                                 network->extents.scratch + plane_size(network)};
+    if (first && second)
+        for (mspring_id s = 0; s < springs; ++s) {
+            first[s] = planes[0][place[s]];
+            second[s] = planes[1][place[s]];
+        }
+    else if (first)
+        for (mspring_id s = 0; s < springs; ++s)
+            first[s] = planes[0][place[s]];
+    else if (second)
+        for (mspring_id s = 0; s < springs; ++s)
+            second[s] = planes[1][place[s]];
+    if (first)
+        leave_out_what_is_gone(network, first);
+    if (second)
+        leave_out_what_is_gone(network, second);
 }
 
 static MSPRINGI_NOINLINE void measure_all(const mspring_network *network, float *length, float *direction_x,
@@ -226,12 +181,10 @@ static MSPRINGI_NOINLINE void measure_all(const mspring_network *network, float 
         compute(network, LENGTHS);
     else if (strain)
         compute(network, STRAINS);
-    read_out(network, 0, length);
-    read_out(network, 1, strain);
+    read_out(network, length, strain);
     if (direction_x) {
         compute(network, DIRECTIONS);
-        read_out(network, 0, direction_x);
-        read_out(network, 1, direction_y);
+        read_out(network, direction_x, direction_y);
     }
 }
 

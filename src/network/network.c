@@ -186,12 +186,10 @@ static void fill_springs(mspring_network *network, const mspring_builder *builde
             mspringi_mix(network->topology_print, (uint64_t)t->reserve.particle_end << 32 | t->reserve.spring_end);
     for (mspring_id p = 0; p < t->particle_count; ++p)
         network->topology_print = mspringi_mix(network->topology_print, t->slot_of_particle[p]);
-    mspringi_place_reader reader;
-    mspringi_places_begin(&reader, &t->places, 0);
     for (mspring_id s = 0; s < t->spring_count; ++s) {
         const mspringi_spring *spring = &builder->springs[s];
         network->shortest = fmin(network->shortest, (double)spring->rest_length);
-        const mspringi_place place = mspringi_places_next(&reader);
+        const mspringi_place place = t->place_of_spring[s];
         const bool relative = spring->flags & MSPRING_SPRING_RELATIVE;
         mspringi_place_set_rest_length(network, place, spring->rest_length);
         mspringi_place_set(network, place, relative ? 0.0f : spring->stiffness, relative ? 0.0f : spring->damping);

@@ -23,10 +23,8 @@ void mspringi_rests_note(pattern *of_block, mspringi_place place, float rest_len
 
 // What the springs of each block have in common.
 static void find_patterns(pattern *of_block, const mspringi_topology *t, const mspring_builder *builder) {
-    mspringi_place_reader reader;
-    mspringi_places_begin(&reader, &t->places, 0);
     for (uint32_t s = 0; s < t->spring_count; ++s) {
-        const mspringi_place place = mspringi_places_next(&reader);
+        const mspringi_place place = t->place_of_spring[s];
         if (place < t->lattice_places)
             mspringi_rests_note(of_block, place, builder->springs[s].rest_length);
     }
@@ -59,10 +57,8 @@ static void number_blocks(mspringi_rests *rests, const pattern *of_block, uint32
 }
 
 static void fill(mspringi_rests *rests, const mspringi_topology *t, const mspring_builder *builder) {
-    mspringi_place_reader reader;
-    mspringi_places_begin(&reader, &t->places, 0);
     for (uint32_t s = 0; s < t->spring_count; ++s) {
-        const mspringi_place place = mspringi_places_next(&reader);
+        const mspringi_place place = t->place_of_spring[s];
         if (place < t->lattice_places)
             *mspringi_rests_at(rests, place) = builder->springs[s].rest_length;
     }

@@ -144,10 +144,8 @@ void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, ms
 }
 
 void mspringi_renew_relative(mspring_network *network) {
-    mspringi_place_reader reader;
-    mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id s = 0; s < network->topology.spring_count; ++s) {
-        const mspringi_place place = mspringi_places_next(&reader);
+        const mspringi_place place = network->topology.place_of_spring[s];
         if (mspringi_spring_is_relative(network, s) && mspringi_place_is_live(network, place))
             mspringi_spring_set_nominal(network, s, place, mspringi_fractions_of(&network->fractions, s));
     }

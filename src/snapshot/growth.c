@@ -262,7 +262,7 @@ static void load_spring(mspring_network *network, const growth *g, mspring_id s)
                                    (mspringi_relative){g->kinds[i] & IS_RELATIVE ? 0.0f : -1.0f, 0.0f});
         network->kept[s] = (mspringi_relative){0.0f, 0.0f};
     }
-    mspringi_places_set(&t->places, s, g->kinds[i] & IS_LAID_OUT ? t->laid_places[i] : mspringi_spare_place(t, s));
+    t->place_of_spring[s] = g->kinds[i] & IS_LAID_OUT ? t->laid_places[i] : mspringi_spare_place(t, s);
     if (is_new)
         mspringi_extents_turn(network, s);
 }

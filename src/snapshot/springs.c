@@ -66,10 +66,8 @@ static void broken_load(mspring_network *network, const uint8_t *from, size_t si
     network->edits.broke = size > 0;
     if ((size == 0 && !broke) || (size > 0 && are_as_in(network, from)))
         return;
-    mspringi_place_reader reader;
-    mspringi_places_begin(&reader, &t->places, 0);
     for (mspring_id s = 0; s < t->spring_count; ++s) {
-        const mspringi_place place = mspringi_places_next(&reader);
+        const mspringi_place place = t->place_of_spring[s];
         const bool live = mspringi_spring_exists(network, s) && (size == 0 || bit_at(from, place));
         if (live == mspringi_place_is_live(network, place))
             continue;
@@ -105,16 +103,9 @@ static spring_values values_of(const mspring_network *network, mspring_id spring
 }
 
 static void values_save(const mspring_network *network, mspringi_writer *to) {
-    enum { TOGETHER = 64 };
-    spring_values values[TOGETHER];
-    const uint32_t springs = network->topology.reserve.spring_end;
-    mspringi_place_reader reader;
-    mspringi_places_begin(&reader, &network->topology.places, 0);
-    for (mspring_id first = 0; first < springs; first += TOGETHER) {
-        const uint32_t count = springs - first < TOGETHER ? springs - first : TOGETHER;
-        for (uint32_t i = 0; i < count; ++i)
-            values[i] = values_of(network, first + i, mspringi_places_next(&reader));
-        mspringi_put(to, values, (size_t)count * VALUES, sizeof(float));
+    for (mspring_id s = 0; s < network->topology.reserve.spring_end; ++s) {
+        const spring_values values = values_of(network, s, network->topology.place_of_spring[s]);
+        mspringi_put(to, &values, VALUES, sizeof(float));
     }
 }
 
@@ -122,8 +113,6 @@ static mspring_result values_check(mspring_network *network, const uint8_t *from
     const mspringi_section *section = &mspringi_section_values;
     mspring_result result = mspringi_section_check_size(network, section, size, values_size(network));
     bool other_rest_lengths = false, other_fractions = false;
-    mspringi_place_reader reader;
-    mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id s = 0; result == MSPRING_OK && s < network->topology.reserve.spring_end; ++s) {
         spring_values values;
         from = mspringi_get(from, &values, VALUES, sizeof(float));
@@ -134,7 +123,7 @@ static mspring_result values_check(mspring_network *network, const uint8_t *from
             result = mspringi_section_fail(
                 network, section, "spring %u has stiffness %g, damping %g, rest length %g m", (unsigned)s,
                 (double)values.stiffness, (double)values.damping, (double)values.rest_length);
-        const mspringi_place place = mspringi_places_next(&reader);
+        const mspringi_place place = network->topology.place_of_spring[s];
         other_rest_lengths =
             other_rest_lengths || (place < network->topology.lattice_places &&
                                    values.rest_length != mspringi_place_get(network, place).rest_length);
@@ -151,11 +140,9 @@ static mspring_result values_check(mspring_network *network, const uint8_t *from
 static void values_load(mspring_network *network, const uint8_t *from, size_t size) {
     if (size == 0)
         return;
-    mspringi_place_reader reader;
-    mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id s = 0; s < network->topology.reserve.spring_end; ++s) {
         spring_values values;
-        const mspringi_place place = mspringi_places_next(&reader);
+        const mspringi_place place = network->topology.place_of_spring[s];
         const spring_values present = values_of(network, s, place);
         from = mspringi_get(from, &values, VALUES, sizeof(float));
         if (!mspringi_spring_exists(network, s))
@@ -178,10 +165,8 @@ static size_t thresholds_size(const mspring_network *network, bool has_any) {
 }
 
 static void thresholds_save(const mspring_network *network, const float *thresholds, mspringi_writer *to) {
-    mspringi_place_reader reader;
-    mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id s = 0; s < network->topology.reserve.spring_end; ++s)
-        mspringi_put(to, &thresholds[mspringi_places_next(&reader)], 1, sizeof *thresholds);
+        mspringi_put(to, &thresholds[network->topology.place_of_spring[s]], 1, sizeof *thresholds);
 }
 
 static mspring_result thresholds_check(mspring_network *network, const mspringi_section *section,
@@ -196,10 +181,8 @@ static mspring_result thresholds_check(mspring_network *network, const mspringi_
 }
 
 static void thresholds_load(mspring_network *network, bool stress, const uint8_t *from, size_t size) {
-    mspringi_place_reader reader;
-    mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id s = 0; s < network->topology.reserve.spring_end; ++s)
-        mspringi_strain_store(network, mspringi_places_next(&reader), stress,
+        mspringi_strain_store(network, network->topology.place_of_spring[s], stress,
                               size > 0 ? mspringi_float_at(from, s) : INFINITY);
 }
 

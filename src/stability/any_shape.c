@@ -43,10 +43,8 @@ static mspringi_state find_room(const mspring_network *network) {
 // Sums over the springs at each slot, per mass: stiffness in x, damping in y, the relative springs' in vx.
 static void sum_up(const mspring_network *network, const mspringi_state *sums) {
     memset(sums->x, 0, 4 * mspringi_slot_count(network) * sizeof *sums->x);
-    mspringi_place_reader reader;
-    mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
-        const mspringi_place place = mspringi_places_next(&reader);
+        const mspringi_place place = network->topology.place_of_spring[i];
         if (!mspringi_spring_exists(network, i))
             continue;
         const mspringi_strength strength = mspringi_strength_of(network, i, place);
@@ -70,11 +68,9 @@ static double find(mspring_network *network, mspring_id *spring) {
     mspringi_quotient tightest = {0.0, 0.0, 0.0}; // whose limit is the smallest
     sum_up(network, sums);
     *spring = MSPRING_NONE;
-    mspringi_place_reader reader;
-    mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
         uint32_t a, b;
-        mspringi_topology_ends(&network->topology, mspringi_places_next(&reader), &a, &b);
+        mspringi_topology_ends(&network->topology, network->topology.place_of_spring[i], &a, &b);
         if (!mspringi_spring_exists(network, i))
             continue;
         const double per_a = (double)network->inverse_mass[a], per_b = (double)network->inverse_mass[b];
@@ -125,10 +121,8 @@ mspring_id mspringi_tightest_spring(mspring_network *network, double h) {
     uint32_t base, tip;
     mspringi_topology_ends(t, mspringi_place_of(t, named), &base, &tip);
     double most = 0.0;
-    mspringi_place_reader reader;
-    mspringi_places_begin(&reader, &t->places, 0);
     for (mspring_id i = 0; i < t->spring_count; ++i) {
-        const mspringi_place place = mspringi_places_next(&reader);
+        const mspringi_place place = t->place_of_spring[i];
         uint32_t a, b;
         mspringi_topology_ends(t, place, &a, &b);
         if (!mspringi_spring_exists(network, i) || !(a == base || a == tip || b == base || b == tip))

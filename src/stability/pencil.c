@@ -68,10 +68,8 @@ void mspringi_pencil_set(mspringi_pencil *pencil, double h) {
     const mspring_network *network = pencil->network;
     for (mspring_id p = 0; p < network->topology.particle_count; ++p)
         pencil->root[p] = sqrt((double)network->inverse_mass[network->topology.slot_of_particle[p]]);
-    mspringi_place_reader reader;
-    mspringi_places_begin(&reader, &network->topology.places, 0);
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
-        const mspringi_place place = mspringi_places_next(&reader);
+        const mspringi_place place = network->topology.place_of_spring[i];
         pencil->terms[i] = (struct mspringi_pencil_term){0};
         if (!mspringi_spring_exists(network, i))
             continue;
@@ -107,10 +105,8 @@ void mspringi_pencil_apply(const void *context, const double *in, double *out) {
 
 mspringi_quotient mspringi_pencil_quotient(const mspringi_pencil *pencil, const double *vector) {
     mspringi_quotient sum = {0.0, 0.0, 0.0};
-    mspringi_place_reader reader;
-    mspringi_places_begin(&reader, &pencil->network->topology.places, 0);
     for (mspring_id i = 0; i < pencil->network->topology.spring_count; ++i) {
-        const mspringi_place place = mspringi_places_next(&reader);
+        const mspringi_place place = pencil->network->topology.place_of_spring[i];
         if (!mspringi_spring_exists(pencil->network, i))
             continue;
         mspringi_seen s = see_safely(pencil->network, i, place);

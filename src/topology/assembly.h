@@ -41,12 +41,11 @@ struct mspringi_assembly {
     mspringi_layers layers;
     mspringi_block_key *blocks; ///< of all grids, grid after grid in the order of their rows, each sorted
     size_t block_count, block_capacity;
-    size_t grid_begin;      ///< where the blocks of the grid that is being listed begin
-    uint32_t *first_block;  ///< [grids] in blocks
-    uint32_t *end_block;    ///< [grids] in blocks
-    mspringi_place *places; ///< [springs]
-    uint32_t herd_row;      ///< number of the row of herds, if there are any
-    uint32_t home_blocks;   ///< blocks of the web that have been given to rows
+    size_t grid_begin;     ///< where the blocks of the grid that is being listed begin
+    uint32_t *first_block; ///< [grids] in blocks
+    uint32_t *end_block;   ///< [grids] in blocks
+    uint32_t herd_row;     ///< number of the row of herds, if there are any
+    uint32_t home_blocks;  ///< blocks of the web that have been given to rows
     size_t row_capacity, span_capacity;
     bool is_checked; ///< no two springs join the same particles
     bool has_herds;  ///< small trees may stand in herds

@@ -10,11 +10,9 @@ static void find_ends(const mspringi_topology *t, mspringi_place place, mspring_
 
 void mspringi_incidence_fill(const mspringi_incidence *incidence, const mspringi_topology *topology) {
     const uint32_t particles = topology->reserve.particle_end, springs = topology->reserve.first_spring;
-    mspringi_place_reader reader;
     mspring_id ends[2];
-    mspringi_places_begin(&reader, &topology->places, 0);
     for (mspring_id s = 0; s < springs; ++s) {
-        find_ends(topology, mspringi_places_next(&reader), ends);
+        find_ends(topology, topology->place_of_spring[s], ends);
         incidence->first[ends[0]]++;
         incidence->first[ends[1]]++;
     }

@@ -250,7 +250,7 @@ mspring_result mspringi_assembly_mark_springs(mspringi_assembly *a) {
     uint32_t first, end;
     mspringi_pace_take(&a->pace, t->spring_count, 1, &first, &end);
     for (uint32_t s = first; s < end; ++s) {
-        const mspringi_place place = a->places[s];
+        const mspringi_place place = a->topology->place_of_spring[s];
         if (place >= t->lattice_places)
             continue;
         const uint32_t block = place / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH);

@@ -73,10 +73,11 @@ mspring_result mspringi_assembly_assign_spare_slots(mspringi_assembly *a) {
 
 mspring_result mspringi_assembly_begin_places(mspringi_assembly *a) {
     const uint32_t springs = a->topology->reserve.spring_end;
-    a->places = mspringi_pace_alloc(&a->pace, a->memory, springs, sizeof *a->places);
-    if (!a->places)
+    a->topology->place_of_spring =
+        mspringi_pace_alloc(&a->pace, a->memory, springs, sizeof *a->topology->place_of_spring);
+    if (!a->topology->place_of_spring)
         return mspringi_assembly_fail(a);
-    memset(a->places, 0xff, springs * sizeof *a->places);
+    memset(a->topology->place_of_spring, 0xff, springs * sizeof *a->topology->place_of_spring);
     return MSPRING_OK;
 }
 
@@ -85,14 +86,14 @@ mspring_result mspringi_assembly_assign_chain_places(mspringi_assembly *a) {
     mspringi_pace_take(&a->pace, a->strands.count, 1, &first, &end);
     for (uint32_t i = first; i < end; ++i)
         if (a->strands.springs[i] != MSPRING_NONE)
-            a->places[a->strands.springs[i]] = a->topology->lattice_places + i;
+            a->topology->place_of_spring[a->strands.springs[i]] = a->topology->lattice_places + i;
     return MSPRING_OK;
 }
 
 // In an array: lattice springs where they are, and the others one after the other.
 mspring_result mspringi_assembly_assign_places(mspringi_assembly *a) {
     mspringi_topology *t = a->topology;
-    mspringi_place *places = a->places;
+    mspringi_place *places = a->topology->place_of_spring;
     uint32_t first, end;
     mspringi_pace_take(&a->pace, t->spring_count, 12, &first, &end);
     for (uint32_t s = first; s < end; ++s) {
@@ -126,9 +127,9 @@ mspring_result mspringi_assembly_note_ends(mspringi_assembly *a) {
     uint32_t first, end;
     mspringi_pace_take(&a->pace, t->spring_count, 1, &first, &end);
     for (uint32_t s = first; s < end; ++s) {
-        if (a->places[s] < t->chain_places)
+        if (a->topology->place_of_spring[s] < t->chain_places)
             continue;
-        const uint32_t i = a->places[s] - t->chain_places;
+        const uint32_t i = a->topology->place_of_spring[s] - t->chain_places;
         t->leftover_a[i] = t->slot_of_particle[a->builder->springs[s].a];
         t->leftover_b[i] = t->slot_of_particle[a->builder->springs[s].b];
     }

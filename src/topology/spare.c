@@ -15,14 +15,14 @@ static bool lengthen(uint32_t **array, size_t old_count, size_t count, mspringi_
     return true;
 }
 
-static bool note_layout(mspringi_topology *t, const mspringi_place *places, mspringi_memory *memory) {
+static bool note_layout(mspringi_topology *t, mspringi_memory *memory) {
     const uint32_t particles = mspringi_spare_particles(t), springs = mspringi_spare_springs(t);
     t->laid_slots = mspringi_alloc(memory, particles, sizeof *t->laid_slots);
     t->laid_places = mspringi_alloc(memory, springs, sizeof *t->laid_places);
     if (!t->laid_slots || !t->laid_places)
         return false;
     memcpy(t->laid_slots, t->slot_of_particle + t->reserve.first_particle, particles * sizeof *t->laid_slots);
-    memcpy(t->laid_places, places + t->reserve.first_spring, springs * sizeof *t->laid_places);
+    memcpy(t->laid_places, t->place_of_spring + t->reserve.first_spring, springs * sizeof *t->laid_places);
     return true;
 }
 
@@ -55,12 +55,11 @@ void mspringi_spare_enter(mspringi_topology *t, mspringi_pace *pace) {
     }
 }
 
-mspring_result mspringi_spare_keep(mspringi_topology *t, mspringi_place *places, mspringi_memory *memory,
-                                   mspringi_message *message) {
+mspring_result mspringi_spare_keep(mspringi_topology *t, mspringi_memory *memory, mspringi_message *message) {
     for (mspring_id s = t->spring_count > t->reserve.first_spring ? t->spring_count : t->reserve.first_spring;
          s < t->reserve.spring_end; ++s)
-        places[s] = mspringi_spare_place(t, s);
-    if (mspringi_spare_particles(t) + mspringi_spare_springs(t) > 0 && !note_layout(t, places, memory))
+        t->place_of_spring[s] = mspringi_spare_place(t, s);
+    if (mspringi_spare_particles(t) + mspringi_spare_springs(t) > 0 && !note_layout(t, memory))
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for %u spare springs",
                              (unsigned)mspringi_spare_springs(t));
     return MSPRING_OK;
@@ -78,7 +77,7 @@ void mspringi_spare_take_particle(mspringi_topology *t, mspring_id particle) {
 
 void mspringi_spare_put_spring(mspringi_topology *t, mspring_id spring, mspring_id a, mspring_id b) {
     const mspringi_place place = mspringi_spare_place(t, spring);
-    mspringi_places_set(&t->places, spring, place);
+    t->place_of_spring[spring] = place;
     t->leftover_a[place - t->chain_places] = t->slot_of_particle[a];
     t->leftover_b[place - t->chain_places] = t->slot_of_particle[b];
 }

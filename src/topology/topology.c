@@ -483,7 +483,6 @@ void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory
         return;
     mspringi_topology_destroy(&begun->made, memory);
     mspringi_free(memory, begun->kinds);
-    mspringi_free(memory, begun->places);
     mspringi_free(memory, begun->blocks);
     mspringi_free(memory, begun->first_block);
     mspringi_free(memory, begun->end_block);
@@ -502,8 +501,7 @@ void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory
     mspringi_free(memory, begun);
 }
 
-void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory, mspringi_topology *topology,
-                              mspringi_place **places) {
+void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory, mspringi_topology *topology) {
     begun->made.lattice_count = begun->grids.found_count;
     begun->made.lattice_particles = begun->grids.member_count;
     begun->made.chain_count = begun->strands.strand_count;
@@ -512,15 +510,12 @@ void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory,
     begun->made.web_particles = begun->web.count;
     // NOLINTNEXTLINE(-Wanalyzer-null-dereference): it was begun
     *topology = begun->made;
-    *places = begun->places;
-    begun->places = NULL;
     // NOLINTNEXTLINE(-Wanalyzer-null-dereference): as above
     begun->made = (mspringi_topology){0};
     mspringi_topology_abandon(begun, memory);
 }
 
-static mspring_result keep_places(mspringi_topology *t, mspringi_place *places, mspringi_memory *memory,
-                                  mspringi_message *message) {
+static mspring_result keep_spare(mspringi_topology *t, mspringi_memory *memory, mspringi_message *message) {
     mspring_result result = mspringi_spare_reserve(t, 0, memory, message);
     if (result != MSPRING_OK)
         return result;
@@ -529,12 +524,7 @@ static mspring_result keep_places(mspringi_topology *t, mspringi_place *places, 
         pace.left = MSPRINGI_PACE_ALL;
         mspringi_spare_enter(t, &pace);
     } while (pace.is_halfway);
-    result = mspringi_spare_keep(t, places, memory, message);
-    if (result == MSPRING_OK && !mspringi_places_create(&t->places, places, t->reserve.spring_end,
-                                                        t->reserve.first_spring, t->lattice_places, memory))
-        result = mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the places of %u springs",
-                               (unsigned)t->spring_count);
-    return result;
+    return mspringi_spare_keep(t, memory, message);
 }
 
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
@@ -551,10 +541,8 @@ mspring_result mspringi_topology_create(mspringi_topology *topology, const mspri
         mspringi_topology_abandon(begun, memory);
         return result;
     }
-    mspringi_place *places;
-    mspringi_topology_finish(begun, memory, topology, &places);
-    result = keep_places(topology, places, memory, message);
-    mspringi_free(memory, places);
+    mspringi_topology_finish(begun, memory, topology);
+    result = keep_spare(topology, memory, message);
     if (result != MSPRING_OK)
         mspringi_topology_destroy(topology, memory);
     return result;
@@ -564,9 +552,7 @@ mspring_result mspringi_topology_create(mspringi_topology *topology, const mspri
 static const mspringi_column columns[] = {
     ARRAY(slot_of_particle),
     ARRAY(particle_of_slot),
-    ARRAY(places.runs),
-    ARRAY(places.run_of_page),
-    ARRAY(places.listed),
+    ARRAY(place_of_spring),
     ARRAY(up_of_block),
     ARRAY(grid_of_row),
     ARRAY(empty_runs),

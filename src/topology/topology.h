@@ -19,10 +19,33 @@
 #ifndef MSPRINGI_TOPOLOGY_H
 #define MSPRINGI_TOPOLOGY_H
 
+#include "base/assert.h"
 #include "base/columns.h"
 #include "builder/builder.h"
-#include "places.h"
 #include "web.h"
+
+/// The springs of a lattice slot in column c of row r. East, north and north-east start at the slot; south-east
+/// starts one row up, at (c, r + 1), so that all of them reach one column to the right at most and every load is
+/// contiguous.
+typedef enum mspringi_direction {
+    MSPRINGI_EAST = 0,       ///< (c, r)     to (c + 1, r)
+    MSPRINGI_NORTH = 1,      ///< (c, r)     to (c, r + 1)
+    MSPRINGI_NORTH_EAST = 2, ///< (c, r)     to (c + 1, r + 1)
+    MSPRINGI_SOUTH_EAST = 3, ///< (c, r + 1) to (c + 1, r)
+    MSPRINGI_DIRECTIONS = 4
+} mspringi_direction;
+
+/// Where a spring lies: below lattice_places a lattice record, (block * MSPRINGI_DIRECTIONS + direction) *
+/// MSPRINGI_WIDTH + lane; below chain_places a chain record, lattice_places + block * MSPRINGI_WIDTH + lane; above
+/// that, chain_places + number among the leftover springs, behind which are those with spare ids (see spare.h) and
+/// the parked ones. Block counts from the first of its kind.
+typedef uint32_t mspringi_place;
+
+/// The lattice place of a direction at a lattice slot, which counts from the first lattice block.
+static inline mspringi_place mspringi_lattice_place(uint32_t slot, uint32_t direction) {
+    const uint32_t lane = slot % MSPRINGI_WIDTH;
+    return (slot - lane) * MSPRINGI_DIRECTIONS + direction * MSPRINGI_WIDTH + lane;
+}
 
 /// Lanes of the narrowest vector register.
 #define MSPRINGI_QUARTER 4
@@ -76,10 +99,10 @@ typedef struct mspringi_topology {
     uint32_t loose_first, loose_blocks;
     uint32_t spare_first, spare_blocks; ///< behind the loose ones: a slot for each spare particle
 
-    uint32_t *slot_of_particle; ///< [reserve.particle_end]
-    uint32_t *particle_of_slot; ///< [block_count * MSPRINGI_WIDTH], MSPRING_NONE where there is none
-    mspringi_places places;     ///< of springs, spare ones too: mspringi_place_of()
-    uint32_t *up_of_block;      ///< [lattice_blocks] block above each lattice block; itself if there is none
+    uint32_t *slot_of_particle;      ///< [reserve.particle_end]
+    uint32_t *particle_of_slot;      ///< [block_count * MSPRINGI_WIDTH], MSPRING_NONE where there is none
+    mspringi_place *place_of_spring; ///< [reserve.spring_end]
+    uint32_t *up_of_block;           ///< [lattice_blocks] block above each lattice block; itself if there is none
 
     uint32_t *grid_of_row; ///< [lattice_rows] number of the grid of each of the first rows
 
@@ -130,7 +153,8 @@ static inline size_t mspringi_place_words(const mspringi_topology *topology) {
 
 /// Where a spring lies.
 static inline mspringi_place mspringi_place_of(const mspringi_topology *topology, mspring_id spring) {
-    return mspringi_places_at(&topology->places, spring);
+    MSPRINGI_ASSERT(spring < topology->reserve.spring_end);
+    return topology->place_of_spring[spring];
 }
 
 /// Whether the spring in this place is parked.
@@ -155,8 +179,8 @@ mspring_result mspringi_topology_create(mspringi_topology *topology, const mspri
                                         mspringi_memory *memory, mspringi_message *message);
 /// The same in parts: begin, go on until it is done unless that fails, then finish; or abandon at any time, which
 /// allows NULL. The builder and what memory and message point to must stay; is_checked: no two of its springs join
-/// the same particles; has_herds: small trees may stand in herds. What is finished has its places not in itself yet
-/// but in an array of their own, for whoever asked to pack and free.
+/// the same particles; has_herds: small trees may stand in herds. What is finished
+/// has places for the builder's springs only, in an array with room for all ids.
 typedef struct mspringi_assembly mspringi_assembly;
 mspring_result mspringi_topology_begin(const mspring_builder *builder, const mspringi_reserve *reserve,
                                        bool is_checked, bool has_herds, uint32_t workers, uint32_t lanes,
@@ -164,8 +188,7 @@ mspring_result mspringi_topology_begin(const mspring_builder *builder, const msp
                                        mspringi_assembly **begun);
 /// @param effort  how much to do, and what is left of that; see pace.h
 mspring_result mspringi_topology_go_on(mspringi_assembly *begun, uint32_t *effort, bool *is_done);
-void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory, mspringi_topology *topology,
-                              mspringi_place **places);
+void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory, mspringi_topology *topology);
 void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory);
 
 /// Its arrays.
