@@ -151,13 +151,38 @@ void mspringi_growth_unlink(mspring_network *network, mspring_id spring) {
 
 /* ------------------------------------------------------------------------------------ the springs of a particle */
 
+static void find_ends(const mspringi_topology *t, mspringi_place place, mspring_id ends[2]) {
+    uint32_t base, tip;
+    mspringi_topology_ends(t, place, &base, &tip);
+    ends[0] = t->particle_of_slot[base];
+    ends[1] = t->particle_of_slot[tip];
+}
+
+static void list_springs(const mspringi_incidence *incidence, const mspringi_topology *t) {
+    const uint32_t particles = t->reserve.particle_end, springs = t->reserve.first_spring;
+    mspring_id ends[2];
+    for (mspring_id s = 0; s < springs; ++s) {
+        find_ends(t, t->place_of_spring[s], ends);
+        incidence->first[ends[0]]++;
+        incidence->first[ends[1]]++;
+    }
+    for (mspring_id p = 0; p < particles; ++p)
+        incidence->first[p + 1] += incidence->first[p];
+    // From behind, so that each particle's first is where it belongs at the end, and ids rise.
+    for (mspring_id s = springs; s-- > 0;) {
+        find_ends(t, t->place_of_spring[s], ends);
+        incidence->springs[--incidence->first[ends[0]]] = s;
+        incidence->springs[--incidence->first[ends[1]]] = s;
+    }
+}
+
 mspring_result mspringi_incidence_reserve(mspring_network *network) {
     if (network->incidence.first)
         return MSPRING_OK;
     if (!mspringi_store_reserve(network, MSPRINGI_STORE_INCIDENCE))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to list %u springs by particle",
                              (unsigned)network->topology.reserve.first_spring);
-    mspringi_incidence_fill(&network->incidence, &network->topology);
+    list_springs(&network->incidence, &network->topology);
     return MSPRING_OK;
 }
 

@@ -10,7 +10,6 @@
 #include "explicit/graft.h"
 #include "kernels/kernels.h"
 #include "tasks/tasks.h"
-#include "topology/incidence.h"
 #include "topology/topology.h"
 
 /// Two floats per slot, x and then y, in one block of memory.
@@ -250,6 +249,13 @@ typedef struct mspringi_growth {
     mspring_id *particle_of_end;  ///< [2 * spare springs]
     mspring_id lowest_particle, lowest_spring; ///< no id below is spare
 } mspringi_growth;
+
+/// The springs of particle p are springs[first[p]] ... springs[first[p + 1] - 1], by rising id. Spare springs are
+/// in none of these lists.
+typedef struct mspringi_incidence {
+    uint32_t *first;   ///< [particles + 1], or NULL: not made yet
+    uint32_t *springs; ///< [2 * springs]
+} mspringi_incidence;
 
 /// What is needed to measure all springs at once; NULL as long as that has not been done.
 typedef struct mspringi_extents {

@@ -6,16 +6,6 @@
 /// entries of others.
 #define FEWEST_UPRIGHT 8
 
-static void free_scratch(mspringi_weaving *w, mspringi_memory *memory) {
-    mspringi_free(memory, w->strip_of_block);
-    mspringi_free(memory, w->degree);
-    mspringi_free(memory, w->node_of_slot);
-    mspringi_free(memory, w->used);
-    mspringi_free(memory, w->upright);
-    w->strip_of_block = w->degree = w->node_of_slot = w->used = NULL;
-    w->upright = NULL;
-}
-
 static mspring_result out_of_memory(const mspringi_weaving *w, mspringi_message *message) {
     return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for a web of %u springs", (unsigned)w->count);
 }
@@ -229,9 +219,15 @@ void mspringi_web_fill(mspringi_weaving *w, mspringi_pace *pace, mspringi_memory
             web->is_read[node_a / MSPRINGI_WIDTH] = web->is_read[node_b / MSPRINGI_WIDTH] = 1;
     }
     if (!pace->is_halfway)
-        free_scratch(w, memory);
+        mspringi_weaving_destroy(w, memory);
 }
 
 void mspringi_weaving_destroy(mspringi_weaving *w, mspringi_memory *memory) {
-    free_scratch(w, memory);
+    mspringi_free(memory, w->strip_of_block);
+    mspringi_free(memory, w->degree);
+    mspringi_free(memory, w->node_of_slot);
+    mspringi_free(memory, w->used);
+    mspringi_free(memory, w->upright);
+    w->strip_of_block = w->degree = w->node_of_slot = w->used = NULL;
+    w->upright = NULL;
 }
