@@ -205,10 +205,105 @@ static void damped(void **state) {
     run_all(DAMPED);
 }
 
+/// A lattice of springs of iron that are at rest, and that turn about its mass centre, rad/s.
+static void add_turning(recipe *made, uint32_t width, uint32_t height, double x, double stiffness, double turn) {
+    uint64_t seed = 1;
+    const recipe_stuff iron = {.mass = {73.4, 73.4}, .stiffness = {stiffness, stiffness}};
+    const mspring_id first = recipe_lattice(made, width, height, x, 0, 1, &iron, &seed);
+    for (mspring_id i = first; i < made->particle_count; i++) {
+        mspring_particle_def *p = &made->particles[i];
+        p->vx = (float)(-turn * (p->y - 0.5 * (height - 1)));
+        p->vy = (float)(turn * (p->x - x - 0.5 * (width - 1)));
+    }
+}
+
+static mspring_network *network_of(const recipe *made, mspring_solver solver, mspring_integrator integrator) {
+    mspring_network_def def = support_def(0, 1);
+    def.solver = solver;
+    mspring_network *network = recipe_network(made, &def);
+    mspring_solver_def settings;
+    check_ok(mspring_solver_def_init(&settings, sizeof settings));
+    settings.solver = solver;
+    settings.integrator = integrator;
+    check_ok(mspring_network_set_solver(network, &settings));
+    return network;
+}
+
+/// What a substep may gain by rounding does not add up: a body that only spins is where any error is a gain.
+static void spin_for_long(uint32_t width, double stiffness, double turn, mspring_solver solver,
+                          mspring_integrator integrator) {
+    recipe made = {0};
+    add_turning(&made, width, width < 3 ? 1 : 2, 30, stiffness, turn);
+    mspring_network *network = network_of(&made, solver, integrator);
+    const totals first = totals_of(network, &made);
+    for (int step = 0; step < 10000; step++) {
+        check_ok(mspring_network_step(network, 1.0 / 64));
+    }
+    const totals now = totals_of(network, &made);
+    if (!(now.energy <= 1.001 * first.energy) || !(fabs(now.spin - first.spin) <= 1e-3 * fabs(first.spin))) {
+        fail_msg(
+            "width %u, %g N/m, %g rad/s, solver %d, integrator %d: energy %g, at first %g; spin %g, at first %g",
+            width, stiffness, turn, (int)solver, (int)integrator, now.energy, first.energy, now.spin, first.spin);
+    }
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+static void fragments_spin_for_long(void **state) {
+    (void)state;
+    static const double stiffnesses[] = {1e5, 1e7, 1e9}, turns[] = {0.3, 3, 20};
+    for (uint32_t width = 2; width <= 3; width++) {
+        for (size_t k = 0; k < COUNT_OF(stiffnesses); k++) {
+            for (size_t w = 0; w < COUNT_OF(turns); w++) {
+                for (mspring_integrator n = MSPRING_INTEGRATOR_GA0; n <= MSPRING_INTEGRATOR_EULER; n++) {
+                    spin_for_long(width, stiffnesses[k], turns[w], MSPRING_SOLVER_IMPLICIT, n);
+                    spin_for_long(width, stiffnesses[k], turns[w], MSPRING_SOLVER_DIRECT, n);
+                }
+            }
+        }
+    }
+}
+
+/// Energy of a bar that has swung for two seconds, maybe with a fragment that spins far away.
+static double energy_of_bar(mspring_integrator integrator, double turn) {
+    recipe made = {0};
+    const uint32_t width = 40, height = 3;
+    add_turning(&made, width, height, 0, 6.76e7, 0);
+    for (uint32_t i = 0; i < width * height; i++) {
+        const double along = made.particles[i].x / (width - 1) - 0.5;
+        made.particles[i].vy = (float)(24 * (along * along - 1.0 / 12));
+    }
+    if (turn != 0) {
+        add_turning(&made, 2, 1, 100, 6.76e7, turn);
+    }
+    mspring_network *network = network_of(&made, MSPRING_SOLVER_IMPLICIT, integrator);
+    for (int step = 0; step < 128; step++) {
+        check_ok(mspring_network_step(network, 1.0 / 64));
+    }
+    double kinetic, elastic;
+    check_ok(mspring_network_energy(network, &kinetic, &elastic, NULL));
+    mspring_network_destroy(network);
+    recipe_free(&made);
+    return kinetic + elastic - 2 * 0.5 * 73.4 * 0.25 * turn * turn;
+}
+
+static void fragments_leave_others_alone(void **state) {
+    (void)state;
+    for (mspring_integrator n = MSPRING_INTEGRATOR_GA0; n <= MSPRING_INTEGRATOR_EULER; n++) {
+        const double alone = energy_of_bar(n, 0);
+        check_near(energy_of_bar(n, 3), alone, 0.01 * alone);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(hits),   cmocka_unit_test(blasts), cmocka_unit_test(spins),
-        cmocka_unit_test(pushes), cmocka_unit_test(damped),
+        cmocka_unit_test(hits),
+        cmocka_unit_test(blasts),
+        cmocka_unit_test(spins),
+        cmocka_unit_test(pushes),
+        cmocka_unit_test(damped),
+        cmocka_unit_test(fragments_spin_for_long),
+        cmocka_unit_test(fragments_leave_others_alone),
     };
     return cmocka_run_group_tests_name("conserve", tests, NULL, NULL);
 }

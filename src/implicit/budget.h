@@ -16,12 +16,14 @@
 ///   - What velocities have beyond that room is scaled out of them, about the rigid motion of a free component,
 ///   about
 ///     rest in a held one. Momenta stay.
-///   - If springs alone have more than the room, or a component has gained much, the whole substep is taken again
-///   by
-///     implicit Euler, with twice the iterations. If that does not help, two halves of it are taken, and so on,
-///     MSPRINGI_MOST_HALVINGS times. The shortest piece is not refused: each component whose springs have too much
-///     goes back towards where it was, as far as it must. The next MSPRINGI_CALM_SUBSTEPS are of implicit Euler,
-///     too.
+///   - If springs alone have a little more than the room, the component goes back towards where it was, as far as
+///   it
+///     must: bodies that spin and bodies that rest on the floor do so in most substeps, and pieces would not help
+///     them.
+///   - If a component has gained much, or going back does not help, the whole substep is taken again by implicit
+///     Euler, with twice the iterations. If that does not help, two halves of it are taken, and so on,
+///     MSPRINGI_MOST_HALVINGS times. The shortest piece is not refused. The next MSPRINGI_CALM_SUBSTEPS are of
+///     implicit Euler, too.
 ///
 /// All sums have a fixed order, whatever the number of workers: blocks by kernels, then components in the order of
 /// blocks.
@@ -78,9 +80,9 @@ typedef struct mspringi_account {
     double keep;             ///< new velocities are keep v + (add_x, add_y) + turn x (r - centre)
     double add_x, add_y, turn;
     double shift_x, shift_y; ///< of all positions, m
-    bool is_free;    ///< neither a pin nor the floor holds it
-    bool is_stopped; ///< it is where it was before, as the floor was in its way back
-    double share; ///< of its way that it goes
+    bool is_free;            ///< neither a pin nor the floor holds it
+    bool is_stopped;         ///< it is where it was before, as the floor was in its way back
+    double share;            ///< of its way that it goes
 } mspringi_account;
 
 typedef struct mspringi_budget {
