@@ -272,8 +272,11 @@ void mspringi_budget_add_given(const measuring *all) {
             if (is_live(network, (mspringi_place)place))
                 add_given(all, (mspringi_place)place);
     }
-    for (mspringi_place place = t->chain_places; budget->is_driven && place < t->chain_places + t->leftover_count;
-         ++place)
-        if (is_live(network, place))
+    const float *inverse_mass = network->inverse_mass;
+    for (uint32_t i = 0; budget->is_driven && i < t->leftover_count; ++i) {
+        const mspringi_place place = t->chain_places + i;
+        if (is_live(network, place) &&
+            !(inverse_mass[t->leftover_a[i]] > 0.0f && inverse_mass[t->leftover_b[i]] > 0.0f))
             add_given(all, place);
+    }
 }
