@@ -125,6 +125,24 @@ static mspring_network *everything_damped(mspring_network_def *def) {
     return network;
 }
 
+static mspring_network *precise_bar(mspring_network_def *def) {
+    def->flags = MSPRING_NETWORK_PRECISE;
+    return bar_544x68(def);
+}
+
+static mspring_network *precise_graph(mspring_network_def *def) {
+    scene made;
+    scene_error error;
+    scene_options options = scene_options_default();
+    def->flags = MSPRING_NETWORK_PRECISE;
+    return network_of(scene_random_graph(1000, 8, 3, &options, &made, &error), &made, &error, def);
+}
+
+static mspring_network *precise_everything(mspring_network_def *def) {
+    def->flags = MSPRING_NETWORK_PRECISE;
+    return everything_damped(def);
+}
+
 static void push_some(mspring_network *network, uint32_t step) {
     for (mspring_id id = step % 7; id < mspring_network_particle_count(network); id += 50) {
         check_ok(mspring_network_apply_force(network, id, 25, 300));
@@ -213,6 +231,9 @@ const golden_scene golden_scenes[] = {
     {"direct_bar", direct_bar, NULL, 1, 64, 1.0 / 64},
     {"direct_ropes", direct_ropes, NULL, 2, 20, 1.0 / 64},
     {"direct_everything", everything_damped, push_and_solve_directly, 1, 80, 1.0 / 64},
+    {"precise_bar", precise_bar, NULL, 30, 3, 1.0 / 64},
+    {"precise_graph", precise_graph, NULL, 40, 20, 1.0 / 64},
+    {"precise_everything", precise_everything, push_some, 4, 100, 1.0 / 64},
 };
 const uint32_t golden_scene_count = COUNT_OF(golden_scenes);
 

@@ -99,6 +99,7 @@ typedef struct setup {
     uint32_t parts;  ///< 2 or 3
     bool from_below; ///< a row below has left forces
     bool has_above;  ///< there is a row above; else the row itself stands for it
+    bool forced;     ///< there are forces from outside
     bool keeps;      ///< the state that is found; else it is there already, or something like it
     bool watches_place, watches_speed, watches_change;
     uint32_t record_slots;
@@ -176,8 +177,8 @@ static void run(arena *a, const setup *s, mspringi_row_fn kernel, mspringi_sight
         .low_x = a->low_x,
         .low_y = a->low_y,
         .inverse_mass = a->inverse_mass,
-        .force_x = a->force_x,
-        .force_y = a->force_y,
+        .force_x = s->forced ? a->force_x : NULL,
+        .force_y = s->forced ? a->force_y : NULL,
         .carry_x = a->carry_x,
         .carry_y = a->carry_y,
         .lattice_springs = a->records,
@@ -289,8 +290,8 @@ static void compare(const setup *s, mspringi_row_fn kernel, mspringi_row_fn scal
 }
 
 /// All setups for one kernel.
-static void compare_all(mspringi_row_kind kind, uint32_t parts, uint32_t record_slots, mspringi_row_fn kernel,
-                        mspringi_row_fn scalar) {
+static void compare_all(mspringi_row_kind kind, uint32_t parts, uint32_t record_slots, bool forced,
+                        mspringi_row_fn kernel, mspringi_row_fn scalar) {
     for (uint32_t blocks = 0; blocks <= ROW; blocks++) {
         for (uint32_t live = 0; live <= 2 * W + 1 && live <= blocks * W; live++) {
             for (uint32_t variant = 0; variant < 32; variant++) {
@@ -302,6 +303,7 @@ static void compare_all(mspringi_row_kind kind, uint32_t parts, uint32_t record_
                     .from_below = (variant & 1) && kind == MSPRINGI_ROW_LATTICE,
                     .has_above = (variant & 2) && kind == MSPRINGI_ROW_LATTICE,
                     .split = (variant & 4) && blocks > 1 ? 1 + live % (blocks - 1) : 0,
+                    .forced = forced,
                     .keeps = live % 3 == 1,
                     .watches_place = live % 4 == 1 || variant % 5 == 1,
                     .watches_speed = live % 3 == 2 || variant % 3 == 2,
@@ -319,8 +321,11 @@ static void lattice_kernels(void **state) {
     (void)state;
     for (int damped = 0; damped < 2; damped++) {
         for (int forced = 0; forced < 2; forced++) {
-            compare_all(MSPRINGI_ROW_LATTICE, damped ? 3 : 2, MSPRINGI_DIRECTIONS * W,
-                        kernels->lattice[damped][forced], mspringi_kernels_scalar.lattice[damped][forced]);
+            const uint32_t parts = damped ? 3 : 2, record_slots = MSPRINGI_DIRECTIONS * W;
+            compare_all(MSPRINGI_ROW_LATTICE, parts, record_slots, forced, kernels->lattice[damped][forced],
+                        mspringi_kernels_scalar.lattice[damped][forced]);
+            compare_all(MSPRINGI_ROW_LATTICE, parts, record_slots, forced, kernels->precise.lattice,
+                        mspringi_kernels_scalar.precise.lattice);
         }
     }
 }
@@ -332,8 +337,11 @@ static void chain_kernels(void **state) {
             // Records of their own, and those of a lattice that has but one row.
             for (uint32_t record_slots = W; record_slots <= MSPRINGI_DIRECTIONS * W;
                  record_slots *= MSPRINGI_DIRECTIONS) {
-                compare_all(MSPRINGI_ROW_CHAIN, damped ? 3 : 2, record_slots, kernels->chain[damped][forced],
+                const uint32_t parts = damped ? 3 : 2;
+                compare_all(MSPRINGI_ROW_CHAIN, parts, record_slots, forced, kernels->chain[damped][forced],
                             mspringi_kernels_scalar.chain[damped][forced]);
+                compare_all(MSPRINGI_ROW_CHAIN, parts, record_slots, forced, kernels->precise.chain,
+                            mspringi_kernels_scalar.precise.chain);
             }
         }
     }
@@ -359,7 +367,7 @@ static void loose_scalar(const mspringi_sweep *sweep, const mspringi_span *spans
 static void loose_kernels(void **state) {
     (void)state;
     for (loose_forced = 0; loose_forced < 2; loose_forced++) {
-        compare_all(MSPRINGI_ROW_LOOSE, 2, W, loose_of_level, loose_scalar);
+        compare_all(MSPRINGI_ROW_LOOSE, 2, W, loose_forced, loose_of_level, loose_scalar);
     }
 }
 

@@ -42,7 +42,7 @@ typedef struct arena {
     uint32_t after_low_x[GUARD];
     float low_y[SLOTS];
     uint32_t after_low_y[GUARD];
-    float packed[GROUPS * W * 4];
+    float packed[2 * GROUPS * W * 4]; ///< in halves if precise
     uint32_t after_packed[GUARD];
     float attached_x[ATTACHED * W];
     uint32_t after_attached_x[GUARD];
@@ -72,6 +72,7 @@ typedef struct setup {
     uint32_t parts;
     uint64_t seed;
     bool stands; ///< groups may have upright rungs
+    bool forced, precise;
 } setup;
 
 static float random_float(uint64_t *seed, double low, double high) {
@@ -138,6 +139,11 @@ static arena *arena_new(const setup *s) {
     // Own nodes are packed from their slots by the kernel; attached ones lie elsewhere.
     for (uint32_t i = s->own * W * 4; i < (s->own + s->attached) * W * 4; i++) {
         a->packed[i] = random_float(&seed, -20, 20);
+        a->packed[i + (s->own + s->attached) * W * 4] = random_float(&seed, -5, 5);
+    }
+    for (uint32_t i = s->own * W * 4; s->precise && i < (s->own + s->attached) * W * 4; i += 4) {
+        a->packed[i + 2] = random_float(&seed, -1e-7, 1e-7);
+        a->packed[i + 3] = random_float(&seed, -1e-7, 1e-7);
     }
     fill_web(a, s, &seed);
     return a;
@@ -152,8 +158,8 @@ static mspringi_sweep sweep_of(arena *a, const setup *s) {
         .low_x = a->low_x,
         .low_y = a->low_y,
         .inverse_mass = a->inverse_mass,
-        .force_x = a->force_x,
-        .force_y = a->force_y,
+        .force_x = s->forced ? a->force_x : NULL,
+        .force_y = s->forced ? a->force_y : NULL,
         .web = &a->web,
         .web_springs = a->records,
         .packed = a->packed,
@@ -166,34 +172,46 @@ static mspringi_sweep sweep_of(arena *a, const setup *s) {
 }
 
 /// What a substep does: pack, pull at the attached nodes, sweep the own ones.
-static void run(arena *a, const setup *s, const mspringi_kernels *with, bool forced) {
+static void run(arena *a, const setup *s, const mspringi_kernels *with) {
     const bool damped = s->parts > MSPRINGI_DAMPING;
     const mspringi_sweep sweep = sweep_of(a, s);
     const mspringi_span span = {.first_slot = FIRST * W, .end_slot = (FIRST + s->own) * W};
     with->pack(&sweep, FIRST, s->own, a->packed);
-    with->attached[damped](&sweep, 0, a->web.attached_count, a->attached_x, a->attached_y);
-    with->web[damped][forced](&sweep, &span, 1);
+    const mspringi_attached_fn attached = s->precise ? with->precise.attached : with->attached[damped];
+    if (s->precise) {
+        mspringi_sweep half = sweep;
+        half.x = sweep.vx;
+        half.y = sweep.vy;
+        with->pack(&half, FIRST, s->own, a->packed + mspringi_packed_half(&a->web));
+        half = sweep;
+        half.vx = sweep.low_x;
+        half.vy = sweep.low_y;
+        with->pack(&half, FIRST, s->own, a->packed);
+    }
+    attached(&sweep, 0, a->web.attached_count, a->attached_x, a->attached_y);
+    (s->precise ? with->precise.web : with->web[damped][s->forced])(&sweep, &span, 1);
 }
 
 static void web_kernels(void **state) {
     (void)state;
-    for (uint32_t variant = 0; variant < 4000; variant++) {
+    for (uint32_t variant = 0; variant < 8000; variant++) {
         const setup s = {.own = variant % (OWN + 1),
                          .attached = variant / 4 % (ATTACHED + 1),
                          .parts = 2 + (variant / 12 & 1),
                          .seed = variant,
-                         .stands = variant / 48 & 1};
-        const bool forced = variant / 24 & 1;
+                         .stands = variant / 48 & 1,
+                         .forced = variant / 24 & 1,
+                         .precise = variant / 96 & 1};
         arena *mine = arena_new(&s), *reference = arena_new(&s), *before = arena_new(&s);
-        run(mine, &s, kernels, forced);
-        run(reference, &s, &mspringi_kernels_scalar, forced);
+        run(mine, &s, kernels);
+        run(reference, &s, &mspringi_kernels_scalar);
         check_canaries(mine);
         check_canaries(reference);
         // The web holds pointers, each run's own; all else is equal.
         mine->web = reference->web = (mspringi_web){0};
         if (memcmp(mine, reference, sizeof *mine) != 0) {
-            print_error("own %u, attached %u, parts %u, forced %d, seed %u\n", s.own, s.attached, s.parts, forced,
-                        variant);
+            print_error("own %u, attached %u, parts %u, forced %d, precise %d, seed %u\n", s.own, s.attached,
+                        s.parts, s.forced, s.precise, variant);
         }
         assert_memory_equal(mine, reference, sizeof *mine);
         // Padding in front and behind has not moved; the row has, if there is one.

@@ -382,7 +382,12 @@ enum {
 /// Flags of networks.
 enum {
     MSPRING_NETWORK_RESERVE_DAMPING = 1u << 0, ///< springs may be given damping later, though none has any now
-    MSPRING_NETWORK_RESERVE_RELATIVE = 1u << 1 ///< relative springs may be added later, though there is none now
+    MSPRING_NETWORK_RESERVE_RELATIVE = 1u << 1, ///< relative springs may be added later, though there is none now
+    /// The second words of positions count in the lengths of springs, too. Use it for stiff springs whose forces
+    /// single precision cannot tell apart: 6.76e7 N/m between masses of 73.4 kg, 900 m from the local origin,
+    /// tremble at up to 3 m/s without it and 0.002 m/s with it. Explicit steps take 1.1 to 1.3 times as
+    /// long (bench/RESULTS.md). The implicit and the direct solver always count these words.
+    MSPRING_NETWORK_PRECISE = 1u << 2
 };
 
 /// What a step does beside refusing to end with a coordinate or speed that is not finite or out of bounds.
@@ -1764,9 +1769,10 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_snapshot_size(const
 
 /// Save a snapshot into the caller's memory. It is the same on every machine, for any SIMD level and number of
 /// workers, but only of use to networks made of the same particles and springs by a library that lays them out
-/// alike (another refuses it): meant for rollback, replay and network play, not for archives. Of the implicit or
-/// direct solver it holds settings and history, but it can be loaded only where that solver is, with the same
-/// integrator and tiles and, of the direct one, the same added springs. Hooks and unread events are not in it.
+/// alike, and with MSPRING_NETWORK_PRECISE if this one has it (others refuse it): meant for rollback, replay and
+/// network play, not for archives. Of the implicit or direct solver it holds settings and history, but it can be
+/// loaded only where that solver is, with the same integrator and tiles and, of the direct one, the same added
+/// springs. Hooks and unread events are not in it.
 /// @param snapshot  [capacity] bytes, of any alignment
 /// @param capacity  at least mspring_network_snapshot_size()
 /// @param size      receives the bytes written; may be NULL

@@ -2,6 +2,7 @@
 #include "graft.h"
 
 #include "network/springs.h"
+#include "precise.h"
 #include "store/store.h"
 #include "topology/analysis.h"
 #include "topology/spare.h"
@@ -53,11 +54,13 @@ static void number_nodes(mspring_network *network) {
         web->neighbour[node] = graft->node_of_end[(uint32_t)graft->keys[node] ^ 1u];
     web->group_count = (graft->count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
     web->attached_count = web->group_count * MSPRINGI_WIDTH;
+    const size_t half = mspringi_packed_distance(network, web);
     for (uint32_t node = graft->count; node < web->attached_count; ++node) {
         web->attached_slot[node] = MSPRING_NONE;
         web->neighbour[node] = node;
+        float *packed = graft->packed + 4 * (size_t)node;
         for (uint32_t i = 0; i < 4; ++i)
-            graft->packed[4 * (size_t)node + i] = 0.0f;
+            packed[i] = packed[half + i] = 0.0f;
     }
 }
 
@@ -104,21 +107,15 @@ void mspringi_graft_forget(mspringi_graft *graft) {
 
 void mspringi_graft_begin(const mspring_network *network, const mspringi_sweep *sweep) {
     const mspringi_graft *graft = &network->graft;
-    const mspringi_state *s = &network->state;
     mspringi_sweep own = *sweep;
     own.web = &graft->web;
     own.web_springs = graft->records;
     own.packed = graft->packed;
     float *packed = graft->packed;
-    for (uint32_t node = 0; node < graft->count; ++node, packed += 4) {
-        const uint32_t slot = graft->web.attached_slot[node];
-        packed[0] = s->x[slot];
-        packed[1] = s->y[slot];
-        packed[2] = s->vx[slot];
-        packed[3] = s->vy[slot];
-    }
-    network->kernels->attached[network->parts > MSPRINGI_DAMPING](&own, 0, graft->web.attached_count, graft->pulls,
-                                                                  graft->pulls + graft->capacity);
+    for (uint32_t node = 0; node < graft->count; ++node, packed += 4)
+        mspringi_pack_slot(network, &graft->web, packed, graft->web.attached_slot[node]);
+    mspringi_attached_kernel(network)(&own, 0, graft->web.attached_count, graft->pulls,
+                                      graft->pulls + graft->capacity);
 }
 
 // The first node at this slot or a higher one.

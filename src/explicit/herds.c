@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "contact/floor.h"
+#include "precise.h"
 #include "sleep/sleep.h"
 #include "strip.h"
 
@@ -105,8 +106,7 @@ static mspringi_herd herd_of(const mspringi_web *web, const mspringi_span *span)
 static void sweep_run(const job *herds, const mspringi_sweep *sweep, const mspringi_span *run) {
     const mspring_network *network = herds->network;
     const mspringi_strip *strip = &network->topology.strips[network->topology.herd_strip];
-    const mspringi_herd_fn sweep_herd =
-        network->kernels->herd[network->parts > MSPRINGI_DAMPING][herds->base.x != NULL];
+    const mspringi_herd_fn sweep_herd = mspringi_herd_kernel(network, herds->base.x != NULL);
     const mspringi_herd herd = herd_of(sweep->web, run);
     const size_t none = (size_t)herd.spring_count * MSPRINGI_WIDTH;
     memset(sweep->carry_x + none, 0, MSPRINGI_WIDTH * sizeof *sweep->carry_x);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "partly.h"
+#include "precise.h"
 #include "shares.h"
 
 /// Rows that a seam has: the row below as each of the workers sweeps it, and the velocities that the one below
@@ -140,8 +141,8 @@ static void sweep_moved(const copied *copy, mspringi_row_fn lattice, const mspri
 static void sweep_copy(const mspring_network *network, const mspringi_substep *substep, const copied *copy,
                        mspringi_sweep *sweep, const mspringi_row *below, bool is_partly) {
     const mspringi_span *spans = &network->topology.spans[below->first_span];
-    const bool damped = network->parts > MSPRINGI_DAMPING, forced = substep->base.x != NULL;
-    const mspringi_row_fn lattice = network->kernels->lattice[damped][forced];
+    const bool forced = substep->base.x != NULL;
+    const mspringi_row_fn lattice = mspringi_row_kernel(network, MSPRINGI_ROW_LATTICE, forced);
     sweep->x = copy->state.x;
     sweep->y = copy->state.y;
     sweep->vx = copy->state.vx;

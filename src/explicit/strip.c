@@ -8,13 +8,14 @@
 #include "creep.h"
 #include "decay.h"
 #include "partly.h"
+#include "precise.h"
 #include "seam.h"
 
 mspringi_substep mspringi_substep_prepare(const mspring_network *network, float h, mspringi_field base, uint32_t i,
                                           uint32_t count, uint32_t carry_number) {
     const mspringi_topology *t = &network->topology;
     const size_t carry_slots = (size_t)t->carry_blocks * MSPRINGI_WIDTH;
-    const size_t packed_floats = (size_t)4 * t->web.group_count * MSPRINGI_WIDTH;
+    const size_t packed_floats = (size_t)mspringi_packed_values(network) * t->web.group_count * MSPRINGI_WIDTH;
     float *carry = network->carry + 2 * carry_number * carry_slots;
     return (mspringi_substep){
         .base = base,
@@ -55,15 +56,26 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
 // Pack what the web sees of the nodes that are slots of a strip.
 static void pack_attached(const mspring_network *network, const mspringi_strip *strip, float *packed) {
     const mspringi_web *web = &network->topology.web;
-    const mspringi_state *state = &network->state;
     const uint32_t *slots = web->attached_slot + strip->first_attached;
     packed += 4 * ((size_t)web->own_count + strip->first_attached);
-    for (uint32_t i = 0; i < strip->attached_count; ++i, packed += 4) {
-        packed[0] = state->x[slots[i]];
-        packed[1] = state->y[slots[i]];
-        packed[2] = state->vx[slots[i]];
-        packed[3] = state->vy[slots[i]];
+    for (uint32_t i = 0; i < strip->attached_count; ++i, packed += 4)
+        mspringi_pack_slot(network, web, packed, slots[i]);
+}
+
+// Pack groups that lie behind one another.
+static void pack_blocks(const mspring_network *network, const mspringi_sweep *sweep, size_t first_block,
+                        size_t count, float *packed) {
+    mspringi_sweep from = *sweep;
+    if (network->is_precise) {
+        from.vx = from.low_x;
+        from.vy = from.low_y;
     }
+    network->kernels->pack(&from, first_block, count, packed);
+    if (!mspringi_packs_halves(network))
+        return;
+    from.x = sweep->vx;
+    from.y = sweep->vy;
+    network->kernels->pack(&from, first_block, count, packed + mspringi_packed_half(sweep->web));
 }
 
 // Pack what the web sees of its own nodes in a span: runs of groups that somebody reads there.
@@ -76,8 +88,8 @@ static void pack_span(const mspring_network *network, const mspringi_sweep *swee
         while (last < end && (!is_read || is_read[last]))
             ++last;
         if (last > first)
-            network->kernels->pack(sweep, first_block + (first - span->first_record), last - first,
-                                   packed + 4 * first * MSPRINGI_WIDTH);
+            pack_blocks(network, sweep, first_block + (first - span->first_record), last - first,
+                        packed + 4 * first * MSPRINGI_WIDTH);
     }
 }
 
@@ -89,8 +101,7 @@ static void pull_attached(const mspring_network *network, const mspringi_substep
     const mspringi_sweep *sweep = &substep->sweep;
     const uint32_t *slots = web->attached_slot + strip->first_attached;
     float *pull_x = network->attached, *pull_y = network->attached + web->attached_count;
-    network->kernels->attached[network->parts > MSPRINGI_DAMPING](sweep, strip->first_attached,
-                                                                  strip->attached_count, pull_x, pull_y);
+    mspringi_attached_kernel(network)(sweep, strip->first_attached, strip->attached_count, pull_x, pull_y);
     pull_x += strip->first_attached;
     pull_y += strip->first_attached;
     for (uint32_t i = 0; i < strip->attached_count; ++i) {
@@ -108,18 +119,14 @@ static void pull_attached(const mspring_network *network, const mspringi_substep
 // Sweep rows that follow each other, all of one kind.
 static void sweep_rows(const mspring_network *network, const mspringi_substep *substep, const mspringi_row *rows,
                        uint32_t row_count, bool is_partly) {
-    const mspringi_kernels *kernels = network->kernels;
     const mspringi_topology *t = &network->topology;
     const mspringi_row *last = &rows[row_count - 1];
     uint32_t first_span = rows->first_span, end_span = last->first_span + last->span_count;
     const mspringi_span *spans = t->spans;
     const mspringi_sweep *sweep = &substep->sweep;
-    const bool damped = network->parts > MSPRINGI_DAMPING, forced = substep->base.x != NULL;
     if (rows->kind == MSPRINGI_ROW_LOOSE)
         return; // moved apart, see explicit.c
-    const mspringi_row_fn sweep_spans = rows->kind == MSPRINGI_ROW_LATTICE ? kernels->lattice[damped][forced]
-                                        : rows->kind == MSPRINGI_ROW_CHAIN ? kernels->chain[damped][forced]
-                                                                           : kernels->web[damped][forced];
+    const mspringi_row_fn sweep_spans = mspringi_row_kernel(network, rows->kind, substep->base.x != NULL);
     if (is_partly) {
         for (const mspringi_row *row = rows; row <= last; ++row)
             mspringi_partly_sweep_row(network, substep, sweep_spans, row);
@@ -144,7 +151,7 @@ void mspringi_web_pack_next(const mspring_network *network, const mspringi_subst
 
 void mspringi_web_sweep(const mspring_network *network, const mspringi_substep *substep,
                         const mspringi_span *span) {
-    const mspringi_row_fn web = network->kernels->web[network->parts > MSPRINGI_DAMPING][substep->base.x != NULL];
+    const mspringi_row_fn web = mspringi_row_kernel(network, MSPRINGI_ROW_WEB, substep->base.x != NULL);
     if (network->sleep.sleeping > 0)
         mspringi_partly_sweep_web(network, substep, web, span);
     else

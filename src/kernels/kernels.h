@@ -15,6 +15,14 @@
 /// Squared length, m^2, up to which a spring has no direction, and so no force: above, its inverse is finite.
 #define MSPRINGI_NO_DIRECTION 1e-37f
 
+/// What a sweep has to do, bits of these. Where they are known to a compiler, a kernel's code is for them alone.
+typedef uint32_t mspringi_variant;
+enum {
+    MSPRINGI_DAMPED = 1u << 0, ///< springs have damping
+    MSPRINGI_FORCED = 1u << 1, ///< there are forces from outside
+    MSPRINGI_PRECISE = 1u << 2 ///< low words count in the lengths of springs
+};
+
 /// The parts of a spring record, each one value per slot; damping only if the network has any.
 typedef enum mspringi_part { MSPRINGI_REST_LENGTH = 0, MSPRINGI_STIFFNESS = 1, MSPRINGI_DAMPING = 2 } mspringi_part;
 
@@ -35,7 +43,7 @@ typedef struct mspringi_sweep {
     float *x, *y, *vx, *vy;
     float *low_x, *low_y; ///< what positions have beyond single precision
     const float *inverse_mass;
-    const float *force_x, *force_y;   ///< forces from outside; read by the kernels with forces only
+    const float *force_x, *force_y;   ///< forces from outside, or NULL; read by the kernels with forces only
     float *carry_x, *carry_y;         ///< forces that the row below exerts, by column
     const float *lattice_springs;     ///< records: [direction][part after the rest length][lane]
     const uint32_t *springs_of_block; ///< [block] which of these it has
@@ -44,7 +52,9 @@ typedef struct mspringi_sweep {
     const float *chain_springs;       ///< records: [block][part][lane]
     const mspringi_web *web;
     const float *web_springs;       ///< records: [rung][part][lane]
-    const float *packed;            ///< [node][4] x, y, vx, vy of the web's nodes at the start of the substep
+    const float *packed;            ///< [node][4] x, y, vx, vy of the web's nodes at the start of the substep; of
+                                    ///< precise kernels x, y, low_x, low_y and, with damping, at
+                                    ///< mspringi_packed_half() vx and vy, with something behind
     uint32_t parts;                 ///< parts in a record: 2 or, with damping, 3
     float h;                        ///< substep, s
     float decay;                    ///< what global damping leaves of a velocity
@@ -55,6 +65,11 @@ typedef struct mspringi_sweep {
                            ///< put if there is both; or NULL
     bool watches_place, watches_speed; ///< whether coordinates and speeds are watched
 } mspringi_sweep;
+
+/// Floats that four values of each of a web's nodes take.
+static inline size_t mspringi_packed_half(const mspringi_web *web) {
+    return (size_t)4 * web->group_count * MSPRINGI_WIDTH;
+}
 
 /// Compute the forces of the springs of one or more rows and move their particles, in place. In lattice rows and
 /// chains, forces from the row below are taken from the carry row, and those on the row above left there (0 where
@@ -146,8 +161,8 @@ typedef struct mspringi_ground {
     const float *inverse_mass, *free_mass;
 } mspringi_ground;
 
-/// Let a floor act on the particles of the block of slots that begins with slot, after a substep of symplectic Euler:
-/// on those with springs, or on those without.
+/// Let a floor act on the particles of the block of slots that begins with slot, after a substep of symplectic
+/// Euler: on those with springs, or on those without.
 /// @return a bit for each that nothing has been done to, as it has come from one straight part of the heights to
 ///         another or is in a corner: mspringi_floor_bounce() and mspringi_floor_fly() are for them
 typedef uint32_t (*mspringi_touch_fn)(const mspringi_ground *ground, size_t slot);
@@ -201,6 +216,14 @@ typedef struct mspringi_checksum {
 /// Take so many units, of any alignment, into a checksum and, unless to is NULL, copy them.
 typedef void (*mspringi_checksum_fn)(uint8_t *to, const uint8_t *from, size_t units, mspringi_checksum *checksum);
 
+/// Those in which low words count. They look for themselves whether there are dampers (parts) and forces (force_x not
+/// NULL): all of them take 50 kB in the four levels of x86, a copy of each of the others 104.
+typedef struct mspringi_precise_kernels {
+    mspringi_row_fn lattice, chain, web;
+    mspringi_herd_fn herd;
+    mspringi_attached_fn attached;
+} mspringi_precise_kernels;
+
 typedef struct mspringi_kernels {
     mspring_simd level;
     uint32_t lanes;                ///< that rows are swept by, at least MSPRINGI_QUARTER
@@ -211,6 +234,7 @@ typedef struct mspringi_kernels {
     mspringi_loose_fn loose[2]; ///< [with forces]
     mspringi_pack_fn pack;
     mspringi_attached_fn attached[2]; ///< [with damping]
+    mspringi_precise_kernels precise;
     mspringi_largest_fn largest;
     mspringi_sight_fn sight_of;
     mspringi_leaves_fn leaves;

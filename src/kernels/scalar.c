@@ -5,29 +5,41 @@
 #include <math.h>
 #include <string.h>
 
+#if defined(_MSC_VER)
+#define MSPRINGI_INLINE static __forceinline
+#else
+#define MSPRINGI_INLINE static inline __attribute__((always_inline))
+#endif
+
 typedef struct vector {
     float x, y;
 } vector;
 
 /// Position and velocity of a particle.
 typedef struct motion {
-    float x, y, vx, vy;
+    float x, y, vx, vy, low_x, low_y;
 } motion;
 
 static inline motion at(const mspringi_sweep *s, size_t slot) {
-    return (motion){s->x[slot], s->y[slot], s->vx[slot], s->vy[slot]};
+    return (motion){s->x[slot], s->y[slot], s->vx[slot], s->vy[slot], s->low_x[slot], s->low_y[slot]};
 }
 
 // The force of one spring on its tip; that on its base is the opposite. With d from the tip to the base
 //     F = ((L - rest_length) (k L) + c (dv . d)) / L^2 * d
 // so that the root and the division do not wait for each other. record is where its stiffness is, with its damping
-// behind.
-static inline vector spring_force(motion base, motion tip, float rest_length, const float *record, bool damped) {
-    const float dx = base.x - tip.x, dy = base.y - tip.y;
+// behind. The difference of two near positions is exact, but it lacks what they have beyond single precision: half
+// a unit in the last place of a position of 900 m is 3e-5 m, the strain of 2 kN of iron.
+static inline vector spring_force(motion base, motion tip, float rest_length, const float *record,
+                                  mspringi_variant of) {
+    float dx = base.x - tip.x, dy = base.y - tip.y;
+    if (of & MSPRINGI_PRECISE) {
+        dx = dx + (base.low_x - tip.low_x);
+        dy = dy + (base.low_y - tip.low_y);
+    }
     const float square = dx * dx + dy * dy, length = sqrtf(square);
     const float inverse = square > MSPRINGI_NO_DIRECTION ? 1.0f / square : 0.0f;
     float force = (length - rest_length) * (length * record[0]);
-    if (damped) {
+    if (of & MSPRINGI_DAMPED) {
         const float dvx = base.vx - tip.vx, dvy = base.vy - tip.vy;
         force = force + (dvx * dx + dvy * dy) * record[MSPRINGI_WIDTH];
     }
@@ -90,8 +102,8 @@ static inline void go(const mspringi_sweep *s, size_t slot, float way_x, float w
 
 // Symplectic Euler: v' = (F h / m + (v + g h)) d, with d the decay. A pinned particle keeps its velocity. (As g h
 // is never -0, so is v + g h, and it does not matter which sign a force of 0 has.)
-static inline void move(const mspringi_sweep *s, size_t slot, vector force, bool forced) {
-    if (forced) {
+static inline void move(const mspringi_sweep *s, size_t slot, vector force, mspringi_variant of) {
+    if (of & MSPRINGI_FORCED) {
         force.x = force.x + s->force_x[slot];
         force.y = force.y + s->force_y[slot];
     }
@@ -127,24 +139,24 @@ static inline lattice_springs springs_of(const mspringi_sweep *s, const mspringi
 }
 
 static inline vector lattice_force(motion base, motion tip, lattice_springs springs, mspringi_direction direction,
-                                   bool damped) {
-    const size_t parts = damped ? 2 : 1;
+                                   mspringi_variant of) {
+    const size_t parts = of & MSPRINGI_DAMPED ? 2 : 1;
     return spring_force(base, tip, springs.rest_lengths[direction * MSPRINGI_WIDTH],
-                        springs.records + direction * parts * MSPRINGI_WIDTH, damped);
+                        springs.records + direction * parts * MSPRINGI_WIDTH, of);
 }
 
-static inline void lattice(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, bool damped,
-                           bool forced) {
+static inline void lattice(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count,
+                           mspringi_variant of) {
     handed_on before = {{0.0f, 0.0f}, {0.0f, 0.0f}};
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
         for (size_t slot = span->first_slot; slot < span->end_slot; ++slot) {
             const size_t up = (size_t)((int64_t)slot + span->up), carry = (size_t)((int64_t)slot + span->carry);
             const lattice_springs springs = springs_of(s, span, slot);
             const motion here = at(s, slot), next = at(s, slot + 1), above = at(s, up), above_next = at(s, up + 1);
-            const vector east = lattice_force(here, next, springs, MSPRINGI_EAST, damped);
-            const vector north = lattice_force(here, above, springs, MSPRINGI_NORTH, damped);
-            const vector north_east = lattice_force(here, above_next, springs, MSPRINGI_NORTH_EAST, damped);
-            const vector south_east = lattice_force(next, above, springs, MSPRINGI_SOUTH_EAST, damped);
+            const vector east = lattice_force(here, next, springs, MSPRINGI_EAST, of);
+            const vector north = lattice_force(here, above, springs, MSPRINGI_NORTH, of);
+            const vector north_east = lattice_force(here, above_next, springs, MSPRINGI_NORTH_EAST, of);
+            const vector south_east = lattice_force(next, above, springs, MSPRINGI_SOUTH_EAST, of);
 
             const vector force = {((s->carry_x[carry] + before.right.x) - (east.x + north.x)) - north_east.x,
                                   ((s->carry_y[carry] + before.right.y) - (east.y + north.y)) - north_east.y};
@@ -152,78 +164,79 @@ static inline void lattice(const mspringi_sweep *s, const mspringi_span *spans, 
             s->carry_y[carry] = (south_east.y + north.y) + before.diagonal.y;
             before.right = (vector){east.x - south_east.x, east.y - south_east.y};
             before.diagonal = north_east;
-            move(s, slot, force, forced);
+            move(s, slot, force, of);
         }
     }
 }
 
 // The east spring of a slot of a chain, or of a lattice row with nothing above.
-static inline vector chain_force(const mspringi_sweep *s, const mspringi_span *span, size_t slot, bool damped) {
+static inline vector chain_force(const mspringi_sweep *s, const mspringi_span *span, size_t slot,
+                                 mspringi_variant of) {
     const motion here = at(s, slot), next = at(s, slot + 1);
     if (span->record_slots != MSPRINGI_WIDTH)
-        return lattice_force(here, next, springs_of(s, span, slot), MSPRINGI_EAST, damped);
+        return lattice_force(here, next, springs_of(s, span, slot), MSPRINGI_EAST, of);
     const size_t block = span->first_record + (slot / MSPRINGI_WIDTH - span->first_slot / MSPRINGI_WIDTH);
     const float *record = s->chain_springs + block * s->parts * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH;
     return spring_force(here, next, record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
-                        record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, damped);
+                        record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
 }
 
 // East springs only.
-static inline void chain(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, bool damped,
-                         bool forced) {
+MSPRINGI_INLINE void sweep_chain(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count,
+                                 mspringi_variant of) {
     vector left = {0.0f, 0.0f};
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
         for (size_t slot = span->first_slot; slot < span->end_slot; ++slot) {
             const size_t carry = (size_t)((int64_t)slot + span->carry);
-            const vector east = chain_force(s, span, slot, damped);
+            const vector east = chain_force(s, span, slot, of);
             const vector force = {(s->carry_x[carry] - east.x) + left.x, (s->carry_y[carry] - east.y) + left.y};
             s->carry_x[carry] = 0.0f;
             s->carry_y[carry] = 0.0f;
             left = east;
-            move(s, slot, force, forced);
+            move(s, slot, force, of);
         }
     }
 }
 
-static inline motion node_at(const mspringi_sweep *s, size_t node) {
-    const float *packed = s->packed + 4 * node;
-    return (motion){packed[0], packed[1], packed[2], packed[3]};
+static inline motion node_at(const mspringi_sweep *s, size_t node, mspringi_variant of) {
+    const float *packed = s->packed + 4 * node, *half = packed;
+    if (!(of & MSPRINGI_PRECISE))
+        return (motion){packed[0], packed[1], packed[2], packed[3], 0.0f, 0.0f};
+    if (of & MSPRINGI_DAMPED)
+        half += mspringi_packed_half(s->web);
+    return (motion){packed[0], packed[1], half[0], half[1], packed[2], packed[3]};
 }
 
 // The force of the web on one of its nodes: the sum over the rungs of its group, in their order, from a first one
 // on.
-static inline vector web_force(const mspringi_sweep *s, size_t node, motion here, uint32_t rungs, bool damped) {
+static inline vector web_force(const mspringi_sweep *s, size_t node, motion here, uint32_t rungs,
+                               mspringi_variant of) {
     const mspringi_web *web = s->web;
     const size_t lane = node % MSPRINGI_WIDTH;
     vector sum = {0.0f, 0.0f};
     for (size_t rung = web->first_rung[node / MSPRINGI_WIDTH] + rungs;
          rung < web->first_rung[node / MSPRINGI_WIDTH + 1]; ++rung) {
-        const motion there = node_at(s, web->neighbour[rung * MSPRINGI_WIDTH + lane]);
+        const motion there = node_at(s, web->neighbour[rung * MSPRINGI_WIDTH + lane], of);
         const float *record = s->web_springs + rung * s->parts * MSPRINGI_WIDTH + lane;
         const vector force = spring_force(there, here, record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
-                                          record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, damped);
+                                          record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
         sum.x = sum.x + force.x;
         sum.y = sum.y + force.y;
     }
     return sum;
 }
 
-static inline motion slot_at(const mspringi_sweep *s, size_t slot) {
-    return (motion){s->x[slot], s->y[slot], s->vx[slot], s->vy[slot]};
-}
-
 // The force of the first rung of a node's group, if that is upright, to the node in the same lane of the next one.
-static inline vector upright_force(const mspringi_sweep *s, size_t slot, size_t node, bool damped) {
+static inline vector upright_force(const mspringi_sweep *s, size_t slot, size_t node, mspringi_variant of) {
     const float *record = s->web_springs +
                           (size_t)s->web->first_rung[node / MSPRINGI_WIDTH] * s->parts * MSPRINGI_WIDTH +
                           node % MSPRINGI_WIDTH;
-    return spring_force(slot_at(s, slot + MSPRINGI_WIDTH), slot_at(s, slot),
-                        record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH], record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH,
-                        damped);
+    return spring_force(at(s, slot + MSPRINGI_WIDTH), at(s, slot), record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
+                        record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
 }
 
-static inline void web(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, bool damped,
-                       bool forced) {
+MSPRINGI_INLINE void sweep_web(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count,
+                               mspringi_variant of) {
     const uint8_t *is_upright = s->web->is_upright;
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
         vector handed[MSPRINGI_WIDTH] = {{0.0f, 0.0f}}; // by the group before
@@ -231,28 +244,28 @@ static inline void web(const mspringi_sweep *s, const mspringi_span *spans, uint
         for (size_t slot = span->first_slot; slot < span->end_slot; ++slot, ++node) {
             const bool has_upright = is_upright && is_upright[node / MSPRINGI_WIDTH];
             vector *below = &handed[slot % MSPRINGI_WIDTH];
-            vector force = web_force(s, node, slot_at(s, slot), has_upright, damped);
+            vector force = web_force(s, node, at(s, slot), has_upright, of);
             force = (vector){force.x + below->x, force.y + below->y};
             *below = (vector){0.0f, 0.0f};
             if (has_upright) {
-                const vector up = upright_force(s, slot, node, damped);
+                const vector up = upright_force(s, slot, node, of);
                 force = (vector){force.x + up.x, force.y + up.y};
                 *below = (vector){0.0f - up.x, 0.0f - up.y};
             }
-            move(s, slot, force, forced);
+            move(s, slot, force, of);
         }
     }
 }
 
 // The same forces as those of web(), each computed once.
-static inline void herd(const mspringi_sweep *s, const mspringi_herd *herd, bool damped, bool forced) {
+MSPRINGI_INLINE void sweep_herd(const mspringi_sweep *s, const mspringi_herd *herd, mspringi_variant of) {
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
         for (size_t i = 0; i < herd->spring_count; ++i) {
             const mspringi_herd_spring *spring = &herd->springs[i];
             const float *record = s->web_springs + (size_t)spring->rung * s->parts * MSPRINGI_WIDTH + lane;
-            const vector pull = spring_force(slot_at(s, spring->below + lane), slot_at(s, spring->above + lane),
+            const vector pull = spring_force(at(s, spring->below + lane), at(s, spring->above + lane),
                                              record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
-                                             record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, damped);
+                                             record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
             s->carry_x[i * MSPRINGI_WIDTH + lane] = pull.x;
             s->carry_y[i * MSPRINGI_WIDTH + lane] = pull.y;
         }
@@ -264,15 +277,45 @@ static inline void herd(const mspringi_sweep *s, const mspringi_herd *herd, bool
                 force.x = force.x + s->carry_x[below];
                 force.y = force.y + s->carry_y[below];
             }
-            move(s, herd->first_slot + i * MSPRINGI_WIDTH + lane, force, forced);
+            move(s, herd->first_slot + i * MSPRINGI_WIDTH + lane, force, of);
         }
     }
 }
 
+// The variants of each of these share two copies, one of them for precise networks. (gcc would make one for each
+// variant, 12 kB for the three, and no longer inline others.)
+#if defined(__GNUC__) && !defined(__clang__)
+#define SHARED static __attribute__((noinline, noclone))
+#else
+#define SHARED static
+#endif
+#define BUT_PRECISE(of) ((of) & ~(mspringi_variant)MSPRINGI_PRECISE)
+
+SHARED void chain(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, mspringi_variant of) {
+    if (of & MSPRINGI_PRECISE)
+        sweep_chain(s, spans, count, of | MSPRINGI_PRECISE);
+    else
+        sweep_chain(s, spans, count, BUT_PRECISE(of));
+}
+
+SHARED void web(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, mspringi_variant of) {
+    if (of & MSPRINGI_PRECISE)
+        sweep_web(s, spans, count, of | MSPRINGI_PRECISE);
+    else
+        sweep_web(s, spans, count, BUT_PRECISE(of));
+}
+
+SHARED void herd(const mspringi_sweep *s, const mspringi_herd *which, mspringi_variant of) {
+    if (of & MSPRINGI_PRECISE)
+        sweep_herd(s, which, of | MSPRINGI_PRECISE);
+    else
+        sweep_herd(s, which, BUT_PRECISE(of));
+}
+
 static inline void attached(const mspringi_sweep *s, uint32_t first, uint32_t count, float *x, float *y,
-                            bool damped) {
+                            mspringi_variant of) {
     for (size_t i = first; i < (size_t)first + count; ++i) {
-        const vector force = web_force(s, s->web->own_count + i, node_at(s, s->web->own_count + i), 0, damped);
+        const vector force = web_force(s, s->web->own_count + i, node_at(s, s->web->own_count + i, of), 0, of);
         x[i] = force.x;
         y[i] = force.y;
     }

@@ -11,6 +11,8 @@
 #ifndef MSPRINGI_SWEEP_H
 #define MSPRINGI_SWEEP_H
 
+#include "base/cpu.h"
+
 #if defined(_MSC_VER)
 #define MSPRINGI_INLINE static __forceinline
 #else
@@ -24,26 +26,34 @@ typedef struct vector {
     vec x, y;
 } vector;
 
-/// Position and velocity of LANES particles.
+/// Position and velocity of LANES particles, as far as a variant reads them.
 typedef struct motion {
-    vec x, y, vx, vy;
+    vec x, y, vx, vy, low_x, low_y;
 } motion;
 
-MSPRINGI_INLINE motion load_motion(const mspringi_sweep *s, size_t slot, bool damped) {
-    motion m = {load(s->x + slot), load(s->y + slot), zero(), zero()};
-    if (damped) {
+MSPRINGI_INLINE motion load_motion(const mspringi_sweep *s, size_t slot, mspringi_variant of) {
+    motion m = {load(s->x + slot), load(s->y + slot), zero(), zero(), zero(), zero()};
+    if (of & MSPRINGI_DAMPED) {
         m.vx = load(s->vx + slot);
         m.vy = load(s->vy + slot);
+    }
+    if (of & MSPRINGI_PRECISE) {
+        m.low_x = load(s->low_x + slot);
+        m.low_y = load(s->low_y + slot);
     }
     return m;
 }
 
 // The same from a slot that is no multiple of LANES.
-MSPRINGI_INLINE motion load_motion_unaligned(const mspringi_sweep *s, size_t slot, bool damped) {
-    motion m = {load_unaligned(s->x + slot), load_unaligned(s->y + slot), zero(), zero()};
-    if (damped) {
+MSPRINGI_INLINE motion load_motion_unaligned(const mspringi_sweep *s, size_t slot, mspringi_variant of) {
+    motion m = {load_unaligned(s->x + slot), load_unaligned(s->y + slot), zero(), zero(), zero(), zero()};
+    if (of & MSPRINGI_DAMPED) {
         m.vx = load_unaligned(s->vx + slot);
         m.vy = load_unaligned(s->vy + slot);
+    }
+    if (of & MSPRINGI_PRECISE) {
+        m.low_x = load_unaligned(s->low_x + slot);
+        m.low_y = load_unaligned(s->low_y + slot);
     }
     return m;
 }
@@ -54,10 +64,14 @@ typedef struct extent {
     vec dx, dy, square;
 } extent;
 
-MSPRINGI_INLINE extent spring_extent(motion base, motion tip) {
+MSPRINGI_INLINE extent spring_extent(motion base, motion tip, mspringi_variant of) {
     extent e;
     e.dx = sub(base.x, tip.x);
     e.dy = sub(base.y, tip.y);
+    if (of & MSPRINGI_PRECISE) {
+        e.dx = add(e.dx, sub(base.low_x, tip.low_x));
+        e.dy = add(e.dy, sub(base.low_y, tip.low_y));
+    }
     e.square = add(mul(e.dx, e.dx), mul(e.dy, e.dy));
     return e;
 }
@@ -67,10 +81,10 @@ MSPRINGI_INLINE extent spring_extent(motion base, motion tip) {
 // other, the last spring enters the sum last, and what of the motion needs no force comes first: 0.90, 0.90 and
 // 0.92 of a damped lattice's time at SSE2, AVX2 and AVX-512, and 0.93, 0.98 and 0.97 without dampers.
 MSPRINGI_INLINE vector spring_force(extent e, vec inverse, motion base, motion tip, const float *rest_lengths,
-                                    const float *record, bool damped) {
+                                    const float *record, mspringi_variant of) {
     const vec length = square_root(e.square);
     vec force = mul(sub(length, load(rest_lengths)), mul(length, load(record)));
-    if (damped) {
+    if (of & MSPRINGI_DAMPED) {
         const vec dvx = sub(base.vx, tip.vx), dvy = sub(base.vy, tip.vy);
         force = add(force, mul(add(mul(dvx, e.dx), mul(dvy, e.dy)), load(record + MSPRINGI_WIDTH)));
     }
@@ -112,20 +126,20 @@ MSPRINGI_INLINE void watch_motion(const mspringi_sweep *s, size_t slot, motion m
 }
 
 // Kahan's sum: what a position does not take of a way is left for the next.
-MSPRINGI_INLINE vector go(const mspringi_sweep *s, size_t slot, vec x, vec y, vec way_x, vec way_y) {
-    way_x = add(way_x, load(s->low_x + slot));
-    way_y = add(way_y, load(s->low_y + slot));
-    const vector to = {add(x, way_x), add(y, way_y)};
-    store(s->low_x + slot, sub(way_x, sub(to.x, x)));
-    store(s->low_y + slot, sub(way_y, sub(to.y, y)));
+MSPRINGI_INLINE vector go(const mspringi_sweep *s, size_t slot, motion here, vec way_x, vec way_y,
+                          mspringi_variant of) {
+    way_x = add(way_x, of & MSPRINGI_PRECISE ? here.low_x : load(s->low_x + slot));
+    way_y = add(way_y, of & MSPRINGI_PRECISE ? here.low_y : load(s->low_y + slot));
+    const vector to = {add(here.x, way_x), add(here.y, way_y)};
+    store(s->low_x + slot, sub(way_x, sub(to.x, here.x)));
+    store(s->low_y + slot, sub(way_y, sub(to.y, here.y)));
     store(s->x + slot, to.x);
     store(s->y + slot, to.y);
     return to;
 }
 
-MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, motion here, vector force, bool damped,
-                          bool forced) {
-    if (forced) {
+MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, motion here, vector force, mspringi_variant of) {
+    if (of & MSPRINGI_FORCED) {
         force.x = add(force.x, load(s->force_x + slot));
         force.y = add(force.y, load(s->force_y + slot));
     }
@@ -133,7 +147,8 @@ MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, motion here, vec
     const vec inverse_mass = load(s->inverse_mass + slot);
     const vec inverse_mass_h = mul(inverse_mass, h);
     // Without dampers, velocities have not been read yet.
-    vec vx = damped ? here.vx : load(s->vx + slot), vy = damped ? here.vy : load(s->vy + slot);
+    vec vx = of & MSPRINGI_DAMPED ? here.vx : load(s->vx + slot),
+        vy = of & MSPRINGI_DAMPED ? here.vy : load(s->vy + slot);
     const vector found = {vx, vy};
     if (s->keep)
         keep_motion(s, slot, here.x, here.y, vx, vy);
@@ -143,9 +158,9 @@ MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, motion here, vec
     vy = choose_positive(inverse_mass, mul(add(mul(force.y, inverse_mass_h), vy), decay), found.y);
     store(s->vx + slot, vx);
     store(s->vy + slot, vy);
-    const vector to = go(s, slot, here.x, here.y, mul(vx, h), mul(vy, h));
+    const vector to = go(s, slot, here, mul(vx, h), mul(vy, h), of);
     if (s->watch)
-        watch_motion(s, slot, (motion){to.x, to.y, vx, vy}, found);
+        watch_motion(s, slot, (motion){.x = to.x, .y = to.y, .vx = vx, .vy = vy}, found);
 }
 
 /// Forces that LANES slots' springs exert on the slots to the right and on the slots above those. Of those of the
@@ -170,10 +185,10 @@ MSPRINGI_INLINE size_t end_of(const mspringi_span *span) {
 // at SSE2, AVX2 and AVX-512, a turn, four springs of LANES slots, takes with all roots and divisions
 // first 1.07, 1.03 and 1.01 times as long, with direction after direction 1.07, 1.07 and 1.05, and with each vector
 // moved at once 1.13 and 1.12 at SSE2 and AVX2, later 1.05 at AVX-512.
-MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count, bool damped,
-                             bool forced) {
-    const mspringi_sweep copy = *sweep, *const s = &copy;          // of its own, so that no store can change it
-    const size_t part = (size_t)(damped ? 2 : 1) * MSPRINGI_WIDTH; // values of one direction
+MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count,
+                             mspringi_variant of) {
+    const mspringi_sweep copy = *sweep, *const s = &copy; // of its own, so that no store can change it
+    const size_t part = (size_t)(of & MSPRINGI_DAMPED ? 2 : 1) * MSPRINGI_WIDTH; // values of one direction
     handed_on before = {{zero(), zero()}, {zero(), zero()}};
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
         const size_t end_slot = end_of(span);
@@ -191,30 +206,30 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *s
             do {
                 const size_t up = (size_t)((int64_t)slot + span->up);
                 const size_t carry = (size_t)((int64_t)slot + span->carry);
-                const motion here = load_motion(s, slot, damped);
-                const motion next = load_motion_unaligned(s, slot + 1, damped);
-                const motion above = load_motion(s, up, damped);
-                const motion above_next = load_motion_unaligned(s, up + 1, damped);
-                const extent to_east = spring_extent(here, next);
-                const extent to_south_east = spring_extent(next, above); // the other way round, from its tip
-                const extent to_north = spring_extent(here, above);
+                const motion here = load_motion(s, slot, of);
+                const motion next = load_motion_unaligned(s, slot + 1, of);
+                const motion above = load_motion(s, up, of);
+                const motion above_next = load_motion_unaligned(s, up + 1, of);
+                const extent to_east = spring_extent(here, next, of);
+                const extent to_south_east = spring_extent(next, above, of); // the other way round, from its tip
+                const extent to_north = spring_extent(here, above, of);
                 const vec per_east = inverse_or_zero(to_east.square);
                 const vec per_south_east = inverse_or_zero(to_south_east.square);
                 const vec per_north = inverse_or_zero(to_north.square);
-                const extent to_north_east = spring_extent(here, above_next);
+                const extent to_north_east = spring_extent(here, above_next, of);
                 const vector east =
                     spring_force(to_east, per_east, here, next, rests + MSPRINGI_EAST * MSPRINGI_WIDTH,
-                                 springs + MSPRINGI_EAST * part, damped);
+                                 springs + MSPRINGI_EAST * part, of);
                 const vector south_east = spring_force(to_south_east, per_south_east, next, above,
                                                        rests + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH,
-                                                       springs + MSPRINGI_SOUTH_EAST * part, damped);
+                                                       springs + MSPRINGI_SOUTH_EAST * part, of);
                 const vec per_north_east = inverse_or_zero(to_north_east.square);
                 const vector north =
                     spring_force(to_north, per_north, here, above, rests + MSPRINGI_NORTH * MSPRINGI_WIDTH,
-                                 springs + MSPRINGI_NORTH * part, damped);
+                                 springs + MSPRINGI_NORTH * part, of);
                 const vector north_east = spring_force(to_north_east, per_north_east, here, above_next,
                                                        rests + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH,
-                                                       springs + MSPRINGI_NORTH_EAST * part, damped);
+                                                       springs + MSPRINGI_NORTH_EAST * part, of);
 
                 const vector right = {sub(east.x, south_east.x), sub(east.y, south_east.y)};
                 const vector known = {add(load(s->carry_x + carry), shift_in(before.right.x, right.x)),
@@ -228,7 +243,7 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *s
                 before.right = right;
                 before.diagonal = north_east;
                 if (LANES == MSPRINGI_WIDTH)
-                    move(s, slot, here, force, damped, forced);
+                    move(s, slot, here, force, of);
                 else
                     forces[(slot - first) / LANES] = force;
                 slot += LANES;
@@ -236,13 +251,28 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *s
                 rests += LANES;
             } while (LANES < MSPRINGI_WIDTH && slot < end);
             for (size_t moved = first; LANES < MSPRINGI_WIDTH && moved < slot; moved += LANES)
-                move(s, moved, load_motion(s, moved, damped), forces[(moved - first) / LANES], damped, forced);
+                move(s, moved, load_motion(s, moved, of), forces[(moved - first) / LANES], of);
         }
     }
 }
 
-MSPRINGI_INLINE void chain(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count, bool damped,
-                           bool forced) {
+// Outside of lattices precise kernels are to be small: they share one copy of move(), as of web_force(), and take
+// herds' springs one by one, which is 8 kB less in three levels.
+static MSPRINGI_NOINLINE void precise_move(const mspringi_sweep *s, size_t slot, const motion *here,
+                                           const vector *force, mspringi_variant of) {
+    move(s, slot, *here, *force, of | MSPRINGI_PRECISE);
+}
+
+MSPRINGI_INLINE void move_apart(const mspringi_sweep *s, size_t slot, motion here, vector force,
+                                mspringi_variant of) {
+    if (of & MSPRINGI_PRECISE)
+        precise_move(s, slot, &here, &force, of);
+    else
+        move(s, slot, here, force, of);
+}
+
+MSPRINGI_INLINE void chain(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count,
+                           mspringi_variant of) {
     const mspringi_sweep copy = *sweep, *const s = &copy;
     vector before = {zero(), zero()};
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
@@ -251,7 +281,8 @@ MSPRINGI_INLINE void chain(const mspringi_sweep *sweep, const mspringi_span *spa
         for (size_t slot = first_of(span); slot < end; slot += LANES) {
             const size_t carry = (size_t)((int64_t)slot + span->carry), lane = slot % MSPRINGI_WIDTH;
             const size_t block = slot / MSPRINGI_WIDTH - first_block + span->first_record;
-            const float *chain_record = s->chain_springs + block * (damped ? 3 : 2) * MSPRINGI_WIDTH + lane;
+            const float *chain_record =
+                s->chain_springs + block * (of & MSPRINGI_DAMPED ? 3 : 2) * MSPRINGI_WIDTH + lane;
             const float *rests =
                 is_chain ? chain_record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH
                          : s->rest_lengths +
@@ -259,18 +290,18 @@ MSPRINGI_INLINE void chain(const mspringi_sweep *sweep, const mspringi_span *spa
             const float *record = is_chain ? chain_record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH
                                            : s->lattice_springs +
                                                  (size_t)s->springs_of_block[block] * MSPRINGI_DIRECTIONS *
-                                                     (damped ? 2 : 1) * MSPRINGI_WIDTH +
+                                                     (of & MSPRINGI_DAMPED ? 2 : 1) * MSPRINGI_WIDTH +
                                                  lane;
-            const motion here = load_motion(s, slot, damped), next = load_motion_unaligned(s, slot + 1, damped);
-            const extent to_east = spring_extent(here, next);
+            const motion here = load_motion(s, slot, of), next = load_motion_unaligned(s, slot + 1, of);
+            const extent to_east = spring_extent(here, next, of);
             const vector east =
-                spring_force(to_east, inverse_or_zero(to_east.square), here, next, rests, record, damped);
+                spring_force(to_east, inverse_or_zero(to_east.square), here, next, rests, record, of);
             const vector force = {add(sub(load(s->carry_x + carry), east.x), shift_in(before.x, east.x)),
                                   add(sub(load(s->carry_y + carry), east.y), shift_in(before.y, east.y))};
             store(s->carry_x + carry, zero());
             store(s->carry_y + carry, zero());
             before = east;
-            move(s, slot, here, force, damped, forced);
+            move_apart(s, slot, here, force, of);
         }
     }
 }
@@ -282,21 +313,36 @@ typedef struct gap {
     vec change; ///< of the length, times the length
 } gap;
 
-MSPRINGI_INLINE gap gap_to(const mspringi_sweep *s, motion tip, const uint32_t *bases, bool damped) {
-    motion base;
-    load_packed(s->packed, bases, &base.x, &base.y, &base.vx, &base.vy);
-    gap to = {sub(base.x, tip.x), sub(base.y, tip.y), zero(), zero()};
-    to.square = add(mul(to.dx, to.dx), mul(to.dy, to.dy));
-    if (damped)
+// What a variant reads of LANES of the web's nodes.
+MSPRINGI_INLINE motion load_nodes(const mspringi_sweep *s, const uint32_t *nodes, mspringi_variant of) {
+    motion m;
+    if (!(of & MSPRINGI_PRECISE)) {
+        load_packed(s->packed, nodes, &m.x, &m.y, &m.vx, &m.vy);
+        m.low_x = m.low_y = zero();
+        return m;
+    }
+    vec low_x, low_y; // once more
+    load_packed(s->packed, nodes, &m.x, &m.y, &m.low_x, &m.low_y);
+    m.vx = m.vy = zero();
+    if (of & MSPRINGI_DAMPED)
+        load_packed(s->packed + mspringi_packed_half(s->web), nodes, &m.vx, &m.vy, &low_x, &low_y);
+    return m;
+}
+
+MSPRINGI_INLINE gap gap_to(const mspringi_sweep *s, motion tip, const uint32_t *bases, mspringi_variant of) {
+    const motion base = load_nodes(s, bases, of);
+    const extent from_tip = spring_extent(base, tip, of);
+    gap to = {from_tip.dx, from_tip.dy, from_tip.square, zero()};
+    if (of & MSPRINGI_DAMPED)
         to.change = add(mul(sub(base.vx, tip.vx), to.dx), mul(sub(base.vy, tip.vy), to.dy));
     return to;
 }
 
-MSPRINGI_INLINE vector add_pull(vector sum, gap to, const float *record, bool damped) {
+MSPRINGI_INLINE vector add_pull(vector sum, gap to, const float *record, mspringi_variant of) {
     const vec length = square_root(to.square);
     vec force = mul(sub(length, load(record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH)),
                     mul(length, load(record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH)));
-    if (damped)
+    if (of & MSPRINGI_DAMPED)
         force = add(force, mul(to.change, load(record + MSPRINGI_DAMPING * MSPRINGI_WIDTH)));
     force = mul(force, inverse_or_zero(to.square));
     sum.x = add(sum.x, mul(force, to.dx));
@@ -308,74 +354,86 @@ MSPRINGI_INLINE vector add_pull(vector sum, gap to, const float *record, bool da
 // neighbours are loaded before the forces of the one before are computed, so that a processor that looks ahead a
 // hundred operations or three has both under way: 7 to 11 % less time at SSE2, AVX2 and AVX-512.
 MSPRINGI_INLINE vector web_force(const mspringi_sweep *s, motion here, size_t group, size_t lane, uint32_t rungs,
-                                 bool damped) {
-    const size_t stride = (size_t)(damped ? 3 : 2) * MSPRINGI_WIDTH;
+                                 mspringi_variant of) {
+    const size_t stride = (size_t)(of & MSPRINGI_DAMPED ? 3 : 2) * MSPRINGI_WIDTH;
     const uint32_t first = s->web->first_rung[group] + rungs, end = s->web->first_rung[group + 1];
     const uint32_t *neighbour = s->web->neighbour + (size_t)first * MSPRINGI_WIDTH + lane;
     const float *record = s->web_springs + first * stride + lane;
     vector sum = {zero(), zero()};
     if (first == end)
         return sum;
-    gap next = gap_to(s, here, neighbour, damped);
+    gap next = gap_to(s, here, neighbour, of);
     for (uint32_t rung = first + 1; rung < end; ++rung) {
         const gap now = next;
         neighbour += MSPRINGI_WIDTH;
-        next = gap_to(s, here, neighbour, damped);
-        sum = add_pull(sum, now, record, damped);
+        next = gap_to(s, here, neighbour, of);
+        sum = add_pull(sum, now, record, of);
         record += stride;
     }
-    return add_pull(sum, next, record, damped);
+    return add_pull(sum, next, record, of);
+}
+
+// The same, once for all precise kernels of a level: in each of them it would take 3 kB. (With a look at every rung
+// whether there are dampers, a web takes 5 % more instructions.)
+static MSPRINGI_NOINLINE vector precise_web_force(const mspringi_sweep *s, const motion *here, size_t group,
+                                                  size_t lane, uint32_t rungs, mspringi_variant of) {
+    return of & MSPRINGI_DAMPED ? web_force(s, *here, group, lane, rungs, MSPRINGI_PRECISE | MSPRINGI_DAMPED)
+                                : web_force(s, *here, group, lane, rungs, MSPRINGI_PRECISE);
+}
+
+MSPRINGI_INLINE vector find_web_force(const mspringi_sweep *s, motion here, size_t group, size_t lane,
+                                      uint32_t rungs, mspringi_variant of) {
+    return of & MSPRINGI_PRECISE ? precise_web_force(s, &here, group, lane, rungs, of)
+                                 : web_force(s, here, group, lane, rungs, of);
 }
 
 // The forces of a group's upright rung on LANES of its nodes; those on the next group's are the opposite.
 MSPRINGI_INLINE vector upright_force(const mspringi_sweep *s, size_t slot, motion here, size_t group, size_t lane,
-                                     bool damped) {
+                                     mspringi_variant of) {
     const float *record =
-        s->web_springs + (size_t)s->web->first_rung[group] * (damped ? 3 : 2) * MSPRINGI_WIDTH + lane;
-    const motion above = load_motion(s, slot + MSPRINGI_WIDTH, damped);
-    const extent to = spring_extent(above, here);
+        s->web_springs + (size_t)s->web->first_rung[group] * (of & MSPRINGI_DAMPED ? 3 : 2) * MSPRINGI_WIDTH + lane;
+    const motion above = load_motion(s, slot + MSPRINGI_WIDTH, of);
+    const extent to = spring_extent(above, here, of);
     return spring_force(to, inverse_or_zero(to.square), above, here, record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH,
-                        record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, damped);
+                        record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
 }
 
 // A web that ropes stand in, one column of LANES nodes after the other.
-MSPRINGI_INLINE void standing_web(const mspringi_sweep *sweep, const mspringi_span *span, bool damped,
-                                  bool forced) {
+MSPRINGI_INLINE void standing_web(const mspringi_sweep *sweep, const mspringi_span *span, mspringi_variant of) {
     const mspringi_sweep copy = *sweep, *const s = &copy;
     const uint8_t *is_upright = s->web->is_upright;
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; lane += LANES) {
         vector handed = {zero(), zero()};
         size_t group = span->first_record;
         for (size_t slot = span->first_slot + lane; slot < end_of(span); slot += MSPRINGI_WIDTH, ++group) {
-            const motion here = load_motion(s, slot, damped);
-            vector force = web_force(s, here, group, lane, is_upright[group], damped);
+            const motion here = load_motion(s, slot, of);
+            vector force = find_web_force(s, here, group, lane, is_upright[group], of);
             force.x = add(force.x, handed.x);
             force.y = add(force.y, handed.y);
             handed.x = handed.y = zero();
             if (is_upright[group]) {
-                const vector up = upright_force(s, slot, here, group, lane, damped);
+                const vector up = upright_force(s, slot, here, group, lane, of);
                 force.x = add(force.x, up.x);
                 force.y = add(force.y, up.y);
                 handed.x = sub(zero(), up.x);
                 handed.y = sub(zero(), up.y);
             }
-            move(s, slot, here, force, damped, forced);
+            move_apart(s, slot, here, force, of);
         }
     }
 }
 
-MSPRINGI_INLINE void web(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, bool damped,
-                         bool forced) {
+MSPRINGI_INLINE void web(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, mspringi_variant of) {
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
         if (s->web->is_upright) {
-            standing_web(s, span, damped, forced);
+            standing_web(s, span, of);
             continue;
         }
         for (size_t slot = span->first_slot; slot < end_of(span); slot += LANES) {
             const size_t node = (size_t)span->first_record * MSPRINGI_WIDTH + (slot - span->first_slot);
-            const motion here = load_motion(s, slot, damped);
-            const vector force = web_force(s, here, node / MSPRINGI_WIDTH, node % MSPRINGI_WIDTH, 0, damped);
-            move(s, slot, here, force, damped, forced);
+            const motion here = load_motion(s, slot, of);
+            const vector force = find_web_force(s, here, node / MSPRINGI_WIDTH, node % MSPRINGI_WIDTH, 0, of);
+            move_apart(s, slot, here, force, of);
         }
     }
 }
@@ -384,15 +442,15 @@ MSPRINGI_INLINE void web(const mspringi_sweep *s, const mspringi_span *spans, ui
 // divisions come before any force, so that more of them are under way at a time than a processor would look ahead
 // for.
 MSPRINGI_INLINE void pull_herd(const mspringi_sweep *s, const mspringi_herd *herd, size_t first, size_t count,
-                               size_t lane, float *pull_x, float *pull_y, bool damped) {
-    const size_t stride = (size_t)(damped ? 3 : 2) * MSPRINGI_WIDTH;
+                               size_t lane, float *pull_x, float *pull_y, mspringi_variant of) {
+    const size_t stride = (size_t)(of & MSPRINGI_DAMPED ? 3 : 2) * MSPRINGI_WIDTH;
     motion above[HERD_BATCH], below[HERD_BATCH];
     extent to[HERD_BATCH];
     vec inverse[HERD_BATCH];
     for (size_t i = 0; i < count; ++i) {
-        above[i] = load_motion(s, herd->springs[first + i].above + lane, damped);
-        below[i] = load_motion(s, herd->springs[first + i].below + lane, damped);
-        to[i] = spring_extent(below[i], above[i]);
+        above[i] = load_motion(s, herd->springs[first + i].above + lane, of);
+        below[i] = load_motion(s, herd->springs[first + i].below + lane, of);
+        to[i] = spring_extent(below[i], above[i], of);
     }
     for (size_t i = 0; i < count; ++i)
         inverse[i] = inverse_or_zero(to[i].square);
@@ -400,13 +458,13 @@ MSPRINGI_INLINE void pull_herd(const mspringi_sweep *s, const mspringi_herd *her
         const float *record = s->web_springs + herd->springs[first + i].rung * stride + lane;
         const vector force =
             spring_force(to[i], inverse[i], below[i], above[i], record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH,
-                         record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, damped);
+                         record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
         store(pull_x + (first + i) * MSPRINGI_WIDTH + lane, force.x);
         store(pull_y + (first + i) * MSPRINGI_WIDTH + lane, force.y);
     }
 }
 
-MSPRINGI_INLINE void herd(const mspringi_sweep *sweep, const mspringi_herd *herd, bool damped, bool forced) {
+MSPRINGI_INLINE void herd(const mspringi_sweep *sweep, const mspringi_herd *herd, mspringi_variant of) {
     mspringi_sweep copy = *sweep;
     copy.keep = NULL; // herds are kept and looked at apart
     copy.watch = NULL;
@@ -415,10 +473,10 @@ MSPRINGI_INLINE void herd(const mspringi_sweep *sweep, const mspringi_herd *herd
     float *pull_x = s->carry_x, *pull_y = s->carry_y;
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; lane += LANES) {
         size_t first = 0;
-        for (; first + HERD_BATCH <= springs; first += HERD_BATCH)
-            pull_herd(s, herd, first, HERD_BATCH, lane, pull_x, pull_y, damped);
+        for (; !(of & MSPRINGI_PRECISE) && first + HERD_BATCH <= springs; first += HERD_BATCH)
+            pull_herd(s, herd, first, HERD_BATCH, lane, pull_x, pull_y, of);
         for (; first < springs; ++first)
-            pull_herd(s, herd, first, 1, lane, pull_x, pull_y, damped);
+            pull_herd(s, herd, first, 1, lane, pull_x, pull_y, of);
         size_t slot = herd->first_slot + lane;
         for (size_t i = 0; i < groups; ++i, slot += MSPRINGI_WIDTH) {
             const size_t above = herd->groups[i].above + lane, end = herd->groups[i].end_below + lane;
@@ -427,30 +485,30 @@ MSPRINGI_INLINE void herd(const mspringi_sweep *sweep, const mspringi_herd *herd
                 force.x = add(force.x, load(pull_x + below));
                 force.y = add(force.y, load(pull_y + below));
             }
-            move(s, slot, load_motion(s, slot, damped), force, damped, forced);
+            move_apart(s, slot, load_motion(s, slot, of), force, of);
         }
     }
 }
 
 MSPRINGI_INLINE void attached(const mspringi_sweep *s, uint32_t first_attached, uint32_t count, float *x, float *y,
-                              bool damped) {
+                              mspringi_variant of) {
     const size_t first = s->web->own_count;
     for (size_t i = first_attached; i < (size_t)first_attached + count; i += LANES) {
         uint32_t nodes[LANES];
-        motion here;
         for (size_t lane = 0; lane < LANES; ++lane)
             nodes[lane] = (uint32_t)(first + i + lane);
-        load_packed(s->packed, nodes, &here.x, &here.y, &here.vx, &here.vy);
-        const vector force = web_force(s, here, (first + i) / MSPRINGI_WIDTH, i % MSPRINGI_WIDTH, 0, damped);
+        const motion here = load_nodes(s, nodes, of);
+        const vector force = find_web_force(s, here, (first + i) / MSPRINGI_WIDTH, i % MSPRINGI_WIDTH, 0, of);
         store(x + i, force.x);
         store(y + i, force.y);
     }
 }
 
 static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count, float *packed) {
+    const mspringi_variant all = MSPRINGI_DAMPED;
     const size_t first = first_block * MSPRINGI_WIDTH;
     for (size_t slot = first; slot < first + block_count * MSPRINGI_WIDTH; slot += LANES) {
-        const motion m = load_motion(s, slot, true);
+        const motion m = load_motion(s, slot, all);
         store_packed(packed, m.x, m.y, m.vx, m.vy);
         packed += 4 * LANES;
     }
@@ -459,6 +517,7 @@ static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count
 // As so many of move(), at once: see mspringi_glide.
 MSPRINGI_INLINE void loose(const mspringi_sweep *s, const mspringi_span *span, const mspringi_glide *glide,
                            bool forced) {
+    const mspringi_variant all = MSPRINGI_DAMPED;
     const vec h = set(s->h), keep = set(glide->keep), gain = set(glide->gain), reach = set(glide->reach),
               fall = set(glide->fall), drift = set(glide->drift);
     const size_t end = end_of(span);
@@ -470,11 +529,11 @@ MSPRINGI_INLINE void loose(const mspringi_sweep *s, const mspringi_span *span, c
             change_x = add(mul(load(s->force_x + slot), inverse_mass_h), change_x);
             change_y = add(mul(load(s->force_y + slot), inverse_mass_h), change_y);
         }
-        const motion m = load_motion(s, slot, true);
+        const motion m = load_motion(s, slot, all);
         const vec way_x = add(mul(m.vx, reach), mul(change_x, fall));
         const vec way_y = add(mul(m.vy, reach), mul(change_y, fall));
-        go(s, slot, m.x, m.y, choose_positive(inverse_mass, way_x, mul(m.vx, drift)),
-           choose_positive(inverse_mass, way_y, mul(m.vy, drift)));
+        go(s, slot, m, choose_positive(inverse_mass, way_x, mul(m.vx, drift)),
+           choose_positive(inverse_mass, way_y, mul(m.vy, drift)), all);
         store(s->vx + slot, choose_positive(inverse_mass, add(mul(m.vx, keep), mul(change_x, gain)), m.vx));
         store(s->vy + slot, choose_positive(inverse_mass, add(mul(m.vy, keep), mul(change_y, gain)), m.vy));
     }

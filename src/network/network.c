@@ -49,7 +49,8 @@ static mspring_result check_def(const mspring_network_def *def, mspringi_message
     if (def->simd_level < MSPRING_SIMD_AUTO || def->simd_level > MSPRING_SIMD_WASM)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "simd_level is %d, which is no level",
                              (int)def->simd_level);
-    if (def->flags & ~(uint32_t)(MSPRING_NETWORK_RESERVE_DAMPING | MSPRING_NETWORK_RESERVE_RELATIVE))
+    if (def->flags &
+        ~(uint32_t)(MSPRING_NETWORK_RESERVE_DAMPING | MSPRING_NETWORK_RESERVE_RELATIVE | MSPRING_NETWORK_PRECISE))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "network flags %#x are unknown",
                              (unsigned)def->flags);
     result = mspringi_guard_check(def->guard, message);
@@ -220,6 +221,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     damped = damped || (def->flags & MSPRING_NETWORK_RESERVE_DAMPING);
     relative = relative || (def->flags & MSPRING_NETWORK_RESERVE_RELATIVE);
     network->parts = damped ? MSPRINGI_DAMPING + 1 : MSPRINGI_STIFFNESS + 1;
+    network->is_precise = def->flags & MSPRING_NETWORK_PRECISE;
     result = allocate(network);
     if (result == MSPRING_OK && relative)
         result = mspringi_fractions_create(&network->fractions, builder, reserve.spring_end, &network->memory,

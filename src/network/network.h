@@ -296,11 +296,12 @@ struct mspring_network {
     float *spring_mass;           ///< [particles] masses that relative springs go by, or NULL if these are mass
     bool is_scaled, is_reweighed; ///< scales, or masses, have been given that these two are needed for
     uint32_t parts;               ///< values per spring in the records: 2, or 3 with damping
+    bool is_precise;              ///< low words count in the lengths of springs
     mspringi_rests rests;         ///< of lattice_springs, whose records have stiffness and damping only
     float *lattice_springs, *chain_springs;
     mspringi_alike alike;
     float *web_springs;
-    float *packed;   ///< [2][nodes of the web][4] at the start of every other substep
+    float *packed;   ///< [2][nodes of the web][4] at the start of every other substep; see explicit/precise.h
     float *attached; ///< forces on the attached nodes, all x and then all y
     mspringi_fractions fractions;
     float relative_h;        ///< the substep that relative springs were derived for; 0: not yet

@@ -43,6 +43,7 @@ extern const mspringi_section mspringi_section_sleep;
 extern const mspringi_section mspringi_section_guard;
 
 // In solver.c.
+extern const mspringi_section mspringi_section_precision;
 extern const mspringi_section mspringi_section_implicit;
 
 // In springs.c.

@@ -149,3 +149,40 @@ static void implicit_load(mspring_network *network, const uint8_t *from, size_t 
 
 const mspringi_section mspringi_section_implicit = {"impl",        "implicit solver", false,        implicit_size,
                                                     implicit_save, implicit_check,    implicit_load};
+
+/* --------------------------------------------------------------------------------------------------- precision */
+
+// There if low words count in the lengths of springs, which is the network's own for good: 1.
+#define PRECISION_BYTES ((size_t)4)
+
+static size_t precision_size(const mspring_network *network) {
+    return network->is_precise ? PRECISION_BYTES : 0;
+}
+
+static void precision_save(const mspring_network *network, mspringi_writer *to) {
+    const uint32_t is_precise = network->is_precise;
+    mspringi_put(to, &is_precise, 1, sizeof is_precise);
+}
+
+static mspring_result precision_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_section *section = &mspringi_section_precision;
+    uint32_t is_precise = 0;
+    if (size == PRECISION_BYTES)
+        mspringi_get(from, &is_precise, 1, sizeof is_precise);
+    if (size > 0 && is_precise != 1)
+        return mspringi_section_fail(network, section, "it takes %zu bytes and is %u", size, (unsigned)is_precise);
+    if ((size > 0) == network->is_precise)
+        return MSPRING_OK;
+    return mspringi_section_fail(network, section,
+                                 "it was saved %s MSPRING_NETWORK_PRECISE, the network was created %s",
+                                 size > 0 ? "with" : "without", size > 0 ? "without" : "with it");
+}
+
+static void precision_load(mspring_network *network, const uint8_t *from, size_t size) {
+    (void)network;
+    (void)from;
+    (void)size;
+}
+
+const mspringi_section mspringi_section_precision = {"prec",         "precision",     false,         precision_size,
+                                                     precision_save, precision_check, precision_load};

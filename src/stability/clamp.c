@@ -45,8 +45,12 @@ static void take_turn(const mspring_network *network, double h, mspring_id sprin
     if (!(by > 0.0) || !(values.stiffness > 0.0f || values.damping > 0.0f))
         return;
     const double dvx = (double)s->vx[b] - (double)s->vx[a], dvy = (double)s->vy[b] - (double)s->vy[a];
-    const double dx = (double)s->x[b] - (double)s->x[a] + h * dvx;
-    const double dy = (double)s->y[b] - (double)s->y[a] + h * dvy;
+    double dx = (double)s->x[b] - (double)s->x[a] + h * dvx;
+    double dy = (double)s->y[b] - (double)s->y[a] + h * dvy;
+    if (network->is_precise) {
+        dx += (double)s->low_x[b] - (double)s->low_x[a];
+        dy += (double)s->low_y[b] - (double)s->low_y[a];
+    }
     const double length = sqrt(dx * dx + dy * dy);
     if (!(length > 0.0))
         return;

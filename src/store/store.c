@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/columns.h"
+#include "explicit/precise.h"
 #include "topology/spare.h"
 
 /// Elements of an array that its owner reserves.
