@@ -10,6 +10,7 @@
 typedef struct variant {
     const char *name;
     bool undamped;    ///< springs without dampers
+    bool precise;     ///< low words count in the lengths of springs
     uint32_t ropes;   ///< more of them
     bool absolute;    ///< the same springs in N/m and N s/m
     bool held_forces; ///< a force on every particle in every step
@@ -22,6 +23,7 @@ typedef struct variant {
 static const variant variants[] = {
     {.name = "plain again"},
     {.name = "no damper", .undamped = true},
+    {.name = "precise", .precise = true},
     {.name = "absolute stiffness", .absolute = true},
     {.name = "empty hook before the step", .hooked = true, .hook = MSPRING_PHASE_BEFORE_STEP},
     {.name = "empty hook before substeps", .hooked = true, .hook = MSPRING_PHASE_BEFORE_SUBSTEP},
@@ -84,7 +86,8 @@ static bool create_variant(const variant *kind, const bench_scene *subject, cons
         ok = bench_network_create(other.made.builder, level, workers, plain->substeps, out, error);
         bench_scene_free(&other);
     } else {
-        ok = bench_network_create(subject->made.builder, level, workers, plain->substeps, out, error);
+        ok = bench_network_create_with(subject->made.builder, level, workers, plain->substeps,
+                                       kind->precise ? MSPRING_NETWORK_PRECISE : 0, out, error);
     }
     if (!ok) {
         return false;

@@ -116,6 +116,11 @@ static bool run(void *self, uint32_t steps, scene_error *error) {
 
 bool bench_network_create(mspring_builder *builder, mspring_simd level, uint32_t workers, uint32_t substeps,
                           bench_network *out, scene_error *error) {
+    return bench_network_create_with(builder, level, workers, substeps, 0, out, error);
+}
+
+bool bench_network_create_with(mspring_builder *builder, mspring_simd level, uint32_t workers, uint32_t substeps,
+                               uint32_t flags, bench_network *out, scene_error *error) {
     mspring_network_def def;
     mspring_result result = mspring_network_def_init(&def, sizeof def);
     if (result != MSPRING_OK) {
@@ -125,6 +130,7 @@ bool bench_network_create(mspring_builder *builder, mspring_simd level, uint32_t
     def.simd_level = level;
     def.worker_count = workers;
     def.substeps = substeps;
+    def.flags = flags;
     def.global_damping = BENCH_GLOBAL_DAMPING;
 
     bench_network network = {.substeps = substeps};

@@ -34,6 +34,9 @@ typedef struct bench_network {
 /// it moves from the first step. On failure there is nothing to free.
 bool bench_network_create(mspring_builder *builder, mspring_simd level, uint32_t workers, uint32_t substeps,
                           bench_network *out, scene_error *error);
+/// The same with bits of MSPRING_NETWORK_.
+bool bench_network_create_with(mspring_builder *builder, mspring_simd level, uint32_t workers, uint32_t substeps,
+                               uint32_t flags, bench_network *out, scene_error *error);
 void bench_network_free(bench_network *network);
 
 /// From now on, give every particle a force before every step.
