@@ -152,11 +152,16 @@ static uint64_t hash_after_steps(const recipe *made, content of, manner how) {
     return hash;
 }
 
+#ifdef __SANITIZE_THREAD__
+enum { LOOKS_FOR_RACES = 1 };
+#else
+enum { LOOKS_FOR_RACES = 0 };
+#endif
+
 /// What has one thread would take most of the time that looking for data races takes.
 static void skip_where_races_are_looked_for(void) {
-#ifdef __SANITIZE_THREAD__
-    skip();
-#endif
+    if (LOOKS_FOR_RACES)
+        skip();
 }
 
 static void layers_give_the_bits_of_single_substeps(void **state) {
@@ -164,14 +169,18 @@ static void layers_give_the_bits_of_single_substeps(void **state) {
     static const content contents[] = {ONE_PIECE, WITH_CABLES, ON_A_RAFT, IN_RIGGING, ON_A_TIED_LATTICE};
     for (size_t i = 0; i < COUNT_OF(contents); i++) {
         const content of = contents[i];
+        const uint32_t most_workers = of == IN_RIGGING ? 1 : 3, step = of <= WITH_CABLES ? 1 : 2;
+        if (LOOKS_FOR_RACES && most_workers == 1) {
+            continue;
+        }
         recipe made = heap_of(of);
         manner how = {.one_by_one = true, .forced = of == ONE_PIECE, .on_floor = of == WITH_CABLES, .workers = 1};
-        const uint64_t expected = hash_after_steps(&made, of, how);
+        const uint64_t expected = LOOKS_FOR_RACES ? 0 : hash_after_steps(&made, of, how);
         how.one_by_one = false;
         how.has_layers = of <= ON_A_RAFT;
-        const uint32_t most_workers = of == IN_RIGGING ? 1 : 3, step = of <= WITH_CABLES ? 1 : 2;
-        for (how.workers = 1; how.workers <= most_workers; how.workers += step) {
-            assert_int_equal(hash_after_steps(&made, of, how), expected);
+        for (how.workers = LOOKS_FOR_RACES ? 3 : 1; how.workers <= most_workers; how.workers += step) {
+            const uint64_t hash = hash_after_steps(&made, of, how);
+            assert_true(LOOKS_FOR_RACES || hash == expected);
         }
         recipe_free(&made);
     }
