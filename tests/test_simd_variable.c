@@ -20,8 +20,12 @@ static mspring_simd level_with(const char *variable, mspring_simd setting) {
     return level;
 }
 
-/// What is left of level under a limit. One that the machine lacks is none.
+/// What is left of level under a limit. One that the machine lacks is none; scalar is the lowest that the build has.
 static mspring_simd lower(mspring_simd level, mspring_simd limit) {
+    const bool is_scalar = limit == MSPRING_SIMD_SCALAR;
+    while (is_scalar && !mspring_simd_available(limit)) {
+        limit++;
+    }
     return mspring_simd_available(limit) && limit != MSPRING_SIMD_AUTO && limit < level ? limit : level;
 }
 

@@ -452,7 +452,8 @@ typedef struct mspring_network_def {
     uint32_t struct_size;
     mspring_simd simd_level; ///< highest level to use; default MSPRING_SIMD_AUTO. A level that this machine lacks,
                              ///< such as one of another kind of CPU, is no limit, so one program may ask for
-                             ///< at most AVX2 on x86 and run on ARM, too. The environment variable MSPRING_SIMD
+                             ///< at most AVX2 on x86 and run on ARM, too. MSPRING_SIMD_SCALAR is the lowest level
+                             ///< that this build has. The environment variable MSPRING_SIMD
                              ///< (scalar, sse2, avx2, avx512, neon, wasm) can lower it further, never raise.
     float gravity_x;         ///< m/s^2, finite; default 0
     float gravity_y;         ///< m/s^2, finite; default -9.8
@@ -1861,8 +1862,9 @@ MSPRING_API uint32_t mspring_network_worker_count(const mspring_network *network
 /// @threads any   @allocates never   @since 0.1
 MSPRING_API mspring_simd mspring_simd_supported(void);
 
-/// Whether a network can be made to run at this level here: 1 for MSPRING_SIMD_AUTO, MSPRING_SIMD_SCALAR and the
-/// instruction sets that this CPU, operating system and build of the library offer, 0 for others.
+/// Whether a network can be made to run at this level here: 1 for MSPRING_SIMD_AUTO and the levels that this CPU,
+/// operating system and build of the library offer, 0 for others. On x86-64, 64-bit ARM and WebAssembly builds have
+/// MSPRING_SIMD_SCALAR only if they are made with it.
 /// @threads any   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_simd_available(mspring_simd level);
 

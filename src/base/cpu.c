@@ -21,6 +21,12 @@
 
 /* ------------------------------------------------------------------------------------------------ levels */
 
+#if defined(MSPRINGI_WITHOUT_SCALAR)
+#define HAS_SCALAR 0
+#else
+#define HAS_SCALAR 1
+#endif
+
 #if defined(MSPRINGI_X86)
 
 typedef struct cpuid_words {
@@ -80,7 +86,8 @@ mspring_simd mspring_simd_supported(void) {
 }
 
 uint32_t mspring_simd_available(mspring_simd level) {
-    return level >= MSPRING_SIMD_AUTO && level <= mspring_simd_supported();
+    return level >= MSPRING_SIMD_AUTO && level <= mspring_simd_supported() &&
+           (HAS_SCALAR || level != MSPRING_SIMD_SCALAR);
 }
 
 #else
@@ -98,7 +105,8 @@ mspring_simd mspring_simd_supported(void) {
 }
 
 uint32_t mspring_simd_available(mspring_simd level) {
-    return level == MSPRING_SIMD_AUTO || level == MSPRING_SIMD_SCALAR || level == mspring_simd_supported();
+    return level == MSPRING_SIMD_AUTO || (HAS_SCALAR && level == MSPRING_SIMD_SCALAR) ||
+           level == mspring_simd_supported();
 }
 
 #endif
@@ -108,15 +116,27 @@ const char *mspring_simd_name(mspring_simd level) {
     return level >= MSPRING_SIMD_AUTO && level <= MSPRING_SIMD_WASM ? names[level] : "unknown";
 }
 
+// The lowest level of this build. Who asks for scalar code gets that.
+static mspring_simd lowest(void) {
+    mspring_simd level = MSPRING_SIMD_SCALAR;
+    while (!mspring_simd_available(level))
+        ++level;
+    return level;
+}
+
 mspring_simd mspringi_cpu_choose(mspring_simd wanted) {
     mspring_simd level = mspring_simd_supported();
-    if (wanted != MSPRING_SIMD_AUTO && mspring_simd_available(wanted))
+    if (wanted == MSPRING_SIMD_SCALAR)
+        level = lowest();
+    else if (wanted != MSPRING_SIMD_AUTO && mspring_simd_available(wanted))
         level = wanted;
 #if defined(MSPRINGI_FREESTANDING)
     const char *name = NULL;
 #else
     const char *name = getenv("MSPRING_SIMD");
 #endif
+    if (name && strcmp(name, mspring_simd_name(MSPRING_SIMD_SCALAR)) == 0)
+        level = lowest();
     for (mspring_simd l = MSPRING_SIMD_SCALAR; name && l < level; ++l)
         if (mspring_simd_available(l) && strcmp(name, mspring_simd_name(l)) == 0)
             level = l;

@@ -21,6 +21,11 @@
 #define MSPRINGI_WASM 1
 #endif
 
+// Without better kernels there are the scalar ones.
+#if defined(MSPRINGI_WITHOUT_SCALAR) && !defined(MSPRINGI_X86) && !defined(MSPRINGI_AARCH64) && !defined(MSPRINGI_WASM)
+#undef MSPRINGI_WITHOUT_SCALAR
+#endif
+
 // Snapshots are little-endian everywhere.
 #if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
 #define MSPRINGI_BIG_ENDIAN_HOST 1

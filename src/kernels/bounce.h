@@ -16,6 +16,12 @@
 
 #include <math.h>
 
+#if defined(_MSC_VER)
+#define MSPRINGI_BOUNCE_INLINE static __forceinline
+#else
+#define MSPRINGI_BOUNCE_INLINE static inline __attribute__((always_inline))
+#endif
+
 /// A restitution that is as good as none: such particles land exactly, others are thrown back from where they are.
 #define MSPRINGI_LEAST_RESTITUTION 0.1
 
@@ -63,7 +69,7 @@ static inline double mspringi_braked_by(double along, double most) {
 
 /// Let a surface act on a particle that would come further below it than is allowed. Thrown back, it goes from
 /// where it is, if that is fast enough to leave; else it lands on the surface. Returns 1 if it acts, else 0.
-static inline double mspringi_turn_going(double nx, double ny, double offset, double friction, double h,
+MSPRINGI_BOUNCE_INLINE double mspringi_turn_going(double nx, double ny, double offset, double friction, double h,
                                          double allowed, mspringi_going *p) {
     const double distance = nx * p->x + ny * p->y + offset;
     const double across = nx * p->vx + ny * p->vy;

@@ -40,6 +40,7 @@ static inline mspringi_going going_at(const touching *b, size_t i) {
 static inline bool is_any(const double *flags) {
     uint64_t bits[MSPRINGI_WIDTH], all = 0;
     memcpy(bits, flags, sizeof bits);
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
         all |= bits[i];
     return all != 0;
@@ -49,6 +50,7 @@ static inline bool is_any(const double *flags) {
 static void find_held(const mspringi_ground *g, size_t slot, double *restrict is_held) {
     const float *restrict x = g->x + slot, *restrict y = g->y + slot, *restrict free_mass = g->free_mass + slot;
     const mspringi_bounds clear = g->clear;
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const bool is_clear =
             (x[i] >= clear.min_x) & (x[i] <= clear.max_x) & (y[i] >= clear.min_y) & (y[i] <= clear.max_y);
@@ -61,6 +63,7 @@ static void load_touching(const mspringi_ground *g, size_t slot, touching *restr
     const float *restrict vx = g->vx + slot, *restrict vy = g->vy + slot;
     const float *restrict from_vx = g->from_vx + slot, *restrict from_vy = g->from_vy + slot;
     const double h = g->h, restitution = g->restitution, per_length = g->per_length;
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const mspringi_going p =
             mspringi_going_from((double)x[i], (double)y[i], (double)vx[i], (double)vy[i], (double)from_vx[i],
@@ -83,6 +86,7 @@ static inline void touch_line(const mspringi_ground *g, const double *restrict a
                               const double *restrict all_ny, const double *restrict all_offset, size_t stride,
                               touching *restrict b) {
     const double h = g->h, friction = g->friction;
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         mspringi_going p = going_at(b, i);
         const double was_hit = b->is_hit[i];
@@ -103,6 +107,7 @@ static inline bool look_at_line(const mspringi_ground *g, const double *restrict
                                 const double *restrict is_held, touching *restrict b) {
     const double h = g->h;
     double any[MSPRINGI_WIDTH];
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const double nx = all_nx[i * stride], ny = all_ny[i * stride];
         const double distance = nx * b->x[i] + ny * b->y[i] + all_offset[i * stride];
@@ -118,18 +123,23 @@ static inline bool look_at_line(const mspringi_ground *g, const double *restrict
 // The numbers of the parts that are below so many x.
 static inline void find_parts(const mspringi_ground *g, const double *restrict x, double *restrict numbers) {
     const double left = g->left, spacing = g->spacing, last = (double)(g->height_count - 1);
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
         numbers[i] = (x[i] - left) / spacing;
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
         numbers[i] = numbers[i] >= 0.0 ? numbers[i] : -1.0;
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
         numbers[i] = numbers[i] < last ? numbers[i] : last;
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
         numbers[i] = (double)(int32_t)numbers[i];
 }
 
 static void find_lines(const mspringi_ground *g, parts_below *parts) {
     const int32_t last = (int32_t)g->height_count - 1;
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const int32_t part = (int32_t)parts->number[i], knot = part < 0 ? 0 : part;
         const double x = g->left + (double)knot * g->spacing, y = g->bottom + (double)g->heights[knot];
@@ -145,12 +155,14 @@ static void leave_moved(const mspringi_ground *g, const parts_below *parts, cons
                         double *restrict is_left) {
     double numbers[MSPRINGI_WIDTH];
     find_parts(g, x, numbers);
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
         is_left[i] += numbers[i] != parts->number[i] ? 1.0 : 0.0;
 }
 
 static inline void find_ends(const mspringi_ground *g, const touching *restrict b, double *restrict x) {
     const double h = g->h;
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
         x[i] = b->x[i] + h * b->vx[i];
 }
@@ -183,6 +195,7 @@ static void touch_heights(const mspringi_ground *g, const parts_below *parts, co
 static void leave_beyond(const double *restrict all_nx, const double *restrict all_ny,
                          const double *restrict all_offset, size_t stride, const double *restrict x,
                          const double *restrict y, const double *restrict slop, double *restrict is_left) {
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const double distance = all_nx[i * stride] * x[i] + all_ny[i * stride] * y[i] + all_offset[i * stride];
         is_left[i] += distance < -0.25 * slop[i] ? 1.0 : 0.0;
@@ -199,6 +212,7 @@ static void leave_stuck(const mspringi_ground *g, const parts_below *parts, cons
 
 // Leave those that are faster than before.
 static void leave_faster(touching *restrict b) {
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const mspringi_going p = going_at(b, i);
         b->is_left[i] += mspringi_going_square(&p) > b->square[i] * MSPRINGI_NO_LARGER ? b->is_hit[i] : 0.0;
@@ -206,6 +220,7 @@ static void leave_faster(touching *restrict b) {
 }
 
 static inline void choose(const float *restrict moved, const float *restrict from, float *restrict to) {
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
         to[i] = moved[i] > 0.0f ? from[i] : to[i];
 }
@@ -223,6 +238,7 @@ static void store_block(const mspringi_ground *g, size_t slot, const block_end *
     const float *restrict inverse_mass = g->inverse_mass + slot;
     float to_x[MSPRINGI_WIDTH], to_y[MSPRINGI_WIDTH], to_vx[MSPRINGI_WIDTH], to_vy[MSPRINGI_WIDTH];
     float has_x[MSPRINGI_WIDTH], has_y[MSPRINGI_WIDTH];
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const float mass = 1.0f / inverse_mass[i];
         to_x[i] = (float)b->x[i];
@@ -245,8 +261,10 @@ static void store_block(const mspringi_ground *g, size_t slot, const block_end *
 static uint32_t find_moved(const double *restrict is_held, const double *restrict is_hit,
                            const double *restrict is_left, float *restrict is_moved) {
     uint32_t left = 0;
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
         is_moved[i] = ((is_held[i] > 0.0) & (is_hit[i] > 0.0) & (is_left[i] == 0.0)) ? 1.0f : 0.0f;
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
         left |= ((is_left[i] > 0.0) & (is_held[i] > 0.0)) ? 1u << i : 0u;
     return left;
@@ -254,6 +272,7 @@ static uint32_t find_moved(const double *restrict is_held, const double *restric
 
 static void find_end(const mspringi_ground *g, const touching *restrict b, block_end *restrict end) {
     const double h = g->h;
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         end->x[i] = b->x[i] + h * b->vx[i];
         end->y[i] = b->y[i] + h * b->vy[i];

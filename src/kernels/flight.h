@@ -26,6 +26,7 @@ static void load_flying(const mspringi_ground *g, size_t slot, flying *restrict 
     const float *restrict vx = g->vx + slot, *restrict vy = g->vy + slot;
     const float *restrict from_vx = g->from_vx + slot, *restrict from_vy = g->from_vy + slot;
     const double h = g->h;
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const mspringi_flyer p = mspringi_flyer_from((double)x[i], (double)y[i], (double)vx[i], (double)vy[i],
                                                      (double)from_vx[i], (double)from_vy[i], h);
@@ -43,6 +44,7 @@ static void load_flying(const mspringi_ground *g, size_t slot, flying *restrict 
 }
 
 static inline void find_flight_ends(const flying *restrict b, double *restrict x, double *restrict y) {
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         x[i] = b->x[i] + b->left[i] * (b->wx[i] + 0.5 * b->left[i] * b->ax[i]);
         y[i] = b->y[i] + b->left[i] * (b->wy[i] + 0.5 * b->left[i] * b->ay[i]);
@@ -53,6 +55,7 @@ static inline void find_flight_ends(const flying *restrict b, double *restrict x
 static inline bool is_met(const double *restrict all_nx, const double *restrict all_ny,
                           const double *restrict all_offset, size_t stride, flying *restrict b) {
     double any[MSPRINGI_WIDTH];
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const double nx = all_nx[i * stride], ny = all_ny[i * stride], left = b->left[i];
         const double distance = nx * b->x[i] + ny * b->y[i] + all_offset[i * stride];
@@ -67,6 +70,7 @@ static inline bool is_met(const double *restrict all_nx, const double *restrict 
 // Find which particles meet a straight surface sooner than those before.
 static inline void meet_line(const double *restrict all_nx, const double *restrict all_ny,
                              const double *restrict all_offset, size_t stride, flying *restrict b) {
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const double nx = all_nx[i * stride], ny = all_ny[i * stride], offset = all_offset[i * stride];
         const mspringi_flyer p = flyer_at(b, i);
@@ -83,6 +87,7 @@ static inline void meet_line(const double *restrict all_nx, const double *restri
 static inline bool turn_flying(const mspringi_turning *how, bool is_last, flying *restrict b) {
     const mspringi_turning by = *how;
     double any[MSPRINGI_WIDTH];
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const mspringi_flyer before = flyer_at(b, i);
         mspringi_flyer p = before;
@@ -109,6 +114,7 @@ static bool fly_on(const mspringi_ground *g, const parts_below *parts, const msp
                    flying *b) {
     const bool is_only_one = g->line_count + (g->height_count > 0) == 1;
     bool any = false;
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         b->time[i] = INFINITY;
         b->nx[i] = b->ny[i] = b->offset[i] = 0.0;
@@ -144,6 +150,7 @@ static void begin_flown(const mspringi_ground *g, flying *b, parts_below *parts)
 
 static void find_flight_end(const flying *restrict b, double lag, block_end *restrict end) {
     find_flight_ends(b, end->x, end->y);
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const double since = b->left[i] - lag;
         end->vx[i] = b->wx[i] + since * b->ax[i];

@@ -2,6 +2,8 @@
 /// order.
 #include "kernels.h"
 
+#if !defined(MSPRINGI_WITHOUT_SCALAR)
+
 #include <math.h>
 #include <string.h>
 
@@ -355,3 +357,5 @@ static inline void loose(const mspringi_sweep *s, const mspringi_span *span, con
 #define MSPRINGI_TABLE mspringi_kernels_scalar
 #define MSPRINGI_LEVEL MSPRING_SIMD_SCALAR
 #include "table.h"
+
+#endif

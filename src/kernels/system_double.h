@@ -17,6 +17,7 @@ static inline void add_lanes(double *restrict to, const double *restrict values,
 static void add_edges(const mspringi_edge_block *block, const float *restrict factors,
                       const mspringi_blocks_double *edges, const mspringi_blocks_double *nodes) {
     double xx[MSPRINGI_WIDTH], xy[MSPRINGI_WIDTH], yy[MSPRINGI_WIDTH];
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const double pull_x = (double)factors[MSPRINGI_PULL_X * MSPRINGI_WIDTH + i];
         const double pull_y = (double)factors[MSPRINGI_PULL_Y * MSPRINGI_WIDTH + i];
@@ -25,6 +26,7 @@ static void add_edges(const mspringi_edge_block *block, const float *restrict fa
         xy[i] = pull_x * pull_y;
         yy[i] = swing + pull_y * pull_y;
     }
+    MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         edges->xx[i] = -xx[i];
         edges->xy[i] = -xy[i];

@@ -79,7 +79,7 @@ add_elastic_lanes(const float *restrict ax, const float *restrict ay, const floa
 }
 
 // The springs of a row's block.
-static inline void put_elastic(const mspringi_motion *m, size_t slot, size_t up, size_t directions,
+MSPRINGI_PART_INLINE void put_elastic(const mspringi_motion *m, size_t slot, size_t up, size_t directions,
                                const float *rest_lengths, const float *stiffnesses, size_t stride,
                                mspringi_elastic *to) {
     const size_t bases[MSPRINGI_DIRECTIONS] = {

@@ -114,7 +114,7 @@ static void advance(const mspringi_system *s, const mspringi_iterate *n, float a
 /// Vectors in a part.
 #define PART_VECTORS (MSPRINGI_PART / PART_LANES)
 
-static double sum_part(const part_vec *sums) {
+MSPRINGI_PART_INLINE double sum_part(const part_vec *sums) {
     _Alignas(64) float lanes[MSPRINGI_PART];
     for (size_t v = 0; v < PART_VECTORS; ++v)
         part_store(lanes + v * PART_LANES, sums[v]);
