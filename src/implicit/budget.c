@@ -85,8 +85,9 @@ static centre centre_of(const account *a) {
                     kinetic > 0.0 ? kinetic : 0.0};
 }
 
+// In the frame of its pins.
 static double flight_energy(const account *a, const centre *c) {
-    const double vx = a->origin[2] + c->vx, vy = a->origin[3] + c->vy;
+    const double vx = a->origin[2] + c->vx - a->frame_x, vy = a->origin[3] + c->vy - a->frame_y;
     return 0.5 * c->mass * (vx * vx + vy * vy);
 }
 
@@ -96,17 +97,26 @@ static void begin_account(const mspring_network *network, account *a) {
         a->origin[i] = (double)state[i][a->first_slot];
     a->is_asleep = mspringi_slot_is_asleep(network, a->first_slot);
     a->is_driven = a->is_stopped = false;
+    a->frame_x = a->frame_y = 0.0;
+    a->frame_pin = MSPRING_NONE;
 }
 
-static void find_driven(const mspring_network *network, budget_of *budget) {
+// Pins that all move alike are at rest in their own frame, where they do no work. Of others the force tells.
+static void find_frames(const mspring_network *network, budget_of *budget) {
     const mspringi_state *s = &network->state;
     budget->is_driven = false;
     for (uint32_t i = 0; i < budget->pin_count; ++i) {
         const uint32_t slot = budget->pins[i];
-        if (s->vx[slot] == 0.0f && s->vy[slot] == 0.0f)
+        account *a = &budget->accounts[budget->of_slot[slot]];
+        a->frame_pin = a->frame_pin == MSPRING_NONE ? slot : a->frame_pin;
+        a->is_driven |= s->vx[slot] != s->vx[a->frame_pin] || s->vy[slot] != s->vy[a->frame_pin];
+        budget->is_driven |= a->is_driven;
+    }
+    for (account *a = budget->accounts; a < budget->accounts + budget->count; ++a) {
+        if (a->frame_pin == MSPRING_NONE || a->is_driven)
             continue;
-        budget->accounts[budget->of_slot[slot]].is_driven = true;
-        budget->is_driven = true;
+        a->frame_x = (double)s->vx[a->frame_pin];
+        a->frame_y = (double)s->vy[a->frame_pin];
     }
 }
 
@@ -127,11 +137,11 @@ static bool knows_elastic(const mspring_network *network) {
            memcmp(now, budget->seen, sizeof now) == 0;
 }
 
-void mspringi_budget_open(mspring_network *network, double h) {
+void mspringi_budget_open(mspring_network *network) {
     budget_of *budget = &network->implicit->budget;
     for (uint32_t i = 0; i < budget->count; ++i)
         begin_account(network, &budget->accounts[i]);
-    find_driven(network, budget);
+    find_frames(network, budget);
     mspringi_measuring all = {
         .network = network, .motion = motion_of(network), .knows_elastic = knows_elastic(network)};
     budget->knows_elastic = false;
@@ -145,7 +155,6 @@ void mspringi_budget_open(mspring_network *network, double h) {
         a->spin = c.spin;
         a->internal = c.kinetic + a->elastic;
         a->flight = flight_energy(a, &c);
-        a->turned = c.inertia > 0.0 ? 0.5 * h * c.spin / c.inertia : 0.0;
         a->share = 1.0;
     }
 }
@@ -230,51 +239,34 @@ static void judge_free(const mspring_network *network, account *a, const centre 
                         .had = had,
                         .has = a->elastic + c->kinetic,
                         .rounding = rounding_of(a, a->internal)});
+    a->turned = c->inertia > 0.0 ? 0.25 * o->h * (a->spin + spin) / c->inertia : 0.0;
     a->is_free = true;
     aim(a, c, vx - a->origin[2], vy - a->origin[3], turn);
     fly(a, c, 0.5 * o->h * (a->origin[2] + a->vx + vx), 0.5 * o->h * (a->origin[3] + a->vy + vy));
 }
 
 static void judge_held(const mspring_network *network, account *a, const centre *c, double h) {
-    const double before = a->internal + a->flight;
-    const double gx = (double)network->gravity_x, gy = (double)network->gravity_y, mass = c->mass;
-    const double work = mass * (gx * (c->x - a->x) + gy * (c->y - a->y)) + a->sums[MSPRINGI_EFFECT_WORK] + a->given;
+    const double before = a->internal + a->flight, *s = a->sums, mass = c->mass;
+    // In the frame of the pins global damping is a wind.
+    const double wind = (double)network->global_damping, way_x = h * a->frame_x, way_y = h * a->frame_y;
+    const double gx = (double)network->gravity_x - wind * a->frame_x;
+    const double gy = (double)network->gravity_y - wind * a->frame_y;
+    const double work = mass * (gx * (c->x - a->x - way_x) + gy * (c->y - a->y - way_y)) +
+                        (s[MSPRINGI_EFFECT_WORK] - (s[MSPRINGI_EFFECT_X] * way_x + s[MSPRINGI_EFFECT_Y] * way_y)) +
+                        a->given;
     const double radius = sqrt(c->inertia / mass), motion = c->kinetic + flight_energy(a, c);
     const double x = fabs(a->origin[0] + c->x) + radius, y = fabs(a->origin[1] + c->y) + radius;
-    const double places = a->sums[MSPRINGI_EFFECT_TOUCH] > 0.0 ? mass * (fabs(gx) * x + fabs(gy) * y) : 0.0;
+    const double places = s[MSPRINGI_EFFECT_TOUCH] > 0.0 ? mass * (fabs(gx) * x + fabs(gy) * y) : 0.0;
     judge(a, &(balance){.room = (before + work) - a->elastic,
                         .motion = motion,
                         .had = before + work,
                         .has = a->elastic + motion,
                         .fall = 0.5 * mass * (gx * gx + gy * gy) * (h * h),
                         .rounding = rounding_of(a, before) + PLACE_ROUNDING * places});
-    a->add_x = a->add_y = a->turn = 0.0;
+    a->add_x = (1.0 - a->keep) * a->frame_x;
+    a->add_y = (1.0 - a->keep) * a->frame_y;
+    a->turn = 0.0;
 }
-
-// Returns whether any component has gained much; exceeds: whether the springs of any have too much.
-static bool judge_all(const mspring_network *network, const outside *o, bool *exceeds) {
-    budget_of *budget = &network->implicit->budget;
-    bool gains = false;
-    *exceeds = false;
-    for (account *a = budget->accounts; a < budget->accounts + budget->count; ++a) {
-        const centre c = centre_of(a);
-        a->exceeds = a->gains = false;
-        a->keep = 1.0;
-        a->add_x = a->add_y = a->turn = a->shift_x = a->shift_y = 0.0;
-        a->is_free = false;
-        if (a->is_asleep || !(c.mass > 0.0))
-            continue;
-        if (a->is_pinned || a->is_stopped || a->sums[MSPRINGI_EFFECT_TOUCH] > 0.0)
-            judge_held(network, a, &c, o->h);
-        else
-            judge_free(network, a, &c, o);
-        *exceeds |= a->exceeds;
-        gains |= a->gains;
-    }
-    return gains;
-}
-
-/* -------------------------------------------------------------------------------------------------- the outcome */
 
 // Whether a place is below the floor, which the substep has left everything above. By no more than the rounding of
 // positions: nothing gives a fragment at rest the energy to be lifted. (By the floor's own tolerance two particles
@@ -289,8 +281,13 @@ static bool is_below_floor(const mspring_network *network, double x, double y) {
     return !is_clear && mspringi_floor_distance(floor, x, y) < -SUNK * mspringi_floor_slop(x, y);
 }
 
-// Let components stay where the substep has led them that would be shifted into the floor.
-static void stay_above_floor(mspring_network *network) {
+static void stop(account *a, size_t slot) {
+    a->is_stopped = true;
+    a->stopped_at = (uint32_t)slot;
+}
+
+// Components that would be shifted into the floor stay where the substep has led them: the floor holds them, too.
+static void find_in_the_way(const mspring_network *network) {
     const budget_of *budget = &network->implicit->budget;
     const mspringi_motion m = motion_of(network);
     for (size_t slot = 0; network->floor && slot < mspringi_slot_count(network); ++slot) {
@@ -300,9 +297,43 @@ static void stay_above_floor(mspring_network *network) {
         if ((a->shift_x != 0.0 || a->shift_y != 0.0) &&
             is_below_floor(network, (double)m.x[slot] + (double)m.low_x[slot] + a->shift_x,
                            (double)m.y[slot] + (double)m.low_y[slot] + a->shift_y))
-            a->shift_x = a->shift_y = 0.0;
+            stop(a, slot);
     }
 }
+
+static void judge_account(const mspring_network *network, account *a, const outside *o) {
+    const centre c = centre_of(a);
+    a->exceeds = a->gains = false;
+    a->keep = 1.0;
+    a->add_x = a->add_y = a->turn = a->shift_x = a->shift_y = 0.0;
+    a->is_free = false;
+    if (a->is_asleep || !(c.mass > 0.0))
+        return;
+    if (a->is_pinned || a->is_stopped || a->sums[MSPRINGI_EFFECT_TOUCH] > 0.0)
+        judge_held(network, a, &c, o->h);
+    else
+        judge_free(network, a, &c, o);
+}
+
+// Returns whether any component has gained much; exceeds: whether the springs of any have too much.
+static bool judge_all(const mspring_network *network, const outside *o, bool *exceeds) {
+    budget_of *budget = &network->implicit->budget;
+    account *const end = budget->accounts + budget->count;
+    bool gains = false;
+    *exceeds = false;
+    for (account *a = budget->accounts; a < end; ++a)
+        judge_account(network, a, o);
+    find_in_the_way(network);
+    for (account *a = budget->accounts; a < end; ++a) {
+        if (a->is_free && a->is_stopped)
+            judge_account(network, a, o);
+        *exceeds |= a->exceeds;
+        gains |= a->gains;
+    }
+    return gains;
+}
+
+/* -------------------------------------------------------------------------------------------------- the outcome */
 
 static void shift_slots(mspring_network *network, const account *a, size_t first, size_t end) {
     const mspringi_motion m = motion_of(network);
@@ -373,10 +404,16 @@ static void keep_ends(const mspring_network *network) {
 }
 
 // Where a slot would be if its component had gone none of its way: of a free one, as the rigid body that it was,
-// turned on. (The rotation by twice the angle whose tangent is t is of length 1, whatever t.)
-static void hold_place(const account *a, const centre *c, double *x, double *y) {
-    if (!a->is_free || a->is_stopped)
+// turned on, and of a pinned one along with its pins. (The rotation by twice the angle whose tangent is t is of
+// length 1, whatever t.)
+static void hold_place(const account *a, const centre *c, double h, double *x, double *y) {
+    if (a->is_stopped)
         return;
+    if (!a->is_free) {
+        *x += h * a->frame_x;
+        *y += h * a->frame_y;
+        return;
+    }
     const double t = a->turned, scale = 1.0 / (1.0 + t * t), cosine = (1.0 - t * t) * scale, sine = 2.0 * t * scale;
     const double rx = (*x - a->origin[0]) - a->x, ry = (*y - a->origin[1]) - a->y;
     *x = a->origin[0] + c->x + (cosine * rx - sine * ry);
@@ -384,8 +421,8 @@ static void hold_place(const account *a, const centre *c, double *x, double *y) 
 }
 
 // Where a slot is after its component's share of the way. Returns false if it has no part in going back.
-static bool place_back(const mspring_network *network, const mspringi_motion *before, size_t slot, double *x,
-                       double *y) {
+static bool place_back(const mspring_network *network, const mspringi_motion *before, double h, size_t slot,
+                       double *x, double *y) {
     const mspringi_implicit *n = network->implicit;
     const budget_of *budget = &n->budget;
     if (budget->of_slot[slot] == MSPRINGI_NO_ACCOUNT || !(network->inverse_mass[slot] > 0.0f))
@@ -396,7 +433,7 @@ static bool place_back(const mspring_network *network, const mspringi_motion *be
     const centre c = centre_of(a);
     *x = (double)before->x[slot] + (double)before->low_x[slot];
     *y = (double)before->y[slot] + (double)before->low_y[slot];
-    hold_place(a, &c, x, y);
+    hold_place(a, &c, h, x, y);
     *x += a->share * (n->x[slot] - *x);
     *y += a->share * (n->y[slot] - *y);
     return true;
@@ -406,7 +443,7 @@ static bool place_back(const mspring_network *network, const mspringi_motion *be
 // of stops where it was. What the floor holds then rests, and forces of before would push it on: the next substep
 // is of implicit Euler. (A body that spins keeps its history, as do all others in the network: a fragment of two
 // particles that spun had the vibration of a bar far away damped.)
-static void step_back(mspring_network *network, const mspringi_motion *before, bool is_last) {
+static void step_back(mspring_network *network, const mspringi_motion *before, double h, bool is_last) {
     mspringi_implicit *n = network->implicit;
     budget_of *budget = &n->budget;
     const size_t slots = mspringi_slot_count(network);
@@ -419,17 +456,88 @@ static void step_back(mspring_network *network, const mspringi_motion *before, b
             n->history.restarts = 1;
     }
     for (size_t slot = 0; network->floor && slot < slots; ++slot) {
-        if (!place_back(network, before, slot, &x, &y) || !is_below_floor(network, x, y))
+        if (!place_back(network, before, h, slot, &x, &y) || !is_below_floor(network, x, y))
             continue;
         account *a = &budget->accounts[budget->of_slot[slot]];
-        a->is_stopped = true;
+        stop(a, slot);
         a->share = 0.0;
     }
     for (size_t slot = 0; slot < slots; ++slot) {
-        if (!place_back(network, before, slot, &x, &y))
+        if (!place_back(network, before, h, slot, &x, &y))
             continue;
         mspringi_set_x(&network->state, slot, x);
         mspringi_set_y(&network->state, slot, y);
+    }
+}
+
+// What the floor has given a component in a substep, from what its momentum has changed by.
+static void find_owed(const mspring_network *network, account *a, const outside *o) {
+    const centre c = centre_of(a);
+    const double fx = a->sums[MSPRINGI_EFFECT_X], fy = a->sums[MSPRINGI_EFFECT_Y];
+    const double vx = a->keep * (a->origin[2] + c.vx) + a->add_x - o->left * (a->origin[2] + a->vx);
+    const double vy = a->keep * (a->origin[3] + c.vy) + a->add_y - o->left * (a->origin[3] + a->vy);
+    a->owed_x = c.mass * vx - o->seconds * (c.mass * (double)network->gravity_x + fx);
+    a->owed_y = c.mass * vy - o->seconds * (c.mass * (double)network->gravity_y + fy);
+    a->bearers = 0;
+    a->borne_at = a->is_stopped ? a->stopped_at : MSPRING_NONE;
+}
+
+// The account of a contact that has held its particle, and that no pin holds. NULL: none.
+static account *account_of(const mspring_network *network, const mspringi_contact *contact) {
+    const budget_of *budget = &network->implicit->budget;
+    const uint32_t number = budget->of_slot[contact->slot];
+    if (!contact->is_active || number == MSPRINGI_NO_ACCOUNT || budget->accounts[number].is_pinned)
+        return NULL;
+    return &budget->accounts[number];
+}
+
+static void count_borne(const mspring_network *network) {
+    const budget_of *budget = &network->implicit->budget;
+    const mspringi_floor *floor = network->floor;
+    for (uint32_t i = 0; i < floor->contact_count; ++i) {
+        account *a = account_of(network, &floor->contacts[i]);
+        if (a)
+            a->bearers++;
+    }
+    for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
+        const double x = (double)floor->impulse.x[slot] - (double)budget->impulse.x[slot];
+        const double y = (double)floor->impulse.y[slot] - (double)budget->impulse.y[slot];
+        if (budget->of_slot[slot] == MSPRINGI_NO_ACCOUNT || (x == 0.0 && y == 0.0))
+            continue;
+        account *a = &budget->accounts[budget->of_slot[slot]];
+        a->owed_x -= x;
+        a->owed_y -= y;
+        a->borne_at = (uint32_t)slot;
+    }
+}
+
+// What held a component in the linear system shows in how little it gave way, which rounding hides in stiff
+// networks. (Particles of 8 kg at 1e10 N/m: impulses of 0 or 48,000 N s where 4 were due.) So contacts share what
+// their component's momentum lacks.
+static void balance_floor(const mspring_network *network, const outside *o) {
+    const budget_of *budget = &network->implicit->budget;
+    const mspringi_floor *floor = network->floor;
+    account *const end = budget->accounts + budget->count;
+    bool any = false;
+    for (account *a = budget->accounts; a < end; ++a) {
+        find_owed(network, a, o);
+        any |= a->is_stopped || a->sums[MSPRINGI_EFFECT_TOUCH] > 0.0;
+    }
+    if (!any)
+        return;
+    count_borne(network);
+    for (uint32_t i = 0; i < floor->contact_count; ++i) {
+        const account *a = account_of(network, &floor->contacts[i]);
+        if (!a)
+            continue;
+        floor->impulse.x[floor->contacts[i].slot] += (float)(a->owed_x / (double)a->bearers);
+        floor->impulse.y[floor->contacts[i].slot] += (float)(a->owed_y / (double)a->bearers);
+    }
+    for (const account *a = budget->accounts; a < end; ++a) {
+        if (a->is_pinned || a->bearers > 0 || a->borne_at == MSPRING_NONE)
+            continue;
+        floor->impulse.x[a->borne_at] += (float)a->owed_x;
+        floor->impulse.y[a->borne_at] += (float)a->owed_y;
     }
 }
 
@@ -462,10 +570,11 @@ bool mspringi_budget_close(mspring_network *network, float h, mspringi_field bas
             break;
         if (step == 0)
             keep_ends(network);
-        step_back(network, &all.before, step == MOST_STEPS_BACK);
+        step_back(network, &all.before, o.h, step == MOST_STEPS_BACK);
     }
-    stay_above_floor(network);
     turn_all(network);
+    if (network->floor)
+        balance_floor(network, &o);
     note_elastic(network);
     return true;
 }

@@ -9,13 +9,13 @@
 ///     free: momentum and angular momentum about its mass centre are what they were, with what forces from outside
 ///     and global damping have added. Where the substep has changed them otherwise, the velocities get a rigid
 ///     motion that makes up for it.
-///   - Its room is the energy from before the substep, with the work of gravity, forces and moving pins, less what
-///   its
-///     springs have now and less what its momenta demand. Work of the floor does not count: it can only take
-///     energy. A free component is seen from its mass centre, where gravity does no work.
+///   - Its room is the energy from before the substep, with the work of gravity and forces, less what its springs
+///     have now and less what its momenta demand. Work of the floor does not count: it can only take energy. A free
+///     component is seen from its mass centre, where gravity does no work, and one whose pins all move alike from
+///     these, where they do none. Of other pins the forces on them tell their work, by more rather than less.
+///   - What the floor has given a component that no pin holds is what its momentum lacks, and counts as impulse.
 ///   - What velocities have beyond that room is scaled out of them, about the rigid motion of a free component,
-///   about
-///     rest in a held one. Momenta stay.
+///     about its pins or rest in a held one. Momenta stay.
 ///   - If springs alone have a little more than the room, the component goes back towards where it was, as far as
 ///   it
 ///     must: bodies that spin and bodies that rest on the floor do so in most substeps, and pieces would not help
@@ -66,13 +66,15 @@ enum {
 /// A component in a substep.
 typedef struct mspringi_account {
     uint32_t first_slot;
-    bool is_pinned, is_driven, is_asleep; ///< driven: one of its pinned particles moves
+    bool is_pinned, is_driven, is_asleep; ///< driven: its pinned particles do not all move alike
     bool exceeds;                         ///< its springs alone have too much energy
     bool gains;                           ///< springs and velocities together have much too much
     double origin[4];                     ///< x, y, vx, vy of its first slot before the substep
     double sums[MSPRINGI_EFFECTS];
     double elastic, length;  ///< J, as in mspringi_elastic
-    double given;            ///< work of moving pins, J
+    double frame_x, frame_y; ///< m/s: of its pins if they move alike, else 0
+    uint32_t frame_pin;      ///< slot of one of them
+    double given;            ///< work of pins that do not, J
     double x, y, vx, vy;     ///< mass centre before, from the origin
     double spin;             ///< about it before, kg m^2/s
     double turned;           ///< half the angle that it would turn by as a rigid body, rad
@@ -81,8 +83,12 @@ typedef struct mspringi_account {
     double add_x, add_y, turn;
     double shift_x, shift_y; ///< of all positions, m
     bool is_free;            ///< neither a pin nor the floor holds it
-    bool is_stopped;         ///< it is where it was before, as the floor was in its way back
+    bool is_stopped;         ///< the floor is in its way, though it gave it no impulse
+    uint32_t stopped_at;     ///< slot where it is
     double share;            ///< of its way that it goes
+    double owed_x, owed_y;   ///< N s that the floor has given it, but for what is counted
+    uint32_t bearers;        ///< contacts that hold it
+    uint32_t borne_at;       ///< slot of another particle that the floor acts on
 } mspringi_account;
 
 typedef struct mspringi_budget {
@@ -111,8 +117,8 @@ void mspringi_budget_destroy(mspringi_budget *budget, mspringi_memory *memory);
 /// Have the components that there are. Allocates nothing.
 void mspringi_budget_follow(mspring_network *network);
 
-/// Before a substep of h seconds: keep what it begins with.
-void mspringi_budget_open(mspring_network *network, double h);
+/// Before a substep: keep what it begins with.
+void mspringi_budget_open(mspring_network *network);
 
 /// After a substep of h seconds, and after the floor. Returns false if the substep should be taken in halves, which
 /// is only if may_halve; mspringi_budget_undo() then takes it back.

@@ -135,7 +135,7 @@ static void take_substep(mspringi_substep_of *substep, uint32_t tries) {
     mspring_network *network = substep->network;
     mspringi_implicit *n = network->implicit;
     if (substep->watches)
-        mspringi_budget_open(network, (double)substep->h);
+        mspringi_budget_open(network);
     else
         n->budget.knows_elastic = false;
     run_substep(substep, tries > 0);

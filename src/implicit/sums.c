@@ -196,6 +196,17 @@ static void add_springs(const measuring *all) {
             add_spring(all, place);
 }
 
+// What holds a particle in the linear system may come to no impulse that single precision shows.
+static void add_contacts(const mspring_network *network) {
+    budget_of *budget = &network->implicit->budget;
+    const mspringi_floor *floor = network->floor;
+    for (uint32_t i = 0; floor && i < floor->contact_count; ++i) {
+        const uint32_t number = budget->of_slot[floor->contacts[i].slot];
+        if (floor->contacts[i].is_active && number != MSPRINGI_NO_ACCOUNT)
+            budget->accounts[number].sums[MSPRINGI_EFFECT_TOUCH] += 1.0;
+    }
+}
+
 void mspringi_budget_measure(measuring *all) {
     mspring_network *network = all->network;
     mspringi_implicit *n = network->implicit;
@@ -208,6 +219,8 @@ void mspringi_budget_measure(measuring *all) {
         a->length = all->knows_elastic ? a->length : 0.0;
     }
     add_particles(all);
+    if (all->is_after)
+        add_contacts(network);
     if (!all->knows_elastic)
         add_springs(all);
 }
