@@ -241,11 +241,15 @@ static void check_bounces(double share, uint32_t bodies, double room) {
             def.restitution = (float)restitutions[(seed + kind) % COUNT_OF(restitutions)];
             def.friction = (seed + kind) % 3 == 0 ? 0.5f : 0;
             const double most = growth(&b, &def, h);
-            if (most <= room) {
+            // One of the 360 at 0.7, a graph that falls into a ravine at restitution 1 without friction, has 7 %
+            // more.
+            const bool is_ravine = share >= 0.7 && kind == 3 && def.restitution == 1.0f && def.friction == 0;
+            const double some = is_ravine ? fmax(room, 1.08) : room;
+            if (most <= some) {
                 continue;
             }
             alone = alone > 0 ? alone : growth(&b, NULL, h);
-            if (!(most <= room * alone)) {
+            if (!(most <= some * alone)) {
                 fail_msg(
                     "body %u, floor %u, restitution %g, friction %g, %g of stable: energy %g, without a floor %g",
                     seed, kind, (double)def.restitution, (double)def.friction, share, most, alone);
@@ -259,8 +263,7 @@ static void bounces_give_no_energy(void **state) {
     check_bounces(0.1, 30, 1.01);
     check_bounces(0.3, 60, 1.01);
     check_bounces(0.5, 90, 1.01);
-    // One of these 360, a graph that falls into a ravine and is turned inside out there, has 20 % more.
-    check_bounces(0.7, 90, 1.25);
+    check_bounces(0.7, 90, 1.01);
 }
 
 /// A lattice of 2 x 3 on a slope of 0.02, at 0.7 of what is stable in any shape (it went from 647 to 836,000 J); a
@@ -271,8 +274,8 @@ static void bounces_up_to_the_border_give_no_energy(void **state) {
     mspring_floor_def slope = floor_of_kind(1, 1), level = floor_of_kind(0, 1);
     for (uint32_t i = 1; i <= 19; i++) {
         for (uint32_t j = 0; j <= 10; j++) {
-            // Near the border the scheme alone lets 4 to 9 % of the gentle motion come and go.
-            const double room = i < 15 ? 1.01 : 1.12;
+            // From 0.75 of what is stable on, gentle bounces at 0.8 and 0.9 give up to 2.6 %, at 1 up to 10.6 %.
+            const double room = i < 15 || j < 8 ? 1.01 : j < 10 ? 1.03 : 1.11;
             body b = {0};
             add_lattice(&b, 2, 3, 0, &seed);
             b.any_shape = 2 / sqrt(2 * 5 * 1000.0);
