@@ -80,7 +80,7 @@ static uint32_t run_family(const bench_options *options, map_family family, uint
 
 bool map_run_families(const bench_options *options) {
     uint32_t whole[MAP_VERDICTS] = {0}, faults = 0;
-    bench_table_note(options->format, "Energy, momentum, contact and precision: those after 'violent' must be 0");
+    bench_table_note(options->format, "Energy, momentum, contact and precision: those after 'rested' must be 0");
     print_head(options->format);
     for (int family = 0; family < MAP_FAMILIES; family++)
         if (options->family == NULL || strcmp(options->family, map_family_name((map_family)family)) == 0)

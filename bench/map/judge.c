@@ -10,7 +10,7 @@
 #include "map/bounce.h"
 
 const char *map_verdict_name(map_verdict verdict) {
-    static const char *const names[MAP_VERDICTS] = {"holds",      "guarded",  "violent", "known limit",
+    static const char *const names[MAP_VERDICTS] = {"holds",      "guarded",  "violent", "rested",
                                                     "not finite", "rejected", "energy",  "momentum",
                                                     "angular",    "floor",    "bounce",  "substeps"};
     return names[verdict];
@@ -71,8 +71,8 @@ static map_verdict judge_energy(map_judge *judge, uint32_t substeps) {
     judge->since += substeps;
     judge->quickest = fmax(judge->quickest, watch->speed * watch->substep / watch->shortest);
     judge->growth = fmax(judge->growth, (gain - rounding) / fmax(could, rounding));
-    // The library lets each piece of a substep gain 1e-5 with the implicit and the direct solver, which may add up.
-    const double part = is_explicit ? 1e-2 : fmin(1e-2, 1e-3 + 1e-5 * (double)judge->since);
+    // The library lets each of up to 32 pieces of a substep gain 1e-6 with the implicit and the direct solver.
+    const double part = is_explicit ? 1e-2 : fmin(1e-2, 1e-3 + 3.2e-5 * (double)judge->since);
     if (gain - rounding > part * could) {
         snprintf(judge->text, sizeof judge->text,
                  "%.4g J more than there were, where %.4g J could move and %.2g J are rounding; ways of %.2g of a "
@@ -101,15 +101,15 @@ static map_verdict judge_flight(map_judge *judge, uint32_t number) {
     const double push_x = (of->gravity_x + of->force_x) * time, push_y = (of->gravity_y + of->force_y) * time;
     const double off = hypot(of->px - from->px - push_x, of->py - from->py - push_y);
     const double scale = fmax(from->momentum_scale, of->momentum_scale) + hypot(push_x, push_y);
-    // A millionth of what all components have: implicit solvers find the velocities of all together.
-    if (off > kept * scale + random * scale + 1e-6 * judge->momentum_scale) {
+    // Velocities that grow by the same amount in each substep are rounded the same way for a while. A millionth of
+    // what all components have: implicit solvers find the velocities of all together.
+    if (off > kept * scale + 20 * random * scale + 1e-6 * judge->momentum_scale) {
         snprintf(judge->text, sizeof judge->text, "momentum is off by %.4g kg m/s of %.4g", off, scale);
         return MAP_MOMENTUM;
     }
     if (watch->what->has_forces)
         return MAP_HOLDS;
     const double turned = fabs(of->spin - from->spin), spin_scale = fmax(from->spin_scale, fabs(of->spin));
-    // Velocities that grow by the same amount in each substep are rounded the same way for a while.
     if (turned > kept * from->spin_scale + 20 * random * of->spin_rounding + 10 * sqrt(judge->angle_squares)) {
         snprintf(judge->text, sizeof judge->text,
                  "angular momentum went from %.5g to %.5g kg m^2/s, its parts come to %.4g", from->spin, of->spin,

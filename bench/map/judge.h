@@ -12,7 +12,8 @@ typedef enum map_verdict {
     MAP_HOLDS,
     MAP_GUARDED, ///< a step was rejected with MSPRING_ERROR_UNSTABLE and a reason; it held until then
     MAP_VIOLENT, ///< energy grew as it does in violent motion of explicit substeps near the border: a known limit
-    MAP_KNOWN,   ///< a fault that falls under a known limit (limits.h)
+    MAP_RESTED,  ///< a loose particle lost energy by bounces shorter than a substep, or too many in a corner: a
+                 ///< known limit
     MAP_NOT_FINITE, ///< a coordinate or velocity is not finite
     MAP_REJECTED,   ///< a step that must pass was rejected, or a call failed
     MAP_GAINED,     ///< energy from nowhere

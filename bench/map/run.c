@@ -8,7 +8,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "map/limits.h"
 #include "map/trade.h"
 #include "scenes/internal.h"
 
@@ -225,7 +224,7 @@ map_verdict map_run_case(const map_case *what, char text[MAP_TEXT]) {
             verdict = judge_gain(&run, &judge);
     }
     mspring_network_destroy(network);
-    return verdict >= MAP_NOT_FINITE && map_known_limit(&run, verdict) != NULL ? MAP_KNOWN : verdict;
+    return verdict;
 }
 
 void map_print_course(const map_case *what, FILE *out) {
