@@ -382,7 +382,12 @@ enum {
 /// Flags of networks.
 enum {
     MSPRING_NETWORK_RESERVE_DAMPING = 1u << 0, ///< springs may be given damping later, though none has any now
-    MSPRING_NETWORK_RESERVE_RELATIVE = 1u << 1 ///< relative springs may be added later, though there is none now
+    MSPRING_NETWORK_RESERVE_RELATIVE = 1u << 1, ///< relative springs may be added later, though there is none now
+    /// The second words of positions count in the lengths of springs, too. Use it for stiff springs whose forces
+    /// single precision cannot tell apart: 6.76e7 N/m between masses of 73.4 kg, 900 m from the local origin,
+    /// tremble at up to 3 m/s without it and 0.002 m/s with it. Explicit steps take 1.1 to 1.3 times as
+    /// long (bench/RESULTS.md). The implicit and the direct solver always count these words.
+    MSPRING_NETWORK_PRECISE = 1u << 2
 };
 
 /// What a step does beside refusing to end with a coordinate or speed that is not finite or out of bounds.
@@ -447,7 +452,8 @@ typedef struct mspring_network_def {
     uint32_t struct_size;
     mspring_simd simd_level; ///< highest level to use; default MSPRING_SIMD_AUTO. A level that this machine lacks,
                              ///< such as one of another kind of CPU, is no limit, so one program may ask for
-                             ///< at most AVX2 on x86 and run on ARM, too. The environment variable MSPRING_SIMD
+                             ///< at most AVX2 on x86 and run on ARM, too. MSPRING_SIMD_SCALAR is the lowest level
+                             ///< that this build has. The environment variable MSPRING_SIMD
                              ///< (scalar, sse2, avx2, avx512, neon, wasm) can lower it further, never raise.
     float gravity_x;         ///< m/s^2, finite; default 0
     float gravity_y;         ///< m/s^2, finite; default -9.8
@@ -1180,11 +1186,13 @@ MSPRING_API mspring_result mspring_floor_def_init(mspring_floor_def *def, size_t
 /// Contact takes energy and gives none. Explicit substeps of h keep E = T(w) + V - h^2/8 sum F^2/m instead of T + V,
 /// with w = v + h/2 F/m, as a velocity is that of half a substep ago. That does not grow by contact, at any
 /// restitution, as long as no particle goes further than half of the shortest spring in a substep: a network that
-/// moves faster is one that the scheme itself makes energy in, on heights and without friction from 0.8 of what is
-/// stable in any shape on. Particles with springs are thrown back by at most 1 - (4 h w / l)^2 of their speed w, with
+/// moves faster is one that the scheme itself makes energy in. It may grow at long substeps and high restitution: by
+/// up to a tenth in gentle bounces at 0.8 to 1, from 0.75 of what is stable in any shape on, and on heights without
+/// friction at 1, from 0.7 on. Particles with springs are thrown back by at most 1 - (4 h w / l)^2 of their speed w, with
 /// l the shortest rest length at creation, so that fast ones bounce less than restitution says. Those without fly
 /// along parabolas that are turned where they meet the surface, up to 8 times in a substep, with every solver: at
-/// restitution 1 they keep their height.
+/// restitution 1 they keep their height. A bounce that would be shorter than a substep is none, nor is one in a corner
+/// after these 8 turns.
 ///
 /// In implicit substeps the floor is part of the linear system: a substep is solved up to four times to find which
 /// particles it holds and which of them slide, with twice the iterations; one in which particles hit it is one of
@@ -1764,9 +1772,10 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_snapshot_size(const
 
 /// Save a snapshot into the caller's memory. It is the same on every machine, for any SIMD level and number of
 /// workers, but only of use to networks made of the same particles and springs by a library that lays them out
-/// alike (another refuses it): meant for rollback, replay and network play, not for archives. Of the implicit or
-/// direct solver it holds settings and history, but it can be loaded only where that solver is, with the same
-/// integrator and tiles and, of the direct one, the same added springs. Hooks and unread events are not in it.
+/// alike, and with MSPRING_NETWORK_PRECISE if this one has it (others refuse it): meant for rollback, replay and
+/// network play, not for archives. Of the implicit or direct solver it holds settings and history, but it can be
+/// loaded only where that solver is, with the same integrator and tiles and, of the direct one, the same added
+/// springs. Hooks and unread events are not in it.
 /// @param snapshot  [capacity] bytes, of any alignment
 /// @param capacity  at least mspring_network_snapshot_size()
 /// @param size      receives the bytes written; may be NULL
@@ -1855,8 +1864,9 @@ MSPRING_API uint32_t mspring_network_worker_count(const mspring_network *network
 /// @threads any   @allocates never   @since 0.1
 MSPRING_API mspring_simd mspring_simd_supported(void);
 
-/// Whether a network can be made to run at this level here: 1 for MSPRING_SIMD_AUTO, MSPRING_SIMD_SCALAR and the
-/// instruction sets that this CPU, operating system and build of the library offer, 0 for others.
+/// Whether a network can be made to run at this level here: 1 for MSPRING_SIMD_AUTO and the levels that this CPU,
+/// operating system and build of the library offer, 0 for others. On x86-64, 64-bit ARM and WebAssembly builds have
+/// MSPRING_SIMD_SCALAR only if they are made with it.
 /// @threads any   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_simd_available(mspring_simd level);
 
