@@ -5,8 +5,8 @@
 
 #include "sleep/sleep.h"
 
-/// Most looks at a field of heights on the way of one particle in one substep; a way that grazes a long slope is one
-/// that could take more.
+/// Most looks at a field of heights on the way of one particle in one substep; a way that grazes a long slope is
+/// one that could take more.
 #define MOST_LOOKS 4096
 
 /// What a way meets that meets nothing.
@@ -79,8 +79,8 @@ static bool may_meet(const passage *w, int64_t first, uint32_t level) {
     return is_below(w, first, highest) || is_below(w, last, highest);
 }
 
-// The first knot that the way comes below, on the way from one edge between knots to another; edge i is left of knot
-// i. NO_KNOT: none. Looks at blocks of knots that double while the way is above them: an explosion above
+// The first knot that the way comes below, on the way from one edge between knots to another; edge i is left of
+// knot i. NO_KNOT: none. Looks at blocks of knots that double while the way is above them: an explosion above
 // 60,000 heights looks at 30 blocks a particle, not at thousands of knots.
 static int64_t knot_met(const passage *w, int64_t edge, int64_t stop) {
     const int64_t onward = edge < stop ? 1 : -1;

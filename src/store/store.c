@@ -11,7 +11,7 @@
 #define UNKNOWN SIZE_MAX
 
 #define STATE(member)                                                                                              \
-    PLANES(member.x, MSPRINGI_STATE_ARRAYS)                                                                        \
+    LANES(member.x, MSPRINGI_STATE_ARRAYS)                                                                         \
     VIEW(member.y, slots)                                                                                          \
     VIEW(member.vx, 2 * slots)                                                                                     \
     VIEW(member.vy, 3 * slots)                                                                                     \
@@ -23,14 +23,14 @@
 
 #define GROUP(name) {0, 0, MSPRINGI_GROUP},
 #define ARRAY(member, elements) MSPRINGI_COLUMN(mspring_network, member, MSPRINGI_ARRAY),
-#define PLANES(member, planes) MSPRINGI_COLUMN(mspring_network, member, MSPRINGI_PLANES),
+#define LANES(member, planes) MSPRINGI_COLUMN(mspring_network, member, MSPRINGI_PLANES),
 #define VIEW(member, elements) MSPRINGI_COLUMN(mspring_network, member, MSPRINGI_VIEW),
 static const mspringi_column list[] = {
 #include "network.def"
 };
 #undef GROUP
 #undef ARRAY
-#undef PLANES
+#undef LANES
 #undef VIEW
 
 #define COLUMN_COUNT (sizeof list / sizeof list[0])
@@ -58,12 +58,12 @@ static void count_elements(const mspring_network *n, size_t elements[COLUMN_COUN
     const size_t particles = t->reserve.particle_end, springs = t->reserve.spring_end;
 #define GROUP(name) *elements++ = 0;
 #define ARRAY(member, count) *elements++ = (size_t)(count);
-#define PLANES(member, planes) *elements++ = (size_t)(planes)*slots;
+#define LANES(member, planes) *elements++ = (size_t)(planes)*slots;
 #define VIEW(member, count) *elements++ = (size_t)(count);
 #include "network.def"
 #undef GROUP
 #undef ARRAY
-#undef PLANES
+#undef LANES
 #undef VIEW
 }
 
@@ -183,7 +183,7 @@ static void copy_bit(uint16_t *to, mspringi_place place, const uint16_t *from, m
 #undef BITS
 #define GROUP(name)
 #define ARRAY(member, elements)
-#define PLANES(member, planes)
+#define LANES(member, planes)
 #define VIEW(member, elements)
 #define PLACES(member) copy_value(to->member, place, from->member, before);
 #define BITS(member) copy_bit(to->member, place, from->member, before);

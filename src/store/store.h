@@ -13,7 +13,7 @@ typedef enum mspringi_group {
 #define END(name) MSPRINGI_##name##_END, MSPRINGI_##name##_LAST = MSPRINGI_##name##_END - 1,
 #define ARRAY(member, elements)
 #define VIEW(member, elements)
-#define PLANES(member, planes)
+#define LANES(member, planes)
 #define PLACES(member)
 #define BITS(member)
 #define STATE(member)
@@ -24,7 +24,7 @@ typedef enum mspringi_group {
 #undef END
 #undef ARRAY
 #undef VIEW
-#undef PLANES
+#undef LANES
 #undef PLACES
 #undef BITS
 #undef STATE
