@@ -19,7 +19,7 @@
 void MSPRINGI_ASSERT_HANDLER(const char *condition, const char *file, int line);
 #define MSPRINGI_ASSERT(condition) ((condition) ? (void)0 : MSPRINGI_ASSERT_HANDLER(#condition, __FILE__, __LINE__))
 #else
-#define MSPRINGI_ASSERT(condition) ((void)sizeof((condition) ? 1 : 0))
+#define MSPRINGI_ASSERT(condition) ((void)(0 && (condition)))
 #endif
 
 #endif

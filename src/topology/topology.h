@@ -41,12 +41,6 @@ typedef enum mspringi_direction {
 /// the parked ones. Block counts from the first of its kind.
 typedef uint32_t mspringi_place;
 
-/// The lattice place of a direction at a lattice slot, which counts from the first lattice block.
-static inline mspringi_place mspringi_lattice_place(uint32_t slot, uint32_t direction) {
-    const uint32_t lane = slot % MSPRINGI_WIDTH;
-    return (slot - lane) * MSPRINGI_DIRECTIONS + direction * MSPRINGI_WIDTH + lane;
-}
-
 /// Lanes of the narrowest vector register.
 #define MSPRINGI_QUARTER 4
 
