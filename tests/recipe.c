@@ -237,6 +237,17 @@ mspring_network *recipe_network(const recipe *made, const mspring_network_def *d
     return support_network(recipe_builder(made, NULL), def);
 }
 
+mspring_network *recipe_solved(const recipe *made, const mspring_network_def *def, mspring_solver solver,
+                               mspring_integrator integrator) {
+    mspring_network *network = recipe_network(made, def);
+    mspring_solver_def settings;
+    check_ok(mspring_solver_def_init(&settings, sizeof settings));
+    settings.solver = solver;
+    settings.integrator = integrator;
+    check_ok(mspring_network_set_solver(network, &settings));
+    return network;
+}
+
 recipe recipe_mixed(uint64_t seed) {
     const recipe_stuff relative = {.mass = {1, 2},
                                    .stiffness = {0.1, 0.2},

@@ -79,4 +79,8 @@ mspring_builder *recipe_builder(const recipe *made, const mspring_allocator *all
 /// Make a network of it.
 mspring_network *recipe_network(const recipe *made, const mspring_network_def *def);
 
+/// The same, with this solver and integrator.
+mspring_network *recipe_solved(const recipe *made, const mspring_network_def *def, mspring_solver solver,
+                               mspring_integrator integrator);
+
 #endif

@@ -220,13 +220,7 @@ static void add_turning(recipe *made, uint32_t width, uint32_t height, double x,
 static mspring_network *network_of(const recipe *made, mspring_solver solver, mspring_integrator integrator) {
     mspring_network_def def = support_def(0, 1);
     def.solver = solver;
-    mspring_network *network = recipe_network(made, &def);
-    mspring_solver_def settings;
-    check_ok(mspring_solver_def_init(&settings, sizeof settings));
-    settings.solver = solver;
-    settings.integrator = integrator;
-    check_ok(mspring_network_set_solver(network, &settings));
-    return network;
+    return recipe_solved(made, &def, solver, integrator);
 }
 
 /// What a substep may gain by rounding does not add up: a body that only spins is where any error is a gain.

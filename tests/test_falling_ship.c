@@ -71,13 +71,7 @@ static mspring_network *start(const recipe *made, mspring_solver solver, mspring
                               mspring_guard guard) {
     mspring_network_def def = support_def(-9.8f, 1);
     def.guard = guard;
-    mspring_network *network = recipe_network(made, &def);
-    mspring_solver_def settings;
-    check_ok(mspring_solver_def_init(&settings, sizeof settings));
-    settings.solver = solver;
-    settings.integrator = integrator;
-    check_ok(mspring_network_set_solver(network, &settings));
-    return network;
+    return recipe_solved(made, &def, solver, integrator);
 }
 
 static void fall(mspring_solver solver, mspring_integrator integrator) {

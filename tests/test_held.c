@@ -23,13 +23,7 @@ static recipe lattice(double height, double stiffness) {
 
 static mspring_network *network_of(const recipe *made, mspring_solver which, mspring_integrator integrator) {
     const mspring_network_def def = support_def((float)-g, 1);
-    mspring_network *network = recipe_network(made, &def);
-    mspring_solver_def solver;
-    check_ok(mspring_solver_def_init(&solver, sizeof solver));
-    solver.solver = which;
-    solver.integrator = integrator;
-    check_ok(mspring_network_set_solver(network, &solver));
-    return network;
+    return recipe_solved(made, &def, which, integrator);
 }
 
 /// Energy in a frame that moves at (ux, uy) and has gone so far up, J.
