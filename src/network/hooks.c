@@ -117,9 +117,18 @@ static uint32_t range_of(const mspring_network *network, const mspring_hook_def 
     return range < slot_count ? (range + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH : slot_count;
 }
 
-// Have a hook called for a group of substeps of length h.
-static void call_hook(mspring_network *network, const mspring_hook_def *def, uint32_t substep, uint32_t group,
-                      double h, mspringi_field field) {
+// A group of substeps that a hook is called for.
+typedef struct hook_group {
+    uint32_t substep, count;
+    double seconds;
+} hook_group;
+
+static hook_group group_of(const mspringi_attempt *attempt, uint32_t substep, uint32_t count) {
+    return (hook_group){substep, count, (double)attempt->h * (double)count};
+}
+
+static void call_hook(mspring_network *network, const mspringi_attempt *attempt, const mspring_hook_def *def,
+                      hook_group group, mspringi_field field) {
     const uint32_t slot_count = (uint32_t)mspringi_slot_count(network);
     hook_call call = {
         .def = def,
@@ -129,9 +138,9 @@ static void call_hook(mspring_network *network, const mspring_hook_def *def, uin
             {
                 .struct_size = sizeof call.args,
                 .phase = def->phase,
-                .substep = substep,
-                .substep_count = network->substeps,
-                .dt = h * (double)group,
+                .substep = group.substep,
+                .substep_count = attempt->substeps,
+                .dt = group.seconds,
                 .origin_x = network->origin_x,
                 .origin_y = network->origin_y,
                 .x = network->state.x,
@@ -142,7 +151,7 @@ static void call_hook(mspring_network *network, const mspring_hook_def *def, uin
                 .force_y = field.y,
                 .inverse_mass = network->inverse_mass,
                 .particle_of_slot = network->topology.particle_of_slot,
-                .group_count = group,
+                .group_count = group.count,
             },
     };
     network->in_hook = def->flags & MSPRING_HOOK_CONCURRENT ? MSPRINGI_IN_HOOKS : MSPRINGI_IN_HOOK;
@@ -159,8 +168,9 @@ bool mspringi_hooks_any(const mspring_network *network, mspring_phase phase) {
     return false;
 }
 
-uint32_t mspringi_hooks_free_substeps(const mspring_network *network, uint32_t substep) {
-    uint32_t count = network->substeps - substep;
+uint32_t mspringi_hooks_free_substeps(const mspring_network *network, const mspringi_attempt *attempt,
+                                      uint32_t substep) {
+    uint32_t count = attempt->substeps - substep;
     for (size_t i = 0; i < network->hook_count; ++i) {
         const mspring_hook_def *def = &network->hooks[i].def;
         if (def->phase != MSPRING_PHASE_BEFORE_STEP && def->period - substep % def->period < count)
@@ -169,10 +179,11 @@ uint32_t mspringi_hooks_free_substeps(const mspring_network *network, uint32_t s
     return count;
 }
 
-void mspringi_hooks_before_step(mspring_network *network, double dt, mspringi_field field) {
+void mspringi_hooks_before_step(mspring_network *network, const mspringi_attempt *attempt, mspringi_field field) {
+    const hook_group all = {0, 1, attempt->dt};
     for (size_t i = 0; i < network->hook_count; ++i)
         if (network->hooks[i].def.phase == MSPRING_PHASE_BEFORE_STEP)
-            call_hook(network, &network->hooks[i].def, 0, 1, dt, field);
+            call_hook(network, attempt, &network->hooks[i].def, all, field);
 }
 
 static void clear(const mspring_network *network, mspringi_field field) {
@@ -185,7 +196,8 @@ static void add(const mspring_network *network, mspringi_field from, mspringi_fi
         to.x[i] += from.x[i];
 }
 
-void mspringi_hooks_before_substep(mspring_network *network, uint32_t substep, double h, mspringi_field base) {
+void mspringi_hooks_before_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
+                                   mspringi_field base) {
     bool any = false;
     for (size_t i = 0; i < network->hook_count && !any; ++i) {
         const mspring_hook_def *def = &network->hooks[i].def;
@@ -199,30 +211,30 @@ void mspringi_hooks_before_substep(mspring_network *network, uint32_t substep, d
     else
         clear(network, driven);
     // A hook with a period has a field of its own, since its forces act on while others may be called again.
-    const uint32_t left = network->substeps - substep;
+    const uint32_t left = attempt->substeps - substep;
     for (size_t i = 0; i < network->hook_count; ++i) {
         const mspringi_hook *hook = &network->hooks[i];
         if (hook->def.phase != MSPRING_PHASE_BEFORE_SUBSTEP)
             continue;
         if (!hook->held.x) {
-            call_hook(network, &hook->def, substep, 1, h, driven);
+            call_hook(network, attempt, &hook->def, group_of(attempt, substep, 1), driven);
             continue;
         }
         if (substep % hook->def.period == 0) {
             clear(network, hook->held);
-            call_hook(network, &hook->def, substep, hook->def.period < left ? hook->def.period : left, h,
-                      hook->held);
+            const uint32_t count = hook->def.period < left ? hook->def.period : left;
+            call_hook(network, attempt, &hook->def, group_of(attempt, substep, count), hook->held);
         }
         add(network, hook->held, driven);
     }
 }
 
-void mspringi_hooks_after_substep(mspring_network *network, uint32_t substep, double h) {
+void mspringi_hooks_after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
     for (size_t i = 0; i < network->hook_count; ++i) {
         const mspring_hook_def *def = &network->hooks[i].def;
         const uint32_t group = substep % def->period + 1;
         const mspringi_field none = {NULL, NULL};
-        if (def->phase == MSPRING_PHASE_AFTER_SUBSTEP && (group == def->period || substep + 1 == network->substeps))
-            call_hook(network, def, substep, group, h, none);
+        if (def->phase == MSPRING_PHASE_AFTER_SUBSTEP && (group == def->period || substep + 1 == attempt->substeps))
+            call_hook(network, attempt, def, group_of(attempt, substep, group), none);
     }
 }

@@ -15,6 +15,7 @@
 #include "network.h"
 #include "origin.h"
 #include "sleep/sleep.h"
+#include "solver.h"
 #include "springs.h"
 #include "stability/clamp.h"
 #include "stability/guard.h"
@@ -48,7 +49,7 @@ static void clear_field(const mspring_network *network, mspringi_field field) {
 
 // The field that each substep starts from: what the host holds, with what the hooks before the step add. No field
 // at all if there is nothing in it.
-static mspringi_field prepare_base(mspring_network *network, double dt) {
+static mspringi_field prepare_base(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_forces *forces = &network->forces;
     const mspringi_field none = {NULL, NULL};
     if (!mspringi_hooks_any(network, MSPRING_PHASE_BEFORE_STEP))
@@ -57,7 +58,7 @@ static mspringi_field prepare_base(mspring_network *network, double dt) {
         copy_field(network, forces->held, forces->base);
     else
         clear_field(network, forces->base);
-    mspringi_hooks_before_step(network, dt, forces->base);
+    mspringi_hooks_before_step(network, attempt, forces->base);
     return forces->base;
 }
 
@@ -77,17 +78,17 @@ static void take_substeps(mspring_network *network, float h, mspringi_field base
         mspringi_floor_fly_loose(network, h, base, count);
 }
 
-static void run_substeps(mspring_network *network, double dt, float h) {
+static void run_substeps(mspring_network *network, const mspringi_attempt *attempt) {
     const bool hooks_before = mspringi_hooks_any(network, MSPRING_PHASE_BEFORE_SUBSTEP);
     const bool hooks_after = mspringi_hooks_any(network, MSPRING_PHASE_AFTER_SUBSTEP);
-    const mspringi_field base = prepare_base(network, dt);
+    const mspringi_field base = prepare_base(network, attempt);
     const mspringi_field field = hooks_before ? network->forces.driven : base;
     network->sleep.in_force = field;
 
-    for (uint32_t substep = 0, count; substep < network->substeps; substep += count) {
-        count = mspringi_hooks_free_substeps(network, substep);
+    for (uint32_t substep = 0, count; substep < attempt->substeps; substep += count) {
+        count = mspringi_hooks_free_substeps(network, attempt, substep);
         if (hooks_before)
-            mspringi_hooks_before_substep(network, substep, (double)h, base);
+            mspringi_hooks_before_substep(network, attempt, substep, base);
         if (substep == 0)
             mspringi_sleep_feel(network, field);
         if (substep == 0 && !mspringi_sleep_is_whole(network))
@@ -95,11 +96,11 @@ static void run_substeps(mspring_network *network, double dt, float h) {
         if (hooks_after)
             mspringi_sleep_hold(network);
         if (!mspringi_sleep_is_whole(network))
-            take_substeps(network, h, field, count);
+            take_substeps(network, attempt->h, field, count);
         if (hooks_after)
             mspringi_sleep_put_back(network);
         if (hooks_after)
-            mspringi_hooks_after_substep(network, substep + count - 1, (double)h);
+            mspringi_hooks_after_substep(network, attempt, substep + count - 1);
     }
 }
 
@@ -112,7 +113,7 @@ void mspringi_drop_stale_lows(const mspring_network *network) {
 }
 
 // Keep the state in the backup, run all substeps, and look at what they have led to.
-static mspringi_sight run(mspring_network *network, double dt, float h) {
+static mspringi_sight run(mspring_network *network, const mspringi_attempt *attempt) {
     if (network->is_open) {
         mspringi_clear_empty_slots(network);
         mspringi_drop_stale_lows(network);
@@ -120,16 +121,16 @@ static mspringi_sight run(mspring_network *network, double dt, float h) {
     if (!network->implicit)
         mspringi_graft_follow(network);
     if (network->hook_count == 0) {
-        const mspringi_field base = network->sleep.in_force = prepare_base(network, dt);
+        const mspringi_field base = network->sleep.in_force = prepare_base(network, attempt);
         mspringi_sleep_feel(network, base);
         if (mspringi_sleep_is_whole(network))
             return (mspringi_sight){0.0f, 0.0f, 0.0f};
         if (!network->implicit && !network->is_clamped && !network->floor && network->graft.count == 0)
-            return mspringi_explicit_step(network, h, base, network->substeps);
+            return mspringi_explicit_step(network, attempt->h, base, attempt->substeps);
     }
     copy_state(network, &network->state, &network->backup);
     mspringi_implicit_keep(network);
-    run_substeps(network, dt, h);
+    run_substeps(network, attempt);
     if (network->is_open)
         mspringi_clear_empty_slots(network);
     const size_t slots = mspringi_slot_count(network);
@@ -207,24 +208,24 @@ static mspring_result check_given_speeds(mspring_network *network, double dt) {
     return MSPRING_OK;
 }
 
-// Take the step in network->substeps substeps, or leave everything as it is.
-static mspring_result attempt(mspring_network *network, double dt) {
-    const float h = (float)(dt / (double)network->substeps);
-    if (!(h >= FLT_MIN && h <= FLT_MAX))
+// Take the step in so many substeps, or leave everything as it is.
+static mspring_result take(mspring_network *network, uint32_t substeps, double dt) {
+    const mspringi_attempt attempt = {dt, (float)(dt / (double)substeps), substeps};
+    if (!(attempt.h >= FLT_MIN && attempt.h <= FLT_MAX))
         return mspringi_fail(
             &network->message, MSPRING_ERROR_ARGUMENT,
             "dt is %g s (substeps: %u): each substep must be a finite number of at least 1.2e-38 s", dt,
-            (unsigned)network->substeps);
-    mspringi_sleep_begin(network, dt);
+            (unsigned)substeps);
+    mspringi_sleep_begin(network, &attempt);
     if (mspringi_sleep_is_idle(network))
         return MSPRING_OK;
     const float relative_h = network->relative_h;
     const mspringi_guard guard = network->guard;
-    mspringi_derive_relative(network, h);
+    mspringi_derive_relative(network, attempt.h);
     mspringi_ramps_apply(network, dt);
-    mspring_result result = mspringi_guard_begin(network, dt, h);
+    mspring_result result = mspringi_guard_begin(network, &attempt);
     if (result == MSPRING_OK) {
-        result = mspringi_guard_end(network, dt, h, run(network, dt, h));
+        result = mspringi_guard_end(network, &attempt, run(network, &attempt));
         if (result != MSPRING_OK)
             go_back(network);
     }
@@ -249,14 +250,11 @@ static bool has_fallback(const mspring_network *network) {
 // Have the implicit solver take the step in one substep, or leave everything as it is. It starts without history
 // each time, so that there is none to keep.
 static mspring_result attempt_implicitly(mspring_network *network, double dt) {
-    const uint32_t substeps = network->substeps;
     MSPRINGI_ASSERT(network->fallback && !network->implicit);
     mspringi_implicit_forget(network->fallback);
     network->implicit = network->fallback;
-    network->substeps = 1;
-    const mspring_result result = attempt(network, dt);
+    const mspring_result result = take(network, 1, dt);
     network->implicit = NULL;
-    network->substeps = substeps;
     return result;
 }
 
@@ -264,17 +262,16 @@ static mspring_result attempt_implicitly(mspring_network *network, double dt) {
 // new motion begins after it.
 static mspring_result attempt_clamped(mspring_network *network, double dt) {
     struct mspringi_implicit *const implicit = network->implicit;
-    const uint32_t substeps = network->substeps;
+    const uint32_t substeps = network->auto_substeps ? network->max_substeps : network->substeps;
     network->implicit = NULL;
     network->is_clamped = true;
-    if (network->auto_substeps && !implicit)
-        network->substeps = network->max_substeps;
-    const mspring_result result = attempt(network, dt);
+    const mspring_result result = take(network, substeps, dt);
     network->is_clamped = false;
     network->implicit = implicit;
     if (result != MSPRING_OK)
-        network->substeps = substeps;
-    else if (implicit)
+        return result;
+    network->substeps = substeps;
+    if (implicit)
         mspringi_implicit_forget(implicit);
     return result;
 }
@@ -294,7 +291,7 @@ static mspring_result fall_back(mspring_network *network, double dt) {
 
 static mspring_result attempt_explicitly(mspring_network *network, double dt) {
     const mspring_result result = network->auto_substeps ? choose_substeps(network, dt) : MSPRING_OK;
-    return result == MSPRING_OK ? attempt(network, dt) : result;
+    return result == MSPRING_OK ? take(network, network->substeps, dt) : result;
 }
 
 static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt) {
@@ -317,7 +314,7 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
            network->substeps < network->max_substeps) {
         const uint32_t twice = 2 * network->substeps;
         network->substeps = twice < network->max_substeps ? twice : network->max_substeps;
-        result = attempt(network, dt);
+        result = take(network, network->substeps, dt);
     }
     if (result != MSPRING_OK) {
         network->substeps = substeps;

@@ -163,14 +163,13 @@ static void wake_disturbed(mspring_network *network, bool state, bool masses) {
     }
 }
 
-void mspringi_sleep_begin(mspring_network *network, double dt) {
+void mspringi_sleep_begin(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_sleep *s = &network->sleep;
     if (s->sleeping == 0)
         return;
     const uint64_t naps = network->edits.naps;
     // A substep of another length changes relative springs, and how many there are may change by itself.
-    const bool same_h =
-        !network->fractions.values || (float)(dt / (double)network->substeps) == network->relative_h;
+    const bool same_h = !network->fractions.values || attempt->h == network->relative_h;
     if (!same_h || network->origin_x != s->origin_x || network->origin_y != s->origin_y) {
         keep_stillness(s);
         set_all_awake(network);

@@ -9,6 +9,7 @@
 #define MSPRINGI_SLEEP_H
 
 #include "network/network.h"
+#include "network/solver.h"
 
 /// What is to be swept of a strip.
 typedef enum mspringi_share {
@@ -71,7 +72,7 @@ bool mspringi_sleep_is_disturbed(const mspring_network *network);
 /* ------------------------------------------------------------------------------------------------------- a step */
 
 /// Before a step: wake what has been disturbed, or what the step would change springs of.
-void mspringi_sleep_begin(mspring_network *network, double dt);
+void mspringi_sleep_begin(mspring_network *network, const mspringi_attempt *attempt);
 /// Whether a step has nothing to do at all: all asleep, with no hook to call and no force to compare.
 bool mspringi_sleep_is_idle(const mspring_network *network);
 /// In a step, once the forces from outside are known: wake what feels others than when it fell asleep.

@@ -19,8 +19,9 @@ void mspringi_border_learn(mspring_network *network);
 bool mspringi_border_is_below(mspring_network *network, double h, double bound);
 
 /// The largest eigenvalue, or less, searched for with so many iterations at most and until it is above bound. From
-/// no particular displacement, or from the motion of the last step, whose state of before is in the backup.
-double mspringi_border_search(mspring_network *network, double h, bool from_motion, double bound, int iterations);
+/// no particular displacement if moved is 0, else from the motion of a step of so many substeps, whose state of
+/// before is in the backup.
+double mspringi_border_search(mspring_network *network, double h, uint32_t moved, double bound, int iterations);
 
 /// What the passes over all springs work on at substeps of h; in, out and inverse_mass are left to the caller.
 mspringi_border mspringi_border_at(const mspring_network *network, double h);

@@ -47,7 +47,7 @@ static bool is_in_bounds(const mspring_network *network, uint32_t slot) {
 }
 
 // Name a particle that left the bounds: the first that is still a number, since what is none spreads to others.
-static mspring_result check_bounds(mspring_network *network, double dt) {
+static mspring_result check_bounds(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_state *s = &network->state;
     const mspringi_topology *t = &network->topology;
     mspring_id named = MSPRING_NONE;
@@ -68,12 +68,12 @@ static mspring_result check_bounds(mspring_network *network, double dt) {
             &network->message, MSPRING_ERROR_UNSTABLE,
             "a step of %g s (substeps: %u) would throw particle %u, perhaps with others, out of the "
             "range of numbers: %s",
-            dt, (unsigned)network->substeps, (unsigned)named, cure);
+            attempt->dt, (unsigned)attempt->substeps, (unsigned)named, cure);
     return mspringi_fail(
         &network->message, MSPRING_ERROR_UNSTABLE,
         "a step of %g s (substeps: %u) would throw particle %u, perhaps with others, to (%g, %g) m "
         "at (%g, %g) m/s: %s",
-        dt, (unsigned)network->substeps, (unsigned)named, x, y, vx, vy, cure);
+        attempt->dt, (unsigned)attempt->substeps, (unsigned)named, x, y, vx, vy, cure);
 }
 
 static float between(float value, float most) {
@@ -114,9 +114,9 @@ static mspringi_sight put_back(mspring_network *network) {
 /* --------------------------------------------------------------------------------------------------- the border */
 
 // Name the tightest spring, and the end of it that is more easily moved.
-static mspring_result explain_border(mspring_network *network, double dt, float h) {
+static mspring_result explain_border(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_topology *t = &network->topology;
-    const mspring_id spring = mspringi_tightest_spring(network, (double)h);
+    const mspring_id spring = mspringi_tightest_spring(network, (double)attempt->h);
     uint32_t base, tip;
     mspringi_topology_ends(t, mspringi_place_of(t, spring), &base, &tip);
     const float at_base = network->inverse_mass[base], at_tip = network->inverse_mass[tip];
@@ -126,28 +126,32 @@ static mspring_result explain_border(mspring_network *network, double dt, float 
                          "a step of %g s (substeps: %u): motion would turn round and grow in each, as %g s are too "
                          "long for springs and masses in this shape, as for spring %u at particle %u: take a "
                          "shorter step, more substeps or less stiffness",
-                         dt, (unsigned)network->substeps, (double)h, (unsigned)spring, (unsigned)moved);
+                         attempt->dt, (unsigned)attempt->substeps, (double)attempt->h, (unsigned)spring,
+                         (unsigned)moved);
 }
 
 // Iterations that a search may take: so many that they take no longer than half of the step's substeps, unless the
 // network is small.
-static int affordable_iterations(const mspring_network *network, int most) {
-    const uint32_t by_step = network->substeps / SUBSTEPS_OF_ITERATION;
+static int affordable_iterations(const mspring_network *network, uint32_t substeps, int most) {
+    const uint32_t by_step = substeps / SUBSTEPS_OF_ITERATION;
     const uint32_t by_size = SMALL_WORK / (network->topology.spring_count + 1);
     const uint32_t count = by_step > by_size ? by_step : by_size;
     return count >= (uint32_t)most ? most : count > LEAST_ITERATIONS ? (int)count : LEAST_ITERATIONS;
 }
 
-static mspring_result look_at_border(mspring_network *network, double dt, float h, bool from_motion) {
+static mspring_result look_at_border(mspring_network *network, const mspringi_attempt *attempt, bool from_motion) {
+    const float h = attempt->h;
     const double decay = (double)mspringi_decay(network->global_damping, h);
     // Vectors are floats: room for their rounding.
     const double sharp = 2.0 * (1.0 + 1.0 / decay), bound = sharp * (1.0 + 1e-4);
     if (mspringi_border_is_below(network, (double)h, sharp))
         return MSPRING_OK;
-    const int iterations = affordable_iterations(network, from_motion ? ITERATIONS_FROM_MOTION : ITERATIONS);
-    if (!(mspringi_border_search(network, (double)h, from_motion, bound, iterations) > bound))
+    const int iterations =
+        affordable_iterations(network, attempt->substeps, from_motion ? ITERATIONS_FROM_MOTION : ITERATIONS);
+    const uint32_t moved = from_motion ? attempt->substeps : 0;
+    if (!(mspringi_border_search(network, (double)h, moved, bound, iterations) > bound))
         return MSPRING_OK;
-    return explain_border(network, dt, h);
+    return explain_border(network, attempt);
 }
 
 /* --------------------------------------------------------------------------------------------------- the steps */
@@ -170,13 +174,14 @@ mspring_result mspringi_guard_reserve(mspring_network *network, mspring_guard po
                                                                     : result;
 }
 
-mspring_result mspringi_guard_begin(mspring_network *network, double dt, float h) {
+mspring_result mspringi_guard_begin(mspring_network *network, const mspringi_attempt *attempt) {
+    const float h = attempt->h;
     mspringi_guard *guard = &network->guard;
     const bool same = guard->h == h && guard->global_damping == network->global_damping;
     guard->watches = false;
     const bool is_same = guard->state == network->edits.state && !network->is_open;
     guard->knows_speed = is_same && guard->speed <= network->max_speed;
-    guard->knows_place = is_same && guard->place <= (float)MSPRING_MAX_COORDINATE && network->substeps == 1;
+    guard->knows_place = is_same && guard->place <= (float)MSPRING_MAX_COORDINATE && attempt->substeps == 1;
     if (!mspringi_guard_looks(network->guard_policy) || network->implicit || network->is_clamped)
         return MSPRING_OK;
     const mspringi_any_shape *any_shape = &network->any_shape;
@@ -188,7 +193,7 @@ mspring_result mspringi_guard_begin(mspring_network *network, double dt, float h
     guard->watches = (double)h > mspringi_stable_in_any_shape(network, &spring);
     guard->h = h;
     guard->global_damping = network->global_damping;
-    return guard->watches && !same ? look_at_border(network, dt, h, false) : MSPRING_OK;
+    return guard->watches && !same ? look_at_border(network, attempt, false) : MSPRING_OK;
 }
 
 // NaN, if there is one, counts as the largest, as in the kernels.
@@ -250,7 +255,8 @@ static float bound_place(const mspring_network *network, float h, float speed, m
                : mspringi_guard_look(network, 0, mspringi_slot_count(network)).place;
 }
 
-mspring_result mspringi_guard_end(mspring_network *network, double dt, float h, mspringi_sight sight) {
+mspring_result mspringi_guard_end(mspring_network *network, const mspringi_attempt *attempt, mspringi_sight sight) {
+    const float h = attempt->h;
     mspringi_guard *guard = &network->guard;
     float speed = bound_speed(network, sight), place = bound_place(network, h, speed, sight);
     const bool is_out = !(place <= (float)MSPRING_MAX_COORDINATE && speed <= network->max_speed);
@@ -259,12 +265,12 @@ mspring_result mspringi_guard_end(mspring_network *network, double dt, float h, 
         speed = sight.speed;
         place = sight.place;
     } else if (is_out) {
-        const mspring_result result = check_bounds(network, dt);
+        const mspring_result result = check_bounds(network, attempt);
         if (result != MSPRING_OK)
             return result;
     }
     if (guard->watches && is_suspicious(network, h, sight.change)) {
-        const mspring_result result = look_at_border(network, dt, h, true);
+        const mspring_result result = look_at_border(network, attempt, true);
         if (result != MSPRING_OK)
             return result;
     }

@@ -6,6 +6,7 @@
 #define MSPRINGI_GUARD_H
 
 #include "network/network.h"
+#include "network/solver.h"
 
 /// Refuse what is no policy.
 mspring_result mspringi_guard_check(mspring_guard policy, mspringi_message *message);
@@ -16,9 +17,9 @@ bool mspringi_guard_looks(mspring_guard policy);
 /// Reserve what this policy needs, unless it is there.
 mspring_result mspringi_guard_reserve(mspring_network *network, mspring_guard policy);
 
-/// Before a step in substeps of h: MSPRING_OK, or MSPRING_ERROR_UNSTABLE with a message if they are found to be
-/// above the border.
-mspring_result mspringi_guard_begin(mspring_network *network, double dt, float h);
+/// Before a step: MSPRING_OK, or MSPRING_ERROR_UNSTABLE with a message if its substeps are
+/// found to be above the border.
+mspring_result mspringi_guard_begin(mspring_network *network, const mspringi_attempt *attempt);
 
 /// Look at the slots first to end - 1, multiples of MSPRINGI_WIDTH, whose state before the step is in the backup.
 /// May be called by several threads at once.
@@ -31,6 +32,6 @@ void mspringi_guard_put_back(mspring_network *network, const mspringi_state *bef
 mspringi_sight mspringi_sight_join(mspringi_sight a, mspringi_sight b);
 
 /// Judge the state that the substeps have led to by the sight of all slots. That of before is in the backup.
-mspring_result mspringi_guard_end(mspring_network *network, double dt, float h, mspringi_sight sight);
+mspring_result mspringi_guard_end(mspring_network *network, const mspringi_attempt *attempt, mspringi_sight sight);
 
 #endif

@@ -35,19 +35,19 @@ typedef struct search {
 
 // The velocity of a slot less the mean of those before it in the last step. All of them are in the distance it
 // went.
-static float turning(const mspring_network *network, float h, float v, float v_before, float x, float x_before) {
-    if (network->substeps == 1)
+static float turning(uint32_t substeps, float h, float v, float v_before, float x, float x_before) {
+    if (substeps == 1)
         return v - v_before;
-    return v - (x - x_before - h * v) / (h * (float)(network->substeps - 1));
+    return v - (x - x_before - h * v) / (h * (float)(substeps - 1));
 }
 
-static void start_from_motion(const search *f, float h, displacement to) {
+static void start_from_motion(const search *f, uint32_t substeps, float h, displacement to) {
     const mspring_network *network = f->network;
     const mspringi_state *s = &network->state, *b = &network->backup;
     for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
         const bool moves = f->inverse_mass[slot] > 0.0f;
-        const float x = turning(network, h, s->vx[slot], b->vx[slot], s->x[slot], b->x[slot]);
-        const float y = turning(network, h, s->vy[slot], b->vy[slot], s->y[slot], b->y[slot]);
+        const float x = turning(substeps, h, s->vx[slot], b->vx[slot], s->x[slot], b->x[slot]);
+        const float y = turning(substeps, h, s->vy[slot], b->vy[slot], s->y[slot], b->y[slot]);
         to.x[slot] = moves ? x : 0.0f;
         to.y[slot] = moves ? y : 0.0f;
     }
@@ -145,15 +145,15 @@ static double iterate(search *f, displacement here, displacement next, double bo
     }
 }
 
-double mspringi_border_search(mspring_network *network, double h, bool from_motion, double bound, int iterations) {
+double mspringi_border_search(mspring_network *network, double h, uint32_t moved, double bound, int iterations) {
     const displacement here = {mspringi_border_room(network, 0), mspringi_border_room(network, 1)};
     const displacement next = {mspringi_border_room(network, 2), mspringi_border_room(network, 3)};
     // What sleeps has no motion, but counts: it may wake in any step.
-    const float *inverse_mass = from_motion ? mspringi_free_mass(network) : network->inverse_mass;
+    const float *inverse_mass = moved > 0 ? mspringi_free_mass(network) : network->inverse_mass;
     search f = {network, inverse_mass, mspringi_border_at(network, h)};
     f.border.inverse_mass = f.inverse_mass;
-    if (from_motion)
-        start_from_motion(&f, (float)h, here);
+    if (moved > 0)
+        start_from_motion(&f, moved, (float)h, here);
     else
         start_from_noise(&f, here);
     memset(next.x, 0, 2 * mspringi_slot_count(network) * sizeof *next.x);
