@@ -6,7 +6,8 @@
 ///
 /// And of the map's cases (bench/map), what holds: energy, momenta, contact and precision.
 ///
-///   test_map [EVERY]     runs every EVERYth network at the extremes; default 29
+///   test_map [EVERY [STRIDE]]     runs every EVERYth network at the extremes, default 113, and every STRIDEth case of
+///                                 the map, default 547; both odd, so that all solvers come in turn
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
@@ -16,7 +17,7 @@
 #include "scenes/extremes.h"
 #include "support.h"
 
-static uint32_t every = 29;
+static uint32_t every = 113, stride = 547;
 
 static void every_case_is_stable_or_refused(void **state) {
     (void)state;
@@ -62,12 +63,10 @@ static void borders_are_where_they_are_said_to_be(void **state) {
     print_message("measured over predicted border: %.4f to %.4f\n", least, most);
 }
 
-enum { STRIDE = 135 }; // odd: all solvers in turn
-
 /// Run a sample of a family.
 static uint32_t count_faults(map_family family) {
     uint32_t faults = 0, kept = 0, count = 0;
-    for (uint32_t index = 0; index < map_family_size(family); index += STRIDE) {
+    for (uint32_t index = 0; index < map_family_size(family); index += stride) {
         map_case drawn;
         char text[MAP_TEXT];
         map_draw_case(&drawn, family, index);
@@ -95,11 +94,16 @@ static void motion_keeps_what_it_must(void **state) {
     assert_int_equal(faults, 0);
 }
 
+static uint32_t number_of(const char *text) {
+    const uint32_t number = (uint32_t)strtoul(text, NULL, 10);
+    return number > 0 ? number : 1;
+}
+
 int main(int argc, char **argv) {
-    if (argc > 1) {
-        every = (uint32_t)strtoul(argv[1], NULL, 10);
-        every = every > 0 ? every : 1;
-    }
+    if (argc > 1)
+        every = number_of(argv[1]);
+    if (argc > 2)
+        stride = number_of(argv[2]);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_case_is_stable_or_refused),
         cmocka_unit_test(borders_are_where_they_are_said_to_be),

@@ -14,7 +14,7 @@
 #include "snapshots.h"
 #include "support.h"
 
-enum { FRAMES = 60, BACK = 8 };
+enum { FRAMES = ROUNDS(50) + 10, BACK = 8 };
 
 /// Go on for some frames, go back, and go on again: the same.
 static void check_rollback(mspring_snapshot_contents contents, uint32_t worker_count, mspring_solver kind,
@@ -94,7 +94,7 @@ static void an_old_network_goes_on_like_a_young_one(void **state) {
         snapshots_use_solver(young, kind, MSPRING_INTEGRATOR_GA0, 1);
         support_steps(young, 1, 0.01);
         const saved start = snapshots_save(young, MSPRING_SNAPSHOT_ALL);
-        support_steps(old, 10000, 0.001);
+        support_steps(old, ROUNDS(10000), 0.001);
         snapshots_load(old, &start);
         for (int step = 0; step < 5; step++) {
             support_steps(old, 1, 0.01);
@@ -441,7 +441,7 @@ static void refused_steps_leave_no_trace(void **state) {
     recipe made = snapshots_small_recipe();
     for (int guard = MSPRING_GUARD_GROWTH; guard <= MSPRING_GUARD_CLAMP; guard++) {
         for (int solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++) {
-            for (uint32_t frames = 0; frames < 8; frames++) {
+            for (uint32_t frames = 0; frames < ROUNDS(8); frames++) {
                 mspring_network *network = eventful(&made, guard, solver);
                 for (uint32_t frame = 0; frame < frames; frame++) {
                     snapshots_run_frame(network, frame);
