@@ -2,7 +2,6 @@
 #include "compact.h"
 
 #include "base/cpu.h"
-#include "implicit/implicit.h"
 #include "move.h"
 #include "network/springs.h"
 #include "replan.h"
@@ -12,8 +11,8 @@
 static mspring_result exchange(mspring_network *network, mspringi_topology *topology, uint64_t new_print) {
     const bool was_compact = network->is_compact;
     const uint64_t print = network->topology_print;
-    const uint32_t tile_size = network->implicit ? network->implicit->tiles.cells.size : 0;
-    const uint32_t fallback_size = network->fallback ? network->fallback->tiles.cells.size : 0;
+    const uint32_t tile_size = mspringi_solver_get_basis(&network->solver).tile_size;
+    const uint32_t fallback_size = mspringi_solver_get_basis(&network->fallback).tile_size;
     mspringi_topology before = network->topology;
     mspring_result result = mspringi_move(network, topology, 0, 0);
     if (result != MSPRING_OK)

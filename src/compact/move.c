@@ -9,7 +9,6 @@
 
 #include "contact/floor.h"
 #include "edits/strain.h"
-#include "implicit/implicit.h"
 #include "network/rests.h"
 #include "network/springs.h"
 #include "sleep/sleep.h"
@@ -74,23 +73,6 @@ static mspring_result make_floor(mspring_network *to, const mspring_network *fro
     return to->floor ? MSPRING_OK : mspringi_fail(&to->message, MSPRING_ERROR_MEMORY, "no memory for a floor");
 }
 
-static mspring_result make_implicit(mspring_network *to, const mspring_network *from, uint32_t tile_size) {
-    const mspringi_implicit *had = from->implicit;
-    if (!had)
-        return MSPRING_OK;
-    mspring_solver_def def;
-    (void)mspring_solver_def_init(&def, sizeof def);
-    def.solver = had->is_direct ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT;
-    def.integrator = had->integrator;
-    def.iterations = had->iterations;
-    def.tile_size = had->tile_size > 0 ? had->tile_size : tile_size;
-    def.coarse_period = had->coarse_period;
-    mspring_result result = mspringi_implicit_create(to, &def, &to->implicit);
-    if (result == MSPRING_OK)
-        to->implicit->tile_size = had->tile_size;
-    return result;
-}
-
 /* ------------------------------------------------------------------------------------------------------- moving */
 
 static void move_values(const float *from, float *to, const mspring_network *old, const mspring_network *made) {
@@ -117,27 +99,6 @@ static void move_springs(mspring_network *to, const mspring_network *from) {
     }
 }
 
-// A motion goes on: what the integrator remembers of it goes with the particles.
-static void move_implicit(mspring_network *to, const mspring_network *from) {
-    const mspringi_implicit *had = from->implicit;
-    mspringi_implicit *n = to->implicit;
-    const size_t slots = mspringi_slot_count(from), made_slots = mspringi_slot_count(to);
-    if (from->fallback) {
-        mspringi_tiles_set_inertia(&to->fallback->tiles, from->fallback->tiles.turn_inertia, made_slots);
-        to->fallback->scale = from->fallback->scale;
-    }
-    if (!had)
-        return;
-    if (!n->is_direct)
-        mspringi_tiles_set_inertia(&n->tiles, had->tiles.turn_inertia, made_slots);
-    n->scale = had->scale;
-    n->history.h = had->history.h;
-    n->history.restarts = had->history.restarts;
-    n->seen.motion = had->seen.motion;
-    for (size_t i = 0; i < had->history_size / slots; ++i)
-        move_values(had->history.first.x + i * slots, n->history.first.x + i * made_slots, from, to);
-}
-
 /* ----------------------------------------------------------------------------------------------- the exchange */
 
 // Free what lies by slot or by place, with the memory of whoever is left.
@@ -146,8 +107,8 @@ static void free_layout(mspring_network *network, mspringi_memory *memory) {
         mspringi_free(memory, network->hooks[i].held.x);
     mspringi_store_free_layout(network, memory);
     mspringi_floor_free_layout(network->floor, memory);
-    mspringi_implicit_destroy(network->implicit, memory);
-    mspringi_implicit_destroy(network->fallback, memory);
+    mspringi_solver_destroy(&network->solver, memory);
+    mspringi_solver_destroy(&network->fallback, memory);
 }
 
 // The network with its parts by slot and by place taken out, and this topology put in.
@@ -158,7 +119,7 @@ static mspring_network without_layout(const mspring_network *network, const mspr
     to.seams = (mspringi_seams){0};
     to.rests = (mspringi_rests){0};
     mspringi_sleep_forget(&to.sleep);
-    to.implicit = to.fallback = NULL;
+    to.solver.object = to.fallback.object = NULL;
     to.floor = NULL;
     to.mover = NULL;
     return to;
@@ -326,9 +287,9 @@ mspring_result mspringi_move(mspring_network *network, const mspringi_topology *
         if (network->looks)
             move_values(network->looks, to.looks, network, &to);
         mspringi_sleep_move(&to, network);
-        result = make_implicit(&to, network, tile_size);
-        if (result == MSPRING_OK && network->fallback)
-            result = mspringi_fallback_reserve(&to, fallback_size);
+        result = mspringi_solver_remake(&to, &to.solver, &network->solver, tile_size);
+        if (result == MSPRING_OK)
+            result = mspringi_solver_remake(&to, &to.fallback, &network->fallback, fallback_size);
     }
     if (result != MSPRING_OK) {
         free_layout(&to, &to.memory);
@@ -336,7 +297,8 @@ mspring_result mspringi_move(mspring_network *network, const mspringi_topology *
         network->message = to.message;
         return result;
     }
-    move_implicit(&to, network);
+    mspringi_solver_take_over(&to, &to.solver, network, &network->solver);
+    mspringi_solver_take_over(&to, &to.fallback, network, &network->fallback);
     mspringi_graft_forget(&to.graft);
     mspring_network old = *network;
     *network = to;

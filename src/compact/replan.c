@@ -129,7 +129,7 @@ static mspring_result list_springs(mspringi_replan *r, mspring_network *network)
 // Herds are for the explicit solver: the implicit one takes the springs of the web one by one, and twice as long
 // for a wreck that mostly stands in such.
 static mspring_result begin_layout(mspringi_replan *r, mspring_network *network) {
-    const bool has_herds = !network->implicit;
+    const bool has_herds = network->solver.ops->has_herds;
     return mspringi_topology_begin(&r->left, &first_topology(network)->reserve, true, has_herds,
                                    mspringi_tasks_concurrency(network->tasks), network->kernels->lanes,
                                    &network->plan_memory, &network->message, &r->assembly);

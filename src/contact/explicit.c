@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "explicit/decay.h"
-#include "implicit/implicit.h"
 #include "sleep/sleep.h"
 
 bool mspringi_floor_is_near(const mspring_network *network, const mspringi_strip *strip) {
@@ -165,21 +164,23 @@ void mspringi_floor_touch_far(const mspring_network *network, float h) {
 
 /* ---------------------------------------------------------------------------------------------- other solvers */
 
-static mspringi_slots loose_slots(const mspringi_topology *t) {
+typedef struct slot_range {
+    size_t first, end;
+} slot_range;
+
+static slot_range loose_slots(const mspringi_topology *t) {
     const size_t first = (size_t)t->loose_first * MSPRINGI_WIDTH;
-    return (mspringi_slots){first, first + ((size_t)t->loose_blocks + t->spare_blocks) * MSPRINGI_WIDTH};
+    return (slot_range){first, first + ((size_t)t->loose_blocks + t->spare_blocks) * MSPRINGI_WIDTH};
 }
 
 // Whether springs that were added pull at a particle of the loose row.
 bool mspringi_floor_is_pulled(const mspring_network *network, size_t slot) {
-    if (network->implicit)
-        return mspringi_is_solved(network, network->implicit, slot);
-    const uint32_t block = (uint32_t)(slot / MSPRINGI_WIDTH);
-    return mspringi_graft_find_block(&network->graft, block, block + 1, true) == block;
+    const mspringi_solver *solver = network->running;
+    return solver->ops->is_pulled(network, solver->object, slot);
 }
 
 void mspringi_floor_keep_loose(const mspring_network *network) {
-    const mspringi_slots slots = loose_slots(&network->topology);
+    const slot_range slots = loose_slots(&network->topology);
     const mspringi_state *s = &network->state, *before = &network->floor->before;
     const size_t size = (slots.end - slots.first) * sizeof *s->x;
     memcpy(before->x + slots.first, s->x + slots.first, size);
@@ -193,7 +194,7 @@ static void fly_free(const mspring_network *network, size_t slot, double h, doub
     const mspringi_state *s = &network->state;
     const mspringi_floor *floor = network->floor;
     const double vx = (double)s->vx[slot], vy = (double)s->vy[slot];
-    const bool lags = !network->implicit; // as velocities of symplectic Euler do
+    const bool lags = network->running->ops->lags;
     const mspringi_turning how = {
         .friction = floor->friction, .restitution = floor->restitution, .h = h, .lag = lags ? 0.5 * h : 0.0};
     mspringi_flyer p = {.x = (double)s->x[slot], .y = (double)s->y[slot], .left = h};
@@ -214,7 +215,7 @@ static void fly_free(const mspring_network *network, size_t slot, double h, doub
 
 void mspringi_floor_fly_loose(mspring_network *network, float h, mspringi_field base, uint32_t count) {
     const mspringi_state *s = &network->state, *before = &network->floor->before;
-    const mspringi_slots slots = loose_slots(&network->topology);
+    const slot_range slots = loose_slots(&network->topology);
     const float *inverse_mass = mspringi_free_mass(network);
     const double step = (double)h, decay = (double)mspringi_decay(network->global_damping, h);
     for (size_t slot = slots.first; slot < slots.end; ++slot) {

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/cpu.h"
-#include "implicit/implicit.h"
 #include "sleep/sleep.h"
 
 #define SHORTEST_SPACING 1e-9
@@ -237,8 +236,8 @@ mspring_result mspring_network_set_floor(mspring_network *network, const mspring
     }
     mspringi_floor_destroy(network->floor, &network->memory);
     network->floor = made;
-    if (network->implicit)
-        network->implicit->age = 0; // its coarse matrix may have contacts with the floor that was
+    if (network->solver.ops->new_floor)
+        network->solver.ops->new_floor(network->solver.object);
     mspringi_wake(network);
     return MSPRING_OK;
 }

@@ -3,10 +3,9 @@
 ///
 ///   floor.c      the definition, given by the host
 ///   surface.c    where the surface is, which way it faces, and which boxes are clear of it
-///   terms.c      what it does in the linear system of an implicit substep
 ///   bounce.c     what it does to a particle in a substep of symplectic Euler, and to one without springs
 ///   explicit.c   the same of all particles of such substeps
-///   collide.c    what it does to particles with springs after an implicit substep
+///   collide.c    what it does to particles with springs after an implicit substep; see implicit/terms.c
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_FLOOR_H
@@ -168,27 +167,6 @@ bool mspringi_floor_is_pulled(const mspring_network *network, size_t slot);
 /// theirs alone from there, in force fields as these: exact parabolas, for nothing else moves them.
 void mspringi_floor_keep_loose(const mspring_network *network);
 void mspringi_floor_fly_loose(mspring_network *network, float h, mspringi_field base, uint32_t count);
-
-/* terms.c: of a network with an implicit solver; those that take a const network do nothing without a floor */
-
-/// How many substeps an implicit one of h is better divided into, after mspringi_floor_keep().
-uint32_t mspringi_floor_pieces(const mspring_network *network, float h);
-
-/// Add what holds particles to the matrix and the right-hand side of a substep of h that has been assembled for the
-/// pass-th time. Returns false if particles hit the floor and the substep should be one of implicit Euler.
-bool mspringi_floor_add_terms(mspring_network *network, float h, uint32_t pass);
-
-/// Add it to a product, to the coarse matrix, to the blocks on the diagonal in double precision.
-/// @return mspringi_floor_multiply(): what it adds to from . to
-double mspringi_floor_multiply(const mspring_network *network, mspringi_field from, mspringi_field to);
-void mspringi_floor_stiffen(const mspring_network *network);
-void mspringi_floor_add_nodes(const mspring_network *network, double *xx, double *xy, double *yy);
-
-/// Look at the solution, displacement + alpha direction. Returns whether other particles are to be held than were.
-bool mspringi_floor_review(mspring_network *network, float alpha, uint32_t pass);
-
-/// Count what held particles in a substep of h among the impulses.
-void mspringi_floor_bear(const mspring_network *network, float h);
 
 /* collide.c */
 

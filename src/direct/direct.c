@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "contact/floor.h"
 #include "implicit/implicit.h"
+#include "implicit/terms.h"
 
 /// The largest stiffness at a particle, in the units of its mass in A, that goes with single precision. Rounding is
 /// 6e-8 of the stiffness: 0.1 % of the mass there, at random, so far less in any motion of many particles.
@@ -246,7 +246,7 @@ static void fill_edges(const mspringi_implicit *n) {
 }
 
 static bool solve_in_single(mspring_network *network) {
-    mspringi_implicit *n = network->implicit;
+    mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_system *s = &n->system;
     fill_edges(n);
     const mspringi_blocks_float e = n->direct.edges;
@@ -284,7 +284,7 @@ static void add_any_edges(const mspringi_implicit *n, uint32_t first) {
 
 // All blocks, from the springs' factors: sums in single precision would not be positive definite.
 static void fill_twice(const mspring_network *network, double added) {
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_direct *d = &n->direct;
     const size_t slots = mspringi_slot_count(network);
     const mspringi_blocks_double node = d->nodes_twice;
@@ -311,7 +311,7 @@ static void fill_twice(const mspring_network *network, double added) {
 }
 
 static bool solve_in_double(mspring_network *network) {
-    mspringi_implicit *n = network->implicit;
+    mspringi_implicit *n = mspringi_implicit_of(network);
     mspringi_direct *d = &n->direct;
     const size_t slots = mspringi_slot_count(network);
     const mspringi_cholesky_matrix_double matrix = {d->nodes_twice.xx, d->nodes_twice.xy, d->nodes_twice.yy,
@@ -344,7 +344,7 @@ static void hold_pinned(const mspringi_implicit *n, size_t slots) {
 }
 
 void mspringi_direct_solve(mspring_network *network) {
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     const size_t slots = mspringi_slot_count(network);
     const bool is_soft = finish_diagonal(&n->system, slots);
     if (!(is_soft && solve_in_single(network)) && !solve_in_double(network)) {

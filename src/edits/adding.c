@@ -7,7 +7,6 @@
 #include "breaking.h"
 #include "contact/floor.h"
 #include "growth.h"
-#include "implicit/implicit.h"
 #include "network/fractions.h"
 #include "network/origin.h"
 #include "network/springs.h"
@@ -202,8 +201,7 @@ static mspring_result link_spring(mspring_network *network, mspring_id id, const
 static void put_spring(mspring_network *network, mspring_id s, const mspring_spring_def *def) {
     float rest_length = 0.0f;
     (void)find_rest_length(network, s, def, &rest_length);
-    mspringi_implicit_clear_place(network->implicit, &network->topology, mspringi_place_of(&network->topology, s));
-    mspringi_implicit_clear_place(network->fallback, &network->topology, mspringi_place_of(&network->topology, s));
+    mspringi_solvers_clear_spring(network, mspringi_place_of(&network->topology, s));
     mspringi_spare_put_spring(&network->topology, s, def->a, def->b);
     if (network->is_compact)
         mspringi_spare_put_spring(&network->whole, s, def->a, def->b);
@@ -269,7 +267,7 @@ mspring_result mspring_network_add_springs(mspring_network *network, const mspri
     mspring_result result = check_arrays(network, defs, count, ids);
     if (result != MSPRING_OK || count == 0)
         return result;
-    if (network->implicit && network->implicit->is_direct)
+    if (!network->solver.ops->can_add)
         return mspringi_fail(
             &network->message, MSPRING_ERROR_ARGUMENT,
             "the direct solver has found an order of elimination for the springs that there were when "

@@ -6,7 +6,6 @@
 #include "compact/move.h"
 #include "events.h"
 #include "growth.h"
-#include "implicit/implicit.h"
 #include "network/springs.h"
 #include "ramps.h"
 #include "selection.h"
@@ -71,8 +70,8 @@ bool mspringi_spring_break(mspring_network *network, mspring_id spring) {
     if (!mspringi_spring_is_relative(network, spring))
         network->kept[spring] = (mspringi_relative){values.stiffness, values.damping};
     mspringi_place_set(network, place, 0.0f, 0.0f);
-    mspringi_implicit_forget_slot(network, network->implicit, values.base);
-    mspringi_implicit_forget_slot(network, network->implicit, values.tip);
+    mspringi_solvers_clear_slot(network, values.base);
+    mspringi_solvers_clear_slot(network, values.tip);
     toggle(network, spring, place);
     if (network->strain.stressed)
         network->strain.stressed[place / MSPRINGI_WIDTH] &= (uint16_t) ~(1u << place % MSPRINGI_WIDTH);

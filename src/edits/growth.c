@@ -6,7 +6,6 @@
 #include "base/bytes.h"
 #include "breaking.h"
 #include "contact/floor.h"
-#include "implicit/implicit.h"
 #include "network/springs.h"
 #include "sleep/sleep.h"
 #include "store/store.h"
@@ -82,8 +81,7 @@ void mspringi_growth_take_particle(mspring_network *network, mspring_id particle
     if (network->inverse_mass_scale)
         network->inverse_mass_scale[particle] = 0.0f;
     clear_field(network->forces.held, slot);
-    mspringi_implicit_forget_slot(network, network->implicit, slot);
-    mspringi_implicit_forget_slot(network, network->fallback, slot);
+    mspringi_solvers_clear_slot(network, slot);
     if (network->floor) {
         clear_field(network->floor->impulse, slot);
         clear_field(network->floor->former, slot);

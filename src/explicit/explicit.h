@@ -11,6 +11,12 @@
 /// Deepest pass over the lattice rows that is worth it for this topology.
 uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t parts);
 
+/// After the last substep of a step: stop what creeps.
+void mspringi_explicit_end(mspring_network *network);
+
+/// Whether springs that were added pull at a particle of the loose row, or at one beside it.
+bool mspringi_explicit_is_pulled(const mspring_network *network, const void *object, size_t slot);
+
 /// Forget what a step has left that went out of bounds.
 void mspringi_explicit_reset(mspring_network *network);
 

@@ -1,6 +1,6 @@
 /// The linear system of a substep.
-#include "contact/floor.h"
 #include "implicit.h"
+#include "terms.h"
 
 #include <math.h>
 #include <string.h>
@@ -17,7 +17,7 @@ typedef struct panel_share {
 } panel_share;
 
 static panel_share share_panels(const mspring_network *network, const mspringi_mate *mate) {
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH;
     panel_share share = {.system = n->system,
                          .begin = n->panels.list + mspringi_share_of(mate, n->panels.count),
@@ -32,7 +32,7 @@ static panel_share share_panels(const mspring_network *network, const mspringi_m
 
 bool mspringi_panel_is_asleep(const mspring_network *network, const mspringi_panel *panel) {
     const mspringi_topology *t = &network->topology;
-    if (network->sleep.sleeping == 0 || network->implicit->is_direct)
+    if (network->sleep.sleeping == 0 || mspringi_implicit_of(network)->is_direct)
         return false;
     for (uint32_t i = panel->first_span; i < panel->first_span + panel->span_count; ++i)
         if (mspringi_is_any_swept(network, t->spans[i].first_slot / MSPRINGI_WIDTH,
@@ -52,7 +52,7 @@ static bool is_handed_on(const mspring_network *network, const panel_share *shar
 static void clear_carry(const mspring_network *network, const panel_share *share, const mspringi_panel *next,
                         bool forces) {
     const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH;
-    const mspringi_panels *panels = &network->implicit->panels;
+    const mspringi_panels *panels = &mspringi_implicit_of(network)->panels;
     if (next == panels->list + panels->count || next->below_count == 0 ||
         (next < share->end && !mspringi_panel_is_asleep(network, next)))
         return;
@@ -81,7 +81,7 @@ static void assemble_panels(const mspring_network *network, const mspringi_mate 
 
 static void multiply_panels(const mspring_network *network, const mspringi_mate *mate) {
     const mspringi_topology *t = &network->topology;
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_system_kernels *kernels = &network->kernels->system;
     const mspringi_field from = n->direction, to = n->product;
     const panel_share share = share_panels(network, mate);
@@ -144,13 +144,13 @@ static bool sleeps(const mspring_network *network, uint32_t i) {
 
 static void assemble_leftover(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
-    const mspringi_system *s = &network->implicit->system;
+    const mspringi_system *s = &mspringi_implicit_of(network)->system;
     for (uint32_t i = 0; i < t->leftover_count; ++i) {
         if (sleeps(network, i))
             continue;
         const mspringi_spring_values values = mspringi_place_get(network, t->chain_places + i);
         const leftover l = compute_leftover(s, values.base, values.tip, &values);
-        float *factors = leftover_factors(network->implicit, i);
+        float *factors = leftover_factors(mspringi_implicit_of(network), i);
         factors[MSPRINGI_PULL_X * MSPRINGI_WIDTH] = l.pull_x;
         factors[MSPRINGI_PULL_Y * MSPRINGI_WIDTH] = l.pull_y;
         factors[MSPRINGI_SWING * MSPRINGI_WIDTH] = l.swing;
@@ -167,7 +167,7 @@ static void assemble_leftover(const mspring_network *network) {
 // all that.
 static double multiply_leftover(const mspring_network *network, mspringi_field from, mspringi_field to) {
     const mspringi_topology *t = &network->topology;
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     const size_t web = (size_t)t->web_first * MSPRINGI_WIDTH,
                  web_end = web + (size_t)t->web_blocks * MSPRINGI_WIDTH;
     // Loose particles that nothing has been added to are not in the iteration.
@@ -209,7 +209,7 @@ static double multiply_leftover(const mspring_network *network, mspringi_field f
 
 // Rows write these; the slots of other rows begin at nothing.
 static void clear_others(const mspring_network *network, mspringi_slots slots) {
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     const size_t swept = (size_t)network->topology.web_first * MSPRINGI_WIDTH;
     const size_t first = slots.first > swept ? slots.first : swept;
     float *const arrays[] = {n->residual.x, n->residual.y, n->system.xx, n->system.xy, n->system.yy};
@@ -219,7 +219,7 @@ static void clear_others(const mspring_network *network, mspringi_slots slots) {
 
 void mspringi_assemble(const mspringi_substep_of *substep, mspringi_mate *mate) {
     const mspring_network *network = substep->network;
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_slots slots = mspringi_slots_of(network, mate);
     mspringi_slots run;
     mspringi_meet(mate);
@@ -239,7 +239,7 @@ void mspringi_assemble(const mspringi_substep_of *substep, mspringi_mate *mate) 
 
 double mspringi_multiply(const mspringi_substep_of *substep, mspringi_mate *mate) {
     const mspring_network *network = substep->network;
-    mspringi_implicit *n = network->implicit;
+    mspringi_implicit *n = mspringi_implicit_of(network);
     multiply_panels(network, mate);
     mspringi_meet(mate);
     const bool has_contacts = network->floor && network->floor->contact_count > 0;

@@ -50,7 +50,7 @@ static mspringi_motion motion_of(const mspring_network *network) {
 }
 
 static mspringi_motion motion_before(const mspring_network *network) {
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     const size_t slots = mspringi_slot_count(network);
     const float *state = n->budget.state;
     return (mspringi_motion){state,
@@ -129,7 +129,7 @@ static void count_edits(const mspring_network *network, uint64_t *to) {
 // Whether elastic energy is what it was after the last substep. Where the host may write to the state, or rest
 // lengths and stiffnesses follow from the time or the substep, it is computed again.
 static bool knows_elastic(const mspring_network *network) {
-    const budget_of *budget = &network->implicit->budget;
+    const budget_of *budget = &mspringi_implicit_of(network)->budget;
     uint64_t now[MSPRINGI_BUDGET_EDITS];
     count_edits(network, now);
     return budget->knows_elastic && !network->is_open && network->ramps.count == 0 && !network->fractions.values &&
@@ -138,7 +138,7 @@ static bool knows_elastic(const mspring_network *network) {
 }
 
 void mspringi_budget_open(mspring_network *network) {
-    budget_of *budget = &network->implicit->budget;
+    budget_of *budget = &mspringi_implicit_of(network)->budget;
     for (uint32_t i = 0; i < budget->count; ++i)
         begin_account(network, &budget->accounts[i]);
     find_frames(network, budget);
@@ -288,7 +288,7 @@ static void stop(account *a, size_t slot) {
 
 // Components that would be shifted into the floor stay where the substep has led them: the floor holds them, too.
 static void find_in_the_way(const mspring_network *network) {
-    const budget_of *budget = &network->implicit->budget;
+    const budget_of *budget = &mspringi_implicit_of(network)->budget;
     const mspringi_motion m = motion_of(network);
     for (size_t slot = 0; network->floor && slot < mspringi_slot_count(network); ++slot) {
         if (budget->of_slot[slot] == MSPRINGI_NO_ACCOUNT || !(m.inverse_mass[slot] > 0.0f))
@@ -317,7 +317,7 @@ static void judge_account(const mspring_network *network, account *a, const outs
 
 // Returns whether any component has gained much; exceeds: whether the springs of any have too much.
 static bool judge_all(const mspring_network *network, const outside *o, bool *exceeds) {
-    budget_of *budget = &network->implicit->budget;
+    budget_of *budget = &mspringi_implicit_of(network)->budget;
     account *const end = budget->accounts + budget->count;
     bool gains = false;
     *exceeds = false;
@@ -372,7 +372,7 @@ static bool changes(const account *a) {
 // Give slots the velocities that they may have.
 static void turn_range(void *argument, size_t first, size_t end) {
     mspring_network *network = argument;
-    const budget_of *budget = &network->implicit->budget;
+    const budget_of *budget = &mspringi_implicit_of(network)->budget;
     for (size_t slot = first; slot < end; slot += MSPRINGI_WIDTH) {
         const uint32_t number = budget->of_block[slot / MSPRINGI_WIDTH];
         if (number < MSPRINGI_SOME_ACCOUNTS && changes(&budget->accounts[number]))
@@ -384,7 +384,7 @@ static void turn_range(void *argument, size_t first, size_t end) {
 }
 
 static void turn_all(mspring_network *network) {
-    const budget_of *budget = &network->implicit->budget;
+    const budget_of *budget = &mspringi_implicit_of(network)->budget;
     bool any = false;
     for (uint32_t i = 0; i < budget->count; ++i)
         any |= changes(&budget->accounts[i]);
@@ -396,7 +396,7 @@ static void turn_all(mspring_network *network) {
 // Keep where the substep has led to, in what the solver has predicted and needs no more.
 static void keep_ends(const mspring_network *network) {
     const mspringi_motion m = motion_of(network);
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
         n->x[slot] = (double)m.x[slot] + (double)m.low_x[slot];
         n->y[slot] = (double)m.y[slot] + (double)m.low_y[slot];
@@ -423,7 +423,7 @@ static void hold_place(const account *a, const centre *c, double h, double *x, d
 // Where a slot is after its component's share of the way. Returns false if it has no part in going back.
 static bool place_back(const mspring_network *network, const mspringi_motion *before, double h, size_t slot,
                        double *x, double *y) {
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     const budget_of *budget = &n->budget;
     if (budget->of_slot[slot] == MSPRINGI_NO_ACCOUNT || !(network->inverse_mass[slot] > 0.0f))
         return false;
@@ -444,7 +444,7 @@ static bool place_back(const mspring_network *network, const mspringi_motion *be
 // is of implicit Euler. (A body that spins keeps its history, as do all others in the network: a fragment of two
 // particles that spun had the vibration of a bar far away damped.)
 static void step_back(mspring_network *network, const mspringi_motion *before, double h, bool is_last) {
-    mspringi_implicit *n = network->implicit;
+    mspringi_implicit *n = mspringi_implicit_of(network);
     budget_of *budget = &n->budget;
     const size_t slots = mspringi_slot_count(network);
     double x, y;
@@ -484,7 +484,7 @@ static void find_owed(const mspring_network *network, account *a, const outside 
 
 // The account of a contact that has held its particle, and that no pin holds. NULL: none.
 static account *account_of(const mspring_network *network, const mspringi_contact *contact) {
-    const budget_of *budget = &network->implicit->budget;
+    const budget_of *budget = &mspringi_implicit_of(network)->budget;
     const uint32_t number = budget->of_slot[contact->slot];
     if (!contact->is_active || number == MSPRINGI_NO_ACCOUNT || budget->accounts[number].is_pinned)
         return NULL;
@@ -492,7 +492,7 @@ static account *account_of(const mspring_network *network, const mspringi_contac
 }
 
 static void count_borne(const mspring_network *network) {
-    const budget_of *budget = &network->implicit->budget;
+    const budget_of *budget = &mspringi_implicit_of(network)->budget;
     const mspringi_floor *floor = network->floor;
     for (uint32_t i = 0; i < floor->contact_count; ++i) {
         account *a = account_of(network, &floor->contacts[i]);
@@ -515,7 +515,7 @@ static void count_borne(const mspring_network *network) {
 // networks. (Particles of 8 kg at 1e10 N/m: impulses of 0 or 48,000 N s where 4 were due.) So contacts share what
 // their component's momentum lacks.
 static void balance_floor(const mspring_network *network, const outside *o) {
-    const budget_of *budget = &network->implicit->budget;
+    const budget_of *budget = &mspringi_implicit_of(network)->budget;
     const mspringi_floor *floor = network->floor;
     account *const end = budget->accounts + budget->count;
     bool any = false;
@@ -543,7 +543,7 @@ static void balance_floor(const mspring_network *network, const outside *o) {
 
 // What was summed is that of the places that there are now, unless these were shifted since.
 static void note_elastic(const mspring_network *network) {
-    budget_of *budget = &network->implicit->budget;
+    budget_of *budget = &mspringi_implicit_of(network)->budget;
     budget->knows_elastic = true;
     for (uint32_t i = 0; i < budget->count; ++i)
         budget->knows_elastic &= budget->accounts[i].shift_x == 0.0 && budget->accounts[i].shift_y == 0.0;
@@ -580,7 +580,7 @@ bool mspringi_budget_close(mspring_network *network, float h, mspringi_field bas
 }
 
 void mspringi_budget_undo(mspring_network *network) {
-    const budget_of *budget = &network->implicit->budget;
+    const budget_of *budget = &mspringi_implicit_of(network)->budget;
     const size_t slots = mspringi_slot_count(network);
     memcpy(network->state.x, budget->state, MSPRINGI_STATE_ARRAYS * slots * sizeof *budget->state);
     if (network->floor)

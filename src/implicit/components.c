@@ -100,7 +100,7 @@ static void list_pins(const mspring_network *network, mspringi_budget *budget) {
 }
 
 void mspringi_budget_follow(mspring_network *network) {
-    mspringi_budget *budget = &network->implicit->budget;
+    mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
     const mspringi_edits *edits = &network->edits;
     const bool same = budget->is_known && budget->links == edits->links && budget->growth == edits->growth &&
                       budget->grafts == edits->grafts;

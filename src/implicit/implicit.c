@@ -127,7 +127,7 @@ static void wire(mspringi_implicit *n, const mspring_network *network) {
 }
 
 // What each of the workers that there are now has for itself.
-static mspring_result reserve_crew(mspringi_implicit *n, mspring_network *network) {
+mspring_result mspringi_implicit_reserve(mspringi_implicit *n, mspring_network *network) {
     mspringi_memory *memory = &network->memory;
     const uint32_t crew = mspringi_tasks_concurrency(network->tasks);
     const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH;
@@ -151,11 +151,6 @@ static mspring_result reserve_crew(mspringi_implicit *n, mspring_network *networ
     n->unknowns = unknowns;
     n->crew = crew;
     return MSPRING_OK;
-}
-
-mspring_result mspringi_implicit_reserve(mspring_network *network) {
-    mspring_result result = network->implicit ? reserve_crew(network->implicit, network) : MSPRING_OK;
-    return result == MSPRING_OK && network->fallback ? reserve_crew(network->fallback, network) : result;
 }
 
 // Whether the coarse matrix of these tiles is one that can be factored in every substep.
@@ -230,7 +225,7 @@ mspring_result mspringi_implicit_create(mspring_network *network, const mspring_
     if (result == MSPRING_OK)
         result = n->is_direct ? mspringi_direct_create(&n->direct, network) : make_two_level(n, network);
     if (result == MSPRING_OK)
-        result = reserve_crew(n, network);
+        result = mspringi_implicit_reserve(n, network);
     if (result == MSPRING_OK) {
         wire(n, network);
         find_solved(n, network);
@@ -241,11 +236,6 @@ mspring_result mspringi_implicit_create(mspring_network *network, const mspring_
     return result;
 }
 
-bool mspringi_implicit_fits(const mspringi_implicit *n, const mspring_solver_def *def) {
-    return n && n->is_direct == (def->solver == MSPRING_SOLVER_DIRECT) && n->integrator == def->integrator &&
-           (n->is_direct || n->tile_size == def->tile_size);
-}
-
 void mspringi_implicit_adjust(mspringi_implicit *n, const mspring_solver_def *def) {
     n->iterations = !n->is_direct && def->iterations > 0 ? def->iterations : DEFAULT_ITERATIONS;
     n->coarse_period = !n->is_direct && def->coarse_period > 0 ? def->coarse_period : 1;
@@ -253,14 +243,20 @@ void mspringi_implicit_adjust(mspringi_implicit *n, const mspring_solver_def *de
 }
 
 mspring_result mspringi_fallback_reserve(mspring_network *network, uint32_t tile_size) {
-    if (network->fallback)
+    mspringi_implicit *made = NULL;
+    if (network->fallback.object)
         return MSPRING_OK;
     mspring_solver_def def;
     (void)mspring_solver_def_init(&def, sizeof def);
     def.solver = MSPRING_SOLVER_IMPLICIT;
     def.integrator = MSPRING_INTEGRATOR_EULER;
     def.tile_size = tile_size;
-    return mspringi_implicit_create(network, &def, &network->fallback);
+    mspring_result result = mspringi_implicit_create(network, &def, &made);
+    if (result != MSPRING_OK)
+        return result;
+    made->tile_size = 0; // its tiles go by plan
+    network->fallback = (mspringi_solver){&mspringi_implicit_ops, made};
+    return MSPRING_OK;
 }
 
 #define ARRAY(member) MSPRINGI_COLUMN(mspringi_implicit, member, MSPRINGI_ARRAY)
@@ -305,17 +301,13 @@ void mspringi_implicit_relocate(mspringi_implicit *n, const mspring_network *net
 /* ------------------------------------------------------------------------------------------------------ history */
 
 // Whatever is computed by parts of tiles is 0 at slots that have none.
-static void clear_outside_of_tiles(const mspring_network *network) {
-    const mspringi_implicit *n = network->implicit;
+static void clear_outside_of_tiles(const mspring_network *network, const mspringi_implicit *n) {
     const mspringi_field fields[] = {n->scaled, n->direction, n->product};
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i)
         memset(fields[i].x, 0, 2 * mspringi_slot_count(network) * sizeof *fields[i].x);
 }
 
-void mspringi_implicit_keep(mspring_network *network) {
-    mspringi_implicit *n = network->implicit;
-    if (!n)
-        return;
+void mspringi_implicit_keep(mspringi_implicit *n) {
     n->is_kept = true;
     n->has_changed = false;
     n->kept_age = n->age;
@@ -323,10 +315,7 @@ void mspringi_implicit_keep(mspring_network *network) {
         mspringi_coarse_keep(&n->coarse);
 }
 
-void mspringi_implicit_restore(mspring_network *network) {
-    mspringi_implicit *n = network->implicit;
-    if (!n)
-        return;
+void mspringi_implicit_restore(const mspring_network *network, mspringi_implicit *n) {
     if (n->has_changed) {
         const mspringi_history failed = n->history;
         n->history = n->backup;
@@ -342,12 +331,11 @@ void mspringi_implicit_restore(mspring_network *network) {
     memset(n->force_carry, 0, 2 * carry * sizeof *n->force_carry);
     memset(n->carry, 0, 3 * carry * sizeof *n->carry);
     if (!n->is_direct)
-        clear_outside_of_tiles(network);
+        clear_outside_of_tiles(network, n);
 }
 
 // What sleeps is left out of substeps: it is predicted where it is, and does not go on from there.
-static void rest_sleepers(const mspring_network *network) {
-    mspringi_implicit *n = network->implicit;
+static void rest_sleepers(const mspring_network *network, mspringi_implicit *n) {
     for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
         if (!mspringi_slot_is_asleep(network, slot))
             continue;
@@ -360,15 +348,14 @@ static void rest_sleepers(const mspring_network *network) {
     n->rested = network->edits.naps;
 }
 
-void mspringi_implicit_follow(mspring_network *network) {
-    mspringi_implicit *n = network->implicit;
+void mspringi_implicit_follow(const mspring_network *network, mspringi_implicit *n) {
     if (n->rested != network->edits.naps && network->sleep.sleeping > 0)
-        rest_sleepers(network);
+        rest_sleepers(network, n);
     if (!n->is_direct && mspringi_tiles_are_outdated(&n->tiles, network, &n->seen)) {
         mspringi_tiles_follow(&n->tiles, network, &n->seen);
         mspringi_coarse_shape(&n->coarse, &n->tiles);
         find_solved(n, network);
-        clear_outside_of_tiles(network);
+        clear_outside_of_tiles(network, n);
         n->age = n->kept_age = 0;
     }
     n->seen = network->edits;
@@ -380,43 +367,6 @@ void mspringi_implicit_forget(mspringi_implicit *n) {
     n->budget.knows_elastic = false;
 }
 
-// With BDF2 a parabola is x - x(t-h) = h v - h^2 g / 2.
-void mspringi_implicit_forget_slot(const mspring_network *network, mspringi_implicit *n, uint32_t slot) {
-    if (!n || !n->history.first.x)
-        return;
-    const bool two = n->integrator == MSPRING_INTEGRATOR_BDF2, falls = network->inverse_mass[slot] > 0.0f;
-    const float h = n->history.h, share = !falls ? 0.0f : two ? -0.5f * h * h : 1.0f;
-    n->history.first.x[slot] = share * network->gravity_x;
-    n->history.first.y[slot] = share * network->gravity_y;
-    if (!n->history.second.x)
-        return;
-    n->history.second.x[slot] = falls ? h * network->gravity_x : 0.0f;
-    n->history.second.y[slot] = falls ? h * network->gravity_y : 0.0f;
-}
-
-/* --------------------------------------------------------------------------------------------------------- plan */
-
-void mspringi_implicit_describe(const mspringi_implicit *n, mspring_plan *plan) {
-    if (!n)
-        return;
-    plan->solver = n->is_direct ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT;
-    plan->integrator = n->integrator;
-    plan->factor_values = n->direct.plan.panel_reals;
-    plan->factor_products = n->direct.plan.multiply_adds;
-    if (n->is_direct)
-        return;
-    plan->iterations = n->iterations;
-    plan->tile_size = n->tiles.cells.size;
-    plan->tile_count = n->tiles.count;
-    plan->coarse_values = (uint32_t)(n->coarse.value_count < UINT32_MAX ? n->coarse.value_count : UINT32_MAX);
-    plan->coarse_period = n->coarse_period;
-}
-
-void mspringi_implicit_clear_place(mspringi_implicit *n, const mspringi_topology *t, mspringi_place place) {
-    for (uint32_t factor = 0; n && place >= t->chain_places && factor < MSPRINGI_FACTORS; ++factor)
-        n->factors[mspringi_factors_of_place(place) + factor * MSPRINGI_WIDTH] = 0.0f;
-}
-
 /* -------------------------------------------------------------------------------------------------------- ranges
  */
 
@@ -425,7 +375,7 @@ bool mspringi_next_slots(const mspring_network *network, mspringi_slots slots, s
     const size_t first = *at > slots.first ? *at : slots.first;
     *run = (mspringi_slots){first, first};
     *at = slots.end;
-    if (network->sleep.sleeping == 0 || network->implicit->is_direct) {
+    if (network->sleep.sleeping == 0 || mspringi_implicit_of(network)->is_direct) {
         run->end = slots.end;
         return run->first < run->end;
     }

@@ -89,44 +89,45 @@ typedef struct mspringi_implicit {
     mspringi_coarse coarse;
 } mspringi_implicit;
 
+/// The object of the solver that takes the step that is being made.
+static inline mspringi_implicit *mspringi_implicit_of(const mspring_network *network) {
+    MSPRINGI_ASSERT(network->running);
+    return network->running->object;
+}
+
 /// Make an implicit solver for a network that is otherwise complete. On failure there is nothing to free.
 mspring_result mspringi_implicit_create(mspring_network *network, const mspring_solver_def *def,
                                         mspringi_implicit **implicit);
-/// Whether it can go on with this definition; then mspringi_implicit_adjust() is all there is to do.
-bool mspringi_implicit_fits(const mspringi_implicit *implicit, const mspring_solver_def *def);
 void mspringi_implicit_adjust(mspringi_implicit *implicit, const mspring_solver_def *def);
 void mspringi_implicit_destroy(mspringi_implicit *implicit, mspringi_memory *memory);
 /// Have a copied solver's pointers lead into the copy of its network.
 void mspringi_implicit_relocate(mspringi_implicit *implicit, const mspring_network *network,
                                 const mspringi_memory *from, const mspringi_memory *to);
+/// Have carry rows for the workers that there are now.
+mspring_result mspringi_implicit_reserve(mspringi_implicit *implicit, mspring_network *network);
 
-/// Make the solver that takes steps for the explicit one, if it is not there, with tiles of that size (0: by plan).
-/// It keeps nothing from step to step.
-mspring_result mspringi_fallback_reserve(mspring_network *network, uint32_t tile_size);
 /// Forget the history, as if a new motion began.
 void mspringi_implicit_forget(mspringi_implicit *implicit);
-
-/// Forget that of one particle, as if it had fallen freely: forces that it holds act no more. NULL is allowed.
-void mspringi_implicit_forget_slot(const mspring_network *network, mspringi_implicit *implicit, uint32_t slot);
 
 /// Take count substeps of length h, all with the forces from outside that are in base (x NULL: none).
 void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count);
 
 /// Cut tiles anew where springs broke or were restored, or pins changed. Allocates nothing.
-void mspringi_implicit_follow(mspring_network *network);
-
-/// Let a place outside of rows in which no spring lies any more add nothing. NULL is allowed.
-void mspringi_implicit_clear_place(mspringi_implicit *n, const mspringi_topology *t, mspringi_place place);
+void mspringi_implicit_follow(const mspring_network *network, mspringi_implicit *implicit);
 
 /// Keep the history for a step that fails, and get it back.
-void mspringi_implicit_keep(mspring_network *network);
-void mspringi_implicit_restore(mspring_network *network);
+void mspringi_implicit_keep(mspringi_implicit *implicit);
+void mspringi_implicit_restore(const mspring_network *network, mspringi_implicit *implicit);
 
-/// Add to the plan what it says of the implicit solver. Nothing for NULL.
-void mspringi_implicit_describe(const mspringi_implicit *implicit, mspring_plan *plan);
+/* saved.c: a snapshot's section */
 
-/// Have carry rows for the workers that there are now.
-mspring_result mspringi_implicit_reserve(mspring_network *network);
+size_t mspringi_implicit_size(const mspring_network *network, const mspringi_implicit *implicit);
+void mspringi_implicit_save(const mspring_network *network, const mspringi_implicit *implicit,
+                            struct mspringi_writer *to);
+mspring_result mspringi_implicit_check(mspring_network *network, const mspringi_implicit *implicit,
+                                       const uint8_t *from, size_t size);
+void mspringi_implicit_load(mspring_network *network, mspringi_implicit *implicit, const uint8_t *from,
+                            size_t size);
 
 /// What the workers of one substep share.
 typedef struct mspringi_substep_of {

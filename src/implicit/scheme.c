@@ -57,7 +57,7 @@ static float rescaling(const mspringi_implicit *n, float h) {
 
 static mspringi_flight prepare_flight(const mspringi_substep_of *substep, mspring_integrator integrator) {
     const mspring_network *network = substep->network;
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     const float h = substep->h, ratio = rescaling(n, h);
     const float share = integrator == MSPRING_INTEGRATOR_GA0    ? 0.25f * h
                         : integrator == MSPRING_INTEGRATOR_BDF2 ? -0.5f / h * (ratio * ratio)
@@ -90,7 +90,7 @@ static mspringi_flight prepare_flight(const mspringi_substep_of *substep, msprin
 // The forces from outside, and the inertia of what was predicted.
 static void prepare_outside(mspringi_substep_of *substep, double c, double heavier) {
     const mspring_network *network = substep->network;
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     const bool two = n->integrator == MSPRING_INTEGRATOR_BDF2 && !starts_anew(n);
     const float h = substep->h, ratio = rescaling(n, h);
     const double damping = (double)network->global_damping;
@@ -131,7 +131,7 @@ static mspringi_memory_of choose_memory(const mspringi_implicit *n) {
 
 static void prepare_landing(mspringi_substep_of *substep, float rate) {
     const mspring_network *network = substep->network;
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_history *from = &n->history, *to = &n->previous;
     const mspringi_field direction = n->is_direct ? n->product : n->direction; // nothing, or what is left of d
     substep->memory = choose_memory(n);
@@ -167,7 +167,7 @@ static void prepare_landing(mspringi_substep_of *substep, float rate) {
 
 void mspringi_scheme_prepare(mspringi_substep_of *substep) {
     const mspring_network *network = substep->network;
-    mspringi_implicit *n = network->implicit;
+    mspringi_implicit *n = mspringi_implicit_of(network);
     const mspring_integrator integrator = integrator_now(n);
     const mspringi_scheme scheme = mspringi_scheme_of(integrator);
     const double h = (double)substep->h, c = scheme.force_share * h * h;
@@ -185,7 +185,7 @@ void mspringi_scheme_prepare(mspringi_substep_of *substep) {
 
 void mspringi_predict(const mspringi_substep_of *substep, mspringi_mate *mate) {
     const mspring_network *network = substep->network;
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_system_kernels *kernels = &network->kernels->system;
     const mspringi_tiles *tiles = &n->tiles;
     const mspringi_slots slots = mspringi_slots_of(network, mate);
@@ -207,7 +207,7 @@ void mspringi_predict(const mspringi_substep_of *substep, mspringi_mate *mate) {
 
 // Particles without springs are in no tile and no factor: their rows of A are diagonal.
 static void land_loose(const mspring_network *network, mspringi_slots slots) {
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_slots loose = mspringi_loose_slots(&network->topology, &slots);
     for (size_t i = loose.first; i < loose.end; ++i) {
         if (mspringi_is_solved(network, n, i))
@@ -217,12 +217,13 @@ static void land_loose(const mspring_network *network, mspringi_slots slots) {
     }
 }
 
-// Rows of particles whose springs have all broken are diagonal, too: what iterations have left of their residual is done
-// at once. (Up to a hundredth of their momentum was, where iterations end early.)
+// Rows of particles whose springs have all broken are diagonal, too: what iterations have left of their residual is
+// done at once. (Up to a hundredth of their momentum was, where iterations end early.)
 static void land_broken_off(const mspring_network *network, mspringi_slots slots, float alpha) {
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     const bool has_contacts = network->floor && network->floor->contact_count > 0;
-    if (n->is_direct || has_contacts || network->edits.links == 0 || !n->budget.is_known || !(alpha - alpha == 0.0f))
+    if (n->is_direct || has_contacts || network->edits.links == 0 || !n->budget.is_known ||
+        !(alpha - alpha == 0.0f))
         return;
     const size_t loose = (size_t)network->topology.loose_first * MSPRINGI_WIDTH;
     for (size_t i = slots.first; i < slots.end && i < loose; ++i) {
@@ -248,7 +249,7 @@ void mspringi_land(const mspringi_substep_of *substep, const mspringi_mate *mate
 }
 
 void mspringi_scheme_close(const mspringi_substep_of *substep) {
-    mspringi_implicit *n = substep->network->implicit;
+    mspringi_implicit *n = mspringi_implicit_of(substep->network);
     const mspringi_history before = n->history;
     n->history = n->previous;
     n->is_first = n->is_kept;
@@ -267,7 +268,7 @@ void mspringi_scheme_close(const mspringi_substep_of *substep) {
 }
 
 void mspringi_scheme_reopen(mspring_network *network) {
-    mspringi_implicit *n = network->implicit;
+    mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_history failed = n->history;
     if (n->is_first) {
         n->history = n->backup;

@@ -8,8 +8,8 @@
 ///
 /// The number of iterations is fixed, and every sum has a fixed order, whatever the instruction set and however
 /// many workers there are. All workers run the same code and compute the same scalars from the same sums.
-#include "contact/floor.h"
 #include "implicit.h"
+#include "terms.h"
 
 #include <math.h>
 #include <string.h>
@@ -24,13 +24,13 @@ typedef mspringi_substep_of substep_of;
 /* ------------------------------------------------------------------------------------------------- coarse space */
 
 static mspringi_coarse_parts coarse_parts(const mspring_network *network) {
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     return (mspringi_coarse_parts){&network->kernels->system, &n->iterate, n->factors, n->mass};
 }
 
 // Invert the blocks of D, but those of particles without springs: these are not solved for here.
 static void invert(const mspring_network *network, mspringi_slots slots) {
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     const size_t loose = (size_t)network->topology.loose_first * MSPRINGI_WIDTH;
     const size_t end = slots.end < loose || n->is_solved ? slots.end : loose;
     float *const blocks[] = {n->system.xx, n->system.xy, n->system.yy};
@@ -48,7 +48,7 @@ static void invert(const mspring_network *network, mspringi_slots slots) {
 }
 
 static void assemble_coarse(const mspring_network *network, const mspringi_mate *mate) {
-    mspringi_implicit *n = network->implicit;
+    mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_coarse_parts parts = coarse_parts(network);
     const size_t cells = n->tiles.cells.count;
     if (n->age == 0)
@@ -57,7 +57,7 @@ static void assemble_coarse(const mspring_network *network, const mspringi_mate 
 }
 
 static void factor_coarse(const mspring_network *network) {
-    mspringi_implicit *n = network->implicit;
+    mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_coarse_parts parts = coarse_parts(network);
     if (n->age > 0)
         return;
@@ -76,7 +76,7 @@ static double (*unknowns_of(const mspringi_implicit *n, const mspringi_mate *mat
 // for another. Returns r . Z Ac^-1 Z^T r.
 static double correct(const substep_of *substep, mspringi_mate *mate, bool is_first) {
     const mspring_network *network = substep->network;
-    mspringi_implicit *n = network->implicit;
+    mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_tiles *tiles = &n->tiles;
     if (is_first && mate->index == 0)
         factor_coarse(network);
@@ -91,7 +91,7 @@ static double correct(const substep_of *substep, mspringi_mate *mate, bool is_fi
 // direction = z + beta direction, or what of it there is to be.
 static void turn(const substep_of *substep, mspringi_mate *mate, mspringi_turn what, float beta) {
     const mspring_network *network = substep->network;
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_slots slots = mspringi_slots_of(network, mate);
     const mspringi_part_range parts = mspringi_tiles_parts(&n->tiles, slots.first, slots.end);
     network->kernels->system.turn[what](&n->iterate, parts.parts, parts.count,
@@ -102,7 +102,7 @@ static void turn(const substep_of *substep, mspringi_mate *mate, mspringi_turn w
 // Go on by alpha. Returns r . D^-1 r.
 static double advance(const substep_of *substep, mspringi_mate *mate, float alpha, bool is_first) {
     const mspring_network *network = substep->network;
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_slots slots = mspringi_slots_of(network, mate);
     const size_t chunks = (mspringi_slot_count(network) + MSPRINGI_CHUNK - 1) / MSPRINGI_CHUNK;
     const size_t first_chunk = slots.first / MSPRINGI_CHUNK;
@@ -132,7 +132,7 @@ static double solve_tiles(const substep_of *substep, mspringi_mate *mate) {
 
 // d = 0.
 static double begin_anew(const substep_of *substep, mspringi_mate *mate) {
-    const mspringi_implicit *n = substep->network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(substep->network);
     const mspringi_slots slots = mspringi_slots_of(substep->network, mate);
     const mspringi_field fields[] = {n->direction, n->product};
     for (size_t i = 0; i < 2; ++i) {
@@ -144,7 +144,7 @@ static double begin_anew(const substep_of *substep, mspringi_mate *mate) {
 
 float mspringi_solve(const substep_of *substep, mspringi_mate *mate) {
     const mspring_network *network = substep->network;
-    mspringi_implicit *n = network->implicit;
+    mspringi_implicit *n = mspringi_implicit_of(network);
     // Contacts are far stiffer than all else: with the usual iterations a bar on the floor trembles, at 0.01 m/s.
     // And what a substep is in pieces for may be that iterations end too early.
     const bool has_contacts = network->floor && network->floor->contact_count > 0;

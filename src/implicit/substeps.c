@@ -2,6 +2,7 @@
 #include "contact/floor.h"
 #include "implicit.h"
 #include "stability/guard.h"
+#include "terms.h"
 
 /// Workers meet some forty times in a substep. Where they have to share cores, these become sleeps, and one worker
 /// is faster alone (two workers on cores with a load of 10: 2.3 times, 1800x5). So after a substep with more than
@@ -14,10 +15,10 @@
 
 // Forget the history if the host has begun a new motion; cut tiles anew where springs broke or pins changed.
 static void follow_edits(mspring_network *network) {
-    mspringi_implicit *n = network->implicit;
+    mspringi_implicit *n = mspringi_implicit_of(network);
     if (n->seen.motion != network->edits.motion)
         mspringi_implicit_forget(n);
-    mspringi_implicit_follow(network);
+    mspringi_implicit_follow(network, n);
     n->system.parts = network->parts;
     n->system.rest_lengths = network->rests.lengths;
     n->system.rests_of_block = network->rests.of_block;
@@ -25,7 +26,7 @@ static void follow_edits(mspring_network *network) {
 
 // Find d = displacement + alpha direction. Returns alpha; NaN if numbers overflowed.
 static float solve(const mspringi_substep_of *substep, mspringi_mate *mate) {
-    if (!substep->network->implicit->is_direct)
+    if (!mspringi_implicit_of(substep->network)->is_direct)
         return mspringi_solve(substep, mate);
     mspringi_meet(mate);
     if (mate->index == 0)
@@ -80,7 +81,7 @@ static void run_share(void *argument, uint32_t index, uint32_t worker) {
 
 static void choose_crew(mspringi_substep_of *substep) {
     const mspring_network *network = substep->network;
-    mspringi_implicit *n = network->implicit;
+    mspringi_implicit *n = mspringi_implicit_of(network);
     const bool shared = mspringi_slot_count(network) >= MSPRINGI_SMALLEST_SHARED_SLOTS && n->alone == 0;
     n->alone -= n->alone > 0;
     substep->workers = shared ? mspringi_tasks_concurrency(network->tasks) : 1;
@@ -107,7 +108,7 @@ static void run_crew(mspringi_substep_of *substep) {
 // Solve a substep, by implicit Euler if it is a piece of another, and let the floor act.
 static void run_substep(mspringi_substep_of *substep, bool is_piece) {
     mspring_network *network = substep->network;
-    mspringi_implicit *n = network->implicit;
+    mspringi_implicit *n = mspringi_implicit_of(network);
     const uint32_t sleeps = mspringi_tasks_sleeps(network->tasks);
     choose_crew(substep);
     n->is_piece = is_piece;
@@ -133,7 +134,7 @@ static void take_halves(mspringi_substep_of *substep, uint32_t halvings);
 // iterations, and then in halves.
 static void take_substep(mspringi_substep_of *substep, uint32_t tries) {
     mspring_network *network = substep->network;
-    mspringi_implicit *n = network->implicit;
+    mspringi_implicit *n = mspringi_implicit_of(network);
     if (substep->watches)
         mspringi_budget_open(network);
     else
@@ -156,12 +157,12 @@ static void take_halves(mspringi_substep_of *substep, uint32_t tries) {
     const float h = substep->h;
     substep->h = 0.5f * h;
     for (int half = 0; half < 2; ++half) {
-        network->implicit->age = 0; // the coarse matrix is one of another substep
+        mspringi_implicit_of(network)->age = 0; // the coarse matrix is one of another substep
         if (network->floor)
             mspringi_floor_keep(network, substep->h);
         take_substep(substep, tries);
     }
-    network->implicit->age = 0;
+    mspringi_implicit_of(network)->age = 0;
     substep->h = h;
 }
 
@@ -181,15 +182,19 @@ static void take_pieces(mspringi_substep_of *substep) {
 }
 
 void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+    if (network->floor)
+        mspringi_floor_keep_loose(network);
     follow_edits(network);
     mspringi_substep_of substep = {
         .network = network, .base = base, .h = h, .watches = mspringi_guard_looks(network->guard_policy)};
     if (substep.watches)
         mspringi_budget_follow(network);
-    for (; count > 0; --count) {
+    for (uint32_t i = 0; i < count; ++i) {
         if (network->floor)
             take_pieces(&substep);
         else
             take_substep(&substep, 0);
     }
+    if (network->floor)
+        mspringi_floor_fly_loose(network, h, base, count);
 }

@@ -26,7 +26,7 @@ static double y_at(const mspringi_motion *m, size_t slot) {
 
 static void add_effect(const measuring *all, const account *a, size_t slot, double *to) {
     const mspring_network *network = all->network;
-    const budget_of *budget = &network->implicit->budget;
+    const budget_of *budget = &mspringi_implicit_of(network)->budget;
     const mspringi_floor *floor = network->floor;
     if (!(network->inverse_mass[slot] > 0.0f))
         return;
@@ -48,7 +48,7 @@ static void add_effect(const measuring *all, const account *a, size_t slot, doub
 // Blocks first to end - 1, all of one component.
 static void measure_run(const measuring *all, size_t first, size_t end) {
     const mspring_network *network = all->network;
-    budget_of *budget = &network->implicit->budget;
+    budget_of *budget = &mspringi_implicit_of(network)->budget;
     const account *a = &budget->accounts[budget->of_block[first]];
     double *to = budget->runs[first];
     memset(to, 0, sizeof budget->runs[first]);
@@ -74,7 +74,7 @@ static bool next_run(const budget_of *budget, size_t *first, size_t end, size_t 
 }
 
 static void keep_slots(const mspring_network *network, size_t first, size_t end) {
-    const budget_of *budget = &network->implicit->budget;
+    const budget_of *budget = &mspringi_implicit_of(network)->budget;
     const size_t slots = mspringi_slot_count(network), size = (end - first) * sizeof *budget->state;
     for (size_t i = 0; i < MSPRINGI_STATE_ARRAYS; ++i)
         memcpy(budget->state + i * slots + first, network->state.x + i * slots + first, size);
@@ -88,7 +88,7 @@ static void keep_slots(const mspring_network *network, size_t first, size_t end)
 static void measure_share(void *argument, uint32_t index, uint32_t worker) {
     const measuring *all = argument;
     mspring_network *network = all->network;
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_mate mate = {.index = index, .count = all->workers};
     const mspringi_slots slots = mspringi_slots_of(network, &mate);
     (void)worker;
@@ -111,7 +111,7 @@ static void measure_share(void *argument, uint32_t index, uint32_t worker) {
 
 static void add_particles(const measuring *all) {
     mspring_network *network = all->network;
-    budget_of *budget = &network->implicit->budget;
+    budget_of *budget = &mspringi_implicit_of(network)->budget;
     const mspringi_motion *m = &all->motion;
     const size_t blocks = network->topology.block_count, sums = all->is_after ? MSPRINGI_EFFECTS : MSPRINGI_MOMENTS;
     size_t end;
@@ -147,7 +147,7 @@ static void add_particles(const measuring *all) {
 // A spring of which it is not known in what component it is.
 static void add_spring(const measuring *all, mspringi_place place) {
     const mspring_network *network = all->network;
-    budget_of *budget = &network->implicit->budget;
+    budget_of *budget = &mspringi_implicit_of(network)->budget;
     const mspringi_motion *m = &all->motion;
     const mspringi_spring_values s = mspringi_place_get(network, place);
     const double x = x_at(m, s.tip) - x_at(m, s.base), y = y_at(m, s.tip) - y_at(m, s.base),
@@ -176,7 +176,7 @@ static bool is_live(const mspring_network *network, mspringi_place place) {
 static void add_springs(const measuring *all) {
     const mspring_network *network = all->network;
     const mspringi_topology *t = &network->topology;
-    budget_of *budget = &network->implicit->budget;
+    budget_of *budget = &mspringi_implicit_of(network)->budget;
     size_t word, words;
     for (size_t block = 0; block < t->block_count; ++block) {
         const uint32_t number = budget->of_springs[block];
@@ -198,7 +198,7 @@ static void add_springs(const measuring *all) {
 
 // What holds a particle in the linear system may come to no impulse that single precision shows.
 static void add_contacts(const mspring_network *network) {
-    budget_of *budget = &network->implicit->budget;
+    budget_of *budget = &mspringi_implicit_of(network)->budget;
     const mspringi_floor *floor = network->floor;
     for (uint32_t i = 0; floor && i < floor->contact_count; ++i) {
         const uint32_t number = budget->of_slot[floor->contacts[i].slot];
@@ -209,7 +209,7 @@ static void add_contacts(const mspring_network *network) {
 
 void mspringi_budget_measure(measuring *all) {
     mspring_network *network = all->network;
-    mspringi_implicit *n = network->implicit;
+    mspringi_implicit *n = mspringi_implicit_of(network);
     const bool shared = mspringi_slot_count(network) >= MSPRINGI_SMALLEST_SHARED_SLOTS && n->alone == 0;
     all->workers = shared ? mspringi_tasks_concurrency(network->tasks) : 1;
     mspringi_tasks_run(all->workers > 1 ? network->tasks : NULL, all->workers, measure_share, all);
@@ -256,7 +256,7 @@ static void add_given(const measuring *all, mspringi_place place) {
     const mspringi_spring_values s = mspringi_place_get(network, place);
     if (network->inverse_mass[s.base] > 0.0f && network->inverse_mass[s.tip] > 0.0f)
         return;
-    budget_of *budget = &network->implicit->budget;
+    budget_of *budget = &mspringi_implicit_of(network)->budget;
     budget->accounts[budget->of_slot[s.base]].given += given_by_pins(all, &s);
 }
 
@@ -271,7 +271,7 @@ static bool has_pin(const mspring_network *network, size_t block) {
 void mspringi_budget_add_given(const measuring *all) {
     const mspring_network *network = all->network;
     const mspringi_topology *t = &network->topology;
-    budget_of *budget = &network->implicit->budget;
+    budget_of *budget = &mspringi_implicit_of(network)->budget;
     size_t word, words;
     for (uint32_t i = 0; i < budget->count; ++i)
         budget->accounts[i].given = 0.0;

@@ -4,7 +4,6 @@
 /// that destroy, those of floor and hooks here. One that is forgotten leads back into the original, which
 /// test_clone finds by looking at every word of a clone.
 #include "contact/floor.h"
-#include "implicit/implicit.h"
 #include "network.h"
 #include "store/store.h"
 
@@ -52,12 +51,7 @@ static void move_network(const moving *m, mspring_network *n) {
     MOVE(n->floor);
     if (n->floor)
         move_floor(m, n->floor);
-    MOVE(n->implicit);
-    if (n->implicit)
-        mspringi_implicit_relocate(n->implicit, n, m->from, m->to);
-    MOVE(n->fallback);
-    if (n->fallback)
-        mspringi_implicit_relocate(n->fallback, n, m->from, m->to);
+    mspringi_solvers_relocate(n, m->from, m->to);
 }
 
 /* ---------------------------------------------------------------------------------------------------- the clone */
@@ -81,7 +75,7 @@ static mspring_result employ(mspring_network *network, const mspring_clone_def *
                                                   &network->message, &network->tasks);
     if (result == MSPRING_OK)
         result = mspringi_carry_reserve(network);
-    return result == MSPRING_OK ? mspringi_implicit_reserve(network) : result;
+    return result == MSPRING_OK ? mspringi_solvers_reserve(network) : result;
 }
 
 static mspring_result copy(const mspring_network *network, const mspring_clone_def *def,

@@ -11,7 +11,6 @@
 #include "explicit/seam.h"
 #include "fractions.h"
 #include "hooks.h"
-#include "implicit/implicit.h"
 #include "origin.h"
 #include "rests.h"
 #include "sleep/sleep.h"
@@ -206,6 +205,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
                                              const mspring_network_def *def) {
     bool damped, relative;
     mspringi_reserve reserve = {0};
+    network->solver.ops = mspringi_solver_ops_of(MSPRING_SOLVER_EXPLICIT);
     network->kernels = mspringi_kernels_of(mspringi_cpu_choose(def->simd_level));
     mspring_result result = mspringi_tasks_create(def->worker_count, def->tasks, &network->tasks_memory,
                                                   &network->message, &network->tasks);
@@ -262,7 +262,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     result = mspring_network_set_solver(network, &solver);
     if (result == MSPRING_OK)
         result = mspringi_guard_reserve(network, def->guard);
-    if (result == MSPRING_OK && network->looks && !network->implicit)
+    if (result == MSPRING_OK && network->looks && network->solver.ops->has_border)
         mspringi_border_learn(network);
     return result;
 }

@@ -9,13 +9,9 @@
 #include "components/components.h"
 #include "explicit/graft.h"
 #include "kernels/kernels.h"
+#include "solver.h"
 #include "tasks/tasks.h"
 #include "topology/topology.h"
-
-/// Two floats per slot, x and then y, in one block of memory.
-typedef struct mspringi_field {
-    float *x, *y;
-} mspringi_field;
 
 /// What a step changes. The arrays lie behind one another in one block of memory, so that they can be copied at
 /// once. Positions are x + low_x and y + low_y: what a substep adds to a position would be rounded away the more
@@ -317,12 +313,12 @@ struct mspring_network {
     uint32_t substeps; ///< of the last step or, unless auto_substeps, of the next
     uint32_t max_substeps;
     bool auto_substeps;
-    struct mspringi_implicit *implicit; ///< NULL: the explicit solver
-    struct mspringi_implicit *fallback; ///< takes steps for the explicit one; NULL before MSPRING_GUARD_IMPLICIT
-    uint64_t fallback_count;            ///< steps that it has taken
-    struct mspringi_floor *floor;       ///< NULL: there is none
+    mspringi_solver solver;         ///< the one that the host chose
+    mspringi_solver fallback;       ///< takes steps for the explicit one; none before MSPRING_GUARD_IMPLICIT
+    const mspringi_solver *running; ///< the one that takes the step that is being made; else NULL
+    uint64_t fallback_count;        ///< steps that it has taken
+    struct mspringi_floor *floor;   ///< NULL: there is none
     mspring_guard guard_policy;
-    bool is_clamped; ///< the step that is being made has its strain rates clamped
     mspringi_guard guard;
     float *looks;    ///< [5][slots] weights of the guard's bound, and room; NULL if it never looks at the border
     double shortest; ///< smallest rest length at first, m

@@ -1,6 +1,5 @@
 /// What a network says of itself: its sizes, its error, and how it was laid out.
 #include "edits/growth.h"
-#include "implicit/implicit.h"
 #include "network.h"
 
 const char *mspring_network_error(const mspring_network *network) {
@@ -58,6 +57,7 @@ mspring_result mspring_network_plan(const mspring_network *network, mspring_plan
         .simd_level = network->kernels->level,
         .web_layers = t->layer_count,
     };
-    mspringi_implicit_describe(network->implicit, plan);
+    if (network->solver.ops->describe)
+        network->solver.ops->describe(network->solver.object, plan);
     return MSPRING_OK;
 }

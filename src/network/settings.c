@@ -34,7 +34,7 @@ mspring_result mspringi_check_solver(const mspring_solver_def *def, mspringi_mes
         mspringi_check_struct(message, "mspring_solver_def", def->struct_size, sizeof *def, sizeof *def);
     if (result != MSPRING_OK)
         return result;
-    if (def->solver < MSPRING_SOLVER_EXPLICIT || def->solver > MSPRING_SOLVER_DIRECT)
+    if (!mspringi_solver_ops_of(def->solver))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "solver is %d, which is none", (int)def->solver);
     const bool automatic = def->substeps == MSPRING_SUBSTEPS_AUTO;
     if (!automatic && (def->substeps < 1 || def->substeps > MSPRING_MAX_SUBSTEPS))
@@ -46,22 +46,23 @@ mspring_result mspringi_check_solver(const mspring_solver_def *def, mspringi_mes
     return def->solver != MSPRING_SOLVER_EXPLICIT ? check_implicit(def, message) : MSPRING_OK;
 }
 
-// Exchange the implicit solver, or the lack of it, for that of the definition.
-static mspring_result change_implicit(mspring_network *network, const mspring_solver_def *def) {
-    mspringi_implicit *made = NULL;
-    if (def->solver != MSPRING_SOLVER_EXPLICIT) {
-        if (mspringi_implicit_fits(network->implicit, def)) {
-            mspringi_implicit_adjust(network->implicit, def);
-            return MSPRING_OK;
-        }
+// Exchange the solver for that of the definition, or have it go on with other settings.
+static mspring_result change_solver(mspring_network *network, const mspring_solver_def *def) {
+    mspringi_solver made = {mspringi_solver_ops_of(def->solver), NULL};
+    if (made.ops == network->solver.ops && (!made.ops->fits || made.ops->fits(network->solver.object, def))) {
+        if (made.ops->adjust)
+            made.ops->adjust(network->solver.object, def);
+        return MSPRING_OK;
+    }
+    if (made.ops->create) {
         const mspringi_fp_state before = mspringi_fp_enter();
-        mspring_result result = mspringi_implicit_create(network, def, &made);
+        mspring_result result = made.ops->create(network, def, &made.object);
         mspringi_fp_leave(before);
         if (result != MSPRING_OK)
             return result;
     }
-    mspringi_implicit_destroy(network->implicit, &network->memory);
-    network->implicit = made;
+    mspringi_solver_destroy(&network->solver, &network->memory);
+    network->solver = made;
     return MSPRING_OK;
 }
 
@@ -70,12 +71,12 @@ mspring_result mspring_network_set_solver(mspring_network *network, const msprin
     if (result == MSPRING_OK)
         result = mspringi_check_solver(def, &network->message);
     if (result == MSPRING_OK)
-        result = change_implicit(network, def);
+        result = change_solver(network, def);
     if (result != MSPRING_OK)
         return result;
     mspringi_wake(network);
     const bool automatic = def->substeps == MSPRING_SUBSTEPS_AUTO;
-    network->auto_substeps = automatic && !network->implicit;
+    network->auto_substeps = automatic && network->solver.ops->picks_substeps;
     network->substeps = automatic ? 1 : def->substeps;
     network->max_substeps = def->max_substeps;
     network->guard.lent = 0;

@@ -8,16 +8,12 @@
 #include "edits/growth.h"
 #include "edits/ramps.h"
 #include "edits/strain.h"
-#include "explicit/creep.h"
-#include "explicit/explicit.h"
 #include "hooks.h"
-#include "implicit/implicit.h"
 #include "network.h"
 #include "origin.h"
 #include "sleep/sleep.h"
 #include "solver.h"
 #include "springs.h"
-#include "stability/clamp.h"
 #include "stability/guard.h"
 #include "stability/stability.h"
 
@@ -64,21 +60,8 @@ static mspringi_field prepare_base(mspring_network *network, const mspringi_atte
 
 /* -------------------------------------------------------------------------------------------------- substeps */
 
-static void take_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
-    const bool flies_alone = network->floor && (network->implicit || network->is_clamped);
-    if (flies_alone)
-        mspringi_floor_keep_loose(network);
-    if (network->is_clamped)
-        mspringi_clamp_substeps(network, h, base, count);
-    else if (network->implicit)
-        mspringi_implicit_substeps(network, h, base, count);
-    else
-        mspringi_explicit_substeps(network, h, base, count);
-    if (flies_alone)
-        mspringi_floor_fly_loose(network, h, base, count);
-}
-
 static void run_substeps(mspring_network *network, const mspringi_attempt *attempt) {
+    const mspringi_solver *solver = attempt->solver;
     const bool hooks_before = mspringi_hooks_any(network, MSPRING_PHASE_BEFORE_SUBSTEP);
     const bool hooks_after = mspringi_hooks_any(network, MSPRING_PHASE_AFTER_SUBSTEP);
     const mspringi_field base = prepare_base(network, attempt);
@@ -96,7 +79,7 @@ static void run_substeps(mspring_network *network, const mspringi_attempt *attem
         if (hooks_after)
             mspringi_sleep_hold(network);
         if (!mspringi_sleep_is_whole(network))
-            take_substeps(network, attempt->h, field, count);
+            solver->ops->substeps(network, solver->object, attempt->h, field, count);
         if (hooks_after)
             mspringi_sleep_put_back(network);
         if (hooks_after)
@@ -114,29 +97,29 @@ void mspringi_drop_stale_lows(const mspring_network *network) {
 
 // Keep the state in the backup, run all substeps, and look at what they have led to.
 static mspringi_sight run(mspring_network *network, const mspringi_attempt *attempt) {
+    const mspringi_solver_ops *ops = attempt->solver->ops;
+    mspringi_sight sight = {0.0f, 0.0f, 0.0f};
     if (network->is_open) {
         mspringi_clear_empty_slots(network);
         mspringi_drop_stale_lows(network);
     }
-    if (!network->implicit)
-        mspringi_graft_follow(network);
+    if (ops->begin)
+        ops->begin(network);
     if (network->hook_count == 0) {
         const mspringi_field base = network->sleep.in_force = prepare_base(network, attempt);
         mspringi_sleep_feel(network, base);
-        if (mspringi_sleep_is_whole(network))
-            return (mspringi_sight){0.0f, 0.0f, 0.0f};
-        if (!network->implicit && !network->is_clamped && !network->floor && network->graft.count == 0)
-            return mspringi_explicit_step(network, attempt->h, base, attempt->substeps);
+        if (mspringi_sleep_is_whole(network) || (ops->whole && ops->whole(network, attempt, base, &sight)))
+            return sight;
     }
     copy_state(network, &network->state, &network->backup);
-    mspringi_implicit_keep(network);
+    if (ops->keep)
+        ops->keep(attempt->solver->object);
     run_substeps(network, attempt);
     if (network->is_open)
         mspringi_clear_empty_slots(network);
-    const size_t slots = mspringi_slot_count(network);
-    if (!network->implicit)
-        mspringi_creep_stop(network, 0, slots);
-    return mspringi_guard_look(network, 0, slots);
+    if (ops->end)
+        ops->end(network);
+    return mspringi_guard_look(network, 0, mspringi_slot_count(network));
 }
 
 /* ------------------------------------------------------------------------------------------------- the step */
@@ -172,11 +155,11 @@ static mspring_result choose_substeps(mspring_network *network, double dt) {
 }
 
 // To the state of before the step.
-static void go_back(mspring_network *network) {
+static void go_back(mspring_network *network, const mspringi_solver *solver) {
     copy_state(network, &network->backup, &network->state);
     mspringi_sleep_restore(network);
-    mspringi_explicit_reset(network);
-    mspringi_implicit_restore(network);
+    if (solver->ops->restore)
+        solver->ops->restore(network, solver->object);
     if (!mspringi_sleep_is_whole(network))
         mspringi_floor_take_back(network->floor);
     mspringi_clear_empty_slots(network);
@@ -208,26 +191,20 @@ static mspring_result check_given_speeds(mspring_network *network, double dt) {
     return MSPRING_OK;
 }
 
-// Take the step in so many substeps, or leave everything as it is.
-static mspring_result take(mspring_network *network, uint32_t substeps, double dt) {
-    const mspringi_attempt attempt = {dt, (float)(dt / (double)substeps), substeps};
-    if (!(attempt.h >= FLT_MIN && attempt.h <= FLT_MAX))
-        return mspringi_fail(
-            &network->message, MSPRING_ERROR_ARGUMENT,
-            "dt is %g s (substeps: %u): each substep must be a finite number of at least 1.2e-38 s", dt,
-            (unsigned)substeps);
-    mspringi_sleep_begin(network, &attempt);
+// Make an attempt whose substeps are numbers, or leave everything as it is.
+static mspring_result carry_out(mspring_network *network, const mspringi_attempt *attempt) {
+    mspringi_sleep_begin(network, attempt);
     if (mspringi_sleep_is_idle(network))
         return MSPRING_OK;
     const float relative_h = network->relative_h;
     const mspringi_guard guard = network->guard;
-    mspringi_derive_relative(network, attempt.h);
-    mspringi_ramps_apply(network, dt);
-    mspring_result result = mspringi_guard_begin(network, &attempt);
+    mspringi_derive_relative(network, attempt->h);
+    mspringi_ramps_apply(network, attempt->dt);
+    mspring_result result = mspringi_guard_begin(network, attempt);
     if (result == MSPRING_OK) {
-        result = mspringi_guard_end(network, &attempt, run(network, &attempt));
+        result = mspringi_guard_end(network, attempt, run(network, attempt));
         if (result != MSPRING_OK)
-            go_back(network);
+            go_back(network, attempt->solver);
     }
     if (result != MSPRING_OK) {
         network->guard = guard;
@@ -238,49 +215,52 @@ static mspring_result take(mspring_network *network, uint32_t substeps, double d
     return result;
 }
 
+// Have a solver take the step in so many substeps, or leave everything as it is.
+static mspring_result attempt(mspring_network *network, const mspringi_solver *solver, uint32_t substeps,
+                              double dt) {
+    const mspringi_attempt made = {dt, (float)(dt / (double)substeps), substeps, solver};
+    if (!(made.h >= FLT_MIN && made.h <= FLT_MAX))
+        return mspringi_fail(
+            &network->message, MSPRING_ERROR_ARGUMENT,
+            "dt is %g s (substeps: %u): each substep must be a finite number of at least 1.2e-38 s", dt,
+            (unsigned)substeps);
+    network->running = solver;
+    const mspring_result result = carry_out(network, &made);
+    network->running = NULL;
+    return result;
+}
+
 /// Steps that follow one which the explicit solver could not take, and which it is not asked to: to find that it
 /// still cannot takes longer than they do.
 #define LENT_STEPS 15
 
-static bool has_fallback(const mspring_network *network) {
-    return (network->guard_policy == MSPRING_GUARD_IMPLICIT && !network->implicit) ||
-           network->guard_policy == MSPRING_GUARD_CLAMP;
+// The solver for steps that the chosen one cannot take, or NULL.
+static const mspringi_solver *fallback_of(const mspring_network *network) {
+    if (network->guard_policy == MSPRING_GUARD_CLAMP)
+        return &mspringi_clamped;
+    return network->guard_policy == MSPRING_GUARD_IMPLICIT && network->solver.ops->has_border ? &network->fallback
+                                                                                              : NULL;
 }
 
-// Have the implicit solver take the step in one substep, or leave everything as it is. It starts without history
-// each time, so that there is none to keep.
-static mspring_result attempt_implicitly(mspring_network *network, double dt) {
-    MSPRINGI_ASSERT(network->fallback && !network->implicit);
-    mspringi_implicit_forget(network->fallback);
-    network->implicit = network->fallback;
-    const mspring_result result = take(network, 1, dt);
-    network->implicit = NULL;
-    return result;
-}
-
-// Take the step with strain rates clamped, whatever the solver, or leave everything as it is. To an implicit one a
-// new motion begins after it.
-static mspring_result attempt_clamped(mspring_network *network, double dt) {
-    struct mspringi_implicit *const implicit = network->implicit;
-    const uint32_t substeps = network->auto_substeps ? network->max_substeps : network->substeps;
-    network->implicit = NULL;
-    network->is_clamped = true;
-    const mspring_result result = take(network, substeps, dt);
-    network->is_clamped = false;
-    network->implicit = implicit;
+// Have the fallback take the step, or leave everything as it is. Neither it nor the chosen solver, for which a new
+// motion begins after it, has a history then.
+static mspring_result attempt_otherwise(mspring_network *network, const mspringi_solver *fallback, double dt) {
+    const uint32_t own = network->auto_substeps ? network->max_substeps : network->substeps;
+    const bool takes_one = fallback->ops->takes_one;
+    mspringi_solver_forget(fallback);
+    const mspring_result result = attempt(network, fallback, takes_one ? 1 : own, dt);
     if (result != MSPRING_OK)
         return result;
-    network->substeps = substeps;
-    if (implicit)
-        mspringi_implicit_forget(implicit);
+    mspringi_solver_forget(&network->solver);
+    if (!takes_one)
+        network->substeps = own;
     return result;
 }
 
 // Take the step that the solver cannot take, or will not be asked to.
-static mspring_result fall_back(mspring_network *network, double dt) {
-    const uint32_t lent = network->guard.lent, next = network->implicit ? 0 : LENT_STEPS;
-    const bool clamps = network->guard_policy == MSPRING_GUARD_CLAMP;
-    const mspring_result result = clamps ? attempt_clamped(network, dt) : attempt_implicitly(network, dt);
+static mspring_result fall_back(mspring_network *network, const mspringi_solver *fallback, double dt) {
+    const uint32_t lent = network->guard.lent, next = network->solver.ops->has_border ? LENT_STEPS : 0;
+    const mspring_result result = attempt_otherwise(network, fallback, dt);
     const bool took_it = result == MSPRING_OK && !mspringi_sleep_is_idle(network);
     if (took_it)
         network->guard.h = 0.0f; // before the solver is asked again, it is looked whether it can be
@@ -289,9 +269,9 @@ static mspring_result fall_back(mspring_network *network, double dt) {
     return result;
 }
 
-static mspring_result attempt_explicitly(mspring_network *network, double dt) {
+static mspring_result attempt_as_chosen(mspring_network *network, double dt) {
     const mspring_result result = network->auto_substeps ? choose_substeps(network, dt) : MSPRING_OK;
-    return result == MSPRING_OK ? take(network, network->substeps, dt) : result;
+    return result == MSPRING_OK ? attempt(network, &network->solver, network->substeps, dt) : result;
 }
 
 static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt) {
@@ -306,15 +286,16 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
     if (check_given_speeds(network, dt) != MSPRING_OK)
         return MSPRING_ERROR_UNSTABLE;
     network->sleep.has_kept = false;
-    const bool lent = has_fallback(network) && network->guard.lent > 0;
-    mspring_result result = lent ? fall_back(network, dt) : attempt_explicitly(network, dt);
-    if (result == MSPRING_ERROR_UNSTABLE && has_fallback(network) && !lent)
-        result = fall_back(network, dt);
+    const mspringi_solver *fallback = fallback_of(network);
+    const bool lent = fallback && network->guard.lent > 0;
+    mspring_result result = lent ? fall_back(network, fallback, dt) : attempt_as_chosen(network, dt);
+    if (result == MSPRING_ERROR_UNSTABLE && fallback && !lent)
+        result = fall_back(network, fallback, dt);
     while (result == MSPRING_ERROR_UNSTABLE && network->guard_policy == MSPRING_GUARD_RETRY &&
            network->substeps < network->max_substeps) {
         const uint32_t twice = 2 * network->substeps;
         network->substeps = twice < network->max_substeps ? twice : network->max_substeps;
-        result = take(network, network->substeps, dt);
+        result = attempt(network, &network->solver, network->substeps, dt);
     }
     if (result != MSPRING_OK) {
         network->substeps = substeps;

@@ -9,7 +9,6 @@
 #include <string.h>
 
 #include "edits/growth.h"
-#include "implicit/implicit.h"
 #include "store/store.h"
 
 /* ---------------------------------------------------------------------------------------------------- memory */
@@ -229,10 +228,10 @@ void mspringi_sleep_feel(mspring_network *network, mspringi_field force) {
 
 /* ------------------------------------------------------------------------------------------------- in a step */
 
-// The explicit solver leaves alone what is not swept; others go by larger pieces.
+// Some solvers leave alone what is not swept; others go by larger pieces.
 static bool is_held(const mspring_network *network, size_t block) {
     const mspringi_sleep *s = &network->sleep;
-    return s->sleepers[block] != 0 && (s->swept[block] || network->implicit || network->is_clamped);
+    return s->sleepers[block] != 0 && (s->swept[block] || !network->running->ops->skips_sleepers);
 }
 
 void mspringi_sleep_hold(const mspring_network *network) {
@@ -350,14 +349,6 @@ static bool mark_sleepy(const mspring_network *network, double dt) {
     return any;
 }
 
-// What an integrator remembers of the motion has come to its end.
-static void forget_motion(const mspring_network *network, size_t slot) {
-    const mspringi_implicit *n = network->implicit;
-    const size_t slots = mspringi_slot_count(network);
-    for (size_t i = 0; n && i < n->history_size; i += slots)
-        n->history.first.x[i + slot] = n->backup.first.x[i + slot] = n->previous.first.x[i + slot] = 0.0f;
-}
-
 static void put_to_sleep(mspring_network *network, size_t slot, mspringi_field force) {
     const mspringi_state *state = &network->state;
     const mspringi_sleep *s = &network->sleep;
@@ -373,7 +364,8 @@ static void put_to_sleep(mspring_network *network, size_t slot, mspringi_field f
     s->inverse_mass[slot] = network->inverse_mass[slot];
     s->force.x[slot] = force.x ? force.x[slot] : 0.0f;
     s->force.y[slot] = force.x ? force.y[slot] : 0.0f;
-    forget_motion(network, slot);
+    if (network->solver.ops->rest_slot)
+        network->solver.ops->rest_slot(network, network->solver.object, slot);
 }
 
 void mspringi_sleep_fall(mspring_network *network, mspringi_field force) {

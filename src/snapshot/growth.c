@@ -5,7 +5,6 @@
 #include "base/bytes.h"
 #include "edits/breaking.h"
 #include "edits/growth.h"
-#include "implicit/implicit.h"
 #include "network/fractions.h"
 #include "network/springs.h"
 #include "sections.h"
@@ -198,7 +197,7 @@ static mspring_result growth_check(mspring_network *network, const uint8_t *from
         result = check_particle(network, &g, p);
     for (mspring_id s = t->reserve.first_spring; result == MSPRING_OK && s < t->reserve.spring_end; ++s) {
         result = check_spring(network, &g, s);
-        if (result == MSPRING_OK && network->implicit && network->implicit->is_direct && !stays(network, &g, s))
+        if (result == MSPRING_OK && !network->solver.ops->can_add && !stays(network, &g, s))
             result = mspringi_section_fail(network, section,
                                            "spring %u is another one, for which the direct solver "
                                            "would have to be chosen anew",
@@ -241,8 +240,7 @@ static void unload_spring(mspring_network *network, const growth *g, mspring_id 
     (void)mspringi_spring_break(network, s);
     mspringi_growth_unlink(network, s);
     network->growth.springs[s] = MSPRINGI_GONE;
-    mspringi_implicit_clear_place(network->implicit, t, mspringi_place_of(t, s));
-    mspringi_implicit_clear_place(network->fallback, t, mspringi_place_of(t, s));
+    mspringi_solvers_clear_spring(network, mspringi_place_of(t, s));
 }
 
 // Put in one that is to be there, broken and without values for the time being.

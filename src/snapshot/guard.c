@@ -2,7 +2,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "implicit/implicit.h"
+#include "implicit/cells.h"
 #include "sections.h"
 #include "stability/border.h"
 #include "stability/guard.h"
@@ -14,13 +14,7 @@ typedef struct guard_head {
 } guard_head;
 #define HEAD_BYTES ((size_t)40)
 
-/// What the solver that takes steps for the explicit one was made for: masses, rest lengths and springs at that
-/// time, which edits do not change.
-typedef struct fallback_head {
-    double scale;
-    float turn_inertia;
-    uint32_t tile_size;
-} fallback_head;
+// Of a mspringi_solver_basis.
 #define FALLBACK_BYTES ((size_t)16)
 
 /// Whether dt is known, and whether that was before the last edit.
@@ -30,10 +24,11 @@ static size_t guard_size(const mspring_network *network) {
     return HEAD_BYTES + (network->guard_policy == MSPRING_GUARD_IMPLICIT ? FALLBACK_BYTES : 0);
 }
 
-static void fallback_save(const mspringi_implicit *n, mspringi_writer *to) {
-    mspringi_put(to, &n->scale, 1, sizeof n->scale);
-    mspringi_put(to, &n->tiles.turn_inertia, 1, sizeof n->tiles.turn_inertia);
-    mspringi_put(to, &n->tiles.cells.size, 1, sizeof n->tiles.cells.size);
+static void fallback_save(const mspringi_solver *fallback, mspringi_writer *to) {
+    const mspringi_solver_basis basis = mspringi_solver_get_basis(fallback);
+    mspringi_put(to, &basis.scale, 1, sizeof basis.scale);
+    mspringi_put(to, &basis.turn_inertia, 1, sizeof basis.turn_inertia);
+    mspringi_put(to, &basis.tile_size, 1, sizeof basis.tile_size);
 }
 
 static void guard_save(const mspring_network *network, mspringi_writer *to) {
@@ -51,7 +46,7 @@ static void guard_save(const mspring_network *network, mspringi_writer *to) {
     mspringi_put(to, floats, sizeof floats / sizeof floats[0], sizeof floats[0]);
     mspringi_put(to, words, sizeof words / sizeof words[0], sizeof words[0]);
     if (network->guard_policy == MSPRING_GUARD_IMPLICIT)
-        fallback_save(network->fallback, to);
+        fallback_save(&network->fallback, to);
 }
 
 static const uint8_t *read_head(const uint8_t *from, guard_head *head) {
@@ -66,28 +61,27 @@ static const uint8_t *read_head(const uint8_t *from, guard_head *head) {
     return mspringi_get(from, &head->lent, 1, sizeof head->lent);
 }
 
-static const uint8_t *read_fallback(const uint8_t *from, fallback_head *head) {
-    from = mspringi_get(from, &head->scale, 1, sizeof head->scale);
-    from = mspringi_get(from, &head->turn_inertia, 1, sizeof head->turn_inertia);
-    return mspringi_get(from, &head->tile_size, 1, sizeof head->tile_size);
+static mspringi_solver_basis read_fallback(const uint8_t *from) {
+    mspringi_solver_basis basis;
+    from = mspringi_get(from, &basis.scale, 1, sizeof basis.scale);
+    from = mspringi_get(from, &basis.turn_inertia, 1, sizeof basis.turn_inertia);
+    (void)mspringi_get(from, &basis.tile_size, 1, sizeof basis.tile_size);
+    return basis;
 }
 
 // See that there is a fallback with such tiles. One that is in use is not touched.
-static mspring_result check_fallback(mspring_network *network, const fallback_head *head) {
-    const uint32_t size = head->tile_size;
-    const mspringi_implicit *here = network->fallback;
-    if (!(head->scale >= DBL_MIN && head->scale <= DBL_MAX && head->turn_inertia >= 0.0f &&
-          head->turn_inertia <= FLT_MAX) ||
+static mspring_result check_fallback(mspring_network *network, const mspringi_solver_basis *basis) {
+    const uint32_t size = basis->tile_size, here = mspringi_solver_get_basis(&network->fallback).tile_size;
+    if (!(basis->scale >= DBL_MIN && basis->scale <= DBL_MAX && basis->turn_inertia >= 0.0f &&
+          basis->turn_inertia <= FLT_MAX) ||
         size < MSPRINGI_LEAST_TILE_SIZE || size > MSPRINGI_LARGEST_TILE_SIZE || (size & (size - 1)) != 0 ||
-        (here && network->guard_policy == MSPRING_GUARD_IMPLICIT && here->tiles.cells.size != size))
+        (here > 0 && network->guard_policy == MSPRING_GUARD_IMPLICIT && here != size))
         return mspringi_section_fail(
             network, &mspringi_section_guard,
             "the implicit solver that takes steps has tiles of size %u, scale %g and inertia %g m^2",
-            (unsigned)size, head->scale, (double)head->turn_inertia);
-    if (here && here->tiles.cells.size != size) {
-        mspringi_implicit_destroy(network->fallback, &network->memory);
-        network->fallback = NULL;
-    }
+            (unsigned)size, basis->scale, (double)basis->turn_inertia);
+    if (here > 0 && here != size)
+        mspringi_solver_destroy(&network->fallback, &network->memory);
     return mspringi_fallback_reserve(network, size);
 }
 
@@ -110,20 +104,17 @@ static mspring_result guard_check(mspring_network *network, const uint8_t *from,
     if (head.reserved != 0)
         return mspringi_section_fail(network, section, "bits that have no meaning are %#x",
                                      (unsigned)head.reserved);
-    fallback_head fallback = {0};
+    mspringi_solver_basis fallback = {0};
     if (falls_back)
-        (void)read_fallback(from, &fallback);
+        fallback = read_fallback(from);
     if (mspringi_guard_looks((mspring_guard)head.policy))
         result = mspringi_border_reserve(network);
     return result == MSPRING_OK && falls_back ? check_fallback(network, &fallback) : result;
 }
 
 static void fallback_load(mspring_network *network, const uint8_t *from) {
-    mspringi_implicit *n = network->fallback;
-    fallback_head head;
-    (void)read_fallback(from, &head);
-    n->scale = head.scale;
-    mspringi_tiles_set_inertia(&n->tiles, head.turn_inertia, mspringi_slot_count(network));
+    const mspringi_solver_basis basis = read_fallback(from);
+    network->fallback.ops->set_basis(network->fallback.object, network, &basis);
 }
 
 static void guard_load(mspring_network *network, const uint8_t *from, size_t size) {

@@ -70,7 +70,7 @@ static mspring_result settings_check(mspring_network *network, const uint8_t *fr
         return mspringi_section_fail(network, section, "max_speed is %g m/s, the relax fraction %g",
                                      (double)s.max_speed, (double)s.relax);
     if (s.substeps < 1 || s.substeps > MSPRING_MAX_SUBSTEPS || s.max_substeps < 1 ||
-        s.max_substeps > MSPRING_MAX_SUBSTEPS || s.auto_substeps > (network->implicit ? 0 : 1))
+        s.max_substeps > MSPRING_MAX_SUBSTEPS || s.auto_substeps > network->solver.ops->picks_substeps)
         return mspringi_section_fail(network, section, "substeps is %u, max_substeps %u", (unsigned)s.substeps,
                                      (unsigned)s.max_substeps);
     return MSPRING_OK;

@@ -10,12 +10,11 @@
 /// each turn is a matrix I - a n n^T in the norm of the masses, 0 <= a <= 1, and all turns together are P = B^T B,
 /// with eigenvalues p between 0 and 1. With x' = P (2 x - x_before) a mode is multiplied by roots of
 /// z^2 - 2 p z + p = 0, |z|^2 = p: none grows. Turns in one direction only have complex eigenvalues, and can grow.
-#include "clamp.h"
-
 #include <math.h>
 
 #include "contact/floor.h"
 #include "explicit/decay.h"
+#include "explicit/explicit.h"
 #include "network/springs.h"
 #include "sleep/sleep.h"
 
@@ -76,9 +75,12 @@ static void move_all(const mspring_network *network, float h) {
     }
 }
 
-void mspringi_clamp_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+static void take_substeps(mspring_network *network, void *object, float h, mspringi_field base, uint32_t count) {
     const uint32_t springs = network->topology.spring_count;
-    for (; count > 0; --count) {
+    (void)object;
+    if (network->floor)
+        mspringi_floor_keep_loose(network);
+    for (uint32_t i = 0; i < count; ++i) {
         if (network->floor)
             mspringi_floor_keep(network, h);
         push_from_outside(network, h, base);
@@ -90,4 +92,15 @@ void mspringi_clamp_substeps(mspring_network *network, float h, mspringi_field b
         if (network->floor)
             mspringi_floor_touch_all(network, h);
     }
+    if (network->floor)
+        mspringi_floor_fly_loose(network, h, base, count);
 }
+
+static const mspringi_solver_ops ops = {
+    .can_add = true,
+    .begin = mspringi_graft_follow,
+    .substeps = take_substeps,
+    .end = mspringi_explicit_end,
+    .is_pulled = mspringi_explicit_is_pulled,
+};
+const mspringi_solver mspringi_clamped = {&ops, NULL};

@@ -14,7 +14,6 @@
 #include "border.h"
 #include "contact/floor.h"
 #include "explicit/decay.h"
-#include "implicit/implicit.h"
 #include "stability.h"
 
 /// Growth of the largest change of a velocity, from look to look at the border.
@@ -100,8 +99,7 @@ void mspringi_guard_put_back(mspring_network *network, const mspringi_state *bef
         s->vx[slot] = between(s->vx[slot], network->max_speed);
         s->vy[slot] = between(s->vy[slot], network->max_speed);
     }
-    if (network->implicit)
-        mspringi_implicit_forget(network->implicit);
+    mspringi_solver_forget(&network->solver);
 }
 
 // The same at the end of a step.
@@ -182,7 +180,7 @@ mspring_result mspringi_guard_begin(mspring_network *network, const mspringi_att
     const bool is_same = guard->state == network->edits.state && !network->is_open;
     guard->knows_speed = is_same && guard->speed <= network->max_speed;
     guard->knows_place = is_same && guard->place <= (float)MSPRING_MAX_COORDINATE && attempt->substeps == 1;
-    if (!mspringi_guard_looks(network->guard_policy) || network->implicit || network->is_clamped)
+    if (!mspringi_guard_looks(network->guard_policy) || !attempt->solver->ops->has_border)
         return MSPRING_OK;
     const mspringi_any_shape *any_shape = &network->any_shape;
     if (same && (any_shape->masses != network->edits.masses || any_shape->values != network->edits.values)) {
@@ -274,9 +272,10 @@ mspring_result mspringi_guard_end(mspring_network *network, const mspringi_attem
         if (result != MSPRING_OK)
             return result;
     }
-    // What sleeps is not seen, and an implicit solver's step may yet be refused.
-    guard->speed = network->implicit ? INFINITY : larger(speed, network->sleep.speed);
-    guard->place = network->implicit || network->sleep.sleeping > 0 ? INFINITY : place;
+    // What sleeps is not seen, and the bounds of the next step hold only after one of the same kind.
+    const bool is_known = attempt->solver->ops->has_border;
+    guard->speed = is_known ? larger(speed, network->sleep.speed) : INFINITY;
+    guard->place = is_known && network->sleep.sleeping == 0 ? place : INFINITY;
     guard->state = network->edits.state;
     return MSPRING_OK;
 }

@@ -9,11 +9,9 @@
 ///
 /// A substep in which particles hit the floor is one of implicit Euler, and the next one, too: methods of second
 /// order would take the blow for an acceleration that lasts, and throw the network back by up to half its speed.
-#include "floor.h"
+#include "terms.h"
 
 #include <math.h>
-
-#include "implicit/implicit.h"
 
 /// The stiffness of what holds a particle, in that of the network at it and its own inertia. What the force on the
 /// particle is shows in how far that gives way, which must be more than what iterations leave undecided.
@@ -54,7 +52,7 @@ static mover mover_of(const mspring_network *network, size_t slot, double h) {
 
 // Add a contact with a line if it may come about. Returns whether the particle hits it.
 static bool consider(mspring_network *network, const mover *m, const mspringi_line *line, double fall) {
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     mspringi_floor *floor = network->floor;
     const double x = n->x[m->slot], y = n->y[m->slot], slop = mspringi_floor_slop(x, y);
     const double before = distance_from(line, m->start_x, m->start_y);
@@ -152,7 +150,7 @@ static term term_of(const mspringi_floor *floor, const mspringi_contact *c) {
 }
 
 bool mspringi_floor_add_terms(mspring_network *network, float h, uint32_t pass) {
-    mspringi_implicit *n = network->implicit;
+    mspringi_implicit *n = mspringi_implicit_of(network);
     mspringi_floor *floor = network->floor;
     const double fall = n->system.force_scale / n->scale; // c
     if (pass == 0 && find_contacts(network, (double)h, fall) && !n->is_hit &&
@@ -194,7 +192,7 @@ double mspringi_floor_multiply(const mspring_network *network, mspringi_field fr
 }
 
 void mspringi_floor_stiffen(const mspring_network *network) {
-    mspringi_implicit *n = network->implicit;
+    mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_floor *floor = network->floor;
     for (uint32_t i = 0; floor && i < floor->contact_count; ++i) {
         const uint32_t slot = floor->contacts[i].slot, tile = n->tiles.of_slot[slot];
@@ -243,7 +241,7 @@ static bool review(const mspringi_floor *floor, mspringi_contact *c, double dx, 
 
 void mspringi_floor_bear(const mspring_network *network, float h) {
     mspringi_floor *floor = network->floor;
-    const double per_force = (double)h / network->implicit->system.force_scale;
+    const double per_force = (double)h / mspringi_implicit_of(network)->system.force_scale;
     for (uint32_t i = 0; i < floor->contact_count; ++i) {
         const mspringi_contact *c = &floor->contacts[i];
         const double across = c->is_active ? c->normal : 0.0, along = c->is_active ? c->along : 0.0;
@@ -253,7 +251,7 @@ void mspringi_floor_bear(const mspring_network *network, float h) {
 }
 
 bool mspringi_floor_review(mspring_network *network, float alpha, uint32_t pass) {
-    const mspringi_implicit *n = network->implicit;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     mspringi_floor *floor = network->floor;
     const bool is_whole = n->is_direct; // displacement is all of it
     bool again = false;
