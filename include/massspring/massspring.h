@@ -1515,9 +1515,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_recycle(mspring_net
 /// A snapshot goes with the plan that there was when it was saved. One from before can only be loaded after
 /// mspring_network_expand(), one of the compact network only before that: where slots change, rollback begins anew.
 ///
-/// The work comes in pieces, so that it can be done over many frames: each looks at some thousands of particles or
-/// springs, however large the network, but for the memory that it sets to zero, a strand, which is found in one go,
-/// and the last piece, which copies what all particles are. How many they are depends on nothing but the network.
+/// The work comes in pieces, so that it can be done over many frames. Each takes a millisecond at most for a network
+/// of 200,000 springs, but for the last one, which moves the network and makes another solver than the explicit one
+/// anew. How many they are depends on nothing but the network.
 /// Between them the network may be stepped, edited, saved, loaded and cloned, and nothing is to be seen of the
 /// compaction until the network moves, in the last piece. What springs are, and that some break, is followed; if
 /// one is restored that the plan would leave out, or particles or springs are added or removed, the work begins

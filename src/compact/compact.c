@@ -67,9 +67,6 @@ mspring_result mspring_network_expand(mspring_network *network) {
 
 /* -------------------------------------------------------------------------------------------------- compaction */
 
-/// Effort of a piece: 0.1 to 0.4 ms on a fast machine.
-#define PIECE 60000u
-
 // The last piece: the network moves. If a spring that is not in the new plan was restored, all begins anew.
 static mspring_result take_plan(mspring_network *network) {
     mspringi_replan *replan = network->replan;
@@ -88,7 +85,6 @@ static mspring_result take_plan(mspring_network *network) {
 }
 
 static mspring_result go_on(mspring_network *network) {
-    uint32_t effort = PIECE;
     mspring_result result = MSPRING_OK;
     if (mspringi_replan_is_outdated(network->replan, network)) {
         abandon(network);
@@ -97,7 +93,7 @@ static mspring_result go_on(mspring_network *network) {
     if (result == MSPRING_OK && mspringi_replan_is_done(network->replan) && network->mover)
         return take_plan(network);
     if (result == MSPRING_OK)
-        result = mspringi_replan_go_on(network->replan, network, &effort);
+        result = mspringi_replan_go_on(network->replan, network);
     if (result == MSPRING_OK && mspringi_replan_is_needless(network->replan)) {
         network->is_seen_compact = mspringi_replan_is_current(network->replan, network);
         network->seen_links = network->edits.links;
@@ -129,6 +125,6 @@ mspring_result mspring_network_compact(mspring_network *network, uint32_t pieces
     result = compact(network, pieces);
     mspringi_fp_leave(before);
     if (result == MSPRING_OK && left)
-        *left = network->replan ? (uint32_t)(mspringi_replan_left(network->replan, network) / PIECE) + 1 : 0;
+        *left = network->replan ? mspringi_replan_left(network->replan) + 1 : 0;
     return result;
 }

@@ -130,7 +130,6 @@ static mspring_network without_layout(const mspring_network *network, const mspr
 struct mspringi_mover {
     mspring_network to;    ///< what has been made so far; its memory is the network's plan_memory
     mspringi_place *there; ///< by place, where its spring has been copied to; MSPRING_NONE: it has not been yet
-    uint32_t parts;        ///< of the layout that there is room for
     mspringi_rest_pattern *of_block; ///< [lattice blocks] while rest lengths are looked at
 };
 
@@ -151,8 +150,7 @@ static mspring_result with_plan_memory(mspring_network *network,
     return result;
 }
 
-mspring_result mspringi_mover_begin(mspring_network *network, const mspringi_topology *topology,
-                                    mspringi_pace *pace) {
+mspring_result mspringi_mover_begin(mspring_network *network, const mspringi_topology *topology) {
     const size_t places = mspringi_place_words(&network->topology) * MSPRINGI_WIDTH;
     MSPRINGI_ASSERT(!network->mover);
     mspringi_mover *mover = mspringi_alloc(&network->plan_memory, 1, sizeof *mover);
@@ -160,7 +158,7 @@ mspring_result mspringi_mover_begin(mspring_network *network, const mspringi_top
         return no_memory_to_move(network);
     network->mover = mover;
     mover->to = without_layout(network, topology);
-    mover->there = mspringi_pace_alloc(pace, &network->plan_memory, places, sizeof *mover->there);
+    mover->there = mspringi_alloc(&network->plan_memory, places, sizeof *mover->there);
     mover->of_block = mspringi_alloc(&network->plan_memory, topology->lattice_blocks, sizeof *mover->of_block);
     if (!mover->there || !mover->of_block)
         return no_memory_to_move(network);
@@ -168,24 +166,18 @@ mspring_result mspringi_mover_begin(mspring_network *network, const mspringi_top
     return MSPRING_OK;
 }
 
-// Pages that are touched for the first time take longer than anything else here: a piece for each part.
 static mspring_result make_layout(mspring_network *to, const mspring_network *from) {
-    return mspringi_layout_reserve_part(to, from->mover->parts++);
+    (void)from;
+    return mspringi_layout_reserve(to);
 }
 
-mspring_result mspringi_mover_reserve(mspring_network *network, mspringi_pace *pace) {
-    const mspringi_mover *mover = network->mover;
-    mspring_result result = with_plan_memory(network, make_layout);
-    pace->left = 0;
-    pace->is_halfway = mover->parts < MSPRINGI_LAYOUT_PARTS;
-    return result;
+mspring_result mspringi_mover_reserve(mspring_network *network) {
+    return with_plan_memory(network, make_layout);
 }
 
 void mspringi_mover_note_rests(const mspring_network *network, const mspring_id *ids, const mspringi_place *places,
-                               uint32_t count, mspringi_pace *pace) {
+                               uint32_t first, uint32_t end) {
     const mspringi_topology *t = &network->mover->to.topology;
-    uint32_t first, end;
-    mspringi_pace_take(pace, count, 4, &first, &end);
     for (uint32_t i = first; i < end; ++i)
         if (places[i] < t->lattice_places)
             mspringi_rests_note(network->mover->of_block, places[i],
@@ -202,17 +194,13 @@ mspring_result mspringi_mover_reserve_rests(mspring_network *network) {
     return with_plan_memory(network, make_shared_rests);
 }
 
-mspring_result mspringi_mover_reserve_strain(mspring_network *network, mspringi_pace *pace) {
-    const uint64_t places = (uint64_t)mspringi_place_words(&network->mover->to.topology) * MSPRINGI_WIDTH;
-    if (network->strain.break_strain)
-        mspringi_pace_spend(pace, places * 2 * sizeof(float) / MSPRINGI_PACE_BYTES);
+mspring_result mspringi_mover_reserve_strain(mspring_network *network) {
     return with_plan_memory(network, make_strain);
 }
 
-void mspringi_mover_copy(const mspring_network *network, const mspringi_place *places, mspringi_pace *pace) {
+void mspringi_mover_copy(const mspring_network *network, const mspringi_place *places, uint32_t first,
+                         uint32_t end) {
     mspringi_mover *mover = network->mover;
-    uint32_t first, end;
-    mspringi_pace_take(pace, network->topology.spring_count, 12, &first, &end);
     for (mspring_id s = first; s < end; ++s) {
         const mspringi_place before = network->topology.place_of_spring[s];
         copy_spring(&mover->to, places[s], network, before);

@@ -5,7 +5,6 @@
 #ifndef MSPRINGI_MOVE_H
 #define MSPRINGI_MOVE_H
 
-#include "base/pace.h"
 #include "network/network.h"
 
 /// Move everything that lies by slot or by place to this topology, which sweeps at least the springs that are live;
@@ -20,14 +19,14 @@ mspring_result mspringi_move(mspring_network *network, const mspringi_topology *
 /// @param ids, woven_places  [live_count] of the springs that the topology sweeps
 /// @param places             [springs] in the topology
 typedef struct mspringi_mover mspringi_mover;
-mspring_result mspringi_mover_begin(mspring_network *network, const mspringi_topology *topology,
-                                    mspringi_pace *pace);
-mspring_result mspringi_mover_reserve(mspring_network *network, mspringi_pace *pace);
+mspring_result mspringi_mover_begin(mspring_network *network, const mspringi_topology *topology);
+mspring_result mspringi_mover_reserve(mspring_network *network);
 void mspringi_mover_note_rests(const mspring_network *network, const mspring_id *ids,
-                               const mspringi_place *woven_places, uint32_t live_count, mspringi_pace *pace);
+                               const mspringi_place *woven_places, uint32_t first, uint32_t end);
 mspring_result mspringi_mover_reserve_rests(mspring_network *network);
-mspring_result mspringi_mover_reserve_strain(mspring_network *network, mspringi_pace *pace);
-void mspringi_mover_copy(const mspring_network *network, const mspringi_place *places, mspringi_pace *pace);
+mspring_result mspringi_mover_reserve_strain(mspring_network *network);
+void mspringi_mover_copy(const mspring_network *network, const mspringi_place *places, uint32_t first,
+                         uint32_t end);
 /// The spring in this place has changed.
 void mspringi_mover_follow(const mspring_network *network, mspringi_place place);
 /// What cannot be followed has changed: all this begins anew.

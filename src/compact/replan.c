@@ -5,20 +5,18 @@
 #include "topology/spare.h"
 
 #include "base/mix.h"
-#include "base/pace.h"
 #include "move.h"
 
 struct mspringi_replan {
-    mspringi_pace pace;
-    uint64_t spent;         ///< effort so far
+    uint32_t pass, at;      ///< of replan_passes, the one that is under way, and how far it has come
     uint64_t links, growth; ///< edits.links and edits.growth when the replan was begun
     bool has_work;          ///< some spring that is swept is broken, or one was added that the plan does not know
     uint16_t *was_live;     ///< [springs / 16] a bit for each spring
     struct mspring_builder left; ///< particles in the first topology's rows and columns, live springs
     mspring_id *ids;             ///< [left.spring_count] of the live springs, rising
     uint32_t live, listed;       ///< of these counted, and listed so far
-    uint32_t slot;               ///< in the lattice row that is gone through
     mspringi_assembly *assembly;
+    bool is_halfway;              ///< it
     mspringi_topology topology;   ///< once the assembly has made it
     mspringi_place *woven_places; ///< [left.spring_count] of the live springs
     mspringi_place next_parked;
@@ -39,15 +37,13 @@ static mspring_result out_of_memory(mspring_network *network) {
 
 static mspring_result begin(mspringi_replan *r, mspring_network *network) {
     const uint32_t springs = network->topology.spring_count;
-    r->was_live = mspringi_pace_alloc(&r->pace, &network->plan_memory,
-                                      ((size_t)springs + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH, sizeof *r->was_live);
+    r->was_live = mspringi_alloc(&network->plan_memory, ((size_t)springs + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH,
+                                 sizeof *r->was_live);
     return r->was_live ? MSPRING_OK : out_of_memory(network);
 }
 
-static mspring_result look_for_live(mspringi_replan *r, mspring_network *network) {
+static mspring_result look_for_live(mspringi_replan *r, mspring_network *network, uint32_t first, uint32_t end) {
     const mspringi_topology *t = &network->topology;
-    uint32_t first, end;
-    mspringi_pace_take(&r->pace, t->spring_count, 2, &first, &end);
     for (mspring_id s = first; s < end; ++s) {
         const mspringi_place place = t->place_of_spring[s];
         const bool is_live = mspringi_place_is_live(network, place);
@@ -61,9 +57,9 @@ static mspring_result look_for_live(mspringi_replan *r, mspring_network *network
 static mspring_result reserve_lists(mspringi_replan *r, mspring_network *network) {
     const uint32_t particles = network->topology.particle_count;
     struct mspring_builder *left = &r->left;
-    left->particles = mspringi_pace_alloc(&r->pace, &network->plan_memory, particles, sizeof *left->particles);
-    left->springs = mspringi_pace_alloc(&r->pace, &network->plan_memory, r->live, sizeof *left->springs);
-    r->ids = mspringi_pace_alloc(&r->pace, &network->plan_memory, r->live, sizeof *r->ids);
+    left->particles = mspringi_alloc(&network->plan_memory, particles, sizeof *left->particles);
+    left->springs = mspringi_alloc(&network->plan_memory, r->live, sizeof *left->springs);
+    r->ids = mspringi_alloc(&network->plan_memory, r->live, sizeof *r->ids);
     left->particle_count = particles;
     left->spring_count = r->live;
     return left->particles && left->springs && r->ids ? MSPRING_OK : out_of_memory(network);
@@ -73,11 +69,10 @@ static mspring_result reserve_lists(mspringi_replan *r, mspring_network *network
 // of no grid lie on a diagonal on the other side, where no two can be taken for neighbours on a grid, in the order
 // in which they lie in memory.
 
-static mspring_result place_on_diagonal(mspringi_replan *r, mspring_network *network) {
+static mspring_result place_on_diagonal(mspringi_replan *r, mspring_network *network, uint32_t first,
+                                        uint32_t end) {
     const mspringi_topology *first_one = first_topology(network);
     mspringi_particle *particles = r->left.particles;
-    uint32_t first, end;
-    mspringi_pace_take(&r->pace, (uint32_t)r->left.particle_count, 2, &first, &end);
     for (mspring_id p = first; p < end; ++p) {
         particles[p].x = particles[p].y = -10.0 - 3.0 * (double)first_one->slot_of_particle[p];
         if (!mspringi_particle_exists(network, p))
@@ -86,15 +81,13 @@ static mspring_result place_on_diagonal(mspringi_replan *r, mspring_network *net
     return MSPRING_OK;
 }
 
-static mspring_result place_in_grids(mspringi_replan *r, mspring_network *network) {
+static mspring_result place_in_grids(mspringi_replan *r, mspring_network *network, uint32_t first, uint32_t end) {
     const mspringi_topology *t = first_topology(network);
     mspringi_particle *particles = r->left.particles;
-    uint32_t i = r->pace.at;
-    for (; i < t->lattice_rows && r->pace.left > 0; ++i) {
+    for (uint32_t i = first; i < end; ++i) {
         const mspringi_row *row = &t->rows[i];
         for (const mspringi_span *span = t->spans + row->first_span;
              span < t->spans + row->first_span + row->span_count; ++span) {
-            mspringi_pace_spend(&r->pace, (uint64_t)2 * (span->end_slot - span->first_slot));
             for (uint32_t slot = span->first_slot; slot < span->end_slot; ++slot) {
                 const mspring_id p = t->particle_of_slot[slot];
                 if (p == MSPRING_NONE)
@@ -104,15 +97,11 @@ static mspring_result place_in_grids(mspringi_replan *r, mspring_network *networ
             }
         }
     }
-    r->pace.at = i;
-    r->pace.is_halfway = i < t->lattice_rows;
     return MSPRING_OK;
 }
 
-static mspring_result list_springs(mspringi_replan *r, mspring_network *network) {
+static mspring_result list_springs(mspringi_replan *r, mspring_network *network, uint32_t first, uint32_t end) {
     const mspringi_topology *t = first_topology(network);
-    uint32_t first, end;
-    mspringi_pace_take(&r->pace, t->spring_count, 3, &first, &end);
     for (mspring_id s = first; s < end; ++s) {
         const mspringi_place place = t->place_of_spring[s];
         uint32_t base, tip;
@@ -138,8 +127,8 @@ static mspring_result begin_layout(mspringi_replan *r, mspring_network *network)
 static mspring_result lay_out(mspringi_replan *r, mspring_network *network) {
     bool is_done;
     (void)network;
-    mspring_result result = mspringi_topology_go_on(r->assembly, &r->pace.left, &is_done);
-    r->pace.is_halfway = !is_done;
+    mspring_result result = mspringi_topology_run(r->assembly, &is_done);
+    r->is_halfway = !is_done;
     return result;
 }
 
@@ -164,12 +153,10 @@ static mspring_result finish_layout(mspringi_replan *r, mspring_network *network
     r->assembly = NULL;
     r->woven_places = t->place_of_spring;
     const uint32_t parked = t->reserve.first_spring - count_woven(r, t->reserve.first_spring);
-    t->place_of_spring =
-        mspringi_pace_alloc(&r->pace, &network->plan_memory, t->reserve.spring_end, sizeof *t->place_of_spring);
+    t->place_of_spring = mspringi_alloc(&network->plan_memory, t->reserve.spring_end, sizeof *t->place_of_spring);
     if (!t->place_of_spring)
         return out_of_memory(network);
     t->spring_count = first_topology(network)->spring_count;
-    mspringi_pace_spend(&r->pace, ((uint64_t)t->woven_count + parked) * 16 / MSPRINGI_PACE_BYTES);
     r->next_parked = t->chain_places + t->woven_count + mspringi_spare_springs(t);
     r->listed = 0;
     return mspringi_spare_reserve(t, parked, &network->plan_memory, &network->message);
@@ -177,11 +164,9 @@ static mspring_result finish_layout(mspringi_replan *r, mspring_network *network
 
 // Give the springs that are not left places behind those that are: spare ones those that are kept for them, the
 // others behind these.
-static mspring_result number_places(mspringi_replan *r, mspring_network *network) {
+static mspring_result number_places(mspringi_replan *r, mspring_network *network, uint32_t first, uint32_t end) {
     const mspringi_topology *t = &r->topology;
-    uint32_t first, end;
     (void)network;
-    mspringi_pace_take(&r->pace, t->spring_count, 1, &first, &end);
     for (mspring_id s = first; s < end; ++s) {
         if (r->was_live[s / MSPRINGI_WIDTH] >> s % MSPRINGI_WIDTH & 1)
             t->place_of_spring[s] = r->woven_places[r->listed++];
@@ -193,17 +178,15 @@ static mspring_result number_places(mspringi_replan *r, mspring_network *network
 
 static mspring_result enter_spare(mspringi_replan *r, mspring_network *network) {
     (void)network;
-    mspringi_spare_enter(&r->topology, &r->pace);
+    mspringi_spare_enter(&r->topology);
     return MSPRING_OK;
 }
 
 // Write down what springs outside of the plan join. Those that have been removed keep whatever ends: their
 // particles may be gone, too.
-static mspring_result note_ends(mspringi_replan *r, mspring_network *network) {
+static mspring_result note_ends(mspringi_replan *r, mspring_network *network, uint32_t first, uint32_t end) {
     const mspringi_topology *first_one = first_topology(network);
     mspringi_topology *t = &r->topology;
-    uint32_t first, end;
-    mspringi_pace_take(&r->pace, t->spring_count, 4, &first, &end);
     for (mspring_id s = first; s < end; ++s) {
         const mspringi_place first_place = first_one->place_of_spring[s], place = t->place_of_spring[s];
         uint32_t base, tip;
@@ -227,20 +210,16 @@ static mspring_result keep_spare(mspringi_replan *r, mspring_network *network) {
 
 /* ------------------------------------------------------------------------------------------------- the print */
 
-static mspring_result print_slots(mspringi_replan *r, mspring_network *network) {
+static mspring_result print_slots(mspringi_replan *r, mspring_network *network, uint32_t first, uint32_t end) {
     const mspringi_topology *t = &r->topology;
-    uint32_t first, end;
     (void)network;
-    mspringi_pace_take(&r->pace, t->particle_count, 1, &first, &end);
     for (mspring_id p = first; p < end; ++p)
         r->print = mspringi_mix(r->print, t->slot_of_particle[p]);
     return MSPRING_OK;
 }
 
-static mspring_result print_places(mspringi_replan *r, mspring_network *network) {
-    uint32_t first, end;
+static mspring_result print_places(mspringi_replan *r, mspring_network *network, uint32_t first, uint32_t end) {
     (void)network;
-    mspringi_pace_take(&r->pace, r->topology.spring_count, 1, &first, &end);
     for (mspring_id s = first; s < end; ++s)
         r->print = mspringi_mix(r->print, r->topology.place_of_spring[s]);
     return MSPRING_OK;
@@ -249,15 +228,16 @@ static mspring_result print_places(mspringi_replan *r, mspring_network *network)
 /* ---------------------------------------------------------------------------------------------- the springs */
 
 static mspring_result begin_move(mspringi_replan *r, mspring_network *network) {
-    return mspringi_mover_begin(network, &r->topology, &r->pace);
+    return mspringi_mover_begin(network, &r->topology);
 }
 
 static mspring_result reserve_move(mspringi_replan *r, mspring_network *network) {
-    return mspringi_mover_reserve(network, &r->pace);
+    (void)r;
+    return mspringi_mover_reserve(network);
 }
 
-static mspring_result note_rests(mspringi_replan *r, mspring_network *network) {
-    mspringi_mover_note_rests(network, r->ids, r->woven_places, r->live, &r->pace);
+static mspring_result note_rests(mspringi_replan *r, mspring_network *network, uint32_t first, uint32_t end) {
+    mspringi_mover_note_rests(network, r->ids, r->woven_places, first, end);
     return MSPRING_OK;
 }
 
@@ -267,11 +247,12 @@ static mspring_result reserve_rests(mspringi_replan *r, mspring_network *network
 }
 
 static mspring_result reserve_strain(mspringi_replan *r, mspring_network *network) {
-    return mspringi_mover_reserve_strain(network, &r->pace);
+    (void)r;
+    return mspringi_mover_reserve_strain(network);
 }
 
-static mspring_result copy_springs(mspringi_replan *r, mspring_network *network) {
-    mspringi_mover_copy(network, r->topology.place_of_spring, &r->pace);
+static mspring_result copy_springs(mspringi_replan *r, mspring_network *network, uint32_t first, uint32_t end) {
+    mspringi_mover_copy(network, r->topology.place_of_spring, first, end);
     return MSPRING_OK;
 }
 
@@ -283,17 +264,67 @@ static mspring_result free_lists(mspringi_replan *r, mspring_network *network) {
     r->was_live = NULL;
     r->left.particles = NULL;
     r->left.springs = NULL;
-    r->pace.left = 0;
     return MSPRING_OK;
 }
 
 /* ---------------------------------------------------------------------------------------------- piece by piece */
 
-static mspring_result (*const replan_passes[])(mspringi_replan *, mspring_network *) = {
-    begin,        look_for_live, reserve_lists,  place_on_diagonal, place_in_grids, list_springs,
-    begin_layout, lay_out,       finish_layout,  number_places,     enter_spare,    note_ends,
-    keep_spare,   print_slots,   print_places,   free_lists,        begin_move,     reserve_move,
-    note_rests,   reserve_rests, reserve_strain, copy_springs,
+static uint32_t springs_of(const mspringi_replan *r, const mspring_network *network) {
+    (void)r;
+    return network->topology.spring_count;
+}
+
+static uint32_t particles_of(const mspringi_replan *r, const mspring_network *network) {
+    (void)r;
+    return network->topology.particle_count;
+}
+
+static uint32_t rows_of(const mspringi_replan *r, const mspring_network *network) {
+    (void)r;
+    return first_topology(network)->lattice_rows;
+}
+
+static uint32_t live_of(const mspringi_replan *r, const mspring_network *network) {
+    (void)network;
+    return r->live;
+}
+
+/// A function that is called once, or with one range of so many things after the other.
+typedef struct replan_pass {
+    mspring_result (*once)(mspringi_replan *, mspring_network *);
+    mspring_result (*part)(mspringi_replan *, mspring_network *, uint32_t first, uint32_t end);
+    uint32_t (*count)(const mspringi_replan *, const mspring_network *);
+    uint32_t most;
+} replan_pass;
+
+#define ONCE(function)                                                                                             \
+    { function, NULL, NULL, 0 }
+#define EACH(function, count, most)                                                                                \
+    { NULL, function, count, most }
+
+static const replan_pass replan_passes[] = {
+    ONCE(begin),
+    EACH(look_for_live, springs_of, 64000),
+    ONCE(reserve_lists),
+    EACH(place_on_diagonal, particles_of, 64000),
+    EACH(place_in_grids, rows_of, 64),
+    EACH(list_springs, springs_of, 32000),
+    ONCE(begin_layout),
+    ONCE(lay_out),
+    ONCE(finish_layout),
+    EACH(number_places, springs_of, 64000),
+    ONCE(enter_spare),
+    EACH(note_ends, springs_of, 32000),
+    ONCE(keep_spare),
+    EACH(print_slots, particles_of, 64000),
+    EACH(print_places, springs_of, 64000),
+    ONCE(free_lists),
+    ONCE(begin_move),
+    ONCE(reserve_move),
+    EACH(note_rests, live_of, 16000),
+    ONCE(reserve_rests),
+    ONCE(reserve_strain),
+    EACH(copy_springs, springs_of, 16000),
 };
 
 #define REPLAN_PASSES (sizeof replan_passes / sizeof replan_passes[0])
@@ -310,41 +341,43 @@ mspring_result mspringi_replan_begin(mspring_network *network, mspringi_replan *
     return MSPRING_OK;
 }
 
-mspring_result mspringi_replan_go_on(mspringi_replan *r, mspring_network *network, uint32_t *effort) {
-    mspringi_pace *pace = &r->pace;
+static mspring_result run(mspringi_replan *r, mspring_network *network) {
+    const replan_pass *next = &replan_passes[r->pass];
+    const uint32_t count = next->part ? next->count(r, network) : 0, left = count - r->at;
     mspring_result result = MSPRING_OK;
-    pace->left = *effort;
-    if (pace->pass > REPLAN_PASSES - MOVE_PASSES && !network->mover) { // it was dropped
-        pace->pass = (uint32_t)REPLAN_PASSES - MOVE_PASSES;
-        pace->at = 0;
+    r->is_halfway = false;
+    if (next->once) {
+        result = next->once(r, network);
+    } else if (left > 0) {
+        const uint32_t first = r->at;
+        r->at += left < next->most ? left : next->most;
+        result = next->part(r, network, first, r->at);
     }
-    while (result == MSPRING_OK && !mspringi_replan_is_done(r) && pace->left > 0) {
-        pace->is_halfway = false;
-        result = replan_passes[pace->pass](r, network);
-        if (pace->is_halfway)
-            continue;
-        pace->pass++;
-        pace->at = 0;
+    if (r->at == count && !r->is_halfway) {
+        r->pass++;
+        r->at = 0;
     }
-    r->spent += *effort - pace->left;
-    *effort = pace->left;
     return result;
 }
 
+mspring_result mspringi_replan_go_on(mspringi_replan *r, mspring_network *network) {
+    if (r->pass > REPLAN_PASSES - MOVE_PASSES && !network->mover) { // it was dropped
+        r->pass = (uint32_t)REPLAN_PASSES - MOVE_PASSES;
+        r->at = 0;
+    }
+    return mspringi_replan_is_done(r) ? MSPRING_OK : run(r, network);
+}
+
 bool mspringi_replan_is_needless(const mspringi_replan *replan) {
-    return replan->pace.pass == PASS_AFTER_LOOK && !replan->has_work;
+    return replan->pass == PASS_AFTER_LOOK && !replan->has_work;
 }
 
 bool mspringi_replan_is_done(const mspringi_replan *replan) {
-    return replan->pace.pass == REPLAN_PASSES || mspringi_replan_is_needless(replan);
+    return replan->pass == REPLAN_PASSES || mspringi_replan_is_needless(replan);
 }
 
-// So much takes a particle, a live spring and any spring, about.
-uint64_t mspringi_replan_left(const mspringi_replan *replan, const mspring_network *network) {
-    const uint64_t springs = network->topology.spring_count;
-    const uint64_t live = replan->pace.pass < PASS_AFTER_LOOK ? springs : replan->live;
-    const uint64_t all = 60 * (uint64_t)network->topology.particle_count + 80 * live + 12 * springs;
-    return all > replan->spent ? all - replan->spent : 0;
+uint32_t mspringi_replan_left(const mspringi_replan *replan) {
+    return (uint32_t)REPLAN_PASSES - replan->pass;
 }
 
 bool mspringi_replan_is_outdated(const mspringi_replan *replan, const mspring_network *network) {

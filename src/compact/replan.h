@@ -20,10 +20,9 @@ typedef struct mspringi_replan mspringi_replan;
 /// Begin one; go on until it is done or fails, then take the topology. All that it allocates is the network's
 /// plan_memory: to abandon it is to free that.
 mspring_result mspringi_replan_begin(mspring_network *network, mspringi_replan **begun);
-/// @param effort  how much to do, and what is left of that; see pace.h
-mspring_result mspringi_replan_go_on(mspringi_replan *replan, mspring_network *network, uint32_t *effort);
-/// Effort that is left, about: it never grows.
-uint64_t mspringi_replan_left(const mspringi_replan *replan, const mspring_network *network);
+mspring_result mspringi_replan_go_on(mspringi_replan *replan, mspring_network *network);
+/// Stages that are left.
+uint32_t mspringi_replan_left(const mspringi_replan *replan);
 bool mspringi_replan_is_done(const mspringi_replan *replan);
 /// Whether it is done because the network's plan sweeps what is live, and nothing else: there is nothing to take.
 bool mspringi_replan_is_needless(const mspringi_replan *replan);

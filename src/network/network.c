@@ -103,27 +103,18 @@ static void look_at_springs(const mspring_builder *builder, bool *damped, bool *
     }
 }
 
-mspring_result mspringi_layout_reserve_part(mspring_network *network, uint32_t part) {
-    static const mspringi_group groups[MSPRINGI_LAYOUT_PARTS] = {MSPRINGI_STORE_PARTICLES, MSPRINGI_STORE_BACKUP,
-                                                                 MSPRINGI_STORE_ROWS, MSPRINGI_STORE_WEB};
+mspring_result mspringi_layout_reserve(mspring_network *network) {
+    static const mspringi_group groups[] = {MSPRINGI_STORE_PARTICLES, MSPRINGI_STORE_BACKUP, MSPRINGI_STORE_ROWS,
+                                            MSPRINGI_STORE_WEB};
     const mspringi_topology *t = &network->topology;
-    if (!mspringi_store_reserve(network, groups[part]))
-        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
-                             "no memory for a network of %u particles and %u springs", (unsigned)t->particle_count,
-                             (unsigned)t->spring_count);
-    if (groups[part] == MSPRINGI_STORE_ROWS)
-        mspringi_alike_begin(&network->alike, t->lattice_blocks);
-    if (part + 1 < MSPRINGI_LAYOUT_PARTS)
-        return MSPRING_OK;
+    for (size_t i = 0; i < sizeof groups / sizeof groups[0]; ++i)
+        if (!mspringi_store_reserve(network, groups[i]))
+            return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                                 "no memory for a network of %u particles and %u springs",
+                                 (unsigned)t->particle_count, (unsigned)t->spring_count);
+    mspringi_alike_begin(&network->alike, t->lattice_blocks);
     network->depth = mspringi_explicit_depth(t, network->parts);
     return mspringi_carry_reserve(network);
-}
-
-mspring_result mspringi_layout_reserve(mspring_network *network) {
-    mspring_result result = MSPRING_OK;
-    for (uint32_t part = 0; result == MSPRING_OK && part < MSPRINGI_LAYOUT_PARTS; ++part)
-        result = mspringi_layout_reserve_part(network, part);
-    return result;
 }
 
 static mspring_result make_reserve(mspringi_reserve *reserve, const mspring_builder *builder,

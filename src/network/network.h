@@ -392,9 +392,6 @@ mspring_result mspringi_carry_reserve(mspring_network *network);
 
 /// Allocate what the explicit solver has by slot and by place. On error some of it is there.
 mspring_result mspringi_layout_reserve(mspring_network *network);
-/// The same part by part: all of them in their order.
-#define MSPRINGI_LAYOUT_PARTS 4u
-mspring_result mspringi_layout_reserve_part(mspring_network *network, uint32_t part);
 /// Allocate a field of all slots, zeroed; leaves it alone if it is there.
 mspring_result mspringi_field_reserve(mspring_network *network, mspringi_field *field);
 

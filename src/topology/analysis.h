@@ -6,40 +6,17 @@
 #ifndef MSPRINGI_ANALYSIS_H
 #define MSPRINGI_ANALYSIS_H
 
-#include "base/pace.h"
 #include "topology.h"
 
 /// Sort keys in place by radix; scratch is as long as keys.
 void mspringi_sort_keys(uint64_t *keys, uint64_t *scratch, size_t count);
-
-#define MSPRINGI_DIGIT_BITS 8
-
-typedef enum mspringi_sorting_stage {
-    MSPRINGI_SORTING_LOOKS, ///< in which digits keys differ at all
-    MSPRINGI_SORTING_COUNTS,
-    MSPRINGI_SORTING_MOVES,
-    MSPRINGI_SORTING_COPIES, ///< from scratch, if that is where they have come to lie
-    MSPRINGI_SORTED
-} mspringi_sorting_stage;
-
-/// The same in parts.
-typedef struct mspringi_sorting {
-    uint64_t *keys, *from, *to;
-    uint64_t differing; ///< bits in which keys differ
-    uint32_t count, at, shift;
-    mspringi_sorting_stage stage;
-    uint32_t place[(1 << MSPRINGI_DIGIT_BITS) + 1];
-} mspringi_sorting;
-void mspringi_sorting_begin(mspringi_sorting *sorting, uint64_t *keys, uint64_t *scratch, uint32_t count);
-/// True: they are sorted.
-bool mspringi_sorting_go_on(mspringi_sorting *sorting, mspringi_pace *pace);
 
 /// Springs by particle: those of particle p are springs[first[p]] ... springs[first[p + 1] - 1], by rising id.
 typedef struct mspringi_graph {
     const mspring_builder *builder;
     uint32_t *first;                ///< [particles + 1]
     uint32_t *springs;              ///< [2 * springs]
-    uint32_t *stamp_of, *spring_to; ///< [particles] until it is known that no springs join the same particles
+    uint32_t *stamp_of, *spring_to; ///< [particles] while it is checked that no springs join the same particles
 } mspringi_graph;
 
 /// Strands, laid end to end.
@@ -47,10 +24,8 @@ typedef struct mspringi_strands {
     uint32_t *particles; ///< [count] in order along each strand, strand after strand
     uint32_t *springs;   ///< [count] the spring to the next entry, or MSPRING_NONE at a strand's end
     uint32_t count, strand_count, spring_count;
-    uint32_t candidates; ///< particles that may be in a strand
-    uint32_t kept;       ///< of count, so far, while some are dropped;
-    bool drops_webbed;   ///< among them those that hang on the web
-    uint8_t *visited;    ///< [particles] while strands are looked for
+    uint32_t kept;    ///< of count, so far, while some are dropped
+    uint8_t *visited; ///< [particles] while strands are looked for
 } mspringi_strands;
 
 /// Grids: for each, its particles with their column and row, both from 0.
@@ -69,24 +44,16 @@ static inline mspring_id mspringi_other_end(const mspringi_spring *spring, mspri
     return spring->a == particle ? spring->b : spring->a;
 }
 
-/// Index the springs by particle: reserve, then the passes in their order. If it is not known that no two springs
-/// join the same particles, the last one fails with MSPRING_ERROR_DUPLICATE for two that do.
-mspring_result mspringi_graph_reserve(mspringi_graph *graph, const mspring_builder *builder, bool is_checked,
-                                      mspringi_pace *pace, mspringi_memory *memory, mspringi_message *message);
-void mspringi_graph_count(mspringi_graph *graph, mspringi_pace *pace);
-void mspringi_graph_sum(mspringi_graph *graph, mspringi_pace *pace);
-void mspringi_graph_fill(mspringi_graph *graph, mspringi_pace *pace);
-mspring_result mspringi_graph_check(mspringi_graph *graph, mspringi_pace *pace, mspringi_memory *memory,
-                                    mspringi_message *message);
+/// Index the springs by particle. If it is not known that no two springs join the same particles, that fails with
+/// MSPRING_ERROR_DUPLICATE for two that do.
+mspring_result mspringi_graph_create(mspringi_graph *graph, const mspring_builder *builder, bool is_checked,
+                                     mspringi_memory *memory, mspringi_message *message);
 void mspringi_graph_destroy(mspringi_graph *graph, mspringi_memory *memory);
 
 /// Find the strands: paths of at least three particles that have at most two springs each, and shorter ones that
-/// are attached to nothing. Their particles get MSPRINGI_ROW_CHAIN in kinds. Passes in their order.
-void mspringi_strands_count(mspringi_strands *strands, const mspringi_graph *graph, mspringi_pace *pace);
-mspring_result mspringi_strands_reserve(mspringi_strands *strands, const mspringi_graph *graph, mspringi_pace *pace,
-                                        mspringi_memory *memory, mspringi_message *message);
-void mspringi_strands_find(mspringi_strands *strands, const mspringi_graph *graph, uint8_t *kinds,
-                           mspringi_pace *pace, mspringi_memory *memory);
+/// are attached to nothing. Their particles get MSPRINGI_ROW_CHAIN in kinds.
+mspring_result mspringi_strands_find(mspringi_strands *strands, const mspringi_graph *graph, uint8_t *kinds,
+                                     mspringi_memory *memory, mspringi_message *message);
 void mspringi_strands_destroy(mspringi_strands *strands, mspringi_memory *memory);
 
 /// Trees of a few particles that hang on nothing, sixteen of one shape side by side.
@@ -101,33 +68,38 @@ typedef struct mspringi_herds {
     uint32_t tree_count, tree_particles; ///< all that there are
     uint32_t *in_order;                  ///< [tree_particles] tree after tree, as their codes have them
     uint64_t *keys, *scratch;            ///< [tree_count] code, and first of in_order
-    uint32_t listed, listed_particles, filled;
-    mspringi_sorting sorting;
+    uint32_t listed, listed_particles;
 } mspringi_herds;
 
 /// What rung_above has for the first group of a tree.
 #define MSPRINGI_ROOT 0xff
 
-/// Find them: passes in their order. Their particles get MSPRINGI_ROW_WEB in kinds.
-mspring_result mspringi_herds_begin(mspringi_herds *herds, const mspringi_graph *graph, mspringi_pace *pace,
-                                    mspringi_memory *memory, mspringi_message *message);
-void mspringi_herds_explore(mspringi_herds *herds, const mspringi_graph *graph, mspringi_pace *pace);
-mspring_result mspringi_herds_reserve(mspringi_herds *herds, mspringi_pace *pace, mspringi_memory *memory,
-                                      mspringi_message *message);
-void mspringi_herds_compare(mspringi_herds *herds, const mspringi_graph *graph, mspringi_pace *pace);
-void mspringi_herds_sort(mspringi_herds *herds, mspringi_pace *pace);
-mspring_result mspringi_herds_count(mspringi_herds *herds, mspringi_pace *pace, mspringi_memory *memory,
+/// Find them, in this order; those with a range look at particles. Their particles get MSPRINGI_ROW_WEB in kinds.
+mspring_result mspringi_herds_begin(mspringi_herds *herds, const mspringi_graph *graph, mspringi_memory *memory,
                                     mspringi_message *message);
-void mspringi_herds_fill(mspringi_herds *herds, uint8_t *kinds, mspringi_pace *pace, mspringi_memory *memory);
+void mspringi_herds_explore(mspringi_herds *herds, const mspringi_graph *graph, uint32_t first, uint32_t end);
+mspring_result mspringi_herds_reserve(mspringi_herds *herds, mspringi_memory *memory, mspringi_message *message);
+void mspringi_herds_compare(mspringi_herds *herds, const mspringi_graph *graph, uint32_t first, uint32_t end);
+mspring_result mspringi_herds_fill(mspringi_herds *herds, uint8_t *kinds, mspringi_memory *memory,
+                                   mspringi_message *message);
 /// Free what is needed only while they are looked for.
 void mspringi_herds_forget(mspringi_herds *herds, mspringi_memory *memory);
 void mspringi_herds_destroy(mspringi_herds *herds, mspringi_memory *memory);
 
-/// Find the grids among the particles that are loose in kinds: their particles get MSPRINGI_ROW_LATTICE. Passes in
-/// their order; the graph and kinds must stay.
-mspring_result mspringi_grids_reserve(mspringi_grids *grids, const mspringi_graph *graph, uint8_t *kinds,
-                                      mspringi_pace *pace, mspringi_memory *memory, mspringi_message *message);
-void mspringi_grids_find(mspringi_grids *grids, mspringi_pace *pace, mspringi_memory *memory);
+/// Find the grids among the particles that are loose in kinds: their particles get MSPRINGI_ROW_LATTICE. The graph
+/// and kinds must stay. For each of MSPRINGI_GRID_SEARCHES: flood, in two steps for each particle at most; then
+/// judge the candidates, after the springs of their members have been counted; then end the search.
+#define MSPRINGI_GRID_SEARCHES 3
+mspring_result mspringi_grids_begin(mspringi_grids *grids, const mspringi_graph *graph, uint8_t *kinds,
+                                    mspringi_memory *memory, mspringi_message *message);
+void mspringi_grids_flood(mspringi_grids *grids, uint32_t first, uint32_t end);
+mspring_result mspringi_grids_begin_judging(mspringi_grids *grids, mspringi_memory *memory,
+                                            mspringi_message *message);
+uint32_t mspringi_grids_candidates(const mspringi_grids *grids);
+uint32_t mspringi_grids_candidate_members(const mspringi_grids *grids);
+void mspringi_grids_count_springs(mspringi_grids *grids, uint32_t first, uint32_t end);
+void mspringi_grids_judge(mspringi_grids *grids, uint32_t first, uint32_t end);
+void mspringi_grids_end_search(mspringi_grids *grids, mspringi_memory *memory);
 void mspringi_grids_destroy(mspringi_grids *grids, mspringi_memory *memory);
 
 /// Particles of the web without a home from which it gets layers: with fewer, all of it is in a cache as fast as
@@ -139,31 +111,29 @@ typedef struct mspringi_sheets {
     uint32_t inner, outer;       ///< springs in all grids, and others that their particles have
     uint32_t *piece;             ///< [particles] parent in a forest; NULL if nothing is to be given up
     struct mspringi_sheet *sums; ///< [particles] of roots
-    uint32_t grid;               ///< the one that is looked at
-    bool gives_up;               ///< it
+    uint32_t next_member;        ///< of the grid that is looked at
     uint32_t kept_grids, kept_members;
 } mspringi_sheets;
-/// Give up the grids of pieces that cost less as a web: their particles become loose in kinds. Passes in their
-/// order.
+/// Give up the grids of pieces that cost less as a web: their particles become loose in kinds. In this order; those
+/// with a range look at springs.
 void mspringi_sheets_survey(mspringi_sheets *sheets, const mspringi_graph *graph, const mspringi_grids *grids,
-                            const uint8_t *kinds, mspringi_pace *pace);
+                            const uint8_t *kinds, uint32_t first, uint32_t end);
 mspring_result mspringi_sheets_reserve(mspringi_sheets *sheets, const mspringi_graph *graph,
-                                       const mspringi_grids *grids, mspringi_pace *pace, mspringi_memory *memory,
+                                       const mspringi_grids *grids, mspringi_memory *memory,
                                        mspringi_message *message);
-void mspringi_sheets_join(mspringi_sheets *sheets, const mspringi_graph *graph, mspringi_pace *pace);
+void mspringi_sheets_join(mspringi_sheets *sheets, const mspringi_graph *graph, uint32_t first, uint32_t end);
 void mspringi_sheets_count_springs(mspringi_sheets *sheets, const mspringi_graph *graph,
-                                   const mspringi_grids *grids, const uint8_t *kinds, mspringi_pace *pace);
-void mspringi_sheets_count_particles(mspringi_sheets *sheets, const mspringi_graph *graph,
-                                     const mspringi_grids *grids, const uint8_t *kinds, mspringi_pace *pace);
-void mspringi_sheets_give_up(mspringi_sheets *sheets, mspringi_grids *grids, uint8_t *kinds, mspringi_pace *pace,
-                             mspringi_memory *memory);
+                                   const mspringi_grids *grids, const uint8_t *kinds, uint32_t first, uint32_t end);
+void mspringi_sheets_give_up(mspringi_sheets *sheets, const mspringi_graph *graph, mspringi_grids *grids,
+                             uint8_t *kinds, mspringi_memory *memory);
 void mspringi_sheets_destroy(mspringi_sheets *sheets, mspringi_memory *memory);
 
-/// Put small grids side by side in the same rows, as one grid. found_count stays. Passes in their order.
-mspring_result mspringi_grids_measure(mspringi_grids *grids, mspringi_pace *pace, mspringi_memory *memory,
-                                      mspringi_message *message);
-void mspringi_grids_shelve(mspringi_grids *grids, mspringi_pace *pace);
-void mspringi_grids_number(mspringi_grids *grids, mspringi_pace *pace, mspringi_memory *memory);
+/// Put small grids side by side in the same rows, as one grid. found_count stays. In this order; shelve goes
+/// through the narrow ones.
+mspring_result mspringi_grids_measure(mspringi_grids *grids, mspringi_memory *memory, mspringi_message *message);
+uint32_t mspringi_grids_narrow(const mspringi_grids *grids);
+void mspringi_grids_shelve(mspringi_grids *grids, uint32_t first, uint32_t end);
+void mspringi_grids_number(mspringi_grids *grids, mspringi_memory *memory);
 void mspringi_shelver_destroy(struct mspringi_grid_shelver *shelver, mspringi_memory *memory);
 
 /// How a spring lies on a grid.
@@ -192,14 +162,18 @@ typedef struct mspringi_homes {
     struct mspringi_homes_finder *finder; ///< while they are looked for
 } mspringi_homes;
 
-/// Find them: passes in their order; all that they are given must stay.
-mspring_result mspringi_homes_reserve(mspringi_homes *homes, const mspringi_graph *graph,
-                                      const mspringi_grids *grids, const mspringi_strands *strands,
-                                      mspringi_pace *pace, mspringi_memory *memory, mspringi_message *message);
-void mspringi_homes_attach(mspringi_homes *homes, mspringi_pace *pace);
-mspring_result mspringi_homes_prepare(mspringi_homes *homes, uint32_t workers, mspringi_pace *pace,
-                                      mspringi_memory *memory, mspringi_message *message);
-void mspringi_homes_find(mspringi_homes *homes, mspringi_pace *pace, mspringi_memory *memory);
+/// Find them, in this order; all that they are given must stay. attach goes through the members of grids,
+/// join_springs through springs, try_lags through lags up to MSPRINGI_LONGEST_LAG.
+mspring_result mspringi_homes_begin(mspringi_homes *homes, const mspringi_graph *graph, const mspringi_grids *grids,
+                                    const mspringi_strands *strands, mspringi_memory *memory,
+                                    mspringi_message *message);
+void mspringi_homes_attach(mspringi_homes *homes, uint32_t first, uint32_t end);
+mspring_result mspringi_homes_prepare(mspringi_homes *homes, uint32_t workers, mspringi_memory *memory,
+                                      mspringi_message *message);
+void mspringi_homes_join_springs(mspringi_homes *homes, uint32_t first, uint32_t end);
+void mspringi_homes_judge(mspringi_homes *homes);
+void mspringi_homes_try_lags(mspringi_homes *homes, uint32_t first, uint32_t end);
+void mspringi_homes_end(mspringi_homes *homes, mspringi_memory *memory);
 void mspringi_homes_destroy(mspringi_homes *homes, mspringi_memory *memory);
 
 /// The particles of the web: those that are loose in kinds and have springs. They get MSPRINGI_ROW_WEB. First
@@ -212,41 +186,25 @@ typedef struct mspringi_web_list {
     uint32_t first_in_herds;
 
     // While it is made.
-    uint32_t listed_homed, listed_free;
     double min_x, max_x, min_y, max_y; ///< of those without a home
     uint64_t *keys, *scratch;          ///< [count]
-    bool is_half_sorted;               ///< those with a home are
-    mspringi_sorting sorting;
 } mspringi_web_list;
-/// Find it: passes in their order, then its layers.
+/// Find it, in this order, then its layers.
 void mspringi_web_list_count(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes,
-                             const uint8_t *kinds, mspringi_pace *pace);
-mspring_result mspringi_web_list_reserve(mspringi_web_list *list, const mspringi_herds *herds, mspringi_pace *pace,
+                             const uint8_t *kinds);
+mspring_result mspringi_web_list_reserve(mspringi_web_list *list, const mspringi_herds *herds,
                                          mspringi_memory *memory, mspringi_message *message);
 void mspringi_web_list_fill(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes,
-                            uint8_t *kinds, mspringi_pace *pace);
-void mspringi_web_list_set_keys(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes,
-                                mspringi_pace *pace);
-void mspringi_web_list_sort(mspringi_web_list *list, mspringi_pace *pace);
-void mspringi_web_list_take_order(mspringi_web_list *list, mspringi_pace *pace);
-void mspringi_web_list_append_herds(mspringi_web_list *list, const mspringi_herds *herds, mspringi_pace *pace);
+                            uint8_t *kinds);
+void mspringi_web_list_sort(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes);
+void mspringi_web_list_append_herds(mspringi_web_list *list, const mspringi_herds *herds);
 void mspringi_web_list_destroy(mspringi_web_list *list, mspringi_memory *memory);
 
 /// After the list's particles have been counted: drop the strands that have a home, those that hang on a web that
 /// gets layers, unless there is more of strands than of that, and, if there are herds, short ones that hang on the
 /// web. Their particles become loose in kinds and are counted, too.
 void mspringi_strands_drop(mspringi_strands *strands, const mspringi_graph *graph, const mspringi_homes *homes,
-                           bool has_herds, uint8_t *kinds, mspringi_web_list *list, mspringi_pace *pace);
-
-typedef enum mspringi_layers_stage {
-    MSPRINGI_LAYERS_MARKS,  ///< what there is to be found
-    MSPRINGI_LAYERS_SEEKS,  ///< a particle of another piece: from there,
-    MSPRINGI_LAYERS_SCOUTS, ///< one that is far away, and
-    MSPRINGI_LAYERS_LAYS,   ///< from that the layers
-    MSPRINGI_LAYERS_SORTS,  ///< the list by layer
-    MSPRINGI_LAYERS_COPIES,
-    MSPRINGI_LAYERS_DONE
-} mspringi_layers_stage;
+                           bool has_herds, uint8_t *kinds, mspringi_web_list *list);
 
 /// Layers of the web's particles without a home, if they are many: springs join particles of one layer or of two
 /// that follow each other.
@@ -256,24 +214,20 @@ typedef struct mspringi_layers {
     uint32_t *layer_of; ///< [particles] of the network
 
     // While they are found.
-    mspringi_layers_stage stage;
     uint32_t *particles;     ///< the list
     uint32_t particle_count; ///< in it
     uint32_t *queue;         ///< [particle_count] of searches, one piece of the web behind the other
     uint32_t piece;          ///< where in it the search under way begins
     uint32_t head, tail, level_end;
-    uint32_t sought; ///< of the list: those before have been gone through
 } mspringi_layers;
-/// Find them and sort the list by layer: passes in their order.
-mspring_result mspringi_layers_reserve(mspringi_layers *layers, const mspringi_web_list *list,
-                                       const mspringi_graph *graph, mspringi_pace *pace, mspringi_memory *memory,
-                                       mspringi_message *message);
-void mspringi_layers_find(mspringi_layers *layers, const mspringi_graph *graph, mspringi_pace *pace,
-                          mspringi_memory *memory);
+/// Find them and sort the list by layer.
+mspring_result mspringi_layers_find(mspringi_layers *layers, const mspringi_web_list *list,
+                                    const mspringi_graph *graph, mspringi_memory *memory,
+                                    mspringi_message *message);
 void mspringi_layers_destroy(mspringi_layers *layers, mspringi_memory *memory);
 
-/// The list's last pass: put particles with about as many springs side by side, those of a layer.
+/// Put particles with about as many springs side by side, those of a layer.
 void mspringi_web_list_order_windows(mspringi_web_list *list, const mspringi_layers *layers,
-                                     const mspringi_graph *graph, mspringi_pace *pace, mspringi_memory *memory);
+                                     const mspringi_graph *graph, mspringi_memory *memory);
 
 #endif

@@ -1,5 +1,5 @@
 /// @file assembly.h
-/// A topology that is being made: blocks of grids, then slots and places, then rows, as passes that can pause.
+/// A topology that is being made: blocks of grids, then slots and places, then rows, as a list of plain functions.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_ASSEMBLY_H
@@ -47,19 +47,13 @@ struct mspringi_assembly {
     uint32_t herd_row;     ///< number of the row of herds, if there are any
     uint32_t home_blocks;  ///< blocks of the web that have been given to rows
     size_t row_capacity, span_capacity;
-    bool is_checked; ///< no two springs join the same particles
-    bool has_herds;  ///< small trees may stand in herds
-    mspringi_pace pace;
-    uint32_t grid;     ///< the grid that is gone through, as a number in grid_order
-    uint32_t stage;    ///< of a pass that has several: what is done with the grid
-    uint64_t *scratch; ///< [blocks of the grid that is sorted]
-    mspringi_sorting sorting;
-    uint32_t loose;        ///< loose particles so far, counted or placed
+    bool is_checked;       ///< no two springs join the same particles
+    bool has_herds;        ///< small trees may stand in herds
+    uint32_t pass, at;     ///< of layout_passes, the one that is under way, and how far it has come
+    uint32_t loose;        ///< the next loose slot
     uint32_t web_place;    ///< of the web's last particle so far
     uint32_t homed_blocks; ///< blocks of the web's particles with a home
     uint32_t loner_blocks; ///< and of all that are in no herd
-    uint32_t runs;         ///< of empty slots so far
-    bool in_run;           ///< the slot before is in one
     uint8_t *busy;         ///< [blocks] bits of quarters that have to be swept
     mspringi_weaving weaving;
 };
@@ -67,11 +61,9 @@ struct mspringi_assembly {
 /// Say that there is no memory, and return that.
 mspring_result mspringi_assembly_fail(mspringi_assembly *a);
 
-/* Blocks: passes in their order. */
+/* Blocks, in this order; a range is of grids. */
 mspring_result mspringi_assembly_begin_blocks(mspringi_assembly *a);
-mspring_result mspringi_assembly_number_blocks(mspringi_assembly *a);
-mspring_result mspringi_assembly_count_loose(mspringi_assembly *a);
-mspring_result mspringi_assembly_count_web_blocks(mspringi_assembly *a);
+mspring_result mspringi_assembly_number_blocks(mspringi_assembly *a, uint32_t first, uint32_t end);
 mspring_result mspringi_assembly_number_the_rest(mspringi_assembly *a);
 
 /// Where the web's particle i goes among its slots: those of each home and of each layer begin a block, and so do
@@ -84,25 +76,20 @@ bool mspringi_assembly_is_loose(const mspringi_assembly *a, uint32_t particle);
 uint32_t mspringi_assembly_find_block(const mspringi_assembly *a, uint32_t grid, uint32_t row,
                                       uint32_t column_block);
 
-/* Slots and places: passes in their order. */
+/* Slots and places, in this order; a range is of particles, then of springs. */
 mspring_result mspringi_assembly_reserve_maps(mspringi_assembly *a);
-mspring_result mspringi_assembly_assign_slots(mspringi_assembly *a);
-mspring_result mspringi_assembly_assign_chain_slots(mspringi_assembly *a);
-mspring_result mspringi_assembly_assign_web_slots(mspringi_assembly *a);
-mspring_result mspringi_assembly_assign_spare_slots(mspringi_assembly *a);
+void mspringi_assembly_assign_slots(mspringi_assembly *a, uint32_t first, uint32_t end);
+void mspringi_assembly_assign_other_slots(mspringi_assembly *a);
 mspring_result mspringi_assembly_begin_places(mspringi_assembly *a);
-mspring_result mspringi_assembly_assign_chain_places(mspringi_assembly *a);
-mspring_result mspringi_assembly_assign_places(mspringi_assembly *a);
-mspring_result mspringi_assembly_reserve_ends(mspringi_assembly *a);
+void mspringi_assembly_assign_places(mspringi_assembly *a, uint32_t first, uint32_t end);
 mspring_result mspringi_assembly_note_ends(mspringi_assembly *a);
 
-/* Rows and strips: passes in their order. */
+/* Rows and strips, in this order. */
 mspring_result mspringi_assembly_begin_rows(mspringi_assembly *a);
 mspring_result mspringi_assembly_append_lattice_rows(mspringi_assembly *a);
 mspring_result mspringi_assembly_append_other_rows(mspringi_assembly *a);
-mspring_result mspringi_assembly_mark_particles(mspringi_assembly *a);
-mspring_result mspringi_assembly_mark_springs(mspringi_assembly *a);
-mspring_result mspringi_assembly_trim_spans(mspringi_assembly *a);
+void mspringi_assembly_mark_busy(mspringi_assembly *a);
+void mspringi_assembly_trim_spans(mspringi_assembly *a);
 mspring_result mspringi_assembly_tighten_spans(mspringi_assembly *a);
 mspring_result mspringi_assembly_make_strips(mspringi_assembly *a);
 

@@ -39,7 +39,7 @@ static bool list_blocks(mspringi_assembly *a, uint32_t p) {
     return true;
 }
 
-// Drop repeated blocks of the grid that has been listed and sorted.
+// Of the grid that has been listed and sorted.
 static void drop_repeated(mspringi_assembly *a) {
     const size_t count = a->block_count - a->grid_begin;
     mspringi_block_key *keys = a->blocks + a->grid_begin;
@@ -66,87 +66,55 @@ bool mspringi_assembly_is_loose(const mspringi_assembly *a, uint32_t particle) {
 }
 
 mspring_result mspringi_assembly_begin_blocks(mspringi_assembly *a) {
-    a->first_block = mspringi_pace_alloc(&a->pace, a->memory, a->grids.count, sizeof *a->first_block);
-    a->end_block = mspringi_pace_alloc(&a->pace, a->memory, a->grids.count, sizeof *a->end_block);
+    a->first_block = mspringi_alloc(a->memory, a->grids.count, sizeof *a->first_block);
+    a->end_block = mspringi_alloc(a->memory, a->grids.count, sizeof *a->end_block);
     return a->first_block && a->end_block ? MSPRING_OK : mspringi_assembly_fail(a);
 }
 
-/// What is done with each grid in turn: list its blocks, then sort them.
-enum { LISTS_BLOCKS, SORTS_BLOCKS };
-
-static mspring_result list_grid(mspringi_assembly *a, uint32_t grid) {
-    const mspringi_grids *grids = &a->grids;
-    uint32_t m = grids->first_member[grid] + a->pace.at;
-    if (a->pace.at == 0) {
-        a->first_block[grid] = (uint32_t)a->block_count;
-        a->grid_begin = a->block_count;
-    }
-    for (; m < grids->first_member[grid + 1] && a->pace.left > 0; ++m) {
-        if (!list_blocks(a, grids->members[m]))
-            return mspringi_assembly_fail(a);
-        mspringi_pace_spend(&a->pace, 4);
-    }
-    a->pace.at = m - grids->first_member[grid];
-    if (m < grids->first_member[grid + 1])
-        return MSPRING_OK;
-    a->stage = SORTS_BLOCKS;
-    a->scratch = mspringi_alloc(a->memory, a->block_count - a->grid_begin, sizeof *a->scratch);
-    if (!a->scratch)
+static mspring_result sort_blocks(mspringi_assembly *a) {
+    const size_t count = a->block_count - a->grid_begin;
+    uint64_t *scratch = mspringi_alloc(a->memory, count, sizeof *scratch);
+    if (!scratch)
         return mspringi_assembly_fail(a);
-    mspringi_sorting_begin(&a->sorting, a->blocks + a->grid_begin, a->scratch,
-                           (uint32_t)(a->block_count - a->grid_begin));
+    mspringi_sort_keys(a->blocks + a->grid_begin, scratch, count);
+    mspringi_free(a->memory, scratch);
+    drop_repeated(a);
     return MSPRING_OK;
 }
 
-static void sort_grid(mspringi_assembly *a, uint32_t grid) {
-    if (!mspringi_sorting_go_on(&a->sorting, &a->pace))
-        return;
-    mspringi_free(a->memory, a->scratch);
-    a->scratch = NULL;
-    drop_repeated(a);
-    a->end_block[grid] = (uint32_t)a->block_count;
-    a->grid++;
-    a->stage = LISTS_BLOCKS;
-    a->pace.at = 0;
-}
-
-mspring_result mspringi_assembly_number_blocks(mspringi_assembly *a) {
+mspring_result mspringi_assembly_number_blocks(mspringi_assembly *a, uint32_t first, uint32_t end) {
+    const mspringi_grids *grids = &a->grids;
     mspring_result result = MSPRING_OK;
-    while (result == MSPRING_OK && a->grid < a->grids.count && a->pace.left > 0) {
-        const uint32_t grid = a->homes.grid_order[a->grid];
-        if (a->stage == LISTS_BLOCKS)
-            result = list_grid(a, grid);
-        else
-            sort_grid(a, grid);
-        mspringi_pace_spend(&a->pace, 64); // for the counts of the sort
+    for (uint32_t i = first; result == MSPRING_OK && i < end; ++i) {
+        const uint32_t grid = a->homes.grid_order[i];
+        a->first_block[grid] = (uint32_t)a->block_count;
+        a->grid_begin = a->block_count;
+        for (uint32_t m = grids->first_member[grid]; m < grids->first_member[grid + 1]; ++m)
+            if (!list_blocks(a, grids->members[m]))
+                return mspringi_assembly_fail(a);
+        result = sort_blocks(a);
+        a->end_block[grid] = (uint32_t)a->block_count;
     }
-    a->pace.is_halfway = a->grid < a->grids.count;
     return result;
 }
 
-mspring_result mspringi_assembly_count_loose(mspringi_assembly *a) {
-    uint32_t first, end;
-    mspringi_pace_take(&a->pace, (uint32_t)a->builder->particle_count, 1, &first, &end);
-    for (uint32_t p = first; p < end; ++p)
-        a->loose += mspringi_assembly_is_loose(a, p);
-    return MSPRING_OK;
-}
-
-mspring_result mspringi_assembly_count_web_blocks(mspringi_assembly *a) {
-    uint32_t first, end;
-    mspringi_pace_take(&a->pace, a->web.count, 1, &first, &end);
-    for (uint32_t i = first; i < end; ++i) {
+static void count_web_blocks(mspringi_assembly *a) {
+    a->web_place = 0;
+    for (uint32_t i = 0; i < a->web.count; ++i) {
         a->web_place = mspringi_assembly_web_place(a, i, a->web_place);
         if (i + 1 == a->web.homed_count)
             a->homed_blocks = a->web_place / MSPRINGI_WIDTH + 1;
         if (i + 1 == a->web.first_in_herds)
             a->loner_blocks = a->web_place / MSPRINGI_WIDTH + 1;
     }
-    return MSPRING_OK;
 }
 
 mspring_result mspringi_assembly_number_the_rest(mspringi_assembly *a) {
     mspringi_topology *t = a->topology;
+    uint32_t loose = 0;
+    for (uint32_t p = 0; p < a->builder->particle_count; ++p)
+        loose += mspringi_assembly_is_loose(a, p);
+    count_web_blocks(a);
     t->lattice_first = 1;
     t->lattice_blocks = (uint32_t)a->block_count;
     t->chain_first = t->lattice_first + t->lattice_blocks;
@@ -155,8 +123,8 @@ mspring_result mspringi_assembly_number_the_rest(mspringi_assembly *a) {
     t->web_first = t->chain_first + t->chain_blocks + 1;
     t->web_blocks = a->web.count > 0 ? a->web_place / MSPRINGI_WIDTH + 1 : 0;
     t->loose_first = t->web_first + t->web_blocks;
-    t->loose_particles = a->loose;
-    t->loose_blocks = (a->loose + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
+    t->loose_particles = loose;
+    t->loose_blocks = (loose + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
     t->spare_first = t->loose_first + t->loose_blocks;
     t->spare_blocks = (mspringi_spare_particles(t) + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
     t->block_count = t->spare_first + t->spare_blocks + 1;

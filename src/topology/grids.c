@@ -29,21 +29,15 @@
 /// A particle with more springs is no seed of a bent grid: its neighbours have eight, and some ropes.
 #define MOST_SEED_SPRINGS 16
 
-typedef enum grid_search { FOR_UPRIGHT, FOR_BENT, FOR_PARTS, SEARCHES } grid_search;
+typedef enum grid_search { FOR_UPRIGHT, FOR_BENT, FOR_PARTS } grid_search;
 
-typedef enum search_stage {
-    SEEKS,   ///< a seed
-    FLOODS,  ///< from there
-    VACATES, ///< the hash table
-    COUNTS,  ///< springs: of a grid that lacks too many nothing else
-    BOUNDS,  ///< the grid: its lowest column and row
-    KEYS,    ///< sets those of its blocks,
-    SORTS,   ///< sorts them
-    RUNS,    ///< and counts blocks and runs of them: all three transposed first, then upright
-    DECIDES, ///< whether to keep the grid
-    STAGES
-} search_stage;
+/// Springs of a grid's particles.
+typedef struct grid_springs {
+    uint32_t inner_ends; ///< ends of those between neighbouring cells
+    uint32_t ends;       ///< ends of all that are at one of its particles
+} grid_springs;
 
+/// Grids from grids->count on are candidates: found by the search that is under way, and not judged yet.
 typedef struct mspringi_grid_finder {
     const mspringi_graph *graph;
     mspringi_grids *grids;
@@ -52,80 +46,53 @@ typedef struct mspringi_grid_finder {
     uint8_t *given_up; ///< [particles] 1 + the last search that had it in a grid which was not worth it
     int32_t *column;   ///< [particles] relative to the seed
     int32_t *row;      ///< [particles]
-    uint32_t *cell;    ///< hash table of the current grid's particles
+    uint32_t *cell;    ///< hash table of the candidates' particles
     size_t cell_mask;
     uint64_t *keys, *scratch; ///< [particles]
     mspringi_step *steps[2];  ///< [particles] of frames, in the memory of keys and scratch, which are wanted later
     mspringi_frame upright;   ///< the frame of all particles of an upright grid
+    grid_springs *springs;    ///< [candidates]
 
-    search_stage stage;
-    uint32_t seed;  ///< the current grid's, or the particle to be looked at next
-    uint32_t begin; ///< its first member
-    uint32_t at;    ///< how far the stage has come in its members
-    int32_t min_column, min_row;
-    bool transposed; ///< its columns are taken along the rows
-    uint64_t cost_transposed;
-    uint32_t blocks_transposed, blocks, runs;
-    size_t neighbours, ends; ///< springs between neighbouring cells, twice; all ends of springs
-    bool is_kept;
-    mspringi_sorting sorting;
+    uint32_t first, end;         ///< candidates
+    uint32_t seed;               ///< the particle to be looked at next
+    uint32_t next_member;        ///< members from here on have not been gone through
+    int32_t min_column, min_row; ///< of the grid that is judged
+    uint32_t blocks, runs;       ///< of blocks, in one orientation
 } finder;
+
+static mspring_result out_of_memory(const mspringi_graph *graph, mspringi_message *message) {
+    return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to search %zu particles for grids",
+                         graph->builder->particle_count);
+}
 
 /* --------------------------------------------------------------------------------------- the cells of a grid */
 
-static size_t hash_cell(int32_t column, int32_t row, size_t mask) {
+static size_t hash_cell(uint32_t grid, int32_t column, int32_t row, size_t mask) {
     uint64_t key = (uint64_t)(uint32_t)column << 32 | (uint32_t)row;
+    key ^= grid * 0x9e3779b97f4a7c15u; // another such as the one below
     key ^= key >> 33;
     key *= 0xff51afd7ed558ccdu; // an odd number with well spread bits
     key ^= key >> 33;
     return (size_t)key & mask;
 }
 
-// Put a particle into a cell; false if somebody is there.
+// Put a particle into a cell of the last candidate; false if somebody is there.
 static bool occupy(finder *f, uint32_t particle, int32_t column, int32_t row) {
-    size_t i = hash_cell(column, row, f->cell_mask);
+    mspringi_grids *grids = f->grids;
+    const uint32_t grid = f->end - 1;
+    size_t i = hash_cell(grid, column, row, f->cell_mask);
     while (f->cell[i] != 0) {
         const uint32_t there = f->cell[i] - 1;
-        if (f->column[there] == column && f->row[there] == row)
+        if (f->column[there] == column && f->row[there] == row && grids->grid_of[there] == grid)
             return false;
         i = (i + 1) & f->cell_mask;
     }
     f->cell[i] = particle + 1;
     f->column[particle] = column;
     f->row[particle] = row;
+    grids->grid_of[particle] = grid;
+    grids->members[grids->member_count++] = particle;
     return true;
-}
-
-// Members of the current grid that a stage is to go through now. Returns the first, and moves on to the last.
-static uint32_t take_members(finder *f, uint32_t weight, mspringi_pace *pace) {
-    const uint32_t first = f->begin + f->at, left = f->grids->member_count - first;
-    const uint32_t most = pace->left / weight, now = left <= most ? left : most > 0 ? most : 1;
-    mspringi_pace_spend(pace, (uint64_t)now * weight);
-    f->at += now;
-    return first;
-}
-
-// Go on to a stage if this one has gone through all members.
-static void finish_stage(finder *f, search_stage next) {
-    if (f->begin + f->at < f->grids->member_count)
-        return;
-    f->stage = next;
-    f->at = 0;
-}
-
-// Empty the hash table again: probe for each member, then clear.
-static void vacate(finder *f, mspringi_pace *pace) {
-    const uint32_t *members = f->grids->members;
-    for (uint32_t m = take_members(f, 4, pace); m < f->begin + f->at; ++m) {
-        size_t i = hash_cell(f->column[members[m]], f->row[members[m]], f->cell_mask);
-        while (f->cell[i] != 0) {
-            f->cell[i] = 0;
-            i = (i + 1) & f->cell_mask;
-        }
-    }
-    finish_stage(f, COUNTS);
-    f->neighbours = f->ends = 0;
-    f->is_kept = false;
 }
 
 /* ------------------------------------------------------------------------------------------------- the search */
@@ -210,23 +177,12 @@ static bool find_any_frame(finder *f, uint32_t seed) {
     return most > 0;
 }
 
-// Look for the next particle that a grid can be found from.
-static void seek(finder *f, mspringi_pace *pace) {
-    const uint32_t particles = (uint32_t)f->graph->builder->particle_count;
-    mspringi_grids *grids = f->grids;
-    for (; f->seed < particles && pace->left > 0; f->seed++) {
-        const bool can_be = is_free(f, f->seed);
-        mspringi_pace_spend(pace, !can_be ? 1 : f->search == FOR_BENT ? 64 : 8);
-        if (!can_be || !(f->search == FOR_BENT ? find_any_frame(f, f->seed) : find_upright_frame(f, f->seed)))
-            continue;
-        f->begin = grids->member_count;
-        f->at = 0;
-        occupy(f, f->seed, 0, 0);
-        grids->grid_of[f->seed] = grids->count;
-        grids->members[grids->member_count++] = f->seed;
-        f->stage = FLOODS;
+// Begin a grid with a particle, if one can be found from there.
+static void seed_from(finder *f, uint32_t seed) {
+    if (!is_free(f, seed) || !(f->search == FOR_BENT ? find_any_frame(f, seed) : find_upright_frame(f, seed)))
         return;
-    }
+    f->grids->first_member[f->end++] = f->grids->member_count;
+    (void)occupy(f, seed, 0, 0);
 }
 
 // Fit a particle's frame to its neighbours, those of the nearest eight cells that are members already.
@@ -234,7 +190,7 @@ static mspringi_frame fitted_frame(finder *f, uint32_t at) {
     mspringi_frame_fit fit = {.count = 0};
     for (uint32_t i = f->graph->first[at]; i < f->graph->first[at + 1]; ++i) {
         const mspring_id other = mspringi_other_end(&f->graph->builder->springs[f->graph->springs[i]], at);
-        const bool is_member = f->grids->grid_of[other] == f->grids->count;
+        const bool is_member = f->grids->grid_of[other] == f->end - 1;
         const int32_t dc = is_member ? f->column[other] - f->column[at] : 0;
         const int32_t dr = is_member ? f->row[other] - f->row[at] : 0;
         if ((dc != 0 || dr != 0) && abs(dc) <= 1 && abs(dr) <= 1)
@@ -245,29 +201,30 @@ static mspringi_frame fitted_frame(finder *f, uint32_t at) {
     return frame_of(f, at);
 }
 
-// Collect all particles that can be reached from the seed, cell by cell, behind those of the earlier grids.
-static void flood(finder *f, mspringi_pace *pace) {
+// Collect what can be reached from a member of the last candidate, cell by cell.
+static void spread_from(finder *f, uint32_t at) {
     const mspringi_graph *graph = f->graph;
-    mspringi_grids *grids = f->grids;
-    for (; f->begin + f->at < grids->member_count && pace->left > 0; f->at++) {
-        const uint32_t at = grids->members[f->begin + f->at];
-        mspringi_pace_spend(pace, 2 + (uint64_t)6 * (graph->first[at + 1] - graph->first[at]));
-        const mspringi_frame frame = f->search == FOR_BENT ? fitted_frame(f, at) : f->upright;
-        for (uint32_t i = graph->first[at]; i < graph->first[at + 1]; ++i) {
-            const mspring_id other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], at);
-            const mspringi_step way = way_between(f, at, other);
-            int32_t dc = 0, dr = 0;
-            if (!is_free(f, other) || !mspringi_frame_round(frame, way, &dc, &dr))
-                continue;
-            if ((dc != 0 || dr != 0) && occupy(f, other, f->column[at] + dc, f->row[at] + dr)) {
-                if (f->search == FOR_BENT)
-                    set_frame(f, other, frame);
-                grids->grid_of[other] = grids->count;
-                grids->members[grids->member_count++] = other;
-            }
-        }
+    const mspringi_frame frame = f->search == FOR_BENT ? fitted_frame(f, at) : f->upright;
+    for (uint32_t i = graph->first[at]; i < graph->first[at + 1]; ++i) {
+        const mspring_id other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], at);
+        const mspringi_step way = way_between(f, at, other);
+        int32_t dc = 0, dr = 0;
+        if (!is_free(f, other) || !mspringi_frame_round(frame, way, &dc, &dr))
+            continue;
+        if ((dc != 0 || dr != 0) && occupy(f, other, f->column[at] + dc, f->row[at] + dr) && f->search == FOR_BENT)
+            set_frame(f, other, frame);
     }
-    finish_stage(f, VACATES);
+}
+
+void mspringi_grids_flood(mspringi_grids *grids, uint32_t first, uint32_t end) {
+    finder *f = grids->finder;
+    const uint32_t particles = (uint32_t)f->graph->builder->particle_count;
+    for (uint32_t i = first; i < end; ++i) {
+        if (f->next_member < grids->member_count)
+            spread_from(f, grids->members[f->next_member++]);
+        else if (f->seed < particles)
+            seed_from(f, f->seed++);
+    }
 }
 
 /* --------------------------------------------------------------------------------------------- is it worth it */
@@ -285,102 +242,118 @@ static bool has_enough(const finder *f, size_t neighbours, size_t all) {
     }
 }
 
-// Count the springs of a grid's particles: those between neighbouring cells, and all.
-static void count_springs(finder *f, mspringi_pace *pace) {
-    const mspringi_graph *graph = f->graph;
-    const uint32_t *members = f->grids->members;
-    for (uint32_t m = take_members(f, 16, pace); m < f->begin + f->at; ++m) {
-        const uint32_t at = members[m];
-        f->ends += graph->first[at + 1] - graph->first[at];
-        for (uint32_t i = graph->first[at]; i < graph->first[at + 1]; ++i) {
-            const mspring_id other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], at);
-            f->neighbours += f->grids->grid_of[other] == f->grids->grid_of[at] &&
-                             abs(f->column[other] - f->column[at]) <= 1 && abs(f->row[other] - f->row[at]) <= 1;
-        }
-    }
-    finish_stage(f, BOUNDS);
-    if (f->stage != BOUNDS)
-        return;
-    f->neighbours /= 2;
-    f->stage = has_enough(f, f->neighbours, f->ends - f->neighbours) ? BOUNDS : DECIDES;
+mspring_result mspringi_grids_begin_judging(mspringi_grids *grids, mspringi_memory *memory,
+                                            mspringi_message *message) {
+    finder *f = grids->finder;
+    grids->first_member[f->end] = grids->member_count;
+    f->next_member = grids->first_member[f->first];
+    f->springs = mspringi_alloc(memory, f->end - f->first, sizeof *f->springs);
+    return f->springs ? MSPRING_OK : out_of_memory(f->graph, message);
 }
 
-static void bound(finder *f, mspringi_pace *pace) {
-    const uint32_t *members = f->grids->members;
-    if (f->at == 0)
-        f->min_column = f->min_row = 0; // where the seed is
-    for (uint32_t m = take_members(f, 1, pace); m < f->begin + f->at; ++m) {
+uint32_t mspringi_grids_candidates(const mspringi_grids *grids) {
+    return grids->finder->end - grids->finder->first;
+}
+
+uint32_t mspringi_grids_candidate_members(const mspringi_grids *grids) {
+    return grids->member_count - grids->first_member[grids->finder->first];
+}
+
+void mspringi_grids_count_springs(mspringi_grids *grids, uint32_t first, uint32_t end) {
+    const finder *f = grids->finder;
+    const mspringi_graph *graph = f->graph;
+    const uint32_t *members = grids->members + grids->first_member[f->first];
+    for (uint32_t m = first; m < end; ++m) {
+        const uint32_t at = members[m];
+        const uint32_t grid = grids->grid_of[at];
+        const int32_t column = f->column[at], row = f->row[at];
+        uint32_t inner_ends = 0;
+        for (uint32_t i = graph->first[at]; i < graph->first[at + 1]; ++i) {
+            const mspring_id other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], at);
+            inner_ends += grids->grid_of[other] == grid && abs(f->column[other] - column) <= 1 &&
+                          abs(f->row[other] - row) <= 1;
+        }
+        f->springs[grid - f->first].ends += graph->first[at + 1] - graph->first[at];
+        f->springs[grid - f->first].inner_ends += inner_ends;
+    }
+}
+
+// The lowest column and row.
+static void bound(finder *f, const uint32_t *members, uint32_t count) {
+    f->min_column = f->min_row = 0; // where the seed is
+    for (uint32_t m = 0; m < count; ++m) {
         f->min_column = f->column[members[m]] < f->min_column ? f->column[members[m]] : f->min_column;
         f->min_row = f->row[members[m]] < f->min_row ? f->row[members[m]] : f->min_row;
     }
-    f->transposed = true;
-    finish_stage(f, KEYS);
-}
-
-static void set_keys(finder *f, mspringi_pace *pace) {
-    const uint32_t *members = f->grids->members;
-    for (uint32_t m = take_members(f, 1, pace); m < f->begin + f->at; ++m) {
-        const uint32_t column = (uint32_t)(f->column[members[m]] - f->min_column);
-        const uint32_t row = (uint32_t)(f->row[members[m]] - f->min_row);
-        f->keys[m - f->begin] = f->transposed ? (uint64_t)column << 32 | row / MSPRINGI_WIDTH
-                                              : (uint64_t)row << 32 | column / MSPRINGI_WIDTH;
-    }
-    finish_stage(f, SORTS);
-    if (f->stage == SORTS)
-        mspringi_sorting_begin(&f->sorting, f->keys, f->scratch, f->grids->member_count - f->begin);
-}
-
-static void sort(finder *f, mspringi_pace *pace) {
-    if (!mspringi_sorting_go_on(&f->sorting, pace))
-        return;
-    f->stage = RUNS;
-    f->blocks = f->runs = 0;
 }
 
 // What it costs to sweep a grid with its columns along the rows, or the other way round, in blocks: those it has,
 // and about one for each run of neighbouring ones to start with.
-static void count_runs(finder *f, mspringi_pace *pace) {
-    for (uint32_t i = take_members(f, 1, pace) - f->begin; i < f->at; ++i) {
+static uint64_t count_runs(finder *f, const uint32_t *members, uint32_t count, bool transposed) {
+    for (uint32_t m = 0; m < count; ++m) {
+        const uint32_t column = (uint32_t)(f->column[members[m]] - f->min_column);
+        const uint32_t row = (uint32_t)(f->row[members[m]] - f->min_row);
+        f->keys[m] = transposed ? (uint64_t)column << 32 | row / MSPRINGI_WIDTH
+                                : (uint64_t)row << 32 | column / MSPRINGI_WIDTH;
+    }
+    mspringi_sort_keys(f->keys, f->scratch, count);
+    f->blocks = f->runs = 0;
+    for (uint32_t i = 0; i < count; ++i) {
         f->blocks += i == 0 || f->keys[i] != f->keys[i - 1];
         f->runs += i == 0 || f->keys[i] > f->keys[i - 1] + 1;
     }
-    finish_stage(f, f->transposed ? KEYS : DECIDES);
-    if (f->stage == RUNS)
-        return;
-    if (f->stage == KEYS) {
-        f->cost_transposed = (uint64_t)f->blocks + f->runs;
-        f->blocks_transposed = f->blocks;
-        f->transposed = false;
-        return;
-    }
-    f->transposed = f->cost_transposed < (uint64_t)f->blocks + f->runs;
-    const uint32_t blocks = f->transposed ? f->blocks_transposed : f->blocks;
-    f->is_kept = f->neighbours * SLOTS_PER_SPRING >= (size_t)blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
+    return (uint64_t)f->blocks + f->runs;
 }
 
-// Keep the grid that was flooded last, in its better orientation, or give it up.
-static void decide(finder *f, mspringi_pace *pace) {
-    mspringi_grids *grids = f->grids;
-    for (uint32_t m = take_members(f, 2, pace); m < f->begin + f->at; ++m) {
-        const uint32_t p = grids->members[m];
-        const uint32_t column = (uint32_t)(f->column[p] - f->min_column), row = (uint32_t)(f->row[p] - f->min_row);
-        if (!f->is_kept) {
-            grids->grid_of[p] = MSPRING_NONE;
-            f->given_up[p] = (uint8_t)(f->search + 1);
-            continue;
-        }
-        grids->column[p] = f->transposed ? row : column;
-        grids->row[p] = f->transposed ? column : row;
-        f->kinds[p] = MSPRINGI_ROW_LATTICE;
+// Whether sweeping a candidate's rows is worth it, and in which orientation.
+static bool is_worth_it(finder *f, uint32_t candidate, const uint32_t *members, uint32_t count, bool *transposed) {
+    const grid_springs *springs = &f->springs[candidate];
+    const size_t neighbours = springs->inner_ends / 2;
+    if (!has_enough(f, neighbours, springs->ends - neighbours))
+        return false;
+    bound(f, members, count);
+    const uint64_t cost_transposed = count_runs(f, members, count, true);
+    const uint32_t blocks_transposed = f->blocks;
+    *transposed = cost_transposed < count_runs(f, members, count, false);
+    const size_t blocks = *transposed ? blocks_transposed : f->blocks;
+    return neighbours * SLOTS_PER_SPRING >= blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
+}
+
+static void give_up(finder *f, const uint32_t *members, uint32_t count) {
+    for (uint32_t m = 0; m < count; ++m) {
+        f->grids->grid_of[members[m]] = MSPRING_NONE;
+        f->given_up[members[m]] = (uint8_t)(f->search + 1);
     }
-    finish_stage(f, SEEKS);
-    if (f->stage != SEEKS)
-        return;
-    if (f->is_kept)
-        grids->first_member[++grids->count] = grids->member_count;
-    else
-        grids->member_count = f->begin;
-    f->seed++;
+}
+
+// Keep a grid, behind those that have been kept.
+static void keep(finder *f, const uint32_t *members, uint32_t count, bool transposed) {
+    mspringi_grids *grids = f->grids;
+    uint32_t to = grids->first_member[grids->count];
+    for (uint32_t m = 0; m < count; ++m) {
+        const uint32_t p = members[m];
+        const uint32_t column = (uint32_t)(f->column[p] - f->min_column), row = (uint32_t)(f->row[p] - f->min_row);
+        grids->grid_of[p] = grids->count;
+        grids->column[p] = transposed ? row : column;
+        grids->row[p] = transposed ? column : row;
+        f->kinds[p] = MSPRINGI_ROW_LATTICE;
+        grids->members[to++] = p;
+    }
+    grids->first_member[++grids->count] = to;
+}
+
+void mspringi_grids_judge(mspringi_grids *grids, uint32_t first, uint32_t end) {
+    finder *f = grids->finder;
+    for (uint32_t candidate = first; candidate < end; ++candidate) {
+        const uint32_t begin = f->next_member, behind = grids->first_member[f->first + candidate + 1];
+        const uint32_t *members = grids->members + begin;
+        bool transposed = false;
+        if (is_worth_it(f, candidate, members, behind - begin, &transposed))
+            keep(f, members, behind - begin, transposed);
+        else
+            give_up(f, members, behind - begin);
+        f->next_member = behind;
+    }
 }
 
 /* ---------------------------------------------------------------------------------------------------- the whole */
@@ -388,59 +361,54 @@ static void decide(finder *f, mspringi_pace *pace) {
 static void free_finder(finder *f, mspringi_memory *memory) {
     if (!f)
         return;
-    void *const blocks[] = {f->given_up, f->column, f->row, f->cell, f->keys, f->scratch, f};
+    void *const blocks[] = {f->given_up, f->column, f->row, f->cell, f->keys, f->scratch, f->springs, f};
     for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; ++i)
         mspringi_free(memory, blocks[i]);
 }
 
-mspring_result mspringi_grids_reserve(mspringi_grids *grids, const mspringi_graph *graph, uint8_t *kinds,
-                                      mspringi_pace *pace, mspringi_memory *memory, mspringi_message *message) {
+mspring_result mspringi_grids_begin(mspringi_grids *grids, const mspringi_graph *graph, uint8_t *kinds,
+                                    mspringi_memory *memory, mspringi_message *message) {
     const size_t particles = graph->builder->particle_count;
     size_t table = 16;
     while (table < 2 * particles)
         table *= 2;
     finder *f = grids->finder = mspringi_alloc(memory, 1, sizeof *f);
-    grids->grid_of = mspringi_pace_alloc(pace, memory, particles, sizeof *grids->grid_of);
-    grids->column = mspringi_pace_alloc(pace, memory, particles, sizeof *grids->column);
-    grids->row = mspringi_pace_alloc(pace, memory, particles, sizeof *grids->row);
-    grids->members = mspringi_pace_alloc(pace, memory, particles, sizeof *grids->members);
-    grids->first_member = mspringi_pace_alloc(pace, memory, particles + 1, sizeof *grids->first_member);
+    grids->grid_of = mspringi_alloc(memory, particles, sizeof *grids->grid_of);
+    grids->column = mspringi_alloc(memory, particles, sizeof *grids->column);
+    grids->row = mspringi_alloc(memory, particles, sizeof *grids->row);
+    grids->members = mspringi_alloc(memory, particles, sizeof *grids->members);
+    grids->first_member = mspringi_alloc(memory, particles + 1, sizeof *grids->first_member);
     if (f) {
         f->graph = graph;
         f->grids = grids;
         f->kinds = kinds;
         f->cell_mask = table - 1;
-        f->given_up = mspringi_pace_alloc(pace, memory, particles, sizeof *f->given_up);
-        f->column = mspringi_pace_alloc(pace, memory, particles, sizeof *f->column);
-        f->row = mspringi_pace_alloc(pace, memory, particles, sizeof *f->row);
-        f->cell = mspringi_pace_alloc(pace, memory, table, sizeof *f->cell);
-        f->keys = mspringi_pace_alloc(pace, memory, particles, sizeof *f->keys);
-        f->scratch = mspringi_pace_alloc(pace, memory, particles, sizeof *f->scratch);
+        f->given_up = mspringi_alloc(memory, particles, sizeof *f->given_up);
+        f->column = mspringi_alloc(memory, particles, sizeof *f->column);
+        f->row = mspringi_alloc(memory, particles, sizeof *f->row);
+        f->cell = mspringi_alloc(memory, table, sizeof *f->cell);
+        f->keys = mspringi_alloc(memory, particles, sizeof *f->keys);
+        f->scratch = mspringi_alloc(memory, particles, sizeof *f->scratch);
     }
     if (!f || !grids->grid_of || !grids->column || !grids->row || !grids->members || !grids->first_member ||
         !f->given_up || !f->column || !f->row || !f->cell || !f->keys || !f->scratch)
-        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to search %zu particles for grids",
-                             particles);
+        return out_of_memory(graph, message);
     f->steps[0] = (mspringi_step *)(void *)f->keys;
     f->steps[1] = (mspringi_step *)(void *)f->scratch;
     memset(grids->grid_of, 0xff, particles * sizeof *grids->grid_of);
     return MSPRING_OK;
 }
 
-void mspringi_grids_find(mspringi_grids *grids, mspringi_pace *pace, mspringi_memory *memory) {
-    static void (*const stages[STAGES])(finder *, mspringi_pace *) = {
-        seek, flood, vacate, count_springs, bound, set_keys, sort, count_runs, decide};
+void mspringi_grids_end_search(mspringi_grids *grids, mspringi_memory *memory) {
     finder *f = grids->finder;
-    const size_t particles = f->graph->builder->particle_count;
-    while (f->search < SEARCHES && pace->left > 0) {
-        stages[f->stage](f, pace);
-        if (f->seed < particles)
-            continue;
-        f->search++;
-        f->seed = 0;
-    }
-    pace->is_halfway = f->search < SEARCHES;
-    if (pace->is_halfway)
+    if (f->end > f->first)
+        memset(f->cell, 0, (f->cell_mask + 1) * sizeof *f->cell);
+    mspringi_free(memory, f->springs);
+    f->springs = NULL;
+    f->first = f->end = grids->count;
+    f->next_member = grids->member_count = grids->first_member[grids->count];
+    f->seed = 0;
+    if (++f->search < MSPRINGI_GRID_SEARCHES)
         return;
     grids->found_count = grids->count;
     free_finder(f, memory);

@@ -144,20 +144,17 @@ static void list_rungs(uint32_t code, uint8_t *rung_above) {
 
 /* ------------------------------------------------------------------------------------------------------ passes */
 
-mspring_result mspringi_herds_begin(mspringi_herds *herds, const mspringi_graph *graph, mspringi_pace *pace,
-                                    mspringi_memory *memory, mspringi_message *message) {
-    herds->known = mspringi_pace_alloc(pace, memory, graph->builder->particle_count, sizeof *herds->known);
+mspring_result mspringi_herds_begin(mspringi_herds *herds, const mspringi_graph *graph, mspringi_memory *memory,
+                                    mspringi_message *message) {
+    herds->known = mspringi_alloc(memory, graph->builder->particle_count, sizeof *herds->known);
     return herds->known
                ? MSPRING_OK
                : mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to look for trees in %zu particles",
                                graph->builder->particle_count);
 }
 
-void mspringi_herds_explore(mspringi_herds *herds, const mspringi_graph *graph, mspringi_pace *pace) {
-    const uint32_t particles = (uint32_t)graph->builder->particle_count;
-    uint32_t p = pace->at;
-    for (; p < particles && pace->left > 0; ++p) {
-        mspringi_pace_spend(pace, 1);
+void mspringi_herds_explore(mspringi_herds *herds, const mspringi_graph *graph, uint32_t first, uint32_t end) {
+    for (uint32_t p = first; p < end; ++p) {
         if (herds->known[p] != UNKNOWN || degree_of(graph, p) == 0)
             continue;
         tree found;
@@ -166,19 +163,15 @@ void mspringi_herds_explore(mspringi_herds *herds, const mspringi_graph *graph, 
             herds->known[found.particles[i]] = is_tree ? IN_TREE : IN_OTHER;
         herds->tree_count += is_tree;
         herds->tree_particles += is_tree ? found.count : 0;
-        mspringi_pace_spend(pace, (uint64_t)4 * found.count);
     }
-    pace->at = p;
-    pace->is_halfway = p < particles;
 }
 
-mspring_result mspringi_herds_reserve(mspringi_herds *herds, mspringi_pace *pace, mspringi_memory *memory,
-                                      mspringi_message *message) {
+mspring_result mspringi_herds_reserve(mspringi_herds *herds, mspringi_memory *memory, mspringi_message *message) {
     if (herds->tree_particles < FEWEST_IN_HERDS)
         return MSPRING_OK;
-    herds->in_order = mspringi_pace_alloc(pace, memory, herds->tree_particles, sizeof *herds->in_order);
-    herds->keys = mspringi_pace_alloc(pace, memory, herds->tree_count, sizeof *herds->keys);
-    herds->scratch = mspringi_pace_alloc(pace, memory, herds->tree_count, sizeof *herds->scratch);
+    herds->in_order = mspringi_alloc(memory, herds->tree_particles, sizeof *herds->in_order);
+    herds->keys = mspringi_alloc(memory, herds->tree_count, sizeof *herds->keys);
+    herds->scratch = mspringi_alloc(memory, herds->tree_count, sizeof *herds->scratch);
     return herds->in_order && herds->keys && herds->scratch
                ? MSPRING_OK
                : mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for %u trees",
@@ -186,11 +179,8 @@ mspring_result mspringi_herds_reserve(mspringi_herds *herds, mspringi_pace *pace
 }
 
 // Take the trees' codes, and their particles in order. The first of a tree to be met comes first in it.
-void mspringi_herds_compare(mspringi_herds *herds, const mspringi_graph *graph, mspringi_pace *pace) {
-    const uint32_t particles = herds->in_order ? (uint32_t)graph->builder->particle_count : 0;
-    uint32_t p = pace->at;
-    for (; p < particles && pace->left > 0; ++p) {
-        mspringi_pace_spend(pace, 1);
+void mspringi_herds_compare(mspringi_herds *herds, const mspringi_graph *graph, uint32_t first, uint32_t end) {
+    for (uint32_t p = first; herds->in_order && p < end; ++p) {
         if (herds->known[p] != IN_TREE)
             continue;
         tree found;
@@ -202,16 +192,7 @@ void mspringi_herds_compare(mspringi_herds *herds, const mspringi_graph *graph, 
         herds->listed_particles += found.count;
         for (uint32_t i = 0; i < found.count; ++i)
             herds->known[found.particles[i]] = UNKNOWN;
-        mspringi_pace_spend(pace, (uint64_t)16 * found.count * found.count);
     }
-    pace->at = p;
-    pace->is_halfway = p < particles;
-    if (!pace->is_halfway && herds->in_order)
-        mspringi_sorting_begin(&herds->sorting, herds->keys, herds->scratch, herds->tree_count);
-}
-
-void mspringi_herds_sort(mspringi_herds *herds, mspringi_pace *pace) {
-    pace->is_halfway = herds->in_order && !mspringi_sorting_go_on(&herds->sorting, pace);
 }
 
 static uint32_t code_of_key(uint64_t key) {
@@ -224,60 +205,54 @@ static bool is_herd(const mspringi_herds *herds, uint32_t first) {
            code_of_key(herds->keys[first]) == code_of_key(herds->keys[first + MSPRINGI_WIDTH - 1]);
 }
 
-mspring_result mspringi_herds_count(mspringi_herds *herds, mspringi_pace *pace, mspringi_memory *memory,
-                                    mspringi_message *message) {
-    const uint32_t trees = herds->in_order ? herds->tree_count : 0;
-    uint32_t first = pace->at;
-    while (first < trees && pace->left > 0) {
+static void count_groups(mspringi_herds *herds) {
+    for (uint32_t first = 0; first < herds->tree_count;) {
         const bool is_whole = is_herd(herds, first);
         herds->group_count += is_whole ? bits_of(code_of_key(herds->keys[first])) / 2 : 0;
         first += is_whole ? MSPRINGI_WIDTH : 1;
-        mspringi_pace_spend(pace, 1);
     }
-    pace->at = first;
-    pace->is_halfway = first < trees;
-    if (pace->is_halfway)
-        return MSPRING_OK;
     if (herds->group_count * MSPRINGI_WIDTH < FEWEST_IN_HERDS)
         herds->group_count = 0;
-    const size_t particles = (size_t)herds->group_count * MSPRINGI_WIDTH;
-    herds->particles = mspringi_pace_alloc(pace, memory, particles, sizeof *herds->particles);
-    herds->rung_above = mspringi_pace_alloc(pace, memory, herds->group_count, sizeof *herds->rung_above);
-    return herds->particles && herds->rung_above
-               ? MSPRING_OK
-               : mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for herds of %zu particles", particles);
 }
 
-static void stand(mspringi_herds *herds, uint32_t first, uint32_t size, uint8_t *kinds) {
+static void stand(mspringi_herds *herds, uint32_t first, uint32_t group, uint32_t size, uint8_t *kinds) {
     for (uint32_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
         const uint32_t *members = herds->in_order + (uint32_t)herds->keys[first + lane];
         for (uint32_t node = 0; node < size; ++node) {
-            herds->particles[(herds->filled + node) * MSPRINGI_WIDTH + lane] = members[node];
+            herds->particles[(group + node) * MSPRINGI_WIDTH + lane] = members[node];
             kinds[members[node]] = MSPRINGI_ROW_WEB;
         }
     }
 }
 
-void mspringi_herds_fill(mspringi_herds *herds, uint8_t *kinds, mspringi_pace *pace, mspringi_memory *memory) {
-    uint32_t first = pace->at;
-    while (herds->filled < herds->group_count && pace->left > 0) {
+static void stand_all(mspringi_herds *herds, uint8_t *kinds) {
+    for (uint32_t first = 0, filled = 0; filled < herds->group_count;) {
         const uint32_t code = code_of_key(herds->keys[first]), size = bits_of(code) / 2;
         if (!is_herd(herds, first)) {
-            mspringi_pace_spend(pace, 1);
             ++first;
             continue;
         }
-        list_rungs(code, herds->rung_above + herds->filled);
-        stand(herds, first, size, kinds);
-        mspringi_pace_spend(pace, (uint64_t)4 * size * MSPRINGI_WIDTH);
-        herds->filled += size;
+        list_rungs(code, herds->rung_above + filled);
+        stand(herds, first, filled, size, kinds);
+        filled += size;
         first += MSPRINGI_WIDTH;
     }
-    pace->at = first;
-    pace->is_halfway = herds->filled < herds->group_count;
-    if (pace->is_halfway)
-        return;
+}
+
+mspring_result mspringi_herds_fill(mspringi_herds *herds, uint8_t *kinds, mspringi_memory *memory,
+                                   mspringi_message *message) {
+    if (herds->in_order) {
+        mspringi_sort_keys(herds->keys, herds->scratch, herds->tree_count);
+        count_groups(herds);
+    }
+    const size_t particles = (size_t)herds->group_count * MSPRINGI_WIDTH;
+    herds->particles = mspringi_alloc(memory, particles, sizeof *herds->particles);
+    herds->rung_above = mspringi_alloc(memory, herds->group_count, sizeof *herds->rung_above);
+    if (!herds->particles || !herds->rung_above)
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for herds of %zu particles", particles);
+    stand_all(herds, kinds);
     mspringi_herds_forget(herds, memory);
+    return MSPRING_OK;
 }
 
 void mspringi_herds_forget(mspringi_herds *herds, mspringi_memory *memory) {

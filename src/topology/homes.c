@@ -19,29 +19,13 @@
 /// Particles of lattices from which a step is worth sharing.
 #define FEWEST_SHARED 4000
 
-/// Strips that each of several workers should find, so that it need not wait for those before and behind it. With 24
-/// of them, single rows of 96 x 96, calls took an eighth of the time: two workers came to 0.83 of what two threads
-/// that share nothing do, and with 8, 12 and 16 to 0.9.
+/// Strips that each of several workers should find, so that it need not wait for those before and behind it. With
+/// 24 of them, single rows of 96 x 96, calls took an eighth of the time: two workers came to 0.83 of what two
+/// threads that share nothing do, and with 8, 12 and 16 to 0.9.
 #define STRIPS_PER_WORKER 12
 
 /// Whether the rows of a component can be swept together.
 enum { FIT, UNFIT_FOR_LAG, UNFIT };
-
-/// What is done one after the other once something hangs on the lattices; from NUMBERS on for each lag anew.
-typedef enum homes_stage {
-    JOINS_SPRINGS, ///< the components of what springs join,
-    JOINS_MEMBERS, ///< and of what shares rows
-    WEIGHS_MEMBERS,
-    WEIGHS_STRANDS,
-    JUDGES,      ///< which components are ropy
-    NUMBERS,     ///< rows and strips
-    BOUNDS_ROWS, ///< each lattice particle's strip
-    BEGINS,      ///< with the attached ones
-    SPREADS,     ///< from there: these three once from below, once upside down
-    COMBINES,    ///< both bounds
-    RELENTS,     ///< some component does not fit this lag
-    IS_FOUND
-} homes_stage;
 
 typedef struct mspringi_homes_finder {
     const mspringi_graph *graph;
@@ -58,29 +42,25 @@ typedef struct mspringi_homes_finder {
     uint32_t *low;   ///< [particles] lowest strip that each may have
     uint32_t *queue; ///< [strips] first particle of each strip, MSPRING_NONE at the end
     uint32_t *next;  ///< [particles] next particle of the same strip
-
-    homes_stage stage;
-    uint32_t strip;   ///< strips from here on have been spread from
-    bool upside_down; ///< strips count from the last, and bounds are upper ones
-    bool fits;
+    uint32_t strip;  ///< the one that is spread from: those above it have been
+    bool is_found;
 } finder;
 
 /* --------------------------------------------------------------------------------------------- the components */
 
-static void join_springs(finder *f, mspringi_pace *pace) {
+void mspringi_homes_join_springs(mspringi_homes *homes, uint32_t first, uint32_t end) {
+    const finder *f = homes->finder;
     const mspring_builder *builder = f->graph->builder;
-    uint32_t first, end;
-    mspringi_pace_take(pace, (uint32_t)builder->spring_count, 6, &first, &end);
+    if (f->is_found)
+        return;
     for (uint32_t s = first; s < end; ++s)
         mspringi_forest_join(f->component, builder->springs[s].a, builder->springs[s].b);
 }
 
 // What shares rows fits or fits not as one.
-static void join_members(finder *f, mspringi_pace *pace) {
+static void join_members(const finder *f) {
     const mspringi_grids *grids = f->grids;
-    uint32_t first, end;
-    mspringi_pace_take(pace, grids->member_count, 4, &first, &end);
-    for (uint32_t m = first > 0 ? first : 1; m < end; ++m)
+    for (uint32_t m = 1; m < grids->member_count; ++m)
         if (grids->grid_of[grids->members[m]] == grids->grid_of[grids->members[m - 1]])
             mspringi_forest_join(f->component, grids->members[m - 1], grids->members[m]);
 }
@@ -89,18 +69,20 @@ static uint8_t *fitness_of(const finder *f, uint32_t particle) {
     return &f->fitness[mspringi_forest_root(f->component, particle)];
 }
 
-static void weigh(finder *f, const uint32_t *particles, uint32_t count, int64_t weight, mspringi_pace *pace) {
-    uint32_t first, end;
-    mspringi_pace_take(pace, count, 2, &first, &end);
-    for (uint32_t i = first; i < end; ++i)
+static void weigh(const finder *f, const uint32_t *particles, uint32_t count, int64_t weight) {
+    for (uint32_t i = 0; i < count; ++i)
         f->balance[mspringi_forest_root(f->component, particles[i])] += weight;
 }
 
 // Components that are more rope than lattice: their strands are better swept as chains.
-static void judge(finder *f, mspringi_pace *pace) {
-    uint32_t first, end;
-    mspringi_pace_take(pace, (uint32_t)f->graph->builder->particle_count, 1, &first, &end);
-    for (uint32_t p = first; p < end; ++p)
+void mspringi_homes_judge(mspringi_homes *homes) {
+    const finder *f = homes->finder;
+    if (f->is_found)
+        return;
+    join_members(f);
+    weigh(f, f->grids->members, f->grids->member_count, 1);
+    weigh(f, f->strands->particles, f->strands->count, -1);
+    for (uint32_t p = 0; p < f->graph->builder->particle_count; ++p)
         f->fitness[p] = f->balance[p] < 0 ? UNFIT : FIT;
 }
 
@@ -145,43 +127,30 @@ static void enqueue(finder *f, uint32_t particle, uint32_t strip) {
     f->queue[strip] = particle;
 }
 
-static void begin_spreading(finder *f, bool upside_down) {
-    f->upside_down = upside_down;
-    f->strip = strip_count(f->homes);
-    memset(f->queue, 0xff, f->strip * sizeof *f->queue);
-    memset(upside_down ? f->homes->home : f->low, 0xff, f->graph->builder->particle_count * sizeof *f->low);
-}
-
-static uint32_t *bounds_of(const finder *f) {
-    return f->upside_down ? f->homes->home : f->low;
-}
-
-static void bound_rows(finder *f, mspringi_pace *pace) {
+// Give the rows of lattices their strips, counted from the last one if it is upside down, and queue what is
+// attached.
+static void begin_spreading(finder *f, uint32_t *bounds, bool upside_down) {
     const mspringi_grids *grids = f->grids;
     const mspringi_homes *homes = f->homes;
     const uint32_t strips = strip_count(homes);
-    uint32_t *bounds = bounds_of(f), first, end;
-    mspringi_pace_take(pace, grids->member_count, 2, &first, &end);
-    for (uint32_t m = first; m < end; ++m) {
+    memset(f->queue, 0xff, strips * sizeof *f->queue);
+    memset(bounds, 0xff, f->graph->builder->particle_count * sizeof *bounds);
+    for (uint32_t m = 0; m < grids->member_count; ++m) {
         const uint32_t p = grids->members[m];
         const uint32_t strip = (homes->first_row[grids->grid_of[p]] + grids->row[p]) / homes->strip_rows;
-        bounds[p] = f->upside_down ? strips - 1 - strip : strip;
+        bounds[p] = upside_down ? strips - 1 - strip : strip;
     }
-}
-
-static void begin_queues(finder *f, mspringi_pace *pace) {
-    const uint32_t *bounds = bounds_of(f);
-    uint32_t first, end;
-    mspringi_pace_take(pace, f->attached_count, 4, &first, &end);
-    for (uint32_t i = first; i < end; ++i)
+    for (uint32_t i = 0; i < f->attached_count; ++i)
         if (*fitness_of(f, f->attached[i]) == FIT)
             enqueue(f, f->attached[i], bounds[f->attached[i]]);
 }
 
-// From one particle to its neighbours: they have a bound lower by the lag, and the highest bound counts.
-static void spread_from(finder *f, uint32_t p, uint32_t *bounds) {
+// From one particle to its neighbours: they have a bound lower by the lag, and the highest bound counts. False:
+// some component does not fit this lag.
+static bool spread_from(finder *f, uint32_t p, uint32_t *bounds) {
     const mspringi_graph *graph = f->graph;
     const uint32_t lag = f->homes->lag, bound = f->strip > lag ? f->strip - lag : 0;
+    bool fits = true;
     for (uint32_t i = graph->first[p]; i < graph->first[p + 1]; ++i) {
         const uint32_t other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], p);
         if (bounds[other] == MSPRING_NONE) {
@@ -190,36 +159,33 @@ static void spread_from(finder *f, uint32_t p, uint32_t *bounds) {
         } else if (bound > bounds[other]) {
             // Only lattice particles can be lower: all others were reached from the highest first.
             *fitness_of(f, other) = UNFIT_FOR_LAG;
-            f->fits = false;
+            fits = false;
         }
     }
+    return fits;
 }
 
 // Spread from the attached particles along leftover springs. Bounds of particles that are not reached are
 // MSPRING_NONE. A component in which a lattice particle would have to be higher than it is becomes unfit. Strips
 // above f->strip are done; particles are put into queues of lower ones, or of the lowest.
-static void spread(finder *f, mspringi_pace *pace) {
-    uint32_t *bounds = bounds_of(f);
-    while (f->strip > 0 && pace->left > 0) {
+static bool spread(finder *f, uint32_t *bounds, bool upside_down) {
+    bool fits = true;
+    begin_spreading(f, bounds, upside_down);
+    for (f->strip = strip_count(f->homes); f->strip > 0;) {
         f->strip--;
-        uint32_t p = f->queue[f->strip];
-        for (; p != MSPRING_NONE && pace->left > 0; p = f->queue[f->strip]) {
+        for (uint32_t p; (p = f->queue[f->strip]) != MSPRING_NONE;) {
             f->queue[f->strip] = f->next[p];
-            mspringi_pace_spend(pace, 8 + (uint64_t)4 * (f->graph->first[p + 1] - f->graph->first[p]));
-            spread_from(f, p, bounds);
+            fits = spread_from(f, p, bounds) && fits;
         }
-        mspringi_pace_spend(pace, 1);
-        f->strip += p != MSPRING_NONE;
     }
-    pace->is_halfway = f->strip > 0;
+    return fits;
 }
 
-static void combine(finder *f, mspringi_pace *pace) {
+// Halfway between both bounds.
+static void combine(const finder *f) {
     mspringi_homes *homes = f->homes;
     const uint32_t strips = strip_count(homes);
-    uint32_t first, end;
-    mspringi_pace_take(pace, (uint32_t)f->graph->builder->particle_count, 1, &first, &end);
-    for (uint32_t p = first; p < end; ++p)
+    for (uint32_t p = 0; p < f->graph->builder->particle_count; ++p)
         if (f->grids->grid_of[p] != MSPRING_NONE)
             homes->home[p] = MSPRING_NONE;
         else if (homes->home[p] != MSPRING_NONE)
@@ -227,15 +193,21 @@ static void combine(finder *f, mspringi_pace *pace) {
 }
 
 // Components that need more than the longest lag are left out; the others get a longer one.
-static void relent(finder *f, mspringi_pace *pace) {
+static void relent(const finder *f) {
     const bool is_longest = f->homes->lag == MSPRINGI_LONGEST_LAG;
-    uint32_t first, end;
-    mspringi_pace_take(pace, (uint32_t)f->graph->builder->particle_count, 1, &first, &end);
-    for (uint32_t p = first; p < end; ++p)
+    for (uint32_t p = 0; p < f->graph->builder->particle_count; ++p)
         if (f->fitness[p] == UNFIT_FOR_LAG)
             f->fitness[p] = is_longest ? UNFIT : FIT;
-    if (!pace->is_halfway)
-        f->homes->lag += !is_longest;
+    f->homes->lag += !is_longest;
+}
+
+static void try_lag(finder *f) {
+    number_rows(f);
+    f->is_found = spread(f, f->low, false) && spread(f, f->homes->home, true);
+    if (f->is_found)
+        combine(f);
+    else
+        relent(f);
 }
 
 // Where nothing hangs on the lattices, strips are as small as the workers want them: no slot depends on it. Homes
@@ -254,23 +226,23 @@ static mspring_result out_of_memory(const mspringi_graph *graph, mspringi_messag
                          graph->builder->particle_count);
 }
 
-mspring_result mspringi_homes_reserve(mspringi_homes *homes, const mspringi_graph *graph,
-                                      const mspringi_grids *grids, const mspringi_strands *strands,
-                                      mspringi_pace *pace, mspringi_memory *memory, mspringi_message *message) {
+mspring_result mspringi_homes_begin(mspringi_homes *homes, const mspringi_graph *graph, const mspringi_grids *grids,
+                                    const mspringi_strands *strands, mspringi_memory *memory,
+                                    mspringi_message *message) {
     const size_t particles = graph->builder->particle_count;
     finder *f = homes->finder = mspringi_alloc(memory, 1, sizeof *f);
     homes->lag = 1;
-    homes->home = mspringi_pace_alloc(pace, memory, particles, sizeof *homes->home);
-    homes->grid_order = mspringi_pace_alloc(pace, memory, grids->count, sizeof *homes->grid_order);
-    homes->first_row = mspringi_pace_alloc(pace, memory, grids->count, sizeof *homes->first_row);
+    homes->home = mspringi_alloc(memory, particles, sizeof *homes->home);
+    homes->grid_order = mspringi_alloc(memory, grids->count, sizeof *homes->grid_order);
+    homes->first_row = mspringi_alloc(memory, grids->count, sizeof *homes->first_row);
     if (f) {
         f->graph = graph;
         f->grids = grids;
         f->strands = strands;
         f->homes = homes;
         f->strip_particles = BARE_STRIP_PARTICLES;
-        f->height = mspringi_pace_alloc(pace, memory, grids->count, sizeof *f->height);
-        f->attached = mspringi_pace_alloc(pace, memory, grids->member_count, sizeof *f->attached);
+        f->height = mspringi_alloc(memory, grids->count, sizeof *f->height);
+        f->attached = mspringi_alloc(memory, grids->member_count, sizeof *f->attached);
     }
     if (!f || !homes->home || !homes->grid_order || !homes->first_row || !f->height || !f->attached)
         return out_of_memory(graph, message);
@@ -278,11 +250,9 @@ mspring_result mspringi_homes_reserve(mspringi_homes *homes, const mspringi_grap
     return MSPRING_OK;
 }
 
-void mspringi_homes_attach(mspringi_homes *homes, mspringi_pace *pace) {
+void mspringi_homes_attach(mspringi_homes *homes, uint32_t first, uint32_t end) {
     finder *f = homes->finder;
     const mspringi_grids *grids = f->grids;
-    uint32_t first, end;
-    mspringi_pace_take(pace, grids->member_count, 24, &first, &end);
     for (uint32_t m = first; m < end; ++m) {
         const uint32_t p = grids->members[m];
         uint32_t *height = &f->height[grids->grid_of[p]];
@@ -293,86 +263,28 @@ void mspringi_homes_attach(mspringi_homes *homes, mspringi_pace *pace) {
 }
 
 // What it takes to find homes, if anything hangs on the lattices.
-mspring_result mspringi_homes_prepare(mspringi_homes *homes, uint32_t workers, mspringi_pace *pace,
-                                      mspringi_memory *memory, mspringi_message *message) {
+mspring_result mspringi_homes_prepare(mspringi_homes *homes, uint32_t workers, mspringi_memory *memory,
+                                      mspringi_message *message) {
     finder *f = homes->finder;
     const size_t particles = f->graph->builder->particle_count;
     if (f->attached_count == 0) {
         number_rows_for(f, workers);
-        f->stage = IS_FOUND;
+        f->is_found = true;
         return MSPRING_OK;
     }
-    f->component = mspringi_pace_alloc(pace, memory, particles, sizeof *f->component);
-    f->balance = mspringi_pace_alloc(pace, memory, particles, sizeof *f->balance);
-    f->fitness = mspringi_pace_alloc(pace, memory, particles, sizeof *f->fitness);
-    f->low = mspringi_pace_alloc(pace, memory, particles, sizeof *f->low);
-    f->next = mspringi_pace_alloc(pace, memory, particles, sizeof *f->next);
+    f->component = mspringi_alloc(memory, particles, sizeof *f->component);
+    f->balance = mspringi_alloc(memory, particles, sizeof *f->balance);
+    f->fitness = mspringi_alloc(memory, particles, sizeof *f->fitness);
+    f->low = mspringi_alloc(memory, particles, sizeof *f->low);
+    f->next = mspringi_alloc(memory, particles, sizeof *f->next);
     // No more rows than particles.
-    f->queue = mspringi_pace_alloc(pace, memory, f->grids->member_count, sizeof *f->queue);
+    f->queue = mspringi_alloc(memory, f->grids->member_count, sizeof *f->queue);
     if (!f->component || !f->balance || !f->fitness || !f->low || !f->next || !f->queue)
         return out_of_memory(f->graph, message);
     for (uint32_t p = 0; p < particles; ++p)
         f->component[p] = p;
     f->strip_particles = STRIP_PARTICLES;
     return MSPRING_OK;
-}
-
-static void do_stage(finder *f, mspringi_pace *pace) {
-    switch (f->stage) {
-    case JOINS_SPRINGS:
-        join_springs(f, pace);
-        break;
-    case JOINS_MEMBERS:
-        join_members(f, pace);
-        break;
-    case WEIGHS_MEMBERS:
-        weigh(f, f->grids->members, f->grids->member_count, 1, pace);
-        break;
-    case WEIGHS_STRANDS:
-        weigh(f, f->strands->particles, f->strands->count, -1, pace);
-        break;
-    case JUDGES:
-        judge(f, pace);
-        break;
-    case NUMBERS:
-        number_rows(f);
-        f->fits = true;
-        begin_spreading(f, false);
-        break;
-    case BOUNDS_ROWS:
-        bound_rows(f, pace);
-        break;
-    case BEGINS:
-        begin_queues(f, pace);
-        break;
-    case SPREADS:
-        spread(f, pace);
-        break;
-    case COMBINES:
-        combine(f, pace);
-        break;
-    default:
-        relent(f, pace);
-        break;
-    }
-}
-
-static homes_stage stage_after(finder *f) {
-    switch (f->stage) {
-    case SPREADS:
-        if (!f->fits)
-            return RELENTS;
-        if (f->upside_down)
-            return COMBINES;
-        begin_spreading(f, true);
-        return BOUNDS_ROWS;
-    case COMBINES:
-        return IS_FOUND;
-    case RELENTS:
-        return NUMBERS;
-    default:
-        return f->stage + 1;
-    }
 }
 
 static void free_finder(finder *f, mspringi_memory *memory) {
@@ -384,20 +296,16 @@ static void free_finder(finder *f, mspringi_memory *memory) {
         mspringi_free(memory, blocks[i]);
 }
 
-void mspringi_homes_find(mspringi_homes *homes, mspringi_pace *pace, mspringi_memory *memory) {
+// At the longest lag each try leaves out a component at least.
+void mspringi_homes_try_lags(mspringi_homes *homes, uint32_t first, uint32_t end) {
     finder *f = homes->finder;
-    while (f->stage != IS_FOUND && pace->left > 0) {
-        pace->is_halfway = false;
-        do_stage(f, pace);
-        if (pace->is_halfway)
-            continue;
-        f->stage = stage_after(f);
-        pace->at = 0;
-    }
-    pace->is_halfway = f->stage != IS_FOUND;
-    if (pace->is_halfway)
-        return;
-    free_finder(f, memory);
+    for (uint32_t lag = first + 1; lag <= end; ++lag)
+        while (!f->is_found && homes->lag == lag)
+            try_lag(f);
+}
+
+void mspringi_homes_end(mspringi_homes *homes, mspringi_memory *memory) {
+    free_finder(homes->finder, memory);
     homes->finder = NULL;
 }
 

@@ -76,45 +76,29 @@ static void cut_strand(mspringi_ropes *ropes, uint32_t begin, uint32_t end) {
     }
 }
 
-mspring_result mspringi_ropes_reserve(mspringi_ropes *ropes, const mspringi_graph *graph,
-                                      const mspringi_grids *grids, const mspringi_strands *strands,
-                                      mspringi_homes *homes, mspringi_pace *pace, mspringi_memory *memory,
-                                      mspringi_message *message) {
-    ropes->graph = graph;
-    ropes->grids = grids;
-    ropes->strands = strands;
-    ropes->homes = homes;
+mspring_result mspringi_ropes_settle(mspringi_ropes *ropes, const mspringi_graph *graph,
+                                     const mspringi_grids *grids, const mspringi_strands *strands,
+                                     mspringi_homes *homes, mspringi_memory *memory, mspringi_message *message) {
+    *ropes = (mspringi_ropes){.graph = graph, .grids = grids, .strands = strands, .homes = homes};
     if (strands->count == 0 || homes->row_count == 0)
         return MSPRING_OK;
     const size_t strips = ((size_t)homes->row_count + homes->strip_rows - 1) / homes->strip_rows;
     ropes->strip_count = (uint32_t)strips;
-    ropes->piece = mspringi_pace_alloc(pace, memory, graph->builder->particle_count, sizeof *ropes->piece);
-    ropes->long_count = mspringi_pace_alloc(pace, memory, strips, sizeof *ropes->long_count);
-    ropes->short_count = mspringi_pace_alloc(pace, memory, strips, sizeof *ropes->short_count);
-    return ropes->piece && ropes->long_count && ropes->short_count
-               ? MSPRING_OK
-               : mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for ropes of %u particles",
-                               (unsigned)strands->count);
-}
-
-void mspringi_ropes_settle(mspringi_ropes *ropes, mspringi_pace *pace) {
-    const mspringi_strands *strands = ropes->strands;
-    uint32_t begin = pace->at;
-    if (!ropes->piece)
-        return;
-    while (begin < strands->count && pace->left > 0) {
-        uint32_t end = begin + 1;
-        while (strands->springs[end - 1] != MSPRING_NONE)
+    ropes->piece = mspringi_alloc(memory, graph->builder->particle_count, sizeof *ropes->piece);
+    ropes->long_count = mspringi_alloc(memory, strips, sizeof *ropes->long_count);
+    ropes->short_count = mspringi_alloc(memory, strips, sizeof *ropes->short_count);
+    if (!ropes->piece || !ropes->long_count || !ropes->short_count)
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for ropes of %u particles",
+                             (unsigned)strands->count);
+    for (uint32_t begin = 0, end; begin < strands->count; begin = end) {
+        for (end = begin + 1; strands->springs[end - 1] != MSPRING_NONE;)
             ++end;
-        mspringi_pace_spend(pace, (uint64_t)4 * (end - begin));
-        if (ropes->homes->home[strands->particles[begin]] != MSPRING_NONE) {
-            settle(ropes, begin, end);
-            cut_strand(ropes, begin, end);
-        }
-        begin = end;
+        if (homes->home[strands->particles[begin]] == MSPRING_NONE)
+            continue;
+        settle(ropes, begin, end);
+        cut_strand(ropes, begin, end);
     }
-    pace->at = begin;
-    pace->is_halfway = begin < strands->count;
+    return MSPRING_OK;
 }
 
 // Where a particle of a piece goes among those of its home, or MSPRING_NONE if it stands nowhere. Long pieces that
@@ -148,24 +132,19 @@ static uint32_t standing_count(const mspringi_ropes *ropes, uint32_t home) {
 }
 
 // Home by home.
-void mspringi_ropes_stand(const mspringi_ropes *ropes, mspringi_web_list *list, mspringi_pace *pace) {
-    uint32_t begin = pace->at;
+void mspringi_ropes_stand(const mspringi_ropes *ropes, mspringi_web_list *list) {
     if (!ropes->piece)
         return;
-    while (begin < list->homed_count && pace->left > 0) {
+    for (uint32_t begin = 0, end; begin < list->homed_count; begin = end) {
         const uint32_t home = ropes->homes->home[list->particles[begin]];
-        uint32_t end = begin, lying = begin + standing_count(ropes, home);
-        for (; end < list->homed_count && ropes->homes->home[list->particles[end]] == home; ++end) {
+        uint32_t lying = begin + standing_count(ropes, home);
+        for (end = begin; end < list->homed_count && ropes->homes->home[list->particles[end]] == home; ++end) {
             const uint32_t place = standing_place(ropes, home, list->particles[end]);
             list->scratch[place == MSPRING_NONE ? lying++ : begin + place] = list->particles[end];
         }
         for (uint32_t i = begin; i < end; ++i)
             list->particles[i] = (uint32_t)list->scratch[i];
-        mspringi_pace_spend(pace, (uint64_t)4 * (end - begin));
-        begin = end;
     }
-    pace->at = begin;
-    pace->is_halfway = begin < list->homed_count;
 }
 
 void mspringi_ropes_destroy(mspringi_ropes *ropes, mspringi_memory *memory) {

@@ -18,14 +18,12 @@ typedef struct mspringi_ropes {
     uint32_t *long_count, *short_count; ///< [strips] pieces
 } mspringi_ropes;
 
-/// Passes in their order: before strands with a home are dropped, reserve and settle, which changes homes; when the
-/// web's particles are listed by home, stand.
-mspring_result mspringi_ropes_reserve(mspringi_ropes *ropes, const mspringi_graph *graph,
-                                      const mspringi_grids *grids, const mspringi_strands *strands,
-                                      mspringi_homes *homes, mspringi_pace *pace, mspringi_memory *memory,
-                                      mspringi_message *message);
-void mspringi_ropes_settle(mspringi_ropes *ropes, mspringi_pace *pace);
-void mspringi_ropes_stand(const mspringi_ropes *ropes, mspringi_web_list *list, mspringi_pace *pace);
+/// Before strands with a home are dropped: cut those into pieces, and change their homes.
+mspring_result mspringi_ropes_settle(mspringi_ropes *ropes, const mspringi_graph *graph,
+                                     const mspringi_grids *grids, const mspringi_strands *strands,
+                                     mspringi_homes *homes, mspringi_memory *memory, mspringi_message *message);
+/// When the web's particles are listed by home: put the pieces side by side.
+void mspringi_ropes_stand(const mspringi_ropes *ropes, mspringi_web_list *list);
 void mspringi_ropes_destroy(mspringi_ropes *ropes, mspringi_memory *memory);
 
 #endif

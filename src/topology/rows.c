@@ -90,13 +90,10 @@ static bool append_lattice_block(mspringi_assembly *a, uint32_t i, uint32_t grid
 }
 
 mspring_result mspringi_assembly_append_lattice_rows(mspringi_assembly *a) {
-    const mspringi_topology *t = a->topology;
-    uint32_t first, end;
-    mspringi_pace_take(&a->pace, t->lattice_blocks, 24, &first, &end);
-    for (uint32_t i = first; i < end; ++i) {
-        while (i >= a->end_block[a->homes.grid_order[a->grid]])
-            a->grid++;
-        if (!append_lattice_block(a, i, a->homes.grid_order[a->grid], a->grid))
+    for (uint32_t i = 0, grid = 0; i < a->topology->lattice_blocks; ++i) {
+        while (i >= a->end_block[a->homes.grid_order[grid]])
+            grid++;
+        if (!append_lattice_block(a, i, a->homes.grid_order[grid], grid))
             return mspringi_assembly_fail(a);
     }
     return MSPRING_OK;
@@ -235,21 +232,12 @@ static bool is_busy(const uint8_t *busy, uint32_t slot) {
 // no force is handed on through them. The latter two are so if no spring's record, and no slot to the right of a
 // north-east spring, lies in them.
 
-mspring_result mspringi_assembly_mark_particles(mspringi_assembly *a) {
+void mspringi_assembly_mark_busy(mspringi_assembly *a) {
     const mspringi_topology *t = a->topology;
-    uint32_t first, end;
-    mspringi_pace_take(&a->pace, t->chain_first * MSPRINGI_WIDTH, 1, &first, &end);
-    for (uint32_t slot = first; slot < end; ++slot)
+    for (uint32_t slot = 0; slot < t->chain_first * MSPRINGI_WIDTH; ++slot)
         if (t->particle_of_slot[slot] != MSPRING_NONE)
             mark_busy(a->busy, slot);
-    return MSPRING_OK;
-}
-
-mspring_result mspringi_assembly_mark_springs(mspringi_assembly *a) {
-    const mspringi_topology *t = a->topology;
-    uint32_t first, end;
-    mspringi_pace_take(&a->pace, t->spring_count, 1, &first, &end);
-    for (uint32_t s = first; s < end; ++s) {
+    for (uint32_t s = 0; s < t->spring_count; ++s) {
         const mspringi_place place = a->topology->place_of_spring[s];
         if (place >= t->lattice_places)
             continue;
@@ -259,10 +247,9 @@ mspring_result mspringi_assembly_mark_springs(mspringi_assembly *a) {
         if (place / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS == MSPRINGI_NORTH_EAST)
             mark_busy(a->busy, slot + 1);
     }
-    return MSPRING_OK;
 }
 
-mspring_result mspringi_assembly_trim_spans(mspringi_assembly *a) {
+void mspringi_assembly_trim_spans(mspringi_assembly *a) {
     const mspringi_topology *t = a->topology;
     const uint32_t lattice_end = t->chain_first * MSPRINGI_WIDTH;
     for (uint32_t s = 0; s < t->span_count && t->spans[s].first_slot < lattice_end; ++s) {
@@ -276,7 +263,6 @@ mspring_result mspringi_assembly_trim_spans(mspringi_assembly *a) {
                (span->end_slot - 1) % MSPRINGI_WIDTH >= MSPRINGI_QUARTER && !is_busy(a->busy, span->end_slot - 1))
             span->end_slot -= MSPRINGI_QUARTER;
     }
-    return MSPRING_OK;
 }
 
 // Whether a register that is filled from this slot on has a quarter that has to be swept.
@@ -337,11 +323,10 @@ mspring_result mspringi_assembly_tighten_spans(mspringi_assembly *a) {
 mspring_result mspringi_assembly_begin_rows(mspringi_assembly *a) {
     mspringi_topology *t = a->topology;
     t->carry_blocks = widest_row(a);
-    t->up_of_block = mspringi_pace_alloc(&a->pace, a->memory, t->lattice_blocks, sizeof *t->up_of_block);
-    t->grid_of_row = mspringi_pace_alloc(&a->pace, a->memory, t->lattice_blocks,
-                                         sizeof *t->grid_of_row); // no more rows than blocks
-    a->busy = mspringi_pace_alloc(&a->pace, a->memory, t->block_count, sizeof *a->busy);
-    a->grid = 0;
+    t->up_of_block = mspringi_alloc(a->memory, t->lattice_blocks, sizeof *t->up_of_block);
+    t->grid_of_row = mspringi_alloc(a->memory, t->lattice_blocks,
+                                    sizeof *t->grid_of_row); // no more rows than blocks
+    a->busy = mspringi_alloc(a->memory, t->block_count, sizeof *a->busy);
     return t->up_of_block && t->grid_of_row && a->busy ? MSPRING_OK : mspringi_assembly_fail(a);
 }
 

@@ -50,10 +50,10 @@ static spring_kind kind_of(const mspringi_grids *grids, const uint8_t *kinds, co
 }
 
 void mspringi_sheets_survey(mspringi_sheets *sheets, const mspringi_graph *graph, const mspringi_grids *grids,
-                            const uint8_t *kinds, mspringi_pace *pace) {
+                            const uint8_t *kinds, uint32_t first, uint32_t end) {
     const mspring_builder *builder = graph->builder;
-    uint32_t first, end;
-    mspringi_pace_take(pace, grids->count > 0 ? (uint32_t)builder->spring_count : 0, 8, &first, &end);
+    if (grids->count == 0)
+        return;
     for (uint32_t s = first; s < end; ++s) {
         const spring_kind kind = kind_of(grids, kinds, &builder->springs[s]);
         sheets->inner += kind == INNER;
@@ -62,7 +62,7 @@ void mspringi_sheets_survey(mspringi_sheets *sheets, const mspringi_graph *graph
 }
 
 mspring_result mspringi_sheets_reserve(mspringi_sheets *sheets, const mspringi_graph *graph,
-                                       const mspringi_grids *grids, mspringi_pace *pace, mspringi_memory *memory,
+                                       const mspringi_grids *grids, mspringi_memory *memory,
                                        mspringi_message *message) {
     const size_t particles = graph->builder->particle_count;
     const bool has_tied =
@@ -70,8 +70,8 @@ mspring_result mspringi_sheets_reserve(mspringi_sheets *sheets, const mspringi_g
     const bool has_web = particles - grids->member_count >= MSPRINGI_FEWEST_LAYERED;
     if (grids->count == 0 || (!has_tied && !has_web))
         return MSPRING_OK;
-    sheets->piece = mspringi_pace_alloc(pace, memory, particles, sizeof *sheets->piece);
-    sheets->sums = mspringi_pace_alloc(pace, memory, particles, sizeof *sheets->sums);
+    sheets->piece = mspringi_alloc(memory, particles, sizeof *sheets->piece);
+    sheets->sums = mspringi_alloc(memory, particles, sizeof *sheets->sums);
     if (!sheets->piece || !sheets->sums)
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to look at the sheets of %zu particles",
                              particles);
@@ -80,10 +80,10 @@ mspring_result mspringi_sheets_reserve(mspringi_sheets *sheets, const mspringi_g
     return MSPRING_OK;
 }
 
-void mspringi_sheets_join(mspringi_sheets *sheets, const mspringi_graph *graph, mspringi_pace *pace) {
+void mspringi_sheets_join(mspringi_sheets *sheets, const mspringi_graph *graph, uint32_t first, uint32_t end) {
     const mspring_builder *builder = graph->builder;
-    uint32_t first, end;
-    mspringi_pace_take(pace, sheets->piece ? (uint32_t)builder->spring_count : 0, 6, &first, &end);
+    if (!sheets->piece)
+        return;
     for (uint32_t s = first; s < end; ++s)
         mspringi_forest_join(sheets->piece, builder->springs[s].a, builder->springs[s].b);
 }
@@ -93,10 +93,11 @@ static struct mspringi_sheet *sums_of(const mspringi_sheets *sheets, uint32_t pa
 }
 
 void mspringi_sheets_count_springs(mspringi_sheets *sheets, const mspringi_graph *graph,
-                                   const mspringi_grids *grids, const uint8_t *kinds, mspringi_pace *pace) {
+                                   const mspringi_grids *grids, const uint8_t *kinds, uint32_t first,
+                                   uint32_t end) {
     const mspring_builder *builder = graph->builder;
-    uint32_t first, end;
-    mspringi_pace_take(pace, sheets->piece ? (uint32_t)builder->spring_count : 0, 10, &first, &end);
+    if (!sheets->piece)
+        return;
     for (uint32_t s = first; s < end; ++s) {
         const spring_kind kind = kind_of(grids, kinds, &builder->springs[s]);
         struct mspringi_sheet *sums = sums_of(sheets, builder->springs[s].a);
@@ -106,11 +107,9 @@ void mspringi_sheets_count_springs(mspringi_sheets *sheets, const mspringi_graph
     }
 }
 
-void mspringi_sheets_count_particles(mspringi_sheets *sheets, const mspringi_graph *graph,
-                                     const mspringi_grids *grids, const uint8_t *kinds, mspringi_pace *pace) {
-    uint32_t first, end;
-    mspringi_pace_take(pace, sheets->piece ? (uint32_t)graph->builder->particle_count : 0, 2, &first, &end);
-    for (uint32_t p = first; p < end; ++p) {
+static void count_particles(mspringi_sheets *sheets, const mspringi_graph *graph, const mspringi_grids *grids,
+                            const uint8_t *kinds) {
+    for (uint32_t p = 0; p < graph->builder->particle_count; ++p) {
         struct mspringi_sheet *sums = sums_of(sheets, p);
         sums->members += grids->grid_of[p] != MSPRING_NONE;
         sums->web += kinds[p] == MSPRINGI_ROW_LOOSE;
@@ -130,30 +129,30 @@ static bool is_small_part_of_web(const struct mspringi_sheet *sums) {
     return sums->web >= MSPRINGI_FEWEST_LAYERED && (uint64_t)sums->members * WEB_PER_MEMBER < sums->web;
 }
 
-// Grid after grid; those that stay get new numbers.
-void mspringi_sheets_give_up(mspringi_sheets *sheets, mspringi_grids *grids, uint8_t *kinds, mspringi_pace *pace,
-                             mspringi_memory *memory) {
-    uint32_t first, end;
-    mspringi_pace_take(pace, sheets->piece ? grids->member_count : 0, 4, &first, &end);
-    for (uint32_t m = first; m < end; ++m) {
-        const uint32_t p = grids->members[m], end_of_grid = grids->first_member[sheets->grid + 1];
-        if (m == grids->first_member[sheets->grid])
-            sheets->gives_up = is_tied_together(sums_of(sheets, p)) || is_small_part_of_web(sums_of(sheets, p));
-        if (sheets->gives_up) {
-            grids->grid_of[p] = MSPRING_NONE;
+// Give up a grid: its particles become loose. Or keep it, with a new number.
+static void move_grid(mspringi_sheets *sheets, mspringi_grids *grids, uint8_t *kinds, uint32_t end) {
+    const struct mspringi_sheet *sums = sums_of(sheets, grids->members[sheets->next_member]);
+    const bool gives_up = is_tied_together(sums) || is_small_part_of_web(sums);
+    for (uint32_t m = sheets->next_member; m < end; ++m) {
+        const uint32_t p = grids->members[m];
+        grids->grid_of[p] = gives_up ? MSPRING_NONE : sheets->kept_grids;
+        if (gives_up)
             kinds[p] = MSPRINGI_ROW_LOOSE;
-        } else {
-            grids->grid_of[p] = sheets->kept_grids;
+        else
             grids->members[sheets->kept_members++] = p;
-        }
-        if (m + 1 < end_of_grid)
-            continue;
-        sheets->grid++;
-        if (!sheets->gives_up)
-            grids->first_member[++sheets->kept_grids] = sheets->kept_members;
     }
-    if (!sheets->piece || pace->is_halfway)
+    sheets->next_member = end;
+    if (!gives_up)
+        grids->first_member[++sheets->kept_grids] = sheets->kept_members;
+}
+
+void mspringi_sheets_give_up(mspringi_sheets *sheets, const mspringi_graph *graph, mspringi_grids *grids,
+                             uint8_t *kinds, mspringi_memory *memory) {
+    if (!sheets->piece)
         return;
+    count_particles(sheets, graph, grids, kinds);
+    for (uint32_t grid = 0; grid < grids->count; ++grid)
+        move_grid(sheets, grids, kinds, grids->first_member[grid + 1]);
     grids->count = grids->found_count = sheets->kept_grids;
     grids->member_count = sheets->kept_members;
     mspringi_sheets_destroy(sheets, memory);

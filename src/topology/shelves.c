@@ -31,17 +31,12 @@ typedef struct mspringi_grid_shelver {
     uint32_t blocks[LARGEST];             ///< blocks of each of its rows, a bit each
     uint64_t rows[LARGEST];               ///< cells of a grid
     uint32_t narrow, narrow_members;      ///< grids that may be put on shelves, and their particles
-    uint32_t grid;                        ///< the one that is measured
     uint32_t first_on_shelf;              ///< the grid that the shelf began with
-    bool is_sorted;
-    mspringi_sorting sorting;
 } shelver;
 
-static void measure(shelver *s, mspringi_pace *pace) {
+static void measure(shelver *s) {
     const mspringi_grids *grids = s->grids;
-    uint32_t first, end, g = s->grid;
-    mspringi_pace_take(pace, grids->member_count, 2, &first, &end);
-    for (uint32_t m = first; m < end; ++m) {
+    for (uint32_t m = 0, g = 0; m < grids->member_count; ++m) {
         const uint32_t width = grids->column[grids->members[m]] + 1, height = grids->row[grids->members[m]] + 1;
         s->width[g] = width > s->width[g] ? width : s->width[g];
         s->height[g] = height > s->height[g] ? height : s->height[g];
@@ -54,7 +49,6 @@ static void measure(shelver *s, mspringi_pace *pace) {
         }
         ++g;
     }
-    s->grid = g;
 }
 
 static void draw(shelver *s, uint32_t grid) {
@@ -93,7 +87,7 @@ static uint32_t new_blocks(const shelver *s, uint32_t height, uint32_t column, u
 
 // Find room on the shelf for the grid that is drawn, where that takes the fewest new blocks, and farthest left of
 // such. Returns false if there is none.
-static bool find_room(const shelver *s, uint32_t grid, uint32_t *column, uint32_t *row, mspringi_pace *pace) {
+static bool find_room(const shelver *s, uint32_t grid, uint32_t *column, uint32_t *row) {
     if (s->shelf_height < s->height[grid])
         return false;
     const uint32_t rows = s->shelf_height - s->height[grid] + 1;
@@ -102,10 +96,8 @@ static bool find_room(const shelver *s, uint32_t grid, uint32_t *column, uint32_
     for (uint32_t c = s->shelf_end > reach ? s->shelf_end - reach : 0;
          c <= s->shelf_end && c + s->width[grid] <= SHELF && fewest > 0; ++c) {
         for (uint32_t r = 0; r < rows; ++r) {
-            mspringi_pace_spend(pace, 1);
             if (!has_room(s, s->height[grid], c, r))
                 continue;
-            mspringi_pace_spend(pace, s->height[grid]);
             const uint32_t blocks = new_blocks(s, s->height[grid], c, r);
             if (blocks >= fewest)
                 continue;
@@ -128,10 +120,10 @@ static void put(shelver *s, uint32_t grid, uint32_t column, uint32_t row) {
     }
 }
 
-static void put_next(shelver *s, uint32_t g, mspringi_pace *pace) {
+static void put_next(shelver *s, uint32_t g) {
     uint32_t column = 0, row = 0;
     draw(s, g);
-    if (!find_room(s, g, &column, &row, pace)) {
+    if (!find_room(s, g, &column, &row)) {
         memset(s->taken, 0, sizeof s->taken);
         memset(s->blocks, 0, sizeof s->blocks);
         s->shelf_height = s->height[g];
@@ -144,17 +136,14 @@ static void put_next(shelver *s, uint32_t g, mspringi_pace *pace) {
     put(s, g, column, row);
 }
 
-void mspringi_grids_shelve(mspringi_grids *grids, mspringi_pace *pace) {
+uint32_t mspringi_grids_narrow(const mspringi_grids *grids) {
+    return grids->shelver && grids->shelver->narrow > 1 ? grids->shelver->narrow : 0;
+}
+
+void mspringi_grids_shelve(mspringi_grids *grids, uint32_t first, uint32_t end) {
     shelver *s = grids->shelver;
-    if (!s || s->narrow < 2)
-        return;
-    s->is_sorted = s->is_sorted || mspringi_sorting_go_on(&s->sorting, pace);
-    for (; s->is_sorted && pace->at < s->narrow && pace->left > 0; pace->at++) {
-        const uint32_t g = (uint32_t)s->keys[pace->at];
-        mspringi_pace_spend(pace, LARGEST + 4 * (grids->first_member[g + 1] - grids->first_member[g]));
-        put_next(s, g, pace);
-    }
-    pace->is_halfway = pace->at < s->narrow;
+    for (uint32_t i = first; i < end; ++i)
+        put_next(s, (uint32_t)s->keys[i]);
 }
 
 // Make one grid of each shelf: count their members, then have these wander to their shelf's.
@@ -172,25 +161,20 @@ static void number_shelves(shelver *s) {
 }
 
 // Each number's first member wanders to where the next one's begin.
-static void move_members(shelver *s, mspringi_pace *pace) {
+static void move_members(const shelver *s) {
     const mspringi_grids *grids = s->grids;
-    uint32_t first, end;
-    mspringi_pace_take(pace, grids->member_count, 4, &first, &end);
-    for (uint32_t m = first; m < end; ++m) {
+    for (uint32_t m = 0; m < grids->member_count; ++m) {
         const uint32_t p = grids->members[m], number = s->number[s->shelf[grids->grid_of[p]]];
         grids->grid_of[p] = number;
         s->members[s->first_member[number]++] = p;
     }
 }
 
-void mspringi_grids_number(mspringi_grids *grids, mspringi_pace *pace, mspringi_memory *memory) {
+void mspringi_grids_number(mspringi_grids *grids, mspringi_memory *memory) {
     shelver *s = grids->shelver;
-    if (s && s->narrow > 1) {
-        if (pace->at == 0)
-            number_shelves(s);
-        move_members(s, pace);
-        if (pace->is_halfway)
-            return;
+    if (mspringi_grids_narrow(grids) > 0) {
+        number_shelves(s);
+        move_members(s);
         memmove(s->first_member + 1, s->first_member, s->count * sizeof *s->first_member);
         s->first_member[0] = 0;
         memcpy(grids->members, s->members, grids->member_count * sizeof *s->members);
@@ -201,20 +185,19 @@ void mspringi_grids_number(mspringi_grids *grids, mspringi_pace *pace, mspringi_
     grids->shelver = NULL;
 }
 
-static mspring_result reserve(mspringi_grids *grids, mspringi_pace *pace, mspringi_memory *memory,
-                              mspringi_message *message) {
+static mspring_result reserve(mspringi_grids *grids, mspringi_memory *memory, mspringi_message *message) {
     const size_t count = grids->count;
     shelver *s = grids->shelver = mspringi_alloc(memory, 1, sizeof *s);
     if (s) {
         s->grids = grids;
-        s->width = mspringi_pace_alloc(pace, memory, count, sizeof *s->width);
-        s->height = mspringi_pace_alloc(pace, memory, count, sizeof *s->height);
-        s->shelf = mspringi_pace_alloc(pace, memory, count, sizeof *s->shelf);
-        s->number = mspringi_pace_alloc(pace, memory, count, sizeof *s->number);
-        s->keys = mspringi_pace_alloc(pace, memory, count, sizeof *s->keys);
-        s->scratch = mspringi_pace_alloc(pace, memory, count, sizeof *s->scratch);
-        s->members = mspringi_pace_alloc(pace, memory, grids->member_count, sizeof *s->members);
-        s->first_member = mspringi_pace_alloc(pace, memory, count + 1, sizeof *s->first_member);
+        s->width = mspringi_alloc(memory, count, sizeof *s->width);
+        s->height = mspringi_alloc(memory, count, sizeof *s->height);
+        s->shelf = mspringi_alloc(memory, count, sizeof *s->shelf);
+        s->number = mspringi_alloc(memory, count, sizeof *s->number);
+        s->keys = mspringi_alloc(memory, count, sizeof *s->keys);
+        s->scratch = mspringi_alloc(memory, count, sizeof *s->scratch);
+        s->members = mspringi_alloc(memory, grids->member_count, sizeof *s->members);
+        s->first_member = mspringi_alloc(memory, count + 1, sizeof *s->first_member);
     }
     if (!s || !s->width || !s->height || !s->shelf || !s->number || !s->keys || !s->scratch || !s->members ||
         !s->first_member)
@@ -222,17 +205,15 @@ static mspring_result reserve(mspringi_grids *grids, mspringi_pace *pace, msprin
     return MSPRING_OK;
 }
 
-mspring_result mspringi_grids_measure(mspringi_grids *grids, mspringi_pace *pace, mspringi_memory *memory,
-                                      mspringi_message *message) {
+mspring_result mspringi_grids_measure(mspringi_grids *grids, mspringi_memory *memory, mspringi_message *message) {
     if (grids->count < 2)
         return MSPRING_OK;
-    mspring_result result = grids->shelver ? MSPRING_OK : reserve(grids, pace, memory, message);
+    mspring_result result = reserve(grids, memory, message);
     if (result != MSPRING_OK)
         return result;
-    measure(grids->shelver, pace);
-    if (!pace->is_halfway)
-        mspringi_sorting_begin(&grids->shelver->sorting, grids->shelver->keys, grids->shelver->scratch,
-                               grids->shelver->narrow);
+    shelver *s = grids->shelver;
+    measure(s);
+    mspringi_sort_keys(s->keys, s->scratch, s->narrow);
     return MSPRING_OK;
 }
 

@@ -12,22 +12,18 @@ static void place_particle(mspringi_topology *t, uint32_t particle, uint32_t slo
 mspring_result mspringi_assembly_reserve_maps(mspringi_assembly *a) {
     mspringi_topology *t = a->topology;
     const size_t slots = (size_t)t->block_count * MSPRINGI_WIDTH;
-    t->slot_of_particle =
-        mspringi_pace_alloc(&a->pace, a->memory, t->reserve.particle_end, sizeof *t->slot_of_particle);
-    t->particle_of_slot = mspringi_pace_alloc(&a->pace, a->memory, slots, sizeof *t->particle_of_slot);
+    t->slot_of_particle = mspringi_alloc(a->memory, t->reserve.particle_end, sizeof *t->slot_of_particle);
+    t->particle_of_slot = mspringi_alloc(a->memory, slots, sizeof *t->particle_of_slot);
     if (!t->slot_of_particle || !t->particle_of_slot)
         return mspringi_assembly_fail(a);
     memset(t->particle_of_slot, 0xff, slots * sizeof *t->particle_of_slot);
     a->loose = t->loose_first * MSPRINGI_WIDTH;
-    a->web_place = 0;
     return MSPRING_OK;
 }
 
-mspring_result mspringi_assembly_assign_slots(mspringi_assembly *a) {
+void mspringi_assembly_assign_slots(mspringi_assembly *a, uint32_t first, uint32_t end) {
     mspringi_topology *t = a->topology;
     const mspringi_grids *grids = &a->grids;
-    uint32_t first, end;
-    mspringi_pace_take(&a->pace, t->particle_count, 8, &first, &end);
     for (uint32_t p = first; p < end; ++p) {
         if (a->kinds[p] == MSPRINGI_ROW_LATTICE) {
             const uint32_t block = mspringi_assembly_find_block(a, grids->grid_of[p], grids->row[p],
@@ -39,63 +35,38 @@ mspring_result mspringi_assembly_assign_slots(mspringi_assembly *a) {
             t->slot_of_particle[p] = mspringi_spare_slot(t, p);
         }
     }
-    return MSPRING_OK;
 }
 
-mspring_result mspringi_assembly_assign_chain_slots(mspringi_assembly *a) {
+void mspringi_assembly_assign_other_slots(mspringi_assembly *a) {
     mspringi_topology *t = a->topology;
-    uint32_t first, end;
-    mspringi_pace_take(&a->pace, a->strands.count, 1, &first, &end);
-    for (uint32_t i = first; i < end; ++i)
+    uint32_t web_place = 0;
+    for (uint32_t i = 0; i < a->strands.count; ++i)
         place_particle(t, a->strands.particles[i], t->chain_first * MSPRINGI_WIDTH + i);
-    return MSPRING_OK;
-}
-
-mspring_result mspringi_assembly_assign_web_slots(mspringi_assembly *a) {
-    mspringi_topology *t = a->topology;
-    uint32_t first, end;
-    mspringi_pace_take(&a->pace, a->web.count, 2, &first, &end);
-    for (uint32_t i = first; i < end; ++i) {
-        a->web_place = mspringi_assembly_web_place(a, i, a->web_place);
-        place_particle(t, a->web.particles[i], t->web_first * MSPRINGI_WIDTH + a->web_place);
+    for (uint32_t i = 0; i < a->web.count; ++i) {
+        web_place = mspringi_assembly_web_place(a, i, web_place);
+        place_particle(t, a->web.particles[i], t->web_first * MSPRINGI_WIDTH + web_place);
     }
-    return MSPRING_OK;
-}
-
-mspring_result mspringi_assembly_assign_spare_slots(mspringi_assembly *a) {
-    mspringi_topology *t = a->topology;
-    uint32_t first, end;
-    mspringi_pace_take(&a->pace, t->reserve.particle_end - t->particle_count, 1, &first, &end);
-    for (mspring_id p = t->particle_count + first; p < t->particle_count + end; ++p)
+    for (mspring_id p = t->particle_count; p < t->reserve.particle_end; ++p)
         t->slot_of_particle[p] = mspringi_spare_slot(t, p);
-    return MSPRING_OK;
 }
 
 mspring_result mspringi_assembly_begin_places(mspringi_assembly *a) {
-    const uint32_t springs = a->topology->reserve.spring_end;
-    a->topology->place_of_spring =
-        mspringi_pace_alloc(&a->pace, a->memory, springs, sizeof *a->topology->place_of_spring);
-    if (!a->topology->place_of_spring)
+    mspringi_topology *t = a->topology;
+    const uint32_t springs = t->reserve.spring_end;
+    t->place_of_spring = mspringi_alloc(a->memory, springs, sizeof *t->place_of_spring);
+    if (!t->place_of_spring)
         return mspringi_assembly_fail(a);
-    memset(a->topology->place_of_spring, 0xff, springs * sizeof *a->topology->place_of_spring);
-    return MSPRING_OK;
-}
-
-mspring_result mspringi_assembly_assign_chain_places(mspringi_assembly *a) {
-    uint32_t first, end;
-    mspringi_pace_take(&a->pace, a->strands.count, 1, &first, &end);
-    for (uint32_t i = first; i < end; ++i)
+    memset(t->place_of_spring, 0xff, springs * sizeof *t->place_of_spring);
+    for (uint32_t i = 0; i < a->strands.count; ++i)
         if (a->strands.springs[i] != MSPRING_NONE)
-            a->topology->place_of_spring[a->strands.springs[i]] = a->topology->lattice_places + i;
+            t->place_of_spring[a->strands.springs[i]] = t->lattice_places + i;
     return MSPRING_OK;
 }
 
 // In an array: lattice springs where they are, and the others one after the other.
-mspring_result mspringi_assembly_assign_places(mspringi_assembly *a) {
+void mspringi_assembly_assign_places(mspringi_assembly *a, uint32_t first, uint32_t end) {
     mspringi_topology *t = a->topology;
     mspringi_place *places = a->topology->place_of_spring;
-    uint32_t first, end;
-    mspringi_pace_take(&a->pace, t->spring_count, 12, &first, &end);
     for (uint32_t s = first; s < end; ++s) {
         mspringi_lattice_spring found;
         if (places[s] != MSPRING_NONE)
@@ -111,25 +82,19 @@ mspring_result mspringi_assembly_assign_places(mspringi_assembly *a) {
                     found.column % MSPRINGI_WIDTH;
         t->lattice_springs++;
     }
-    return MSPRING_OK;
-}
-
-mspring_result mspringi_assembly_reserve_ends(mspringi_assembly *a) {
-    mspringi_topology *t = a->topology;
-    t->woven_count = t->leftover_capacity = t->leftover_count;
-    t->leftover_a = mspringi_pace_alloc(&a->pace, a->memory, t->leftover_count, sizeof *t->leftover_a);
-    t->leftover_b = mspringi_pace_alloc(&a->pace, a->memory, t->leftover_count, sizeof *t->leftover_b);
-    return t->leftover_a && t->leftover_b ? MSPRING_OK : mspringi_assembly_fail(a);
 }
 
 mspring_result mspringi_assembly_note_ends(mspringi_assembly *a) {
     mspringi_topology *t = a->topology;
-    uint32_t first, end;
-    mspringi_pace_take(&a->pace, t->spring_count, 1, &first, &end);
-    for (uint32_t s = first; s < end; ++s) {
-        if (a->topology->place_of_spring[s] < t->chain_places)
+    t->woven_count = t->leftover_capacity = t->leftover_count;
+    t->leftover_a = mspringi_alloc(a->memory, t->leftover_count, sizeof *t->leftover_a);
+    t->leftover_b = mspringi_alloc(a->memory, t->leftover_count, sizeof *t->leftover_b);
+    if (!t->leftover_a || !t->leftover_b)
+        return mspringi_assembly_fail(a);
+    for (uint32_t s = 0; s < t->spring_count; ++s) {
+        if (t->place_of_spring[s] < t->chain_places)
             continue;
-        const uint32_t i = a->topology->place_of_spring[s] - t->chain_places;
+        const uint32_t i = t->place_of_spring[s] - t->chain_places;
         t->leftover_a[i] = t->slot_of_particle[a->builder->springs[s].a];
         t->leftover_b[i] = t->slot_of_particle[a->builder->springs[s].b];
     }

@@ -45,11 +45,9 @@ mspring_result mspringi_spare_reserve(mspringi_topology *t, uint32_t parked, msp
     return MSPRING_OK;
 }
 
-void mspringi_spare_enter(mspringi_topology *t, mspringi_pace *pace) {
+void mspringi_spare_enter(mspringi_topology *t) {
     const uint32_t rungs = t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0;
-    uint32_t first, end;
-    mspringi_pace_take(pace, mspringi_spare_springs(t) + t->parked_count, 1, &first, &end);
-    for (uint32_t i = first; i < end; ++i) {
+    for (uint32_t i = 0; i < mspringi_spare_springs(t) + t->parked_count; ++i) {
         uint32_t *entry = t->web.entry + 2 * ((size_t)t->woven_count + i);
         entry[0] = entry[1] = rungs * MSPRINGI_WIDTH + i;
     }

@@ -49,9 +49,8 @@ static bool is_attached(const mspringi_graph *graph, uint32_t particle) {
     return false;
 }
 
-// Append the strand that begins at end; take it back if it is too short. Returns how many particles it has.
-static uint32_t append_strand(mspringi_strands *strands, const mspringi_graph *graph, uint32_t end,
-                              uint8_t *kinds) {
+// Append the strand that begins at end; take it back if it is too short.
+static void append_strand(mspringi_strands *strands, const mspringi_graph *graph, uint32_t end, uint8_t *kinds) {
     const uint32_t begin = strands->count;
     uint8_t *visited = strands->visited;
     bool attached = false;
@@ -72,49 +71,35 @@ static uint32_t append_strand(mspringi_strands *strands, const mspringi_graph *g
     const uint32_t length = strands->count - begin;
     if (attached && length < SHORTEST_ATTACHED_STRAND) {
         strands->count = begin;
-        return length;
+        return;
     }
     for (uint32_t i = begin; i < strands->count; ++i)
         kinds[strands->particles[i]] = MSPRINGI_ROW_CHAIN;
     strands->strand_count++;
     strands->spring_count += length - 1;
-    return length;
 }
 
-void mspringi_strands_count(mspringi_strands *strands, const mspringi_graph *graph, mspringi_pace *pace) {
-    uint32_t first, end;
-    mspringi_pace_take(pace, (uint32_t)graph->builder->particle_count, 1, &first, &end);
-    for (uint32_t p = first; p < end; ++p)
-        strands->candidates += may_be_in_strand(graph, p);
+static uint32_t count_candidates(const mspringi_graph *graph) {
+    uint32_t count = 0;
+    for (uint32_t p = 0; p < graph->builder->particle_count; ++p)
+        count += may_be_in_strand(graph, p);
+    return count;
 }
 
-mspring_result mspringi_strands_reserve(mspringi_strands *strands, const mspringi_graph *graph, mspringi_pace *pace,
-                                        mspringi_memory *memory, mspringi_message *message) {
-    const uint32_t candidates = strands->candidates;
-    strands->visited = mspringi_pace_alloc(pace, memory, graph->builder->particle_count, sizeof *strands->visited);
-    strands->particles = mspringi_pace_alloc(pace, memory, candidates, sizeof *strands->particles);
-    strands->springs = mspringi_pace_alloc(pace, memory, candidates, sizeof *strands->springs);
-    return strands->visited && strands->particles && strands->springs
-               ? MSPRING_OK
-               : mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for strands of %u particles", candidates);
-}
-
-// A strand is found in one go, however long it is.
-void mspringi_strands_find(mspringi_strands *strands, const mspringi_graph *graph, uint8_t *kinds,
-                           mspringi_pace *pace, mspringi_memory *memory) {
-    const uint32_t particles = (uint32_t)graph->builder->particle_count;
-    uint32_t p = pace->at;
-    for (; p < particles && pace->left > 0; ++p) {
-        mspringi_pace_spend(pace, 1);
+mspring_result mspringi_strands_find(mspringi_strands *strands, const mspringi_graph *graph, uint8_t *kinds,
+                                     mspringi_memory *memory, mspringi_message *message) {
+    const uint32_t particles = (uint32_t)graph->builder->particle_count, candidates = count_candidates(graph);
+    strands->visited = mspringi_alloc(memory, particles, sizeof *strands->visited);
+    strands->particles = mspringi_alloc(memory, candidates, sizeof *strands->particles);
+    strands->springs = mspringi_alloc(memory, candidates, sizeof *strands->springs);
+    if (!strands->visited || !strands->particles || !strands->springs)
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for strands of %u particles", candidates);
+    for (uint32_t p = 0; p < particles; ++p)
         if (may_be_in_strand(graph, p) && kinds[p] == MSPRINGI_ROW_LOOSE && !strands->visited[p])
-            mspringi_pace_spend(pace, (uint64_t)16 * append_strand(strands, graph, find_end(graph, p), kinds));
-    }
-    pace->at = p;
-    pace->is_halfway = p < particles;
-    if (pace->is_halfway)
-        return;
+            append_strand(strands, graph, find_end(graph, p), kinds);
     mspringi_free(memory, strands->visited);
     strands->visited = NULL;
+    return MSPRING_OK;
 }
 
 // Whether some spring of the particle leads to one of the web that has no home.
@@ -148,33 +133,24 @@ static void keep_strand(mspringi_strands *strands, uint32_t begin, uint32_t end)
 
 // Strand by strand: what has a home has it as a whole.
 void mspringi_strands_drop(mspringi_strands *strands, const mspringi_graph *graph, const mspringi_homes *homes,
-                           bool has_herds, uint8_t *kinds, mspringi_web_list *list, mspringi_pace *pace) {
-    uint32_t begin = pace->at;
-    if (begin == 0) {
-        const uint32_t homeless = list->count - list->homed_count;
-        strands->drops_webbed = homeless >= MSPRINGI_FEWEST_LAYERED && strands->count <= homeless;
-        strands->strand_count = strands->spring_count = 0;
-    }
-    while (begin < strands->count && pace->left > 0) {
-        uint32_t last = begin;
-        while (strands->springs[last] != MSPRING_NONE)
+                           bool has_herds, uint8_t *kinds, mspringi_web_list *list) {
+    const uint32_t homeless = list->count - list->homed_count;
+    const bool drops_webbed = homeless >= MSPRINGI_FEWEST_LAYERED && strands->count <= homeless;
+    const uint32_t *particles = strands->particles;
+    strands->strand_count = strands->spring_count = 0;
+    for (uint32_t begin = 0, last; begin < strands->count; begin = last + 1) {
+        for (last = begin; strands->springs[last] != MSPRING_NONE;)
             ++last;
-        const uint32_t *particles = strands->particles;
         const bool is_homed = homes->home[particles[begin]] != MSPRING_NONE;
-        const bool may_drop = strands->drops_webbed || (has_herds && last - begin < SHORT_IN_WRECK);
+        const bool may_drop = drops_webbed || (has_herds && last - begin < SHORT_IN_WRECK);
         const bool is_webbed = may_drop && (hangs_on_web(graph, homes, kinds, particles[begin]) ||
                                             hangs_on_web(graph, homes, kinds, particles[last]));
-        mspringi_pace_spend(pace, (uint64_t)2 * (last + 1 - begin));
         if (is_homed || is_webbed)
             drop_strand(strands, homes, kinds, list, begin, last + 1);
         else
             keep_strand(strands, begin, last + 1);
-        begin = last + 1;
     }
-    pace->at = begin;
-    pace->is_halfway = begin < strands->count;
-    if (!pace->is_halfway)
-        strands->count = strands->kept;
+    strands->count = strands->kept;
 }
 
 void mspringi_strands_destroy(mspringi_strands *strands, mspringi_memory *memory) {

@@ -1,4 +1,4 @@
-/// A topology as a list of passes, from the builder to the web.
+/// A topology as a list of plain functions, from the builder to the web.
 #include "topology.h"
 
 #include <string.h>
@@ -13,6 +13,22 @@ mspring_result mspringi_assembly_fail(mspringi_assembly *a) {
 
 /* ---------------------------------------------------------------------------------------------------- the web */
 
+// The attached nodes are in slot order, and each strip's begin a group.
+static void attach_to_strips(mspringi_assembly *a) {
+    mspringi_topology *t = a->topology;
+    for (uint32_t i = 0; i < t->web.attached_count; ++i) {
+        if (t->web.attached_slot[i] == MSPRING_NONE)
+            continue;
+        const uint32_t number = a->weaving.strip_of_block[t->web.attached_slot[i] / MSPRINGI_WIDTH];
+        mspringi_strip *strip = &t->strips[number];
+        // Such a strip is swept with the web, one substep after the other.
+        if (number >= t->wave_strips)
+            t->layer_count = 0;
+        if (strip->attached_count++ == 0)
+            strip->first_attached = i;
+    }
+}
+
 static mspring_result begin_web(mspringi_assembly *a) {
     mspringi_topology *t = a->topology;
     a->weaving = (mspringi_weaving){.web = &t->web,
@@ -26,411 +42,332 @@ static mspring_result begin_web(mspringi_assembly *a) {
                                     .herd_first = t->web_blocks - a->herds.group_count,
                                     .rung_above = a->herds.rung_above,
                                     .strip_of_block = mspringi_assembly_list_strips_of_blocks(a)};
-    return a->weaving.strip_of_block ? mspringi_web_begin(&a->weaving, &a->pace, a->memory, a->message)
-                                     : mspringi_assembly_fail(a);
+    if (!a->weaving.strip_of_block)
+        return mspringi_assembly_fail(a);
+    mspring_result result = mspringi_web_begin(&a->weaving, a->memory, a->message);
+    if (result == MSPRING_OK)
+        attach_to_strips(a);
+    return result;
 }
 
-// The attached nodes are in slot order, and each strip's begin a group.
-static mspring_result attach_to_strips(mspringi_assembly *a) {
-    mspringi_topology *t = a->topology;
-    uint32_t first, end;
-    mspringi_pace_take(&a->pace, t->web.attached_count, 4, &first, &end);
-    for (uint32_t i = first; i < end; ++i) {
-        if (t->web.attached_slot[i] == MSPRING_NONE)
-            continue;
-        const uint32_t number = a->weaving.strip_of_block[t->web.attached_slot[i] / MSPRINGI_WIDTH];
-        mspringi_strip *strip = &t->strips[number];
-        // Such a strip is swept with the web, one substep after the other.
-        if (number >= t->wave_strips)
-            t->layer_count = 0;
-        if (strip->attached_count++ == 0)
-            strip->first_attached = i;
-    }
+static mspring_result lay_rungs(mspringi_assembly *a) {
+    return mspringi_web_lay_rungs(&a->weaving, a->memory, a->message);
+}
+
+static mspring_result fill_web(mspringi_assembly *a, uint32_t first, uint32_t end) {
+    mspringi_web_fill(&a->weaving, first, end);
     return MSPRING_OK;
 }
 
-/* ---------------------------------------------------------------------------------------------------- the whole */
+/* ---------------------------------------------------------------------------------------------------- the slots */
 
-// List the slots without particle, the padding in front and behind among them: first count them, then fill.
-static mspring_result go_through_empty_slots(mspringi_assembly *a, mspringi_empty_run *runs) {
-    const mspringi_topology *t = a->topology;
-    uint32_t first, end;
-    mspringi_pace_take(&a->pace, t->block_count * MSPRINGI_WIDTH, 1, &first, &end);
-    for (uint32_t slot = first; slot < end; ++slot) {
+// List the slots without particle, the padding in front and behind among them; runs NULL: count them only.
+static uint32_t find_empty_slots(const mspringi_topology *t, mspringi_empty_run *runs) {
+    uint32_t count = 0;
+    bool in_run = false;
+    for (uint32_t slot = 0; slot < t->block_count * MSPRINGI_WIDTH; ++slot) {
         const bool empty = t->particle_of_slot[slot] == MSPRING_NONE && !mspringi_slot_is_spare(t, slot);
-        if (empty && !a->in_run && runs)
-            runs[a->runs] = (mspringi_empty_run){.first_slot = slot};
-        a->runs += empty && !a->in_run;
+        if (empty && !in_run && runs)
+            runs[count] = (mspringi_empty_run){.first_slot = slot};
+        count += empty && !in_run;
         if (empty && runs)
-            runs[a->runs - 1].slot_count++;
-        a->in_run = empty;
+            runs[count - 1].slot_count++;
+        in_run = empty;
     }
+    return count;
+}
+
+static mspring_result assign_slots(mspringi_assembly *a, uint32_t first, uint32_t end) {
+    mspringi_assembly_assign_slots(a, first, end);
     return MSPRING_OK;
 }
 
-static mspring_result count_empty_slots(mspringi_assembly *a) {
-    return go_through_empty_slots(a, NULL);
-}
-
-static mspring_result reserve_empty_slots(mspringi_assembly *a) {
+static mspring_result assign_other_slots(mspringi_assembly *a) {
     mspringi_topology *t = a->topology;
-    t->empty_runs = mspringi_pace_alloc(&a->pace, a->memory, a->runs, sizeof *t->empty_runs);
-    t->empty_run_count = a->runs;
-    a->runs = 0;
-    a->in_run = false;
-    return t->empty_runs ? MSPRING_OK : mspringi_assembly_fail(a);
+    mspringi_assembly_assign_other_slots(a);
+    t->empty_run_count = find_empty_slots(t, NULL);
+    t->empty_runs = mspringi_alloc(a->memory, t->empty_run_count, sizeof *t->empty_runs);
+    if (!t->empty_runs)
+        return mspringi_assembly_fail(a);
+    (void)find_empty_slots(t, t->empty_runs);
+    return MSPRING_OK;
 }
 
-static mspring_result list_empty_slots(mspringi_assembly *a) {
-    return go_through_empty_slots(a, a->topology->empty_runs);
+static mspring_result assign_places(mspringi_assembly *a, uint32_t first, uint32_t end) {
+    mspringi_assembly_assign_places(a, first, end);
+    return MSPRING_OK;
 }
 
-/* The passes of others. */
+static mspring_result trim_spans(mspringi_assembly *a) {
+    mspringi_assembly_mark_busy(a);
+    mspringi_assembly_trim_spans(a);
+    return mspringi_assembly_tighten_spans(a);
+}
 
-static mspring_result begin_graph(mspringi_assembly *a) {
+/* ------------------------------------------------------------------------------------- what there is to be laid
+ * out */
+
+static mspring_result make_graph(mspringi_assembly *a) {
     const size_t particles = a->builder->particle_count;
-    a->kinds = mspringi_pace_alloc(&a->pace, a->memory, particles, sizeof *a->kinds);
+    a->kinds = mspringi_alloc(a->memory, particles, sizeof *a->kinds);
     if (!a->kinds)
         return mspringi_assembly_fail(a);
     memset(a->kinds, MSPRINGI_ROW_LOOSE, particles);
-    return mspringi_graph_reserve(&a->graph, a->builder, a->is_checked, &a->pace, a->memory, a->message);
-}
-
-static mspring_result count_graph(mspringi_assembly *a) {
-    mspringi_graph_count(&a->graph, &a->pace);
-    return MSPRING_OK;
-}
-
-static mspring_result sum_graph(mspringi_assembly *a) {
-    mspringi_graph_sum(&a->graph, &a->pace);
-    return MSPRING_OK;
-}
-
-static mspring_result fill_graph(mspringi_assembly *a) {
-    mspringi_graph_fill(&a->graph, &a->pace);
-    return MSPRING_OK;
-}
-
-static mspring_result check_graph(mspringi_assembly *a) {
-    return mspringi_graph_check(&a->graph, &a->pace, a->memory, a->message);
+    return mspringi_graph_create(&a->graph, a->builder, a->is_checked, a->memory, a->message);
 }
 
 static mspring_result begin_herds(mspringi_assembly *a) {
-    return !a->has_herds ? MSPRING_OK : mspringi_herds_begin(&a->herds, &a->graph, &a->pace, a->memory, a->message);
+    return !a->has_herds ? MSPRING_OK : mspringi_herds_begin(&a->herds, &a->graph, a->memory, a->message);
 }
 
-static mspring_result explore_trees(mspringi_assembly *a) {
+static mspring_result explore_trees(mspringi_assembly *a, uint32_t first, uint32_t end) {
     if (a->has_herds)
-        mspringi_herds_explore(&a->herds, &a->graph, &a->pace);
+        mspringi_herds_explore(&a->herds, &a->graph, first, end);
     return MSPRING_OK;
 }
 
 static mspring_result reserve_herds(mspringi_assembly *a) {
-    return mspringi_herds_reserve(&a->herds, &a->pace, a->memory, a->message);
+    return mspringi_herds_reserve(&a->herds, a->memory, a->message);
 }
 
-static mspring_result compare_trees(mspringi_assembly *a) {
-    mspringi_herds_compare(&a->herds, &a->graph, &a->pace);
+static mspring_result compare_trees(mspringi_assembly *a, uint32_t first, uint32_t end) {
+    mspringi_herds_compare(&a->herds, &a->graph, first, end);
     return MSPRING_OK;
-}
-
-static mspring_result sort_trees(mspringi_assembly *a) {
-    mspringi_herds_sort(&a->herds, &a->pace);
-    return MSPRING_OK;
-}
-
-static mspring_result count_herds(mspringi_assembly *a) {
-    return mspringi_herds_count(&a->herds, &a->pace, a->memory, a->message);
 }
 
 static mspring_result fill_herds(mspringi_assembly *a) {
-    mspringi_herds_fill(&a->herds, a->kinds, &a->pace, a->memory);
-    return MSPRING_OK;
-}
-
-static mspring_result count_strands(mspringi_assembly *a) {
-    mspringi_strands_count(&a->strands, &a->graph, &a->pace);
-    return MSPRING_OK;
-}
-
-static mspring_result begin_strands(mspringi_assembly *a) {
-    return mspringi_strands_reserve(&a->strands, &a->graph, &a->pace, a->memory, a->message);
+    return mspringi_herds_fill(&a->herds, a->kinds, a->memory, a->message);
 }
 
 static mspring_result find_strands(mspringi_assembly *a) {
-    mspringi_strands_find(&a->strands, &a->graph, a->kinds, &a->pace, a->memory);
-    return MSPRING_OK;
+    return mspringi_strands_find(&a->strands, &a->graph, a->kinds, a->memory, a->message);
 }
 
 static mspring_result begin_grids(mspringi_assembly *a) {
-    return mspringi_grids_reserve(&a->grids, &a->graph, a->kinds, &a->pace, a->memory, a->message);
+    return mspringi_grids_begin(&a->grids, &a->graph, a->kinds, a->memory, a->message);
 }
 
-static mspring_result find_grids(mspringi_assembly *a) {
-    mspringi_grids_find(&a->grids, &a->pace, a->memory);
+static mspring_result flood_grids(mspringi_assembly *a, uint32_t first, uint32_t end) {
+    mspringi_grids_flood(&a->grids, first, end);
     return MSPRING_OK;
 }
 
-static mspring_result survey_sheets(mspringi_assembly *a) {
-    mspringi_sheets_survey(&a->sheets, &a->graph, &a->grids, a->kinds, &a->pace);
+static mspring_result begin_judging(mspringi_assembly *a) {
+    return mspringi_grids_begin_judging(&a->grids, a->memory, a->message);
+}
+
+static mspring_result count_grid_springs(mspringi_assembly *a, uint32_t first, uint32_t end) {
+    mspringi_grids_count_springs(&a->grids, first, end);
+    return MSPRING_OK;
+}
+
+static mspring_result judge_grids(mspringi_assembly *a, uint32_t first, uint32_t end) {
+    mspringi_grids_judge(&a->grids, first, end);
+    return MSPRING_OK;
+}
+
+static mspring_result end_search(mspringi_assembly *a) {
+    mspringi_grids_end_search(&a->grids, a->memory);
+    return MSPRING_OK;
+}
+
+static mspring_result survey_sheets(mspringi_assembly *a, uint32_t first, uint32_t end) {
+    mspringi_sheets_survey(&a->sheets, &a->graph, &a->grids, a->kinds, first, end);
     return MSPRING_OK;
 }
 
 static mspring_result begin_sheets(mspringi_assembly *a) {
-    return mspringi_sheets_reserve(&a->sheets, &a->graph, &a->grids, &a->pace, a->memory, a->message);
+    return mspringi_sheets_reserve(&a->sheets, &a->graph, &a->grids, a->memory, a->message);
 }
 
-static mspring_result join_sheets(mspringi_assembly *a) {
-    mspringi_sheets_join(&a->sheets, &a->graph, &a->pace);
+static mspring_result join_sheets(mspringi_assembly *a, uint32_t first, uint32_t end) {
+    mspringi_sheets_join(&a->sheets, &a->graph, first, end);
     return MSPRING_OK;
 }
 
-static mspring_result count_sheet_springs(mspringi_assembly *a) {
-    mspringi_sheets_count_springs(&a->sheets, &a->graph, &a->grids, a->kinds, &a->pace);
-    return MSPRING_OK;
-}
-
-static mspring_result count_sheet_particles(mspringi_assembly *a) {
-    mspringi_sheets_count_particles(&a->sheets, &a->graph, &a->grids, a->kinds, &a->pace);
+static mspring_result count_sheet_springs(mspringi_assembly *a, uint32_t first, uint32_t end) {
+    mspringi_sheets_count_springs(&a->sheets, &a->graph, &a->grids, a->kinds, first, end);
     return MSPRING_OK;
 }
 
 static mspring_result give_up_sheets(mspringi_assembly *a) {
-    mspringi_sheets_give_up(&a->sheets, &a->grids, a->kinds, &a->pace, a->memory);
-    return MSPRING_OK;
+    mspringi_sheets_give_up(&a->sheets, &a->graph, &a->grids, a->kinds, a->memory);
+    return mspringi_grids_measure(&a->grids, a->memory, a->message);
 }
 
-static mspring_result measure_grids(mspringi_assembly *a) {
-    return mspringi_grids_measure(&a->grids, &a->pace, a->memory, a->message);
-}
-
-static mspring_result shelve_grids(mspringi_assembly *a) {
-    mspringi_grids_shelve(&a->grids, &a->pace);
-    return MSPRING_OK;
-}
-
-static mspring_result number_grids(mspringi_assembly *a) {
-    mspringi_grids_number(&a->grids, &a->pace, a->memory);
+static mspring_result shelve_grids(mspringi_assembly *a, uint32_t first, uint32_t end) {
+    mspringi_grids_shelve(&a->grids, first, end);
     return MSPRING_OK;
 }
 
 static mspring_result begin_homes(mspringi_assembly *a) {
-    return mspringi_homes_reserve(&a->homes, &a->graph, &a->grids, &a->strands, &a->pace, a->memory, a->message);
+    mspringi_grids_number(&a->grids, a->memory);
+    return mspringi_homes_begin(&a->homes, &a->graph, &a->grids, &a->strands, a->memory, a->message);
 }
 
-static mspring_result attach_homes(mspringi_assembly *a) {
-    mspringi_homes_attach(&a->homes, &a->pace);
+static mspring_result attach_homes(mspringi_assembly *a, uint32_t first, uint32_t end) {
+    mspringi_homes_attach(&a->homes, first, end);
     return MSPRING_OK;
 }
 
 static mspring_result prepare_homes(mspringi_assembly *a) {
-    return mspringi_homes_prepare(&a->homes, a->workers, &a->pace, a->memory, a->message);
+    return mspringi_homes_prepare(&a->homes, a->workers, a->memory, a->message);
 }
 
-static mspring_result find_homes(mspringi_assembly *a) {
-    mspringi_homes_find(&a->homes, &a->pace, a->memory);
+static mspring_result join_homes(mspringi_assembly *a, uint32_t first, uint32_t end) {
+    mspringi_homes_join_springs(&a->homes, first, end);
     return MSPRING_OK;
 }
 
-static mspring_result count_web(mspringi_assembly *a) {
-    mspringi_web_list_count(&a->web, &a->graph, &a->homes, a->kinds, &a->pace);
+static mspring_result judge_homes(mspringi_assembly *a) {
+    mspringi_homes_judge(&a->homes);
     return MSPRING_OK;
 }
 
-static mspring_result begin_ropes(mspringi_assembly *a) {
-    return mspringi_ropes_reserve(&a->ropes, &a->graph, &a->grids, &a->strands, &a->homes, &a->pace, a->memory,
-                                  a->message);
+static mspring_result try_lags(mspringi_assembly *a, uint32_t first, uint32_t end) {
+    mspringi_homes_try_lags(&a->homes, first, end);
+    return MSPRING_OK;
 }
 
 static mspring_result settle_ropes(mspringi_assembly *a) {
-    mspringi_ropes_settle(&a->ropes, &a->pace);
-    return MSPRING_OK;
-}
-
-static mspring_result stand_ropes(mspringi_assembly *a) {
-    mspringi_ropes_stand(&a->ropes, &a->web, &a->pace);
-    return MSPRING_OK;
-}
-
-static mspring_result drop_strands(mspringi_assembly *a) {
-    mspringi_strands_drop(&a->strands, &a->graph, &a->homes, a->herds.group_count > 0, a->kinds, &a->web, &a->pace);
-    return MSPRING_OK;
-}
-
-static mspring_result begin_web_list(mspringi_assembly *a) {
-    return mspringi_web_list_reserve(&a->web, &a->herds, &a->pace, a->memory, a->message);
+    mspringi_homes_end(&a->homes, a->memory);
+    mspringi_web_list_count(&a->web, &a->graph, &a->homes, a->kinds);
+    mspring_result result =
+        mspringi_ropes_settle(&a->ropes, &a->graph, &a->grids, &a->strands, &a->homes, a->memory, a->message);
+    if (result == MSPRING_OK)
+        mspringi_strands_drop(&a->strands, &a->graph, &a->homes, a->herds.group_count > 0, a->kinds, &a->web);
+    return result;
 }
 
 static mspring_result list_web(mspringi_assembly *a) {
-    mspringi_web_list_fill(&a->web, &a->graph, &a->homes, a->kinds, &a->pace);
-    return MSPRING_OK;
-}
-
-static mspring_result set_web_keys(mspringi_assembly *a) {
-    mspringi_web_list_set_keys(&a->web, &a->graph, &a->homes, &a->pace);
-    return MSPRING_OK;
+    mspring_result result = mspringi_web_list_reserve(&a->web, &a->herds, a->memory, a->message);
+    if (result == MSPRING_OK)
+        mspringi_web_list_fill(&a->web, &a->graph, &a->homes, a->kinds);
+    return result;
 }
 
 static mspring_result sort_web(mspringi_assembly *a) {
-    mspringi_web_list_sort(&a->web, &a->pace);
+    mspringi_web_list_sort(&a->web, &a->graph, &a->homes);
+    mspringi_ropes_stand(&a->ropes, &a->web);
     return MSPRING_OK;
-}
-
-static mspring_result order_web(mspringi_assembly *a) {
-    mspringi_web_list_take_order(&a->web, &a->pace);
-    return MSPRING_OK;
-}
-
-static mspring_result begin_layers(mspringi_assembly *a) {
-    return mspringi_layers_reserve(&a->layers, &a->web, &a->graph, &a->pace, a->memory, a->message);
 }
 
 static mspring_result find_layers(mspringi_assembly *a) {
-    mspringi_layers_find(&a->layers, &a->graph, &a->pace, a->memory);
+    return mspringi_layers_find(&a->layers, &a->web, &a->graph, a->memory, a->message);
+}
+
+static mspring_result order_web(mspringi_assembly *a) {
+    mspringi_web_list_order_windows(&a->web, &a->layers, &a->graph, a->memory);
+    mspringi_web_list_append_herds(&a->web, &a->herds);
     return MSPRING_OK;
 }
 
-static mspring_result order_web_windows(mspringi_assembly *a) {
-    mspringi_web_list_order_windows(&a->web, &a->layers, &a->graph, &a->pace, a->memory);
-    return MSPRING_OK;
+/* --------------------------------------------------------------------------------------------------- the list */
+
+static uint32_t particles_of(const mspringi_assembly *a) {
+    return (uint32_t)a->builder->particle_count;
 }
 
-static mspring_result append_herds(mspringi_assembly *a) {
-    mspringi_web_list_append_herds(&a->web, &a->herds, &a->pace);
-    return MSPRING_OK;
+static uint32_t springs_of(const mspringi_assembly *a) {
+    return (uint32_t)a->builder->spring_count;
 }
 
-static mspring_result count_degrees(mspringi_assembly *a) {
-    mspringi_web_count_degrees(&a->weaving, &a->pace);
-    return MSPRING_OK;
+static uint32_t flood_steps_of(const mspringi_assembly *a) {
+    return 2 * particles_of(a);
 }
 
-static mspring_result count_upright(mspringi_assembly *a) {
-    mspringi_web_count_upright(&a->weaving, &a->pace);
-    return MSPRING_OK;
+static uint32_t candidates_of(const mspringi_assembly *a) {
+    return mspringi_grids_candidates(&a->grids);
 }
 
-static mspring_result take_upright(mspringi_assembly *a) {
-    mspringi_web_take_upright(&a->weaving, &a->pace);
-    return MSPRING_OK;
+static uint32_t candidate_members_of(const mspringi_assembly *a) {
+    return mspringi_grids_candidate_members(&a->grids);
 }
 
-static mspring_result list_attached(mspringi_assembly *a) {
-    mspringi_web_list_attached(&a->weaving, &a->pace);
-    return MSPRING_OK;
+static uint32_t narrow_grids_of(const mspringi_assembly *a) {
+    return mspringi_grids_narrow(&a->grids);
 }
 
-static mspring_result reserve_web(mspringi_assembly *a) {
-    return mspringi_web_reserve(&a->weaving, &a->pace, a->memory, a->message);
+static uint32_t grids_of(const mspringi_assembly *a) {
+    return a->grids.count;
 }
 
-static mspring_result number_nodes(mspringi_assembly *a) {
-    mspringi_web_number_nodes(&a->weaving, &a->pace);
-    return MSPRING_OK;
+static uint32_t members_of(const mspringi_assembly *a) {
+    return a->grids.member_count;
 }
 
-static mspring_result count_rungs(mspringi_assembly *a) {
-    return mspringi_web_count_rungs(&a->weaving, &a->pace, a->message);
+static uint32_t lags_of(const mspringi_assembly *a) {
+    (void)a;
+    return MSPRINGI_LONGEST_LAG;
 }
 
-static mspring_result reserve_rungs(mspringi_assembly *a) {
-    return mspringi_web_reserve_rungs(&a->weaving, &a->pace, a->memory, a->message);
+static uint32_t web_springs_of(const mspringi_assembly *a) {
+    return a->weaving.count;
 }
 
-static mspring_result lay_rungs(mspringi_assembly *a) {
-    mspringi_web_lay_rungs(&a->weaving, &a->pace);
-    return MSPRING_OK;
-}
+/// A function that is called once, or with one range of so many things after the other.
+typedef struct layout_pass {
+    mspring_result (*once)(mspringi_assembly *a);
+    mspring_result (*part)(mspringi_assembly *a, uint32_t first, uint32_t end);
+    uint32_t (*count)(const mspringi_assembly *a);
+    uint32_t most;
+} layout_pass;
 
-static mspring_result fill_web(mspringi_assembly *a) {
-    mspringi_web_fill(&a->weaving, &a->pace, a->memory);
-    return MSPRING_OK;
-}
+#define ONCE(function)                                                                                             \
+    { function, NULL, NULL, 0 }
+#define EACH(function, count, most)                                                                                \
+    { NULL, function, count, most }
+#define SEARCH                                                                                                     \
+    EACH(flood_grids, flood_steps_of, 4000), ONCE(begin_judging),                                                  \
+        EACH(count_grid_springs, candidate_members_of, 8000), EACH(judge_grids, candidates_of, 64),                \
+        ONCE(end_search)
 
-static mspring_result (*const layout_passes[])(mspringi_assembly *a) = {
-    begin_graph,
-    count_graph,
-    sum_graph,
-    fill_graph,
-    check_graph,
-    begin_herds,
-    explore_trees,
-    reserve_herds,
-    compare_trees,
-    sort_trees,
-    count_herds,
-    fill_herds,
-    count_strands,
-    begin_strands,
-    find_strands,
-    begin_grids,
-    find_grids,
-    survey_sheets,
-    begin_sheets,
-    join_sheets,
-    count_sheet_springs,
-    count_sheet_particles,
-    give_up_sheets,
-    measure_grids,
-    shelve_grids,
-    number_grids,
-    begin_homes,
-    attach_homes,
-    prepare_homes,
-    find_homes,
-    count_web,
-    begin_ropes,
-    settle_ropes,
-    drop_strands,
-    begin_web_list,
-    list_web,
-    set_web_keys,
-    sort_web,
-    order_web,
-    stand_ropes,
-    begin_layers,
-    find_layers,
-    order_web_windows,
-    append_herds,
-    mspringi_assembly_begin_blocks,
-    mspringi_assembly_number_blocks,
-    mspringi_assembly_count_loose,
-    mspringi_assembly_count_web_blocks,
-    mspringi_assembly_number_the_rest,
-    mspringi_assembly_reserve_maps,
-    mspringi_assembly_assign_slots,
-    mspringi_assembly_assign_chain_slots,
-    mspringi_assembly_assign_web_slots,
-    mspringi_assembly_assign_spare_slots,
-    count_empty_slots,
-    reserve_empty_slots,
-    list_empty_slots,
-    mspringi_assembly_begin_places,
-    mspringi_assembly_assign_chain_places,
-    mspringi_assembly_assign_places,
-    mspringi_assembly_reserve_ends,
-    mspringi_assembly_note_ends,
-    mspringi_assembly_begin_rows,
-    mspringi_assembly_append_lattice_rows,
-    mspringi_assembly_append_other_rows,
-    mspringi_assembly_mark_particles,
-    mspringi_assembly_mark_springs,
-    mspringi_assembly_trim_spans,
-    mspringi_assembly_tighten_spans,
-    mspringi_assembly_make_strips,
-    begin_web,
-    count_degrees,
-    count_upright,
-    take_upright,
-    list_attached,
-    reserve_web,
-    list_attached,
-    attach_to_strips,
-    number_nodes,
-    count_rungs,
-    reserve_rungs,
-    lay_rungs,
-    fill_web,
+static const layout_pass layout_passes[] = {
+    ONCE(make_graph),
+    ONCE(begin_herds),
+    EACH(explore_trees, particles_of, 16000),
+    ONCE(reserve_herds),
+    EACH(compare_trees, particles_of, 4000),
+    ONCE(fill_herds),
+    ONCE(find_strands),
+    ONCE(begin_grids),
+    SEARCH,
+    SEARCH,
+    SEARCH,
+    EACH(survey_sheets, springs_of, 32000),
+    ONCE(begin_sheets),
+    EACH(join_sheets, springs_of, 32000),
+    EACH(count_sheet_springs, springs_of, 16000),
+    ONCE(give_up_sheets),
+    EACH(shelve_grids, narrow_grids_of, 64),
+    ONCE(begin_homes),
+    EACH(attach_homes, members_of, 8000),
+    ONCE(prepare_homes),
+    EACH(join_homes, springs_of, 32000),
+    ONCE(judge_homes),
+    EACH(try_lags, lags_of, 1),
+    ONCE(settle_ropes),
+    ONCE(list_web),
+    ONCE(sort_web),
+    ONCE(find_layers),
+    ONCE(order_web),
+    ONCE(mspringi_assembly_begin_blocks),
+    EACH(mspringi_assembly_number_blocks, grids_of, 64),
+    ONCE(mspringi_assembly_number_the_rest),
+    ONCE(mspringi_assembly_reserve_maps),
+    EACH(assign_slots, particles_of, 16000),
+    ONCE(assign_other_slots),
+    ONCE(mspringi_assembly_begin_places),
+    EACH(assign_places, springs_of, 16000),
+    ONCE(mspringi_assembly_note_ends),
+    ONCE(mspringi_assembly_begin_rows),
+    ONCE(mspringi_assembly_append_lattice_rows),
+    ONCE(mspringi_assembly_append_other_rows),
+    ONCE(trim_spans),
+    ONCE(mspringi_assembly_make_strips),
+    ONCE(begin_web),
+    ONCE(lay_rungs),
+    EACH(fill_web, web_springs_of, 16000),
 };
 
 #define LAYOUT_PASSES (sizeof layout_passes / sizeof layout_passes[0])
@@ -458,23 +395,23 @@ mspring_result mspringi_topology_begin(const mspring_builder *builder, const msp
     return MSPRING_OK;
 }
 
-// No pass may spend effort on what depends on the number of workers or of lanes, as strips do: when the work is
-// done must not.
-mspring_result mspringi_topology_go_on(mspringi_assembly *begun, uint32_t *effort, bool *is_done) {
-    mspringi_pace *pace = &begun->pace;
+mspring_result mspringi_topology_run(mspringi_assembly *a, bool *is_done) {
+    const layout_pass *next = &layout_passes[a->pass];
+    const uint32_t count = next->part ? next->count(a) : 0, left = count - a->at;
     mspring_result result = MSPRING_OK;
-    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): begun was made, or this is not called
-    pace->left = *effort;
-    while (result == MSPRING_OK && pace->pass < LAYOUT_PASSES && pace->left > 0) {
-        pace->is_halfway = false;
-        result = layout_passes[pace->pass](begun);
-        if (pace->is_halfway)
-            continue;
-        pace->pass++;
-        pace->at = 0;
+    MSPRINGI_ASSERT(a->pass < LAYOUT_PASSES);
+    if (next->once) {
+        result = next->once(a);
+    } else if (left > 0) {
+        const uint32_t first = a->at;
+        a->at += left < next->most ? left : next->most;
+        result = next->part(a, first, a->at);
     }
-    *effort = pace->left;
-    *is_done = pace->pass == LAYOUT_PASSES;
+    if (a->at == count) {
+        a->pass++;
+        a->at = 0;
+    }
+    *is_done = a->pass == LAYOUT_PASSES;
     return result;
 }
 
@@ -486,7 +423,6 @@ void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory
     mspringi_free(memory, begun->blocks);
     mspringi_free(memory, begun->first_block);
     mspringi_free(memory, begun->end_block);
-    mspringi_free(memory, begun->scratch);
     mspringi_free(memory, begun->busy);
     mspringi_weaving_destroy(&begun->weaving, memory);
     mspringi_graph_destroy(&begun->graph, memory);
@@ -519,11 +455,7 @@ static mspring_result keep_spare(mspringi_topology *t, mspringi_memory *memory, 
     mspring_result result = mspringi_spare_reserve(t, 0, memory, message);
     if (result != MSPRING_OK)
         return result;
-    mspringi_pace pace = {0};
-    do {
-        pace.left = MSPRINGI_PACE_ALL;
-        mspringi_spare_enter(t, &pace);
-    } while (pace.is_halfway);
+    mspringi_spare_enter(t);
     return mspringi_spare_keep(t, memory, message);
 }
 
@@ -533,10 +465,8 @@ mspring_result mspringi_topology_create(mspringi_topology *topology, const mspri
     mspringi_assembly *begun = NULL;
     mspring_result result =
         mspringi_topology_begin(builder, reserve, false, false, workers, lanes, memory, message, &begun);
-    for (bool is_done = false; result == MSPRING_OK && !is_done;) {
-        uint32_t effort = MSPRINGI_PACE_ALL;
-        result = mspringi_topology_go_on(begun, &effort, &is_done);
-    }
+    for (bool is_done = false; result == MSPRING_OK && !is_done;)
+        result = mspringi_topology_run(begun, &is_done);
     if (result != MSPRING_OK) {
         mspringi_topology_abandon(begun, memory);
         return result;

@@ -171,17 +171,18 @@ static inline uint32_t mspringi_swept_count(const mspringi_topology *topology) {
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
                                         const mspringi_reserve *reserve, uint32_t workers, uint32_t lanes,
                                         mspringi_memory *memory, mspringi_message *message);
-/// The same in parts: begin, go on until it is done unless that fails, then finish; or abandon at any time, which
-/// allows NULL. The builder and what memory and message point to must stay; is_checked: no two of its springs join
-/// the same particles; has_herds: small trees may stand in herds. What is finished
-/// has places for the builder's springs only, in an array with room for all ids.
+/// The same as a list of plain functions: begin, run one after the other until it is done unless one fails, then
+/// finish; or abandon at any time, which allows NULL. The builder and what memory and message point to must stay;
+/// is_checked: no two of its springs join the same particles; has_herds: small trees may stand in herds. What is
+/// finished has places for the builder's springs only, in an array with room for all ids.
 typedef struct mspringi_assembly mspringi_assembly;
 mspring_result mspringi_topology_begin(const mspring_builder *builder, const mspringi_reserve *reserve,
                                        bool is_checked, bool has_herds, uint32_t workers, uint32_t lanes,
                                        mspringi_memory *memory, mspringi_message *message,
                                        mspringi_assembly **begun);
-/// @param effort  how much to do, and what is left of that; see pace.h
-mspring_result mspringi_topology_go_on(mspringi_assembly *begun, uint32_t *effort, bool *is_done);
+/// Run the next function, which takes a millisecond at most for 200,000 springs. How many there are depends neither
+/// on workers nor on lanes.
+mspring_result mspringi_topology_run(mspringi_assembly *begun, bool *is_done);
 void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory, mspringi_topology *topology);
 void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory);
 

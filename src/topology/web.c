@@ -10,23 +10,16 @@ static mspring_result out_of_memory(const mspringi_weaving *w, mspringi_message 
     return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for a web of %u springs", (unsigned)w->count);
 }
 
-mspring_result mspringi_web_begin(mspringi_weaving *w, mspringi_pace *pace, mspringi_memory *memory,
-                                  mspringi_message *message) {
+static mspring_result begin(mspringi_weaving *w, mspringi_memory *memory, mspringi_message *message) {
     const size_t slots = (size_t)w->block_count * MSPRINGI_WIDTH;
-    w->web->own_count = w->own_count;
-    if (w->count == 0 && w->own_count == 0)
-        return MSPRING_OK;
-    w->degree = mspringi_pace_alloc(pace, memory, slots, sizeof *w->degree);
-    w->node_of_slot = mspringi_pace_alloc(pace, memory, slots, sizeof *w->node_of_slot);
-    w->upright = mspringi_pace_alloc(pace, memory, w->own_count / MSPRINGI_WIDTH, sizeof *w->upright);
-    w->strip = MSPRING_NONE;
+    w->degree = mspringi_alloc(memory, slots, sizeof *w->degree);
+    w->node_of_slot = mspringi_alloc(memory, slots, sizeof *w->node_of_slot);
+    w->upright = mspringi_alloc(memory, w->own_count / MSPRINGI_WIDTH, sizeof *w->upright);
     return w->degree && w->node_of_slot && w->upright ? MSPRING_OK : out_of_memory(w, message);
 }
 
-void mspringi_web_count_degrees(mspringi_weaving *w, mspringi_pace *pace) {
-    uint32_t first, end;
-    mspringi_pace_take(pace, w->count, 2, &first, &end);
-    for (uint32_t s = first; s < end; ++s) {
+static void count_degrees(const mspringi_weaving *w) {
+    for (uint32_t s = 0; s < w->count; ++s) {
         w->degree[w->a[s]]++;
         w->degree[w->b[s]]++;
     }
@@ -47,21 +40,14 @@ static bool is_upright(const mspringi_weaving *w, uint32_t spring) {
     return group != MSPRING_NONE && w->upright[group] >= FEWEST_UPRIGHT;
 }
 
-void mspringi_web_count_upright(mspringi_weaving *w, mspringi_pace *pace) {
-    uint32_t first, end;
-    mspringi_pace_take(pace, w->homed_count > 0 ? w->count : 0, 2, &first, &end);
-    for (uint32_t s = first; s < end; ++s) {
+// What stands upright needs no other rungs: from then on degrees are without it.
+static void stand_upright(mspringi_weaving *w) {
+    for (uint32_t s = 0; s < w->count; ++s) {
         const uint32_t group = upright_group(w, s);
         if (group != MSPRING_NONE)
             w->upright[group]++;
     }
-}
-
-// What stands upright needs no other rungs: from here on degrees are without it.
-void mspringi_web_take_upright(mspringi_weaving *w, mspringi_pace *pace) {
-    uint32_t first, end;
-    mspringi_pace_take(pace, w->homed_count > 0 ? w->count : 0, 2, &first, &end);
-    for (uint32_t s = first; s < end; ++s) {
+    for (uint32_t s = 0; s < w->count; ++s) {
         if (!is_upright(w, s))
             continue;
         w->degree[w->a[s]]--;
@@ -71,53 +57,60 @@ void mspringi_web_take_upright(mspringi_weaving *w, mspringi_pace *pace) {
 }
 
 // The slots of other rows than the web's that have springs, in slot order, each strip's filled up to whole groups:
-// count them, and write them to attached_slot if that is there.
-void mspringi_web_list_attached(mspringi_weaving *w, mspringi_pace *pace) {
-    uint32_t *attached_slot = w->web->attached_slot, attached = w->attached, first, end;
-    mspringi_pace_take(pace, w->degree ? w->block_count : 0, 4, &first, &end);
-    for (uint32_t slot = first * MSPRINGI_WIDTH; slot < end * MSPRINGI_WIDTH; ++slot) {
-        // Without degrees there are no blocks to take.
-        // NOLINTNEXTLINE(clang-analyzer-core.NullDereference)
+// write them to attached_slot, if that is there. Returns how many they are.
+static uint32_t list_attached(const mspringi_weaving *w, uint32_t *attached_slot) {
+    uint32_t attached = 0, strip = MSPRING_NONE;
+    for (uint32_t slot = 0; slot < w->block_count * MSPRINGI_WIDTH; ++slot) {
         if (w->degree[slot] == 0 || (slot >= w->first_slot && slot < w->first_slot + w->own_count))
             continue;
-        if (w->strip_of_block[slot / MSPRINGI_WIDTH] != w->strip)
+        if (w->strip_of_block[slot / MSPRINGI_WIDTH] != strip)
             attached = (attached + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
-        w->strip = w->strip_of_block[slot / MSPRINGI_WIDTH];
+        strip = w->strip_of_block[slot / MSPRINGI_WIDTH];
         if (attached_slot)
             attached_slot[attached] = slot;
         attached++;
     }
-    w->attached = attached;
+    return attached;
 }
 
-mspring_result mspringi_web_reserve(mspringi_weaving *w, mspringi_pace *pace, mspringi_memory *memory,
-                                    mspringi_message *message) {
+static mspring_result reserve_groups(mspringi_weaving *w, uint32_t attached, mspringi_memory *memory,
+                                     mspringi_message *message) {
     mspringi_web *web = w->web;
-    if (!w->degree)
-        return MSPRING_OK;
-    web->attached_count = (w->attached + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+    web->attached_count = (attached + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
     web->group_count = (w->own_count + web->attached_count) / MSPRINGI_WIDTH;
-    web->attached_slot = mspringi_pace_alloc(pace, memory, web->attached_count, sizeof *web->attached_slot);
-    web->first_rung = mspringi_pace_alloc(pace, memory, (size_t)web->group_count + 1, sizeof *web->first_rung);
+    web->attached_slot = mspringi_alloc(memory, web->attached_count, sizeof *web->attached_slot);
+    web->first_rung = mspringi_alloc(memory, (size_t)web->group_count + 1, sizeof *web->first_rung);
     if (!web->attached_slot || !web->first_rung)
         return out_of_memory(w, message);
     if (w->upright_count > 0) {
-        web->is_upright = mspringi_pace_alloc(pace, memory, web->group_count, sizeof *web->is_upright);
-        web->is_read = mspringi_pace_alloc(pace, memory, web->group_count, sizeof *web->is_read);
+        web->is_upright = mspringi_alloc(memory, web->group_count, sizeof *web->is_upright);
+        web->is_read = mspringi_alloc(memory, web->group_count, sizeof *web->is_read);
         if (!web->is_upright || !web->is_read)
             return out_of_memory(w, message);
     }
     memset(web->attached_slot, 0xff, web->attached_count * sizeof *web->attached_slot);
-    w->attached = 0;
-    w->strip = MSPRING_NONE;
     return MSPRING_OK;
 }
 
-void mspringi_web_number_nodes(mspringi_weaving *w, mspringi_pace *pace) {
+mspring_result mspringi_web_begin(mspringi_weaving *w, mspringi_memory *memory, mspringi_message *message) {
+    w->web->own_count = w->own_count;
+    if (w->count == 0 && w->own_count == 0)
+        return MSPRING_OK;
+    mspring_result result = begin(w, memory, message);
+    if (result != MSPRING_OK)
+        return result;
+    count_degrees(w);
+    if (w->homed_count > 0)
+        stand_upright(w);
+    result = reserve_groups(w, list_attached(w, NULL), memory, message);
+    if (result == MSPRING_OK)
+        (void)list_attached(w, w->web->attached_slot);
+    return result;
+}
+
+static void number_nodes(const mspringi_weaving *w) {
     const mspringi_web *web = w->web;
-    uint32_t first, end;
-    mspringi_pace_take(pace, web->own_count + web->attached_count, 1, &first, &end);
-    for (uint32_t node = first; node < end; ++node) {
+    for (uint32_t node = 0; node < web->own_count + web->attached_count; ++node) {
         const uint32_t slot =
             node < web->own_count ? w->first_slot + node : web->attached_slot[node - web->own_count];
         if (slot != MSPRING_NONE)
@@ -130,11 +123,9 @@ static uint32_t slot_of_node(const mspringi_web *web, uint32_t node, uint32_t fi
 }
 
 // Give every group the rungs of its busiest node.
-mspring_result mspringi_web_count_rungs(mspringi_weaving *w, mspringi_pace *pace, mspringi_message *message) {
+static mspring_result count_rungs(const mspringi_weaving *w, mspringi_message *message) {
     const mspringi_web *web = w->web;
-    uint32_t first, end;
-    mspringi_pace_take(pace, web->group_count, MSPRINGI_WIDTH, &first, &end);
-    for (uint32_t group = first; group < end; ++group) {
+    for (uint32_t group = 0; group < web->group_count; ++group) {
         uint32_t rungs = 0;
         const bool has_upright = group < web->own_count / MSPRINGI_WIDTH && w->upright[group] >= FEWEST_UPRIGHT;
         if (has_upright)
@@ -153,31 +144,30 @@ mspring_result mspringi_web_count_rungs(mspringi_weaving *w, mspringi_pace *pace
     return MSPRING_OK;
 }
 
-mspring_result mspringi_web_reserve_rungs(mspringi_weaving *w, mspringi_pace *pace, mspringi_memory *memory,
-                                          mspringi_message *message) {
+static mspring_result reserve_rungs(mspringi_weaving *w, mspringi_memory *memory, mspringi_message *message) {
     mspringi_web *web = w->web;
-    if (!w->degree)
-        return MSPRING_OK;
     const size_t rungs = web->first_rung[web->group_count];
-    web->neighbour = mspringi_pace_alloc(pace, memory, rungs * MSPRINGI_WIDTH, sizeof *web->neighbour);
-    web->entry = mspringi_pace_alloc(pace, memory, (size_t)2 * w->count, sizeof *web->entry);
-    w->used = mspringi_pace_alloc(pace, memory, (size_t)web->group_count * MSPRINGI_WIDTH, sizeof *w->used);
+    web->neighbour = mspringi_alloc(memory, rungs * MSPRINGI_WIDTH, sizeof *web->neighbour);
+    web->entry = mspringi_alloc(memory, (size_t)2 * w->count, sizeof *web->entry);
+    w->used = mspringi_alloc(memory, (size_t)web->group_count * MSPRINGI_WIDTH, sizeof *w->used);
     return web->neighbour && web->entry && w->used ? MSPRING_OK : out_of_memory(w, message);
 }
 
-// Every node is its own neighbour at first.
-void mspringi_web_lay_rungs(mspringi_weaving *w, mspringi_pace *pace) {
+mspring_result mspringi_web_lay_rungs(mspringi_weaving *w, mspringi_memory *memory, mspringi_message *message) {
     const mspringi_web *web = w->web;
-    uint32_t group = pace->at;
-    for (; group < web->group_count && pace->left > 0; ++group) {
-        mspringi_pace_spend(pace, 1 + (uint64_t)MSPRINGI_WIDTH / 4 *
-                                          (web->first_rung[group + 1] - web->first_rung[group]));
+    if (!w->degree)
+        return MSPRING_OK;
+    number_nodes(w);
+    mspring_result result = count_rungs(w, message);
+    if (result == MSPRING_OK)
+        result = reserve_rungs(w, memory, message);
+    if (result != MSPRING_OK)
+        return result;
+    for (uint32_t group = 0; group < web->group_count; ++group) // every node is its own neighbour at first
         for (uint32_t rung = web->first_rung[group]; rung < web->first_rung[group + 1]; ++rung)
             for (uint32_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
                 web->neighbour[rung * MSPRINGI_WIDTH + lane] = group * MSPRINGI_WIDTH + lane;
-    }
-    pace->at = group;
-    pace->is_halfway = group < web->group_count;
+    return MSPRING_OK;
 }
 
 static uint32_t entry_at(const mspringi_web *web, uint32_t node, uint32_t rung) {
@@ -199,10 +189,8 @@ static uint32_t find_entry(const mspringi_weaving *w, uint32_t node, uint32_t ot
     return entry_at(w->web, node, group_below < group ? 0 : w->rung_above[group_below - w->herd_first]);
 }
 
-void mspringi_web_fill(mspringi_weaving *w, mspringi_pace *pace, mspringi_memory *memory) {
+void mspringi_web_fill(const mspringi_weaving *w, uint32_t first, uint32_t end) {
     const mspringi_web *web = w->web;
-    uint32_t first, end;
-    mspringi_pace_take(pace, w->count, 8, &first, &end);
     for (uint32_t s = first; s < end; ++s) {
         const uint32_t node_a = w->node_of_slot[w->a[s]], node_b = w->node_of_slot[w->b[s]];
         if (is_upright(w, s)) {
@@ -218,8 +206,6 @@ void mspringi_web_fill(mspringi_weaving *w, mspringi_pace *pace, mspringi_memory
         if (web->is_read)
             web->is_read[node_a / MSPRINGI_WIDTH] = web->is_read[node_b / MSPRINGI_WIDTH] = 1;
     }
-    if (!pace->is_halfway)
-        mspringi_weaving_destroy(w, memory);
 }
 
 void mspringi_weaving_destroy(mspringi_weaving *w, mspringi_memory *memory) {

@@ -19,7 +19,7 @@
 #ifndef MSPRINGI_WEB_H
 #define MSPRINGI_WEB_H
 
-#include "base/pace.h"
+#include "base/memory.h"
 #include "builder/builder.h"
 
 /// Slots in a block and nodes in a group: the lanes of the widest vector register, so that every instruction set
@@ -58,27 +58,16 @@ typedef struct mspringi_weaving {
     uint32_t *strip_of_block;               ///< [block_count] in what strip another slot is; freed with the rest
     uint32_t *degree, *node_of_slot, *used; ///< by slot, by slot and by node
     uint32_t homed_count;                   ///< the first of these, that have a home
-    uint32_t attached, strip;               ///< attached nodes so far, and the strip of the last
     uint8_t *upright;                       ///< [own groups] springs that could stand there
     uint32_t upright_count;                 ///< that do
 } mspringi_weaving;
 
-/// Make the web: passes in their order, the one that lists the attached nodes once before and once after they have
-/// been given room.
-mspring_result mspringi_web_begin(mspringi_weaving *weaving, mspringi_pace *pace, mspringi_memory *memory,
-                                  mspringi_message *message);
-void mspringi_web_count_degrees(mspringi_weaving *weaving, mspringi_pace *pace);
-void mspringi_web_count_upright(mspringi_weaving *weaving, mspringi_pace *pace);
-void mspringi_web_take_upright(mspringi_weaving *weaving, mspringi_pace *pace);
-void mspringi_web_list_attached(mspringi_weaving *weaving, mspringi_pace *pace);
-mspring_result mspringi_web_reserve(mspringi_weaving *weaving, mspringi_pace *pace, mspringi_memory *memory,
-                                    mspringi_message *message);
-void mspringi_web_number_nodes(mspringi_weaving *weaving, mspringi_pace *pace);
-mspring_result mspringi_web_count_rungs(mspringi_weaving *weaving, mspringi_pace *pace, mspringi_message *message);
-mspring_result mspringi_web_reserve_rungs(mspringi_weaving *weaving, mspringi_pace *pace, mspringi_memory *memory,
-                                          mspringi_message *message);
-void mspringi_web_lay_rungs(mspringi_weaving *weaving, mspringi_pace *pace);
-void mspringi_web_fill(mspringi_weaving *weaving, mspringi_pace *pace, mspringi_memory *memory);
+/// Make the web, in this order: list the attached nodes, lay the rungs, fill them with the springs first ... end
+/// - 1.
+mspring_result mspringi_web_begin(mspringi_weaving *weaving, mspringi_memory *memory, mspringi_message *message);
+mspring_result mspringi_web_lay_rungs(mspringi_weaving *weaving, mspringi_memory *memory,
+                                      mspringi_message *message);
+void mspringi_web_fill(const mspringi_weaving *weaving, uint32_t first, uint32_t end);
 void mspringi_weaving_destroy(mspringi_weaving *weaving, mspringi_memory *memory);
 
 #endif

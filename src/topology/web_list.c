@@ -64,10 +64,8 @@ static bool is_listed(const mspringi_graph *graph, const uint8_t *kinds, uint32_
 }
 
 void mspringi_web_list_count(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes,
-                             const uint8_t *kinds, mspringi_pace *pace) {
-    uint32_t first, end;
-    mspringi_pace_take(pace, (uint32_t)graph->builder->particle_count, 1, &first, &end);
-    for (uint32_t p = first; p < end; ++p) {
+                             const uint8_t *kinds) {
+    for (uint32_t p = 0; p < graph->builder->particle_count; ++p) {
         if (!is_listed(graph, kinds, p))
             continue;
         list->count++;
@@ -75,12 +73,12 @@ void mspringi_web_list_count(mspringi_web_list *list, const mspringi_graph *grap
     }
 }
 
-mspring_result mspringi_web_list_reserve(mspringi_web_list *list, const mspringi_herds *herds, mspringi_pace *pace,
+mspring_result mspringi_web_list_reserve(mspringi_web_list *list, const mspringi_herds *herds,
                                          mspringi_memory *memory, mspringi_message *message) {
-    list->particles = mspringi_pace_alloc(pace, memory, list->count + (size_t)herds->group_count * MSPRINGI_WIDTH,
-                                          sizeof *list->particles);
-    list->keys = mspringi_pace_alloc(pace, memory, list->count, sizeof *list->keys);
-    list->scratch = mspringi_pace_alloc(pace, memory, list->count, sizeof *list->scratch);
+    list->particles =
+        mspringi_alloc(memory, list->count + (size_t)herds->group_count * MSPRINGI_WIDTH, sizeof *list->particles);
+    list->keys = mspringi_alloc(memory, list->count, sizeof *list->keys);
+    list->scratch = mspringi_alloc(memory, list->count, sizeof *list->scratch);
     list->min_x = list->min_y = INFINITY;
     list->max_x = list->max_y = -INFINITY;
     return list->particles && list->keys && list->scratch
@@ -90,19 +88,18 @@ mspring_result mspringi_web_list_reserve(mspringi_web_list *list, const mspringi
 
 // Those with a home, and behind them those without, with a box around the latter.
 void mspringi_web_list_fill(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes,
-                            uint8_t *kinds, mspringi_pace *pace) {
+                            uint8_t *kinds) {
     const mspringi_particle *all = graph->builder->particles;
-    uint32_t first, end;
-    mspringi_pace_take(pace, (uint32_t)graph->builder->particle_count, 2, &first, &end);
-    for (uint32_t p = first; p < end; ++p) {
+    uint32_t homed = 0, others = list->homed_count;
+    for (uint32_t p = 0; p < graph->builder->particle_count; ++p) {
         if (!is_listed(graph, kinds, p))
             continue;
         kinds[p] = MSPRINGI_ROW_WEB;
         if (homes->home[p] != MSPRING_NONE) {
-            list->particles[list->listed_homed++] = p;
+            list->particles[homed++] = p;
             continue;
         }
-        list->particles[list->homed_count + list->listed_free++] = p;
+        list->particles[others++] = p;
         list->min_x = all[p].x < list->min_x ? all[p].x : list->min_x;
         list->max_x = all[p].x > list->max_x ? all[p].x : list->max_x;
         list->min_y = all[p].y < list->min_y ? all[p].y : list->min_y;
@@ -110,68 +107,42 @@ void mspringi_web_list_fill(mspringi_web_list *list, const mspringi_graph *graph
     }
 }
 
+static uint32_t key_of(const mspringi_web_list *list, const mspringi_particle *particle) {
+    return spread_bits(quantise(particle->x, list->min_x, list->max_x)) |
+           spread_bits(quantise(particle->y, list->min_y, list->max_y)) << 1;
+}
+
 // Those with a home are sorted by that, the others by place on the Z-order curve (Morton 1966).
-void mspringi_web_list_set_keys(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes,
-                                mspringi_pace *pace) {
-    uint32_t first, end;
-    mspringi_pace_take(pace, list->count, 4, &first, &end);
-    for (uint32_t i = first; i < end; ++i) {
+void mspringi_web_list_sort(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes) {
+    for (uint32_t i = 0; i < list->count; ++i) {
         const uint32_t p = list->particles[i];
-        const mspringi_particle *particle = &graph->builder->particles[p];
-        const uint32_t x = i < list->homed_count ? 0 : quantise(particle->x, list->min_x, list->max_x);
-        const uint32_t y = i < list->homed_count ? 0 : quantise(particle->y, list->min_y, list->max_y);
-        const uint32_t key = i < list->homed_count ? homes->home[p] : spread_bits(x) | spread_bits(y) << 1;
+        const uint32_t key = i < list->homed_count ? homes->home[p] : key_of(list, &graph->builder->particles[p]);
         list->keys[i] = (uint64_t)key << 32 | p;
     }
-    if (!pace->is_halfway)
-        mspringi_sorting_begin(&list->sorting, list->keys, list->scratch, list->homed_count);
-}
-
-// First those with a home, then those without.
-void mspringi_web_list_sort(mspringi_web_list *list, mspringi_pace *pace) {
-    bool is_sorted = mspringi_sorting_go_on(&list->sorting, pace);
-    if (is_sorted && !list->is_half_sorted) {
-        list->is_half_sorted = true;
-        mspringi_sorting_begin(&list->sorting, list->keys + list->homed_count, list->scratch,
-                               list->count - list->homed_count);
-        is_sorted = mspringi_sorting_go_on(&list->sorting, pace);
-    }
-    pace->is_halfway = !is_sorted;
-}
-
-void mspringi_web_list_take_order(mspringi_web_list *list, mspringi_pace *pace) {
-    uint32_t first, end;
-    mspringi_pace_take(pace, list->count, 1, &first, &end);
-    for (uint32_t i = first; i < end; ++i)
+    mspringi_sort_keys(list->keys, list->scratch, list->homed_count);
+    mspringi_sort_keys(list->keys + list->homed_count, list->scratch, list->count - list->homed_count);
+    for (uint32_t i = 0; i < list->count; ++i)
         list->particles[i] = (uint32_t)list->keys[i];
 }
 
 void mspringi_web_list_order_windows(mspringi_web_list *list, const mspringi_layers *layers,
-                                     const mspringi_graph *graph, mspringi_pace *pace, mspringi_memory *memory) {
+                                     const mspringi_graph *graph, mspringi_memory *memory) {
     const uint32_t free_count = list->count - list->homed_count;
-    uint32_t *free_ones = list->particles + list->homed_count, at = pace->at;
-    while (at < free_count && pace->left > 0) {
-        const uint32_t count = window_from(free_ones, at, free_count, layers);
+    uint32_t *free_ones = list->particles + list->homed_count;
+    for (uint32_t at = 0, count; at < free_count; at += count) {
+        count = window_from(free_ones, at, free_count, layers);
         order_window_by_degree(free_ones + at, count, graph);
-        mspringi_pace_spend(pace, (uint64_t)16 * count);
-        at += count;
     }
-    pace->at = at;
-    pace->is_halfway = at < free_count;
-    if (pace->is_halfway)
-        return;
     mspringi_free(memory, list->keys);
     mspringi_free(memory, list->scratch);
     list->keys = list->scratch = NULL;
 }
 
-void mspringi_web_list_append_herds(mspringi_web_list *list, const mspringi_herds *herds, mspringi_pace *pace) {
-    uint32_t first, end;
-    mspringi_pace_take(pace, herds->group_count * MSPRINGI_WIDTH, 1, &first, &end);
-    if (first == 0)
-        list->first_in_herds = list->count;
-    memcpy(list->particles + list->count, herds->particles + first, (end - first) * sizeof *list->particles);
-    list->count += end - first;
+void mspringi_web_list_append_herds(mspringi_web_list *list, const mspringi_herds *herds) {
+    const uint32_t count = herds->group_count * MSPRINGI_WIDTH;
+    list->first_in_herds = list->count;
+    memcpy(list->particles + list->count, herds->particles, count * sizeof *list->particles);
+    list->count += count;
 }
 
 void mspringi_web_list_destroy(mspringi_web_list *list, mspringi_memory *memory) {
