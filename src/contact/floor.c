@@ -6,6 +6,7 @@
 
 #include "base/cpu.h"
 #include "sleep/sleep.h"
+#include "store/changed.h"
 
 #define SHORTEST_SPACING 1e-9
 #define LONGEST_SPACING 1e9
@@ -236,9 +237,7 @@ mspring_result mspring_network_set_floor(mspring_network *network, const mspring
     }
     mspringi_floor_destroy(network->floor, &network->memory);
     network->floor = made;
-    if (network->solver.ops->new_floor)
-        network->solver.ops->new_floor(network->solver.object);
-    mspringi_wake(network);
+    mspringi_changed(network, MSPRINGI_CHANGED_NEW_FLOOR, 0);
     return MSPRING_OK;
 }
 

@@ -11,11 +11,9 @@
 #include "network/origin.h"
 #include "network/springs.h"
 #include "ramps.h"
+#include "store/changed.h"
 #include "strain.h"
 #include "topology/spare.h"
-
-/// What edits of each kind are mixed into the print of parameters as.
-enum { ADDED_PARTICLE = 16, ADDED_SPRING = 17 };
 
 // Put the place in the caller's array in front of what was wrong with it.
 static mspring_result name_definition(mspring_network *network, mspring_result result, uint32_t index) {
@@ -82,8 +80,8 @@ static void put_particle(mspring_network *network, mspring_id p, const mspring_p
     network->state.vx[slot] = def->vx;
     network->state.vy[slot] = def->vy;
     mspringi_set_position(network, p, def->x, def->y);
-    uint64_t print = mspringi_mix(network->parameter_print, (uint64_t)ADDED_PARTICLE << 32 | p);
-    network->parameter_print = mspringi_mix(print, def->flags);
+    mspringi_fingerprint(network, MSPRINGI_EDIT_ADDED_PARTICLE, p);
+    network->parameter_print = mspringi_mix(network->parameter_print, def->flags);
 }
 
 static MSPRINGI_NOINLINE mspring_result add_particles(mspring_network *network, const mspring_particle_def *defs,
@@ -217,10 +215,10 @@ static void put_spring(mspring_network *network, mspring_id s, const mspring_spr
     mspringi_spring_set_nominal(network, s, place, (mspringi_relative){def->stiffness, def->damping});
     mspringi_strain_forget(network, s);
     mspringi_extents_turn(network, s);
-    uint64_t print = mspringi_mix(network->parameter_print, (uint64_t)(ADDED_SPRING + relative) << 32 | s);
-    print = mspringi_mix(print, (uint64_t)def->a << 32 | def->b);
-    print = mspringi_mix_floats(print, def->stiffness, def->damping);
-    network->parameter_print = mspringi_mix_floats(print, rest_length, 0.0f);
+    mspringi_fingerprint(network, relative ? MSPRINGI_EDIT_ADDED_RELATIVE : MSPRINGI_EDIT_ADDED_SPRING, s);
+    mspringi_fingerprint(network, def->a, def->b);
+    mspringi_fingerprint_floats(network, def->stiffness, def->damping);
+    mspringi_fingerprint_floats(network, rest_length, 0.0f);
 }
 
 static MSPRINGI_NOINLINE mspring_result add_springs(mspring_network *network, const mspring_spring_def *defs,
@@ -258,7 +256,7 @@ static MSPRINGI_NOINLINE mspring_result add_springs(mspring_network *network, co
     }
     g->lowest_spring = id;
     mspringi_growth_count(network, network->topology.particle_count, end);
-    network->edits.grafts++;
+    mspringi_changed(network, MSPRINGI_CHANGED_GRAFTS, 0);
     return MSPRING_OK;
 }
 

@@ -3,13 +3,12 @@
 
 #include "base/cpu.h"
 #include "compact/compact.h"
-#include "compact/move.h"
 #include "events.h"
 #include "growth.h"
 #include "network/springs.h"
 #include "ramps.h"
 #include "selection.h"
-#include "sleep/sleep.h"
+#include "store/changed.h"
 
 /// Longest log of broken and restored springs: more than a burst of them in one frame.
 #define LONGEST_LOG 4096
@@ -46,18 +45,13 @@ mspring_result mspringi_breaking_reserve(mspring_network *network) {
     return network->kept || !any_absolute ? mspringi_breaking_reserve_log(network) : fail_for_memory(network);
 }
 
-static void toggle(mspring_network *network, mspring_id spring, mspringi_place place) {
+static void toggle(mspring_network *network, mspringi_place place) {
     network->live[place / MSPRINGI_WIDTH] ^= (uint16_t)(1u << place % MSPRINGI_WIDTH);
-    network->edits.broke = true;
-    MSPRINGI_ASSERT(network->edits.link_log); // mspringi_breaking_reserve() has been called
-    network->edits.link_log[network->edits.links++ & network->edits.link_mask] = spring;
-    if (network->mover)
-        mspringi_mover_follow(network, place);
-    mspringi_wake_spring(network, spring);
 }
 
 void mspringi_spring_come_live(mspring_network *network, mspring_id spring) {
-    toggle(network, spring, mspringi_place_of(&network->topology, spring));
+    toggle(network, mspringi_place_of(&network->topology, spring));
+    mspringi_changed(network, MSPRINGI_CHANGED_LIVE_SPRING, spring);
 }
 
 bool mspringi_spring_break(mspring_network *network, mspring_id spring) {
@@ -70,13 +64,10 @@ bool mspringi_spring_break(mspring_network *network, mspring_id spring) {
     if (!mspringi_spring_is_relative(network, spring))
         network->kept[spring] = (mspringi_relative){values.stiffness, values.damping};
     mspringi_place_set(network, place, 0.0f, 0.0f);
-    mspringi_solvers_clear_slot(network, values.base);
-    mspringi_solvers_clear_slot(network, values.tip);
-    toggle(network, spring, place);
+    toggle(network, place);
     if (network->strain.stressed)
         network->strain.stressed[place / MSPRINGI_WIDTH] &= (uint16_t) ~(1u << place % MSPRINGI_WIDTH);
-    if (network->mover)
-        mspringi_mover_follow(network, place);
+    mspringi_changed(network, MSPRINGI_CHANGED_BROKEN_SPRING, spring);
     return true;
 }
 
@@ -85,7 +76,7 @@ bool mspringi_spring_restore(mspring_network *network, mspring_id spring) {
     if (mspringi_place_is_live(network, place))
         return false;
     const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, place);
-    toggle(network, spring, place);
+    mspringi_spring_come_live(network, spring);
     mspringi_spring_set_nominal(network, spring, place, nominal);
     return true;
 }

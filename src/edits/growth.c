@@ -8,6 +8,7 @@
 #include "contact/floor.h"
 #include "network/springs.h"
 #include "sleep/sleep.h"
+#include "store/changed.h"
 #include "store/store.h"
 #include "topology/spare.h"
 
@@ -115,8 +116,8 @@ void mspringi_growth_count(mspring_network *network, uint32_t particle_count, ui
     mspringi_spare_count(&network->topology, particle_count, spring_count);
     if (network->is_compact)
         mspringi_spare_count(&network->whole, particle_count, spring_count);
-    network->edits.growth++;
-    network->edits.state++; // what is new may be faster than what the guard has seen
+    mspringi_changed(network, MSPRINGI_CHANGED_IDS, 0);
+    mspringi_changed(network, MSPRINGI_CHANGED_STATE, 0); // what is new may be faster than what the guard has seen
     mspringi_sleep_anew(network);
 }
 

@@ -6,7 +6,7 @@
 #include "base/cpu.h"
 #include "network/springs.h"
 #include "selection.h"
-#include "sleep/sleep.h"
+#include "store/changed.h"
 
 static float scale_of(const mspring_network *network, mspring_id particle) {
     if (network->inverse_mass_scale)
@@ -70,7 +70,7 @@ static mspring_result set_masses(mspring_network *network, const mspringi_select
     store_masses(network, at, mass);
     mspringi_fp_leave(before);
     network->is_reweighed = network->spring_mass != NULL;
-    network->edits.masses++;
+    mspringi_changed(network, MSPRINGI_CHANGED_MASSES, 0);
     return MSPRING_OK;
 }
 
@@ -96,8 +96,7 @@ mspring_result mspring_network_renew_relative_springs(mspring_network *network) 
     const mspringi_fp_state before = mspringi_fp_enter();
     mspringi_renew_relative(network);
     mspringi_fp_leave(before);
-    mspringi_wake(network);
-    network->edits.values++;
+    mspringi_changed(network, MSPRINGI_CHANGED_SPRING_MASSES, 0);
     return MSPRING_OK;
 }
 
@@ -153,7 +152,7 @@ static mspring_result set_scales(mspring_network *network, const mspringi_select
     const mspringi_fp_state before = mspringi_fp_enter();
     store_scales(network, at, scale);
     mspringi_fp_leave(before);
-    network->edits.masses++;
+    mspringi_changed(network, MSPRINGI_CHANGED_MASSES, 0);
     return MSPRING_OK;
 }
 

@@ -1,18 +1,11 @@
 /// Removing particles and springs, and giving their ids back.
-#include "base/mix.h"
 #include "breaking.h"
 #include "events.h"
 #include "growth.h"
 #include "network/springs.h"
 #include "selection.h"
+#include "store/changed.h"
 #include "topology/spare.h"
-
-/// What edits of each kind are mixed into the print of parameters as.
-enum { REMOVED_PARTICLE = 20, REMOVED_SPRING = 21, RECYCLED = 22 };
-
-static void mix(mspring_network *network, uint32_t kind, mspring_id id) {
-    network->parameter_print = mspringi_mix(network->parameter_print, (uint64_t)kind << 32 | id);
-}
 
 static void remove_spring(mspring_network *network, mspring_id spring, mspring_id with) {
     if (!mspringi_spring_exists(network, spring))
@@ -21,7 +14,7 @@ static void remove_spring(mspring_network *network, mspring_id spring, mspring_i
         mspringi_events_push(network, (mspring_event){.kind = MSPRING_EVENT_BROKEN, .id = spring, .other = with});
     mspringi_growth_unlink(network, spring);
     network->growth.springs[spring] = MSPRINGI_GONE;
-    mix(network, REMOVED_SPRING, spring);
+    mspringi_fingerprint(network, MSPRINGI_EDIT_REMOVED_SPRING, spring);
 }
 
 static void remove_particle(mspring_network *network, mspring_id particle) {
@@ -32,7 +25,7 @@ static void remove_particle(mspring_network *network, mspring_id particle) {
         remove_spring(network, s, particle);
     mspringi_growth_take_particle(network, particle);
     network->growth.particles[particle] = MSPRINGI_GONE;
-    mix(network, REMOVED_PARTICLE, particle);
+    mspringi_fingerprint(network, MSPRINGI_EDIT_REMOVED_PARTICLE, particle);
 }
 
 static mspring_result reserve(mspring_network *network) {
@@ -42,7 +35,7 @@ static mspring_result reserve(mspring_network *network) {
 
 static void finish(mspring_network *network) {
     mspringi_growth_count(network, network->topology.particle_count, network->topology.spring_count);
-    network->edits.grafts++;
+    mspringi_changed(network, MSPRINGI_CHANGED_GRAFTS, 0);
 }
 
 mspring_result mspring_network_remove_particles(mspring_network *network, const mspring_id *particles,
@@ -56,7 +49,7 @@ mspring_result mspring_network_remove_particles(mspring_network *network, const 
         return result;
     for (uint32_t i = 0; i < count; ++i)
         remove_particle(network, particles[i]);
-    network->edits.masses++; // as where particles are pinned
+    mspringi_changed(network, MSPRINGI_CHANGED_MASSES, 0); // as where particles are pinned
     finish(network);
     return MSPRING_OK;
 }
@@ -95,8 +88,8 @@ mspring_result mspring_network_recycle(mspring_network *network) {
     const mspringi_reserve *r = &network->topology.reserve;
     g->lowest_particle = give_back(g->particles, r->first_particle, r->particle_end, g->lowest_particle);
     g->lowest_spring = give_back(g->springs, r->first_spring, r->spring_end, g->lowest_spring);
-    mix(network, RECYCLED, 0);
-    network->edits.growth++;
+    mspringi_fingerprint(network, MSPRINGI_EDIT_RECYCLED, 0);
+    mspringi_changed(network, MSPRINGI_CHANGED_IDS, 0);
     return MSPRING_OK;
 }
 

@@ -4,7 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/mix.h"
 #include "breaking.h"
 #include "compact/move.h"
 #include "events.h"
@@ -12,6 +11,7 @@
 #include "network/springs.h"
 #include "selection.h"
 #include "sleep/sleep.h"
+#include "store/changed.h"
 #include "store/store.h"
 
 /* ---------------------------------------------------------------------------------------------------- the pass */
@@ -93,8 +93,7 @@ static void look_at(mspring_network *network, mspringi_place place) {
         (void)mspringi_spring_break(network, event.id);
     else
         strain->stressed[place / MSPRINGI_WIDTH] ^= (uint16_t)(1u << place % MSPRINGI_WIDTH);
-    if (network->mover)
-        mspringi_mover_follow(network, place);
+    mspringi_changed(network, MSPRINGI_CHANGED_PLACE, place);
     mspringi_events_push(network, event);
 }
 
@@ -184,8 +183,7 @@ void mspringi_strain_store(mspring_network *network, mspringi_place place, bool 
     if (strain->stress_strain)
         // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): its callers have looked for it
         strain->least[place] = fminf(strain->break_strain[place], strain->stress_strain[place]);
-    if (network->mover)
-        mspringi_mover_follow(network, place);
+    mspringi_changed(network, MSPRINGI_CHANGED_PLACE, place);
 }
 
 void mspringi_strain_forget(mspring_network *network, mspring_id spring) {
@@ -213,11 +211,10 @@ static mspring_result set_thresholds(mspring_network *network, bool stress, cons
         const mspring_id spring = mspringi_selected(at, i);
         if (!mspringi_spring_exists(network, spring))
             continue;
-        network->parameter_print =
-            mspringi_mix(network->parameter_print, (uint64_t)(stress ? 9 : 8) << 32 | spring);
-        network->parameter_print = mspringi_mix_floats(network->parameter_print, strain[i], 0.0f);
+        mspringi_fingerprint(network, stress ? MSPRINGI_EDIT_STRESS_STRAIN : MSPRINGI_EDIT_BREAK_STRAIN, spring);
+        mspringi_fingerprint_floats(network, strain[i], 0.0f);
         mspringi_strain_store(network, mspringi_place_of(&network->topology, spring), stress, strain[i]);
-        mspringi_wake_spring(network, spring);
+        mspringi_changed(network, MSPRINGI_CHANGED_SPRING, spring);
     }
     return result;
 }
@@ -263,8 +260,9 @@ mspring_result mspring_network_set_relax_fraction(mspring_network *network, floa
     if (!(fraction >= 0.0f && fraction <= 1.0f))
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                              "the relax fraction is %g, it must be 0 to 1", (double)fraction);
-    if (fraction != network->strain.relax)
-        mspringi_wake(network);
+    const bool is_new = fraction != network->strain.relax;
     network->strain.relax = fraction;
+    if (is_new)
+        mspringi_changed(network, MSPRINGI_CHANGED_RELAX, 0);
     return MSPRING_OK;
 }

@@ -2,12 +2,11 @@
 #include "values.h"
 
 #include "base/cpu.h"
-#include "base/mix.h"
 #include "network/rests.h"
 #include "network/springs.h"
 #include "ramps.h"
 #include "selection.h"
-#include "sleep/sleep.h"
+#include "store/changed.h"
 
 #define LARGEST_VALUE 1e30f
 #define LARGEST_LENGTH 4e12f
@@ -63,9 +62,9 @@ static MSPRINGI_NOINLINE void store_values(mspring_network *network, mspringi_pa
         if (!mspringi_spring_exists(network, spring))
             continue;
         const mspringi_place place = mspringi_place_of(&network->topology, spring);
-        network->parameter_print = mspringi_mix(network->parameter_print, (uint64_t)part << 32 | spring);
-        network->parameter_print = mspringi_mix_floats(network->parameter_print, values[i], 0.0f);
-        mspringi_wake_spring(network, spring);
+        mspringi_fingerprint(network, MSPRINGI_EDIT_PARTS + (uint32_t)part, spring);
+        mspringi_fingerprint_floats(network, values[i], 0.0f);
+        mspringi_changed(network, MSPRINGI_CHANGED_SPRING, spring);
         if (part == MSPRINGI_REST_LENGTH) {
             mspringi_ramp_drop(network, spring);
             mspringi_place_set_rest_length(network, place, values[i]);
@@ -90,7 +89,7 @@ static mspring_result set_values(mspring_network *network, mspringi_part part, c
     const mspringi_fp_state before = mspringi_fp_enter();
     store_values(network, part, at, values);
     mspringi_fp_leave(before);
-    network->edits.values++;
+    mspringi_changed(network, MSPRINGI_CHANGED_SPRING_VALUES, 0);
     return MSPRING_OK;
 }
 

@@ -6,6 +6,7 @@
 #include "edits/selection.h"
 #include "network.h"
 #include "origin.h"
+#include "store/changed.h"
 
 static bool is_finite_pair(float x, float y) {
     return isfinite(x) && isfinite(y);
@@ -145,8 +146,9 @@ static MSPRINGI_NOINLINE mspring_result set_positions(mspring_network *network, 
     for (uint32_t i = 0; i < count; ++i)
         if (mspringi_particle_exists(network, first + i))
             mspringi_set_position(network, first + i, x_of(to, i), y_of(to, i));
-    network->edits.state++;
-    network->edits.motion += all;
+    mspringi_changed(network, MSPRINGI_CHANGED_STATE, 0);
+    if (all)
+        mspringi_changed(network, MSPRINGI_CHANGED_MOTION, 0);
     return MSPRING_OK;
 }
 
@@ -187,7 +189,7 @@ static mspring_result set_velocities(mspring_network *network, const mspringi_se
         network->state.vx[slot] = vx[i];
         network->state.vy[slot] = vy[i];
     }
-    network->edits.state++;
+    mspringi_changed(network, MSPRINGI_CHANGED_STATE, 0);
     return MSPRING_OK;
 }
 
@@ -220,7 +222,7 @@ mspring_result mspring_network_set_positions_at(mspring_network *network, const 
     result = set_positions_at(network, particles, count, x, y);
     mspringi_fp_leave(before);
     if (result == MSPRING_OK)
-        network->edits.state++;
+        mspringi_changed(network, MSPRINGI_CHANGED_STATE, 0);
     return result;
 }
 

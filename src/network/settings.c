@@ -4,8 +4,8 @@
 #include "base/cpu.h"
 #include "implicit/implicit.h"
 #include "network.h"
-#include "sleep/sleep.h"
 #include "stability/guard.h"
+#include "store/changed.h"
 
 static mspring_result check_implicit(const mspring_solver_def *def, mspringi_message *message) {
     if (def->integrator < MSPRING_INTEGRATOR_GA0 || def->integrator > MSPRING_INTEGRATOR_EULER)
@@ -74,7 +74,7 @@ mspring_result mspring_network_set_solver(mspring_network *network, const msprin
         result = change_solver(network, def);
     if (result != MSPRING_OK)
         return result;
-    mspringi_wake(network);
+    mspringi_changed(network, MSPRINGI_CHANGED_SOLVER, 0);
     const bool automatic = def->substeps == MSPRING_SUBSTEPS_AUTO;
     network->auto_substeps = automatic && network->solver.ops->picks_substeps;
     network->substeps = automatic ? 1 : def->substeps;
@@ -111,10 +111,11 @@ mspring_result mspring_network_set_gravity(mspring_network *network, float x, fl
     if (!isfinite(x) || !isfinite(y))
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "gravity (%g, %g) m/s^2 is not finite",
                              (double)x, (double)y);
-    if (x != network->gravity_x || y != network->gravity_y)
-        mspringi_wake(network);
+    const bool is_new = x != network->gravity_x || y != network->gravity_y;
     network->gravity_x = x;
     network->gravity_y = y;
+    if (is_new)
+        mspringi_changed(network, MSPRINGI_CHANGED_GRAVITY, 0);
     return MSPRING_OK;
 }
 

@@ -2,8 +2,8 @@
 #include "springs.h"
 
 #include "alike.h"
-#include "compact/move.h"
 #include "rests.h"
+#include "store/changed.h"
 
 // Where a spring's values are: in one record, or in one at each of its ends.
 typedef struct spring_record {
@@ -69,8 +69,7 @@ void mspringi_place_set(mspring_network *network, mspringi_place place, float st
         if (records.ends[i].damping)
             *records.ends[i].damping = damping;
     }
-    if (network->mover)
-        mspringi_mover_follow(network, place);
+    mspringi_changed(network, MSPRINGI_CHANGED_PLACE, place);
 }
 
 void mspringi_place_set_rest_length(mspring_network *network, mspringi_place place, float rest_length) {
@@ -80,8 +79,7 @@ void mspringi_place_set_rest_length(mspring_network *network, mspringi_place pla
                     *records.ends[0].rest_length == rest_length);
     for (int i = 0; i < records.count; ++i)
         *records.ends[i].rest_length = rest_length;
-    if (network->mover)
-        mspringi_mover_follow(network, place);
+    mspringi_changed(network, MSPRINGI_CHANGED_PLACE, place);
 }
 
 void mspringi_place_copy(const mspring_network *from, mspringi_place had_place, mspring_network *to,

@@ -8,6 +8,7 @@
 #include "network/network.h"
 #include "network/origin.h"
 #include "network/springs.h"
+#include "store/changed.h"
 
 /* ----------------------------------------------------------------------------------------------------- filling */
 
@@ -162,7 +163,7 @@ static double put_back(const mspringi_statics *statics, mspring_network *network
         network->state.vx[slot] = network->state.vy[slot] = 0.0f;
         farthest = fmax(farthest, sqrt(dx * dx + dy * dy));
     }
-    network->edits.state++;
+    mspringi_changed(network, MSPRINGI_CHANGED_STATE, 0);
     mspringi_origin_follow(network);
     return farthest;
 }

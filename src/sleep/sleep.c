@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "edits/growth.h"
+#include "store/changed.h"
 #include "store/store.h"
 
 /* ---------------------------------------------------------------------------------------------------- memory */
@@ -105,7 +106,8 @@ static void set_awake(mspring_network *network, uint32_t island) {
     const bool slept = s->still[island] < 0.0;
     s->still[island] = 0.0;
     s->sleeping -= slept;
-    network->edits.naps += slept;
+    if (slept)
+        mspringi_changed(network, MSPRINGI_CHANGED_NAPS, 0);
 }
 
 static void set_all_awake(mspring_network *network) {
@@ -289,7 +291,7 @@ void mspringi_sleep_undo(mspring_network *network) {
     s->sleeping = 0;
     for (uint32_t i = 0; i < s->count; ++i)
         s->sleeping += s->still[i] < 0.0;
-    network->edits.naps++;
+    mspringi_changed(network, MSPRINGI_CHANGED_NAPS, 0);
     if (s->sleeping == 0)
         return;
     mspringi_islands_map(network);
@@ -379,7 +381,7 @@ void mspringi_sleep_fall(mspring_network *network, mspringi_field force) {
             continue;
         s->still[i] = -1.0;
         s->sleeping++;
-        network->edits.naps++;
+        mspringi_changed(network, MSPRINGI_CHANGED_NAPS, 0);
     }
     s->has_force = (!is_first && s->has_force) || force.x;
     s->origin_x = network->origin_x;
@@ -416,7 +418,7 @@ void mspringi_sleep_end(mspring_network *network, double dt) {
         return;
     mspringi_sleep_fall(network, force);
     if (mspringi_sleep_is_whole(network))
-        network->edits.motion++;
+        mspringi_changed(network, MSPRINGI_CHANGED_MOTION, 0);
 }
 
 /* ------------------------------------------------------------------------------------------------ moving along */

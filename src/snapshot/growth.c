@@ -8,6 +8,7 @@
 #include "network/fractions.h"
 #include "network/springs.h"
 #include "sections.h"
+#include "store/changed.h"
 #include "topology/spare.h"
 
 /// Of a spare spring.
@@ -283,7 +284,7 @@ static void load_all(mspring_network *network, const growth *g) {
     network->growth.lowest_particle = first_spare(network->growth.particles, r->first_particle, r->particle_end);
     network->growth.lowest_spring = first_spare(network->growth.springs, r->first_spring, r->spring_end);
     mspringi_growth_count(network, g->particle_count, g->spring_count);
-    network->edits.grafts++;
+    mspringi_changed(network, MSPRINGI_CHANGED_GRAFTS, 0);
 }
 
 // A snapshot without this section is of a network without spare ids, of which nothing had been removed.
@@ -304,7 +305,7 @@ static void growth_load(mspring_network *network, const uint8_t *from, size_t si
     memset(network->growth.particles, MSPRINGI_THERE, t->particle_count);
     memset(network->growth.springs, MSPRINGI_THERE, t->spring_count);
     mspringi_growth_count(network, t->particle_count, t->spring_count);
-    network->edits.grafts++;
+    mspringi_changed(network, MSPRINGI_CHANGED_GRAFTS, 0);
 }
 
 const mspringi_section mspringi_section_growth = {

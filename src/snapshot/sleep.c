@@ -8,6 +8,7 @@
 
 #include "sections.h"
 #include "sleep/sleep.h"
+#include "store/changed.h"
 
 typedef struct sleep_head {
     float speed, time;
@@ -160,7 +161,7 @@ static void sleep_load(mspring_network *network, const uint8_t *from, size_t siz
     sleep->speed = head.speed;
     sleep->time = head.time;
     sleep->count = sleep->sleeping = 0;
-    network->edits.naps++;
+    mspringi_changed(network, MSPRINGI_CHANGED_NAPS, 0);
     if (size == 0)
         return;
     mspringi_islands_find(network);

@@ -9,6 +9,7 @@
 #include "network/rests.h"
 #include "network/springs.h"
 #include "sections.h"
+#include "store/changed.h"
 
 /* ------------------------------------------------------------------------------------------------ bits by place */
 
@@ -152,7 +153,7 @@ static void values_load(mspring_network *network, const uint8_t *from, size_t si
         if (values.stiffness != present.stiffness || values.damping != present.damping)
             mspringi_spring_set_nominal(network, s, place, (mspringi_relative){values.stiffness, values.damping});
     }
-    network->edits.values++;
+    mspringi_changed(network, MSPRINGI_CHANGED_SPRING_VALUES, 0);
 }
 
 const mspringi_section mspringi_section_values = {

@@ -6,6 +6,7 @@
 #include "edits/particles.h"
 #include "network/springs.h"
 #include "sections.h"
+#include "store/changed.h"
 #include "topology/spare.h"
 
 /* --------------------------------------------------------------------------------------------------- settings */
@@ -161,7 +162,7 @@ static void motion_load(mspring_network *network, const uint8_t *from, size_t si
     mspringi_get(from, network->state.x, size / sizeof(float), sizeof(float));
     mspringi_drop_stale_lows(network);
     mspringi_clear_empty_slots(network);
-    network->edits.state++;
+    mspringi_changed(network, MSPRINGI_CHANGED_STATE, 0);
 }
 
 const mspringi_section mspringi_section_motion = {
@@ -306,7 +307,7 @@ static void masses_load(mspring_network *network, const uint8_t *from, size_t si
         mspringi_renew_relative(network);
     network->is_scaled = m.kind & SCALED;
     network->is_reweighed = m.kind & SPRING_MASSES;
-    network->edits.masses++;
+    mspringi_changed(network, MSPRINGI_CHANGED_MASSES, 0);
 }
 
 const mspringi_section mspringi_section_masses = {"mass",      "masses",     false,      masses_size,

@@ -8,6 +8,7 @@
 #include "network/springs.h"
 #include "sleep/sleep.h"
 #include "stability/lanczos.h"
+#include "store/changed.h"
 #include "tuning.h"
 
 /// Part of the substep that is stable in any shape that the fine run takes at most; and how many times as many
@@ -34,7 +35,7 @@ static void kick(mspring_network *network, uint32_t start, double most) {
         network->state.vx[slot] += (float)(most * mspringi_noise(number));
         network->state.vy[slot] += (float)(most * mspringi_noise(number + 1));
     }
-    network->edits.state++;
+    mspringi_changed(network, MSPRINGI_CHANGED_STATE, 0);
 }
 
 // A clone that has what the scene switches on, a little away from where the network is.

@@ -1,0 +1,43 @@
+/// @file changed.h
+/// Telling whoever has to know that something of a network has changed: the table is changes.def.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_CHANGED_H
+#define MSPRINGI_CHANGED_H
+
+#include "network/network.h"
+
+typedef enum mspringi_change {
+#define CHANGE(name, listeners) MSPRINGI_CHANGED_##name,
+#include "store/changes.def"
+#undef CHANGE
+    MSPRINGI_CHANGES
+} mspringi_change;
+
+/// Tell all listeners, once the change has been made.
+void mspringi_tell(mspring_network *network, mspringi_change what, uint32_t index);
+
+/// The same. (Springs are set by the million, and nobody listens but a compaction that is under way.)
+static inline void mspringi_changed(mspring_network *network, mspringi_change what, uint32_t index) {
+    if (what != MSPRINGI_CHANGED_PLACE || network->mover)
+        mspringi_tell(network, what, index);
+}
+
+/// What edits are mixed into the fingerprint of parameters as, by which a snapshot tells whether it fits. Those of
+/// a spring's values are its parts.
+typedef enum mspringi_edit {
+    MSPRINGI_EDIT_PARTS = 0,
+    MSPRINGI_EDIT_BREAK_STRAIN = 8,
+    MSPRINGI_EDIT_STRESS_STRAIN = 9,
+    MSPRINGI_EDIT_ADDED_PARTICLE = 16,
+    MSPRINGI_EDIT_ADDED_SPRING = 17,
+    MSPRINGI_EDIT_ADDED_RELATIVE = 18,
+    MSPRINGI_EDIT_REMOVED_PARTICLE = 20,
+    MSPRINGI_EDIT_REMOVED_SPRING = 21,
+    MSPRINGI_EDIT_RECYCLED = 22
+} mspringi_edit;
+
+void mspringi_fingerprint(mspring_network *network, uint32_t edit, mspring_id id);
+void mspringi_fingerprint_floats(mspring_network *network, float a, float b);
+
+#endif
