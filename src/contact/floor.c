@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/cpu.h"
+#include "network/stages.h"
 #include "sleep/sleep.h"
 #include "store/changed.h"
 
@@ -264,10 +265,8 @@ static void keep_impulses(const mspring_network *network) {
     floor->has_impulse = true;
 }
 
-void mspringi_floor_begin(mspring_network *network) {
+static void begin_impulses(mspring_network *network) {
     mspringi_floor *floor = network->floor;
-    if (!floor)
-        return;
     exchange_impulses(floor);
     if (floor->has_impulse)
         memset(floor->impulse.x, 0, 2 * floor->slot_count * sizeof *floor->impulse.x);
@@ -294,3 +293,23 @@ mspring_result mspring_network_get_floor_impulses(const mspring_network *network
     }
     return MSPRING_OK;
 }
+
+/* ------------------------------------------------------------------------------------------------------- stage */
+
+static bool is_used(const mspring_network *network) {
+    return network->floor != NULL;
+}
+
+// A step begins without impulses, but for those on what sleeps.
+static void begin(mspring_network *network, mspringi_field force) {
+    (void)force;
+    if (!mspringi_sleep_is_whole(network))
+        begin_impulses(network);
+}
+
+static void take_back(mspring_network *network) {
+    if (!mspringi_sleep_is_whole(network))
+        mspringi_floor_take_back(network->floor);
+}
+
+const mspringi_stage mspringi_stage_floor = {.is_used = is_used, .forces_known = begin, .take_back = take_back};

@@ -89,9 +89,6 @@ mspringi_floor *mspringi_floor_move(mspring_network *to, const mspring_network *
 /// Free a floor that shares its definition with another. NULL is allowed.
 void mspringi_floor_free_layout(mspringi_floor *floor, mspringi_memory *memory);
 
-/// Begin a step without impulses, but for those on what sleeps. Does nothing without a floor.
-void mspringi_floor_begin(mspring_network *network);
-
 /// Go back to the impulses of the step before the one that was begun last. NULL is allowed.
 void mspringi_floor_take_back(mspringi_floor *floor);
 

@@ -5,6 +5,7 @@
 
 #include "network/rests.h"
 #include "network/springs.h"
+#include "network/stages.h"
 
 /// Shortest rest length that a ramp starts from, as a fraction of the spring's own: strain divides by it.
 #define SHORTEST_START 1e-3
@@ -66,7 +67,8 @@ void mspringi_ramps_apply(mspring_network *network, double dt) {
     }
 }
 
-void mspringi_ramps_pass(mspring_network *network, double dt) {
+// Let dt seconds pass, and forget the ramps that have come to their end.
+static void pass(mspring_network *network, double dt) {
     mspringi_ramps *ramps = &network->ramps;
     size_t kept = 0;
     for (size_t i = 0; i < ramps->count; ++i) {
@@ -77,3 +79,19 @@ void mspringi_ramps_pass(mspring_network *network, double dt) {
     }
     ramps->count = kept;
 }
+
+static bool is_used(const mspring_network *network) {
+    return network->ramps.count > 0;
+}
+
+static void go_along(mspring_network *network, const mspringi_attempt *attempt) {
+    mspringi_ramps_apply(network, attempt->dt);
+}
+
+static void go_back(mspring_network *network, const mspringi_attempt *attempt) {
+    (void)attempt;
+    mspringi_ramps_apply(network, 0.0);
+}
+
+const mspringi_stage mspringi_stage_ramps = {
+    .is_used = is_used, .before_step = go_along, .after_step = pass, .undo = go_back};

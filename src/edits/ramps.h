@@ -28,7 +28,4 @@ void mspringi_ramps_clear(mspring_network *network);
 /// Set the rest lengths of all ramps to those of dt seconds from now.
 void mspringi_ramps_apply(mspring_network *network, double dt);
 
-/// Let dt seconds pass, and forget the ramps that have come to their end.
-void mspringi_ramps_pass(mspring_network *network, double dt);
-
 #endif

@@ -9,6 +9,7 @@
 #include "events.h"
 #include "growth.h"
 #include "network/springs.h"
+#include "network/stages.h"
 #include "selection.h"
 #include "sleep/sleep.h"
 #include "store/changed.h"
@@ -97,11 +98,11 @@ static void look_at(mspring_network *network, mspringi_place place) {
     mspringi_events_push(network, event);
 }
 
-void mspringi_strain_pass(mspring_network *network) {
+// Break, stress and relax springs by the strain that they have now.
+static void compare(mspring_network *network, double dt) {
     const mspringi_topology *t = &network->topology;
     const mspringi_strain *strain = &network->strain;
-    if (!strain->break_strain)
-        return;
+    (void)dt;
     const mspringi_strain_sweep sweep = {
         .x = network->state.x,
         .y = network->state.y,
@@ -266,3 +267,9 @@ mspring_result mspring_network_set_relax_fraction(mspring_network *network, floa
         mspringi_changed(network, MSPRINGI_CHANGED_RELAX, 0);
     return MSPRING_OK;
 }
+
+static bool is_used(const mspring_network *network) {
+    return network->strain.break_strain != NULL;
+}
+
+const mspringi_stage mspringi_stage_strain = {.is_used = is_used, .after_step = compare};

@@ -7,9 +7,6 @@
 
 #include "network/network.h"
 
-/// Break, stress and relax springs by the strain that they have now, if any has thresholds.
-void mspringi_strain_pass(mspring_network *network);
-
 /// Allocate what thresholds and the pass need, if it is not there yet; break_strain is there when all of it is.
 mspring_result mspringi_strain_reserve(mspring_network *network);
 mspring_result mspringi_strain_reserve_stress(mspring_network *network);

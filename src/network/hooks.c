@@ -1,5 +1,5 @@
 /// Host functions that are called in the course of a step.
-#include "hooks.h"
+#include "stages.h"
 
 #include <string.h>
 
@@ -161,15 +161,15 @@ static void call_hook(mspring_network *network, const mspringi_attempt *attempt,
 
 /* ------------------------------------------------------------------------------------------------ whose turn */
 
-bool mspringi_hooks_any(const mspring_network *network, mspring_phase phase) {
+static bool has_any(const mspring_network *network, mspring_phase phase) {
     for (size_t i = 0; i < network->hook_count; ++i)
         if (network->hooks[i].def.phase == phase)
             return true;
     return false;
 }
 
-uint32_t mspringi_hooks_free_substeps(const mspring_network *network, const mspringi_attempt *attempt,
-                                      uint32_t substep) {
+// Substeps, from this one on, that can be taken until a hook is due again.
+static uint32_t free_substeps(const mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
     uint32_t count = attempt->substeps - substep;
     for (size_t i = 0; i < network->hook_count; ++i) {
         const mspring_hook_def *def = &network->hooks[i].def;
@@ -179,7 +179,7 @@ uint32_t mspringi_hooks_free_substeps(const mspring_network *network, const mspr
     return count;
 }
 
-void mspringi_hooks_before_step(mspring_network *network, const mspringi_attempt *attempt, mspringi_field field) {
+static void before_step(mspring_network *network, const mspringi_attempt *attempt, mspringi_field field) {
     const hook_group all = {0, 1, attempt->dt};
     for (size_t i = 0; i < network->hook_count; ++i)
         if (network->hooks[i].def.phase == MSPRING_PHASE_BEFORE_STEP)
@@ -196,16 +196,18 @@ static void add(const mspring_network *network, mspringi_field from, mspringi_fi
         to.x[i] += from.x[i];
 }
 
-void mspringi_hooks_before_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
-                                   mspringi_field base) {
+// Call the hooks that are due before this substep, and give forces.driven anew: base (x NULL: none) and the forces
+// of all hooks. If none is due, the field stays as it was.
+static mspringi_field before_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
+                                     mspringi_field base) {
     bool any = false;
     for (size_t i = 0; i < network->hook_count && !any; ++i) {
         const mspring_hook_def *def = &network->hooks[i].def;
         any = def->phase == MSPRING_PHASE_BEFORE_SUBSTEP && substep % def->period == 0;
     }
-    if (!any)
-        return;
     const mspringi_field driven = network->forces.driven;
+    if (!any)
+        return driven;
     if (base.x)
         memcpy(driven.x, base.x, 2 * mspringi_slot_count(network) * sizeof *driven.x);
     else
@@ -227,9 +229,10 @@ void mspringi_hooks_before_substep(mspring_network *network, const mspringi_atte
         }
         add(network, hook->held, driven);
     }
+    return driven;
 }
 
-void mspringi_hooks_after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
+static void after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
     for (size_t i = 0; i < network->hook_count; ++i) {
         const mspring_hook_def *def = &network->hooks[i].def;
         const uint32_t group = substep % def->period + 1;
@@ -238,3 +241,27 @@ void mspringi_hooks_after_substep(mspring_network *network, const mspringi_attem
             call_hook(network, attempt, def, group_of(attempt, substep, group), none);
     }
 }
+
+/* ------------------------------------------------------------------------------------------------------ stages */
+
+static bool has_before_step(const mspring_network *network) {
+    return has_any(network, MSPRING_PHASE_BEFORE_STEP);
+}
+static bool has_before_substep(const mspring_network *network) {
+    return has_any(network, MSPRING_PHASE_BEFORE_SUBSTEP);
+}
+static bool has_after_substep(const mspring_network *network) {
+    return has_any(network, MSPRING_PHASE_AFTER_SUBSTEP);
+}
+
+// Hooks may write to the state through the arrays that they are given.
+const mspringi_stage mspringi_stage_hooks_before_step = {
+    .is_used = has_before_step, .writes_state = true, .forces = before_step};
+const mspringi_stage mspringi_stage_hooks_before_substep = {.is_used = has_before_substep,
+                                                            .writes_state = true,
+                                                            .free_substeps = free_substeps,
+                                                            .before_substep = before_substep};
+const mspringi_stage mspringi_stage_hooks_after_substep = {.is_used = has_after_substep,
+                                                           .writes_state = true,
+                                                           .free_substeps = free_substeps,
+                                                           .after_substep = after_substep};

@@ -10,7 +10,6 @@
 #include "explicit/explicit.h"
 #include "explicit/seam.h"
 #include "fractions.h"
-#include "hooks.h"
 #include "origin.h"
 #include "rests.h"
 #include "sleep/sleep.h"

@@ -1,6 +1,7 @@
 /// The local origin. Single precision resolves a position the better the closer it is to the origin, and springs
 /// feel the difference of positions, so the origin goes where the network is.
 #include "origin.h"
+#include "stages.h"
 
 #include <math.h>
 
@@ -75,3 +76,10 @@ void mspringi_origin_follow(mspring_network *network) {
     network->origin_y += (double)shift_y;
     network->recentre_distance = SMALLEST_RECENTRE_DISTANCE;
 }
+
+static void follow(mspring_network *network, double dt) {
+    (void)dt;
+    mspringi_origin_follow(network);
+}
+
+const mspringi_stage mspringi_stage_origin = {.after_step = follow};

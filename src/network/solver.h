@@ -31,6 +31,8 @@ typedef struct mspringi_attempt {
     float h;   ///< length of a substep, s
     uint32_t substeps;
     const mspringi_solver *solver; ///< the one that runs, which may be the fallback
+    const struct mspringi_stages *stages;
+    float relative_h; ///< substep that relative springs were derived for before, s
 } mspringi_attempt;
 
 /// What an object was made for: masses, rest lengths and springs of that time, which edits do not change.

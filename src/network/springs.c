@@ -3,6 +3,7 @@
 
 #include "alike.h"
 #include "rests.h"
+#include "stages.h"
 #include "store/changed.h"
 
 // Where a spring's values are: in one record, or in one at each of its ends.
@@ -155,3 +156,17 @@ void mspringi_derive_relative(mspring_network *network, float h) {
     network->relative_h = h;
     mspringi_renew_relative(network);
 }
+
+static bool is_used(const mspring_network *network) {
+    return network->fractions.values != NULL;
+}
+
+static void derive_anew(mspring_network *network, const mspringi_attempt *attempt) {
+    mspringi_derive_relative(network, attempt->h);
+}
+
+static void undo(mspring_network *network, const mspringi_attempt *attempt) {
+    mspringi_derive_relative(network, attempt->relative_h);
+}
+
+const mspringi_stage mspringi_stage_relative = {.is_used = is_used, .before_step = derive_anew, .undo = undo};

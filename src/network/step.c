@@ -4,18 +4,12 @@
 #include <string.h>
 
 #include "base/cpu.h"
-#include "contact/floor.h"
 #include "edits/growth.h"
-#include "edits/ramps.h"
-#include "edits/strain.h"
-#include "hooks.h"
 #include "network.h"
-#include "origin.h"
 #include "sleep/sleep.h"
-#include "solver.h"
-#include "springs.h"
 #include "stability/guard.h"
 #include "stability/stability.h"
+#include "stages.h"
 
 typedef struct copying {
     const float *from;
@@ -33,57 +27,27 @@ static void copy_state(const mspring_network *network, const mspringi_state *fro
                               copy_range, &all);
 }
 
-static void copy_field(const mspring_network *network, mspringi_field from, mspringi_field to) {
-    memcpy(to.x, from.x, 2 * mspringi_slot_count(network) * sizeof *to.x);
-}
-
 static void clear_field(const mspring_network *network, mspringi_field field) {
     memset(field.x, 0, 2 * mspringi_slot_count(network) * sizeof *field.x);
 }
 
-/* ----------------------------------------------------------------------------------------------- force fields */
-
-// The field that each substep starts from: what the host holds, with what the hooks before the step add. No field
-// at all if there is nothing in it.
-static mspringi_field prepare_base(mspring_network *network, const mspringi_attempt *attempt) {
-    mspringi_forces *forces = &network->forces;
-    const mspringi_field none = {NULL, NULL};
-    if (!mspringi_hooks_any(network, MSPRING_PHASE_BEFORE_STEP))
-        return forces->held_any ? forces->held : none;
-    if (forces->held_any)
-        copy_field(network, forces->held, forces->base);
-    else
-        clear_field(network, forces->base);
-    mspringi_hooks_before_step(network, attempt, forces->base);
-    return forces->base;
-}
-
 /* -------------------------------------------------------------------------------------------------- substeps */
 
-static void run_substeps(mspring_network *network, const mspringi_attempt *attempt) {
+static void run_substeps(mspring_network *network, const mspringi_attempt *attempt, mspringi_field base) {
     const mspringi_solver *solver = attempt->solver;
-    const bool hooks_before = mspringi_hooks_any(network, MSPRING_PHASE_BEFORE_SUBSTEP);
-    const bool hooks_after = mspringi_hooks_any(network, MSPRING_PHASE_AFTER_SUBSTEP);
-    const mspringi_field base = prepare_base(network, attempt);
-    const mspringi_field field = hooks_before ? network->forces.driven : base;
-    network->sleep.in_force = field;
-
+    const mspringi_stages *stages = attempt->stages;
     for (uint32_t substep = 0, count; substep < attempt->substeps; substep += count) {
-        count = mspringi_hooks_free_substeps(network, attempt, substep);
-        if (hooks_before)
-            mspringi_hooks_before_substep(network, attempt, substep, base);
-        if (substep == 0)
-            mspringi_sleep_feel(network, field);
-        if (substep == 0 && !mspringi_sleep_is_whole(network))
-            mspringi_floor_begin(network);
-        if (hooks_after)
+        count = mspringi_stages_free_substeps(network, attempt, substep);
+        const mspringi_field force = mspringi_stages_before_substep(network, attempt, substep, base);
+        if (substep == 0 && stages->cut_substeps)
+            mspringi_stages_forces_known(network, attempt, force);
+        if (stages->follow_substeps)
             mspringi_sleep_hold(network);
         if (!mspringi_sleep_is_whole(network))
-            solver->ops->substeps(network, solver->object, attempt->h, field, count);
-        if (hooks_after)
+            solver->ops->substeps(network, solver->object, attempt->h, force, count);
+        if (stages->follow_substeps)
             mspringi_sleep_put_back(network);
-        if (hooks_after)
-            mspringi_hooks_after_substep(network, attempt, substep + count - 1);
+        mspringi_stages_after_substep(network, attempt, substep + count - 1);
     }
 }
 
@@ -98,23 +62,27 @@ void mspringi_drop_stale_lows(const mspring_network *network) {
 // Keep the state in the backup, run all substeps, and look at what they have led to.
 static mspringi_sight run(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_solver_ops *ops = attempt->solver->ops;
+    const bool is_cut = attempt->stages->cut_substeps;
     mspringi_sight sight = {0.0f, 0.0f, 0.0f};
+    mspringi_field base = {NULL, NULL};
     if (network->is_open) {
         mspringi_clear_empty_slots(network);
         mspringi_drop_stale_lows(network);
     }
     if (ops->begin)
         ops->begin(network);
-    if (network->hook_count == 0) {
-        const mspringi_field base = network->sleep.in_force = prepare_base(network, attempt);
-        mspringi_sleep_feel(network, base);
+    if (!is_cut) {
+        base = mspringi_stages_forces(network, attempt);
+        mspringi_stages_forces_known(network, attempt, base);
         if (mspringi_sleep_is_whole(network) || (ops->whole && ops->whole(network, attempt, base, &sight)))
             return sight;
     }
     copy_state(network, &network->state, &network->backup);
     if (ops->keep)
         ops->keep(attempt->solver->object);
-    run_substeps(network, attempt);
+    if (is_cut)
+        base = mspringi_stages_forces(network, attempt);
+    run_substeps(network, attempt, base);
     if (network->is_open)
         mspringi_clear_empty_slots(network);
     if (ops->end)
@@ -155,13 +123,12 @@ static mspring_result choose_substeps(mspring_network *network, double dt) {
 }
 
 // To the state of before the step.
-static void go_back(mspring_network *network, const mspringi_solver *solver) {
+static void go_back(mspring_network *network, const mspringi_attempt *attempt) {
+    const mspringi_solver *solver = attempt->solver;
     copy_state(network, &network->backup, &network->state);
-    mspringi_sleep_restore(network);
     if (solver->ops->restore)
         solver->ops->restore(network, solver->object);
-    if (!mspringi_sleep_is_whole(network))
-        mspringi_floor_take_back(network->floor);
+    mspringi_stages_take_back(network, attempt);
     mspringi_clear_empty_slots(network);
 }
 
@@ -191,38 +158,50 @@ static mspring_result check_given_speeds(mspring_network *network, double dt) {
     return MSPRING_OK;
 }
 
+// Whether a step has nothing to do at all.
+static bool is_idle(const mspring_network *network, const mspringi_stages *stages) {
+    return mspringi_sleep_is_idle(network) && !stages->give_forces && !stages->cut_substeps;
+}
+
 // Make an attempt whose substeps are numbers, or leave everything as it is.
 static mspring_result carry_out(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_sleep_begin(network, attempt);
-    if (mspringi_sleep_is_idle(network))
+    if (is_idle(network, attempt->stages))
         return MSPRING_OK;
-    const float relative_h = network->relative_h;
     const mspringi_guard guard = network->guard;
-    mspringi_derive_relative(network, attempt->h);
-    mspringi_ramps_apply(network, attempt->dt);
+    mspringi_stages_before_step(network, attempt);
     mspring_result result = mspringi_guard_begin(network, attempt);
     if (result == MSPRING_OK) {
         result = mspringi_guard_end(network, attempt, run(network, attempt));
         if (result != MSPRING_OK)
-            go_back(network, attempt->solver);
+            go_back(network, attempt);
     }
     if (result != MSPRING_OK) {
         network->guard = guard;
-        network->sleep.in_force = (mspringi_field){NULL, NULL};
-        mspringi_derive_relative(network, relative_h);
-        mspringi_ramps_apply(network, 0.0);
+        mspringi_stages_undo(network, attempt);
     }
     return result;
 }
 
+// What all attempts at a step have in common.
+typedef struct request {
+    double dt;
+    const mspringi_stages *stages;
+} request;
+
 // Have a solver take the step in so many substeps, or leave everything as it is.
-static mspring_result attempt(mspring_network *network, const mspringi_solver *solver, uint32_t substeps,
-                              double dt) {
-    const mspringi_attempt made = {dt, (float)(dt / (double)substeps), substeps, solver};
+static mspring_result attempt(mspring_network *network, const request *asked, const mspringi_solver *solver,
+                              uint32_t substeps) {
+    const mspringi_attempt made = {.dt = asked->dt,
+                                   .h = (float)(asked->dt / (double)substeps),
+                                   .substeps = substeps,
+                                   .solver = solver,
+                                   .stages = asked->stages,
+                                   .relative_h = network->relative_h};
     if (!(made.h >= FLT_MIN && made.h <= FLT_MAX))
         return mspringi_fail(
             &network->message, MSPRING_ERROR_ARGUMENT,
-            "dt is %g s (substeps: %u): each substep must be a finite number of at least 1.2e-38 s", dt,
+            "dt is %g s (substeps: %u): each substep must be a finite number of at least 1.2e-38 s", made.dt,
             (unsigned)substeps);
     network->running = solver;
     const mspring_result result = carry_out(network, &made);
@@ -244,11 +223,12 @@ static const mspringi_solver *fallback_of(const mspring_network *network) {
 
 // Have the fallback take the step, or leave everything as it is. Neither it nor the chosen solver, for which a new
 // motion begins after it, has a history then.
-static mspring_result attempt_otherwise(mspring_network *network, const mspringi_solver *fallback, double dt) {
+static mspring_result attempt_otherwise(mspring_network *network, const request *asked,
+                                        const mspringi_solver *fallback) {
     const uint32_t own = network->auto_substeps ? network->max_substeps : network->substeps;
     const bool takes_one = fallback->ops->takes_one;
     mspringi_solver_forget(fallback);
-    const mspring_result result = attempt(network, fallback, takes_one ? 1 : own, dt);
+    const mspring_result result = attempt(network, asked, fallback, takes_one ? 1 : own);
     if (result != MSPRING_OK)
         return result;
     mspringi_solver_forget(&network->solver);
@@ -258,10 +238,10 @@ static mspring_result attempt_otherwise(mspring_network *network, const mspringi
 }
 
 // Take the step that the solver cannot take, or will not be asked to.
-static mspring_result fall_back(mspring_network *network, const mspringi_solver *fallback, double dt) {
+static mspring_result fall_back(mspring_network *network, const request *asked, const mspringi_solver *fallback) {
     const uint32_t lent = network->guard.lent, next = network->solver.ops->has_border ? LENT_STEPS : 0;
-    const mspring_result result = attempt_otherwise(network, fallback, dt);
-    const bool took_it = result == MSPRING_OK && !mspringi_sleep_is_idle(network);
+    const mspring_result result = attempt_otherwise(network, asked, fallback);
+    const bool took_it = result == MSPRING_OK && !is_idle(network, asked->stages);
     if (took_it)
         network->guard.h = 0.0f; // before the solver is asked again, it is looked whether it can be
     network->guard.lent = !took_it ? lent : lent > 0 ? lent - 1 : next;
@@ -269,9 +249,25 @@ static mspring_result fall_back(mspring_network *network, const mspringi_solver 
     return result;
 }
 
-static mspring_result attempt_as_chosen(mspring_network *network, double dt) {
-    const mspring_result result = network->auto_substeps ? choose_substeps(network, dt) : MSPRING_OK;
-    return result == MSPRING_OK ? attempt(network, &network->solver, network->substeps, dt) : result;
+static mspring_result attempt_as_chosen(mspring_network *network, const request *asked) {
+    const mspring_result result = network->auto_substeps ? choose_substeps(network, asked->dt) : MSPRING_OK;
+    return result == MSPRING_OK ? attempt(network, asked, &network->solver, network->substeps) : result;
+}
+
+// Try the solver, its fallback, and more substeps, as the host wants it.
+static mspring_result take_step(mspring_network *network, const request *asked) {
+    const mspringi_solver *fallback = fallback_of(network);
+    const bool lent = fallback && network->guard.lent > 0;
+    mspring_result result = lent ? fall_back(network, asked, fallback) : attempt_as_chosen(network, asked);
+    if (result == MSPRING_ERROR_UNSTABLE && fallback && !lent)
+        result = fall_back(network, asked, fallback);
+    while (result == MSPRING_ERROR_UNSTABLE && network->guard_policy == MSPRING_GUARD_RETRY &&
+           network->substeps < network->max_substeps) {
+        const uint32_t twice = 2 * network->substeps;
+        network->substeps = twice < network->max_substeps ? twice : network->max_substeps;
+        result = attempt(network, asked, &network->solver, network->substeps);
+    }
+    return result;
 }
 
 static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt) {
@@ -286,30 +282,17 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
     if (check_given_speeds(network, dt) != MSPRING_OK)
         return MSPRING_ERROR_UNSTABLE;
     network->sleep.has_kept = false;
-    const mspringi_solver *fallback = fallback_of(network);
-    const bool lent = fallback && network->guard.lent > 0;
-    mspring_result result = lent ? fall_back(network, fallback, dt) : attempt_as_chosen(network, dt);
-    if (result == MSPRING_ERROR_UNSTABLE && fallback && !lent)
-        result = fall_back(network, fallback, dt);
-    while (result == MSPRING_ERROR_UNSTABLE && network->guard_policy == MSPRING_GUARD_RETRY &&
-           network->substeps < network->max_substeps) {
-        const uint32_t twice = 2 * network->substeps;
-        network->substeps = twice < network->max_substeps ? twice : network->max_substeps;
-        result = attempt(network, &network->solver, network->substeps, dt);
-    }
+    const mspringi_stages stages = mspringi_stages_of(network);
+    const mspring_result result = take_step(network, &(request){dt, &stages});
     if (result != MSPRING_OK) {
         network->substeps = substeps;
         network->any_shape = any_shape;
         mspringi_sleep_undo(network);
         return result;
     }
-    if (mspringi_sleep_is_idle(network))
+    if (is_idle(network, &stages))
         return MSPRING_OK;
-    mspringi_sleep_notice(network);
-    mspringi_ramps_pass(network, dt);
-    mspringi_strain_pass(network);
-    mspringi_origin_follow(network);
-    mspringi_sleep_end(network, dt);
+    mspringi_stages_after_step(network, &stages, dt);
     if (network->forces.held_any)
         clear_field(network, network->forces.held);
     network->forces.held_any = false;

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "edits/growth.h"
+#include "network/stages.h"
 #include "store/changed.h"
 #include "store/store.h"
 
@@ -187,8 +188,7 @@ void mspringi_sleep_begin(mspring_network *network, const mspringi_attempt *atte
 }
 
 bool mspringi_sleep_is_idle(const mspring_network *network) {
-    return mspringi_sleep_is_whole(network) && !network->sleep.has_force && network->hook_count == 0 &&
-           !network->forces.held_any;
+    return mspringi_sleep_is_whole(network) && !network->sleep.has_force && !network->forces.held_any;
 }
 
 // A change of force counts that would bring a particle to the speed that is no sleep any more within the time after
@@ -209,8 +209,10 @@ static uint32_t feel_block(const mspring_network *network, mspringi_field force,
     return bits & s->sleepers[first / MSPRINGI_WIDTH];
 }
 
-void mspringi_sleep_feel(mspring_network *network, mspringi_field force) {
+// Once the forces from outside are known: wake what feels others than when it fell asleep.
+static void feel(mspring_network *network, mspringi_field force) {
     mspringi_sleep *s = &network->sleep;
+    s->in_force = force;
     if (s->sleeping == 0 || (!force.x && !s->has_force))
         return;
     const uint64_t naps = network->edits.naps;
@@ -266,7 +268,9 @@ void mspringi_sleep_put_back(const mspring_network *network) {
     }
 }
 
-void mspringi_sleep_notice(mspring_network *network) {
+// Wake what hooks have moved.
+static void notice(mspring_network *network, double dt) {
+    (void)dt;
     if (network->sleep.sleeping == 0 || network->hook_count == 0)
         return;
     const uint64_t naps = network->edits.naps;
@@ -274,7 +278,7 @@ void mspringi_sleep_notice(mspring_network *network) {
     map_if_changed(network, naps);
 }
 
-void mspringi_sleep_restore(mspring_network *network) {
+static void restore(mspring_network *network) {
     const mspringi_sleep *s = &network->sleep;
     const size_t slots = mspringi_slot_count(network);
     for (size_t slot = 0; s->sleeping > 0 && slot < slots; ++slot)
@@ -403,7 +407,7 @@ static void follow_origin(mspring_network *network) {
     s->origin_y = network->origin_y;
 }
 
-void mspringi_sleep_end(mspring_network *network, double dt) {
+static void fall_asleep(mspring_network *network, double dt) {
     mspringi_sleep *s = &network->sleep;
     const mspringi_field force = s->in_force;
     s->in_force = (mspringi_field){NULL, NULL};
@@ -420,6 +424,21 @@ void mspringi_sleep_end(mspring_network *network, double dt) {
     if (mspringi_sleep_is_whole(network))
         mspringi_changed(network, MSPRINGI_CHANGED_MOTION, 0);
 }
+
+static void drop_force(mspring_network *network, const mspringi_attempt *attempt) {
+    (void)attempt;
+    network->sleep.in_force = (mspringi_field){NULL, NULL};
+}
+
+static bool is_used(const mspring_network *network) {
+    return network->sleep.state != NULL;
+}
+
+const mspringi_stage mspringi_stage_waking = {
+    .is_used = is_used, .forces_known = feel, .after_step = notice, .take_back = restore, .undo = drop_force};
+
+// The last of a step's stages: it sees what all others have done.
+const mspringi_stage mspringi_stage_falling_asleep = {.is_used = is_used, .after_step = fall_asleep};
 
 /* ------------------------------------------------------------------------------------------------ moving along */
 

@@ -73,21 +73,14 @@ bool mspringi_sleep_is_disturbed(const mspring_network *network);
 
 /// Before a step: wake what has been disturbed, or what the step would change springs of.
 void mspringi_sleep_begin(mspring_network *network, const mspringi_attempt *attempt);
-/// Whether a step has nothing to do at all: all asleep, with no hook to call and no force to compare.
+/// Whether all are asleep, with no force to compare.
 bool mspringi_sleep_is_idle(const mspring_network *network);
-/// In a step, once the forces from outside are known: wake what feels others than when it fell asleep.
-void mspringi_sleep_feel(mspring_network *network, mspringi_field force);
 /// Keep what sleeps from moving in substeps, where hooks have given it a velocity: hold it before them, and put it
 /// back after them.
 void mspringi_sleep_hold(const mspring_network *network);
 void mspringi_sleep_put_back(const mspring_network *network);
-/// After the substeps of a step: wake what hooks have moved.
-void mspringi_sleep_notice(mspring_network *network);
-/// At the end of a step: see what falls asleep.
-void mspringi_sleep_end(mspring_network *network, double dt);
 
-/// After a step that failed, once the backup is the state: what slept before it sleeps.
-void mspringi_sleep_restore(mspring_network *network);
+/// After a step that failed: what slept before it sleeps.
 void mspringi_sleep_undo(mspring_network *network);
 
 /// Have these islands, those that are marked, sleep as they are now, under these forces (x NULL: none).
