@@ -289,6 +289,14 @@ static void add_hook(arguments *a) {
       mspring_network_momentum(a->network, a->out[0], a->out[1], a->out[2]))                                       \
     X(mspring_network_bounds, "n0123", NOTHING,                                                                    \
       mspring_network_bounds(a->network, a->out[0], a->out[1], a->out[2], a->out[3]))                              \
+    X(mspring_network_nearest_particle, "nXY0", NOTHING,                                                           \
+      mspring_network_nearest_particle(a->network, a->x, a->y, 10, a->out[0], a->out[1]))                          \
+    X(mspring_network_particles_in_circle, "nXY01", NOTHING,                                                       \
+      mspring_network_particles_in_circle(a->network, a->x, a->y, 10, a->out[0], 8, a->out[1]))                    \
+    X(mspring_network_particles_in_box, "n01", NOTHING,                                                            \
+      mspring_network_particles_in_box(a->network, -1, -1, 1, 1, a->out[0], 8, a->out[1]))                         \
+    X(mspring_network_springs_across, "nXY01", NOTHING,                                                            \
+      mspring_network_springs_across(a->network, -1, -1, a->x, a->y, a->out[0], NULL, 8, a->out[1]))               \
     X(mspring_network_get_spring, "nIP", OUT_STRUCT(0, spring_info),                                               \
       mspring_network_get_spring(a->network, a->id, a->out[0]))                                                    \
     X(mspring_network_get_strains, "nR0", NOTHING,                                                                 \

@@ -327,18 +327,8 @@ void side_position(const lab_side *side, mspring_id particle, double *x, double 
 }
 
 mspring_id side_nearest(const lab_side *side, double x, double y) {
-    mspring_id nearest = 0;
-    double least = INFINITY;
-    for (mspring_id i = 0; i < side->stage->particle_count; i++) {
-        double px, py;
-        side_position(side, i, &px, &py);
-        const double distance = (px - x) * (px - x) + (py - y) * (py - y);
-        if (distance < least) {
-            least = distance;
-            nearest = i;
-        }
-    }
-    return nearest;
+    mspring_id nearest;
+    return mspring_network_nearest_particle(side->network, x, y, INFINITY, &nearest, NULL) == MSPRING_OK ? nearest : 0;
 }
 
 bool side_is_pinned(const lab_side *side, mspring_id particle) {

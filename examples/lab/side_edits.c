@@ -17,13 +17,10 @@ static bool accepted(lab_side *side, mspring_result result) {
 // Lists the particles within a radius, or the nearest one. Returns how many; the list is side->held, which is free
 // while nothing is held.
 static uint32_t list_near(lab_side *side, double x, double y, double radius) {
-    uint32_t count = 0;
-    for (mspring_id i = 0; i < side->stage->particle_count; i++) {
-        double px, py;
-        side_position(side, i, &px, &py);
-        if ((px - x) * (px - x) + (py - y) * (py - y) <= radius * radius)
-            side->held[count++] = i;
-    }
+    uint32_t count;
+    if (mspring_network_particles_in_circle(side->network, x, y, radius, side->held, side->stage->particle_count,
+                                            &count) != MSPRING_OK)
+        count = 0;
     if (count == 0)
         side->held[count++] = side_nearest(side, x, y);
     return count;
@@ -58,11 +55,6 @@ bool side_pin(lab_side *side, double x, double y, double radius, bool pin) {
     return true;
 }
 
-// On which side of the line from a to b c lies: positive, negative or 0.
-static double turn(double ax, double ay, double bx, double by, double cx, double cy) {
-    return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
-}
-
 static bool break_listed(lab_side *side, const mspring_id *springs, uint32_t count) {
     return count == 0 || accepted(side, mspring_network_break_springs(side->network, springs, count));
 }
@@ -71,15 +63,10 @@ bool side_cut(lab_side *side, double x, double y, double x2, double y2) {
     const lab_stage *stage = side->stage;
     mspring_id *list = malloc((stage->spring_count ? stage->spring_count : 1) * sizeof *list);
     uint32_t count = 0;
-    for (uint32_t i = 0; list && i < stage->spring_count; i++) {
-        double ax, ay, bx, by;
-        side_position(side, stage->a[i], &ax, &ay);
-        side_position(side, stage->b[i], &bx, &by);
-        if (turn(x, y, x2, y2, ax, ay) * turn(x, y, x2, y2, bx, by) <= 0 &&
-            turn(ax, ay, bx, by, x, y) * turn(ax, ay, bx, by, x2, y2) <= 0)
-            list[count++] = i;
-    }
-    const bool ok = list && break_listed(side, list, count);
+    const bool ok = list &&
+                    accepted(side, mspring_network_springs_across(side->network, x, y, x2, y2, list, NULL,
+                                                                  stage->spring_count, &count)) &&
+                    break_listed(side, list, count);
     free(list);
     return ok;
 }

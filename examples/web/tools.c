@@ -31,21 +31,16 @@ static double square(double a) {
 // Particles within radius of a point, into page.list; at least the nearest. Returns how many.
 static uint32_t list_near(double x, double y, double radius) {
     uint32_t count = 0;
-    mspring_id nearest = 0;
-    double least = INFINITY;
-    for (mspring_id p = 0; p < page.particle_count; p++) {
-        const point at = place_of(p);
-        const double distance = square(at.x - x) + square(at.y - y);
-        if (distance < least) {
-            least = distance;
-            nearest = p;
-        }
-        if (distance <= square(radius))
-            page.list[count++] = p;
-    }
-    if (count == 0 && page.particle_count > 0)
-        page.list[count++] = nearest;
-    return count;
+    mspring_id nearest;
+    if (mspring_network_particles_in_circle(page.network, x, y, radius, page.list, page.list_capacity, &count) ==
+            MSPRING_OK &&
+        count > 0)
+        return count;
+    if (mspring_network_nearest_particle(page.network, x, y, INFINITY, &nearest, NULL) != MSPRING_OK ||
+        nearest == MSPRING_NONE)
+        return 0;
+    page.list[0] = nearest;
+    return 1;
 }
 
 /* ----------------------------------------------------------------------------------------------------- dragging */
@@ -127,22 +122,13 @@ mspring_result page_pin(double x, double y, double radius) {
     return MSPRING_OK;
 }
 
-static double side_of(point from, point to, point at) {
-    return (to.x - from.x) * (at.y - from.y) - (to.y - from.y) * (at.x - from.x);
-}
-
-static bool cross(point a, point b, point c, point d) {
-    return (side_of(a, b, c) > 0) != (side_of(a, b, d) > 0) && (side_of(c, d, a) > 0) != (side_of(c, d, b) > 0);
-}
-
 // Those that are restored or broken are told as events, which are read behind the next step.
 mspring_result page_cut(double x, double y, double x2, double y2) {
-    const point from = {x, y}, to = {x2, y2};
     uint32_t count = 0;
-    for (mspring_id spring = 0; spring < page.spring_count; spring++)
-        if (page.springs[spring].rest_length > 0 &&
-            cross(from, to, place_of(page.ends[2 * spring]), place_of(page.ends[2 * spring + 1])))
-            page.list[count++] = spring;
+    const mspring_result result =
+        mspring_network_springs_across(page.network, x, y, x2, y2, page.list, NULL, page.list_capacity, &count);
+    if (result != MSPRING_OK)
+        return result;
     return mspring_network_break_springs(page.network, page.list, count);
 }
 

@@ -1690,6 +1690,49 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_momentum(const mspr
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_bounds(const mspring_network *network, double *min_x,
                                                                     double *min_y, double *max_x, double *max_y);
 
+/// The particle nearest to a point, of those within a distance: what a mouse picks.
+/// @param x, y      world position, m, at most MSPRING_MAX_COORDINATE in absolute value
+/// @param within    m, >= 0; INFINITY for any distance
+/// @param particle  receives its id, the lowest of several, or MSPRING_NONE
+/// @param distance  receives how far it is, m, or INFINITY; may be NULL
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT.
+/// @threads shared   @allocates never; looks at every particle   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_nearest_particle(const mspring_network *network,
+                                                                              double x, double y, double within,
+                                                                              mspring_id *particle,
+                                                                              double *distance);
+
+/// The particles in a circle, its edge included, in the order of their ids.
+/// @param x, y, radius  world position and radius, m; radius >= 0
+/// @param particles     [capacity] receives as many ids as fit; may be NULL if capacity is 0
+/// @param count         receives how many there are, which may be more than fit
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT.
+/// @threads shared   @allocates never; looks at every particle   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_particles_in_circle(
+    const mspring_network *network, double x, double y, double radius, mspring_id *particles, uint32_t capacity,
+    uint32_t *count);
+
+/// The particles in a box, its edges included, in the order of their ids.
+/// @param min_x, min_y, max_x, max_y  world coordinates, m; no min above its max; may be infinite
+/// @param particles, capacity, count  as of mspring_network_particles_in_circle()
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT.
+/// @threads shared   @allocates never; looks at every particle   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result
+mspring_network_particles_in_box(const mspring_network *network, double min_x, double min_y, double max_x,
+                                 double max_y, mspring_id *particles, uint32_t capacity, uint32_t *count);
+
+/// The springs that a straight line meets: to cut them, or to find what a ray hits first. Broken ones are left out;
+/// touching one counts. They come in the order of their ids.
+/// @param from_x, from_y, to_x, to_y  the line's ends, world positions, m
+/// @param springs    [capacity] receives as many ids as fit; may be NULL if capacity is 0
+/// @param fractions  [capacity] receives where each is met, from 0 at the line's start to 1 at its end; may be NULL
+/// @param count      receives how many there are, which may be more than fit
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT.
+/// @threads shared   @allocates never; looks at every spring   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_springs_across(
+    const mspring_network *network, double from_x, double from_y, double to_x, double to_y, mspring_id *springs,
+    double *fractions, uint32_t capacity, uint32_t *count);
+
 /// What a spring is and does. Set struct_size first.
 typedef struct mspring_spring_info {
     uint32_t struct_size;
