@@ -34,6 +34,21 @@ static bool is_perfect(const map_case *what) {
     return what->floor.restitution == 1.0f && (what->floor.friction == 0 || is_level(what));
 }
 
+/// What of gravity acts across the one plane that there is, m/s^2.
+static double gravity_across(const map_case *what) {
+    return -(double)what->network.gravity_y / hypot(what->planes[0][2], what->planes[0][3]);
+}
+
+/// Speed at which a particle meets the one plane that there is, m/s: bounces without friction keep it.
+static double speed_across(const map_watch *watch, uint32_t i, double height) {
+    const double *plane = watch->what->planes[0];
+    if (watch->what->floor.plane_count != 1)
+        return 0;
+    const double across =
+        ((double)watch->vx[i] * plane[2] + (double)watch->vy[i] * plane[3]) / hypot(plane[2], plane[3]);
+    return sqrt(across * across + 2 * gravity_across(watch->what) * fmax(height, 0));
+}
+
 void map_bounce_begin(map_judge *judge) {
     const map_case *what = judge->watch->what;
     for (uint32_t i = 0; is_judged(what) && i < judge->watch->count; i++) {
@@ -41,6 +56,7 @@ void map_bounce_begin(map_judge *judge) {
         judge->particle_start[i] = energy_of(judge->watch, i, !is_perfect(what) || what->floor.friction > 0);
         judge->particle_fallen[i] =
             energy_of(judge->watch, i, false) + (double)what->network.gravity_y * (judge->watch->y[i] - height);
+        judge->particle_across[i] = speed_across(judge->watch, i, height);
     }
 }
 
@@ -78,11 +94,12 @@ static map_verdict judge_level(map_judge *judge, uint32_t i) {
 }
 
 // A bounce that is shorter than a substep is none, nor is the ninth in one. Where surfaces meet, or rise to both
-// sides, bounces of any speed come to such ones.
-static bool may_rest(const map_watch *watch, double start) {
-    const map_case *what = watch->what;
-    const double slowest = 0.5 * watch->substep * fabs((double)what->network.gravity_y);
-    return what->floor.height_count > 0 || what->floor.plane_count > 1 || start <= 1.1 * 0.5 * slowest * slowest;
+// sides, bounces of any speed come to such ones. On one plane the motion across it tells, whatever that along it
+// is.
+static bool may_rest(const map_judge *judge, uint32_t i) {
+    const map_case *what = judge->watch->what;
+    return what->floor.height_count > 0 || what->floor.plane_count > 1 ||
+           judge->particle_across[i] <= 1.05 * 0.5 * judge->watch->substep * gravity_across(what);
 }
 
 map_verdict map_bounce_judge(map_judge *judge) {
@@ -103,10 +120,13 @@ map_verdict map_bounce_judge(map_judge *judge) {
         // What it has over the lowest place where it was.
         judge->particle_fallen[i] =
             fmax(judge->particle_fallen[i], start + (double)what->network.gravity_y * watch->y[i]);
-        if (fabs(now - start) > kept * judge->particle_fallen[i]) {
+        // At rest across a surface an explicit substep leaves no velocity rather than that of half a substep ago.
+        const double at_rest = 0.5 * watch->substep * (double)what->network.gravity_y;
+        const double room = what->solver.solver == MSPRING_SOLVER_EXPLICIT ? 0.5 * at_rest * at_rest : 0;
+        if (fabs(now - start) > kept * judge->particle_fallen[i] + room) {
             snprintf(judge->text, sizeof judge->text, "particle %u has %.4g J/kg after %.4g s, at the start %.4g",
                      i, now, watch->time, start);
-            return now < start && may_rest(watch, start) ? MAP_RESTED : MAP_BOUNCED;
+            return now < start && may_rest(judge, i) ? MAP_RESTED : MAP_BOUNCED;
         }
     }
     return MAP_HOLDS;

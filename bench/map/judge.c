@@ -101,16 +101,21 @@ static map_verdict judge_flight(map_judge *judge, uint32_t number) {
     const double push_x = (of->gravity_x + of->force_x) * time, push_y = (of->gravity_y + of->force_y) * time;
     const double off = hypot(of->px - from->px - push_x, of->py - from->py - push_y);
     const double scale = fmax(from->momentum_scale, of->momentum_scale) + hypot(push_x, push_y);
-    // Velocities that grow by the same amount in each substep are rounded the same way for a while. A millionth of
-    // what all components have: implicit solvers find the velocities of all together.
-    if (off > kept * scale + 20 * random * scale + 1e-6 * judge->momentum_scale) {
+    // Velocities that grow by the same amount in each substep, as gravity has them, are rounded the same way each
+    // time: by half a last place in all substeps, or by all of that amount where it is less. A millionth of what
+    // all components have: implicit solvers find the velocities of all together.
+    const double steady = fmin((double)judge->substeps * 0x1p-25 * scale, hypot(push_x, push_y));
+    if (off > kept * scale + 20 * random * scale + steady + 1e-6 * judge->momentum_scale) {
         snprintf(judge->text, sizeof judge->text, "momentum is off by %.4g kg m/s of %.4g", off, scale);
         return MAP_MOMENTUM;
     }
     if (watch->what->has_forces)
         return MAP_HOLDS;
     const double turned = fabs(of->spin - from->spin), spin_scale = fmax(from->spin_scale, fabs(of->spin));
-    if (turned > kept * from->spin_scale + 20 * random * of->spin_rounding + 10 * sqrt(judge->angle_squares)) {
+    const double steady_turn =
+        push_x != 0 || push_y != 0 ? (double)judge->substeps * 0x1p-25 * of->spin_rounding : 0;
+    if (turned >
+        kept * from->spin_scale + 20 * random * of->spin_rounding + steady_turn + 10 * sqrt(judge->angle_squares)) {
         snprintf(judge->text, sizeof judge->text,
                  "angular momentum went from %.5g to %.5g kg m^2/s, its parts come to %.4g", from->spin, of->spin,
                  spin_scale);

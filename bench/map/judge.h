@@ -50,7 +50,8 @@ typedef struct map_judge {
     double quickest;                        ///< farthest way of a particle in a substep over the shortest spring
     map_flight flights[MAP_PARTICLES];
     double particle_start[MAP_PARTICLES], particle_fallen[MAP_PARTICLES]; ///< J: energies of loose particles
-    char text[MAP_TEXT];                                                  ///< what is wrong
+    double particle_across[MAP_PARTICLES]; ///< m/s: speeds at which they meet the one plane
+    char text[MAP_TEXT];                   ///< what is wrong
 } map_judge;
 
 void map_judge_begin(map_judge *judge, const map_watch *watch);

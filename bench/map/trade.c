@@ -150,9 +150,12 @@ map_verdict map_run_trade(const map_case *what, mspring_network *first, char tex
             return MAP_REJECTED;
         }
         // From where a substep is a tenth of what is stable: before, the fastest modes are right by chance only.
-        // Velocities are rounded in each substep: what that comes to grows as a random walk.
-        const double walk = 8 * sqrt((double)what->steps * run.solver.substeps) * 0x1p-24 * right.speed * time;
-        if (doubling > 2 && error > 1.05 * last && error > least + walk) {
+        // Velocities are rounded in each substep: what that comes to grows as a random walk, and in each the same
+        // way of what gravity adds, up to all of it.
+        const double count = (double)what->steps * run.solver.substeps, gravity = (double)what->network.gravity_y;
+        const double walk = 8 * sqrt(count) * 0x1p-24 * right.speed * time;
+        const double steady = fmin(count * 0x1p-25 * right.speed, fabs(gravity) * time) * time / 2;
+        if (doubling > 2 && error > 1.05 * last && error > least + walk + steady) {
             snprintf(text, MAP_TEXT,
                      "%u substeps: error %.4g m, with half as many %.4g m, the motion is %.4g m, last place %.2g m",
                      run.solver.substeps, error, last, right.motion, watch.last_place);

@@ -90,17 +90,12 @@ static void collide_slot(const mspring_network *network, size_t slot, double h) 
     s->vy[slot] = after_y;
 }
 
-// What has no springs has been dealt with.
-static bool has_springs(const mspring_network *network, size_t slot) {
-    return slot < (size_t)network->topology.loose_first * MSPRINGI_WIDTH || mspringi_floor_is_pulled(network, slot);
-}
-
 static void collide_block(const mspring_network *network, size_t first, const mspringi_bounds *clear, double h) {
     const mspringi_state *s = &network->state;
     for (size_t slot = first; slot < first + MSPRINGI_WIDTH; ++slot) {
         const bool is_clear = s->x[slot] >= clear->min_x && s->x[slot] <= clear->max_x &&
                               s->y[slot] >= clear->min_y && s->y[slot] <= clear->max_y;
-        if (!is_clear && mspringi_free_mass(network)[slot] > 0.0f && has_springs(network, slot))
+        if (!is_clear && mspringi_free_mass(network)[slot] > 0.0f && !mspringi_floor_is_alone(network, slot))
             collide_slot(network, slot, h);
     }
 }

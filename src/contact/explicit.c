@@ -173,64 +173,96 @@ static slot_range loose_slots(const mspringi_topology *t) {
     return (slot_range){first, first + ((size_t)t->loose_blocks + t->spare_blocks) * MSPRINGI_WIDTH};
 }
 
-// Whether springs that were added pull at a particle of the loose row.
-bool mspringi_floor_is_pulled(const mspring_network *network, size_t slot) {
+bool mspringi_floor_is_alone(const mspring_network *network, size_t slot) {
     const mspringi_solver *solver = network->running;
-    return solver->ops->is_pulled(network, solver->object, slot);
+    return solver->ops->is_alone(network, solver->object, slot);
 }
 
-void mspringi_floor_keep_loose(const mspring_network *network) {
-    const slot_range slots = loose_slots(&network->topology);
+// From the first slot on that may be alone.
+static slot_range alone_slots(const mspring_network *network) {
+    const mspringi_solver *solver = network->running;
+    slot_range slots = loose_slots(&network->topology);
+    if (solver->ops->has_alone && solver->ops->has_alone(solver->object))
+        slots.first = 0;
+    return slots;
+}
+
+void mspringi_floor_keep_alone(const mspring_network *network) {
+    const slot_range slots = alone_slots(network);
     const mspringi_state *s = &network->state, *before = &network->floor->before;
     const size_t size = (slots.end - slots.first) * sizeof *s->x;
     memcpy(before->x + slots.first, s->x + slots.first, size);
     memcpy(before->y + slots.first, s->y + slots.first, size);
+    memcpy(before->low_x + slots.first, s->low_x + slots.first, size);
+    memcpy(before->low_y + slots.first, s->low_y + slots.first, size);
     memcpy(before->vx + slots.first, s->vx + slots.first, size);
     memcpy(before->vy + slots.first, s->vy + slots.first, size);
 }
 
-// A substep that changes (vx, vy) to (to_vx, to_vy) where nothing is in the way.
-static void fly_free(const mspring_network *network, size_t slot, double h, double to_vx, double to_vy) {
-    const mspringi_state *s = &network->state;
+/// A substep of particles without springs.
+typedef struct gliding {
+    mspringi_turning how;
+    double before, within, after; ///< what global damping leaves of velocities
+} gliding;
+
+// Velocities of symplectic Euler lag by half a substep and are damped within it. After implicit substeps damping
+// acts before and after a parabola (Strang, 1968), so that it takes energy whatever bounces there are: as a part of
+// the acceleration, found before a bounce, it gave some after it.
+static gliding glide(const mspring_network *network, float h) {
     const mspringi_floor *floor = network->floor;
-    const double vx = (double)s->vx[slot], vy = (double)s->vy[slot];
     const bool lags = network->running->ops->lags;
-    const mspringi_turning how = {
-        .friction = floor->friction, .restitution = floor->restitution, .h = h, .lag = lags ? 0.5 * h : 0.0};
-    mspringi_flyer p = {.x = (double)s->x[slot], .y = (double)s->y[slot], .left = h};
-    p.wx = lags ? 0.5 * (vx + to_vx) : vx;
-    p.wy = lags ? 0.5 * (vy + to_vy) : vy;
+    const double half = lags ? 1.0 : (double)mspringi_decay(network->global_damping, 0.5f * h);
+    return (gliding){.how = {.friction = floor->friction,
+                             .restitution = floor->restitution,
+                             .h = (double)h,
+                             .lag = lags ? 0.5 * (double)h : 0.0},
+                     .before = half,
+                     .within = lags ? (double)mspringi_decay(network->global_damping, h) : 1.0,
+                     .after = half};
+}
+
+// A substep with an acceleration of (ax, ay).
+static void fly_free(const mspring_network *network, size_t slot, const gliding *g, double ax, double ay) {
+    const mspringi_state *s = &network->state;
+    const double h = g->how.h, vx = g->before * (double)s->vx[slot], vy = g->before * (double)s->vy[slot];
+    double to_vx = g->within * (vx + h * ax), to_vy = g->within * (vy + h * ay);
+    mspringi_flyer p = {.left = h};
+    p.x = (double)s->x[slot] + (double)s->low_x[slot];
+    p.y = (double)s->y[slot] + (double)s->low_y[slot];
+    p.wx = g->how.lag > 0.0 ? 0.5 * (vx + to_vx) : vx;
+    p.wy = g->how.lag > 0.0 ? 0.5 * (vy + to_vy) : vy;
     p.ax = (to_vx - vx) / h;
     p.ay = (to_vy - vy) / h;
-    s->vx[slot] = (float)to_vx;
-    s->vy[slot] = (float)to_vy;
-    const bool acts = mspringi_floor_fly(floor, &how, &p, &to_vx, &to_vy);
+    s->vx[slot] = (float)(g->after * to_vx);
+    s->vy[slot] = (float)(g->after * to_vy);
+    const bool acts = mspringi_floor_fly(network->floor, &g->how, &p, &to_vx, &to_vy);
     if (acts) {
-        put(network, slot, p.x, p.y, to_vx, to_vy);
+        put(network, slot, p.x, p.y, g->after * to_vx, g->after * to_vy);
         return;
     }
     mspringi_set_x(s, slot, p.x);
     mspringi_set_y(s, slot, p.y);
 }
 
-void mspringi_floor_fly_loose(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+void mspringi_floor_fly_alone(mspring_network *network, float h, mspringi_field base, uint32_t count) {
     const mspringi_state *s = &network->state, *before = &network->floor->before;
-    const slot_range slots = loose_slots(&network->topology);
+    const slot_range slots = alone_slots(network);
     const float *inverse_mass = mspringi_free_mass(network);
-    const double step = (double)h, decay = (double)mspringi_decay(network->global_damping, h);
+    const gliding how = glide(network, h);
     for (size_t slot = slots.first; slot < slots.end; ++slot) {
-        if (!(inverse_mass[slot] > 0.0f) || mspringi_floor_is_pulled(network, slot))
+        if (!(inverse_mass[slot] > 0.0f) || !mspringi_floor_is_alone(network, slot))
             continue;
         const double per_mass = (double)inverse_mass[slot];
         const double ax = (double)network->gravity_x + (base.x ? (double)base.x[slot] * per_mass : 0.0);
         const double ay = (double)network->gravity_y + (base.x ? (double)base.y[slot] * per_mass : 0.0);
         s->x[slot] = before->x[slot];
         s->y[slot] = before->y[slot];
+        s->low_x[slot] = before->low_x[slot];
+        s->low_y[slot] = before->low_y[slot];
         s->vx[slot] = before->vx[slot];
         s->vy[slot] = before->vy[slot];
         for (uint32_t i = 0; i < count; ++i)
-            fly_free(network, slot, step, ((double)s->vx[slot] + step * ax) * decay,
-                     ((double)s->vy[slot] + step * ay) * decay);
+            fly_free(network, slot, &how, ax, ay);
     }
     network->floor->has_impulse = true;
 }

@@ -177,11 +177,14 @@ static bool reserve_layout(mspringi_floor *floor, mspring_network *network) {
     floor->contact_count = 0;
     floor->contacts = mspringi_alloc(memory, floor->contact_capacity, sizeof *floor->contacts);
     floor->impulse = floor->former = floor->start = (mspringi_field){NULL, NULL};
-    floor->before = (mspringi_state){.x = mspringi_alloc(memory, 4 * floor->slot_count, sizeof *floor->before.x)};
+    floor->before = (mspringi_state){
+        .x = mspringi_alloc(memory, MSPRINGI_STATE_ARRAYS * floor->slot_count, sizeof *floor->before.x)};
     if (floor->before.x) {
         floor->before.y = floor->before.x + floor->slot_count;
         floor->before.vx = floor->before.y + floor->slot_count;
         floor->before.vy = floor->before.vx + floor->slot_count;
+        floor->before.low_x = floor->before.vy + floor->slot_count;
+        floor->before.low_y = floor->before.low_x + floor->slot_count;
     }
     floor->had_impulse = false;
     return floor->clearances && floor->contacts && floor->before.x &&

@@ -157,13 +157,14 @@ void mspringi_floor_touch_loose(const mspring_network *network, const mspringi_s
 /// Look once at the strips that were left out.
 void mspringi_floor_touch_far(const mspring_network *network, float h);
 
-/// Whether springs that were added pull at a particle of the loose row, or at one beside it.
-bool mspringi_floor_is_pulled(const mspring_network *network, size_t slot);
+/// Whether no spring pulls at a particle, in a network with another solver: it is in the loose row, or all its
+/// springs broke. (A clamped one knows of those in the loose row alone.)
+bool mspringi_floor_is_alone(const mspring_network *network, size_t slot);
 
 /// Of a network with another solver: keep the particles without springs as they are, and take so many substeps of
 /// theirs alone from there, in force fields as these: exact parabolas, for nothing else moves them.
-void mspringi_floor_keep_loose(const mspring_network *network);
-void mspringi_floor_fly_loose(mspring_network *network, float h, mspringi_field base, uint32_t count);
+void mspringi_floor_keep_alone(const mspring_network *network);
+void mspringi_floor_fly_alone(mspring_network *network, float h, mspringi_field base, uint32_t count);
 
 /* collide.c */
 

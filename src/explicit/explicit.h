@@ -14,8 +14,8 @@ uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t par
 /// After the last substep of a step: stop what creeps.
 void mspringi_explicit_end(mspring_network *network);
 
-/// Whether springs that were added pull at a particle of the loose row, or at one beside it.
-bool mspringi_explicit_is_pulled(const mspring_network *network, const void *object, size_t slot);
+/// Whether a particle is in the loose row, and no springs that were added pull at it or at one beside it.
+bool mspringi_explicit_is_alone(const mspring_network *network, const void *object, size_t slot);
 
 /// Forget what a step has left that went out of bounds.
 void mspringi_explicit_reset(mspring_network *network);

@@ -25,10 +25,11 @@ static void restore(mspring_network *network, void *object) {
     mspringi_explicit_reset(network);
 }
 
-bool mspringi_explicit_is_pulled(const mspring_network *network, const void *object, size_t slot) {
+bool mspringi_explicit_is_alone(const mspring_network *network, const void *object, size_t slot) {
     const uint32_t block = (uint32_t)(slot / MSPRINGI_WIDTH);
     (void)object;
-    return mspringi_graft_find_block(&network->graft, block, block + 1, true) == block;
+    return block >= network->topology.loose_first &&
+           mspringi_graft_find_block(&network->graft, block, block + 1, true) != block;
 }
 
 const mspringi_solver_ops mspringi_explicit_ops = {
@@ -43,5 +44,5 @@ const mspringi_solver_ops mspringi_explicit_ops = {
     .substeps = substeps,
     .end = mspringi_explicit_end,
     .restore = restore,
-    .is_pulled = mspringi_explicit_is_pulled,
+    .is_alone = mspringi_explicit_is_alone,
 };

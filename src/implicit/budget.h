@@ -98,7 +98,8 @@ typedef struct mspringi_budget {
     uint32_t *of_block, *of_springs; ///< [blocks] that all particles, or springs of the row, of a block are in
     uint32_t *pins;                  ///< [slots] those of pinned particles in components
     uint32_t pin_count;
-    bool is_known; ///< which components and pins there are, for these edits
+    bool has_alone; ///< some particles outside the loose row have no live springs
+    bool is_known;  ///< which components and pins there are, for these edits
     uint64_t links, growth, grafts, masses;
     bool is_driven;                       ///< some component is
     uint64_t seen[MSPRINGI_BUDGET_EDITS]; ///< edits after the last substep, and the origin then
@@ -116,6 +117,11 @@ void mspringi_budget_destroy(mspringi_budget *budget, mspringi_memory *memory);
 
 /// Have the components that there are. Allocates nothing.
 void mspringi_budget_follow(mspring_network *network);
+
+/// Whether a slot is of no component.
+static inline bool mspringi_budget_is_alone(const mspringi_budget *budget, size_t slot) {
+    return budget->of_slot[slot] == MSPRINGI_NO_ACCOUNT;
+}
 
 /// Before a substep: keep what it begins with.
 void mspringi_budget_open(mspring_network *network);

@@ -60,6 +60,15 @@ static void number_components(const mspring_network *network, mspringi_budget *b
     budget->count = count;
 }
 
+// Among the slots before the loose row.
+static bool find_alone(const mspring_network *network, const mspringi_budget *budget) {
+    const size_t end = (size_t)network->topology.loose_first * MSPRINGI_WIDTH;
+    for (size_t slot = 0; slot < end; ++slot)
+        if (mspringi_budget_is_alone(budget, slot) && network->topology.particle_of_slot[slot] != MSPRING_NONE)
+            return true;
+    return false;
+}
+
 // The account that all particles of a block are in.
 static uint32_t account_of_block(const mspring_network *network, const mspringi_budget *budget, size_t block) {
     uint32_t account = MSPRINGI_NO_ACCOUNT;
@@ -108,6 +117,7 @@ void mspringi_budget_follow(mspring_network *network) {
         return;
     if (!same) {
         number_components(network, budget);
+        budget->has_alone = find_alone(network, budget);
         for (size_t block = 0; block < network->topology.block_count; ++block)
             budget->of_block[block] = account_of_block(network, budget, block);
         for (size_t block = 0; block < network->topology.block_count; ++block)

@@ -218,16 +218,14 @@ static void land_loose(const mspring_network *network, mspringi_slots slots) {
 }
 
 // Rows of particles whose springs have all broken are diagonal, too: what iterations have left of their residual is
-// done at once. (Up to a hundredth of their momentum was, where iterations end early.)
+// done at once. (Up to a hundredth of their momentum was, where iterations end early.) Above a floor they fly.
 static void land_broken_off(const mspring_network *network, mspringi_slots slots, float alpha) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
-    const bool has_contacts = network->floor && network->floor->contact_count > 0;
-    if (n->is_direct || has_contacts || network->edits.links == 0 || !n->budget.is_known ||
-        !(alpha - alpha == 0.0f))
+    if (n->is_direct || network->floor || !n->budget.has_alone || !(alpha - alpha == 0.0f))
         return;
     const size_t loose = (size_t)network->topology.loose_first * MSPRINGI_WIDTH;
     for (size_t i = slots.first; i < slots.end && i < loose; ++i) {
-        if (n->budget.of_slot[i] != MSPRINGI_NO_ACCOUNT || !(n->mass[i] > 0.0f))
+        if (!mspringi_budget_is_alone(&n->budget, i) || !(n->mass[i] > 0.0f))
             continue;
         n->displacement.x[i] += n->residual.x[i] / n->mass[i] - alpha * n->direction.x[i];
         n->displacement.y[i] += n->residual.y[i] / n->mass[i] - alpha * n->direction.y[i];

@@ -134,8 +134,16 @@ static void new_floor(void *object) {
     n->age = 0;
 }
 
-static bool is_pulled(const mspring_network *network, const void *object, size_t slot) {
-    return mspringi_is_solved(network, object, slot);
+static bool is_alone(const mspring_network *network, const void *object, size_t slot) {
+    const mspringi_implicit *n = object;
+    if (slot < (size_t)network->topology.loose_first * MSPRINGI_WIDTH)
+        return mspringi_budget_is_alone(&n->budget, slot);
+    return !mspringi_is_solved(network, n, slot);
+}
+
+static bool has_alone(const void *object) {
+    const mspringi_implicit *n = object;
+    return n->budget.has_alone;
 }
 
 /* ------------------------------------------------------------------------------------------------------- others */
@@ -175,8 +183,8 @@ static void load(mspring_network *network, void *object, const uint8_t *from, si
     .takes_one = true, .create = create, .fits = fits, .adjust = adjust, .destroy = destroy, .relocate = relocate, \
     .reserve = reserve, .remake = remake, .take_over = take_over, .get_basis = get_basis, .set_basis = set_basis,  \
     .substeps = substeps, .keep = keep, .restore = restore, .forget = forget, .clear_slot = clear_slot,            \
-    .rest_slot = rest_slot, .clear_spring = clear_spring, .new_floor = new_floor, .is_pulled = is_pulled,          \
-    .describe = describe, .size = size, .save = save, .check = check, .load = load
+    .rest_slot = rest_slot, .clear_spring = clear_spring, .new_floor = new_floor, .is_alone = is_alone,            \
+    .has_alone = has_alone, .describe = describe, .size = size, .save = save, .check = check, .load = load
 
 const mspringi_solver_ops mspringi_implicit_ops = {.can_add = true, BOTH};
 

@@ -182,13 +182,12 @@ static void take_pieces(mspringi_substep_of *substep) {
 }
 
 void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+    mspringi_budget_follow(network);
     if (network->floor)
-        mspringi_floor_keep_loose(network);
+        mspringi_floor_keep_alone(network);
     follow_edits(network);
     mspringi_substep_of substep = {
         .network = network, .base = base, .h = h, .watches = mspringi_guard_looks(network->guard_policy)};
-    if (substep.watches)
-        mspringi_budget_follow(network);
     for (uint32_t i = 0; i < count; ++i) {
         if (network->floor)
             take_pieces(&substep);
@@ -196,5 +195,5 @@ void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_fiel
             take_substep(&substep, 0);
     }
     if (network->floor)
-        mspringi_floor_fly_loose(network, h, base, count);
+        mspringi_floor_fly_alone(network, h, base, count);
 }

@@ -94,7 +94,7 @@ static bool is_clear(const mspringi_bounds *clear, const mover *m) {
            m->straight_y > (double)clear->min_y && m->straight_y < (double)clear->max_y;
 }
 
-// Slots of particles with springs; those without are dealt with after the substep.
+// Slots of particles with springs, or with broken ones; the loose row's are dealt with after the substep.
 static size_t count_slots(const mspring_network *network) {
     return (size_t)network->topology.loose_first * MSPRINGI_WIDTH;
 }
@@ -109,7 +109,7 @@ static bool find_contacts(mspring_network *network, double h, double fall) {
         if (!(inverse_mass[i] > 0.0f))
             continue;
         const mover m = mover_of(network, i, h);
-        if (!is_clear(&floor->clear, &m))
+        if (!is_clear(&floor->clear, &m) && !mspringi_floor_is_alone(network, i))
             hits |= consider_all(network, &m, fall);
     }
     return hits;
@@ -123,7 +123,7 @@ uint32_t mspringi_floor_pieces(const mspring_network *network, float h) {
         if (!(inverse_mass[i] > 0.0f))
             continue;
         const mover m = mover_of(network, i, (double)h);
-        if (is_clear(&floor->clear, &m))
+        if (is_clear(&floor->clear, &m) || mspringi_floor_is_alone(network, i))
             continue;
         const double before = fmin(mspringi_floor_distance(floor, m.start_x, m.start_y), 0.0);
         deepest = fmax(deepest, before - mspringi_floor_distance(floor, m.straight_x, m.straight_y));

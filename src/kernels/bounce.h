@@ -70,7 +70,7 @@ static inline double mspringi_braked_by(double along, double most) {
 /// Let a surface act on a particle that would come further below it than is allowed. Thrown back, it goes from
 /// where it is, if that is fast enough to leave; else it lands on the surface. Returns 1 if it acts, else 0.
 MSPRINGI_BOUNCE_INLINE double mspringi_turn_going(double nx, double ny, double offset, double friction, double h,
-                                         double allowed, mspringi_going *p) {
+                                                  double allowed, mspringi_going *p) {
     const double distance = nx * p->x + ny * p->y + offset;
     const double across = nx * p->vx + ny * p->vy;
     const bool acts = distance + h * across < -allowed;
@@ -128,6 +128,9 @@ typedef struct mspringi_turning {
     double lag; ///< by which a velocity that is stored is behind w: h / 2, or 0 after implicit substeps
 } mspringi_turning;
 
+/// What rounding leaves across of a velocity along a surface.
+#define MSPRINGI_LAST_PLACES 0x1p-22
+
 /// Distances that are none to a particle that lies on a surface: far below the last places of coordinates.
 static inline double mspringi_flight_slop(double x, double y) {
     return 0x1p-31 * (fabs(x) + fabs(y)) + 1e-15;
@@ -152,7 +155,9 @@ static inline double mspringi_time_to(double nx, double ny, double offset, doubl
 
 /// Turn it where it meets a surface after so many seconds: it bounces, or lies on the surface for the rest of the
 /// substep if that is the last turn, or if the bounce would be shorter than a substep. (At rest v = 0, so that w =
-/// h a / 2: what presses it on counts as friction takes it, and no bounce.) Returns whether it bounces.
+/// h a / 2: what presses it on counts as friction takes it, and no bounce. Of what slides, the last places of its
+/// velocity point across the surface, too: at restitution 1 they made it bounce from rest.) Returns whether it
+/// bounces.
 static inline bool mspringi_turn_flyer(double nx, double ny, double offset, const mspringi_turning *how,
                                        double time, bool is_last, mspringi_flyer *p) {
     const double x = p->x + time * (p->wx + 0.5 * time * p->ax), y = p->y + time * (p->wy + 0.5 * time * p->ay);
@@ -162,7 +167,7 @@ static inline bool mspringi_turn_flyer(double nx, double ny, double offset, cons
     const double pull = nx * p->ax + ny * p->ay, pull_along = nx * p->ay - ny * p->ax;
     const double inward = speed < 0.0 ? -speed : 0.0, pressing = pull < 0.0 ? -pull : 0.0;
     const double up = how->restitution * inward, rest = left - how->lag;
-    const bool lies = is_last | (up <= 0.5 * how->h * pressing);
+    const bool lies = is_last | (up <= 0.5 * how->h * pressing + MSPRINGI_LAST_PLACES * fabs(along));
     const double borne = inward - rest * pull;
     const double given = lies ? (borne > 0.0 ? borne : 0.0) : up + inward;
     const double goes = lies ? along + rest * pull_along : along;

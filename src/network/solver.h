@@ -86,13 +86,14 @@ struct mspringi_solver_ops {
     void (*forget)(void *object);
 
     // Edits. clear_slot: the particle falls freely. rest_slot: it has come to rest. clear_spring: no spring lies in
-    // the place any more. new_floor: it is another one, or none. is_pulled (never NULL): whether added springs pull
-    // at a particle of the loose row, or at one beside it.
+    // the place any more. new_floor: it is another one, or none. is_alone (never NULL): whether no spring pulls at
+    // a particle; it may say so of those of the loose row alone, unless has_alone.
     void (*clear_slot)(const mspring_network *network, void *object, uint32_t slot);
     void (*rest_slot)(const mspring_network *network, void *object, size_t slot);
     void (*clear_spring)(const mspring_network *network, void *object, mspringi_place place);
     void (*new_floor)(void *object);
-    bool (*is_pulled)(const mspring_network *network, const void *object, size_t slot);
+    bool (*is_alone)(const mspring_network *network, const void *object, size_t slot);
+    bool (*has_alone)(const void *object);
 
     // describe: what a plan says of it. The others are those of a snapshot's section (snapshot/sections.h).
     void (*describe)(const void *object, mspring_plan *plan);

@@ -79,7 +79,7 @@ static void take_substeps(mspring_network *network, void *object, float h, mspri
     const uint32_t springs = network->topology.spring_count;
     (void)object;
     if (network->floor)
-        mspringi_floor_keep_loose(network);
+        mspringi_floor_keep_alone(network);
     for (uint32_t i = 0; i < count; ++i) {
         if (network->floor)
             mspringi_floor_keep(network, h);
@@ -93,14 +93,15 @@ static void take_substeps(mspring_network *network, void *object, float h, mspri
             mspringi_floor_touch_all(network, h);
     }
     if (network->floor)
-        mspringi_floor_fly_loose(network, h, base, count);
+        mspringi_floor_fly_alone(network, h, base, count);
 }
 
 static const mspringi_solver_ops ops = {
+    .lags = true,
     .can_add = true,
     .begin = mspringi_graft_follow,
     .substeps = take_substeps,
     .end = mspringi_explicit_end,
-    .is_pulled = mspringi_explicit_is_pulled,
+    .is_alone = mspringi_explicit_is_alone,
 };
 const mspringi_solver mspringi_clamped = {&ops, NULL};
