@@ -388,7 +388,8 @@ enum {
     /// The second words of positions count in the lengths of springs, too. Use it for stiff springs whose forces
     /// single precision cannot tell apart: 6.76e7 N/m between masses of 73.4 kg, 900 m from the local origin,
     /// tremble at up to 3 m/s without it and 0.002 m/s with it. Explicit steps take 1.1 to 1.3 times as
-    /// long (bench/RESULTS.md). The implicit and the direct solver always count these words.
+    /// long (bench/RESULTS.md). The implicit and the direct solver always count these words. What springs break at
+    /// and what stress is made of are strains of the first words: at 900 m right to 6e-5 in a spring of 1 m.
     MSPRING_NETWORK_PRECISE = 1u << 2
 };
 
@@ -413,7 +414,7 @@ enum {
     /// is more than a thousandth of its energy, the substep is taken again (see mspring_integrator). If even a 32nd of
     /// a substep is too long, the component goes only a part of its way in it. No step is refused for its energy.
     /// In each substep the springs may have a millionth more than the budget, and what rounding adds: that of lengths,
-    /// 5e-15 k l^2 a spring, and on a floor 3e-7 m g times the distance from the local origin.
+    /// 5e-17 k l^2 a spring, and on a floor 1e-12 m g times the distance from the local origin.
     MSPRING_GUARD_GROWTH = 0,
     /// The same, but take a step that would be refused again with twice as many substeps, four times as many, and
     /// so on up to max_substeps. Later steps keep the number that was needed, until mspring_network_set_solver().
