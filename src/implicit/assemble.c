@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "kernels/spring_law.h"
 #include "network/springs.h"
 #include "sleep/sleep.h"
 
@@ -119,10 +120,12 @@ static leftover compute_leftover(const mspringi_system *s, uint32_t base, uint32
     const double damping = s->force_scale * (double)values->damping;
     const double relative = extension * inverse, tensed = mspringi_swing_share(relative);
     const double dvx = (double)s->vx[tip] - (double)s->vx[base], dvy = (double)s->vy[tip] - (double)s->vy[base];
-    const double force = stiffness * extension + damping * (dvx * nx + dvy * ny);
-    const double along = (stiffness - stiffness * tensed) + damping * s->damping_rate;
+    const double force = MSPRINGI_LAW_FORCE(MSPRINGI_TIMES, stiffness, extension) +
+                         MSPRINGI_LAW_DAMPING_FORCE(MSPRINGI_TIMES, damping, dvx * nx + dvy * ny);
+    const double own = MSPRINGI_LAW_ALONG(stiffness), swing = own * tensed;
+    const double along = (own - swing) + MSPRINGI_LAW_DAMPING_ALONG(damping) * s->damping_rate;
     const float root = sqrtf((float)along);
-    return (leftover){force * nx, force * ny, root * (float)nx, root * (float)ny, (float)(stiffness * tensed)};
+    return (leftover){force * nx, force * ny, root * (float)nx, root * (float)ny, (float)swing};
 }
 
 static void add_to_diagonal(const mspringi_system *s, uint32_t slot, const leftover *spring) {

@@ -1,6 +1,7 @@
 /// The definition of a sweep: plain C, one slot at a time. What the other kernels compute, they compute in this
 /// order.
 #include "kernels.h"
+#include "spring_law.h"
 
 #if !defined(MSPRINGI_WITHOUT_SCALAR)
 
@@ -40,10 +41,10 @@ static inline vector spring_force(motion base, motion tip, float rest_length, co
     }
     const float square = dx * dx + dy * dy, length = sqrtf(square);
     const float inverse = square > MSPRINGI_NO_DIRECTION ? 1.0f / square : 0.0f;
-    float force = (length - rest_length) * (length * record[0]);
+    float force = MSPRINGI_LAW_FORCE(MSPRINGI_TIMES, length * record[0], length - rest_length);
     if (of & MSPRINGI_DAMPED) {
         const float dvx = base.vx - tip.vx, dvy = base.vy - tip.vy;
-        force = force + (dvx * dx + dvy * dy) * record[MSPRINGI_WIDTH];
+        force = force + MSPRINGI_LAW_DAMPING_FORCE(MSPRINGI_TIMES, record[MSPRINGI_WIDTH], dvx * dx + dvy * dy);
     }
     force = force * inverse;
     return (vector){force * dx, force * dy};

@@ -12,6 +12,7 @@
 #define MSPRINGI_SWEEP_H
 
 #include "base/cpu.h"
+#include "spring_law.h"
 
 #if defined(_MSC_VER)
 #define MSPRINGI_INLINE static __forceinline
@@ -83,10 +84,11 @@ MSPRINGI_INLINE extent spring_extent(motion base, motion tip, mspringi_variant o
 MSPRINGI_INLINE vector spring_force(extent e, vec inverse, motion base, motion tip, const float *rest_lengths,
                                     const float *record, mspringi_variant of) {
     const vec length = square_root(e.square);
-    vec force = mul(sub(length, load(rest_lengths)), mul(length, load(record)));
+    vec force = MSPRINGI_LAW_FORCE(mul, mul(length, load(record)), sub(length, load(rest_lengths)));
     if (of & MSPRINGI_DAMPED) {
         const vec dvx = sub(base.vx, tip.vx), dvy = sub(base.vy, tip.vy);
-        force = add(force, mul(add(mul(dvx, e.dx), mul(dvy, e.dy)), load(record + MSPRINGI_WIDTH)));
+        const vec rate = add(mul(dvx, e.dx), mul(dvy, e.dy));
+        force = add(force, MSPRINGI_LAW_DAMPING_FORCE(mul, load(record + MSPRINGI_WIDTH), rate));
     }
     force = mul(force, inverse);
     const vector result = {mul(force, e.dx), mul(force, e.dy)};

@@ -14,6 +14,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "spring_law.h"
 #include "system_iterate.h"
 
 /// MSPRINGI_WIDTH springs of one direction on their way to force and factors. Each is a long chain of operations
@@ -87,10 +88,11 @@ MSPRINGI_PART_INLINE void find_forces(const linearised *s, size_t base, size_t t
         const double inverse = guess + guess * (0.5 - half * (square * guess)), length_near = square * inverse;
         const double length = length_near + (square - length_near * length_near) * half;
         const double extension = length - (double)rest_lengths[i];
-        double force = (double)(scale * stiffnesses[i]) * extension;
+        double force = MSPRINGI_LAW_FORCE(MSPRINGI_TIMES, (double)(scale * stiffnesses[i]), extension);
         if (damped) {
             const float dvx = vx[tip + i] - vx[base + i], dvy = vy[tip + i] - vy[base + i];
-            force = force + (double)((scale * dampings[i]) * (dvx * nx + dvy * ny));
+            const float rate = dvx * nx + dvy * ny;
+            force = force + (double)MSPRINGI_LAW_DAMPING_FORCE(MSPRINGI_TIMES, scale * dampings[i], rate);
         }
         const double pull = force * inverse;
         to->extension[i] = (float)extension;
@@ -106,11 +108,11 @@ MSPRINGI_PART_INLINE void find_factors(const linearised *s, const float *stiffne
     const float *const dampings = stiffnesses + MSPRINGI_WIDTH;
     const float scale = s->scale, damping_rate = s->damping_rate;
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
-        const float stiffness = scale * stiffnesses[i];
+        const float stiffness = MSPRINGI_LAW_ALONG(scale * stiffnesses[i]);
         const float swing = stiffness * swing_share(to->extension[i] * to->inverse[i]);
         float along = stiffness - swing;
         if (damped)
-            along = along + (scale * dampings[i]) * damping_rate;
+            along = along + MSPRINGI_LAW_DAMPING_ALONG(scale * dampings[i]) * damping_rate;
         const float root = sqrtf(along), pull_x = root * to->x[i], pull_y = root * to->y[i];
         factors[MSPRINGI_PULL_X * MSPRINGI_WIDTH + i] = pull_x;
         factors[MSPRINGI_PULL_Y * MSPRINGI_WIDTH + i] = pull_y;

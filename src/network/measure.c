@@ -1,6 +1,7 @@
 /// Measurements of the state, summed in double precision in id order.
 #include <math.h>
 
+#include "kernels/spring_law.h"
 #include "springs.h"
 
 static bool is_pinned(const mspring_network *network, mspring_id particle) {
@@ -129,7 +130,8 @@ mspring_result mspring_network_get_spring(const mspring_network *network, msprin
     const double length = spring_length(network, &r, &rate), rest_length = (double)r.rest_length;
     const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, place);
     const double stiffness = (double)r.stiffness, damping = (double)r.damping;
-    const double force = length > 0.0 ? (length - rest_length) * stiffness + rate * damping : 0.0;
+    const double pull = MSPRINGI_LAW_FORCE(MSPRINGI_TIMES, stiffness, length - rest_length);
+    const double force = length > 0.0 ? pull + MSPRINGI_LAW_DAMPING_FORCE(MSPRINGI_TIMES, damping, rate) : 0.0;
     *info = (mspring_spring_info){
         .struct_size = sizeof *info,
         .flags = (mspringi_spring_is_relative(network, spring) ? MSPRING_SPRING_RELATIVE : 0u) |

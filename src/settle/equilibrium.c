@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "kernels/spring_law.h"
+
 /* ------------------------------------------------------------------------------------------------------ memory */
 
 static mspringi_vectors vectors_at(double *block, size_t count, size_t *used) {
@@ -99,7 +101,8 @@ mspringi_residual mspringi_statics_forces(mspringi_statics *statics) {
         const lie now = lie_of(statics, i);
         if (!(now.length > 0.0))
             continue;
-        const double pull = s->stiffness[i] * (now.length - s->rest_length[i]), each = pull / now.length;
+        const double pull = MSPRINGI_LAW_FORCE(MSPRINGI_TIMES, s->stiffness[i], now.length - s->rest_length[i]),
+                     each = pull / now.length;
         force.x[s->a[i]] += each * now.x;
         force.y[s->a[i]] += each * now.y;
         force.x[s->b[i]] -= each * now.x;

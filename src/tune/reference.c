@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/cpu.h"
+#include "kernels/spring_law.h"
 #include "network/springs.h"
 
 /// Part of what is stable in any shape that a substep takes.
@@ -150,7 +151,8 @@ static void find_accelerations(const mspringi_reference *r, const double *vx, co
             continue;
         const double inverse = 1.0 / length, growth = ((vx[b] - vx[a]) * dx + (vy[b] - vy[a]) * dy) * inverse;
         const double force =
-            (double)spring->stiffness * (length - (double)spring->rest_length) + (double)spring->damping * growth;
+            MSPRINGI_LAW_FORCE(MSPRINGI_TIMES, (double)spring->stiffness, length - (double)spring->rest_length) +
+            MSPRINGI_LAW_DAMPING_FORCE(MSPRINGI_TIMES, (double)spring->damping, growth);
         const double fx = force * inverse * dx, fy = force * inverse * dy;
         r->ax[a] += r->inverse_mass[a] * fx;
         r->ay[a] += r->inverse_mass[a] * fy;
