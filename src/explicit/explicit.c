@@ -11,6 +11,7 @@
 #include "shares.h"
 #include "sleep/sleep.h"
 #include "strip.h"
+#include "tasks/crew.h"
 
 /// Strips that are swept several times in one pass should stay in the second-level cache: this much of it. Where
 /// only a few substeps would find room there (strips are long, or ropes ask for a large lag), more of them are
@@ -312,16 +313,6 @@ static mspringi_span share_of(const mspringi_span *all, uint32_t worker, uint32_
     return share;
 }
 
-// Wait until all workers have come here for the n-th time, n from 1.
-static void meet(const job *rest, uint32_t worker, uint32_t n) {
-    if (!rest->progress)
-        return;
-    mspringi_progress_advance(&rest->progress[worker], n);
-    for (uint32_t other = 0; other < rest->workers; ++other)
-        if (other != worker)
-            mspringi_progress_wait(&rest->progress[other], n);
-}
-
 // What belongs before the first and after the last substep of a share of the web or of the loose particles, if the
 // substeps are a whole step.
 static void begin_share(const job *rest, const mspringi_span *share) {
@@ -474,6 +465,7 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
     const mspringi_topology *t = &network->topology;
     mspringi_watch_room room = {{0.0f}};
     mspringi_watch *const watch = mspringi_watch_in(&room);
+    mspringi_mate mate = {.index = index, .count = rest->workers, .progress = rest->progress};
     (void)worker;
     for (uint32_t i = 0; i < rest->count; ++i) {
         mspringi_substep substep = mspringi_substep_prepare(network, rest->h, rest->base, i, rest->count, 0);
@@ -491,7 +483,7 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
                 mspringi_strip_pack(network, &substep, &t->strips[s]);
             }
         }
-        meet(rest, index, i + 1);
+        mspringi_meet(&mate);
         for (uint32_t s = t->wave_strips; s < t->strip_count; ++s)
             if (share_of_web(rest, s, index, &share))
                 sweep_web_share(rest, &substep, &t->strips[s], &share, i, index);

@@ -17,10 +17,10 @@
 #define MSPRINGI_IMPLICIT_H
 
 #include "network/network.h"
+#include "tasks/crew.h"
 
 #include "budget.h"
 #include "coarse.h"
-#include "crew.h"
 #include "direct/direct.h"
 #include "panels.h"
 #include "tiles.h"

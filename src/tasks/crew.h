@@ -1,12 +1,12 @@
 /// @file crew.h
-/// The workers of an implicit substep: each runs the whole of it, on its share of everything, and meets the others
-/// where it needs what they have done.
+/// The workers of a substep: each runs the whole of it, on its share of everything, and meets the others where it
+/// needs what they have done.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_CREW_H
 #define MSPRINGI_CREW_H
 
-#include "tasks/tasks.h"
+#include "tasks.h"
 
 /// One of them.
 typedef struct mspringi_mate {
