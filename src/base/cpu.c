@@ -21,11 +21,13 @@
 
 /* ------------------------------------------------------------------------------------------------ levels */
 
-#if defined(MSPRINGI_WITHOUT_SCALAR)
-#define HAS_SCALAR 0
-#else
-#define HAS_SCALAR 1
-#endif
+// Those of this build, lowest first.
+static const mspring_simd levels[] = {
+#define LEVEL(name, number) MSPRING_SIMD_##number,
+#include "base/levels.def"
+#undef LEVEL
+};
+#define LEVEL_COUNT (sizeof levels / sizeof levels[0])
 
 #if defined(MSPRINGI_X86)
 
@@ -73,61 +75,54 @@ static mspring_simd best_of_cpu(void) {
     return MSPRING_SIMD_AVX512;
 }
 
-mspring_simd mspring_simd_supported(void) {
-#if defined(MSPRINGI_WITHOUT_AVX2)
-    const mspring_simd highest = MSPRING_SIMD_SSE2;
-#elif defined(MSPRINGI_WITHOUT_AVX512)
-    const mspring_simd highest = MSPRING_SIMD_AVX2;
-#else
-    const mspring_simd highest = MSPRING_SIMD_AVX512;
-#endif
-    const mspring_simd best = best_of_cpu();
-    return best < highest ? best : highest;
-}
-
-uint32_t mspring_simd_available(mspring_simd level) {
-    return level >= MSPRING_SIMD_AUTO && level <= mspring_simd_supported() &&
-           (HAS_SCALAR || level != MSPRING_SIMD_SCALAR);
-}
-
 #else
 
 // NEON is part of every 64-bit ARM CPU; what there is on 32-bit ones flushes denormals, so it cannot give the same
 // bits.
-mspring_simd mspring_simd_supported(void) {
-#if defined(MSPRINGI_AARCH64)
-    return MSPRING_SIMD_NEON;
-#elif defined(MSPRINGI_WASM)
-    return MSPRING_SIMD_WASM;
-#else
-    return MSPRING_SIMD_SCALAR;
+static mspring_simd best_of_cpu(void) {
+    return levels[LEVEL_COUNT - 1];
+}
+
 #endif
+
+mspring_simd mspring_simd_supported(void) {
+    const mspring_simd best = best_of_cpu();
+    size_t i = LEVEL_COUNT - 1;
+    while (i > 0 && levels[i] > best)
+        --i;
+    return levels[i];
 }
 
 uint32_t mspring_simd_available(mspring_simd level) {
-    return level == MSPRING_SIMD_AUTO || (HAS_SCALAR && level == MSPRING_SIMD_SCALAR) ||
-           level == mspring_simd_supported();
+    if (level == MSPRING_SIMD_AUTO)
+        return 1;
+    for (size_t i = 0; i < LEVEL_COUNT; ++i)
+        if (levels[i] == level)
+            return level <= mspring_simd_supported();
+    return 0;
 }
-
-#endif
 
 const char *mspring_simd_name(mspring_simd level) {
-    static const char *const names[] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon", "wasm"};
-    return level >= MSPRING_SIMD_AUTO && level <= MSPRING_SIMD_WASM ? names[level] : "unknown";
+    switch (level) {
+    case MSPRING_SIMD_AUTO:
+        return "auto";
+#define MSPRINGI_EVERY_LEVEL
+#define LEVEL(name, number)                                                                                        \
+    case MSPRING_SIMD_##number:                                                                                    \
+        return #name;
+#include "base/levels.def"
+#undef LEVEL
+#undef MSPRINGI_EVERY_LEVEL
+    default:
+        return "unknown";
+    }
 }
 
-// The lowest level of this build. Who asks for scalar code gets that.
-static mspring_simd lowest(void) {
-    mspring_simd level = MSPRING_SIMD_SCALAR;
-    while (!mspring_simd_available(level))
-        ++level;
-    return level;
-}
-
+// Who asks for scalar code gets that, or the lowest level of this build.
 mspring_simd mspringi_cpu_choose(mspring_simd wanted) {
     mspring_simd level = mspring_simd_supported();
     if (wanted == MSPRING_SIMD_SCALAR)
-        level = lowest();
+        level = levels[0];
     else if (wanted != MSPRING_SIMD_AUTO && mspring_simd_available(wanted))
         level = wanted;
 #if defined(MSPRINGI_FREESTANDING)
@@ -136,7 +131,7 @@ mspring_simd mspringi_cpu_choose(mspring_simd wanted) {
     const char *name = getenv("MSPRING_SIMD");
 #endif
     if (name && strcmp(name, mspring_simd_name(MSPRING_SIMD_SCALAR)) == 0)
-        level = lowest();
+        level = levels[0];
     for (mspring_simd l = MSPRING_SIMD_SCALAR; name && l < level; ++l)
         if (mspring_simd_available(l) && strcmp(name, mspring_simd_name(l)) == 0)
             level = l;

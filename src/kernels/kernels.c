@@ -9,39 +9,16 @@
 _Alignas(64) const float mspringi_part_weights[1 << MSPRINGI_PART][MSPRINGI_PART] = {
     LANES_OF_64(0), LANES_OF_64(64), LANES_OF_64(128), LANES_OF_64(192)};
 
-// The lowest level is that of all that is not built in.
-#if defined(MSPRINGI_WITHOUT_SCALAR)
-#define LOWEST default:
-#else
-#define LOWEST
-#endif
+static const mspringi_kernels *const levels[] = {
+#define LEVEL(name, number) &mspringi_kernels_##name,
+#include "base/levels.def"
+#undef LEVEL
+};
 
+// The lowest level is that of all that is not built in.
 const mspringi_kernels *mspringi_kernels_of(mspring_simd level) {
-    switch (level) {
-#if defined(MSPRINGI_X86)
-    case MSPRING_SIMD_SSE2:
-        LOWEST
-        return &mspringi_kernels_sse2;
-#if !defined(MSPRINGI_WITHOUT_AVX2)
-    case MSPRING_SIMD_AVX2:
-        return &mspringi_kernels_avx2;
-#endif
-#if !defined(MSPRINGI_WITHOUT_AVX512)
-    case MSPRING_SIMD_AVX512:
-        return &mspringi_kernels_avx512;
-#endif
-#elif defined(MSPRINGI_AARCH64)
-    case MSPRING_SIMD_NEON:
-        LOWEST
-        return &mspringi_kernels_neon;
-#elif defined(MSPRINGI_WASM)
-    case MSPRING_SIMD_WASM:
-        LOWEST
-        return &mspringi_kernels_wasm;
-#endif
-#if !defined(MSPRINGI_WITHOUT_SCALAR)
-    default:
-        return &mspringi_kernels_scalar;
-#endif
-    }
+    for (size_t i = 0; i < sizeof levels / sizeof levels[0]; ++i)
+        if (levels[i]->level == level)
+            return levels[i];
+    return levels[0];
 }

@@ -216,8 +216,8 @@ typedef struct mspringi_checksum {
 /// Take so many units, of any alignment, into a checksum and, unless to is NULL, copy them.
 typedef void (*mspringi_checksum_fn)(uint8_t *to, const uint8_t *from, size_t units, mspringi_checksum *checksum);
 
-/// Those in which low words count. They look for themselves whether there are dampers (parts) and forces (force_x not
-/// NULL): all of them take 50 kB in the four levels of x86, a copy of each of the others 104.
+/// Those in which low words count. They look for themselves whether there are dampers (parts) and forces (force_x
+/// not NULL): all of them take 50 kB in the four levels of x86, a copy of each of the others 104.
 typedef struct mspringi_precise_kernels {
     mspringi_row_fn lattice, chain, web;
     mspringi_herd_fn herd;
@@ -245,16 +245,9 @@ typedef struct mspringi_kernels {
     mspringi_system_kernels system;
 } mspringi_kernels;
 
-extern const mspringi_kernels mspringi_kernels_scalar;
-#if defined(MSPRINGI_X86)
-extern const mspringi_kernels mspringi_kernels_sse2;
-extern const mspringi_kernels mspringi_kernels_avx2;
-extern const mspringi_kernels mspringi_kernels_avx512;
-#elif defined(MSPRINGI_AARCH64)
-extern const mspringi_kernels mspringi_kernels_neon;
-#elif defined(MSPRINGI_WASM)
-extern const mspringi_kernels mspringi_kernels_wasm;
-#endif
+#define LEVEL(name, number) extern const mspringi_kernels mspringi_kernels_##name;
+#include "base/levels.def"
+#undef LEVEL
 
 /// The table of a level that mspringi_cpu_choose() has given.
 const mspringi_kernels *mspringi_kernels_of(mspring_simd level);

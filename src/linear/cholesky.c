@@ -4,41 +4,18 @@
 #include "kernels.h"
 #include "plan.h"
 
-// The lowest level is that of all that is not built in.
-#if defined(MSPRINGI_WITHOUT_SCALAR)
-#define LOWEST default:
-#else
-#define LOWEST
-#endif
+static const mspringi_cholesky_kernels *const levels[] = {
+#define LEVEL(name, number) &mspringi_cholesky_##name,
+#include "base/levels.def"
+#undef LEVEL
+};
 
+// The lowest level is that of all that is not built in.
 const mspringi_cholesky_kernels *mspringi_cholesky_kernels_of(mspring_simd level) {
-    switch (level) {
-#if defined(MSPRINGI_X86)
-    case MSPRING_SIMD_SSE2:
-        LOWEST
-        return &mspringi_cholesky_sse2;
-#if !defined(MSPRINGI_WITHOUT_AVX2)
-    case MSPRING_SIMD_AVX2:
-        return &mspringi_cholesky_avx2;
-#endif
-#if !defined(MSPRINGI_WITHOUT_AVX512)
-    case MSPRING_SIMD_AVX512:
-        return &mspringi_cholesky_avx512;
-#endif
-#elif defined(MSPRINGI_AARCH64)
-    case MSPRING_SIMD_NEON:
-        LOWEST
-        return &mspringi_cholesky_neon;
-#elif defined(MSPRINGI_WASM)
-    case MSPRING_SIMD_WASM:
-        LOWEST
-        return &mspringi_cholesky_wasm;
-#endif
-#if !defined(MSPRINGI_WITHOUT_SCALAR)
-    default:
-        return &mspringi_cholesky_scalar;
-#endif
-    }
+    for (size_t i = 0; i < sizeof levels / sizeof levels[0]; ++i)
+        if (levels[i]->level == level)
+            return levels[i];
+    return levels[0];
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): of a type

@@ -20,16 +20,9 @@ struct mspringi_cholesky_kernels {
                                     double *x, double *y);
 };
 
-extern const mspringi_cholesky_kernels mspringi_cholesky_scalar;
-#if defined(MSPRINGI_X86)
-extern const mspringi_cholesky_kernels mspringi_cholesky_sse2;
-extern const mspringi_cholesky_kernels mspringi_cholesky_avx2;
-extern const mspringi_cholesky_kernels mspringi_cholesky_avx512;
-#elif defined(MSPRINGI_AARCH64)
-extern const mspringi_cholesky_kernels mspringi_cholesky_neon;
-#elif defined(MSPRINGI_WASM)
-extern const mspringi_cholesky_kernels mspringi_cholesky_wasm;
-#endif
+#define LEVEL(name, number) extern const mspringi_cholesky_kernels mspringi_cholesky_##name;
+#include "base/levels.def"
+#undef LEVEL
 
 /// The table of a level that mspringi_cpu_choose() has given.
 const mspringi_cholesky_kernels *mspringi_cholesky_kernels_of(mspring_simd level);
