@@ -114,6 +114,7 @@ static void what_was_at_fault_holds(void **state) {
         {MAP_WRECK, 4073},   // gravity, rounded in each of 60,000 substeps
         {MAP_BOUNCE, 13064}, // a loose particle that comes off a part of the heights
         {MAP_SPIN, 378},     // rounding of lengths, in 32 pieces of each substep
+        {MAP_BOUNCE, 2824},  // loose ones that lie on the heights
         {MAP_BOUNCE, 13176}, // and one that slides beyond its end within a substep
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

@@ -51,6 +51,20 @@ void map_judge_broken(map_judge *judge, double elastic_before) {
 
 /* ------------------------------------------------------------------------------------------------------ energy */
 
+// What loose particles that lie on a floor show too much after explicit substeps: they have no velocity across it,
+// and not that of half a substep ago, with which w would be 0.
+static double shown_at_rest(const map_watch *watch) {
+    const map_case *what = watch->what;
+    const double speed =
+        0.5 * watch->substep * hypot((double)what->network.gravity_x, (double)what->network.gravity_y);
+    double sum = 0;
+    for (uint32_t i = 0; i < watch->count && what->solver.solver == MSPRING_SOLVER_EXPLICIT; i++)
+        if ((watch->floor_x[i] != 0 || watch->floor_y[i] != 0) &&
+            watch->components[watch->component[i]].particle_count == 1 && !isinf(watch->mass[i]))
+            sum += 0.5 * watch->mass[i] * speed * speed;
+    return sum;
+}
+
 // Kinetic, elastic and potential energy never rise above the least so far with the implicit and the direct solver,
 // and what explicit substeps keep never above that at the start. Where gravity, held forces and pinned particles
 // that all move alike do work, it is in the potential, or there is none in the frame chosen. The parts that may be
@@ -66,7 +80,7 @@ static map_verdict judge_energy(map_judge *judge, uint32_t substeps) {
     // fastest motion swings up to so much more.
     const double swing = 1 / (1 - watch->what->share * watch->what->share);
     const double rounding = 3e-6 * watch->weight + 4 * watch->last_place * watch->force + watch->rounding +
-                            judge->rounding + 12 * swing * sqrt(judge->rounding_squares);
+                            judge->rounding + 12 * swing * sqrt(judge->rounding_squares) + shown_at_rest(watch);
     judge->could = could;
     judge->since += substeps;
     judge->quickest = fmax(judge->quickest, watch->speed * watch->substep / watch->shortest);
