@@ -191,22 +191,31 @@ static bool measure_steps(const bench_runner *first, const bench_runner *second,
     return true;
 }
 
-/// Compact a network, and say how long all of it took and its longest piece.
-static bool compact(mspring_network *network, double *all, double *longest, scene_error *error) {
+/// Change a network's layout by a job on this thread, a function a frame, and say how long all of it took and its
+/// longest frame: a function, the first with the begin, the last with the finish.
+static bool change_layout(mspring_network *network, mspring_layout layout, double *all, double *longest,
+                          scene_error *error) {
+    mspring_job *job = NULL;
     uint32_t left = 1;
+    double start = bench_thread_seconds();
+    mspring_result result = mspring_job_begin(network, layout, &job);
     *all = *longest = 0;
-    while (left > 0) {
-        const double start = bench_thread_seconds();
-        mspring_result result = mspring_network_compact(network, 1, &left);
-        const double seconds = bench_thread_seconds() - start;
-        if (result != MSPRING_OK) {
-            bench_library_error(error, "compacting", result, mspring_network_error(network));
-            return false;
-        }
+    while (result == MSPRING_OK) {
+        const bool is_last = left == 0;
+        result = is_last ? mspring_job_finish(network, job) : mspring_job_run(job, 1, &left);
+        const double now = bench_thread_seconds(), seconds = now - start;
+        start = now;
         *all += seconds;
         *longest = seconds > *longest ? seconds : *longest;
+        if (is_last) {
+            break;
+        }
     }
-    return true;
+    if (result != MSPRING_OK) {
+        bench_library_error(error, "compacting", result, mspring_network_error(network));
+    }
+    mspring_job_destroy(job);
+    return result == MSPRING_OK;
 }
 
 /// Compactions that are timed: the first of a process is slower, as it is given its memory by the system.
@@ -214,15 +223,12 @@ static bool compact(mspring_network *network, double *all, double *longest, scen
 
 /// Compact a network several times.
 /// @param all      [COMPACTIONS] how long each took, sorted
-/// @param longest  [COMPACTIONS] and its longest piece, likewise
+/// @param longest  [COMPACTIONS] and its longest frame, likewise
 static bool compact_again(mspring_network *network, double *all, double *longest, scene_error *error) {
     for (uint32_t i = 0; i < COMPACTIONS; i++) {
-        mspring_result result = mspring_network_expand(network);
-        if (result != MSPRING_OK) {
-            bench_library_error(error, "expanding", result, mspring_network_error(network));
-            return false;
-        }
-        if (!compact(network, &all[i], &longest[i], error)) {
+        double back[2];
+        if (!change_layout(network, MSPRING_LAYOUT_WHOLE, &back[0], &back[1], error) ||
+            !change_layout(network, MSPRING_LAYOUT_COMPACT, &all[i], &longest[i], error)) {
             return false;
         }
     }
@@ -235,7 +241,7 @@ static void print_compaction(session *with, const bench_options *options, const 
                              const double *all, const double *longest, double step) {
     const uint32_t middle = COMPACTIONS / 2;
     print_row(options, subject, with->step, "  to compact it", all[0], all[middle], step);
-    print_row(options, subject, with->step, "  the longest piece of that", longest[0], longest[middle], step);
+    print_row(options, subject, with->step, "  the longest frame of that", longest[0], longest[middle], step);
 }
 
 /// Time steps of a wreck in turn with those of the whole: as it is after the breaks, and compact; and the
@@ -301,7 +307,7 @@ static bool make_parts(session *with, const bench_scene *subject, mspring_simd l
         return false;
     }
     if (result == MSPRING_OK && is_compact) {
-        result = mspring_network_compact(parts->network, 0, NULL);
+        result = mspring_network_compact(parts->network);
     }
     if (result == MSPRING_OK) {
         result = mspring_network_set_inverse_mass_scales(parts->network, first, 1, &pinned);

@@ -54,7 +54,8 @@ typedef struct game {
     uint32_t broken, restored, splits;
     uint32_t lost[2][SHIP_PARTS]; // springs of each part that broke before the last blast, and since
     uint32_t blasts;              // before the last
-    bool is_braced, is_compact, has_floated;
+    bool is_braced, has_floated;
+    mspring_job *job;                                        // the plan that is being made, or NULL
     double x[MOST], y[MOST], before_x[MOST], before_y[MOST]; // m, after the last step and before it
     double force_x[MOST], force_y[MOST];                     // N, of the water in the last step
     float impulse_x[MOST], impulse_y[MOST];                  // N s, of the floor in the last step
@@ -161,7 +162,6 @@ static bool start(game *played, mspring_builder *builder, const options *asked, 
         fprintf(stderr, "cannot make the ship: %s\n", mspring_builder_error(builder));
         return false;
     }
-    played->is_compact = true;
     played->particles = mspring_network_particle_count(played->network);
     played->springs = mspring_network_spring_count(played->network);
     for (mspring_id s = 0; s < played->springs; s++) {
@@ -232,17 +232,24 @@ static void brace(game *played) {
     }
     played->springs = mspring_network_spring_count(played->network);
     played->is_braced = true;
-    played->is_compact = false;
+    must(mspring_job_begin(played->network, MSPRING_LAYOUT_COMPACT, &played->job), "compacting", played);
     books_edit(&played->accounts, played->network);
 }
 
-// Take what has been added into the plan and leave out what has broken, a piece in each step.
+// Take what has been added into the plan and leave out what has broken, a little of the work in each step.
 static void make_compact(game *played) {
     uint32_t left;
-    if (played->is_compact)
+    if (!played->job)
         return;
-    must(mspring_network_compact(played->network, 1, &left), "compacting", played);
-    played->is_compact = left == 0;
+    must(mspring_job_run(played->job, 30, &left), "compacting", played);
+    if (left > 0)
+        return;
+    mspring_result result = mspring_job_finish(played->network, played->job);
+    mspring_job_destroy(played->job);
+    played->job = NULL;
+    if (result == MSPRING_ERROR_OUTDATED) // a spring was restored meanwhile
+        result = mspring_job_begin(played->network, MSPRING_LAYOUT_COMPACT, &played->job);
+    must(result, "compacting", played);
 }
 
 // What a particle has of the water in its piece, kg.
@@ -522,6 +529,7 @@ static bool run(const options *asked, const mspring_tasks *tasks) {
         ok = output_figure(&pictures, asked->folder, "06_game") && ok;
         figure_free(&pictures);
     }
+    mspring_job_destroy(played.job);
     mspring_network_destroy(played.network);
     return ok;
 }

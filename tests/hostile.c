@@ -127,6 +127,42 @@ static void make_floor(arguments *a) {
     memcpy(a->given_bytes, &made, sizeof made);
 }
 
+static mspring_result begin_job(arguments *a) {
+    mspring_job *job = NULL;
+    mspring_result result = mspring_job_begin(a->network, (mspring_layout)a->kind, a->out[0] ? &job : NULL);
+    mspring_job_destroy(job);
+    return result;
+}
+
+static mspring_result run_job(const arguments *a) {
+    mspring_job *job = NULL;
+    if (!a->network) {
+        check_error(mspring_job_run(NULL, 0, NULL), MSPRING_ERROR_ARGUMENT);
+        return MSPRING_OK;
+    }
+    mspring_result result = mspring_job_begin(a->network, MSPRING_LAYOUT_COMPACT, &job);
+    if (result == MSPRING_OK) {
+        result = mspring_job_run(job, 0, NULL);
+    }
+    assert_non_null(mspring_job_error(job));
+    mspring_job_destroy(job);
+    return result;
+}
+
+static mspring_result finish_job(const arguments *a) {
+    mspring_job *job = NULL;
+    mspring_result result = a->network ? mspring_job_begin(a->network, MSPRING_LAYOUT_COMPACT, &job) : MSPRING_OK;
+    if (result == MSPRING_ERROR_MEMORY) {
+        return result;
+    }
+    if (job && mspring_job_run(job, 0, NULL) != MSPRING_OK) {
+        assert_true(strlen(mspring_job_error(job)) > 0);
+    }
+    result = mspring_job_finish(a->network, job);
+    mspring_job_destroy(job);
+    return result;
+}
+
 static void add_hook(arguments *a) {
     check_ok(support_add_hook(a->network, MSPRING_PHASE_BEFORE_STEP, no_hook, NULL, &a->id));
 }
@@ -321,8 +357,13 @@ static void add_hook(arguments *a) {
       mspring_network_get_sleepers(a->network, a->first, a->count, a->out[0]))                                     \
     X(mspring_network_is_asleep, "v", NOTHING, note_size(mspring_network_is_asleep(a->network)))                   \
     X(mspring_network_wake, "N", NOTHING, mspring_network_wake(a->network))                                        \
-    X(mspring_network_compact, "No", NOTHING, mspring_network_compact(a->network, 0, a->out[0]))                   \
+    X(mspring_network_compact, "N", NOTHING, mspring_network_compact(a->network))                                  \
     X(mspring_network_expand, "N", NOTHING, mspring_network_expand(a->network))                                    \
+    X(mspring_job_begin, "NK0", a->kind = MSPRING_LAYOUT_WHOLE, begin_job(a))                                      \
+    X(mspring_job_run, "v", NOTHING, run_job(a))                                                                   \
+    X(mspring_job_finish, "N", NOTHING, finish_job(a))                                                             \
+    X(mspring_job_error, "", NOTHING, note_text(mspring_job_error(NULL)))                                          \
+    X(mspring_job_destroy, "", NOTHING, (mspring_job_destroy(NULL), MSPRING_OK))                                   \
     X(mspring_network_plan, "nP", OUT_STRUCT(0, plan), mspring_network_plan(a->network, a->out[0]))
 
 #define DEFINE(name, kinds, prepare, call)                                                                         \

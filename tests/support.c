@@ -166,6 +166,25 @@ mspring_result support_add_hook(mspring_network *network, mspring_phase phase, m
     return mspring_network_add_hook(network, &def, hook);
 }
 
+void support_compact(mspring_network *network, uint32_t functions, mspring_job **job) {
+    uint32_t left = 1;
+    if (!*job) {
+        check_ok(mspring_job_begin(network, MSPRING_LAYOUT_COMPACT, job));
+    }
+    check_ok(mspring_job_run(*job, functions, &left));
+    if (left > 0) {
+        return;
+    }
+    mspring_result result = mspring_job_finish(network, *job);
+    mspring_job_destroy(*job);
+    *job = NULL;
+    if (result == MSPRING_ERROR_OUTDATED) {
+        check_ok(mspring_job_begin(network, MSPRING_LAYOUT_COMPACT, job));
+    } else {
+        check_ok(result);
+    }
+}
+
 support_point support_position(const mspring_network *network, mspring_id particle) {
     support_point point = {0, 0};
     check_ok(mspring_network_get_positions(network, particle, 1, &point.x, &point.y));

@@ -316,7 +316,7 @@ static void plans_make_no_difference(void **state) {
             check_ok(mspring_network_break_springs(networks[i], &s, 1));
         }
         if (i == 1) {
-            check_ok(mspring_network_compact(networks[i], 0, NULL));
+            check_ok(mspring_network_compact(networks[i]));
         }
         support_steps(networks[i], 100, DT);
         assert_int_equal(mspring_network_fallback_count(networks[i]), 100);

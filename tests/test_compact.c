@@ -63,9 +63,7 @@ static void make_wreck(mspring_network *network, const recipe *made, wreck kind)
 }
 
 static void compact(mspring_network *network) {
-    uint32_t left = 1;
-    check_ok(mspring_network_compact(network, 0, &left));
-    assert_int_equal(left, 0);
+    check_ok(mspring_network_compact(network));
 }
 
 static mspring_plan plan_of(const mspring_network *network) {
@@ -216,9 +214,9 @@ static double largest_difference(const mspring_network *a, const mspring_network
 
 /// A compact network moves as one that is not, but for rounding (and, if implicit, for tiles, which converge from
 /// other sides): some 1e-7 of coordinates of 60 m in each of 40 to 80 substeps, and motion that goes on from there.
-/// With an implicit solver, what has lost all its springs flies along parabolas and bounces where it meets the floor
-/// once it is in a row of its own. Before, implicit Euler takes it g h^2 / 2 = 1.2 mm off that in a substep, and it
-/// comes to lie on the floor at the end of one: at some 5 m/s, up to 0.1 m elsewhere.
+/// With an implicit solver, what has lost all its springs flies along parabolas and bounces where it meets the
+/// floor once it is in a row of its own. Before, implicit Euler takes it g h^2 / 2 = 1.2 mm off that in a substep,
+/// and it comes to lie on the floor at the end of one: at some 5 m/s, up to 0.1 m elsewhere.
 static void motion_goes_on(void **state) {
     (void)state;
     recipe made = mixed_recipe();
@@ -280,7 +278,7 @@ static void expanding_undoes_compacting(void **state) {
 static uint64_t session_hash(const recipe *made, mspring_simd level, uint32_t workers, int run) {
     mspring_network *network = make(made, level, workers);
     set_up_run(network, run);
-    uint32_t left = 0;
+    mspring_job *job = NULL;
     for (uint32_t frame = 0; frame < SEVERAL_FRAMES; frame++) {
         if (frame == 1) {
             make_wreck(network, made, TORN);
@@ -293,10 +291,10 @@ static uint64_t session_hash(const recipe *made, mspring_simd level, uint32_t wo
         if (frame == 3 || frame == 7) { // once while it is under way, once when it is done
             check_ok(mspring_network_restore_springs(network, some, 2, 0.1));
         }
-        check_ok(mspring_network_compact(network, frame < 6 ? 4 : 0, &left));
+        support_compact(network, frame < 6 ? 30 : 0, &job);
         support_steps(network, 2, 1.0 / 64);
     }
-    assert_int_equal(left, 0);
+    assert_null(job);
     const uint64_t hash = support_hash(network);
     mspring_network_destroy(network);
     return hash;
@@ -339,15 +337,19 @@ static void work_is_done_in_pieces(void **state) {
     make_wreck(network, &made, TORN);
     make_wreck(at_once, &made, TORN);
     const uint32_t before = swept(network);
-    uint32_t left = 100, pieces = 0;
-    while (left > 0) {
+    uint32_t left = 100, functions = 0;
+    mspring_job *job;
+    check_ok(mspring_job_begin(network, MSPRING_LAYOUT_COMPACT, &job));
+    for (; left > 0; functions++) {
         const uint32_t left_before = left;
-        assert_int_equal(swept(network), before);
-        check_ok(mspring_network_compact(network, 1, &left));
+        check_ok(mspring_job_run(job, 1, &left));
         assert_true(left <= left_before);
-        pieces++;
     }
-    assert_true(pieces > 50);
+    assert_int_equal(swept(network), before);
+    assert_true(functions > 50);
+    check_ok(mspring_job_finish(network, job));
+    mspring_job_destroy(job);
+    assert_true(swept(network) < before);
     compact(at_once);
     support_steps(network, 5, 1.0 / 64);
     support_steps(at_once, 5, 1.0 / 64);
@@ -442,17 +444,18 @@ static void nothing_that_happens_meanwhile_is_lost(void **state) {
             support_steps(both[i], 1, 1.0 / 64);
             make_wreck(both[i], &made, life % 2 == 0 ? TORN : SHATTERED);
         }
-        uint32_t left = 1, pieces = 0;
-        for (; left > 0 && pieces < 400; pieces++) {
+        mspring_job *job = NULL;
+        uint32_t pieces = 0;
+        for (; pieces == 0 || (job && pieces < 400); pieces++) {
             if (pieces == 20 && life >= 2) {
                 kept = save(both[0]);
             }
-            if (pieces < 200) { // and then in peace: a load has the copying begin anew
+            if (pieces < 200) { // and then in peace
                 change_something(both, &seed, &kept);
             }
-            check_ok(mspring_network_compact(both[0], 1, &left));
+            support_compact(both[0], 1, &job);
         }
-        assert_int_equal(left, 0);
+        assert_null(job);
         assert_true(pieces > 20);
         check_same_look(look_at(both[0]), look_at(both[1]), both[0]);
         free(kept.bytes);
@@ -621,16 +624,18 @@ static void steps_taken_for_the_explicit_solver_stay_the_same(void **state) {
 static void clones_are_compact_too(void **state) {
     (void)state;
     recipe made = mixed_recipe();
-    for (uint32_t pieces = 0; pieces < 12; pieces++) {
+    for (uint32_t pieces = 1; pieces < 120; pieces += 12) {
         mspring_network *network = make(&made, MSPRING_SIMD_AUTO, 1), *clone = NULL;
+        mspring_job *job = NULL;
         make_wreck(network, &made, TORN);
-        check_ok(mspring_network_compact(network, pieces, NULL));
+        support_compact(network, pieces, &job);
         check_ok(mspring_network_clone(network, NULL, &clone));
         assert_int_equal(swept(network), swept(clone));
         support_steps(network, 3, 1.0 / 64);
         support_steps(clone, 3, 1.0 / 64);
         assert_int_equal(support_hash(network), support_hash(clone));
         // What was under way is not cloned, so the clone begins anew; then it is at the same place.
+        mspring_job_destroy(job);
         compact(network);
         mspring_network_destroy(network);
         compact(clone);
@@ -664,7 +669,7 @@ static void check_survives(mspring_network *network, watched_allocator *watched,
 }
 
 static mspring_result compact_all(mspring_network *network) {
-    return mspring_network_compact(network, 0, NULL);
+    return mspring_network_compact(network);
 }
 
 static void every_failure_leaves_the_network_as_it_was(void **state) {
@@ -705,35 +710,144 @@ static void every_failure_leaves_the_network_as_it_was(void **state) {
     recipe_free(&made);
 }
 
-static void a_compaction_may_stay_unfinished(void **state) {
+/// A job is begun, run by some functions, and the network and it are destroyed in this order or the other; or the
+/// layout changes meanwhile.
+static void a_job_may_stay_unfinished(void **state) {
     (void)state;
     recipe made = mixed_recipe();
-    for (uint32_t pieces = 1; pieces < 12; pieces++) {
+    for (uint32_t functions = 1; functions < 120; functions += 7) {
         watched_allocator watched = {.fail_at = 0};
         mspring_allocator allocator = watched_interface(&watched);
         mspring_network_def def = support_def(-9.8f, 4);
         def.allocator = &allocator;
         mspring_network *network = recipe_network(&made, &def);
+        mspring_job *job = NULL, *other = NULL;
         make_wreck(network, &made, TORN);
-        check_ok(mspring_network_compact(network, pieces, NULL));
-        if (pieces % 2 == 0) {
-            check_ok(mspring_network_expand(network)); // drops it
+        check_ok(mspring_job_begin(network, MSPRING_LAYOUT_COMPACT, &job));
+        check_error(mspring_job_begin(network, MSPRING_LAYOUT_COMPACT, &other), MSPRING_ERROR_BUSY);
+        assert_null(other);
+        check_error(mspring_job_finish(network, job), MSPRING_ERROR_BUSY);
+        check_ok(mspring_job_run(job, functions, NULL));
+        if (functions % 3 == 0) {
+            compact(network);
+            check_ok(mspring_job_run(job, 0, NULL));
+            check_error(mspring_job_finish(network, job), MSPRING_ERROR_OUTDATED);
+        }
+        if (functions % 2 == 0) {
+            mspring_job_destroy(job);
+            check_ok(mspring_job_begin(network, MSPRING_LAYOUT_COMPACT, &job));
         }
         mspring_network_destroy(network);
+        check_ok(mspring_job_run(job, 0, NULL)); // it owns all that it reads
+        mspring_job_destroy(job);
         check_watched_clean(&watched);
+    }
+    recipe_free(&made);
+}
+
+/// The bits depend on when a job is begun and finished, not on how it is run; if nothing breaks in between they are
+/// those of a compaction at the finish.
+static void bits_depend_on_begin_and_finish_alone(void **state) {
+    (void)state;
+    static const uint32_t functions[] = {0, 1, 17};
+    recipe made = mixed_recipe();
+    for (int run = 0; run < RUNS; run++) {
+        uint64_t at_once = 0;
+        for (int way = -1; way < 3; way++) {
+            mspring_network *network = make(&made, MSPRING_SIMD_AUTO, 1);
+            mspring_job *job = NULL;
+            set_up_run(network, run);
+            make_wreck(network, &made, TORN);
+            uint32_t left = 1;
+            for (int aim = 0; aim < 2; aim++) {
+                const mspring_layout layout = aim == 0 ? MSPRING_LAYOUT_COMPACT : MSPRING_LAYOUT_WHOLE;
+                if (way >= 0) {
+                    check_ok(mspring_job_begin(network, layout, &job));
+                }
+                for (int frame = 0; frame < 3; frame++) {
+                    support_steps(network, 1, 1.0 / 64);
+                    if (way >= 0) {
+                        check_ok(mspring_job_run(job, functions[way], &left));
+                    }
+                }
+                if (way < 0) {
+                    check_ok(aim == 0 ? mspring_network_compact(network) : mspring_network_expand(network));
+                } else {
+                    check_ok(mspring_job_run(job, 0, &left));
+                    check_ok(mspring_job_finish(network, job));
+                    check_error(mspring_job_finish(network, job), MSPRING_ERROR_ARGUMENT);
+                    check_error(mspring_job_run(job, 0, NULL), MSPRING_ERROR_ARGUMENT);
+                    assert_int_equal(left, 0);
+                    mspring_job_destroy(job);
+                }
+                support_steps(network, 3, 1.0 / 64);
+            }
+            at_once = way < 0 ? support_hash(network) : at_once;
+            assert_int_equal(support_hash(network), at_once);
+            mspring_network_destroy(network);
+        }
+    }
+    recipe_free(&made);
+}
+
+/// What a job's layout leaves out and somebody restores, or what it does not know, makes it outdated.
+static void jobs_become_outdated(void **state) {
+    (void)state;
+    recipe made = mixed_recipe();
+    for (int what = 0; what < 4; what++) {
+        mspring_network_def def = support_def(-9.8f, 4);
+        def.spare_springs = 2;
+        mspring_network *network = recipe_network(&made, &def);
+        mspring_job *job = NULL;
+        mspring_id spring = 0, ids[1];
+        make_wreck(network, &made, TORN);
+        while (!breaks(&made, TORN, spring)) {
+            spring++;
+        }
+        check_ok(mspring_job_begin(network, MSPRING_LAYOUT_COMPACT, &job));
+        check_ok(mspring_job_run(job, 50, NULL));
+        mspring_spring_def added;
+        check_ok(mspring_spring_def_init(&added, sizeof added));
+        added.a = made.particle_count - 1;
+        added.b = 0;
+        if (what == 0) {
+            check_ok(mspring_network_restore_springs(network, &spring, 1, 0));
+        } else if (what == 1) {
+            check_ok(mspring_network_add_springs(network, &added, 1, ids));
+        } else if (what == 2) {
+            check_ok(mspring_network_remove_springs(network, &spring, 1));
+        }
+        support_steps(network, 1, 1.0 / 64);
+        check_ok(mspring_job_run(job, 0, NULL));
+        const uint64_t hash = support_hash(network);
+        const uint32_t before = swept(network);
+        if (what < 3) {
+            check_error(mspring_job_finish(network, job), MSPRING_ERROR_OUTDATED);
+            assert_int_equal(swept(network), before);
+        } else {
+            check_ok(mspring_job_finish(network, job));
+        }
+        assert_int_equal(support_hash(network), hash);
+        mspring_job_destroy(job);
+        compact(network);
+        support_steps(network, 1, 1.0 / 64);
+        mspring_network_destroy(network);
     }
     recipe_free(&made);
 }
 
 static void compact_in_hook(const mspring_hook_args *args, void *user) {
     (void)args;
-    check_error(mspring_network_compact(user, 0, NULL), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_compact(user), MSPRING_ERROR_BUSY);
     check_error(mspring_network_expand(user), MSPRING_ERROR_BUSY);
+    mspring_job *job = NULL;
+    check_error(mspring_job_begin(user, MSPRING_LAYOUT_COMPACT, &job), MSPRING_ERROR_BUSY);
+    check_error(mspring_job_finish(user, NULL), MSPRING_ERROR_BUSY);
 }
 
 static void misuse_is_refused(void **state) {
     (void)state;
-    check_error(mspring_network_compact(NULL, 0, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_compact(NULL), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_expand(NULL), MSPRING_ERROR_ARGUMENT);
     recipe made = mixed_recipe();
     mspring_network *network = make(&made, MSPRING_SIMD_AUTO, 1);
@@ -759,7 +873,9 @@ int main(void) {
         cmocka_unit_test(steps_taken_for_the_explicit_solver_stay_the_same),
         cmocka_unit_test(clones_are_compact_too),
         cmocka_unit_test(every_failure_leaves_the_network_as_it_was),
-        cmocka_unit_test(a_compaction_may_stay_unfinished),
+        cmocka_unit_test(a_job_may_stay_unfinished),
+        cmocka_unit_test(bits_depend_on_begin_and_finish_alone),
+        cmocka_unit_test(jobs_become_outdated),
         cmocka_unit_test(misuse_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

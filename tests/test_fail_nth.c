@@ -234,7 +234,7 @@ static mspring_result set_floor(life *l) {
 }
 
 static mspring_result compact(life *l) {
-    return mspring_network_compact(l->network, 0, NULL);
+    return mspring_network_compact(l->network);
 }
 
 static mspring_result expand(life *l) {

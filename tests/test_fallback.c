@@ -290,7 +290,7 @@ static uint64_t play(mspring_simd level, uint32_t workers, uint64_t *fallen_back
             hash = hash * 31 + events[i].id;
         }
         if (step == 150) {
-            check_ok(mspring_network_compact(network, 0, NULL));
+            check_ok(mspring_network_compact(network));
         }
         if (step == 250) {
             check_ok(mspring_network_expand(network));

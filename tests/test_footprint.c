@@ -5,8 +5,8 @@
 #include "recipe.h"
 #include "support.h"
 
-/// What a particle of a full lattice may take all told: state and its backup (24 bytes each), four springs and their
-/// places, maps.
+/// What a particle of a full lattice may take all told: state and its backup (24 bytes each), four springs and
+/// their places, maps.
 #define MOST 142.0
 
 static const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {100, 200}, .damping = {1, 2}};

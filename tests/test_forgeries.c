@@ -125,7 +125,7 @@ static mspring_network *make_compact(uint32_t spare, bool add) {
         const mspring_id corner = 0;
         check_ok(mspring_network_remove_particles(network, &corner, 1));
     }
-    check_ok(mspring_network_compact(network, 0, NULL));
+    check_ok(mspring_network_compact(network));
     recipe_free(&made);
     return network;
 }

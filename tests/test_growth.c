@@ -61,10 +61,11 @@ static void moves_so_when_compacted(void **state) {
     recipe made = growth_recipe();
     for (uint64_t seed = 11; seed <= 13; seed++) {
         life *it = growth_begin(&made, MSPRING_SIMD_AUTO, 1, seed);
+        mspring_job *job = NULL;
         for (int i = 0; i < 200; i++) {
             life_do_something(it);
             if (support_random(&it->seed) % 6 == 0) {
-                check_ok(mspring_network_compact(it->network, (uint32_t)(support_random(&it->seed) % 14), NULL));
+                support_compact(it->network, (uint32_t)(support_random(&it->seed) % 100), &job);
             } else if (support_random(&it->seed) % 40 == 0) {
                 check_ok(mspring_network_expand(it->network));
             }
@@ -74,6 +75,7 @@ static void moves_so_when_compacted(void **state) {
             }
         }
         growth_end(it);
+        mspring_job_destroy(job);
     }
     recipe_free(&made);
 }
@@ -101,7 +103,7 @@ static void live(life *it, bool hooked, uint64_t *hashes, int count) {
     for (int i = 0; i < count; i++) {
         life_do_something(it);
         if (i % 16 == 15) {
-            check_ok(mspring_network_compact(it->network, 0, NULL));
+            check_ok(mspring_network_compact(it->network));
         }
         check_ok(mspring_network_step(it->network, 1.0 / 64));
         hashes[i] = support_hash(it->network);
@@ -144,7 +146,7 @@ static void implicit_steps_are_those_of_the_direct_solver(void **state) {
             life_do_something(it);
         }
         if (i % 20 == 19) {
-            check_ok(mspring_network_compact(it->network, 0, NULL));
+            check_ok(mspring_network_compact(it->network));
         }
         mspring_network *direct = NULL;
         check_ok(mspring_network_clone(it->network, NULL, &direct));
@@ -410,7 +412,7 @@ static void what_is_gone_has_no_length(void **state) {
     check_ok(mspring_network_remove_springs(network, gone, 3));
     check_ok(mspring_network_break_springs(network, &broken, 1));
     check_extents(network, gone, 3);
-    check_ok(mspring_network_compact(network, 0, NULL));
+    check_ok(mspring_network_compact(network));
     check_extents(network, gone, 3);
     check_ok(mspring_network_expand(network));
     check_ok(mspring_network_recycle(network));

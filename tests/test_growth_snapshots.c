@@ -90,7 +90,7 @@ static void snapshots_go_back_in_a_compact_plan(void **state) {
         for (int i = 0; i < 12; i++) {
             life_do_something(it);
         }
-        check_ok(mspring_network_compact(it->network, 0, NULL));
+        check_ok(mspring_network_compact(it->network));
         const saved here = save(it->network, MSPRING_SNAPSHOT_ALL);
         const life then = *it;
         uint64_t hashes[4] = {0};
@@ -163,7 +163,7 @@ static void added_ones_go_back_to_where_they_were(void **state) {
     }
     check_ok(mspring_network_add_particles(network, particles, 2, ids));
     check_ok(mspring_network_add_springs(network, springs, 2, joints));
-    check_ok(mspring_network_compact(network, 0, NULL));
+    check_ok(mspring_network_compact(network));
     support_steps(network, 3, 0.01);
     saved states[3]; // with both of them in the plan, with one, and with one and another
     mspring_network *clones[3];
@@ -204,7 +204,7 @@ static void added_ones_go_back_to_where_they_were(void **state) {
         const uint64_t before = support_hash(network);
         check_ok(mspring_network_expand(network));
         assert_int_equal(support_hash(network), before);
-        check_ok(mspring_network_compact(network, 0, NULL));
+        check_ok(mspring_network_compact(network));
         mspring_network_destroy(network);
         network = clones[i];
         check_ok(mspring_network_load(network, states[(i + 1) % 3].bytes, states[(i + 1) % 3].size));

@@ -212,8 +212,7 @@ static void init_refuses_null_and_other_sizes(void **state) {
         {init_particle_def, sizeof(mspring_particle_def)}, {init_spring_def, sizeof(mspring_spring_def)},
         {init_material, sizeof(mspring_material)},         {init_lattice_def, sizeof(mspring_lattice_def)},
         {init_rope_def, sizeof(mspring_rope_def)},         {init_solver_def, sizeof(mspring_solver_def)},
-        {init_network_def, sizeof(mspring_network_def)},
-        {init_hook_def, sizeof(mspring_hook_def)},
+        {init_network_def, sizeof(mspring_network_def)},   {init_hook_def, sizeof(mspring_hook_def)},
     };
     for (size_t i = 0; i < COUNT_OF(inits); i++) {
         const size_t bad[] = {0, 4, inits[i].size - 1, inits[i].size + 1, inits[i].size + 8, SIZE_MAX};

@@ -78,10 +78,8 @@ static mspring_network *compact_network(const recipe *made, const mspring_networ
     const mspring_id a = support_particle(builder, -100, 0, 1), b = support_particle(builder, -100, 1, 1);
     const mspring_id spring = support_spring(builder, a, b, 1, 0);
     mspring_network *network = support_network(builder, def);
-    uint32_t left = 1;
     check_ok(mspring_network_break_springs(network, &spring, 1));
-    check_ok(mspring_network_compact(network, 0, &left));
-    assert_int_equal(left, 0);
+    check_ok(mspring_network_compact(network));
     return network;
 }
 
@@ -153,7 +151,7 @@ static void without_memory_they_stand_as_before(void **state) {
         check_ok(mspring_network_break_springs(network, &spring, 1));
         const uint64_t before = support_hash(network);
         watched.fail_at = watched.calls + fail;
-        result = mspring_network_compact(network, 0, NULL);
+        result = mspring_network_compact(network);
         assert_true(result == MSPRING_OK || result == MSPRING_ERROR_MEMORY);
         assert_true(groups_of(network) > 0 || result == MSPRING_ERROR_MEMORY);
         assert_int_equal(support_hash(network), before);
@@ -378,7 +376,7 @@ static void edit(mspring_network *network, uint32_t spring_count, uint64_t *seed
         support_bring(network, network, MSPRING_SNAPSHOT_ALL);
         break;
     default:
-        check_ok(mspring_network_compact(network, 0, NULL));
+        check_ok(mspring_network_compact(network));
         break;
     }
 }

@@ -213,8 +213,8 @@ static void refused_step_leaves_the_coarse_matrix(void **state) {
     recipe_free(&made);
 }
 
-/// All springs of a corner break while the lattice swings: from then on it falls as it flew. (With the forces of broken
-/// springs in the histories of BDF2 and GA0 it went on being pulled for some substeps.)
+/// All springs of a corner break while the lattice swings: from then on it falls as it flew. (With the forces of
+/// broken springs in the histories of BDF2 and GA0 it went on being pulled for some substeps.)
 static void what_breaks_off_falls(void **state) {
     (void)state;
     static const mspring_solver solvers[] = {MSPRING_SOLVER_IMPLICIT, MSPRING_SOLVER_DIRECT};

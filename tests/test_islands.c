@@ -139,7 +139,7 @@ static void what_is_awake_moves_as_if_nothing_slept(void **state) {
         break_most(network, percent, &seed);
         for (int compact = 0; compact < 2; compact++) {
             if (compact) {
-                check_ok(mspring_network_compact(network, 0, NULL));
+                check_ok(mspring_network_compact(network));
             }
             uint32_t some = 0;
             for (int i = 0; i < 8; i++) {
@@ -174,7 +174,7 @@ static uint64_t session(const recipe *made, const way *how, uint32_t kicks) {
             check_ok(mspring_network_restore_springs(network, &spring, 1, 0.2));
         }
         if (i == kicks / 2) {
-            check_ok(mspring_network_compact(network, 0, NULL));
+            check_ok(mspring_network_compact(network));
         }
         for (mspring_id p = 0; p < particles; p++) {
             print = print * 3 + support_sleeps(network, p);
@@ -553,7 +553,7 @@ static void what_sleeps_sleeps_on_in_another_layout(void **state) {
         support_kick(network, IN_B, 4);
         support_steps(network, 1, DT);
         const uint64_t before = support_hash(network);
-        check_ok(mspring_network_compact(network, 0, NULL));
+        check_ok(mspring_network_compact(network));
         assert_int_equal(support_hash(network), before);
         assert_int_equal(support_sleeps(network, IN_A), 1);
         assert_int_equal(support_sleeps(network, IN_B), 0);
@@ -582,7 +582,7 @@ static void forces_and_masses_are_those_of_before(void **state) {
         support_steps(network, 1, DT);
     }
     assert_int_equal(mspring_network_is_asleep(network), 1);
-    check_ok(mspring_network_compact(network, 0, NULL));
+    check_ok(mspring_network_compact(network));
     check_ok(mspring_network_set_masses(network, IN_B, 1, &mass));
     check_ok(mspring_network_apply_force(network, IN_A, 10, 0));
     support_steps(network, 1, DT);

@@ -320,7 +320,7 @@ static void clones_and_compact_ones_have_layers(void **state) {
     }
     for (int compact = 0; compact < 2; compact++) {
         if (compact) {
-            check_ok(mspring_network_compact(network, 0, NULL));
+            check_ok(mspring_network_compact(network));
         }
         check_ok(mspring_network_clone(network, NULL, &clone));
         assert_true(clone->topology.layer_count > 0);

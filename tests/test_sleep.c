@@ -377,7 +377,7 @@ static uint64_t session_hash(const recipe *made, mspring_simd level, uint32_t wo
     support_steps(network, 3, DT);
     support_fall_asleep(network, DT);
     change_break(network, MSPRING_NONE, 50);
-    check_ok(mspring_network_compact(network, 0, NULL));
+    check_ok(mspring_network_compact(network));
     support_steps(network, 3, DT);
     assert_int_equal(mspring_network_is_asleep(network), 0);
     support_fall_asleep(network, DT);

@@ -321,14 +321,14 @@ static void the_only_island_goes_on_in_another_layout(void **state) {
     check_ok(mspring_network_update_components(network, &count, NULL));
     assert_int_equal(count, 1);
     support_steps(network, 10, DT);
-    check_ok(mspring_network_compact(network, 0, NULL));
+    check_ok(mspring_network_compact(network));
     support_steps(network, 5, DT);
     assert_int_equal(mspring_network_is_asleep(network), 0);
     support_steps(network, 1, DT); // 0.25 s
     assert_int_equal(mspring_network_is_asleep(network), 1);
     check_ok(mspring_network_expand(network));
     assert_int_equal(mspring_network_is_asleep(network), 1);
-    check_ok(mspring_network_compact(network, 0, NULL));
+    check_ok(mspring_network_compact(network));
     assert_int_equal(mspring_network_is_asleep(network), 1);
     mspring_network_destroy(network);
 }

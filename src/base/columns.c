@@ -1,6 +1,8 @@
 /// What is done to all arrays of a struct alike.
 #include "columns.h"
 
+#include "assert.h"
+
 #include <string.h>
 
 void *mspringi_column_get(const mspringi_column *column, const void *owner) {
@@ -21,6 +23,20 @@ void mspringi_columns_free(mspringi_columns columns, void *owner, mspringi_memor
         if (c->kind != MSPRINGI_GROUP)
             mspringi_column_set(c, owner, NULL);
     }
+}
+
+bool mspringi_columns_duplicate(mspringi_columns columns, void *owner, mspringi_memory *memory) {
+    for (size_t i = 0; i < columns.count; ++i) {
+        const mspringi_column *c = &columns.list[i];
+        if (c->kind == MSPRINGI_GROUP || !mspringi_column_get(c, owner))
+            continue;
+        void *copy = mspringi_memory_duplicate(memory, mspringi_column_get(c, owner));
+        if (!copy)
+            return false;
+        MSPRINGI_ASSERT(c->kind != MSPRINGI_VIEW);
+        mspringi_column_set(c, owner, copy);
+    }
+    return true;
 }
 
 void mspringi_columns_relocate(mspringi_columns columns, void *owner, const mspringi_memory *from,

@@ -40,6 +40,10 @@ void mspringi_column_set(const mspringi_column *column, void *owner, void *array
 /// Free the arrays, and have all pointers be NULL.
 void mspringi_columns_free(mspringi_columns columns, void *owner, mspringi_memory *memory);
 
+/// Have pointers that were copied lead to copies of their own. False: no memory, and some still lead to the
+/// originals. There may be no views.
+bool mspringi_columns_duplicate(mspringi_columns columns, void *owner, mspringi_memory *memory);
+
 /// Have pointers that were copied lead to where mspringi_memory_copy() has copied to what they point to.
 void mspringi_columns_relocate(mspringi_columns columns, void *owner, const mspringi_memory *from,
                                const mspringi_memory *to);

@@ -1,6 +1,6 @@
 /// @file forest.h
-/// A disjoint-set forest (Galler and Fischer, 1964) in an array of parents: which elements hang together. Every root
-/// is the lowest element of its set, whatever the order in which sets were joined.
+/// A disjoint-set forest (Galler and Fischer, 1964) in an array of parents: which elements hang together. Every
+/// root is the lowest element of its set, whatever the order in which sets were joined.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_FOREST_H

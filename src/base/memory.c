@@ -111,6 +111,14 @@ void *mspringi_alloc(mspringi_memory *memory, size_t count, size_t size) {
     return taken ? memset(contents_of(taken), 0, total - MSPRINGI_ALIGNMENT) : NULL;
 }
 
+void *mspringi_memory_duplicate(mspringi_memory *memory, const void *contents) {
+    if (!contents)
+        return NULL;
+    const size_t size = ((const block *)(const void *)((const char *)contents - MSPRINGI_ALIGNMENT))->size;
+    const block *taken = take(memory, size);
+    return taken ? memcpy(contents_of(taken), contents, size - MSPRINGI_ALIGNMENT) : NULL;
+}
+
 void mspringi_free(mspringi_memory *memory, void *contents) {
     if (contents)
         give_back(memory, (block *)(void *)((char *)contents - MSPRINGI_ALIGNMENT));

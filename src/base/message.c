@@ -52,6 +52,8 @@ const char *mspring_result_string(mspring_result result) {
         return "the step is unstable";
     case MSPRING_ERROR_BUSY:
         return "not allowed inside a hook";
+    case MSPRING_ERROR_OUTDATED:
+        return "the network is another by now";
     case MSPRING_ERROR_THREAD:
         return "no thread to be had";
     case MSPRING_ERROR_EQUILIBRIUM:

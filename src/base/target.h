@@ -22,7 +22,8 @@
 #endif
 
 // Without better kernels there are the scalar ones.
-#if defined(MSPRINGI_WITHOUT_SCALAR) && !defined(MSPRINGI_X86) && !defined(MSPRINGI_AARCH64) && !defined(MSPRINGI_WASM)
+#if defined(MSPRINGI_WITHOUT_SCALAR) && !defined(MSPRINGI_X86) && !defined(MSPRINGI_AARCH64) &&                    \
+    !defined(MSPRINGI_WASM)
 #undef MSPRINGI_WITHOUT_SCALAR
 #endif
 

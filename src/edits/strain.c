@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "breaking.h"
-#include "compact/move.h"
+#include "compact/job.h"
 #include "events.h"
 #include "growth.h"
 #include "network/springs.h"
@@ -147,13 +147,21 @@ mspring_result mspringi_strain_reserve(mspring_network *network) {
     mspring_result result = mspringi_breaking_reserve(network);
     if (result == MSPRING_OK)
         result = mspringi_incidence_reserve(network);
-    if (result != MSPRING_OK)
-        return result;
+    if (result == MSPRING_OK)
+        result = mspringi_strain_reserve_layout(network);
+    if (result == MSPRING_OK)
+        mspringi_job_follow_all(network);
+    return result;
+}
+
+mspring_result mspringi_strain_reserve_layout(mspring_network *network) {
+    const mspringi_strain *strain = &network->strain;
+    if (strain->break_strain)
+        return MSPRING_OK;
     if (!mspringi_store_reserve(network, MSPRINGI_STORE_STRAIN))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to watch the strain of %u springs",
                              (unsigned)network->topology.spring_count);
     set_infinite(network, strain->break_strain);
-    mspringi_mover_drop(network);
     return MSPRING_OK;
 }
 
@@ -168,7 +176,7 @@ mspring_result mspringi_strain_reserve_stress(mspring_network *network) {
     set_infinite(network, strain->stress_strain);
     memcpy(strain->least, strain->break_strain,
            mspringi_place_words(&network->topology) * MSPRINGI_WIDTH * sizeof *strain->least);
-    mspringi_mover_drop(network);
+    mspringi_job_follow_all(network);
     return MSPRING_OK;
 }
 

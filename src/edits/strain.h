@@ -9,6 +9,8 @@
 
 /// Allocate what thresholds and the pass need, if it is not there yet; break_strain is there when all of it is.
 mspring_result mspringi_strain_reserve(mspring_network *network);
+/// The part of it that lies by place.
+mspring_result mspringi_strain_reserve_layout(mspring_network *network);
 mspring_result mspringi_strain_reserve_stress(mspring_network *network);
 
 /// Set what a spring breaks or is stressed at; after these.

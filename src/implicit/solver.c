@@ -33,19 +33,24 @@ static mspring_result reserve(void *object, mspring_network *network) {
 
 /* ----------------------------------------------------------------------------------------------- another layout */
 
-static mspring_result remake(mspring_network *to, const void *had, uint32_t tile_size, void **object) {
-    const mspringi_implicit *n = had;
+static void get_def(const void *object, mspring_solver_def *def) {
+    const mspringi_implicit *n = object;
+    (void)mspring_solver_def_init(def, sizeof *def);
+    def->solver = n->is_direct ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT;
+    def->integrator = n->integrator;
+    def->iterations = n->iterations;
+    def->tile_size = n->tile_size;
+    def->coarse_period = n->coarse_period;
+}
+
+static mspring_result remake(mspring_network *to, const mspring_solver_def *asked, uint32_t tile_size,
+                             void **object) {
     mspringi_implicit *made = NULL;
-    mspring_solver_def def;
-    (void)mspring_solver_def_init(&def, sizeof def);
-    def.solver = n->is_direct ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT;
-    def.integrator = n->integrator;
-    def.iterations = n->iterations;
-    def.tile_size = n->tile_size > 0 ? n->tile_size : tile_size;
-    def.coarse_period = n->coarse_period;
+    mspring_solver_def def = *asked;
+    def.tile_size = asked->tile_size > 0 ? asked->tile_size : tile_size;
     mspring_result result = mspringi_implicit_create(to, &def, &made);
     if (result == MSPRING_OK)
-        made->tile_size = n->tile_size;
+        made->tile_size = asked->tile_size;
     *object = made;
     return result;
 }
@@ -74,6 +79,7 @@ static void take_over(const mspring_network *to, void *object, const mspring_net
     n->history.h = had->history.h;
     n->history.restarts = had->history.restarts;
     n->seen.motion = had->seen.motion;
+    n->seen.naps = ~to->edits.naps; // it was made as if nothing slept
     for (size_t i = 0; i < had->history_size / slots; ++i)
         for (mspring_id p = 0; p < from->topology.particle_count; ++p)
             n->history.first.x[i * made_slots + there[p]] = had->history.first.x[i * slots + here[p]];
@@ -181,10 +187,11 @@ static void load(mspring_network *network, void *object, const uint8_t *from, si
 
 #define BOTH                                                                                                       \
     .takes_one = true, .create = create, .fits = fits, .adjust = adjust, .destroy = destroy, .relocate = relocate, \
-    .reserve = reserve, .remake = remake, .take_over = take_over, .get_basis = get_basis, .set_basis = set_basis,  \
-    .substeps = substeps, .keep = keep, .restore = restore, .forget = forget, .clear_slot = clear_slot,            \
-    .rest_slot = rest_slot, .clear_spring = clear_spring, .new_floor = new_floor, .is_alone = is_alone,            \
-    .has_alone = has_alone, .describe = describe, .size = size, .save = save, .check = check, .load = load
+    .reserve = reserve, .get_def = get_def, .remake = remake, .take_over = take_over, .get_basis = get_basis,      \
+    .set_basis = set_basis, .substeps = substeps, .keep = keep, .restore = restore, .forget = forget,              \
+    .clear_slot = clear_slot, .rest_slot = rest_slot, .clear_spring = clear_spring, .new_floor = new_floor,        \
+    .is_alone = is_alone, .has_alone = has_alone, .describe = describe, .size = size, .save = save,                \
+    .check = check, .load = load
 
 const mspringi_solver_ops mspringi_implicit_ops = {.can_add = true, BOTH};
 

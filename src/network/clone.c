@@ -89,10 +89,9 @@ static mspring_result copy(const mspring_network *network, const mspring_clone_d
         return MSPRING_ERROR_MEMORY;
     }
     made->memory = memory;
-    made->tasks_memory = made->plan_memory = (mspringi_memory){.allocator = *allocator};
+    made->tasks_memory = (mspringi_memory){.allocator = *allocator};
     made->tasks = NULL;
-    made->replan = NULL;
-    made->mover = NULL;
+    made->job = NULL;
     made->message = (mspringi_message){0};
     move_network(&(moving){&network->memory, &made->memory}, made);
     if (!(def->flags & MSPRING_CLONE_HOOKS))

@@ -6,6 +6,7 @@
 #include "alike.h"
 #include "base/cpu.h"
 #include "base/mix.h"
+#include "compact/job.h"
 #include "edits/growth.h"
 #include "explicit/explicit.h"
 #include "explicit/seam.h"
@@ -282,7 +283,7 @@ mspring_result mspring_network_create(mspring_builder *builder, const mspring_ne
     if (!created)
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for a network");
     created->memory = memory;
-    created->tasks_memory = created->plan_memory = (mspringi_memory){.allocator = memory.allocator};
+    created->tasks_memory = (mspringi_memory){.allocator = memory.allocator};
     const mspringi_fp_state before = mspringi_fp_enter();
     result = fill(created, builder, def);
     mspringi_fp_leave(before);
@@ -300,6 +301,6 @@ void mspring_network_destroy(mspring_network *network) {
         return;
     mspringi_memory memory = network->memory, tasks_memory = network->tasks_memory;
     mspringi_tasks_destroy(network->tasks, &tasks_memory);
-    mspringi_free_all(&network->plan_memory);
+    mspringi_job_lose(network);
     mspringi_free_all(&memory);
 }

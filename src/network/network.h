@@ -263,17 +263,15 @@ typedef struct mspringi_extents {
 struct mspring_network {
     mspringi_memory memory;       ///< the network itself and all that it holds, but for
     mspringi_memory tasks_memory; ///< what its workers are, which a copy of the network has none of
-    mspringi_memory plan_memory;  ///< a compaction that is under way, likewise
     mspringi_message message;
     mspringi_topology topology;
     mspringi_topology whole; ///< the one the network was created with, while it is compact; else empty
     bool is_compact;
-    uint64_t whole_print;           ///< topology_print of whole
-    uint32_t whole_tile_size;       ///< of the implicit solver that whole had; 0 if there was none
-    uint32_t whole_fallback_size;   ///< the same of the fallback's
-    struct mspringi_replan *replan; ///< a compaction that is under way, or NULL
-    struct mspringi_mover *mover;   ///< its copy of the springs, or NULL
-    bool is_seen_compact;           ///< with these edits it was found to have nothing to do
+    uint64_t whole_print;         ///< topology_print of whole
+    uint32_t whole_tile_size;     ///< of the implicit solver that whole had; 0 if there was none
+    uint32_t whole_fallback_size; ///< the same of the fallback's
+    mspring_job *job;             ///< another layout that is being made, or NULL
+    bool is_seen_compact;         ///< with these edits it was found to have nothing to do
     uint64_t seen_links, seen_growth;
     uint64_t topology_print;  ///< hash of which particles the springs join, and of where they lie
     uint64_t parameter_print; ///< hash of what the springs are like, and of all edits of that

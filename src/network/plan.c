@@ -23,7 +23,7 @@ uint32_t mspring_network_worker_count(const mspring_network *network) {
 }
 
 size_t mspring_network_memory_used(const mspring_network *network) {
-    return network ? network->memory.used + network->tasks_memory.used + network->plan_memory.used : 0;
+    return network ? network->memory.used + network->tasks_memory.used : 0;
 }
 
 mspring_result mspring_network_plan(const mspring_network *network, mspring_plan *plan) {

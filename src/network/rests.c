@@ -1,7 +1,7 @@
 /// Keeping rest lengths that many springs have in common.
 #include "rests.h"
 
-#include "compact/move.h"
+#include "compact/job.h"
 
 #include <string.h>
 
@@ -118,7 +118,7 @@ mspring_result mspringi_rests_separate(mspring_network *network) {
     rests->lengths = lengths;
     rests->count = blocks;
     rests->shared_count = 0;
-    mspringi_mover_drop(network);
+    mspringi_job_follow_all(network);
     return MSPRING_OK;
 }
 

@@ -29,14 +29,6 @@ mspringi_solver_basis mspringi_solver_get_basis(const mspringi_solver *solver) {
     return (mspringi_solver_basis){0};
 }
 
-mspring_result mspringi_solver_remake(mspring_network *to, mspringi_solver *made, const mspringi_solver *had,
-                                      uint32_t tile_size) {
-    made->ops = had->ops;
-    if (!had->ops || !had->ops->remake)
-        return MSPRING_OK;
-    return had->ops->remake(to, had->object, tile_size, &made->object);
-}
-
 void mspringi_solver_take_over(const mspring_network *to, const mspringi_solver *made, const mspring_network *from,
                                const mspringi_solver *had) {
     if (had->ops && had->ops->take_over)

@@ -63,10 +63,11 @@ struct mspringi_solver_ops {
                      const mspringi_memory *to);
     mspring_result (*reserve)(void *object, mspring_network *network);
 
-    // Another layout of the same network, in two halves. remake: one with the same settings, from what the new
-    // layout and its springs are; tile_size is for one whose tiles go by plan, 0: by that of the new layout.
-    // take_over: what it knows of the motion.
-    mspring_result (*remake)(mspring_network *to, const void *had, uint32_t tile_size, void **object);
+    // Another layout of the same network, in two halves. get_def: as it was asked for. remake: one of that kind,
+    // from what the new layout and its springs are, which may be on another thread; tile_size is for one whose
+    // tiles go by plan, 0: by that of the new layout. take_over: what it knows of the motion.
+    void (*get_def)(const void *object, mspring_solver_def *def);
+    mspring_result (*remake)(mspring_network *to, const mspring_solver_def *def, uint32_t tile_size, void **object);
     void (*take_over)(const mspring_network *to, void *object, const mspring_network *from, const void *had);
     mspringi_solver_basis (*get_basis)(const void *object);
     void (*set_basis)(void *object, const mspring_network *network, const mspringi_solver_basis *basis);
@@ -121,9 +122,7 @@ void mspringi_solver_destroy(mspringi_solver *solver, mspringi_memory *memory);
 void mspringi_solver_forget(const mspringi_solver *solver);
 mspringi_solver_basis mspringi_solver_get_basis(const mspringi_solver *solver);
 
-/// Make to's solver, or let it take over what from's knows.
-mspring_result mspringi_solver_remake(mspring_network *to, mspringi_solver *made, const mspringi_solver *had,
-                                      uint32_t tile_size);
+/// Let a solver take over what another one knows, which has the same settings and another layout.
 void mspringi_solver_take_over(const mspring_network *to, const mspringi_solver *made, const mspring_network *from,
                                const mspringi_solver *had);
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "base/cpu.h"
-#include "compact/move.h"
+#include "compact/job.h"
 #include "edits/ramps.h"
 #include "sections.h"
 
@@ -221,7 +221,7 @@ static MSPRINGI_NOINLINE mspring_result load(mspring_network *network, const uin
             result = sections[i]->check(network, in.from[i], in.size[i]);
     if (result != MSPRING_OK)
         return result;
-    mspringi_mover_drop(network);
+    mspringi_job_follow_all(network);
     mspringi_ramps_clear(network);
     for (int i = 0; i < SECTIONS; ++i)
         if (concerns(sections[i], &header))

@@ -2,7 +2,7 @@
 #include "changed.h"
 
 #include "base/mix.h"
-#include "compact/move.h"
+#include "compact/job.h"
 #include "network/springs.h"
 #include "sleep/sleep.h"
 
@@ -11,11 +11,6 @@ static void log_spring(mspring_network *network, mspring_id spring) {
     MSPRINGI_ASSERT(edits->link_log); // mspringi_breaking_reserve() has been called
     edits->broke = true;
     edits->link_log[edits->links++ & edits->link_mask] = spring;
-}
-
-static void copy_place(const mspring_network *network, mspringi_place place) {
-    if (network->mover)
-        mspringi_mover_follow(network, place);
 }
 
 static void free_ends(const mspring_network *network, mspring_id spring) {
@@ -33,8 +28,8 @@ static void tell_of_floor(const mspring_network *network) {
 
 #define COUNT(counter) network->edits.counter++;
 #define LOG log_spring(network, index);
-#define COPY copy_place(network, index);
-#define COPY_SPRING copy_place(network, mspringi_place_of(&network->topology, index));
+#define COPY mspringi_job_follow(network, index);
+#define COPY_SPRING mspringi_job_follow(network, mspringi_place_of(&network->topology, index));
 #define WAKE mspringi_wake(network);
 #define WAKE_SPRING mspringi_wake_spring(network, index);
 #define FREE_ENDS free_ends(network, index);

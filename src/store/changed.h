@@ -19,7 +19,7 @@ void mspringi_tell(mspring_network *network, mspringi_change what, uint32_t inde
 
 /// The same. (Springs are set by the million, and nobody listens but a compaction that is under way.)
 static inline void mspringi_changed(mspring_network *network, mspringi_change what, uint32_t index) {
-    if (what != MSPRINGI_CHANGED_PLACE || network->mover)
+    if (what != MSPRINGI_CHANGED_PLACE || network->job)
         mspringi_tell(network, what, index);
 }
 

@@ -114,6 +114,15 @@ void mspringi_store_free(mspring_network *network, mspringi_group group) {
     mspringi_columns_free(rows_of(group, group + 1u), network, &network->memory);
 }
 
+bool mspringi_store_duplicate(mspring_network *to, const mspring_network *from, mspringi_group group,
+                              mspringi_memory *memory) {
+    const mspringi_columns rows = rows_of(group, group + 1u);
+    for (const mspringi_column *c = rows.list; c < rows.list + rows.count; ++c)
+        if (c->kind != MSPRINGI_GROUP)
+            mspringi_column_set(c, to, mspringi_column_get(c, from));
+    return mspringi_columns_duplicate(rows, to, memory);
+}
+
 void mspringi_store_relocate(mspring_network *network, const mspringi_memory *from, const mspringi_memory *to) {
     mspringi_columns_relocate(rows_of(0, MSPRINGI_STORE_GROUPS), network, from, to);
 }
@@ -124,11 +133,18 @@ void mspringi_store_free_layout(mspring_network *network, mspringi_memory *memor
     mspringi_columns_free(rows_of(0, MSPRINGI_LAYOUT_END), network, memory);
 }
 
-void mspringi_store_forget_layout(mspring_network *network) {
-    const mspringi_columns rows = rows_of(0, MSPRINGI_LAYOUT_END);
+static void forget(mspring_network *network, mspringi_columns rows) {
     for (const mspringi_column *c = rows.list; c < rows.list + rows.count; ++c)
         if (c->kind != MSPRINGI_GROUP)
             mspringi_column_set(c, network, NULL);
+}
+
+void mspringi_store_forget_layout(mspring_network *network) {
+    forget(network, rows_of(0, MSPRINGI_LAYOUT_END));
+}
+
+void mspringi_store_forget(mspring_network *network) {
+    forget(network, rows_of(0, MSPRINGI_STORE_GROUPS));
 }
 
 void mspringi_store_take_layout(mspring_network *to, const mspring_network *from) {
@@ -141,8 +157,10 @@ void mspringi_store_take_layout(mspring_network *to, const mspring_network *from
 bool mspringi_store_match_layout(mspring_network *to, const mspring_network *from) {
     for (uint32_t group = 0; group < MSPRINGI_REMADE_END; ++group) {
         const mspringi_column *first = rows_of(group, group + 1u).list + 1;
-        if (mspringi_column_get(first, from) && !mspringi_column_get(first, to) &&
-            !mspringi_store_reserve(to, (mspringi_group)group))
+        const bool has = mspringi_column_get(first, to), needs = mspringi_column_get(first, from);
+        if (has && !needs)
+            mspringi_store_free(to, (mspringi_group)group);
+        if (needs && !has && !mspringi_store_reserve(to, (mspringi_group)group))
             return false;
     }
     return true;
@@ -150,20 +168,49 @@ bool mspringi_store_match_layout(mspring_network *to, const mspring_network *fro
 
 /* ------------------------------------------------------------------------------------------------------- moving */
 
+/// Planes that are moved in one go, so that slots are looked up once for all of them.
+#define MOST_PLANES 4
+
+static void move_planes(const float *const old[MOST_PLANES], float *const made[MOST_PLANES],
+                        const mspringi_topology *from, const mspringi_topology *to) {
+    const uint32_t *here = from->slot_of_particle, *there = to->slot_of_particle;
+    const float *const a = old[0], *const b = old[1], *const c = old[2], *const d = old[3];
+    float *const made_a = made[0], *const made_b = made[1], *const made_c = made[2], *const made_d = made[3];
+    for (mspring_id p = 0; p < from->particle_count; ++p) {
+        const uint32_t before = here[p], now = there[p];
+        made_a[now] = a[before];
+        made_b[now] = b[before];
+        made_c[now] = c[before];
+        made_d[now] = d[before];
+    }
+}
+
 void mspringi_store_move_slots(mspring_network *to, const mspring_network *from) {
-    const uint32_t *here = from->topology.slot_of_particle, *there = to->topology.slot_of_particle;
-    const uint32_t particles = from->topology.particle_count;
     const size_t slots = mspringi_slot_count(from), made_slots = mspringi_slot_count(to);
-    size_t elements[COLUMN_COUNT];
-    MSPRINGI_ASSERT(to->topology.particle_count == particles);
+    const float *old[MOST_PLANES];
+    float *made[MOST_PLANES];
+    size_t elements[COLUMN_COUNT], count = 0;
+    MSPRINGI_ASSERT(to->topology.particle_count == from->topology.particle_count);
     count_elements(from, elements);
     for (size_t i = 0; i < COLUMN_COUNT; ++i) {
-        const float *old = list[i].kind == MSPRINGI_PLANES ? mspringi_column_get(&list[i], from) : NULL;
-        float *made = old ? mspringi_column_get(&list[i], to) : NULL;
-        for (size_t plane = 0; made && plane < elements[i] / slots; ++plane, old += slots, made += made_slots)
-            for (mspring_id p = 0; p < particles; ++p)
-                made[there[p]] = old[here[p]];
+        const float *first = list[i].kind == MSPRINGI_PLANES ? mspringi_column_get(&list[i], from) : NULL;
+        float *first_made = first ? mspringi_column_get(&list[i], to) : NULL;
+        for (size_t plane = 0; first_made && plane < elements[i] / slots; ++plane) {
+            old[count] = first + plane * slots;
+            made[count++] = first_made + plane * made_slots;
+            if (count < MOST_PLANES)
+                continue;
+            move_planes(old, made, &from->topology, &to->topology);
+            count = 0;
+        }
     }
+    if (count == 0)
+        return;
+    for (size_t i = count; i < MOST_PLANES; ++i) { // the last one again
+        old[i] = old[count - 1];
+        made[i] = made[count - 1];
+    }
+    move_planes(old, made, &from->topology, &to->topology);
 }
 
 static void copy_value(float *to, mspringi_place place, const float *from, mspringi_place before) {

@@ -36,13 +36,19 @@ void mspringi_store_free(mspring_network *network, mspringi_group group);
 /// Have a copied network's pointers lead into its own memory.
 void mspringi_store_relocate(mspring_network *network, const mspringi_memory *from, const mspringi_memory *to);
 
+/// Copy a group's arrays, which may not have views, into another network and its memory. False: no memory.
+bool mspringi_store_duplicate(mspring_network *to, const mspring_network *from, mspringi_group group,
+                              mspringi_memory *memory);
+/// Forget all arrays.
+void mspringi_store_forget(mspring_network *network);
+
 /// Free what lies by slot or place from this memory, or forget it.
 void mspringi_store_free_layout(mspring_network *network, mspringi_memory *memory);
 void mspringi_store_forget_layout(mspring_network *network);
 
 /// Take over the arrays that another network of the same particles and springs has by slot or place.
 void mspringi_store_take_layout(mspring_network *to, const mspring_network *from);
-/// Reserve the groups by slot or place that another one has and this one lacks.
+/// Reserve the groups by slot or place that another one has and this one lacks, and free those that it has not.
 bool mspringi_store_match_layout(mspring_network *to, const mspring_network *from);
 
 /// Move what lies by slot, or what lies by place of one spring but for its record, between layouts.

@@ -41,11 +41,12 @@ struct mspringi_assembly {
     mspringi_layers layers;
     mspringi_block_key *blocks; ///< of all grids, grid after grid in the order of their rows, each sorted
     size_t block_count, block_capacity;
-    size_t grid_begin;     ///< where the blocks of the grid that is being listed begin
-    uint32_t *first_block; ///< [grids] in blocks
-    uint32_t *end_block;   ///< [grids] in blocks
-    uint32_t herd_row;     ///< number of the row of herds, if there are any
-    uint32_t home_blocks;  ///< blocks of the web that have been given to rows
+    uint32_t grid, grid_members; ///< of grid_order, the one that is being listed, and its members so far
+    size_t grid_begin;           ///< where its blocks begin
+    uint32_t *first_block;       ///< [grids] in blocks
+    uint32_t *end_block;         ///< [grids] in blocks
+    uint32_t herd_row;           ///< number of the row of herds, if there are any
+    uint32_t home_blocks;        ///< blocks of the web that have been given to rows
     size_t row_capacity, span_capacity;
     bool is_checked;       ///< no two springs join the same particles
     bool has_herds;        ///< small trees may stand in herds
@@ -61,7 +62,7 @@ struct mspringi_assembly {
 /// Say that there is no memory, and return that.
 mspring_result mspringi_assembly_fail(mspringi_assembly *a);
 
-/* Blocks, in this order; a range is of grids. */
+/* Blocks, in this order; a range is of members of grids, in the order of grids. */
 mspring_result mspringi_assembly_begin_blocks(mspringi_assembly *a);
 mspring_result mspringi_assembly_number_blocks(mspringi_assembly *a, uint32_t first, uint32_t end);
 mspring_result mspringi_assembly_number_the_rest(mspringi_assembly *a);

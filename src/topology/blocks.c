@@ -86,14 +86,19 @@ mspring_result mspringi_assembly_number_blocks(mspringi_assembly *a, uint32_t fi
     const mspringi_grids *grids = &a->grids;
     mspring_result result = MSPRING_OK;
     for (uint32_t i = first; result == MSPRING_OK && i < end; ++i) {
-        const uint32_t grid = a->homes.grid_order[i];
-        a->first_block[grid] = (uint32_t)a->block_count;
-        a->grid_begin = a->block_count;
-        for (uint32_t m = grids->first_member[grid]; m < grids->first_member[grid + 1]; ++m)
-            if (!list_blocks(a, grids->members[m]))
-                return mspringi_assembly_fail(a);
+        const uint32_t grid = a->homes.grid_order[a->grid];
+        if (a->grid_members == 0) {
+            a->first_block[grid] = (uint32_t)a->block_count;
+            a->grid_begin = a->block_count;
+        }
+        if (!list_blocks(a, grids->members[grids->first_member[grid] + a->grid_members++]))
+            return mspringi_assembly_fail(a);
+        if (grids->first_member[grid] + a->grid_members < grids->first_member[grid + 1])
+            continue;
         result = sort_blocks(a);
         a->end_block[grid] = (uint32_t)a->block_count;
+        a->grid++;
+        a->grid_members = 0;
     }
     return result;
 }

@@ -8,7 +8,7 @@
 /// with one spring of ten left anywhere: 12,064 of the 15,668 stand in 437 herds. Of the rest, 184 components are
 /// no trees, and of 66 trees of eight particles no sixteen have the same shape; nor have larger ones.)
 ///
-/// Herds are made when a network is compacted (compact/replan.c).
+/// Herds are made when a network is compacted (compact/left.c).
 ///
 /// Trees are compared by a code of brackets, one pair for each particle, around those of the subtrees below it in
 /// rising order: two trees have the same shape if they have the same code, from the root from which it is least

@@ -6,7 +6,7 @@
 /// which slots they pull at is found out when a step begins (see explicit/graft.h). So an id of the reserve has its
 /// slot or place for good, and taking it into use is a matter of some stores.
 ///
-/// A topology that is made anew (see compact/replan.h) lays what is in use by then out as if it had always been
+/// A topology that is made anew (see compact/left.c) lays what is in use by then out as if it had always been
 /// there, and has slots and places for all spare ids again.
 ///
 /// SPDX-License-Identifier: MIT

@@ -288,10 +288,6 @@ static uint32_t narrow_grids_of(const mspringi_assembly *a) {
     return mspringi_grids_narrow(&a->grids);
 }
 
-static uint32_t grids_of(const mspringi_assembly *a) {
-    return a->grids.count;
-}
-
 static uint32_t members_of(const mspringi_assembly *a) {
     return a->grids.member_count;
 }
@@ -352,7 +348,7 @@ static const layout_pass layout_passes[] = {
     ONCE(find_layers),
     ONCE(order_web),
     ONCE(mspringi_assembly_begin_blocks),
-    EACH(mspringi_assembly_number_blocks, grids_of, 64),
+    EACH(mspringi_assembly_number_blocks, members_of, 8000),
     ONCE(mspringi_assembly_number_the_rest),
     ONCE(mspringi_assembly_reserve_maps),
     EACH(assign_slots, particles_of, 16000),

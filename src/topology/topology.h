@@ -107,7 +107,7 @@ typedef struct mspringi_topology {
     uint32_t leftover_count;            ///< springs of the web, and as many more as spare ids have been used
     uint32_t woven_count;               ///< springs of the web
     uint32_t leftover_capacity;         ///< woven_count, and a place for each spare spring
-    uint32_t parked_count;              ///< springs that are broken and that nothing sweeps, see replan.h
+    uint32_t parked_count;              ///< springs that are broken and that nothing sweeps, see compact/left.c
     uint32_t *leftover_a, *leftover_b;  ///< [leftover_capacity + parked_count] slots
     uint32_t *laid_slots, *laid_places; ///< of the spare ids, when the topology was made
     mspringi_web web;

@@ -229,6 +229,21 @@ static mspring_result set_floor(mspring_network *network, const call *c) {
     return mspring_network_set_floor(network, c->count == 2 ? NULL : &def);
 }
 
+// A job, of which some functions are run, and with luck all.
+static mspring_result change_layout(mspring_network *network, const call *c) {
+    mspring_job *job = NULL;
+    const mspring_layout layout = c->spring % 4 == 0 ? MSPRING_LAYOUT_WHOLE : MSPRING_LAYOUT_COMPACT;
+    mspring_result result = mspring_job_begin(network, layout, &job);
+    uint32_t left = 1;
+    if (result == MSPRING_OK)
+        result = mspring_job_run(job, c->particle, &left);
+    if (result == MSPRING_OK)
+        result = mspring_job_finish(network, job);
+    FUZZ_CHECK(left == 0 || result != MSPRING_OK);
+    mspring_job_destroy(job);
+    return result;
+}
+
 static mspring_result settle(mspring_network *network) {
     mspring_settle_def def;
     FUZZ_CHECK(mspring_settle_def_init(&def, sizeof def) == MSPRING_OK);
@@ -349,7 +364,7 @@ static mspring_result make_call(mspring_network *network, const call *c) {
     case 18:
         return set_floor(network, c);
     case 19:
-        return mspring_network_compact(network, c->count, NULL);
+        return c->count == 0 ? mspring_network_compact(network) : change_layout(network, c);
     case 20:
         return mspring_network_expand(network);
     case 21:

@@ -25,7 +25,9 @@
 /// and moves along by itself, so a network behaves 10 km away from the world's origin as it does at it. A position
 /// has a second word below that, so that no substep rounds away what it adds: more substeps are never less
 /// accurate. Views show the first word; the second is at most some units in its last place, and where a first one
-/// is written over it stays, unless it is too large for that.
+/// is written over it stays, unless it is too large for that. Velocities have one word. Of the h g that gravity adds
+/// in a substep at v it may round away or add 3e-8 v: more substeps than make this a thousandth, h = 3e-5 v / g, make
+/// what falls freely less accurate.
 ///
 /// **Same bits.** The same calls give the same state, bit for bit, at every SIMD level, with every supported
 /// compiler and optimisation level. mspring_network_state_hash() is the way to check it.
@@ -125,10 +127,12 @@ enum {
     MSPRING_ERROR_STRUCT = -5,       ///< struct_size is not one that any version of this struct had
     MSPRING_ERROR_DUPLICATE = -6,    ///< two springs join the same two particles
     MSPRING_ERROR_UNSTABLE = -7,     ///< the step would have left the bounded range; the state is that before it
-    MSPRING_ERROR_BUSY = -8,         ///< called from inside a hook, where only shared calls are allowed
+    MSPRING_ERROR_BUSY = -8,         ///< called from inside a hook, where only shared calls are allowed; or a job
+                                     ///< is under way
     MSPRING_ERROR_THREAD = -9,       ///< the system refuses a thread or a lock
     MSPRING_ERROR_EQUILIBRIUM = -10, ///< the forces have no equilibrium, or none was found
-    MSPRING_ERROR_SNAPSHOT = -11     ///< this is no snapshot of this network, or a damaged one
+    MSPRING_ERROR_SNAPSHOT = -11,    ///< this is no snapshot of this network, or a damaged one
+    MSPRING_ERROR_OUTDATED = -12     ///< the network is another than the one that the job was begun for
 };
 
 /// Short English name of a result code, such as "out of memory". Never NULL; static storage.
@@ -386,7 +390,8 @@ enum {
     /// The second words of positions count in the lengths of springs, too. Use it for stiff springs whose forces
     /// single precision cannot tell apart: 6.76e7 N/m between masses of 73.4 kg, 900 m from the local origin,
     /// tremble at up to 3 m/s without it and 0.002 m/s with it. Explicit steps take 1.1 to 1.3 times as
-    /// long (bench/RESULTS.md). The implicit and the direct solver always count these words.
+    /// long (bench/RESULTS.md). The implicit and the direct solver always count these words. What springs break at
+    /// and what stress is made of are strains of the first words: at 900 m right to 6e-5 in a spring of 1 m.
     MSPRING_NETWORK_PRECISE = 1u << 2
 };
 
@@ -411,7 +416,7 @@ enum {
     /// is more than a thousandth of its energy, the substep is taken again (see mspring_integrator). If even a 32nd of
     /// a substep is too long, the component goes only a part of its way in it. No step is refused for its energy.
     /// In each substep the springs may have a millionth more than the budget, and what rounding adds: that of lengths,
-    /// 5e-15 k l^2 a spring, and on a floor 3e-7 m g times the distance from the local origin.
+    /// 5e-17 k l^2 a spring, and on a floor 1e-12 m g times the distance from the local origin.
     MSPRING_GUARD_GROWTH = 0,
     /// The same, but take a step that would be refused again with twice as many substeps, four times as many, and
     /// so on up to max_substeps. Later steps keep the number that was needed, until mspring_network_set_solver().
@@ -1205,7 +1210,7 @@ MSPRING_API mspring_result mspring_floor_def_init(mspring_floor_def *def, size_t
 /// @param def  copied with all that it points to; NULL: no floor
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY. On
 ///         error the floor is the one of before.
-/// @threads exclusive access to network   @allocates yes; 20 to 24 bytes for a height and 66 for a particle
+/// @threads exclusive access to network   @allocates yes; 20 to 24 bytes for a height and 74 for a particle
 /// @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_floor(mspring_network *network,
                                                                        const mspring_floor_def *def);
@@ -1411,7 +1416,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_break_springs(mspri
 /// @threads exclusive access to network
 /// @allocates at the first rest length or ramp in a network, for more ramps at once than there have been, and to
 /// expand
-///            a compact network of which a spring is restored that its plan leaves out
+///            a compact network of which a spring is restored that its plan leaves out; to spread that over frames,
+///            finish a job for MSPRING_LAYOUT_WHOLE before
 /// @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_restore_springs(mspring_network *network,
                                                                              const mspring_id *springs,
@@ -1515,28 +1521,78 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_recycle(mspring_net
 /// A snapshot goes with the plan that there was when it was saved. One from before can only be loaded after
 /// mspring_network_expand(), one of the compact network only before that: where slots change, rollback begins anew.
 ///
-/// The work comes in pieces, so that it can be done over many frames. Each takes a millisecond at most for a network
-/// of 200,000 springs, but for the last one, which moves the network and makes another solver than the explicit one
-/// anew. How many they are depends on nothing but the network.
-/// Between them the network may be stepped, edited, saved, loaded and cloned, and nothing is to be seen of the
-/// compaction until the network moves, in the last piece. What springs are, and that some break, is followed; if
-/// one is restored that the plan would leave out, or particles or springs are added or removed, the work begins
-/// anew, and the copying of springs, which is its last fifth, does so when a snapshot is loaded. Snapshots and
-/// clones know nothing of a compaction that has begun.
-/// @param pieces  how many of them to do at most; 0 for all
-/// @param left    receives about how many are left; 0: the network is compact. May be NULL.
-/// @return MSPRING_OK; MSPRING_ERROR_MEMORY, after which the network is as it was and the work begins anew;
-///         MSPRING_ERROR_LIMIT, MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
+/// This call does all of it at once. To spread it over frames, or to do it on another thread, use a job.
+/// @return MSPRING_OK, also if there is nothing to do; MSPRING_ERROR_MEMORY or MSPRING_ERROR_LIMIT, after which the
+///         network is as it was; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network   @allocates yes, and frees most   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_compact(mspring_network *network, uint32_t pieces,
-                                                                     uint32_t *left);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_compact(mspring_network *network);
 
 /// Take all springs into the plan again, as it was when the network was created: the way back from
-/// mspring_network_compact(), with the same consequences for slots and bits. A compaction that has begun is
-/// dropped.
+/// mspring_network_compact(), with the same consequences for slots and bits. A job that is under way is outdated
+/// then.
 /// @return MSPRING_OK; MSPRING_ERROR_MEMORY, MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network   @allocates yes, and frees most   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_expand(mspring_network *network);
+
+/// Another plan for a network, which is made while the network goes on: compaction, or the way back, off the frame.
+///
+///   mspring_job_begin(network, MSPRING_LAYOUT_COMPACT, &job);     // in a frame: copies what the plan follows from
+///   mspring_job_run(job, 0, NULL);                                // on any thread, or some calls a frame
+///   if (mspring_job_finish(network, job) == MSPRING_OK) ...       // in a later frame: the network moves
+///   mspring_job_destroy(job);
+///
+/// Between begin and finish the network may be stepped, edited, saved, loaded and cloned. Nothing is to be seen of
+/// the job until it is finished; snapshots and clones know nothing of it. Springs that are set or broken meanwhile
+/// are followed: the finish copies them again. Where all are set, as by loading a snapshot or by the first step with
+/// another substep if all are relative, it takes about as long as the copying of all.
+///
+/// The plan follows from the springs that are live at begin. So the bits of the network depend on the steps at which
+/// the job is begun and finished, and on nothing else: not on who runs it, nor when, nor in how many calls.
+///
+/// A network has one job at a time. A job owns all that it reads: networks and jobs may be destroyed in any order.
+/// It uses the network's allocator, which must allow calls from two threads at once if another thread runs the job.
+typedef struct mspring_job mspring_job;
+
+/// What a job makes.
+typedef enum mspring_layout {
+    MSPRING_LAYOUT_COMPACT = 0, ///< as mspring_network_compact()
+    MSPRING_LAYOUT_WHOLE = 1    ///< as mspring_network_expand(), so that springs can be restored without a long frame
+} mspring_layout;
+
+/// Begin a job: copy what springs are and where they lie. About as long as cloning a network without solver.
+/// @return MSPRING_OK; MSPRING_ERROR_BUSY inside a hook, or if the network has a job that is neither finished nor
+///         destroyed; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY.
+/// @threads exclusive access to network   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_job_begin(mspring_network *network, mspring_layout layout,
+                                                               mspring_job **job);
+
+/// Go on with a job. It is a list of plain functions, of which each takes a millisecond or less for a network of
+/// 200,000 springs; but the last makes the implicit or direct solver, if the network has one, in one go.
+/// @param at_most  how many functions to call; 0 for all
+/// @param left     receives about how much is left, from call to call the same or less; 0: it can be finished. May be
+///                 NULL.
+/// @return MSPRING_OK; MSPRING_ERROR_MEMORY or MSPRING_ERROR_LIMIT, after which the job can only be destroyed;
+///         MSPRING_ERROR_ARGUMENT for NULL, or for a job that has failed or is finished.
+/// @threads exclusive access to job; no access to any network   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_job_run(mspring_job *job, uint32_t at_most, uint32_t *left);
+
+/// Move the network to the plan that a job has made. Slots change, views end. Afterwards the job can only be
+/// destroyed, whatever is returned, unless that is MSPRING_ERROR_BUSY.
+/// @return MSPRING_OK, also if there was nothing to do; MSPRING_ERROR_OUTDATED if since begin particles or springs were
+///         added or removed, a spring was restored that the plan leaves out, or the plan has changed otherwise: begin
+///         another job; MSPRING_ERROR_BUSY inside a hook, or if the job has not been run to its end;
+///         MSPRING_ERROR_MEMORY; MSPRING_ERROR_LIMIT; MSPRING_ERROR_ARGUMENT for NULL, or for a job that is finished.
+///         If a run failed, its error is returned again. On error the network is as it was.
+/// @threads exclusive access to network and job   @allocates some   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_job_finish(mspring_network *network, mspring_job *job);
+
+/// What went wrong in the last mspring_job_run() that failed: text of the job's, "" if none did or for NULL.
+/// @threads shared with other reads of the job   @allocates never   @since 0.1
+MSPRING_API const char *mspring_job_error(const mspring_job *job);
+
+/// Free a job, finished or not. NULL is allowed.
+/// @threads exclusive access to job and, unless it is finished, to its network   @allocates never   @since 0.1
+MSPRING_API void mspring_job_destroy(mspring_job *job);
 
 /* ------------------------------------------------------------------------------------- strain and events */
 
