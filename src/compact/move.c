@@ -119,10 +119,11 @@ static mspring_result adopt_solver(mspring_network *to, mspringi_solver *solver,
     *solver = (mspringi_solver){ops, NULL};
     if (ops && ops->remake)
         ops->get_def(had->object, &def);
-    if (made->object && made->ops == ops && ops->fits(made->object, &def)) {
+    if (made->object && made->ops == ops && (!ops->fits || ops->fits(made->object, &def))) {
         solver->object = made->object;
-        ops->adjust(solver->object, &def);
-        return ops->reserve(solver->object, to);
+        if (ops->adjust)
+            ops->adjust(solver->object, &def);
+        return ops->reserve ? ops->reserve(solver->object, to) : MSPRING_OK;
     }
     if (made->object)
         mspringi_solver_destroy(&unused, &to->memory);

@@ -22,10 +22,15 @@ static mspring_result create(mspring_network *network, const mspring_solver_def 
     return MSPRING_OK;
 }
 
-static mspring_result remake(mspring_network *to, const void *had, uint32_t tile_size, void **object) {
-    (void)had;
+static void get_def(const void *object, mspring_solver_def *def) {
+    (void)object;
+    (void)def; // nothing but the kind
+}
+
+static mspring_result remake(mspring_network *to, const mspring_solver_def *def, uint32_t tile_size,
+                             void **object) {
     (void)tile_size;
-    return create(to, NULL, object);
+    return create(to, def, object);
 }
 
 static void destroy(void *object, mspringi_memory *memory) {
@@ -90,6 +95,7 @@ static bool is_alone(const mspring_network *network, const void *object, size_t 
 
 const mspringi_solver_ops house_euler_ops = {
     .create = create,
+    .get_def = get_def,
     .remake = remake,
     .destroy = destroy,
     .relocate = relocate,
