@@ -11,9 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "linear/cholesky.h"
 #include "machine.h"
 #include "modes.h"
+#include "solvers/sparse/cholesky.h"
 
 static const char *const default_scenes[] = {"bar_80x5", "grid_96x96", "bar_544x68", "bar_1800x5", NULL};
 

@@ -2,8 +2,8 @@
 /// Lattice blocks whose springs are alike are read from one record: what is edited afterwards is not.
 ///
 /// SPDX-License-Identifier: MIT
-#include "network/network.h"
 #include "recipe.h"
+#include "store/network.h"
 #include "support.h"
 
 enum { WIDTH = 70, HEIGHT = 40 };

@@ -3,8 +3,8 @@
 /// games are.
 ///
 /// SPDX-License-Identifier: MIT
-#include "network/network.h"
 #include "stability/border.h"
+#include "store/network.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -10,7 +10,7 @@
 
 #include "allocator.h"
 #include "level.h"
-#include "linear/plan.h"
+#include "solvers/sparse/plan.h"
 #include "support.h"
 
 static mspring_simd tested_level;

@@ -4,7 +4,7 @@
 /// SPDX-License-Identifier: MIT
 #include <math.h>
 
-#include "explicit/decay.h"
+#include "base/decay.h"
 #include "support.h"
 
 static void it_is_the_exponential(void **state) {

@@ -8,8 +8,8 @@
 #include <stdlib.h>
 
 #include "recipe.h"
-#include "snapshot/format.h"
 #include "snapshots.h"
+#include "store/format.h"
 #include "support.h"
 
 /* ------------------------------------------------------------------------------------------------------ values */

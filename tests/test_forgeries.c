@@ -9,8 +9,8 @@
 #include <string.h>
 
 #include "recipe.h"
-#include "snapshot/format.h"
 #include "snapshots.h"
+#include "store/format.h"
 #include "support.h"
 
 static void damage_is_found(void **state) {

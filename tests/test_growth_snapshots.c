@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "growth.h"
-#include "snapshot/format.h"
+#include "store/format.h"
 #include "support.h"
 
 typedef struct saved {

@@ -6,11 +6,11 @@
 #include <stdlib.h>
 
 #include "allocator.h"
-#include "network/network.h"
+#include "layout/analysis.h"
 #include "recipe.h"
 #include "reference.h"
+#include "store/network.h"
 #include "support.h"
-#include "topology/analysis.h"
 
 enum { LANES = MSPRINGI_WIDTH };
 

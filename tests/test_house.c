@@ -1,13 +1,13 @@
 /// @file test_house.c
 /// A solver and a stage that the library does not have can be added without changing it: each is a file in house/
-/// and a line in house/network/, which stands before the library's own table. step.c, solver.c and stages.c are
+/// and a line in house/store/, which stands before the library's own table. step.c, solver.c and stages.c are
 /// compiled with these; all else is the library as it is.
 ///
 /// SPDX-License-Identifier: MIT
 #include <stdbool.h>
 
 #include "house/wind.h"
-#include "network/network.h"
+#include "store/network.h"
 #include "support.h"
 
 enum { EULER = MSPRING_SOLVER_DIRECT + 1 };

@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "allocator.h"
-#include "network/network.h"
 #include "recipe.h"
+#include "store/network.h"
 #include "support.h"
 
 /// A few more than a web needs to get layers.

@@ -8,9 +8,9 @@
 
 #include "base/memory.h"
 #include "base/message.h"
+#include "layout/topology.h"
 #include "recipe.h"
 #include "support.h"
-#include "topology/topology.h"
 
 static mspring_builder *builder_of(const recipe *made) {
     mspring_builder *builder = NULL;

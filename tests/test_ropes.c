@@ -6,8 +6,8 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-#include "network/network.h"
 #include "recipe.h"
+#include "store/network.h"
 #include "support.h"
 
 #define DT (1.0 / 64)

@@ -5,8 +5,8 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "network/network.h"
 #include "recipe.h"
+#include "store/network.h"
 #include "support.h"
 
 static const uint32_t worker_counts[] = {2, 3, 5, 8};

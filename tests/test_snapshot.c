@@ -10,8 +10,8 @@
 
 #include "allocator.h"
 #include "recipe.h"
-#include "snapshot/format.h"
 #include "snapshots.h"
+#include "store/format.h"
 #include "support.h"
 
 enum { FRAMES = ROUNDS(50) + 10, BACK = 8 };

@@ -11,12 +11,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/tune/reference.h"
+#include "analysis/tune/tuning.h"
 #include "recipe.h"
 #include "reference.h"
 #include "scenes/scene.h"
 #include "support.h"
-#include "tune/reference.h"
-#include "tune/tuning.h"
 #include "tunes.h"
 
 /* -------------------------------------------------------------------------------------------- what is measured */

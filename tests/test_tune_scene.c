@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/tune/tuning.h"
 #include "recipe.h"
 #include "support.h"
-#include "tune/tuning.h"
 #include "tunes.h"
 
 static const double dt = 1.0 / 64;

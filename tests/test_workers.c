@@ -13,8 +13,8 @@
 
 #include "allocator.h"
 #include "hosts.h"
-#include "implicit/implicit.h"
 #include "recipe.h"
+#include "solvers/implicit/implicit.h"
 #include "support.h"
 
 static const uint32_t worker_counts[] = {1, 2, 3, 8};

@@ -1,7 +1,7 @@
 /// What is done to all arrays of a struct alike.
-#include "columns.h"
+#include "base/columns.h"
 
-#include "assert.h"
+#include "base/assert.h"
 
 #include <string.h>
 

@@ -5,7 +5,7 @@
 #ifndef MSPRINGI_COLUMNS_H
 #define MSPRINGI_COLUMNS_H
 
-#include "memory.h"
+#include "base/memory.h"
 
 typedef enum mspringi_column_kind {
     MSPRINGI_ARRAY,  ///< a block of memory of its own

@@ -1,4 +1,4 @@
-#include "cpu.h"
+#include "base/cpu.h"
 
 #include <string.h>
 
@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #endif
 
-#include "target.h"
+#include "base/target.h"
 
 #if defined(MSPRINGI_X86)
 #include <immintrin.h>

@@ -2,11 +2,11 @@
 #define _POSIX_C_SOURCE 200809L // posix_memalign, which strict C hides
 #endif
 
-#include "memory.h"
+#include "base/memory.h"
 
 #include <string.h>
 
-#include "assert.h"
+#include "base/assert.h"
 
 #if !defined(MSPRINGI_FREESTANDING)
 #include <stdlib.h>

@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "message.h"
+#include "base/message.h"
 
 /// Alignment of every block: a cache line, and the widest vector register.
 #define MSPRINGI_ALIGNMENT 64

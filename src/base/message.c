@@ -1,6 +1,6 @@
-#include "message.h"
+#include "base/message.h"
 
-#include "assert.h"
+#include "base/assert.h"
 
 #if defined(MSPRINGI_ASSERTS) && !defined(MSPRINGI_FREESTANDING)
 #include <stdio.h>

@@ -7,7 +7,7 @@
 
 #include <massspring/massspring.h>
 
-#include "format.h"
+#include "base/format.h"
 
 typedef struct mspringi_message {
     char text[256];

@@ -1,5 +1,5 @@
 /// Collecting particles and springs: every value is checked here, so that nothing behind it has to.
-#include "builder.h"
+#include "builder/builder.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 /// What the surface does to one particle in a substep, in all cases.
-#include "floor.h"
+#include "contact/floor.h"
 
 #include <math.h>
 

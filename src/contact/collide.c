@@ -8,7 +8,7 @@
 ///
 /// with v_t' = 0 where that is enough. The position follows: the particle lies on the surface, less far along it by
 /// what friction has taken. It is the springs that throw a structure back, and not the speed of a particle of it.
-#include "floor.h"
+#include "contact/floor.h"
 
 #include <math.h>
 #include <string.h>

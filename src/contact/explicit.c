@@ -1,11 +1,11 @@
 /// The surface and the particles that substeps of symplectic Euler move, or that nothing but forces from outside
 /// does.
-#include "floor.h"
+#include "contact/floor.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "explicit/decay.h"
+#include "base/decay.h"
 #include "sleep/sleep.h"
 
 bool mspringi_floor_is_near(const mspring_network *network, const mspringi_strip *strip) {

@@ -1,13 +1,13 @@
 /// The floor as the host defines it.
-#include "floor.h"
+#include "contact/floor.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/cpu.h"
-#include "network/stages.h"
 #include "sleep/sleep.h"
 #include "store/changed.h"
+#include "store/stages.h"
 
 #define SHORTEST_SPACING 1e-9
 #define LONGEST_SPACING 1e9
@@ -276,6 +276,13 @@ static void begin_impulses(mspring_network *network) {
     floor->has_impulse = false;
     if (network->sleep.sleeping > 0 && floor->had_impulse)
         keep_impulses(network);
+}
+
+void mspringi_floor_clear_slot(const mspringi_floor *floor, uint32_t slot) {
+    const mspringi_field fields[] = {floor->impulse, floor->former};
+    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i)
+        if (fields[i].x)
+            fields[i].x[slot] = fields[i].y[slot] = 0.0f;
 }
 
 void mspringi_floor_take_back(mspringi_floor *floor) {

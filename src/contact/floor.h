@@ -5,14 +5,14 @@
 ///   surface.c    where the surface is, which way it faces, and which boxes are clear of it
 ///   bounce.c     what it does to a particle in a substep of symplectic Euler, and to one without springs
 ///   explicit.c   the same of all particles of such substeps
-///   collide.c    what it does to particles with springs after an implicit substep; see implicit/terms.c
+///   collide.c    what it does to particles with springs after an implicit substep; see solvers/implicit/terms.c
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_FLOOR_H
 #define MSPRINGI_FLOOR_H
 
 #include "kernels/bounce.h"
-#include "network/network.h"
+#include "store/network.h"
 
 typedef struct mspringi_half_plane {
     double x, y;   ///< a point on its border, world coordinates
@@ -91,6 +91,8 @@ void mspringi_floor_free_layout(mspringi_floor *floor, mspringi_memory *memory);
 
 /// Go back to the impulses of the step before the one that was begun last. NULL is allowed.
 void mspringi_floor_take_back(mspringi_floor *floor);
+/// Forget what pushed the particle in a slot: it is another one from now on.
+void mspringi_floor_clear_slot(const mspringi_floor *floor, uint32_t slot);
 
 /* surface.c */
 

@@ -1,5 +1,5 @@
 /// Where the surface is.
-#include "floor.h"
+#include "contact/floor.h"
 
 #include <math.h>
 

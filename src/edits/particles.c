@@ -1,12 +1,12 @@
 /// Editing particles between steps: masses, and what scales their inverses.
-#include "particles.h"
+#include "edits/particles.h"
 
 #include <string.h>
 
 #include "base/cpu.h"
-#include "network/springs.h"
-#include "selection.h"
 #include "store/changed.h"
+#include "store/selection.h"
+#include "store/springs.h"
 
 static float scale_of(const mspring_network *network, mspring_id particle) {
     if (network->inverse_mass_scale)

@@ -5,7 +5,7 @@
 #ifndef MSPRINGI_PARTICLES_H
 #define MSPRINGI_PARTICLES_H
 
-#include "network/network.h"
+#include "store/network.h"
 
 #define MSPRINGI_SMALLEST_MASS 1e-30f
 #define MSPRINGI_LARGEST_MASS 1e30f

@@ -1,11 +1,11 @@
 /// Removing particles and springs, and giving their ids back.
-#include "breaking.h"
-#include "events.h"
-#include "growth.h"
-#include "network/springs.h"
-#include "selection.h"
+#include "layout/emit/spare.h"
+#include "step/breaking.h"
 #include "store/changed.h"
-#include "topology/spare.h"
+#include "store/events.h"
+#include "store/growth.h"
+#include "store/selection.h"
+#include "store/springs.h"
 
 static void remove_spring(mspring_network *network, mspring_id spring, mspring_id with) {
     if (!mspringi_spring_exists(network, spring))

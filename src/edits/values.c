@@ -1,12 +1,12 @@
 /// Editing springs between steps: stiffness, damping, rest length.
-#include "values.h"
+#include "edits/values.h"
 
 #include "base/cpu.h"
-#include "network/rests.h"
-#include "network/springs.h"
-#include "ramps.h"
-#include "selection.h"
+#include "step/ramps.h"
 #include "store/changed.h"
+#include "store/rests.h"
+#include "store/selection.h"
+#include "store/springs.h"
 
 #define LARGEST_VALUE 1e30f
 #define LARGEST_LENGTH 4e12f

@@ -1,5 +1,5 @@
 /// AVX2: eight lanes.
-#include "kernels.h"
+#include "kernels/kernels.h"
 
 #if defined(MSPRINGI_X86)
 
@@ -102,10 +102,10 @@ static inline vec larger_size(vec a, vec b) {
     return _mm256_castsi256_ps(_mm256_max_epi32(_mm256_castps_si256(a), absolute(b)));
 }
 
-#include "sweep.h"
+#include "kernels/sweep.h"
 
 #define MSPRINGI_TABLE mspringi_kernels_avx2
 #define MSPRINGI_LEVEL MSPRING_SIMD_AVX2
-#include "table.h"
+#include "kernels/table.h"
 
 #endif

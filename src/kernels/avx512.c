@@ -1,5 +1,5 @@
 /// AVX-512 (F only): sixteen lanes.
-#include "kernels.h"
+#include "kernels/kernels.h"
 
 #if defined(MSPRINGI_X86)
 
@@ -107,7 +107,7 @@ static inline vec larger_size(vec a, vec b) {
     return _mm512_castsi512_ps(_mm512_max_epi32(_mm512_castps_si512(a), absolute(b)));
 }
 
-#include "sweep.h"
+#include "kernels/sweep.h"
 
 // Eight lanes, for parts of tiles.
 #define PART_LANES 8
@@ -134,6 +134,6 @@ static inline part_vec part_mul(part_vec a, part_vec b) {
 
 #define MSPRINGI_TABLE mspringi_kernels_avx512
 #define MSPRINGI_LEVEL MSPRING_SIMD_AVX512
-#include "table.h"
+#include "kernels/table.h"
 
 #endif

@@ -12,7 +12,7 @@
 #ifndef MSPRINGI_BOUNCE_H
 #define MSPRINGI_BOUNCE_H
 
-#include "kernels.h"
+#include "kernels/kernels.h"
 
 #include <math.h>
 

@@ -7,7 +7,7 @@
 #ifndef MSPRINGI_CONTACT_H
 #define MSPRINGI_CONTACT_H
 
-#include "bounce.h"
+#include "kernels/bounce.h"
 
 #include <string.h>
 

@@ -6,7 +6,7 @@
 #ifndef MSPRINGI_FLIGHT_H
 #define MSPRINGI_FLIGHT_H
 
-#include "contact.h"
+#include "kernels/contact.h"
 
 /// Particles as mspringi_flyer has them, and which surface each meets next.
 typedef struct flying {

@@ -9,8 +9,8 @@
 #define MSPRINGI_KERNELS_H
 
 #include "base/target.h"
-#include "system.h"
-#include "topology/topology.h"
+#include "kernels/system.h"
+#include "layout/topology.h"
 
 /// Squared length, m^2, up to which a spring has no direction, and so no force: above, its inverse is finite.
 #define MSPRINGI_NO_DIRECTION 1e-37f

@@ -1,5 +1,5 @@
 /// NEON: four lanes. Part of every 64-bit ARM CPU.
-#include "kernels.h"
+#include "kernels/kernels.h"
 
 #if defined(MSPRINGI_AARCH64)
 
@@ -85,10 +85,10 @@ static inline float largest_lane(vec a) {
     return vmaxvq_f32(a);
 }
 
-#include "sweep.h"
+#include "kernels/sweep.h"
 
 #define MSPRINGI_TABLE mspringi_kernels_neon
 #define MSPRINGI_LEVEL MSPRING_SIMD_NEON
-#include "table.h"
+#include "kernels/table.h"
 
 #endif

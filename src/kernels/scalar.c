@@ -1,7 +1,7 @@
 /// The definition of a sweep: plain C, one slot at a time. What the other kernels compute, they compute in this
 /// order.
-#include "kernels.h"
-#include "spring_law.h"
+#include "kernels/kernels.h"
+#include "kernels/spring_law.h"
 
 #if !defined(MSPRINGI_WITHOUT_SCALAR)
 
@@ -353,10 +353,10 @@ static inline void loose(const mspringi_sweep *s, const mspringi_span *span, con
     }
 }
 
-#include "scalar_lane.h"
+#include "kernels/scalar_lane.h"
 
 #define MSPRINGI_TABLE mspringi_kernels_scalar
 #define MSPRINGI_LEVEL MSPRING_SIMD_SCALAR
-#include "table.h"
+#include "kernels/table.h"
 
 #endif

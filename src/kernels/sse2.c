@@ -1,5 +1,5 @@
 /// SSE2: four lanes. Part of every x86-64 CPU, and of what i386 is built for.
-#include "kernels.h"
+#include "kernels/kernels.h"
 
 #if defined(MSPRINGI_X86)
 
@@ -91,10 +91,10 @@ static inline vec larger_size(vec a, vec b) {
     return _mm_castsi128_ps(larger(_mm_castps_si128(a), absolute(b)));
 }
 
-#include "sweep.h"
+#include "kernels/sweep.h"
 
 #define MSPRINGI_TABLE mspringi_kernels_sse2
 #define MSPRINGI_LEVEL MSPRING_SIMD_SSE2
-#include "table.h"
+#include "kernels/table.h"
 
 #endif

@@ -12,7 +12,7 @@
 #define MSPRINGI_SWEEP_H
 
 #include "base/cpu.h"
-#include "spring_law.h"
+#include "kernels/spring_law.h"
 
 #if defined(_MSC_VER)
 #define MSPRINGI_INLINE static __forceinline

@@ -14,7 +14,7 @@
 #ifndef MSPRINGI_SYSTEM_H
 #define MSPRINGI_SYSTEM_H
 
-#include "topology/topology.h"
+#include "layout/topology.h"
 
 /// Keeps gcc from writing out a loop over the lanes of a block: four times the code, for nothing that a step notices.
 #if defined(__GNUC__) && !defined(__clang__)
@@ -85,7 +85,7 @@ typedef float (*mspringi_multiply_fn)(const mspringi_system *system, const mspri
 /// Slots of a part of a tile.
 #define MSPRINGI_PART 8
 
-/// Particles of one tile (see implicit/tiles.h) among neighbouring slots.
+/// Particles of one tile (see solvers/implicit/tiles.h) among neighbouring slots.
 typedef struct mspringi_tile_part {
     uint32_t first_slot; ///< a multiple of MSPRINGI_PART
     uint32_t lanes;      ///< bit i: slot first_slot + i
@@ -146,7 +146,7 @@ typedef struct mspringi_tile_flight {
     float x, y, hvx, hvy, inward, sideways;
 } mspringi_tile_flight;
 
-/// The state that a substep begins with, and what is predicted of it: see implicit/scheme.c.
+/// The state that a substep begins with, and what is predicted of it: see solvers/implicit/scheme.c.
 typedef struct mspringi_flight {
     const float *x, *y, *vx, *vy, *low_x, *low_y;
     const float *first_x, *first_y; ///< history

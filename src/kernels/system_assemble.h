@@ -14,8 +14,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "spring_law.h"
-#include "system_iterate.h"
+#include "kernels/spring_law.h"
+#include "kernels/system_iterate.h"
 
 /// MSPRINGI_WIDTH springs of one direction on their way to force and factors. Each is a long chain of operations
 /// that wait for each other: so what can be computed of all directions is, before the next thing is. (One spring

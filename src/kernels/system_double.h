@@ -1,12 +1,12 @@
 /// @file system_double.h
-/// The blocks of the matrix in double precision, for a direct solution: see direct/direct.c. Plain C in blocks of
-/// MSPRINGI_WIDTH lanes, as in system_assemble.h.
+/// The blocks of the matrix in double precision, for a direct solution: see solvers/direct/direct.c. Plain C in
+/// blocks of MSPRINGI_WIDTH lanes, as in system_assemble.h.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SYSTEM_DOUBLE_H
 #define MSPRINGI_SYSTEM_DOUBLE_H
 
-#include "system.h"
+#include "kernels/system.h"
 
 // Nothing is in a lane without spring. No sum of these is -0, so that to add 0 to it changes nothing.
 static inline void add_lanes(double *restrict to, const double *restrict values, uint32_t lanes) {

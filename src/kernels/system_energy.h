@@ -1,5 +1,5 @@
 /// @file system_energy.h
-/// Momenta and energies before and after an implicit substep: see implicit/budget.h. Plain C in blocks of
+/// Momenta and energies before and after an implicit substep: see solvers/implicit/budget.h. Plain C in blocks of
 /// MSPRINGI_WIDTH lanes, as in system_assemble.h. All in double precision: beside the stiffness of iron, lengths
 /// that are rounded to floats would make more energy than a body at rest has.
 ///
@@ -10,7 +10,7 @@
 #include <math.h>
 
 #include "base/cpu.h"
-#include "system_iterate.h"
+#include "kernels/system_iterate.h"
 
 static inline double sum_wide_lanes(double *lanes) {
     for (size_t half = MSPRINGI_WIDTH / 2; half > 0; half /= 2)

@@ -1,12 +1,12 @@
 /// @file system_motion.h
-/// What an implicit substep does before and after its linear system: see implicit/scheme.c for the formulas. Plain
-/// C by slot, or vectors within the parts of a tile, as in system_iterate.h.
+/// What an implicit substep does before and after its linear system: see solvers/implicit/scheme.c for the
+/// formulas. Plain C by slot, or vectors within the parts of a tile, as in system_iterate.h.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SYSTEM_MOTION_H
 #define MSPRINGI_SYSTEM_MOTION_H
 
-#include "system_iterate.h"
+#include "kernels/system_iterate.h"
 
 static void weigh(const float *restrict inverse_mass, float scale, float *restrict mass, size_t first, size_t end) {
     for (size_t i = first; i < end; ++i) {

@@ -6,18 +6,18 @@
 ///
 /// SPDX-License-Identifier: MIT
 
-#include "border.h"
-#include "bounds.h"
-#include "checksum.h"
-#include "flight.h"
-#include "sight.h"
-#include "strain.h"
-#include "system_assemble.h"
-#include "system_double.h"
-#include "system_energy.h"
-#include "system_iterate.h"
-#include "system_motion.h"
-#include "system_multiply.h"
+#include "kernels/border.h"
+#include "kernels/bounds.h"
+#include "kernels/checksum.h"
+#include "kernels/flight.h"
+#include "kernels/sight.h"
+#include "kernels/strain.h"
+#include "kernels/system_assemble.h"
+#include "kernels/system_double.h"
+#include "kernels/system_energy.h"
+#include "kernels/system_iterate.h"
+#include "kernels/system_motion.h"
+#include "kernels/system_multiply.h"
 
 static inline mspringi_variant variant_found(const mspringi_sweep *sweep) {
     const mspringi_variant damped = sweep->parts > MSPRINGI_DAMPING ? MSPRINGI_DAMPED : 0;

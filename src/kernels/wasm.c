@@ -1,5 +1,5 @@
 /// WebAssembly SIMD: four lanes. Part of every module that was built for it: there is no asking at run time.
-#include "kernels.h"
+#include "kernels/kernels.h"
 
 #if defined(MSPRINGI_WASM)
 
@@ -89,10 +89,10 @@ static inline vec larger_size(vec a, vec b) {
     return wasm_i32x4_max(a, wasm_f32x4_abs(b));
 }
 
-#include "sweep.h"
+#include "kernels/sweep.h"
 
 #define MSPRINGI_TABLE mspringi_kernels_wasm
 #define MSPRINGI_LEVEL MSPRING_SIMD_WASM
-#include "table.h"
+#include "kernels/table.h"
 
 #endif

@@ -4,7 +4,7 @@
 /// that destroy, those of floor and hooks here. One that is forgotten leads back into the original, which
 /// test_clone finds by looking at every word of a clone.
 #include "contact/floor.h"
-#include "network.h"
+#include "store/network.h"
 #include "store/store.h"
 
 /// The original's memory and the copy's.

@@ -1,22 +1,22 @@
 /// Making, describing and destroying a network.
-#include "network.h"
+#include "store/network.h"
 
 #include <math.h>
 
-#include "alike.h"
 #include "base/cpu.h"
 #include "base/mix.h"
-#include "compact/job.h"
-#include "edits/growth.h"
-#include "explicit/explicit.h"
-#include "explicit/seam.h"
-#include "fractions.h"
-#include "origin.h"
-#include "rests.h"
+#include "network/job.h"
 #include "sleep/sleep.h"
-#include "springs.h"
+#include "solvers/explicit/explicit.h"
+#include "solvers/explicit/seam.h"
 #include "stability/border.h"
 #include "stability/guard.h"
+#include "step/origin.h"
+#include "store/alike.h"
+#include "store/fractions.h"
+#include "store/growth.h"
+#include "store/rests.h"
+#include "store/springs.h"
 #include "store/store.h"
 
 /* --------------------------------------------------------------------------------------------------- checks */

@@ -2,10 +2,10 @@
 #include <math.h>
 
 #include "base/cpu.h"
-#include "implicit/implicit.h"
-#include "network.h"
+#include "solvers/implicit/implicit.h"
 #include "stability/guard.h"
 #include "store/changed.h"
+#include "store/network.h"
 
 static mspring_result check_implicit(const mspring_solver_def *def, mspringi_message *message) {
     if (def->integrator < MSPRING_INTEGRATOR_GA0 || def->integrator > MSPRING_INTEGRATOR_EULER)

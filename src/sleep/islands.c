@@ -7,8 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "components/roots.h"
-#include "sleep.h"
+#include "sleep/sleep.h"
+#include "store/roots.h"
 
 /* ---------------------------------------------------------------------------------------------- the islands */
 

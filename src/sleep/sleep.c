@@ -3,14 +3,14 @@
 /// What an island was when it fell asleep is kept, and compared with what it is: views and hooks write to it
 /// without telling, and a game sets masses and forces in every frame that are mostly those of the frame before.
 /// Edits of springs tell by themselves.
-#include "sleep.h"
+#include "sleep/sleep.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "edits/growth.h"
-#include "network/stages.h"
 #include "store/changed.h"
+#include "store/growth.h"
+#include "store/stages.h"
 #include "store/store.h"
 
 /* ---------------------------------------------------------------------------------------------------- memory */

@@ -8,8 +8,8 @@
 #ifndef MSPRINGI_SLEEP_H
 #define MSPRINGI_SLEEP_H
 
-#include "network/network.h"
-#include "network/solver.h"
+#include "store/network.h"
+#include "store/solver.h"
 
 /// What is to be swept of a strip.
 typedef enum mspringi_share {

@@ -3,13 +3,13 @@
 #include <string.h>
 
 #include "base/bytes.h"
-#include "edits/breaking.h"
-#include "edits/growth.h"
-#include "network/fractions.h"
-#include "network/springs.h"
-#include "sections.h"
+#include "layout/emit/spare.h"
+#include "step/breaking.h"
 #include "store/changed.h"
-#include "topology/spare.h"
+#include "store/fractions.h"
+#include "store/growth.h"
+#include "store/sections.h"
+#include "store/springs.h"
 
 /// Of a spare spring.
 enum { IS_RELATIVE = 1, IS_LAID_OUT = 2 };

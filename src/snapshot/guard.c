@@ -2,10 +2,10 @@
 #include <float.h>
 #include <math.h>
 
-#include "implicit/cells.h"
-#include "sections.h"
+#include "solvers/implicit/cells.h"
 #include "stability/border.h"
 #include "stability/guard.h"
+#include "store/sections.h"
 
 typedef struct guard_head {
     double dt; ///< what is stable in any shape, s, and for which spring

@@ -6,9 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "sections.h"
 #include "sleep/sleep.h"
 #include "store/changed.h"
+#include "store/sections.h"
 
 typedef struct sleep_head {
     float speed, time;

@@ -3,9 +3,9 @@
 #include <string.h>
 
 #include "base/cpu.h"
-#include "compact/job.h"
-#include "edits/ramps.h"
-#include "sections.h"
+#include "step/ramps.h"
+#include "store/changed.h"
+#include "store/sections.h"
 
 /// In the order in which they are loaded: all goes by which particles and springs there are, ramps go by the
 /// springs' values, stressed springs by what is broken, sleep by what has been edited, and a solver's tiles by what
@@ -221,7 +221,7 @@ static MSPRINGI_NOINLINE mspring_result load(mspring_network *network, const uin
             result = sections[i]->check(network, in.from[i], in.size[i]);
     if (result != MSPRING_OK)
         return result;
-    mspringi_job_follow_all(network);
+    mspringi_changed(network, MSPRINGI_CHANGED_PLACES, 0);
     mspringi_ramps_clear(network);
     for (int i = 0; i < SECTIONS; ++i)
         if (concerns(sections[i], &header))

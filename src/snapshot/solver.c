@@ -1,5 +1,5 @@
 /// What a solver carries from step to step, in a snapshot, and the network's precision.
-#include "sections.h"
+#include "store/sections.h"
 
 // A solver that carries nothing has no section.
 static size_t implicit_size(const mspring_network *network) {

@@ -2,14 +2,14 @@
 #include <math.h>
 #include <string.h>
 
-#include "edits/breaking.h"
-#include "edits/ramps.h"
-#include "edits/strain.h"
 #include "edits/values.h"
-#include "network/rests.h"
-#include "network/springs.h"
-#include "sections.h"
+#include "step/breaking.h"
+#include "step/ramps.h"
+#include "step/strain.h"
 #include "store/changed.h"
+#include "store/rests.h"
+#include "store/sections.h"
+#include "store/springs.h"
 
 /* ------------------------------------------------------------------------------------------------ bits by place */
 

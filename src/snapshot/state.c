@@ -4,10 +4,10 @@
 #include <string.h>
 
 #include "edits/particles.h"
-#include "network/springs.h"
-#include "sections.h"
+#include "layout/emit/spare.h"
 #include "store/changed.h"
-#include "topology/spare.h"
+#include "store/sections.h"
+#include "store/springs.h"
 
 /* --------------------------------------------------------------------------------------------------- settings */
 

@@ -5,14 +5,14 @@
 /// once for y. Its largest eigenvalue is also that of the matrix over springs G^T M^-1 G w (G the incidence
 /// matrix), whose row sums are at most S(a) / m_a + S(b) / m_b, with S the sum of the weights at a particle. (For
 /// graphs without weights: Anderson and Morley 1985.)
-#include "stability.h"
+#include "stability/stability.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "border.h"
-#include "network/springs.h"
-#include "pencil.h"
+#include "stability/border.h"
+#include "stability/pencil.h"
+#include "store/springs.h"
 
 mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring, mspringi_place place) {
     const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, place);

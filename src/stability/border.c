@@ -1,5 +1,5 @@
 /// Passes over all springs for the stability border: those of lattices and chains by kernels, the others here.
-#include "border.h"
+#include "stability/border.h"
 
 #include <math.h>
 

@@ -5,7 +5,7 @@
 #ifndef MSPRINGI_BORDER_LOOK_H
 #define MSPRINGI_BORDER_LOOK_H
 
-#include "network/network.h"
+#include "store/network.h"
 
 /// Reserve what looks work in, unless it is there: 20 bytes a slot.
 mspring_result mspringi_border_reserve(mspring_network *network);

@@ -15,8 +15,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "border.h"
-#include "stability.h"
+#include "stability/border.h"
+#include "stability/stability.h"
 
 /// Rounds of a network that has just been made; a look takes one more. (Of 200 x 200 with holes, three masses and
 /// four stiffnesses, 6 prove 0.94 of the border, 12 0.95 and 50 0.965.)

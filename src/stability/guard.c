@@ -7,14 +7,14 @@
 /// of a network that is below the border is never refused. A look is as short as a few substeps, so that no frame
 /// is late for it. What a short search overlooks grows, changes velocities more, and is looked for again in the
 /// same motion, which has more of it each time; the step in which it is found is the one that is taken back.
-#include "guard.h"
+#include "stability/guard.h"
 
 #include <math.h>
 
-#include "border.h"
+#include "base/decay.h"
 #include "contact/floor.h"
-#include "explicit/decay.h"
-#include "stability.h"
+#include "stability/border.h"
+#include "stability/stability.h"
 
 /// Growth of the largest change of a velocity, from look to look at the border.
 #define SUSPICIOUS 2.0f

@@ -5,8 +5,8 @@
 #ifndef MSPRINGI_GUARD_H
 #define MSPRINGI_GUARD_H
 
-#include "network/network.h"
-#include "network/solver.h"
+#include "store/network.h"
+#include "store/solver.h"
 
 /// Refuse what is no policy.
 mspring_result mspringi_guard_check(mspring_guard policy, mspringi_message *message);

@@ -2,14 +2,14 @@
 /// that a vector and its images span, S is tridiagonal. Extreme eigenvalues are found first, long before rounding
 /// makes the vectors lose their orthogonality, so there is no reorthogonalisation, and three vectors are enough.
 /// The eigenvector takes a second run, along the same vectors.
-#include "lanczos.h"
+#include "stability/lanczos.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 
-#include "tridiagonal.h"
+#include "stability/tridiagonal.h"
 
 /// Iterations between two looks at the tridiagonal matrix.
 #define LOOK 4

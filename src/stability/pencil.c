@@ -1,11 +1,11 @@
-#include "pencil.h"
+#include "stability/pencil.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "explicit/decay.h"
-#include "network/springs.h"
-#include "stability.h"
+#include "base/decay.h"
+#include "stability/stability.h"
+#include "store/springs.h"
 
 double mspringi_quotient_limit(const mspringi_quotient *q, float global_damping) {
     double h = 0.0;

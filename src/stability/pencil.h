@@ -20,9 +20,9 @@
 #ifndef MSPRINGI_PENCIL_H
 #define MSPRINGI_PENCIL_H
 
-#include "lanczos.h"
-#include "network/network.h"
-#include "stability.h"
+#include "stability/lanczos.h"
+#include "stability/stability.h"
+#include "store/network.h"
 
 /// x* (A + 2 D) x of a vector, as a function of h: h^2 stiffness + 2 h damping + relative.
 typedef struct mspringi_quotient {

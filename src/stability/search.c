@@ -10,8 +10,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "border.h"
-#include "tridiagonal.h"
+#include "stability/border.h"
+#include "stability/tridiagonal.h"
 
 /// Residual, as a part of the eigenvalue, at which it is good enough.
 #define TOLERANCE 2e-3

@@ -5,7 +5,7 @@
 #ifndef MSPRINGI_STABILITY_H
 #define MSPRINGI_STABILITY_H
 
-#include "network/network.h"
+#include "store/network.h"
 
 /// Nominal stiffness (N/m) and damping (N s/m) of a spring; of a relative one, stiffness times h^2 and damping
 /// times h (both in kg).

@@ -2,8 +2,8 @@
 #include <math.h>
 
 #include "base/cpu.h"
-#include "pencil.h"
-#include "stability.h"
+#include "stability/pencil.h"
+#include "stability/stability.h"
 
 /// Residual at which the eigenvalue is good enough, as a part of it. The border is its square root.
 #define TOLERANCE 2e-3

@@ -1,4 +1,4 @@
-#include "tridiagonal.h"
+#include "stability/tridiagonal.h"
 
 #include <math.h>
 #include <stdbool.h>

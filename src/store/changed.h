@@ -5,7 +5,7 @@
 #ifndef MSPRINGI_CHANGED_H
 #define MSPRINGI_CHANGED_H
 
-#include "network/network.h"
+#include "store/network.h"
 
 typedef enum mspringi_change {
 #define CHANGE(name, listeners) MSPRINGI_CHANGED_##name,
@@ -16,6 +16,9 @@ typedef enum mspringi_change {
 
 /// Tell all listeners, once the change has been made.
 void mspringi_tell(mspring_network *network, mspringi_change what, uint32_t index);
+
+/// Allocate the log of springs that were broken or restored, if it is not there yet: before any is.
+mspring_result mspringi_changed_reserve_log(mspring_network *network);
 
 /// The same. (Springs are set by the million, and nobody listens but a compaction that is under way.)
 static inline void mspringi_changed(mspring_network *network, mspringi_change what, uint32_t index) {

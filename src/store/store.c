@@ -1,11 +1,11 @@
 /// What is done to all arrays of a network alike.
-#include "store.h"
+#include "store/store.h"
 
 #include <string.h>
 
 #include "base/columns.h"
-#include "explicit/precise.h"
-#include "topology/spare.h"
+#include "layout/emit/spare.h"
+#include "store/precise.h"
 
 /// Elements of an array that its owner reserves.
 #define UNKNOWN SIZE_MAX
@@ -26,7 +26,7 @@
 #define LANES(member, planes) MSPRINGI_COLUMN(mspring_network, member, MSPRINGI_PLANES),
 #define VIEW(member, elements) MSPRINGI_COLUMN(mspring_network, member, MSPRINGI_VIEW),
 static const mspringi_column list[] = {
-#include "network.def"
+#include "store/network.def"
 };
 #undef GROUP
 #undef ARRAY
@@ -60,7 +60,7 @@ static void count_elements(const mspring_network *n, size_t elements[COLUMN_COUN
 #define ARRAY(member, count) *elements++ = (size_t)(count);
 #define LANES(member, planes) *elements++ = (size_t)(planes)*slots;
 #define VIEW(member, count) *elements++ = (size_t)(count);
-#include "network.def"
+#include "store/network.def"
 #undef GROUP
 #undef ARRAY
 #undef LANES
@@ -236,5 +236,5 @@ static void copy_bit(uint16_t *to, mspringi_place place, const uint16_t *from, m
 #define BITS(member) copy_bit(to->member, place, from->member, before);
 void mspringi_store_copy_spring(mspring_network *to, mspringi_place place, const mspring_network *from,
                                 mspringi_place before) {
-#include "network.def"
+#include "store/network.def"
 }

@@ -5,7 +5,7 @@
 #ifndef MSPRINGI_STORE_H
 #define MSPRINGI_STORE_H
 
-#include "network/network.h"
+#include "store/network.h"
 
 /// Arrays that are reserved together. Those below MSPRINGI_LAYOUT_END lie by slot or place.
 typedef enum mspringi_group {
@@ -17,7 +17,7 @@ typedef enum mspringi_group {
 #define PLACES(member)
 #define BITS(member)
 #define STATE(member)
-#include "network.def"
+#include "store/network.def"
     MSPRINGI_STORE_GROUPS
 } mspringi_group;
 #undef GROUP

@@ -6,7 +6,7 @@
 #ifndef MSPRINGI_CREW_H
 #define MSPRINGI_CREW_H
 
-#include "tasks.h"
+#include "tasks/tasks.h"
 
 /// One of them.
 typedef struct mspringi_mate {

@@ -1,8 +1,8 @@
-#include "pool.h"
+#include "tasks/pool.h"
 
 #if defined(MSPRINGI_THREADS)
 
-#include "progress.h"
+#include "tasks/progress.h"
 
 typedef struct pool_worker {
     mspringi_progress called;   ///< runs that this worker is to take part in, so far

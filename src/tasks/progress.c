@@ -1,4 +1,4 @@
-#include "progress.h"
+#include "tasks/progress.h"
 
 #include "base/target.h"
 

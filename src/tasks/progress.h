@@ -12,7 +12,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "thread.h"
+#include "tasks/thread.h"
 
 /// Counters of different threads lie in different cache lines.
 #define MSPRINGI_CACHE_LINE 64

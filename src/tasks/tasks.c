@@ -1,7 +1,7 @@
-#include "tasks.h"
+#include "tasks/tasks.h"
 
 #include "base/cpu.h"
-#include "pool.h"
+#include "tasks/pool.h"
 
 struct mspringi_tasks {
     mspringi_pool *pool; ///< NULL: the host's threads

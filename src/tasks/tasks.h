@@ -16,7 +16,7 @@
 #define MSPRINGI_TASKS_H
 
 #include "base/memory.h"
-#include "progress.h"
+#include "tasks/progress.h"
 
 /// NULL stands for one worker: the caller's thread.
 typedef struct mspringi_tasks mspringi_tasks;

@@ -2,7 +2,7 @@
 #define _POSIX_C_SOURCE 200809L // signals, which strict C11 hides
 #endif
 
-#include "thread.h"
+#include "tasks/thread.h"
 
 #if defined(MSPRINGI_THREADS)
 

@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "recipe.h"
-#include "snapshot/format.h"
+#include "store/format.h"
 #include "support.h"
 
 enum { KINDS = 4, MOST_PARTICLES = 64, MOST_CHANGES = 8 };

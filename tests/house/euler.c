@@ -2,8 +2,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "network/network.h"
-#include "network/springs.h"
+#include "store/network.h"
+#include "store/springs.h"
 
 typedef struct euler {
     double *forces; ///< [2][slots]

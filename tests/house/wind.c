@@ -1,7 +1,7 @@
 /// A stage: the same force along x on every particle that is free.
 #include "wind.h"
 
-#include "network/stages.h"
+#include "store/stages.h"
 
 float house_wind_force;
 

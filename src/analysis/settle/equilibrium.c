@@ -1,0 +1,250 @@
+/// Energy, forces and stiffness.
+#include "analysis/settle/equilibrium.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "kernels/spring_law.h"
+
+/* ------------------------------------------------------------------------------------------------------ memory */
+
+static mspringi_vectors vectors_at(double *block, size_t count, size_t *used) {
+    const mspringi_vectors vectors = {block + *used * count, block + (*used + 1) * count};
+    *used += 2;
+    return vectors;
+}
+
+bool mspringi_statics_create(mspringi_statics *statics, uint32_t particle_count, uint32_t spring_count,
+                             mspringi_memory *memory) {
+    const size_t particles = particle_count, springs = spring_count;
+    enum { PER_PARTICLE = 18, PER_SPRING = 7 };
+    *statics = (mspringi_statics){.particle_count = particle_count};
+    statics->fixed = mspringi_alloc(memory, particles, sizeof *statics->fixed);
+    double *block = statics->block = mspringi_alloc(memory, PER_PARTICLE * particles, sizeof *block);
+    double *spring_block = statics->spring_block =
+        mspringi_alloc(memory, PER_SPRING * springs, sizeof *spring_block);
+    uint32_t *ends = statics->end_block = mspringi_alloc(memory, 2 * springs, sizeof *ends);
+    if (!statics->fixed || !block || !spring_block || !ends)
+        return false;
+    size_t used = 0;
+    statics->start = vectors_at(block, particles, &used);
+    statics->moved = vectors_at(block, particles, &used);
+    statics->outside = vectors_at(block, particles, &used);
+    statics->force = vectors_at(block, particles, &used);
+    statics->step = vectors_at(block, particles, &used);
+    statics->bend = vectors_at(block, particles, &used);
+    statics->spare = vectors_at(block, particles, &used);
+    double **const single[] = {&statics->xx, &statics->xy, &statics->yy, &statics->scale};
+    for (size_t i = 0; i < sizeof single / sizeof single[0]; ++i)
+        *single[i] = block + used++ * particles;
+    mspringi_statics_springs *s = &statics->springs;
+    double **const of_springs[] = {&s->stiffness, &s->rest_length, &s->x, &s->y, &s->xx, &s->xy, &s->yy};
+    for (size_t i = 0; i < sizeof of_springs / sizeof of_springs[0]; ++i)
+        *of_springs[i] = spring_block + i * springs;
+    s->a = ends;
+    s->b = ends + springs;
+    return true;
+}
+
+void mspringi_statics_destroy(mspringi_statics *statics, mspringi_memory *memory) {
+    mspringi_cholesky_double_destroy(&statics->factor, memory);
+    mspringi_cholesky_plan_destroy(&statics->plan, memory);
+    mspringi_free(memory, statics->fixed);
+    mspringi_free(memory, statics->block);
+    mspringi_free(memory, statics->spring_block);
+    mspringi_free(memory, statics->end_block);
+}
+
+mspring_result mspringi_statics_prepare(mspringi_statics *statics, mspring_simd level, mspringi_memory *memory,
+                                        mspringi_message *message) {
+    const mspringi_cholesky_graph graph = {
+        .node_count = statics->particle_count,
+        .edge_count = statics->springs.count,
+        .edge_a = statics->springs.a,
+        .edge_b = statics->springs.b,
+        .absent = statics->fixed,
+        .x = statics->start.x,
+        .y = statics->start.y,
+    };
+    const mspring_result result = mspringi_cholesky_plan_create(&statics->plan, &graph, memory, message);
+    return result == MSPRING_OK
+               ? mspringi_cholesky_double_create(&statics->factor, &statics->plan, level, memory, message)
+               : result;
+}
+
+/* ------------------------------------------------------------------------------------------------------ springs */
+
+/// A spring as it lies now.
+typedef struct lie {
+    double x, y, length; ///< from a to b
+} lie;
+
+static lie lie_of(const mspringi_statics *statics, uint32_t spring) {
+    const mspringi_statics_springs *s = &statics->springs;
+    const uint32_t a = s->a[spring], b = s->b[spring];
+    const double x = s->x[spring] + (statics->moved.x[b] - statics->moved.x[a]);
+    const double y = s->y[spring] + (statics->moved.y[b] - statics->moved.y[a]);
+    return (lie){x, y, sqrt(x * x + y * y)};
+}
+
+mspringi_residual mspringi_statics_forces(mspringi_statics *statics) {
+    const mspringi_statics_springs *s = &statics->springs;
+    mspringi_residual residual = {.where = MSPRING_NONE};
+    mspringi_vectors force = statics->force;
+    for (uint32_t p = 0; p < statics->particle_count; ++p) {
+        force.x[p] = statics->outside.x[p];
+        force.y[p] = statics->outside.y[p];
+        if (!statics->fixed[p])
+            residual.scale = fmax(residual.scale, fmax(fabs(force.x[p]), fabs(force.y[p])));
+    }
+    for (uint32_t i = 0; i < s->count; ++i) {
+        const lie now = lie_of(statics, i);
+        if (!(now.length > 0.0))
+            continue;
+        const double pull = MSPRINGI_LAW_FORCE(MSPRINGI_TIMES, s->stiffness[i], now.length - s->rest_length[i]),
+                     each = pull / now.length;
+        force.x[s->a[i]] += each * now.x;
+        force.y[s->a[i]] += each * now.y;
+        force.x[s->b[i]] -= each * now.x;
+        force.y[s->b[i]] -= each * now.y;
+        residual.scale = fmax(residual.scale, fabs(pull));
+    }
+    for (uint32_t p = 0; p < statics->particle_count; ++p) {
+        if (statics->fixed[p])
+            continue;
+        const double largest = fmax(fabs(force.x[p]), fabs(force.y[p]));
+        if (residual.where == MSPRING_NONE || !(largest <= residual.force)) {
+            residual.where = p;
+            residual.force = largest;
+        }
+    }
+    return residual;
+}
+
+double mspringi_statics_slope(const mspringi_statics *statics) {
+    double slope = 0.0;
+    for (uint32_t p = 0; p < statics->particle_count; ++p)
+        if (!statics->fixed[p])
+            slope += statics->force.x[p] * statics->step.x[p] + statics->force.y[p] * statics->step.y[p];
+    return slope;
+}
+
+// The change of a spring's length is taken from the change of its square, and the change of its energy from that:
+// both are as small as they are, where a difference of energies would be lost in their rounding.
+double mspringi_statics_energy_change(const mspringi_statics *statics, double t, double *error) {
+    const mspringi_statics_springs *s = &statics->springs;
+    const mspringi_vectors step = statics->step, bend = statics->bend;
+    double change = 0.0, size = 0.0;
+    for (uint32_t i = 0; i < s->count; ++i) {
+        const uint32_t a = s->a[i], b = s->b[i];
+        const lie now = lie_of(statics, i);
+        const double dx = t * ((step.x[b] - step.x[a]) + t * (bend.x[b] - bend.x[a]));
+        const double dy = t * ((step.y[b] - step.y[a]) + t * (bend.y[b] - bend.y[a]));
+        const double x = now.x + dx, y = now.y + dy, length = sqrt(x * x + y * y), sum = length + now.length;
+        if (!(sum > 0.0))
+            continue;
+        const double longer = ((now.x + x) * dx + (now.y + y) * dy) / sum;
+        const double energy = s->stiffness[i] * longer * (0.5 * sum - s->rest_length[i]);
+        change += energy;
+        size += fabs(energy);
+    }
+    for (uint32_t p = 0; p < statics->particle_count; ++p) {
+        if (statics->fixed[p])
+            continue;
+        const double work = t * (statics->outside.x[p] * (step.x[p] + t * bend.x[p]) +
+                                 statics->outside.y[p] * (step.y[p] + t * bend.y[p]));
+        change -= work;
+        size += fabs(work);
+    }
+    *error = 1e-14 * size;
+    return change;
+}
+
+/* --------------------------------------------------------------------------------------------------- stiffness */
+
+static void add_to_node(mspringi_statics *statics, uint32_t p, double xx, double xy, double yy, double scale) {
+    statics->xx[p] += xx;
+    statics->xy[p] += xy;
+    statics->yy[p] += yy;
+    statics->scale[p] += scale;
+}
+
+// K = k (t I + (1 - t) n n^T), t = 1 - L0 / l, n the direction. A spring of length 0 has none and is taken to be
+// stiff in all.
+static void add_spring(mspringi_statics *statics, uint32_t spring, bool clamped) {
+    const mspringi_statics_springs *s = &statics->springs;
+    const lie now = lie_of(statics, spring);
+    const double k = s->stiffness[spring];
+    const double nx = now.length > 0.0 ? now.x / now.length : 0.0, ny = now.length > 0.0 ? now.y / now.length : 0.0;
+    const double across = now.length > 0.0 ? 1.0 - s->rest_length[spring] / now.length : 1.0;
+    const double t = clamped ? fmax(0.0, across) : across;
+    const double along = k * (1.0 - t), xx = k * t + along * nx * nx, xy = along * nx * ny,
+                 yy = k * t + along * ny * ny;
+    const double scale = 0.5 * k * (1.0 + fmax(0.0, across));
+    add_to_node(statics, s->a[spring], xx, xy, yy, scale);
+    add_to_node(statics, s->b[spring], xx, xy, yy, scale);
+    s->xx[spring] = -xx;
+    s->xy[spring] = -xy;
+    s->yy[spring] = -yy;
+}
+
+bool mspringi_statics_factor(mspringi_statics *statics, bool clamped, double shift) {
+    const uint32_t count = statics->particle_count;
+    const mspringi_statics_springs *s = &statics->springs;
+    memset(statics->xx, 0, 4 * (size_t)count * sizeof *statics->xx); // and xy, yy, scale, which lie behind it
+    for (uint32_t i = 0; i < s->count; ++i)
+        add_spring(statics, i, clamped);
+    double stiffest = 0.0;
+    for (uint32_t p = 0; p < count; ++p)
+        stiffest = statics->fixed[p] ? stiffest : fmax(stiffest, statics->scale[p]);
+    // A particle without spring has no stiffness: any will do, as no force is on it.
+    const double least = stiffest > 0.0 ? 1e-12 * stiffest : 1.0;
+    for (uint32_t p = 0; p < count; ++p) {
+        const double add = shift * fmax(statics->scale[p], least) + (statics->scale[p] > 0.0 ? 0.0 : least);
+        statics->xx[p] += add;
+        statics->yy[p] += add;
+    }
+    const mspringi_cholesky_matrix_double matrix = {statics->xx, statics->xy, statics->yy, s->xx, s->xy, s->yy};
+    return mspringi_cholesky_double_factor(&statics->factor, &matrix) == MSPRING_NONE;
+}
+
+/* --------------------------------------------------------------------------------------------------------- ways */
+
+static void solve(mspringi_statics *statics, mspringi_vectors v) {
+    for (uint32_t p = 0; p < statics->particle_count; ++p)
+        if (statics->fixed[p])
+            v.x[p] = v.y[p] = 0.0;
+    mspringi_cholesky_double_solve(&statics->factor, v.x, v.y);
+}
+
+// Half of the second derivative of a spring's force along the step, with d the vector of the spring, n its
+// direction and s the change of d, of which sn is along n and sp across:
+//
+//     (k (l - L0) n)'' = k L0 (2 sn sp + |sp|^2 n) / l^2
+static void add_bend(mspringi_statics *statics, uint32_t spring) {
+    const mspringi_statics_springs *s = &statics->springs;
+    const uint32_t a = s->a[spring], b = s->b[spring];
+    const lie now = lie_of(statics, spring);
+    if (!(now.length > 0.0))
+        return;
+    const double nx = now.x / now.length, ny = now.y / now.length;
+    const double dx = statics->step.x[b] - statics->step.x[a], dy = statics->step.y[b] - statics->step.y[a];
+    const double along = dx * nx + dy * ny, px = dx - along * nx, py = dy - along * ny;
+    const double k = 0.5 * s->stiffness[spring] * s->rest_length[spring] / (now.length * now.length);
+    const double across = px * px + py * py;
+    const double fx = k * (2.0 * along * px + across * nx), fy = k * (2.0 * along * py + across * ny);
+    statics->bend.x[a] += fx;
+    statics->bend.y[a] += fy;
+    statics->bend.x[b] -= fx;
+    statics->bend.y[b] -= fy;
+}
+
+void mspringi_statics_find_way(mspringi_statics *statics) {
+    const size_t bytes = 2 * (size_t)statics->particle_count * sizeof *statics->step.x;
+    memcpy(statics->step.x, statics->force.x, bytes);
+    solve(statics, statics->step);
+    memset(statics->bend.x, 0, bytes);
+    for (uint32_t i = 0; i < statics->springs.count; ++i)
+        add_bend(statics, i);
+    solve(statics, statics->bend);
+}

@@ -1,0 +1,267 @@
+/// mspring_network_settle(): from a network to a problem of statics and back.
+#include <float.h>
+#include <math.h>
+
+#include "analysis/settle/equilibrium.h"
+#include "base/cpu.h"
+#include "base/forest.h"
+#include "step/origin.h"
+#include "store/changed.h"
+#include "store/network.h"
+#include "store/springs.h"
+
+/* ----------------------------------------------------------------------------------------------------- filling */
+
+static uint32_t count_springs(const mspring_network *network) {
+    uint32_t count = 0;
+    for (mspring_id spring = 0; spring < network->topology.spring_count; ++spring)
+        count += mspringi_spring_get(network, spring).stiffness > 0.0f;
+    return count;
+}
+
+static void fill_particles(mspringi_statics *statics, const mspring_network *network) {
+    const mspringi_forces *forces = &network->forces;
+    for (mspring_id p = 0; p < statics->particle_count; ++p) {
+        const uint32_t slot = network->topology.slot_of_particle[p];
+        const double inverse_mass = (double)network->inverse_mass[slot];
+        statics->fixed[p] = !(inverse_mass > 0.0);
+        statics->start.x[p] = mspringi_x_of(&network->state, slot);
+        statics->start.y[p] = mspringi_y_of(&network->state, slot);
+        if (statics->fixed[p])
+            continue;
+        // Where a step leaves the velocity as it is: force * inverse_mass + gravity = 0.
+        statics->outside.x[p] = (double)network->gravity_x / inverse_mass;
+        statics->outside.y[p] = (double)network->gravity_y / inverse_mass;
+        if (forces->held_any) {
+            statics->outside.x[p] += (double)forces->held.x[slot];
+            statics->outside.y[p] += (double)forces->held.y[slot];
+        }
+    }
+}
+
+static void fill_springs(mspringi_statics *statics, const mspring_network *network) {
+    mspringi_statics_springs *s = &statics->springs;
+    for (mspring_id spring = 0; spring < network->topology.spring_count; ++spring) {
+        const mspringi_spring_values values = mspringi_spring_get(network, spring);
+        if (!(values.stiffness > 0.0f))
+            continue;
+        const uint32_t i = s->count++;
+        const uint32_t a = s->a[i] = network->topology.particle_of_slot[values.base];
+        const uint32_t b = s->b[i] = network->topology.particle_of_slot[values.tip];
+        s->stiffness[i] = (double)values.stiffness;
+        s->rest_length[i] = (double)values.rest_length;
+        s->x[i] = statics->start.x[b] - statics->start.x[a];
+        s->y[i] = statics->start.y[b] - statics->start.y[a];
+    }
+}
+
+/* -------------------------------------------------------------------------------------------- floating parts */
+
+/// A set of particles that springs hold together, known by one of them.
+typedef struct part {
+    double x, y, size; ///< forces from outside: their sum, and the sum of their absolute values
+    uint32_t lowest;   ///< particle
+    bool is_held;      ///< by a pinned particle
+} part;
+
+static void join_parts(const mspringi_statics *statics, uint32_t *up) {
+    for (uint32_t p = 0; p < statics->particle_count; ++p)
+        up[p] = p;
+    for (uint32_t i = 0; i < statics->springs.count; ++i)
+        mspringi_forest_join(up, statics->springs.a[i], statics->springs.b[i]);
+}
+
+static void sum_parts(const mspringi_statics *statics, uint32_t *up, part *parts) {
+    for (uint32_t p = 0; p < statics->particle_count; ++p) {
+        part *of = &parts[mspringi_forest_root(up, p)];
+        of->x += statics->outside.x[p];
+        of->y += statics->outside.y[p];
+        of->size += fabs(statics->outside.x[p]) + fabs(statics->outside.y[p]);
+        of->is_held = of->is_held || statics->fixed[p];
+    }
+}
+
+// The forces on a part that no pinned particle holds must cancel; to a millionth, which the rounding of many floats
+// does not reach.
+static bool floats_away(const part *of) {
+    return !of->is_held && fabs(of->x) + fabs(of->y) > 1e-6 * of->size;
+}
+
+// Leave floating parts alone, or refuse them.
+static mspring_result check_parts(mspringi_statics *statics, const mspring_settle_def *def, uint32_t *left_alone,
+                                  mspring_network *network) {
+    uint32_t *up = mspringi_alloc(&network->memory, statics->particle_count, sizeof *up);
+    part *parts = mspringi_alloc(&network->memory, statics->particle_count, sizeof *parts);
+    mspring_result result = MSPRING_OK;
+    if (!up || !parts) {
+        result = mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for the parts of %u particles",
+                               (unsigned)statics->particle_count);
+    } else {
+        join_parts(statics, up);
+        sum_parts(statics, up, parts);
+        *left_alone = 0;
+        for (uint32_t p = 0; p < statics->particle_count && result == MSPRING_OK; ++p) {
+            const uint32_t lowest = mspringi_forest_root(up, p);
+            if (!floats_away(&parts[lowest]))
+                continue;
+            if (def->flags & MSPRING_SETTLE_LEAVE_FLOATING) {
+                statics->fixed[p] = true;
+                ++*left_alone;
+            } else {
+                result = mspringi_fail(&network->message, MSPRING_ERROR_EQUILIBRIUM,
+                                       "no spring leads from particle %u to a pinned one, directly or through "
+                                       "others: there is no equilibrium for it under (%g, %g) N",
+                                       (unsigned)p, parts[lowest].x, parts[lowest].y);
+            }
+        }
+    }
+    mspringi_free(&network->memory, up);
+    mspringi_free(&network->memory, parts);
+    return result;
+}
+
+/* ----------------------------------------------------------------------------------------------------- settling */
+
+// How far apart things are: the larger side of the box around the network, or its longest spring.
+static double extent_of(const mspringi_statics *statics, const mspring_network *network) {
+    double extent = 0.0;
+    mspringi_box box = mspringi_box_empty();
+    for (uint32_t p = 0; p < statics->particle_count; ++p)
+        if (mspringi_particle_exists(network, p))
+            mspringi_box_include(&box, statics->start.x[p], statics->start.y[p]);
+    for (uint32_t i = 0; i < statics->springs.count; ++i)
+        extent = fmax(extent, statics->springs.rest_length[i]);
+    return fmax(extent, fmax(box.max_x - box.min_x, box.max_y - box.min_y));
+}
+
+static mspring_result check_rest(const mspringi_statics *statics, const mspringi_rest *rest,
+                                 mspring_network *network) {
+    if (!rest->found)
+        return mspringi_fail(&network->message, MSPRING_ERROR_EQUILIBRIUM,
+                             "after %u iterations particle %u still feels %g N, and forces go up to %g N",
+                             (unsigned)rest->iterations, (unsigned)rest->residual.where, rest->residual.force,
+                             rest->residual.scale);
+    for (uint32_t p = 0; p < statics->particle_count; ++p) {
+        const double x = statics->start.x[p] + statics->moved.x[p], y = statics->start.y[p] + statics->moved.y[p];
+        if (!(fabs(x) <= MSPRING_MAX_COORDINATE && fabs(y) <= MSPRING_MAX_COORDINATE))
+            return mspringi_fail(&network->message, MSPRING_ERROR_EQUILIBRIUM,
+                                 "particle %u would come to rest at (%g, %g) m, out of bounds", (unsigned)p,
+                                 network->origin_x + x, network->origin_y + y);
+    }
+    return MSPRING_OK;
+}
+
+static double put_back(const mspringi_statics *statics, mspring_network *network) {
+    double farthest = 0.0;
+    for (mspring_id p = 0; p < statics->particle_count; ++p) {
+        if (statics->fixed[p])
+            continue;
+        const uint32_t slot = network->topology.slot_of_particle[p];
+        const double dx = statics->moved.x[p], dy = statics->moved.y[p];
+        mspringi_set_x(&network->state, slot, statics->start.x[p] + dx);
+        mspringi_set_y(&network->state, slot, statics->start.y[p] + dy);
+        network->state.vx[slot] = network->state.vy[slot] = 0.0f;
+        farthest = fmax(farthest, sqrt(dx * dx + dy * dy));
+    }
+    mspringi_changed(network, MSPRINGI_CHANGED_STATE, 0);
+    mspringi_origin_follow(network);
+    return farthest;
+}
+
+static mspring_result solve(mspringi_statics *statics, mspring_network *network, const mspring_settle_def *def,
+                            mspring_settle_result *out, mspringi_watcher watcher) {
+    uint32_t left_alone = 0;
+    if (!mspringi_statics_create(statics, network->topology.particle_count, count_springs(network),
+                                 &network->memory))
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to settle %u particles",
+                             (unsigned)network->topology.particle_count);
+    statics->watcher = watcher;
+    fill_particles(statics, network);
+    fill_springs(statics, network);
+    mspring_result result = check_parts(statics, def, &left_alone, network);
+    if (result == MSPRING_OK)
+        result = mspringi_statics_prepare(statics, network->kernels->level, &network->memory, &network->message);
+    if (result != MSPRING_OK)
+        return result;
+    const mspringi_rest rest =
+        mspringi_statics_rest(statics, def->max_iterations, def->tolerance, extent_of(statics, network));
+    result = check_rest(statics, &rest, network);
+    if (result == MSPRING_OK)
+        *out = (mspring_settle_result){
+            .struct_size = sizeof *out,
+            .iterations = rest.iterations,
+            .residual = rest.residual.force,
+            .largest_force = rest.residual.scale,
+            .displacement = put_back(statics, network),
+            .is_stable = rest.is_stable,
+            .left_alone = left_alone,
+        };
+    return result;
+}
+
+static MSPRINGI_NOINLINE mspring_result settle(mspring_network *network, const mspring_settle_def *def,
+                                               mspring_settle_result *out, mspringi_watcher watcher) {
+    mspringi_statics statics = {0};
+    const float relative_h = network->relative_h;
+    if (def->relative_substep > 0.0)
+        mspringi_derive_relative(network, (float)def->relative_substep);
+    const mspring_result result = solve(&statics, network, def, out, watcher);
+    if (result != MSPRING_OK)
+        mspringi_derive_relative(network, relative_h);
+    mspringi_statics_destroy(&statics, &network->memory);
+    return result;
+}
+
+static mspring_result check_def(const mspring_settle_def *def, mspringi_message *message) {
+    mspring_result result =
+        mspringi_check_struct(message, "mspring_settle_def", def->struct_size, sizeof *def, sizeof *def);
+    if (result == MSPRING_OK)
+        result = mspringi_check_reserved(message, "mspring_settle_def", def->reserved);
+    if (result != MSPRING_OK)
+        return result;
+    if (def->flags & ~(uint32_t)MSPRING_SETTLE_LEAVE_FLOATING)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "flags of mspring_settle_def are 0x%x",
+                             (unsigned)def->flags);
+    if (def->max_iterations < 1 || def->max_iterations > 1000000)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "max_iterations is %u, it must be 1 to 1000000",
+                             (unsigned)def->max_iterations);
+    if (!(def->tolerance >= 1e-15 && def->tolerance <= 1.0))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "tolerance is %g, it must be 1e-15 to 1",
+                             def->tolerance);
+    if (def->relative_substep != 0.0 &&
+        !(def->relative_substep >= (double)FLT_MIN && def->relative_substep <= (double)FLT_MAX))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "relative_substep is %g s, it must be 0 or a normal float > 0", def->relative_substep);
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_settle(mspring_network *network, const mspring_settle_def *def,
+                                      mspring_settle_result *result) {
+    const mspringi_watcher nobody = {NULL, NULL};
+    return mspringi_settle_watched(network, def, result, nobody);
+}
+
+mspring_result mspringi_settle_watched(mspring_network *network, const mspring_settle_def *def,
+                                       mspring_settle_result *result, mspringi_watcher watcher) {
+    mspring_settle_def defaults;
+    mspring_settle_result out;
+    mspring_result outcome = mspringi_enter(network);
+    if (outcome != MSPRING_OK)
+        return outcome;
+    if (!def) {
+        (void)mspring_settle_def_init(&defaults, sizeof defaults);
+        def = &defaults;
+    }
+    outcome = check_def(def, &network->message);
+    if (outcome == MSPRING_OK && result)
+        outcome = mspringi_check_struct(&network->message, "mspring_settle_result", result->struct_size,
+                                        sizeof *result, sizeof *result);
+    if (outcome != MSPRING_OK)
+        return outcome;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    outcome = settle(network, def, &out, watcher);
+    mspringi_fp_leave(before);
+    if (outcome == MSPRING_OK && result)
+        *result = out;
+    return outcome;
+}

@@ -1,0 +1,237 @@
+/// Settings in a scene of the host's: floor, hooks and breaking, by what runs from many starts have in common.
+///
+/// A body that breaks is chaotic: where its pieces end says nothing about a setting, how many springs broke on
+/// average does. Starts are taken one after another, each by the fine run and by all settings. So whenever the
+/// budget ends all of them have been compared from the same starts, but for the last.
+#include <math.h>
+
+#include "analysis/tune/tuning.h"
+#include "sleep/sleep.h"
+#include "stability/lanczos.h"
+#include "store/changed.h"
+#include "store/springs.h"
+
+/// Part of the substep that is stable in any shape that the fine run takes at most; and how many times as many
+/// substeps as the explicit settings.
+#define FINE_PART_OF_STABLE (1.0 / 3.0)
+#define FINE_TIMES_SETTINGS 2.0
+
+/// Least unit of distances: for what is counted, and as a part of the setting's own mean.
+#define LEAST_COUNT 1.0
+#define LEAST_PART_OF_OWN 1e-6
+
+/// How a run ended.
+typedef enum ending { WHOLE, REJECTED, CUT_SHORT } ending;
+
+/* ------------------------------------------------------------------------------------------------------ a start */
+
+static void kick(mspring_network *network, uint32_t start, double most) {
+    const size_t particles = network->topology.particle_count;
+    for (uint32_t p = 0; p < particles; ++p) {
+        const uint32_t slot = network->topology.slot_of_particle[p];
+        if (!(network->inverse_mass[slot] > 0.0f))
+            continue;
+        const size_t number = 2 * (start * particles + p);
+        network->state.vx[slot] += (float)(most * mspringi_noise(number));
+        network->state.vy[slot] += (float)(most * mspringi_noise(number + 1));
+    }
+    mspringi_changed(network, MSPRINGI_CHANGED_STATE, 0);
+}
+
+// A clone that has what the scene switches on, a little away from where the network is.
+static mspring_result make_start(mspringi_tuning *tuning, uint32_t start, mspring_network **made) {
+    const mspring_tune_scene *scene = &tuning->scene;
+    *made = NULL;
+    mspring_result result = scene->flags & MSPRING_TUNE_SCENE_HOOKS
+                                ? mspringi_tune_spawn_with_hooks(tuning, tuning->network, made)
+                                : mspringi_tune_spawn(tuning, tuning->network, made);
+    if (result != MSPRING_OK)
+        return result;
+    mspringi_tune_expose(*made);
+    if (!(scene->flags & MSPRING_TUNE_SCENE_FLOOR))
+        result = mspring_network_set_floor(*made, NULL);
+    if (!(scene->flags & MSPRING_TUNE_SCENE_BREAKING))
+        mspringi_tune_make_unbreakable(*made);
+    if (start > 0)
+        kick(*made, start, scene->kick);
+    return result;
+}
+
+/* --------------------------------------------------------------------------------------------------------- runs */
+
+static double count_live(const mspring_network *network) {
+    double live = 0.0;
+    for (mspring_id spring = 0; spring < network->topology.spring_count; ++spring)
+        live += mspringi_place_is_live(network, mspringi_place_of(&network->topology, spring)) ? 1.0 : 0.0;
+    return live;
+}
+
+static void note(const mspring_network *network, double live_before, mspringi_scene_run *run) {
+    double kinetic = 0.0, elastic = 0.0, left = 0.0, low = 0.0, right = 0.0, high = 0.0;
+    if (mspring_network_energy(network, &kinetic, &elastic, NULL) != MSPRING_OK ||
+        mspring_network_bounds(network, &left, &low, &right, &high) != MSPRING_OK)
+        return;
+    run->quantities[MSPRING_TUNE_BROKEN] = live_before - count_live(network);
+    run->quantities[MSPRING_TUNE_ENERGY] = kinetic + elastic;
+    run->quantities[MSPRING_TUNE_EXTENT] = fmax(right - left, high - low);
+}
+
+static mspring_result pass_on(mspringi_tuning *tuning, const mspring_network *clone, mspring_result result) {
+    tuning->network->message = clone->message;
+    return result;
+}
+
+// Have the host prepare a run, and give it its solver; not set: no solver of this kind can have the network.
+static mspring_result prepare(mspringi_tuning *tuning, mspring_network *clone, const mspring_solver_def *solver,
+                              uint32_t start, bool *set) {
+    const mspring_tune_scene *scene = &tuning->scene;
+    mspring_result result = scene->prepare ? scene->prepare(clone, start, tuning->def.user) : MSPRING_OK;
+    if (result != MSPRING_OK)
+        return mspringi_fail(&tuning->network->message, result, "the scene's prepare returned %d at start %u",
+                             (int)result, (unsigned)start);
+    result = mspring_network_set_solver(clone, solver);
+    *set = result == MSPRING_OK;
+    return result == MSPRING_OK || result == MSPRING_ERROR_LIMIT ? MSPRING_OK : pass_on(tuning, clone, result);
+}
+
+static mspring_result take_steps(mspringi_tuning *tuning, mspring_network *clone, mspringi_scene_run *run,
+                                 ending *end) {
+    const mspring_tune_def *def = &tuning->def;
+    const uint32_t steps = mspringi_tune_steps_in(tuning->scene.duration, def->dt);
+    const double live_before = count_live(clone);
+    double seconds = 0.0;
+    for (uint32_t step = 0; step < steps; ++step) {
+        *end = CUT_SHORT;
+        if (!mspringi_tuning_goes_on(tuning, (double)step / (double)steps))
+            return MSPRING_OK;
+        const double before = def->clock(def->user);
+        const mspring_result result = mspring_network_step(clone, def->dt);
+        seconds += fmax(def->clock(def->user) - before, 0.0);
+        *end = REJECTED;
+        if (result != MSPRING_OK)
+            return result == MSPRING_ERROR_UNSTABLE ? MSPRING_OK : pass_on(tuning, clone, result);
+    }
+    run->cost = seconds / (double)steps;
+    note(clone, live_before, run);
+    *end = WHOLE;
+    return MSPRING_OK;
+}
+
+static mspring_result run_solver(mspringi_tuning *tuning, mspring_network *from, uint32_t start,
+                                 const mspring_solver_def *solver, mspringi_scene_run *run, ending *end) {
+    mspring_network *clone = NULL;
+    bool set = false;
+    *end = REJECTED;
+    mspring_result result = mspringi_tune_spawn_with_hooks(tuning, from, &clone);
+    if (result == MSPRING_OK)
+        result = prepare(tuning, clone, solver, start, &set);
+    if (result == MSPRING_OK && set)
+        result = take_steps(tuning, clone, run, end);
+    mspringi_tune_dismiss(clone);
+    tuning->done += 1.0;
+    return result;
+}
+
+/* -------------------------------------------------------------------------------------------------- all of them */
+
+static bool is_in(const mspringi_trial *trial) {
+    return trial->row.flags & MSPRING_TUNE_HAS_COST && !(trial->row.flags & MSPRING_TUNE_REFUSED);
+}
+
+// How the fine run is made; substeps 0: it cannot be.
+static mspring_result choose_fine(mspringi_tuning *tuning, mspring_solver_def *solver) {
+    double any_shape = 0.0;
+    (void)mspring_solver_def_init(solver, sizeof *solver);
+    const mspring_result result = mspring_network_stable_dt(tuning->base, NULL, &any_shape);
+    if (result != MSPRING_OK)
+        return pass_on(tuning, tuning->base, result);
+    double substeps = floor(tuning->def.dt / (FINE_PART_OF_STABLE * any_shape)) + 1.0;
+    for (uint32_t i = 0; i < tuning->trial_count; ++i)
+        if (is_in(&tuning->trials[i]) && tuning->trials[i].row.solver == MSPRING_SOLVER_EXPLICIT)
+            substeps = fmax(substeps, FINE_TIMES_SETTINGS * tuning->trials[i].row.substeps);
+    solver->substeps = substeps <= MSPRING_MAX_SUBSTEPS ? (uint32_t)substeps : 0;
+    return MSPRING_OK;
+}
+
+static bool is_any_in(const mspringi_tuning *tuning) {
+    bool is_any = false;
+    for (uint32_t i = 0; i < tuning->trial_count; ++i)
+        is_any = is_any || is_in(&tuning->trials[i]);
+    return is_any;
+}
+
+// One start, by the fine run and all settings. Not whole: no further start is to be made.
+static mspring_result run_start(mspringi_tuning *tuning, const mspring_solver_def *fine, uint32_t start,
+                                mspringi_scene_run *fine_runs, ending *end) {
+    mspring_network *from = NULL;
+    mspring_result result = make_start(tuning, start, &from);
+    *end = CUT_SHORT;
+    if (result == MSPRING_OK)
+        result = run_solver(tuning, from, start, fine, &fine_runs[start], end);
+    for (uint32_t i = 0; result == MSPRING_OK && *end == WHOLE && i < tuning->trial_count; ++i) {
+        mspringi_trial *trial = &tuning->trials[i];
+        if (!is_in(trial))
+            continue;
+        ending how = CUT_SHORT;
+        result = run_solver(tuning, from, start, &trial->setting, &trial->runs[start], &how);
+        if (how == WHOLE)
+            trial->row.scene_starts = start + 1;
+        else if (how == REJECTED && result == MSPRING_OK)
+            trial->row.flags |= MSPRING_TUNE_REFUSED;
+        else
+            *end = CUT_SHORT;
+    }
+    mspringi_tune_dismiss(from);
+    return result;
+}
+
+/* ------------------------------------------------------------------------------------------------- what is told */
+
+static void sum_up(const mspringi_scene_run *runs, uint32_t count, size_t quantity, double *mean, double *spread) {
+    double sum = 0.0, squares = 0.0;
+    for (uint32_t i = 0; i < count; ++i)
+        sum += runs[i].quantities[quantity];
+    *mean = sum / count;
+    for (uint32_t i = 0; i < count; ++i)
+        squares += (runs[i].quantities[quantity] - *mean) * (runs[i].quantities[quantity] - *mean);
+    *spread = sqrt(squares / (count - 1));
+}
+
+static void tell(mspringi_trial *trial, const mspringi_scene_run *fine_runs, uint32_t fine_substeps,
+                 double tolerance) {
+    mspring_tune_row *row = &trial->row;
+    double costs[MSPRINGI_TUNE_MOST_STARTS];
+    row->flags |= MSPRING_TUNE_HAS_SCENE;
+    row->fine_substeps = fine_substeps;
+    for (uint32_t i = 0; i < row->scene_starts; ++i)
+        costs[i] = trial->runs[i].cost;
+    row->scene_cost = mspringi_tune_median(costs, row->scene_starts);
+    for (size_t q = 0; q < MSPRING_TUNE_QUANTITIES; ++q) {
+        sum_up(trial->runs, row->scene_starts, q, &row->scene_mean[q], &row->scene_spread[q]);
+        sum_up(fine_runs, row->scene_starts, q, &row->fine_mean[q], &row->fine_spread[q]);
+        double unit = fmax(row->fine_spread[q], tolerance * fabs(row->fine_mean[q]));
+        unit = fmax(unit, q == MSPRING_TUNE_BROKEN ? LEAST_COUNT : LEAST_PART_OF_OWN * fabs(row->scene_mean[q]));
+        const double difference = fabs(row->scene_mean[q] - row->fine_mean[q]);
+        row->scene_distance = fmax(row->scene_distance, difference > 0.0 ? difference / unit : 0.0);
+    }
+}
+
+mspring_result mspringi_tune_scenes(mspringi_tuning *tuning) {
+    mspringi_scene_run *fine_runs = tuning->runs + (size_t)tuning->trial_count * tuning->scene.start_count;
+    mspring_solver_def fine;
+    ending end = WHOLE;
+    mspring_result result = choose_fine(tuning, &fine);
+    if (result != MSPRING_OK || fine.substeps == 0)
+        return result;
+    const uint32_t starts = tuning->scene.start_count;
+    for (uint32_t start = 0; result == MSPRING_OK && end == WHOLE && start < starts && is_any_in(tuning); ++start)
+        result = run_start(tuning, &fine, start, fine_runs, &end);
+    for (uint32_t i = 0; result == MSPRING_OK && i < tuning->trial_count; ++i) {
+        mspringi_trial *trial = &tuning->trials[i];
+        if (is_in(trial) && trial->row.scene_starts >= MSPRINGI_TUNE_LEAST_STARTS)
+            tell(trial, fine_runs, fine.substeps, tuning->scene.tolerance);
+        else
+            trial->row.scene_starts = 0;
+    }
+    return result;
+}

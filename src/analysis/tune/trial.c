@@ -1,0 +1,408 @@
+/// Running settings on clones.
+#include <math.h>
+#include <string.h>
+
+#include "analysis/settle/settle.h"
+#include "analysis/tune/reference.h"
+#include "analysis/tune/tuning.h"
+#include "base/cpu.h"
+#include "store/springs.h"
+
+/// Fine substeps are taken in goes of about so many springs, between which the clock is looked at.
+#define SPRINGS_IN_A_GO 1000000u
+
+/// Least scale of errors, as a part of the network's size.
+#define LEAST_SCALE 1e-6
+
+/* ------------------------------------------------------------------------------------------------------- clones */
+
+static mspring_result pass_on(mspringi_tuning *tuning, const mspringi_trial *trial, const mspring_network *clone,
+                              mspring_result result) {
+    if (trial)
+        return mspringi_fail(&tuning->network->message, result, "setting %u: %s", (unsigned)trial->row.setting,
+                             clone->message.text);
+    tuning->network->message = clone->message;
+    return result;
+}
+
+static mspring_result spawn(mspringi_tuning *tuning, mspring_network *from, uint32_t flags,
+                            mspring_network **clone) {
+    mspring_clone_def def;
+    (void)mspring_clone_def_init(&def, sizeof def);
+    def.flags = flags;
+    const mspring_result result = mspring_network_clone(from, &def, clone);
+    if (result != MSPRING_OK)
+        return mspringi_fail(&tuning->network->message, result, "no memory for a clone of the network");
+    (*clone)->tasks = from->tasks;
+    return MSPRING_OK;
+}
+
+mspring_result mspringi_tune_spawn(mspringi_tuning *tuning, mspring_network *from, mspring_network **clone) {
+    return spawn(tuning, from, 0, clone);
+}
+
+mspring_result mspringi_tune_spawn_with_hooks(mspringi_tuning *tuning, mspring_network *from,
+                                              mspring_network **clone) {
+    return spawn(tuning, from, MSPRING_CLONE_HOOKS, clone);
+}
+
+void mspringi_tune_dismiss(mspring_network *clone) {
+    if (clone)
+        clone->tasks = NULL;
+    mspring_network_destroy(clone);
+}
+
+// A clone with the trial's solver; NULL if the solver is not for this network.
+static mspring_result begin(mspringi_tuning *tuning, mspringi_trial *trial, mspring_network *from,
+                            mspring_network **clone) {
+    *clone = NULL;
+    mspring_network *made = NULL;
+    mspring_result result = mspringi_tune_spawn(tuning, from, &made);
+    if (result != MSPRING_OK)
+        return result;
+    result = mspring_network_set_solver(made, &trial->setting);
+    if (result == MSPRING_OK) {
+        *clone = made;
+        return MSPRING_OK;
+    }
+    if (result == MSPRING_ERROR_LIMIT) {
+        trial->row.flags |= MSPRING_TUNE_REFUSED;
+        result = MSPRING_OK;
+    } else {
+        result = pass_on(tuning, trial, made, result);
+    }
+    mspringi_tune_dismiss(made);
+    return result;
+}
+
+// One step of a clone, and its time. A step that is refused ends the trial.
+static mspring_result step(mspringi_tuning *tuning, mspringi_trial *trial, mspring_network *clone) {
+    const mspring_tune_def *def = &tuning->def;
+    const double before = def->clock(def->user);
+    const mspring_result result = mspring_network_step(clone, def->dt);
+    const double seconds = def->clock(def->user) - before;
+    if (result == MSPRING_ERROR_UNSTABLE) {
+        trial->row.flags |= MSPRING_TUNE_REFUSED;
+        return MSPRING_OK;
+    }
+    if (result != MSPRING_OK)
+        return pass_on(tuning, trial, clone, result);
+    double *times = tuning->is_resting ? trial->rest_times : trial->times;
+    uint32_t *time_count = tuning->is_resting ? &trial->rest_count : &trial->time_count;
+    if (*time_count < tuning->time_capacity)
+        times[(*time_count)++] = seconds > 0.0 ? seconds : 0.0;
+    trial->row.flags |= MSPRING_TUNE_HAS_COST;
+    return MSPRING_OK;
+}
+
+static bool is_refused(const mspringi_trial *trial) {
+    return trial->row.flags & MSPRING_TUNE_REFUSED;
+}
+
+/// What is done after a step; step counts from 1.
+typedef void (*after_step_fn)(mspringi_tuning *tuning, const mspring_network *clone, uint32_t step, void *context);
+
+// Run a trial from where a network is. Afterwards has_run says whether it came to its end.
+static mspring_result run(mspringi_tuning *tuning, mspringi_trial *trial, mspring_network *from, uint32_t steps,
+                          after_step_fn after, void *context) {
+    mspring_network *clone;
+    mspring_result result = begin(tuning, trial, from, &clone);
+    uint32_t done = 0;
+    while (result == MSPRING_OK && clone && done < steps &&
+           mspringi_tuning_goes_on(tuning, (double)done / (double)steps)) {
+        result = step(tuning, trial, clone);
+        if (result != MSPRING_OK || is_refused(trial))
+            break;
+        ++done;
+        if (after)
+            after(tuning, clone, done, context);
+    }
+    if (clone && done > 0) {
+        trial->row.substeps = clone->substeps;
+        trial->relative_h = clone->fractions.values ? clone->relative_h : 0.0f;
+    }
+    mspringi_tune_dismiss(clone);
+    trial->has_run = done == steps;
+    tuning->done += 1.0;
+    return result;
+}
+
+/* -------------------------------------------------------------------------------------------------------- costs */
+
+mspring_result mspringi_tune_costs(mspringi_tuning *tuning) {
+    mspring_result result = MSPRING_OK;
+    for (uint32_t i = 0; result == MSPRING_OK && i < tuning->trial_count; ++i)
+        result = run(tuning, &tuning->trials[i], tuning->base, MSPRINGI_TUNE_FIRST_STEPS, NULL, NULL);
+    return result;
+}
+
+mspring_result mspringi_tune_costs_again(mspringi_tuning *tuning) {
+    mspring_result result = MSPRING_OK;
+    for (uint32_t i = 0; result == MSPRING_OK && i < tuning->trial_count; ++i)
+        if (tuning->trials[i].row.flags & MSPRING_TUNE_HAS_COST && !is_refused(&tuning->trials[i]))
+            result = run(tuning, &tuning->trials[i], tuning->base, tuning->step_count, NULL, NULL);
+    return result;
+}
+
+/* ------------------------------------------------------------------------------------------------- trajectories */
+
+/// A fine run, and what a trial adds up.
+typedef struct comparison {
+    mspringi_reference reference;
+    double motion;          ///< m, largest RMS distance of particles from the start, over the steps of the fine run
+    double internal, total; ///< J: largest kinetic and elastic energy, and all energy at the end
+    uint32_t free_count;    ///< particles that are not pinned
+    double squares;         ///< m^2, of a trial
+} comparison;
+
+// The moment that comes with this step, or MSPRINGI_TUNE_MOMENTS.
+static uint32_t moment_of(const mspringi_tuning *tuning, uint32_t step) {
+    for (uint32_t moment = 0; moment < MSPRINGI_TUNE_MOMENTS; ++moment)
+        if ((uint64_t)tuning->step_count * (moment + 1) / MSPRINGI_TUNE_MOMENTS == step)
+            return moment;
+    return MSPRINGI_TUNE_MOMENTS;
+}
+
+static double *places_at(const mspringi_tuning *tuning, uint32_t moment) {
+    return tuning->places + (size_t)2 * moment * tuning->base->topology.particle_count;
+}
+
+// After each step: a body that is back where it was at all moments has moved in between.
+static void note_motion(const mspringi_tuning *tuning, comparison *c) {
+    const mspringi_reference *r = &c->reference;
+    const mspringi_state *start = &tuning->base->state;
+    double squares = 0.0;
+    for (uint32_t p = 0; p < r->particle_count; ++p) {
+        const uint32_t slot = tuning->base->topology.slot_of_particle[p];
+        const double dx = r->x[p] - mspringi_x_of(start, slot), dy = r->y[p] - mspringi_y_of(start, slot);
+        if (r->inverse_mass[p] > 0.0)
+            squares += dx * dx + dy * dy;
+    }
+    c->motion = c->free_count > 0 ? fmax(c->motion, sqrt(squares / (double)c->free_count)) : 0.0;
+}
+
+static void note_moment(const mspringi_tuning *tuning, comparison *c, uint32_t moment) {
+    const mspringi_reference *r = &c->reference;
+    memcpy(places_at(tuning, moment), r->x, 2 * (size_t)r->particle_count * sizeof *r->x); // y lies behind x
+    const mspringi_reference_energy energy = mspringi_reference_measure(r);
+    c->internal = fmax(c->internal, energy.internal);
+    c->total = energy.internal + energy.potential;
+}
+
+// How many fine substeps a step takes, as far as there is any end to them.
+static double fine_substeps(const mspringi_tuning *tuning, const mspringi_reference *r) {
+    const double needed = tuning->def.dt / mspringi_reference_substep(r);
+    return needed < 1e9 ? floor(needed) + 1.0 : 1e9;
+}
+
+// Run the reference. False: there was not time enough.
+static bool make_fine_run(mspringi_tuning *tuning, comparison *c) {
+    const double substeps = fine_substeps(tuning, &c->reference), h = tuning->def.dt / substeps;
+    const uint32_t go = 1 + SPRINGS_IN_A_GO / (c->reference.spring_count + 1);
+    for (uint32_t p = 0; p < c->reference.particle_count; ++p)
+        c->free_count += c->reference.inverse_mass[p] > 0.0;
+    for (uint32_t step = 1; step <= tuning->step_count; ++step) {
+        for (uint32_t left = (uint32_t)substeps; left > 0;) {
+            const uint32_t count = go < left ? go : left;
+            if (!mspringi_tuning_goes_on(tuning, 0.0))
+                return false;
+            mspringi_reference_run(&c->reference, h, count);
+            left -= count;
+        }
+        if (step == 1)
+            mspringi_reference_release(&c->reference);
+        note_motion(tuning, c);
+        const uint32_t moment = moment_of(tuning, step);
+        if (moment < MSPRINGI_TUNE_MOMENTS)
+            note_moment(tuning, c, moment);
+    }
+    return true;
+}
+
+static void compare(mspringi_tuning *tuning, const mspring_network *clone, uint32_t step, void *context) {
+    comparison *c = context;
+    const uint32_t moment = moment_of(tuning, step);
+    if (moment == MSPRINGI_TUNE_MOMENTS)
+        return;
+    const double shift_x = clone->origin_x - tuning->base->origin_x,
+                 shift_y = clone->origin_y - tuning->base->origin_y;
+    mspringi_reference *r = &c->reference;
+    const double *x = places_at(tuning, moment), *y = x + r->particle_count;
+    mspringi_reference_place(r, clone, shift_x, shift_y);
+    for (uint32_t p = 0; p < r->particle_count; ++p)
+        if (r->inverse_mass[p] > 0.0)
+            c->squares += (r->x[p] - x[p]) * (r->x[p] - x[p]) + (r->y[p] - y[p]) * (r->y[p] - y[p]);
+}
+
+static double at_least(const mspringi_tuning *tuning, double scale) {
+    const double least = LEAST_SCALE * tuning->size;
+    return scale > least ? scale : least > 0.0 ? least : 1.0;
+}
+
+static mspring_result run_trajectory(mspringi_tuning *tuning, mspringi_trial *trial, comparison *c) {
+    c->squares = 0.0;
+    const mspring_result result = run(tuning, trial, tuning->base, tuning->step_count, compare, c);
+    if (result != MSPRING_OK || !trial->has_run || c->free_count == 0)
+        return result;
+    mspring_tune_row *row = &trial->row;
+    const mspringi_reference_energy energy = mspringi_reference_measure(&c->reference);
+    row->flags |= MSPRING_TUNE_HAS_TRAJECTORY;
+    row->duration = tuning->step_count * tuning->def.dt;
+    row->trajectory_error = sqrt(c->squares / (double)c->free_count / MSPRINGI_TUNE_MOMENTS);
+    row->trajectory_share = row->trajectory_error / at_least(tuning, c->motion);
+    row->energy_drift = c->internal > 0.0 ? (energy.internal + energy.potential - c->total) / c->internal : 0.0;
+    return MSPRING_OK;
+}
+
+/* --------------------------------------------------------------------------------------------- groups of trials */
+
+// Whether a trial is still to be run, with this stiffness of relative springs.
+static bool is_waiting(const mspringi_trial *trial, float relative_h) {
+    return trial->row.flags & MSPRING_TUNE_HAS_COST && !is_refused(trial) && !trial->has_run &&
+           trial->relative_h == relative_h;
+}
+
+typedef mspring_result (*group_fn)(mspringi_tuning *tuning, float relative_h);
+
+// Run trials, those that have the same stiffness of relative springs together.
+static mspring_result run_groups(mspringi_tuning *tuning, group_fn fn) {
+    mspring_result result = MSPRING_OK;
+    for (uint32_t i = 0; i < tuning->trial_count; ++i)
+        tuning->trials[i].has_run = false;
+    for (uint32_t i = 0; result == MSPRING_OK && i < tuning->trial_count; ++i) {
+        const float relative_h = tuning->trials[i].relative_h;
+        if (!is_waiting(&tuning->trials[i], relative_h) || tuning->is_over)
+            continue;
+        result = fn(tuning, relative_h);
+        for (uint32_t j = i; j < tuning->trial_count; ++j)
+            if (tuning->trials[j].relative_h == relative_h)
+                tuning->trials[j].has_run = true;
+    }
+    return result;
+}
+
+static mspring_result trajectories_of_group(mspringi_tuning *tuning, float relative_h) {
+    mspring_network *fine = NULL;
+    comparison c = {.motion = 0.0};
+    mspring_result result = mspringi_tune_spawn(tuning, tuning->base, &fine);
+    if (result != MSPRING_OK)
+        return result;
+    if (relative_h > 0.0f)
+        mspringi_derive_relative(fine, relative_h);
+    result = mspringi_reference_create(&c.reference, fine);
+    if (result != MSPRING_OK) {
+        result = pass_on(tuning, NULL, fine, result);
+    } else if (make_fine_run(tuning, &c)) {
+        for (uint32_t i = 0; result == MSPRING_OK && i < tuning->trial_count; ++i)
+            if (is_waiting(&tuning->trials[i], relative_h))
+                result = run_trajectory(tuning, &tuning->trials[i], &c);
+    }
+    mspringi_tune_dismiss(fine); // with the reference's memory
+    return result;
+}
+
+mspring_result mspringi_tune_time_fine_step(mspringi_tuning *tuning, float relative_h, double *seconds) {
+    const mspring_tune_def *def = &tuning->def;
+    mspring_network *fine = NULL;
+    mspringi_reference r;
+    mspring_result result = mspringi_tune_spawn(tuning, tuning->base, &fine);
+    if (result != MSPRING_OK)
+        return result;
+    if (relative_h > 0.0f)
+        mspringi_derive_relative(fine, relative_h);
+    result = mspringi_reference_create(&r, fine);
+    if (result == MSPRING_OK) {
+        const double substeps = fine_substeps(tuning, &r), begun = def->clock(def->user);
+        mspringi_reference_run(&r, def->dt / substeps, 1);
+        *seconds = substeps * (def->clock(def->user) - begun);
+    } else {
+        result = pass_on(tuning, NULL, fine, result);
+    }
+    mspringi_tune_dismiss(fine); // with the reference's memory
+    return result;
+}
+
+mspring_result mspringi_tune_trajectories(mspringi_tuning *tuning) {
+    return run_groups(tuning, trajectories_of_group);
+}
+
+/* --------------------------------------------------------------------------------------------------------- rest */
+
+static void add_places(mspringi_tuning *tuning, const mspring_network *clone, uint32_t step, void *context) {
+    const mspring_network *settled = context;
+    const mspringi_state *s = &clone->state;
+    const uint32_t count = clone->topology.particle_count;
+    (void)step;
+    for (uint32_t p = 0; p < count; ++p) {
+        const uint32_t slot = clone->topology.slot_of_particle[p];
+        tuning->places[p] += clone->origin_x - settled->origin_x + mspringi_x_of(s, slot);
+        tuning->places[count + p] += clone->origin_y - settled->origin_y + mspringi_y_of(s, slot);
+    }
+}
+
+static mspring_result run_rest(mspringi_tuning *tuning, mspringi_trial *trial, mspring_network *settled,
+                               double bending) {
+    const uint32_t count = settled->topology.particle_count;
+    memset(tuning->places, 0, 2 * (size_t)count * sizeof *tuning->places);
+    const mspring_result result = run(tuning, trial, settled, tuning->step_count, add_places, settled);
+    if (result != MSPRING_OK || !trial->has_run)
+        return result;
+    double farthest = 0.0;
+    for (uint32_t p = 0; p < count; ++p) {
+        const uint32_t slot = settled->topology.slot_of_particle[p];
+        const double dx = tuning->places[p] / (double)tuning->step_count - mspringi_x_of(&settled->state, slot);
+        const double dy =
+            tuning->places[count + p] / (double)tuning->step_count - mspringi_y_of(&settled->state, slot);
+        farthest = fmax(farthest, sqrt(dx * dx + dy * dy));
+    }
+    trial->row.flags |= MSPRING_TUNE_HAS_REST;
+    trial->row.bending = bending;
+    trial->row.rest_error = farthest;
+    trial->row.rest_share = farthest / at_least(tuning, bending);
+    return MSPRING_OK;
+}
+
+// Let go of what only acts in the first step, and stop what the host moves.
+static void hold_still(mspring_network *network) {
+    const size_t bytes = 2 * mspringi_slot_count(network) * sizeof(float);
+    if (network->forces.held_any)
+        memset(network->forces.held.x, 0, bytes);
+    network->forces.held_any = false;
+    memset(network->state.vx, 0, bytes); // vy lies behind vx
+}
+
+static bool search_goes_on(void *user) {
+    return mspringi_tuning_goes_on(user, 0.0);
+}
+
+static mspring_result rests_of_group(mspringi_tuning *tuning, float relative_h) {
+    mspring_network *settled = NULL;
+    mspring_settle_def def;
+    mspring_settle_result rest = {.struct_size = sizeof rest};
+    mspring_result result = mspringi_tune_spawn(tuning, tuning->base, &settled);
+    if (result != MSPRING_OK)
+        return result;
+    (void)mspring_settle_def_init(&def, sizeof def);
+    def.relative_substep = (double)relative_h;
+    hold_still(settled);
+    const mspringi_watcher watcher = {search_goes_on, tuning};
+    result = mspringi_settle_watched(settled, &def, &rest, watcher);
+    if (result == MSPRING_ERROR_EQUILIBRIUM || result == MSPRING_ERROR_LIMIT) {
+        result = MSPRING_OK; // there is none
+    } else if (result != MSPRING_OK) {
+        result = pass_on(tuning, NULL, settled, result);
+    } else {
+        for (uint32_t i = 0; result == MSPRING_OK && i < tuning->trial_count; ++i)
+            if (is_waiting(&tuning->trials[i], relative_h))
+                result = run_rest(tuning, &tuning->trials[i], settled, rest.displacement);
+    }
+    mspringi_tune_dismiss(settled);
+    return result;
+}
+
+mspring_result mspringi_tune_rests(mspringi_tuning *tuning) {
+    tuning->is_resting = true;
+    const mspring_result result = run_groups(tuning, rests_of_group);
+    tuning->is_resting = false;
+    return result;
+}

@@ -1,0 +1,324 @@
+/// mspring_network_tune(): what is asked for, in which order it is measured, and what comes out.
+#include <math.h>
+
+#include "analysis/tune/tuning.h"
+#include "base/clock.h"
+#include "sleep/sleep.h"
+#include "step/origin.h"
+#include "step/strain.h"
+
+#define MOST_SETTINGS 1000
+#define MOST_STEPS 100000
+
+/* ------------------------------------------------------------------------------------------------------- checks */
+
+static mspring_result check_numbers(const mspring_tune_def *def, mspringi_message *message) {
+    if (!(def->dt > 0.0 && def->dt < INFINITY))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "dt is %g s, it must be finite and > 0", def->dt);
+    if (!(def->duration >= 0.0 && def->duration <= def->dt * MOST_STEPS))
+        return mspringi_fail(
+            message, MSPRING_ERROR_ARGUMENT,
+            "duration is %g s, it must be at most %d steps of %g s, or 0: as long as the motion asks",
+            def->duration, MOST_STEPS, def->dt);
+    if (!(def->budget > 0.0))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "budget is %g s, it must be > 0", def->budget);
+    if (!(def->max_error > 0.0 && def->max_cost > 0.0))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "max_error is %g, max_cost %g s, both must be > 0",
+                             def->max_error, def->max_cost);
+    if (!(def->max_drift >= 0.0))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "max_drift is %g, it must be >= 0", def->max_drift);
+    if (def->measure < MSPRING_TUNE_BY_TRAJECTORY || def->measure > MSPRING_TUNE_BY_SCENE)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "measure is %d, which is none", (int)def->measure);
+    if (def->measure == MSPRING_TUNE_BY_SCENE && !def->scene)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "measure is MSPRING_TUNE_BY_SCENE, but scene NULL");
+    if (def->flags & ~(uint32_t)MSPRING_TUNE_NOTHING_ELSE)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "flags of mspring_tune_def are 0x%x",
+                             (unsigned)def->flags);
+    return MSPRING_OK;
+}
+
+static mspring_result check_scene_numbers(const mspring_tune_scene *scene, double dt, mspringi_message *message) {
+    const uint32_t known = MSPRING_TUNE_SCENE_FLOOR | MSPRING_TUNE_SCENE_BREAKING | MSPRING_TUNE_SCENE_HOOKS;
+    if (scene->flags & ~known)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "flags of mspring_tune_scene are 0x%x",
+                             (unsigned)scene->flags);
+    if (scene->start_count < MSPRINGI_TUNE_LEAST_STARTS || scene->start_count > MSPRINGI_TUNE_MOST_STARTS)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the scene's start_count is %u, it must be %d to %d",
+                             (unsigned)scene->start_count, MSPRINGI_TUNE_LEAST_STARTS, MSPRINGI_TUNE_MOST_STARTS);
+    if (!(scene->duration > 0.0 && scene->duration <= dt * MOST_STEPS))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "the scene's duration is %g s, it must be > 0 and at most %d steps of %g s",
+                             scene->duration, MOST_STEPS, dt);
+    if (!(scene->kick > 0.0 && scene->kick < INFINITY && scene->max_distance > 0.0))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "the scene's kick is %g m/s, its max_distance %g, both must be > 0, kick finite",
+                             scene->kick, scene->max_distance);
+    if (!(scene->tolerance >= 0.0 && scene->tolerance < INFINITY))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "the scene's tolerance is %g, it must be finite and >= 0", scene->tolerance);
+    return MSPRING_OK;
+}
+
+static mspring_result check_scene(const mspring_tune_scene *scene, double dt, mspring_network *network) {
+    mspringi_message *message = &network->message;
+    mspring_result result =
+        mspringi_check_struct(message, "mspring_tune_scene", scene->struct_size, sizeof *scene, sizeof *scene);
+    if (result == MSPRING_OK)
+        result = mspringi_check_reserved(message, "mspring_tune_scene", scene->reserved);
+    if (result == MSPRING_OK)
+        result = check_scene_numbers(scene, dt, message);
+    if (result == MSPRING_OK && network->fractions.values)
+        result = mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                               "the network has relative springs, which would follow the substeps of the scene's "
+                               "fine run: give stiffness in N/m, or no scene");
+    return result;
+}
+
+static mspring_result check_def(const mspring_tune_def *def, mspringi_message *message) {
+    mspring_result result =
+        mspringi_check_struct(message, "mspring_tune_def", def->struct_size, sizeof *def, sizeof *def);
+    if (result == MSPRING_OK)
+        result = check_numbers(def, message);
+    if (result != MSPRING_OK)
+        return result;
+    if (def->setting_count > MOST_SETTINGS || (def->settings && def->setting_count == 0))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "setting_count is %u, it must be 1 to %d",
+                             (unsigned)def->setting_count, MOST_SETTINGS);
+    if (!def->settings && def->setting_count > 0)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "settings is NULL, but setting_count %u",
+                             (unsigned)def->setting_count);
+    if (!def->clock && !mspringi_clock())
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "this build has no clock: give one");
+    return MSPRING_OK;
+}
+
+static mspring_result check_settings(const mspring_solver_def *settings, uint32_t count,
+                                     mspringi_message *message) {
+    for (uint32_t i = 0; i < count; ++i) {
+        mspringi_message what = {.text = ""};
+        const mspring_result result = mspringi_check_solver(&settings[i], &what);
+        if (result != MSPRING_OK)
+            return mspringi_fail(message, result, "setting %u: %s", (unsigned)i, what.text);
+    }
+    return MSPRING_OK;
+}
+
+static mspring_result check_rows(const mspring_tune_row *rows, uint32_t capacity, uint32_t needed,
+                                 mspringi_message *message) {
+    if (capacity < needed)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "there is room for %u rows, but %u settings",
+                             (unsigned)capacity, (unsigned)needed);
+    mspring_result result = MSPRING_OK;
+    for (uint32_t i = 0; result == MSPRING_OK && i < needed; ++i)
+        result =
+            mspringi_check_struct(message, "mspring_tune_row", rows[i].struct_size, sizeof *rows, sizeof *rows);
+    return result;
+}
+
+/* -------------------------------------------------------------------------------------------------------- time */
+
+bool mspringi_tuning_goes_on(mspringi_tuning *tuning, double part) {
+    const mspring_tune_def *def = &tuning->def;
+    if (tuning->is_over)
+        return false;
+    const double done = fmin((tuning->done + part) / tuning->units, 1.0);
+    tuning->is_over =
+        def->clock(def->user) - tuning->begun > def->budget || (def->progress && !def->progress(done, def->user));
+    return !tuning->is_over;
+}
+
+/* -------------------------------------------------------------------------------------------------- setting up */
+
+// A setting is to be measured, not what would stand in for it.
+void mspringi_tune_expose(mspring_network *clone) {
+    mspringi_wake(clone);
+    clone->sleep.speed = 0.0f;
+    if (clone->guard_policy == MSPRING_GUARD_IMPLICIT || clone->guard_policy == MSPRING_GUARD_CLAMP)
+        clone->guard_policy = MSPRING_GUARD_GROWTH;
+    else if (clone->guard_policy == MSPRING_GUARD_CLAMP_BOUNDS)
+        clone->guard_policy = MSPRING_GUARD_BOUNDS;
+}
+
+void mspringi_tune_make_unbreakable(mspring_network *clone) {
+    for (mspring_id spring = 0; clone->strain.break_strain && spring < clone->topology.spring_count; ++spring)
+        mspringi_strain_store(clone, mspringi_place_of(&clone->topology, spring), false, INFINITY);
+}
+
+// A clone that only springs, gravity and the forces given move: ramps stand still, springs do not break, and there
+// is no floor.
+static mspring_result make_base(mspringi_tuning *tuning) {
+    mspring_result result = mspringi_tune_spawn(tuning, tuning->network, &tuning->base);
+    if (result != MSPRING_OK)
+        return result;
+    mspring_network *base = tuning->base;
+    result = mspring_network_set_floor(base, NULL);
+    if (result != MSPRING_OK)
+        return result;
+    mspringi_tune_expose(base);
+    mspringi_tune_make_unbreakable(base);
+    base->ramps.count = 0;
+    mspringi_box box = mspringi_box_empty();
+    for (mspring_id p = 0; p < base->topology.particle_count; ++p) {
+        const uint32_t slot = base->topology.slot_of_particle[p];
+        if (!mspringi_particle_exists(base, p))
+            continue;
+        mspringi_box_include(&box, (double)base->state.x[slot], (double)base->state.y[slot]);
+    }
+    tuning->size = fmax(box.max_x - box.min_x, box.max_y - box.min_y);
+    return MSPRING_OK;
+}
+
+uint32_t mspringi_tune_steps_in(double duration, double dt) {
+    const double steps = duration / dt, whole = floor(steps);
+    return (uint32_t)(whole < steps ? whole + 1.0 : whole);
+}
+
+// Steps of a trajectory; the most there can be where that is not known yet.
+static uint32_t steps_of(const mspring_tune_def *def) {
+    if (def->duration == 0.0)
+        return MSPRINGI_TUNE_MOST_STEPS;
+    const uint32_t steps = mspringi_tune_steps_in(def->duration, def->dt);
+    return steps > MSPRINGI_TUNE_MOMENTS ? steps : MSPRINGI_TUNE_MOMENTS;
+}
+
+static mspring_result allocate(mspringi_tuning *tuning) {
+    mspringi_memory *memory = &tuning->network->memory;
+    const size_t particles = tuning->network->topology.particle_count;
+    tuning->time_capacity = MSPRINGI_TUNE_FIRST_STEPS + 2 * tuning->step_count;
+    tuning->trials = mspringi_alloc(memory, tuning->trial_count, sizeof *tuning->trials);
+    tuning->times =
+        mspringi_alloc(memory, (size_t)2 * tuning->trial_count * tuning->time_capacity, sizeof *tuning->times);
+    tuning->places = mspringi_alloc(memory, 2 * MSPRINGI_TUNE_MOMENTS * particles, sizeof *tuning->places);
+    tuning->runs =
+        mspringi_alloc(memory, ((size_t)tuning->trial_count + 1) * tuning->scene.start_count, sizeof *tuning->runs);
+    if (!tuning->trials || !tuning->times || !tuning->places || !tuning->runs)
+        return mspringi_fail(&tuning->network->message, MSPRING_ERROR_MEMORY, "no memory to try %u settings",
+                             (unsigned)tuning->trial_count);
+    return MSPRING_OK;
+}
+
+static void fill_trials(mspringi_tuning *tuning, const mspring_solver_def *settings) {
+    for (uint32_t i = 0; i < tuning->trial_count; ++i) {
+        mspringi_trial *trial = &tuning->trials[i];
+        trial->setting = settings[i];
+        trial->times = tuning->times + (size_t)2 * i * tuning->time_capacity;
+        trial->rest_times = trial->times + tuning->time_capacity;
+        trial->runs = tuning->runs + (size_t)i * tuning->scene.start_count;
+        trial->row = (mspring_tune_row){
+            .struct_size = sizeof trial->row,
+            .setting = i,
+            .solver = settings[i].solver,
+            .integrator = settings[i].integrator,
+            .substeps = settings[i].substeps,
+            .iterations = settings[i].iterations,
+            .tile_size = settings[i].tile_size,
+            .coarse_period = settings[i].coarse_period,
+        };
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------- measuring */
+
+static mspring_result measure_swings(mspringi_tuning *tuning) {
+    const mspring_tune_measure by = tuning->def.measure;
+    const bool all = !(tuning->def.flags & MSPRING_TUNE_NOTHING_ELSE);
+    const bool rests_first = by == MSPRING_TUNE_BY_REST || by == MSPRING_TUNE_BY_BENDING;
+    mspring_result result = MSPRING_OK;
+    if (tuning->def.duration == 0.0)
+        result = mspringi_tune_choose_duration(tuning);
+    if (result == MSPRING_OK && rests_first)
+        result = mspringi_tune_rests(tuning);
+    if (result == MSPRING_OK && (!rests_first || all))
+        result = mspringi_tune_trajectories(tuning);
+    if (result == MSPRING_OK && !rests_first && all)
+        result = mspringi_tune_rests(tuning);
+    return result;
+}
+
+static mspring_result measure(mspringi_tuning *tuning) {
+    const bool by_scene = tuning->def.measure == MSPRING_TUNE_BY_SCENE;
+    const bool all = !(tuning->def.flags & MSPRING_TUNE_NOTHING_ELSE);
+    mspring_result result = mspringi_tune_costs(tuning);
+    if (result == MSPRING_OK && by_scene)
+        result = mspringi_tune_scenes(tuning);
+    if (by_scene && !all)
+        return result;
+    if (result == MSPRING_OK)
+        result = measure_swings(tuning);
+    if (result == MSPRING_OK && !by_scene && all && tuning->def.scene)
+        result = mspringi_tune_scenes(tuning);
+    return result == MSPRING_OK ? mspringi_tune_costs_again(tuning) : result;
+}
+
+static mspring_result tune(mspringi_tuning *tuning, const mspring_solver_def *settings) {
+    mspring_result result = allocate(tuning);
+    if (result == MSPRING_OK)
+        result = make_base(tuning);
+    if (result != MSPRING_OK)
+        return result;
+    fill_trials(tuning, settings);
+    result = measure(tuning);
+    if (result == MSPRING_OK)
+        mspringi_tune_judge(tuning);
+    return result;
+}
+
+static mspring_result run(mspring_network *network, const mspring_tune_def *def, const mspring_solver_def *settings,
+                          uint32_t setting_count, mspring_tune_row *rows, uint32_t *count) {
+    mspringi_tuning tuning = {
+        .network = network,
+        .def = *def,
+        .trial_count = setting_count,
+        .step_count = steps_of(def),
+        .units = (def->flags & MSPRING_TUNE_NOTHING_ELSE ? 3.0 : 4.0) * (double)setting_count,
+    };
+    if (def->scene) {
+        tuning.scene = *def->scene;
+        tuning.units += (double)def->scene->start_count * ((double)setting_count + 1.0);
+    }
+    if (!tuning.def.clock)
+        tuning.def.clock = mspringi_clock();
+    tuning.begun = tuning.def.clock(def->user);
+    const mspring_result result = tune(&tuning, settings);
+    if (result == MSPRING_OK) {
+        for (uint32_t i = 0; i < setting_count; ++i)
+            rows[i] = tuning.trials[i].row;
+        *count = setting_count;
+    }
+    mspringi_tune_dismiss(tuning.base);
+    mspringi_free(&network->memory, tuning.runs);
+    mspringi_free(&network->memory, tuning.places);
+    mspringi_free(&network->memory, tuning.times);
+    mspringi_free(&network->memory, tuning.trials);
+    return result;
+}
+
+mspring_result mspring_network_tune(mspring_network *network, const mspring_tune_def *def, mspring_tune_row *rows,
+                                    uint32_t capacity, uint32_t *count) {
+    mspring_tune_def defaults;
+    mspring_solver_def usual[MSPRINGI_TUNE_USUAL_SETTINGS];
+    mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK)
+        return result;
+    if (!rows || !count)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "the place for rows, or their count, is NULL");
+    if (!def) {
+        (void)mspring_tune_def_init(&defaults, sizeof defaults);
+        def = &defaults;
+    }
+    const mspring_solver_def *settings = def->settings;
+    uint32_t setting_count = def->setting_count;
+    result = check_def(def, &network->message);
+    if (result == MSPRING_OK && def->scene)
+        result = check_scene(def->scene, def->dt, network);
+    if (result == MSPRING_OK && !settings) {
+        settings = usual;
+        result = mspring_tune_settings(network, def->dt, usual, MSPRINGI_TUNE_USUAL_SETTINGS, &setting_count);
+    }
+    if (result == MSPRING_OK)
+        result = check_rows(rows, capacity, setting_count, &network->message);
+    if (result == MSPRING_OK)
+        result = check_settings(settings, setting_count, &network->message);
+    return result == MSPRING_OK ? run(network, def, settings, setting_count, rows, count) : result;
+}

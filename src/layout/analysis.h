@@ -1,0 +1,233 @@
+/// @file analysis.h
+/// The steps by which a topology is found: graph, herds, strands, grids, less those of sheets, homes, then the
+/// web's list.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_ANALYSIS_H
+#define MSPRINGI_ANALYSIS_H
+
+#include "layout/topology.h"
+
+/// Sort keys in place by radix; scratch is as long as keys.
+void mspringi_sort_keys(uint64_t *keys, uint64_t *scratch, size_t count);
+
+/// Springs by particle: those of particle p are springs[first[p]] ... springs[first[p + 1] - 1], by rising id.
+typedef struct mspringi_graph {
+    const mspring_builder *builder;
+    uint32_t *first;                ///< [particles + 1]
+    uint32_t *springs;              ///< [2 * springs]
+    uint32_t *stamp_of, *spring_to; ///< [particles] while it is checked that no springs join the same particles
+} mspringi_graph;
+
+/// Strands, laid end to end.
+typedef struct mspringi_strands {
+    uint32_t *particles; ///< [count] in order along each strand, strand after strand
+    uint32_t *springs;   ///< [count] the spring to the next entry, or MSPRING_NONE at a strand's end
+    uint32_t count, strand_count, spring_count;
+    uint32_t kept;    ///< of count, so far, while some are dropped
+    uint8_t *visited; ///< [particles] while strands are looked for
+} mspringi_strands;
+
+/// Grids: for each, its particles with their column and row, both from 0.
+typedef struct mspringi_grids {
+    uint32_t *grid_of;      ///< [particles] number of the grid, or MSPRING_NONE
+    uint32_t *column, *row; ///< [particles]
+    uint32_t *members;      ///< [member_count] particles, grid after grid
+    uint32_t *first_member; ///< [count + 1]
+    uint32_t count, member_count;
+    uint32_t found_count;                  ///< grids that were found, some of which may have been put side by side
+    struct mspringi_grid_finder *finder;   ///< while they are looked for
+    struct mspringi_grid_shelver *shelver; ///< while they are put side by side
+} mspringi_grids;
+
+static inline mspring_id mspringi_other_end(const mspringi_spring *spring, mspring_id particle) {
+    return spring->a == particle ? spring->b : spring->a;
+}
+
+/// Index the springs by particle. If it is not known that no two springs join the same particles, that fails with
+/// MSPRING_ERROR_DUPLICATE for two that do.
+mspring_result mspringi_graph_create(mspringi_graph *graph, const mspring_builder *builder, bool is_checked,
+                                     mspringi_memory *memory, mspringi_message *message);
+void mspringi_graph_destroy(mspringi_graph *graph, mspringi_memory *memory);
+
+/// Find the strands: paths of at least three particles that have at most two springs each, and shorter ones that
+/// are attached to nothing. Their particles get MSPRINGI_ROW_CHAIN in kinds.
+mspring_result mspringi_strands_find(mspringi_strands *strands, const mspringi_graph *graph, uint8_t *kinds,
+                                     mspringi_memory *memory, mspringi_message *message);
+void mspringi_strands_destroy(mspringi_strands *strands, mspringi_memory *memory);
+
+/// Trees of a few particles that hang on nothing, sixteen of one shape side by side.
+typedef struct mspringi_herds {
+    uint32_t *particles; ///< [group_count][MSPRINGI_WIDTH] herd after herd: those of the same place in their trees
+    uint8_t *rung_above; ///< [group_count] rung, at the group above it in the tree, of the spring to it; that of
+                         ///< the spring to the group above is the first
+    uint32_t group_count;
+
+    // While they are looked for.
+    uint8_t *known;                      ///< [particles]
+    uint32_t tree_count, tree_particles; ///< all that there are
+    uint32_t *in_order;                  ///< [tree_particles] tree after tree, as their codes have them
+    uint64_t *keys, *scratch;            ///< [tree_count] code, and first of in_order
+    uint32_t listed, listed_particles;
+} mspringi_herds;
+
+/// What rung_above has for the first group of a tree.
+#define MSPRINGI_ROOT 0xff
+
+/// Find them, in this order; those with a range look at particles. Their particles get MSPRINGI_ROW_WEB in kinds.
+mspring_result mspringi_herds_begin(mspringi_herds *herds, const mspringi_graph *graph, mspringi_memory *memory,
+                                    mspringi_message *message);
+void mspringi_herds_explore(mspringi_herds *herds, const mspringi_graph *graph, uint32_t first, uint32_t end);
+mspring_result mspringi_herds_reserve(mspringi_herds *herds, mspringi_memory *memory, mspringi_message *message);
+void mspringi_herds_compare(mspringi_herds *herds, const mspringi_graph *graph, uint32_t first, uint32_t end);
+mspring_result mspringi_herds_fill(mspringi_herds *herds, uint8_t *kinds, mspringi_memory *memory,
+                                   mspringi_message *message);
+/// Free what is needed only while they are looked for.
+void mspringi_herds_forget(mspringi_herds *herds, mspringi_memory *memory);
+void mspringi_herds_destroy(mspringi_herds *herds, mspringi_memory *memory);
+
+/// Find the grids among the particles that are loose in kinds: their particles get MSPRINGI_ROW_LATTICE. The graph
+/// and kinds must stay. For each of MSPRINGI_GRID_SEARCHES: flood, in two steps for each particle at most; then
+/// judge the candidates, after the springs of their members have been counted; then end the search.
+#define MSPRINGI_GRID_SEARCHES 3
+mspring_result mspringi_grids_begin(mspringi_grids *grids, const mspringi_graph *graph, uint8_t *kinds,
+                                    mspringi_memory *memory, mspringi_message *message);
+void mspringi_grids_flood(mspringi_grids *grids, uint32_t first, uint32_t end);
+mspring_result mspringi_grids_begin_judging(mspringi_grids *grids, mspringi_memory *memory,
+                                            mspringi_message *message);
+uint32_t mspringi_grids_candidates(const mspringi_grids *grids);
+uint32_t mspringi_grids_candidate_members(const mspringi_grids *grids);
+void mspringi_grids_count_springs(mspringi_grids *grids, uint32_t first, uint32_t end);
+void mspringi_grids_judge(mspringi_grids *grids, uint32_t first, uint32_t end);
+void mspringi_grids_end_search(mspringi_grids *grids, mspringi_memory *memory);
+void mspringi_grids_destroy(mspringi_grids *grids, mspringi_memory *memory);
+
+/// Particles of the web without a home from which it gets layers: with fewer, all of it is in a cache as fast as
+/// need be.
+#define MSPRINGI_FEWEST_LAYERED 60000
+
+/// Pieces of the network of which the grids that were found are better given up.
+typedef struct mspringi_sheets {
+    uint32_t inner, outer;       ///< springs in all grids, and others that their particles have
+    uint32_t *piece;             ///< [particles] parent in a forest; NULL if nothing is to be given up
+    struct mspringi_sheet *sums; ///< [particles] of roots
+    uint32_t next_member;        ///< of the grid that is looked at
+    uint32_t kept_grids, kept_members;
+} mspringi_sheets;
+/// Give up the grids of pieces that cost less as a web: their particles become loose in kinds. In this order; those
+/// with a range look at springs.
+void mspringi_sheets_survey(mspringi_sheets *sheets, const mspringi_graph *graph, const mspringi_grids *grids,
+                            const uint8_t *kinds, uint32_t first, uint32_t end);
+mspring_result mspringi_sheets_reserve(mspringi_sheets *sheets, const mspringi_graph *graph,
+                                       const mspringi_grids *grids, mspringi_memory *memory,
+                                       mspringi_message *message);
+void mspringi_sheets_join(mspringi_sheets *sheets, const mspringi_graph *graph, uint32_t first, uint32_t end);
+void mspringi_sheets_count_springs(mspringi_sheets *sheets, const mspringi_graph *graph,
+                                   const mspringi_grids *grids, const uint8_t *kinds, uint32_t first, uint32_t end);
+void mspringi_sheets_give_up(mspringi_sheets *sheets, const mspringi_graph *graph, mspringi_grids *grids,
+                             uint8_t *kinds, mspringi_memory *memory);
+void mspringi_sheets_destroy(mspringi_sheets *sheets, mspringi_memory *memory);
+
+/// Put small grids side by side in the same rows, as one grid. found_count stays. In this order; shelve goes
+/// through the narrow ones.
+mspring_result mspringi_grids_measure(mspringi_grids *grids, mspringi_memory *memory, mspringi_message *message);
+uint32_t mspringi_grids_narrow(const mspringi_grids *grids);
+void mspringi_grids_shelve(mspringi_grids *grids, uint32_t first, uint32_t end);
+void mspringi_grids_number(mspringi_grids *grids, mspringi_memory *memory);
+void mspringi_shelver_destroy(struct mspringi_grid_shelver *shelver, mspringi_memory *memory);
+
+/// How a spring lies on a grid.
+typedef struct mspringi_lattice_spring {
+    mspringi_direction direction;
+    uint32_t column, row; ///< the slot whose record it is in
+} mspringi_lattice_spring;
+
+/// Find the place of a spring; false if it does not join neighbouring cells of one grid.
+bool mspringi_grids_place(const mspringi_grids *grids, const mspringi_spring *spring,
+                          mspringi_lattice_spring *found);
+
+/// Largest lag worth having: with more, too few substeps of too many strips share the cache.
+#define MSPRINGI_LONGEST_LAG 16
+
+/// Which grids have rows that are swept for several substeps in one pass, and in which strips of these rows the
+/// particles that hang on them are swept.
+typedef struct mspringi_homes {
+    uint32_t *home;       ///< [particles] strip of those that hang on such grids; MSPRING_NONE for all others
+    uint32_t *grid_order; ///< [grids] grids, those with such rows first
+    uint32_t *first_row;  ///< [grids] number of a grid's first row, all rows in that order
+    uint32_t row_count;   ///< such rows
+    uint32_t strip_rows;  ///< rows in a strip; the last one may have fewer
+    uint32_t lag;         ///< strips that each substep stays behind the one before: ends of leftover springs are
+                          ///< no further apart
+    struct mspringi_homes_finder *finder; ///< while they are looked for
+} mspringi_homes;
+
+/// Find them, in this order; all that they are given must stay. attach goes through the members of grids,
+/// join_springs through springs, try_lags through lags up to MSPRINGI_LONGEST_LAG.
+mspring_result mspringi_homes_begin(mspringi_homes *homes, const mspringi_graph *graph, const mspringi_grids *grids,
+                                    const mspringi_strands *strands, mspringi_memory *memory,
+                                    mspringi_message *message);
+void mspringi_homes_attach(mspringi_homes *homes, uint32_t first, uint32_t end);
+mspring_result mspringi_homes_prepare(mspringi_homes *homes, uint32_t workers, mspringi_memory *memory,
+                                      mspringi_message *message);
+void mspringi_homes_join_springs(mspringi_homes *homes, uint32_t first, uint32_t end);
+void mspringi_homes_judge(mspringi_homes *homes);
+void mspringi_homes_try_lags(mspringi_homes *homes, uint32_t first, uint32_t end);
+void mspringi_homes_end(mspringi_homes *homes, mspringi_memory *memory);
+void mspringi_homes_destroy(mspringi_homes *homes, mspringi_memory *memory);
+
+/// The particles of the web: those that are loose in kinds and have springs. They get MSPRINGI_ROW_WEB. First
+/// those with a home, by home; then those without, in whose list neighbours in space are near each other, and
+/// particles with about as many springs side by side. Behind those the herds.
+typedef struct mspringi_web_list {
+    uint32_t *particles; ///< [count]
+    uint32_t count;
+    uint32_t homed_count; ///< of these have a home
+    uint32_t first_in_herds;
+
+    // While it is made.
+    double min_x, max_x, min_y, max_y; ///< of those without a home
+    uint64_t *keys, *scratch;          ///< [count]
+} mspringi_web_list;
+/// Find it, in this order, then its layers.
+void mspringi_web_list_count(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes,
+                             const uint8_t *kinds);
+mspring_result mspringi_web_list_reserve(mspringi_web_list *list, const mspringi_herds *herds,
+                                         mspringi_memory *memory, mspringi_message *message);
+void mspringi_web_list_fill(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes,
+                            uint8_t *kinds);
+void mspringi_web_list_sort(mspringi_web_list *list, const mspringi_graph *graph, const mspringi_homes *homes);
+void mspringi_web_list_append_herds(mspringi_web_list *list, const mspringi_herds *herds);
+void mspringi_web_list_destroy(mspringi_web_list *list, mspringi_memory *memory);
+
+/// After the list's particles have been counted: drop the strands that have a home, those that hang on a web that
+/// gets layers, unless there is more of strands than of that, and, if there are herds, short ones that hang on the
+/// web. Their particles become loose in kinds and are counted, too.
+void mspringi_strands_drop(mspringi_strands *strands, const mspringi_graph *graph, const mspringi_homes *homes,
+                           bool has_herds, uint8_t *kinds, mspringi_web_list *list);
+
+/// Layers of the web's particles without a home, if they are many: springs join particles of one layer or of two
+/// that follow each other.
+typedef struct mspringi_layers {
+    uint32_t count;     ///< 0: they have none
+    uint32_t *end;      ///< [count] behind the last of each, counted from the first particle without a home
+    uint32_t *layer_of; ///< [particles] of the network
+
+    // While they are found.
+    uint32_t *particles;     ///< the list
+    uint32_t particle_count; ///< in it
+    uint32_t *queue;         ///< [particle_count] of searches, one piece of the web behind the other
+    uint32_t piece;          ///< where in it the search under way begins
+    uint32_t head, tail, level_end;
+} mspringi_layers;
+/// Find them and sort the list by layer.
+mspring_result mspringi_layers_find(mspringi_layers *layers, const mspringi_web_list *list,
+                                    const mspringi_graph *graph, mspringi_memory *memory,
+                                    mspringi_message *message);
+void mspringi_layers_destroy(mspringi_layers *layers, mspringi_memory *memory);
+
+/// Put particles with about as many springs side by side, those of a layer.
+void mspringi_web_list_order_windows(mspringi_web_list *list, const mspringi_layers *layers,
+                                     const mspringi_graph *graph, mspringi_memory *memory);
+
+#endif

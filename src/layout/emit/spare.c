@@ -1,0 +1,95 @@
+/// Places and slots for what is added to a network after its topology was made.
+#include "layout/emit/spare.h"
+
+#include <string.h>
+
+// Copy an array of old_count elements into a longer one; false: there is no memory for it.
+static bool lengthen(uint32_t **array, size_t old_count, size_t count, mspringi_memory *memory) {
+    uint32_t *longer = mspringi_alloc(memory, count, sizeof *longer);
+    if (!longer)
+        return false;
+    if (old_count > 0)
+        memcpy(longer, *array, old_count * sizeof *longer);
+    mspringi_free(memory, *array);
+    *array = longer;
+    return true;
+}
+
+static bool note_layout(mspringi_topology *t, mspringi_memory *memory) {
+    const uint32_t particles = mspringi_spare_particles(t), springs = mspringi_spare_springs(t);
+    t->laid_slots = mspringi_alloc(memory, particles, sizeof *t->laid_slots);
+    t->laid_places = mspringi_alloc(memory, springs, sizeof *t->laid_places);
+    if (!t->laid_slots || !t->laid_places)
+        return false;
+    memcpy(t->laid_slots, t->slot_of_particle + t->reserve.first_particle, particles * sizeof *t->laid_slots);
+    memcpy(t->laid_places, t->place_of_spring + t->reserve.first_spring, springs * sizeof *t->laid_places);
+    return true;
+}
+
+mspring_result mspringi_spare_reserve(mspringi_topology *t, uint32_t parked, mspringi_memory *memory,
+                                      mspringi_message *message) {
+    const uint32_t springs = mspringi_spare_springs(t), woven = t->woven_count;
+    const size_t count = (size_t)woven + springs + parked;
+    const uint32_t rungs = t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0;
+    if ((uint64_t)t->chain_places + count >= MSPRING_NONE ||
+        (uint64_t)rungs * MSPRINGI_WIDTH + springs + parked >= MSPRING_NONE)
+        return mspringi_fail(message, MSPRING_ERROR_LIMIT, "%u springs are more than can be numbered",
+                             (unsigned)t->spring_count);
+    t->leftover_capacity = woven + springs;
+    t->parked_count = parked;
+    if (springs + parked > 0 &&
+        (!lengthen(&t->leftover_a, woven, count, memory) || !lengthen(&t->leftover_b, woven, count, memory) ||
+         !lengthen(&t->web.entry, (size_t)2 * (t->web.entry ? woven : 0), 2 * count, memory)))
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the places of %zu springs", count);
+    t->leftover_count = woven + (t->spring_count - t->reserve.first_spring);
+    return MSPRING_OK;
+}
+
+void mspringi_spare_enter(mspringi_topology *t) {
+    const uint32_t rungs = t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0;
+    for (uint32_t i = 0; i < mspringi_spare_springs(t) + t->parked_count; ++i) {
+        uint32_t *entry = t->web.entry + 2 * ((size_t)t->woven_count + i);
+        entry[0] = entry[1] = rungs * MSPRINGI_WIDTH + i;
+    }
+}
+
+mspring_result mspringi_spare_keep(mspringi_topology *t, mspringi_memory *memory, mspringi_message *message) {
+    for (mspring_id s = t->spring_count > t->reserve.first_spring ? t->spring_count : t->reserve.first_spring;
+         s < t->reserve.spring_end; ++s)
+        t->place_of_spring[s] = mspringi_spare_place(t, s);
+    if (mspringi_spare_particles(t) + mspringi_spare_springs(t) > 0 && !note_layout(t, memory))
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for %u spare springs",
+                             (unsigned)mspringi_spare_springs(t));
+    return MSPRING_OK;
+}
+
+void mspringi_spare_put_particle(mspringi_topology *t, mspring_id particle) {
+    const uint32_t slot = mspringi_spare_slot(t, particle);
+    t->slot_of_particle[particle] = slot;
+    t->particle_of_slot[slot] = particle;
+}
+
+void mspringi_spare_take_particle(mspringi_topology *t, mspring_id particle) {
+    t->particle_of_slot[t->slot_of_particle[particle]] = MSPRING_NONE;
+}
+
+void mspringi_spare_put_spring(mspringi_topology *t, mspring_id spring, mspring_id a, mspring_id b) {
+    const mspringi_place place = mspringi_spare_place(t, spring);
+    t->place_of_spring[spring] = place;
+    t->leftover_a[place - t->chain_places] = t->slot_of_particle[a];
+    t->leftover_b[place - t->chain_places] = t->slot_of_particle[b];
+}
+
+void mspringi_spare_count(mspringi_topology *t, uint32_t particle_count, uint32_t spring_count) {
+    t->particle_count = particle_count;
+    t->spring_count = spring_count;
+    t->leftover_count = t->woven_count + (spring_count - t->reserve.first_spring);
+    if (t->spare_blocks == 0)
+        return;
+    uint32_t slots = particle_count - t->reserve.first_particle;
+    while (slots > 0 && t->particle_of_slot[t->spare_first * MSPRINGI_WIDTH + slots - 1] == MSPRING_NONE)
+        --slots;
+    const mspringi_row *loose = &t->rows[t->row_count - 1];
+    t->spans[loose->first_span].end_slot =
+        (t->spare_first + (slots + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH) * MSPRINGI_WIDTH;
+}

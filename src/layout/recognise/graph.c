@@ -1,0 +1,78 @@
+/// Springs by particle.
+#include "layout/analysis.h"
+
+static mspring_result reserve(mspringi_graph *graph, bool is_checked, mspringi_memory *memory,
+                              mspringi_message *message) {
+    const size_t particles = graph->builder->particle_count, springs = graph->builder->spring_count;
+    graph->first = mspringi_alloc(memory, particles + 2, sizeof *graph->first);
+    graph->springs = mspringi_alloc(memory, 2 * springs, sizeof *graph->springs);
+    if (!is_checked) {
+        graph->stamp_of = mspringi_alloc(memory, particles, sizeof *graph->stamp_of);
+        graph->spring_to = mspringi_alloc(memory, particles, sizeof *graph->spring_to);
+    }
+    if (!graph->first || !graph->springs || (!is_checked && (!graph->stamp_of || !graph->spring_to)))
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the graph of %zu springs", springs);
+    return MSPRING_OK;
+}
+
+// Counting sort: first[p + 2] counts, then becomes the place to write the next spring of p at, so that in the end
+// first[p + 1] is where those of p end.
+static void sort_springs(mspringi_graph *graph) {
+    const mspring_builder *builder = graph->builder;
+    const uint32_t springs = (uint32_t)builder->spring_count;
+    for (uint32_t s = 0; s < springs; ++s) {
+        graph->first[builder->springs[s].a + 2]++;
+        graph->first[builder->springs[s].b + 2]++;
+    }
+    for (size_t p = 0; p < builder->particle_count; ++p)
+        graph->first[p + 2] += graph->first[p + 1];
+    for (uint32_t s = 0; s < springs; ++s) {
+        graph->springs[graph->first[builder->springs[s].a + 1]++] = s;
+        graph->springs[graph->first[builder->springs[s].b + 1]++] = s;
+    }
+}
+
+// Each particle's neighbours with higher ids are stamped with the spring that leads there, and a stamp that is
+// there already names the first of the two.
+static mspring_result check(const mspringi_graph *graph, mspringi_message *message) {
+    const mspring_builder *builder = graph->builder;
+    uint32_t *stamp_of = graph->stamp_of, *spring_to = graph->spring_to;
+    for (uint32_t p = 0; p < builder->particle_count; ++p) {
+        for (uint32_t i = graph->first[p]; i < graph->first[p + 1]; ++i) {
+            const uint32_t spring = graph->springs[i];
+            const mspring_id other = mspringi_other_end(&builder->springs[spring], p);
+            if (other < p)
+                continue;
+            if (stamp_of[other] == p + 1)
+                return mspringi_fail(message, MSPRING_ERROR_DUPLICATE,
+                                     "springs %u and %u both join particles %u and %u", (unsigned)spring_to[other],
+                                     (unsigned)spring, (unsigned)p, (unsigned)other);
+            stamp_of[other] = p + 1;
+            spring_to[other] = spring;
+        }
+    }
+    return MSPRING_OK;
+}
+
+mspring_result mspringi_graph_create(mspringi_graph *graph, const mspring_builder *builder, bool is_checked,
+                                     mspringi_memory *memory, mspringi_message *message) {
+    graph->builder = builder;
+    mspring_result result = reserve(graph, is_checked, memory, message);
+    if (result != MSPRING_OK)
+        return result;
+    sort_springs(graph);
+    if (is_checked)
+        return MSPRING_OK;
+    result = check(graph, message);
+    mspringi_free(memory, graph->stamp_of);
+    mspringi_free(memory, graph->spring_to);
+    graph->stamp_of = graph->spring_to = NULL;
+    return result;
+}
+
+void mspringi_graph_destroy(mspringi_graph *graph, mspringi_memory *memory) {
+    mspringi_free(memory, graph->first);
+    mspringi_free(memory, graph->springs);
+    mspringi_free(memory, graph->stamp_of);
+    mspringi_free(memory, graph->spring_to);
+}

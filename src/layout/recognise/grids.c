@@ -1,0 +1,450 @@
+/// Grids, found from positions and springs whatever the order in which they were added.
+///
+/// From a seed particle the search follows springs: the way from one end of a spring to the other says, in the
+/// frame of the first, which cell the other is in. A grid is kept if sweeping its rows costs less than handling its
+/// springs one by one. There are three searches, each among what those before left: for upright grids that have
+/// nearly all springs of their particles, for such that lie at any angle, are oblong or bend, and for upright ones
+/// that have half of the springs.
+#include "layout/analysis.h"
+#include "layout/recognise/frame.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/// How far a spring may lead across an axis, as a fraction of how far along it, to lie along it.
+#define AXIAL_TOLERANCE 0.3f
+
+/// A grid is kept if one slot in this many of its records holds a spring: a spring on its own costs about that
+/// many times a slot of a swept record (measured: 6 to 12, by instruction set).
+#define SLOTS_PER_SPRING 6
+
+/// A grid is kept by the first two searches if one in this many of its particles' springs, or fewer, is not between
+/// neighbouring cells. (Sheets of triangles, 200 x 200, whose particles are off by up to a fraction of a cell, in
+/// ns for each spring and substep at AVX-512: 0.2 off, in upright grids 0.9, in bent ones 0.6; 0.3 off,
+/// upright 1.2, bent, in 15 pieces, 4.3; a ring of 36 x 6 1.9 and 0.7.)
+#define SPRINGS_PER_OUTER_UPRIGHT 64
+#define SPRINGS_PER_OUTER_BENT 16
+
+/// A particle with more springs is no seed of a bent grid: its neighbours have eight, and some ropes.
+#define MOST_SEED_SPRINGS 16
+
+typedef enum grid_search { FOR_UPRIGHT, FOR_BENT, FOR_PARTS } grid_search;
+
+/// Springs of a grid's particles.
+typedef struct grid_springs {
+    uint32_t inner_ends; ///< ends of those between neighbouring cells
+    uint32_t ends;       ///< ends of all that are at one of its particles
+} grid_springs;
+
+/// Grids from grids->count on are candidates: found by the search that is under way, and not judged yet.
+typedef struct mspringi_grid_finder {
+    const mspringi_graph *graph;
+    mspringi_grids *grids;
+    uint8_t *kinds;
+    grid_search search;
+    uint8_t *given_up; ///< [particles] 1 + the last search that had it in a grid which was not worth it
+    int32_t *column;   ///< [particles] relative to the seed
+    int32_t *row;      ///< [particles]
+    uint32_t *cell;    ///< hash table of the candidates' particles
+    size_t cell_mask;
+    uint64_t *keys, *scratch; ///< [particles]
+    mspringi_step *steps[2];  ///< [particles] of frames, in the memory of keys and scratch, which are wanted later
+    mspringi_frame upright;   ///< the frame of all particles of an upright grid
+    grid_springs *springs;    ///< [candidates]
+
+    uint32_t first, end;         ///< candidates
+    uint32_t seed;               ///< the particle to be looked at next
+    uint32_t next_member;        ///< members from here on have not been gone through
+    int32_t min_column, min_row; ///< of the grid that is judged
+    uint32_t blocks, runs;       ///< of blocks, in one orientation
+} finder;
+
+static mspring_result out_of_memory(const mspringi_graph *graph, mspringi_message *message) {
+    return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to search %zu particles for grids",
+                         graph->builder->particle_count);
+}
+
+/* --------------------------------------------------------------------------------------- the cells of a grid */
+
+static size_t hash_cell(uint32_t grid, int32_t column, int32_t row, size_t mask) {
+    uint64_t key = (uint64_t)(uint32_t)column << 32 | (uint32_t)row;
+    key ^= grid * 0x9e3779b97f4a7c15u; // another such as the one below
+    key ^= key >> 33;
+    key *= 0xff51afd7ed558ccdu; // an odd number with well spread bits
+    key ^= key >> 33;
+    return (size_t)key & mask;
+}
+
+// Put a particle into a cell of the last candidate; false if somebody is there.
+static bool occupy(finder *f, uint32_t particle, int32_t column, int32_t row) {
+    mspringi_grids *grids = f->grids;
+    const uint32_t grid = f->end - 1;
+    size_t i = hash_cell(grid, column, row, f->cell_mask);
+    while (f->cell[i] != 0) {
+        const uint32_t there = f->cell[i] - 1;
+        if (f->column[there] == column && f->row[there] == row && grids->grid_of[there] == grid)
+            return false;
+        i = (i + 1) & f->cell_mask;
+    }
+    f->cell[i] = particle + 1;
+    f->column[particle] = column;
+    f->row[particle] = row;
+    grids->grid_of[particle] = grid;
+    grids->members[grids->member_count++] = particle;
+    return true;
+}
+
+/* ------------------------------------------------------------------------------------------------- the search */
+
+static bool is_free(const finder *f, uint32_t particle) {
+    return f->kinds[particle] == MSPRINGI_ROW_LOOSE && f->grids->grid_of[particle] == MSPRING_NONE &&
+           f->given_up[particle] <= f->search;
+}
+
+static mspringi_frame frame_of(const finder *f, uint32_t particle) {
+    return (mspringi_frame){f->steps[0][particle], f->steps[1][particle]};
+}
+
+static void set_frame(finder *f, uint32_t particle, mspringi_frame frame) {
+    f->steps[0][particle] = frame.column;
+    f->steps[1][particle] = frame.row;
+}
+
+static mspringi_step way_between(const finder *f, uint32_t from, uint32_t to) {
+    const mspring_builder *builder = f->graph->builder;
+    return (mspringi_step){(float)(builder->particles[to].x - builder->particles[from].x),
+                           (float)(builder->particles[to].y - builder->particles[from].y)};
+}
+
+// The frame of a seed from the shortest of its springs that lie along an axis.
+static bool find_upright_frame(finder *f, uint32_t seed) {
+    float shortest = 0.0f;
+    for (uint32_t i = f->graph->first[seed]; i < f->graph->first[seed + 1]; ++i) {
+        const mspring_id other = mspringi_other_end(&f->graph->builder->springs[f->graph->springs[i]], seed);
+        const mspringi_step way = way_between(f, seed, other);
+        const float dx = fabsf(way.x), dy = fabsf(way.y);
+        const float along = dx > dy ? dx : dy, across = dx > dy ? dy : dx;
+        if (is_free(f, other) && across <= AXIAL_TOLERANCE * along && (shortest == 0.0f || along < shortest))
+            shortest = along;
+    }
+    f->upright = mspringi_frame_upright(shortest);
+    return shortest > 0.0f;
+}
+
+// The ways along a seed's springs to particles that are free, shortest first. Returns how many; 0 if they are more
+// than a seed's.
+static uint32_t list_ways(const finder *f, uint32_t seed, mspringi_step ways[MOST_SEED_SPRINGS]) {
+    const uint32_t first = f->graph->first[seed], end = f->graph->first[seed + 1];
+    uint32_t count = 0;
+    for (uint32_t i = first; end - first <= MOST_SEED_SPRINGS && i < end; ++i) {
+        const mspring_id other = mspringi_other_end(&f->graph->builder->springs[f->graph->springs[i]], seed);
+        const mspringi_step way = way_between(f, seed, other);
+        if (!is_free(f, other))
+            continue;
+        uint32_t at = count++;
+        for (; at > 0 && mspringi_step_square(way) < mspringi_step_square(ways[at - 1]); --at)
+            ways[at] = ways[at - 1];
+        ways[at] = way;
+    }
+    return count;
+}
+
+static uint32_t count_rounded(mspringi_frame frame, const mspringi_step *ways, uint32_t count) {
+    uint32_t rounded = 0;
+    int32_t columns, rows;
+    for (uint32_t i = 0; i < count; ++i)
+        rounded += mspringi_frame_round(frame, ways[i], &columns, &rows);
+    return rounded;
+}
+
+// The frame of a seed from the shortest of its springs and the one with which most of them lead to neighbouring
+// cells: of a slanted cell's side and diagonal, which may be as long, the side.
+static bool find_any_frame(finder *f, uint32_t seed) {
+    mspringi_step ways[MOST_SEED_SPRINGS];
+    const uint32_t count = list_ways(f, seed, ways);
+    uint32_t most = 0;
+    for (uint32_t i = 1; i < count; ++i) {
+        if (!mspringi_frame_is_spanned(ways[0], ways[i]))
+            continue;
+        const mspringi_frame frame = mspringi_frame_from(ways[0], ways[i]);
+        const uint32_t rounded = count_rounded(frame, ways, count);
+        if (rounded > most) {
+            most = rounded;
+            set_frame(f, seed, frame);
+        }
+    }
+    return most > 0;
+}
+
+// Begin a grid with a particle, if one can be found from there.
+static void seed_from(finder *f, uint32_t seed) {
+    if (!is_free(f, seed) || !(f->search == FOR_BENT ? find_any_frame(f, seed) : find_upright_frame(f, seed)))
+        return;
+    f->grids->first_member[f->end++] = f->grids->member_count;
+    (void)occupy(f, seed, 0, 0);
+}
+
+// Fit a particle's frame to its neighbours, those of the nearest eight cells that are members already.
+static mspringi_frame fitted_frame(finder *f, uint32_t at) {
+    mspringi_frame_fit fit = {.count = 0};
+    for (uint32_t i = f->graph->first[at]; i < f->graph->first[at + 1]; ++i) {
+        const mspring_id other = mspringi_other_end(&f->graph->builder->springs[f->graph->springs[i]], at);
+        const bool is_member = f->grids->grid_of[other] == f->end - 1;
+        const int32_t dc = is_member ? f->column[other] - f->column[at] : 0;
+        const int32_t dr = is_member ? f->row[other] - f->row[at] : 0;
+        if ((dc != 0 || dr != 0) && abs(dc) <= 1 && abs(dr) <= 1)
+            mspringi_frame_fit_add(&fit, frame_of(f, other), way_between(f, at, other), dc, dr);
+    }
+    if (fit.count > 0)
+        set_frame(f, at, mspringi_frame_fitted(&fit));
+    return frame_of(f, at);
+}
+
+// Collect what can be reached from a member of the last candidate, cell by cell.
+static void spread_from(finder *f, uint32_t at) {
+    const mspringi_graph *graph = f->graph;
+    const mspringi_frame frame = f->search == FOR_BENT ? fitted_frame(f, at) : f->upright;
+    for (uint32_t i = graph->first[at]; i < graph->first[at + 1]; ++i) {
+        const mspring_id other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], at);
+        const mspringi_step way = way_between(f, at, other);
+        int32_t dc = 0, dr = 0;
+        if (!is_free(f, other) || !mspringi_frame_round(frame, way, &dc, &dr))
+            continue;
+        if ((dc != 0 || dr != 0) && occupy(f, other, f->column[at] + dc, f->row[at] + dr) && f->search == FOR_BENT)
+            set_frame(f, other, frame);
+    }
+}
+
+void mspringi_grids_flood(mspringi_grids *grids, uint32_t first, uint32_t end) {
+    finder *f = grids->finder;
+    const uint32_t particles = (uint32_t)f->graph->builder->particle_count;
+    for (uint32_t i = first; i < end; ++i) {
+        if (f->next_member < grids->member_count)
+            spread_from(f, grids->members[f->next_member++]);
+        else if (f->seed < particles)
+            seed_from(f, f->seed++);
+    }
+}
+
+/* --------------------------------------------------------------------------------------------- is it worth it */
+
+// Whether a grid has as many of its particles' springs as the search is for.
+static bool has_enough(const finder *f, size_t neighbours, size_t all) {
+    const size_t outer = all - neighbours;
+    switch (f->search) {
+    case FOR_UPRIGHT:
+        return outer * SPRINGS_PER_OUTER_UPRIGHT <= all;
+    case FOR_BENT:
+        return outer * SPRINGS_PER_OUTER_BENT <= all;
+    default:
+        return outer <= neighbours;
+    }
+}
+
+mspring_result mspringi_grids_begin_judging(mspringi_grids *grids, mspringi_memory *memory,
+                                            mspringi_message *message) {
+    finder *f = grids->finder;
+    grids->first_member[f->end] = grids->member_count;
+    f->next_member = grids->first_member[f->first];
+    f->springs = mspringi_alloc(memory, f->end - f->first, sizeof *f->springs);
+    return f->springs ? MSPRING_OK : out_of_memory(f->graph, message);
+}
+
+uint32_t mspringi_grids_candidates(const mspringi_grids *grids) {
+    return grids->finder->end - grids->finder->first;
+}
+
+uint32_t mspringi_grids_candidate_members(const mspringi_grids *grids) {
+    return grids->member_count - grids->first_member[grids->finder->first];
+}
+
+void mspringi_grids_count_springs(mspringi_grids *grids, uint32_t first, uint32_t end) {
+    const finder *f = grids->finder;
+    const mspringi_graph *graph = f->graph;
+    const uint32_t *members = grids->members + grids->first_member[f->first];
+    for (uint32_t m = first; m < end; ++m) {
+        const uint32_t at = members[m];
+        const uint32_t grid = grids->grid_of[at];
+        const int32_t column = f->column[at], row = f->row[at];
+        uint32_t inner_ends = 0;
+        for (uint32_t i = graph->first[at]; i < graph->first[at + 1]; ++i) {
+            const mspring_id other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], at);
+            inner_ends += grids->grid_of[other] == grid && abs(f->column[other] - column) <= 1 &&
+                          abs(f->row[other] - row) <= 1;
+        }
+        f->springs[grid - f->first].ends += graph->first[at + 1] - graph->first[at];
+        f->springs[grid - f->first].inner_ends += inner_ends;
+    }
+}
+
+// The lowest column and row.
+static void bound(finder *f, const uint32_t *members, uint32_t count) {
+    f->min_column = f->min_row = 0; // where the seed is
+    for (uint32_t m = 0; m < count; ++m) {
+        f->min_column = f->column[members[m]] < f->min_column ? f->column[members[m]] : f->min_column;
+        f->min_row = f->row[members[m]] < f->min_row ? f->row[members[m]] : f->min_row;
+    }
+}
+
+// What it costs to sweep a grid with its columns along the rows, or the other way round, in blocks: those it has,
+// and about one for each run of neighbouring ones to start with.
+static uint64_t count_runs(finder *f, const uint32_t *members, uint32_t count, bool transposed) {
+    for (uint32_t m = 0; m < count; ++m) {
+        const uint32_t column = (uint32_t)(f->column[members[m]] - f->min_column);
+        const uint32_t row = (uint32_t)(f->row[members[m]] - f->min_row);
+        f->keys[m] = transposed ? (uint64_t)column << 32 | row / MSPRINGI_WIDTH
+                                : (uint64_t)row << 32 | column / MSPRINGI_WIDTH;
+    }
+    mspringi_sort_keys(f->keys, f->scratch, count);
+    f->blocks = f->runs = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        f->blocks += i == 0 || f->keys[i] != f->keys[i - 1];
+        f->runs += i == 0 || f->keys[i] > f->keys[i - 1] + 1;
+    }
+    return (uint64_t)f->blocks + f->runs;
+}
+
+// Whether sweeping a candidate's rows is worth it, and in which orientation.
+static bool is_worth_it(finder *f, uint32_t candidate, const uint32_t *members, uint32_t count, bool *transposed) {
+    const grid_springs *springs = &f->springs[candidate];
+    const size_t neighbours = springs->inner_ends / 2;
+    if (!has_enough(f, neighbours, springs->ends - neighbours))
+        return false;
+    bound(f, members, count);
+    const uint64_t cost_transposed = count_runs(f, members, count, true);
+    const uint32_t blocks_transposed = f->blocks;
+    *transposed = cost_transposed < count_runs(f, members, count, false);
+    const size_t blocks = *transposed ? blocks_transposed : f->blocks;
+    return neighbours * SLOTS_PER_SPRING >= blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
+}
+
+static void give_up(finder *f, const uint32_t *members, uint32_t count) {
+    for (uint32_t m = 0; m < count; ++m) {
+        f->grids->grid_of[members[m]] = MSPRING_NONE;
+        f->given_up[members[m]] = (uint8_t)(f->search + 1);
+    }
+}
+
+// Keep a grid, behind those that have been kept.
+static void keep(finder *f, const uint32_t *members, uint32_t count, bool transposed) {
+    mspringi_grids *grids = f->grids;
+    uint32_t to = grids->first_member[grids->count];
+    for (uint32_t m = 0; m < count; ++m) {
+        const uint32_t p = members[m];
+        const uint32_t column = (uint32_t)(f->column[p] - f->min_column), row = (uint32_t)(f->row[p] - f->min_row);
+        grids->grid_of[p] = grids->count;
+        grids->column[p] = transposed ? row : column;
+        grids->row[p] = transposed ? column : row;
+        f->kinds[p] = MSPRINGI_ROW_LATTICE;
+        grids->members[to++] = p;
+    }
+    grids->first_member[++grids->count] = to;
+}
+
+void mspringi_grids_judge(mspringi_grids *grids, uint32_t first, uint32_t end) {
+    finder *f = grids->finder;
+    for (uint32_t candidate = first; candidate < end; ++candidate) {
+        const uint32_t begin = f->next_member, behind = grids->first_member[f->first + candidate + 1];
+        const uint32_t *members = grids->members + begin;
+        bool transposed = false;
+        if (is_worth_it(f, candidate, members, behind - begin, &transposed))
+            keep(f, members, behind - begin, transposed);
+        else
+            give_up(f, members, behind - begin);
+        f->next_member = behind;
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------- the whole */
+
+static void free_finder(finder *f, mspringi_memory *memory) {
+    if (!f)
+        return;
+    void *const blocks[] = {f->given_up, f->column, f->row, f->cell, f->keys, f->scratch, f->springs, f};
+    for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; ++i)
+        mspringi_free(memory, blocks[i]);
+}
+
+mspring_result mspringi_grids_begin(mspringi_grids *grids, const mspringi_graph *graph, uint8_t *kinds,
+                                    mspringi_memory *memory, mspringi_message *message) {
+    const size_t particles = graph->builder->particle_count;
+    size_t table = 16;
+    while (table < 2 * particles)
+        table *= 2;
+    finder *f = grids->finder = mspringi_alloc(memory, 1, sizeof *f);
+    grids->grid_of = mspringi_alloc(memory, particles, sizeof *grids->grid_of);
+    grids->column = mspringi_alloc(memory, particles, sizeof *grids->column);
+    grids->row = mspringi_alloc(memory, particles, sizeof *grids->row);
+    grids->members = mspringi_alloc(memory, particles, sizeof *grids->members);
+    grids->first_member = mspringi_alloc(memory, particles + 1, sizeof *grids->first_member);
+    if (f) {
+        f->graph = graph;
+        f->grids = grids;
+        f->kinds = kinds;
+        f->cell_mask = table - 1;
+        f->given_up = mspringi_alloc(memory, particles, sizeof *f->given_up);
+        f->column = mspringi_alloc(memory, particles, sizeof *f->column);
+        f->row = mspringi_alloc(memory, particles, sizeof *f->row);
+        f->cell = mspringi_alloc(memory, table, sizeof *f->cell);
+        f->keys = mspringi_alloc(memory, particles, sizeof *f->keys);
+        f->scratch = mspringi_alloc(memory, particles, sizeof *f->scratch);
+    }
+    if (!f || !grids->grid_of || !grids->column || !grids->row || !grids->members || !grids->first_member ||
+        !f->given_up || !f->column || !f->row || !f->cell || !f->keys || !f->scratch)
+        return out_of_memory(graph, message);
+    f->steps[0] = (mspringi_step *)(void *)f->keys;
+    f->steps[1] = (mspringi_step *)(void *)f->scratch;
+    memset(grids->grid_of, 0xff, particles * sizeof *grids->grid_of);
+    return MSPRING_OK;
+}
+
+void mspringi_grids_end_search(mspringi_grids *grids, mspringi_memory *memory) {
+    finder *f = grids->finder;
+    if (f->end > f->first)
+        memset(f->cell, 0, (f->cell_mask + 1) * sizeof *f->cell);
+    mspringi_free(memory, f->springs);
+    f->springs = NULL;
+    f->first = f->end = grids->count;
+    f->next_member = grids->member_count = grids->first_member[grids->count];
+    f->seed = 0;
+    if (++f->search < MSPRINGI_GRID_SEARCHES)
+        return;
+    grids->found_count = grids->count;
+    free_finder(f, memory);
+    grids->finder = NULL;
+}
+
+void mspringi_grids_destroy(mspringi_grids *grids, mspringi_memory *memory) {
+    free_finder(grids->finder, memory);
+    mspringi_shelver_destroy(grids->shelver, memory);
+    mspringi_free(memory, grids->grid_of);
+    mspringi_free(memory, grids->column);
+    mspringi_free(memory, grids->row);
+    mspringi_free(memory, grids->members);
+    mspringi_free(memory, grids->first_member);
+}
+
+bool mspringi_grids_place(const mspringi_grids *grids, const mspringi_spring *spring,
+                          mspringi_lattice_spring *found) {
+    uint32_t base = spring->a, tip = spring->b;
+    if (grids->grid_of[base] == MSPRING_NONE || grids->grid_of[base] != grids->grid_of[tip])
+        return false;
+    // The base is in the column to the left or, in the same column, in the row below.
+    if (grids->column[base] > grids->column[tip] ||
+        (grids->column[base] == grids->column[tip] && grids->row[base] > grids->row[tip])) {
+        base = spring->b;
+        tip = spring->a;
+    }
+    const uint32_t right = grids->column[tip] - grids->column[base];
+    const int64_t up = (int64_t)grids->row[tip] - (int64_t)grids->row[base];
+    if (right > 1 || up > 1 || up < -1)
+        return false;
+    found->column = grids->column[base];
+    found->row = grids->row[base] - (up < 0);
+    found->direction = up < 0       ? MSPRINGI_SOUTH_EAST
+                       : up == 0    ? MSPRINGI_EAST
+                       : right == 0 ? MSPRINGI_NORTH
+                                    : MSPRINGI_NORTH_EAST;
+    return true;
+}

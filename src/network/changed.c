@@ -1,0 +1,96 @@
+/// Who is told of a change.
+#include "store/changed.h"
+
+#include "base/mix.h"
+#include "contact/floor.h"
+#include "network/job.h"
+#include "sleep/sleep.h"
+#include "store/springs.h"
+
+/// Longest log of broken and restored springs: more than a burst of them in one frame.
+#define LONGEST_LOG 4096
+
+mspring_result mspringi_changed_reserve_log(mspring_network *network) {
+    const uint32_t springs = network->topology.reserve.spring_end;
+    uint32_t log_size = 1;
+    if (network->edits.link_log)
+        return MSPRING_OK;
+    while (log_size < springs && log_size < LONGEST_LOG)
+        log_size *= 2;
+    network->edits.link_log = mspringi_alloc(&network->memory, log_size, sizeof *network->edits.link_log);
+    if (!network->edits.link_log)
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for breaking any of %u springs",
+                             (unsigned)network->topology.spring_count);
+    network->edits.link_mask = log_size - 1;
+    return MSPRING_OK;
+}
+
+static void log_spring(mspring_network *network, mspring_id spring) {
+    mspringi_edits *edits = &network->edits;
+    MSPRINGI_ASSERT(edits->link_log); // mspringi_changed_reserve_log() has been called
+    edits->broke = true;
+    edits->link_log[edits->links++ & edits->link_mask] = spring;
+}
+
+static void free_ends(const mspring_network *network, mspring_id spring) {
+    const mspringi_topology *t = &network->topology;
+    uint32_t base, tip;
+    mspringi_topology_ends(t, mspringi_place_of(t, spring), &base, &tip);
+    mspringi_solvers_clear_slot(network, base);
+    mspringi_solvers_clear_slot(network, tip);
+}
+
+static void free_slot(const mspring_network *network, uint32_t slot) {
+    mspringi_solvers_clear_slot(network, slot);
+    if (network->floor)
+        mspringi_floor_clear_slot(network->floor, slot);
+}
+
+static void tell_of_floor(const mspring_network *network) {
+    if (network->solver.ops->new_floor)
+        network->solver.ops->new_floor(network->solver.object);
+}
+
+#define COUNT(counter) network->edits.counter++;
+#define LOG log_spring(network, index);
+#define COPY mspringi_job_follow(network, index);
+#define COPY_ALL mspringi_job_follow_all(network);
+#define SLEEP_ANEW mspringi_sleep_anew(network);
+#define FREE_SLOT free_slot(network, index);
+#define COPY_SPRING mspringi_job_follow(network, mspringi_place_of(&network->topology, index));
+#define WAKE mspringi_wake(network);
+#define WAKE_SPRING mspringi_wake_spring(network, index);
+#define FREE_ENDS free_ends(network, index);
+#define FLOOR tell_of_floor(network);
+
+void mspringi_tell(mspring_network *network, mspringi_change what, uint32_t index) {
+    switch (what) {
+#define CHANGE(name, listeners)                                                                                    \
+    case MSPRINGI_CHANGED_##name:                                                                                  \
+        listeners break;
+#include "store/changes.def"
+#undef CHANGE
+    case MSPRINGI_CHANGES:
+        break;
+    }
+}
+
+#undef COUNT
+#undef LOG
+#undef COPY
+#undef COPY_ALL
+#undef SLEEP_ANEW
+#undef FREE_SLOT
+#undef COPY_SPRING
+#undef WAKE
+#undef WAKE_SPRING
+#undef FREE_ENDS
+#undef FLOOR
+
+void mspringi_fingerprint(mspring_network *network, uint32_t edit, mspring_id id) {
+    network->parameter_print = mspringi_mix(network->parameter_print, (uint64_t)edit << 32 | id);
+}
+
+void mspringi_fingerprint_floats(mspring_network *network, float a, float b) {
+    network->parameter_print = mspringi_mix_floats(network->parameter_print, a, b);
+}

@@ -1,0 +1,398 @@
+/// Making another layout of a network beside it: begin, run, finish.
+#include "network/job.h"
+
+#include "base/cpu.h"
+#include "network/compact.h"
+#include "store/springs.h"
+#include "store/store.h"
+
+mspring_result mspringi_job_no_memory(mspring_job *job) {
+    return mspringi_fail(&job->to.message, MSPRING_ERROR_MEMORY, "no memory for another layout of %u springs",
+                         (unsigned)job->from.topology.spring_count);
+}
+
+/* -------------------------------------------------------------------------------------------- edits meanwhile */
+
+void mspringi_job_follow(const mspring_network *network, mspringi_place place) {
+    mspring_job *job = network->job;
+    if (!job)
+        return;
+    job->changed[place / MSPRINGI_WIDTH] |= (uint16_t)(1u << place % MSPRINGI_WIDTH);
+    job->has_changed = true;
+}
+
+void mspringi_job_follow_all(const mspring_network *network) {
+    if (network->job)
+        network->job->has_all_changed = true;
+}
+
+void mspringi_job_lose(mspring_network *network) {
+    if (network->job)
+        network->job->network = NULL;
+    network->job = NULL;
+}
+
+// Whether a spring that is live is in the layout.
+static bool has_spring(const mspring_job *job, const mspring_network *network, mspring_id spring) {
+    const mspringi_topology *t = &job->to.topology;
+    return !mspringi_place_is_parked(t, mspringi_place_of(t, spring)) || !mspringi_spring_is_live(network, spring);
+}
+
+// Whether the layout sweeps every spring that is live now. It may sweep some that have broken since.
+static bool is_valid(const mspring_job *job, const mspring_network *network) {
+    const mspringi_edits *edits = &network->edits;
+    bool is_valid = job->growth == edits->growth;
+    if (job->is_needless)
+        return is_valid;
+    if (!job->has_all_changed && mspringi_edits_have_link(edits, job->links)) {
+        for (uint64_t n = job->links; is_valid && n < edits->links; ++n)
+            is_valid = has_spring(job, network, mspringi_edits_link(edits, n));
+        return is_valid;
+    }
+    for (mspring_id s = 0; is_valid && s < job->to.topology.spring_count; ++s)
+        is_valid = has_spring(job, network, s);
+    return is_valid;
+}
+
+/* ------------------------------------------------------------------------------------------------------- begin */
+
+static bool copy_topologies(mspring_job *job, const mspring_network *network) {
+    job->from.topology = network->topology;
+    if (network->is_compact)
+        job->first = network->whole;
+    return mspringi_columns_duplicate(mspringi_topology_columns, &job->from.topology, &job->memory) &&
+           mspringi_columns_duplicate(mspringi_topology_columns, &job->first, &job->memory);
+}
+
+// What springs are, and what tells which there are; for a solver also what particles are.
+static bool copy_arrays(mspring_job *job, const mspring_network *network) {
+    static const mspringi_group groups[] = {MSPRINGI_STORE_ROWS,   MSPRINGI_STORE_WEB,    MSPRINGI_STORE_RESTS,
+                                            MSPRINGI_STORE_STRAIN, MSPRINGI_STORE_STRESS, MSPRINGI_STORE_MARKS,
+                                            MSPRINGI_STORE_ENDS,   MSPRINGI_STORE_MASS,   MSPRINGI_STORE_FRACTIONS};
+    mspring_network *from = &job->from;
+    const bool has_solver = network->solver.object || network->fallback.object;
+    for (size_t i = 0; i < sizeof groups / sizeof groups[0] - (has_solver ? 0 : 2); ++i)
+        if (!mspringi_store_duplicate(from, network, groups[i], &job->memory))
+            return false;
+    from->inverse_mass = has_solver ? mspringi_memory_duplicate(&job->memory, network->inverse_mass) : NULL;
+    job->changed = mspringi_alloc(&job->memory, mspringi_place_words(&network->topology), sizeof *job->changed);
+    return job->changed && (from->inverse_mass || !has_solver);
+}
+
+static void ask_for_solver(mspringi_job_solver *asked, const mspringi_solver *solver, uint32_t tile_size) {
+    if (!solver->ops || !solver->ops->remake)
+        return;
+    solver->ops->get_def(solver->object, &asked->def);
+    asked->tile_size = tile_size;
+}
+
+// Whether it was found to have nothing to do, and is as it was then.
+static bool is_seen_compact(const mspring_network *network) {
+    return network->is_seen_compact && network->seen_links == network->edits.links &&
+           network->seen_growth == network->edits.growth;
+}
+
+static bool copy_all(mspring_job *job, const mspring_network *network) {
+    const bool is_whole = job->layout == MSPRING_LAYOUT_WHOLE;
+    job->to = mspringi_move_shell(network);
+    job->to.memory = (mspringi_memory){.allocator = network->memory.allocator};
+    job->to.tasks = NULL; // they are the network's; what more workers need, it reserves at the finish
+    job->to.message = (mspringi_message){0};
+    job->shape = *network;
+    job->shape.hooks = NULL;
+    mspringi_store_forget(&job->to);
+    job->to.whole = (mspringi_topology){0};
+    job->from = job->to;
+    job->from.rests = network->rests;
+    job->workers = mspringi_tasks_concurrency(network->tasks);
+    job->links = network->edits.links;
+    job->growth = network->edits.growth;
+    job->is_needless = is_whole ? !network->is_compact : is_seen_compact(network);
+    ask_for_solver(&job->solvers[0], &network->solver, is_whole ? network->whole_tile_size : 0);
+    ask_for_solver(&job->solvers[1], &network->fallback, is_whole ? network->whole_fallback_size : 0);
+    if (job->is_needless)
+        return true;
+    if (!copy_topologies(job, network) || !copy_arrays(job, network))
+        return false;
+    job->to.mass = job->from.mass;
+    job->to.fractions = job->from.fractions;
+    job->to.growth = job->from.growth;
+    return true;
+}
+
+static mspring_result begin(mspring_network *network, mspring_layout layout, mspring_job **begun) {
+    mspringi_memory memory = {.allocator = network->memory.allocator};
+    mspring_job *job = mspringi_alloc(&memory, 1, sizeof *job);
+    if (job) {
+        job->memory = memory;
+        job->layout = layout;
+    }
+    if (!job || !copy_all(job, network)) {
+        if (job)
+            mspring_job_destroy(job);
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for another layout of %u springs",
+                             (unsigned)network->topology.spring_count);
+    }
+    *begun = job;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_job_begin(mspring_network *network, mspring_layout layout, mspring_job **job) {
+    mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK)
+        return result;
+    if (!job || (layout != MSPRING_LAYOUT_COMPACT && layout != MSPRING_LAYOUT_WHOLE))
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "the place for the job is NULL, or layout %d "
+                             "is none",
+                             (int)layout);
+    if (network->job)
+        return mspringi_fail(&network->message, MSPRING_ERROR_BUSY, "the network has a job that is not finished");
+    result = begin(network, layout, job);
+    if (result == MSPRING_OK) {
+        (*job)->network = network;
+        network->job = *job;
+    }
+    return result;
+}
+
+/* --------------------------------------------------------------------------------------------------------- run */
+
+static mspring_result take_whole(mspring_job *job) {
+    job->to.topology = job->first;
+    job->print = job->from.whole_print;
+    // What is made belongs to to's memory, of which there is nothing yet.
+    return mspringi_columns_duplicate(mspringi_topology_columns, &job->to.topology, &job->to.memory)
+               ? MSPRING_OK
+               : mspringi_job_no_memory(job);
+}
+
+static uint32_t springs_of(const mspring_job *job) {
+    return job->from.topology.spring_count;
+}
+
+static uint32_t particles_of(const mspring_job *job) {
+    return job->from.topology.particle_count;
+}
+
+static uint32_t rows_of(const mspring_job *job) {
+    return mspringi_job_first(job)->lattice_rows;
+}
+
+/// A function that is called once, or with one range of so many things after the other.
+typedef struct job_pass {
+    mspring_result (*once)(mspring_job *);
+    mspring_result (*part)(mspring_job *, uint32_t first, uint32_t end);
+    uint32_t (*count)(const mspring_job *);
+    uint32_t most;
+} job_pass;
+
+#define ONCE(function)                                                                                             \
+    { function, NULL, NULL, 0 }
+#define EACH(function, count, most)                                                                                \
+    { NULL, function, count, most }
+#define MOVE                                                                                                       \
+    ONCE(mspringi_move_begin), EACH(mspringi_move_note_rests, springs_of, 16000),                                  \
+        ONCE(mspringi_move_reserve_springs), EACH(mspringi_move_copy_springs, springs_of, 16000),                  \
+        ONCE(mspringi_move_reserve_others), ONCE(mspringi_move_make_solver), ONCE(mspringi_move_make_fallback)
+
+static const job_pass compact_passes[] = {
+    ONCE(mspringi_left_begin),
+    EACH(mspringi_left_look, springs_of, 64000),
+    ONCE(mspringi_left_reserve),
+    EACH(mspringi_left_place_on_diagonal, particles_of, 64000),
+    EACH(mspringi_left_place_in_grids, rows_of, 64),
+    EACH(mspringi_left_list, springs_of, 32000),
+    ONCE(mspringi_left_begin_layout),
+    ONCE(mspringi_left_lay_out),
+    ONCE(mspringi_left_finish_layout),
+    EACH(mspringi_left_number_places, springs_of, 64000),
+    EACH(mspringi_left_note_ends, springs_of, 32000),
+    ONCE(mspringi_left_keep_spare),
+    EACH(mspringi_left_print_slots, particles_of, 64000),
+    EACH(mspringi_left_print_places, springs_of, 64000),
+    MOVE,
+};
+
+static const job_pass whole_passes[] = {ONCE(take_whole), MOVE};
+
+static uint32_t pass_count(const mspring_job *job) {
+    return job->layout == MSPRING_LAYOUT_WHOLE ? sizeof whole_passes / sizeof whole_passes[0]
+                                               : sizeof compact_passes / sizeof compact_passes[0];
+}
+
+static bool is_done(const mspring_job *job) {
+    return job->is_needless || job->pass == pass_count(job);
+}
+
+static mspring_result run_next(mspring_job *job) {
+    const job_pass *next = (job->layout == MSPRING_LAYOUT_WHOLE ? whole_passes : compact_passes) + job->pass;
+    const uint32_t count = next->part ? next->count(job) : 0, left = count - job->at;
+    mspring_result result = MSPRING_OK;
+    job->is_halfway = false;
+    if (next->once) {
+        result = next->once(job);
+    } else if (left > 0) {
+        const uint32_t first = job->at;
+        job->at += left < next->most ? left : next->most;
+        result = next->part(job, first, job->at);
+    }
+    if (job->at == count && !job->is_halfway) {
+        job->pass++;
+        job->at = 0;
+    }
+    return result;
+}
+
+static MSPRINGI_NOINLINE mspring_result run(mspring_job *job, uint32_t at_most) {
+    mspring_result result = MSPRING_OK;
+    for (uint32_t n = 0; result == MSPRING_OK && !is_done(job) && (at_most == 0 || n < at_most); ++n)
+        result = run_next(job);
+    job->is_spent = result != MSPRING_OK;
+    job->failure = result;
+    return result;
+}
+
+static mspring_result fail_spent(mspring_job *job) {
+    return mspringi_fail(&job->to.message, MSPRING_ERROR_ARGUMENT, "the job has failed or is finished: destroy it");
+}
+
+mspring_result mspring_job_run(mspring_job *job, uint32_t at_most, uint32_t *left) {
+    if (!job)
+        return MSPRING_ERROR_ARGUMENT;
+    if (job->is_spent)
+        return fail_spent(job);
+    const mspringi_fp_state before = mspringi_fp_enter();
+    mspring_result result = run(job, at_most);
+    mspringi_fp_leave(before);
+    if (result == MSPRING_OK && left)
+        *left = is_done(job) ? 0 : pass_count(job) - job->pass;
+    return result;
+}
+
+const char *mspring_job_error(const mspring_job *job) {
+    return job ? job->to.message.text : "";
+}
+
+/* ------------------------------------------------------------------------------------------------------ finish */
+
+// Keep the layout that the network was created with, or free the one that it has.
+static mspring_result exchange(mspring_network *network, mspring_job *job) {
+    const bool was_compact = network->is_compact, is_whole = job->layout == MSPRING_LAYOUT_WHOLE;
+    const uint64_t print = network->topology_print;
+    const uint32_t tile_size = mspringi_solver_get_basis(&network->solver).tile_size;
+    const uint32_t fallback_size = mspringi_solver_get_basis(&network->fallback).tile_size;
+    mspringi_topology before = network->topology, whole = network->whole;
+    mspring_result result = mspringi_move_network(network, job);
+    if (result != MSPRING_OK)
+        return result;
+    network->topology_print = job->print;
+    network->is_compact = !is_whole;
+    network->is_seen_compact = false;
+    if (was_compact) {
+        mspringi_topology_destroy(&before, &network->memory);
+    } else {
+        network->whole = before;
+        network->whole_print = print;
+        network->whole_tile_size = tile_size;
+        network->whole_fallback_size = fallback_size;
+    }
+    if (is_whole) {
+        mspringi_topology_destroy(&whole, &network->memory);
+        network->whole = (mspringi_topology){0};
+    }
+    return MSPRING_OK;
+}
+
+static mspring_result finish(mspring_network *network, mspring_job *job) {
+    job->is_spent = true;
+    if (!is_valid(job, network)) {
+        return mspringi_fail(&network->message, MSPRING_ERROR_OUTDATED,
+                             "particles or springs were added, removed or restored since the job began");
+    }
+    if (job->is_needless) {
+        if (job->layout == MSPRING_LAYOUT_COMPACT) {
+            network->is_seen_compact = job->links == network->edits.links;
+            network->seen_links = network->edits.links;
+            network->seen_growth = network->edits.growth;
+        }
+        return MSPRING_OK;
+    }
+    mspring_result result = exchange(network, job);
+    if (result != MSPRING_OK)
+        network->message = job->to.message;
+    return result;
+}
+
+mspring_result mspring_job_finish(mspring_network *network, mspring_job *job) {
+    mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK)
+        return result;
+    if (job && job->failure != MSPRING_OK) {
+        network->message = job->to.message;
+        return job->failure;
+    }
+    if (!job || job->is_spent)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the job is NULL or is finished");
+    if (!is_done(job))
+        return mspringi_fail(&network->message, MSPRING_ERROR_BUSY, "the job has not been run to its end");
+    if (job->network != network)
+        return mspringi_fail(&network->message, MSPRING_ERROR_OUTDATED,
+                             "the job was begun for another network, or for a layout that is no more");
+    mspringi_job_lose(network);
+    const mspringi_fp_state before = mspringi_fp_enter();
+    result = finish(network, job);
+    mspringi_fp_leave(before);
+    return result;
+}
+
+void mspring_job_destroy(mspring_job *job) {
+    if (!job)
+        return;
+    if (job->network)
+        job->network->job = NULL;
+    mspringi_memory memory = job->memory, made = job->to.memory;
+    mspringi_free_all(&made);
+    mspringi_free_all(&memory);
+}
+
+/* ----------------------------------------------------------------------------------------------------- at once */
+
+// Begin, run and finish. A job that is under way goes by the layout that was: it is lost.
+static mspring_result change_layout(mspring_network *network, mspring_layout layout) {
+    mspring_job *job = NULL;
+    mspring_result result = begin(network, layout, &job);
+    if (result != MSPRING_OK)
+        return result;
+    result = run(job, 0);
+    if (result != MSPRING_OK)
+        network->message = job->to.message;
+    else if (!job->is_needless)
+        mspringi_job_lose(network);
+    if (result == MSPRING_OK)
+        result = finish(network, job);
+    mspring_job_destroy(job);
+    return result;
+}
+
+mspring_result mspringi_expand(mspring_network *network) {
+    const mspringi_fp_state before = mspringi_fp_enter();
+    mspring_result result = change_layout(network, MSPRING_LAYOUT_WHOLE);
+    mspringi_fp_leave(before);
+    return result;
+}
+
+mspring_result mspring_network_compact(mspring_network *network) {
+    mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK)
+        return result;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    result = change_layout(network, MSPRING_LAYOUT_COMPACT);
+    mspringi_fp_leave(before);
+    return result;
+}
+
+mspring_result mspring_network_expand(mspring_network *network) {
+    mspring_result result = mspringi_enter(network);
+    return result == MSPRING_OK ? mspringi_expand(network) : result;
+}

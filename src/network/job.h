@@ -1,0 +1,104 @@
+/// @file job.h
+/// Another layout of a network, made beside it.
+///
+///   begin    copies what the layout follows from: where springs lie, what they are like, which are live
+///   run      plain functions on these copies: a topology of what is left (left.c), its arrays, springs and solver
+///            (move.c); any thread may run them while the network goes on
+///   finish   moves the network: what its particles are now, and springs that were set since (move.c)
+///
+/// A job owns all that it reads, so the network may be edited, stepped, saved, cloned, even destroyed while it
+/// runs.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_JOB_H
+#define MSPRINGI_JOB_H
+
+#include "store/network.h"
+#include "store/rests.h"
+
+/// What becomes of one of the network's solvers.
+typedef struct mspringi_job_solver {
+    mspring_solver_def def; ///< as it was asked for
+    uint32_t tile_size;     ///< 0: by plan
+} mspringi_job_solver;
+
+struct mspring_job {
+    mspringi_memory memory;   ///< the job itself, and copies; what is made is in to's memory
+    mspring_network *network; ///< NULL: it has been destroyed, has moved, or the job is finished
+    mspring_layout layout;
+    bool is_needless;       ///< the network has this layout
+    bool is_spent;          ///< it has failed or is finished: it can only be destroyed
+    mspring_result failure; ///< of run
+
+    mspring_network from;    ///< what begin has copied, and nothing else that lies elsewhere
+    mspring_network to;      ///< what has been made so far
+    mspring_network shape;   ///< the network at begin: its arrays are not read, but for whether they are there
+    mspringi_topology first; ///< the layout that the network was created with; empty if from has it
+    mspringi_job_solver solvers[2]; ///< the chosen one and the fallback
+    uint32_t workers;
+    uint64_t links, growth; ///< edits.links and edits.growth
+    uint32_t pass, at;      ///< of the list in job.c, the one that is under way, and how far it has come
+    bool is_halfway;        ///< the layout's own list
+
+    // left.c
+    bool has_work;               ///< some spring that is swept is broken, or one was added that the layout lacks
+    uint16_t *was_live;          ///< [springs / 16] a bit for each spring
+    struct mspring_builder left; ///< particles in the first layout's rows and columns, live springs
+    mspring_id *ids;             ///< [left.spring_count] of the live springs, rising
+    uint32_t live, listed;       ///< of these counted, and listed so far
+    mspringi_assembly *assembly;
+    mspringi_place *woven_places; ///< [left.spring_count] of the live springs
+    mspringi_place next_parked;
+    uint64_t print; ///< of the layout, so far
+
+    // move.c
+    mspringi_place *there;           ///< by place in from, that in to
+    mspringi_rest_pattern *of_block; ///< [lattice blocks] while rest lengths are looked at
+    uint16_t *changed;               ///< a bit for each place in from: set since begin, by who edits
+    bool has_changed, has_all_changed;
+};
+
+/// The spring in this place has changed, or others that nobody names. The network may have no job.
+void mspringi_job_follow(const mspring_network *network, mspringi_place place);
+void mspringi_job_follow_all(const mspring_network *network);
+/// The network's layout has changed, or it is no more: the job is outdated.
+void mspringi_job_lose(mspring_network *network);
+
+static inline const mspringi_topology *mspringi_job_first(const mspring_job *job) {
+    return job->first.slot_of_particle ? &job->first : &job->from.topology;
+}
+
+mspring_result mspringi_job_no_memory(mspring_job *job);
+
+/// A network without what lies by slot or place.
+mspring_network mspringi_move_shell(const mspring_network *network);
+
+/* left.c: a topology of the springs that are left, in this order. Ranges are of springs, but for particles and, in
+ * place_in_grids, lattice rows. lay_out says in is_halfway that it is to be called again. */
+mspring_result mspringi_left_begin(mspring_job *job);
+mspring_result mspringi_left_look(mspring_job *job, uint32_t first, uint32_t end);
+mspring_result mspringi_left_reserve(mspring_job *job);
+mspring_result mspringi_left_place_on_diagonal(mspring_job *job, uint32_t first, uint32_t end);
+mspring_result mspringi_left_place_in_grids(mspring_job *job, uint32_t first, uint32_t end);
+mspring_result mspringi_left_list(mspring_job *job, uint32_t first, uint32_t end);
+mspring_result mspringi_left_begin_layout(mspring_job *job);
+mspring_result mspringi_left_lay_out(mspring_job *job);
+mspring_result mspringi_left_finish_layout(mspring_job *job);
+mspring_result mspringi_left_number_places(mspring_job *job, uint32_t first, uint32_t end);
+mspring_result mspringi_left_note_ends(mspring_job *job, uint32_t first, uint32_t end);
+mspring_result mspringi_left_keep_spare(mspring_job *job);
+mspring_result mspringi_left_print_slots(mspring_job *job, uint32_t first, uint32_t end);
+mspring_result mspringi_left_print_places(mspring_job *job, uint32_t first, uint32_t end);
+
+/* move.c: what lies by slot or place in the new topology, in this order. */
+mspring_result mspringi_move_begin(mspring_job *job);
+mspring_result mspringi_move_note_rests(mspring_job *job, uint32_t first, uint32_t end);
+mspring_result mspringi_move_reserve_springs(mspring_job *job);
+mspring_result mspringi_move_copy_springs(mspring_job *job, uint32_t first, uint32_t end);
+mspring_result mspringi_move_reserve_others(mspring_job *job);
+mspring_result mspringi_move_make_solver(mspring_job *job);
+mspring_result mspringi_move_make_fallback(mspring_job *job);
+/// Move the network. On error it is as it was, and the job has failed.
+mspring_result mspringi_move_network(mspring_network *network, mspring_job *job);
+
+#endif

@@ -1,0 +1,205 @@
+/// Length, direction and strain of all springs at once.
+///
+/// Springs are computed in the order of their places, sixteen of a record at a time, into planes of scratch by
+/// place.
+#include <math.h>
+#include <string.h>
+
+#include "base/cpu.h"
+#include "store/springs.h"
+#include "store/store.h"
+
+/// What is computed in one pass, into one plane or two.
+typedef enum measure { LENGTHS, STRAINS, LENGTHS_AND_STRAINS, DIRECTIONS } measure;
+
+enum { PLANE_COUNT = 2 };
+
+static size_t plane_size(const mspring_network *network) {
+    return mspringi_place_words(&network->topology) * MSPRINGI_WIDTH;
+}
+
+// Note whether the base of a spring, which lies in this place, is the end with the higher id.
+static void turn(mspring_network *network, mspringi_place place) {
+    const mspringi_topology *t = &network->topology;
+    uint16_t *bits = &network->extents.reversed[place / MSPRINGI_WIDTH];
+    const uint16_t bit = (uint16_t)(1u << place % MSPRINGI_WIDTH);
+    uint32_t base, tip;
+    mspringi_topology_ends(t, place, &base, &tip);
+    *bits = t->particle_of_slot[base] > t->particle_of_slot[tip] ? *bits | bit : *bits & (uint16_t)~bit;
+}
+
+static mspring_result reserve(mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    mspringi_extents *made = &network->extents;
+    if (made->reversed)
+        return MSPRING_OK;
+    if (!mspringi_store_reserve(network, MSPRINGI_STORE_EXTENTS))
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to measure %u springs at once",
+                             (unsigned)t->spring_count);
+    for (mspring_id s = 0; s < t->spring_count; ++s)
+        turn(network, t->place_of_spring[s]);
+    return MSPRING_OK;
+}
+
+void mspringi_extents_turn(mspring_network *network, mspring_id spring) {
+    if (network->extents.reversed)
+        turn(network, mspringi_place_of(&network->topology, spring));
+}
+
+/* ---------------------------------------------------------------------------------------------------- computing */
+
+// Change the lanes that have a bit: what all have is no matter of lanes, and what none has is done.
+static inline void set_strain_of_broken(float *strain, uint32_t live) {
+    for (uint32_t lane = 0; live != UINT16_MAX && lane < MSPRINGI_WIDTH; ++lane)
+        if (!(live >> lane & 1))
+            strain[lane] = 0.0f;
+}
+
+static inline void turn_some(float *along_x, float *along_y, uint32_t reversed) {
+    for (uint32_t lane = 0; reversed != 0 && reversed != UINT16_MAX && lane < MSPRINGI_WIDTH; ++lane)
+        if (reversed >> lane & 1) {
+            along_x[lane] = -along_x[lane] + 0.0f;
+            along_y[lane] = -along_y[lane] + 0.0f;
+        }
+}
+
+// The springs of one word of places, from the slots base ... on to the slots tip ... on, into the planes. Broken
+// ones have no strain; no direction is -0.
+static inline void compute_word(const mspring_network *network, size_t word, const float *x, const float *y,
+                                size_t base, size_t tip, const float *rest_lengths, measure what) {
+    const mspringi_extents *extents = &network->extents;
+    const float sign = what == DIRECTIONS && extents->reversed[word] == UINT16_MAX ? -1.0f : 1.0f;
+    const size_t at = word * MSPRINGI_WIDTH;
+    float first[MSPRINGI_WIDTH],
+        second[MSPRINGI_WIDTH]; // not in the planes, which for all the compiler knows are x
+    for (uint32_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
+        const float dx = x[tip + lane] - x[base + lane], dy = y[tip + lane] - y[base + lane];
+        const float length = sqrtf(dx * dx + dy * dy);
+        if (what == DIRECTIONS) {
+            const float divisor = length + (float)(length == 0.0f);
+            first[lane] = dx / divisor * sign + 0.0f;
+            second[lane] = dy / divisor * sign + 0.0f;
+        } else {
+            first[lane] = length;
+            second[lane] = (length - rest_lengths[lane]) / rest_lengths[lane];
+        }
+    }
+    if (what == DIRECTIONS)
+        turn_some(first, second, extents->reversed[word]);
+    else if (what != LENGTHS)
+        set_strain_of_broken(second, network->live[word]);
+    if (what != STRAINS)
+        memcpy(extents->scratch + at, first, sizeof first);
+    if (what != LENGTHS)
+        memcpy(extents->scratch + plane_size(network) + at, second, sizeof second);
+}
+
+// The springs of the web and the parked ones, gathered sixteen at a time.
+static inline void compute_leftovers(const mspring_network *network, measure what) {
+    const mspringi_topology *t = &network->topology;
+    const uint32_t count = t->leftover_capacity + t->parked_count;
+    const mspringi_state *s = &network->state;
+    for (uint32_t first = 0; first < count; first += MSPRINGI_WIDTH) {
+        float x[2 * MSPRINGI_WIDTH] = {0}, y[2 * MSPRINGI_WIDTH] = {0}, rest_lengths[MSPRINGI_WIDTH] = {0};
+        for (uint32_t lane = 0; lane < MSPRINGI_WIDTH && first + lane < count; ++lane) {
+            const mspringi_spring_values values = mspringi_place_get(network, t->chain_places + first + lane);
+            x[lane] = s->x[values.base];
+            y[lane] = s->y[values.base];
+            x[MSPRINGI_WIDTH + lane] = s->x[values.tip];
+            y[MSPRINGI_WIDTH + lane] = s->y[values.tip];
+            rest_lengths[lane] = values.rest_length;
+        }
+        compute_word(network, (t->chain_places + first) / MSPRINGI_WIDTH, x, y, 0, MSPRINGI_WIDTH, rest_lengths,
+                     what);
+    }
+}
+
+static inline void compute(const mspring_network *network, measure what) {
+    const mspringi_topology *t = &network->topology;
+    const float *x = network->state.x, *y = network->state.y;
+    const size_t record = (size_t)network->parts * MSPRINGI_WIDTH; // values of a chain block
+    size_t word = 0;
+    for (size_t block = 0; block < t->lattice_blocks; ++block, word += MSPRINGI_DIRECTIONS) {
+        const size_t here = (t->lattice_first + block) * MSPRINGI_WIDTH;
+        const size_t up = (size_t)t->up_of_block[block] * MSPRINGI_WIDTH;
+        const float *rest_lengths =
+            network->rests.lengths + (size_t)network->rests.of_block[block] * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
+        compute_word(network, word + MSPRINGI_EAST, x, y, here, here + 1,
+                     rest_lengths + MSPRINGI_EAST * MSPRINGI_WIDTH, what);
+        compute_word(network, word + MSPRINGI_NORTH, x, y, here, up, rest_lengths + MSPRINGI_NORTH * MSPRINGI_WIDTH,
+                     what);
+        compute_word(network, word + MSPRINGI_NORTH_EAST, x, y, here, up + 1,
+                     rest_lengths + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH, what);
+        compute_word(network, word + MSPRINGI_SOUTH_EAST, x, y, up, here + 1,
+                     rest_lengths + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH, what);
+    }
+    for (size_t block = 0; block < t->chain_blocks; ++block, ++word) {
+        const size_t here = (t->chain_first + block) * MSPRINGI_WIDTH;
+        compute_word(network, word, x, y, here, here + 1, network->chain_springs + block * record, what);
+    }
+    compute_leftovers(network, what);
+}
+
+/* ---------------------------------------------------------------------------------------------------- reading out
+ */
+
+// Springs that were removed lie somewhere yet, but have nothing that could be measured.
+static void leave_out_what_is_gone(const mspring_network *network, float *of_spring) {
+    const uint8_t *there = network->growth.springs;
+    for (mspring_id s = 0; there && s < network->topology.spring_count; ++s)
+        of_spring[s] = there[s] == MSPRINGI_THERE ? of_spring[s] : 0.0f;
+}
+
+// From the two planes; either place to write to may be NULL.
+static void read_out(const mspring_network *network, float *restrict first, float *restrict second) {
+    const mspring_id springs = network->topology.spring_count;
+    const mspringi_place *restrict place = network->topology.place_of_spring;
+    const float *restrict planes[PLANE_COUNT] = {network->extents.scratch,
+                                                 network->extents.scratch + plane_size(network)};
+    if (first && second)
+        for (mspring_id s = 0; s < springs; ++s) {
+            first[s] = planes[0][place[s]];
+            second[s] = planes[1][place[s]];
+        }
+    else if (first)
+        for (mspring_id s = 0; s < springs; ++s)
+            first[s] = planes[0][place[s]];
+    else if (second)
+        for (mspring_id s = 0; s < springs; ++s)
+            second[s] = planes[1][place[s]];
+    if (first)
+        leave_out_what_is_gone(network, first);
+    if (second)
+        leave_out_what_is_gone(network, second);
+}
+
+static MSPRINGI_NOINLINE void measure_all(const mspring_network *network, float *length, float *direction_x,
+                                          float *direction_y, float *strain) {
+    if (length && strain)
+        compute(network, LENGTHS_AND_STRAINS);
+    else if (length)
+        compute(network, LENGTHS);
+    else if (strain)
+        compute(network, STRAINS);
+    read_out(network, length, strain);
+    if (direction_x) {
+        compute(network, DIRECTIONS);
+        read_out(network, direction_x, direction_y);
+    }
+}
+
+mspring_result mspring_network_get_extents(mspring_network *network, float *length, float *direction_x,
+                                           float *direction_y, float *strain) {
+    mspring_result result = mspringi_enter(network);
+    if (result == MSPRING_OK && !direction_x != !direction_y)
+        result =
+            mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "one of x and y of the directions is NULL");
+    if (result == MSPRING_OK)
+        result = reserve(network);
+    if (result != MSPRING_OK)
+        return result;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    measure_all(network, length, direction_x, direction_y, strain);
+    mspringi_fp_leave(before);
+    return MSPRING_OK;
+}

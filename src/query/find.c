@@ -1,0 +1,146 @@
+/// What lies where: the nearest particle, those in a circle or a box, and springs across a line. All go over ids in
+/// their order and compare in double precision, with the low words of positions.
+#include <math.h>
+
+#include "store/springs.h"
+
+typedef struct point {
+    double x, y;
+} point;
+
+/// Where found ids are listed: no more than there is room for, but all are counted.
+typedef struct found {
+    mspring_id *ids;
+    double *fractions; ///< may be NULL
+    uint32_t capacity, count;
+} found;
+
+static void add_found(found *to, mspring_id id, double fraction) {
+    if (to->count < to->capacity) {
+        to->ids[to->count] = id;
+        if (to->fractions)
+            to->fractions[to->count] = fraction;
+    }
+    ++to->count;
+}
+
+// A world position as one from the local origin, with which sums are as exact as positions are.
+static point local_point(const mspring_network *network, double x, double y) {
+    return (point){x - network->origin_x, y - network->origin_y};
+}
+
+static point point_of(const mspring_network *network, uint32_t slot) {
+    return (point){mspringi_x_of(&network->state, slot), mspringi_y_of(&network->state, slot)};
+}
+
+static bool is_coordinate(double x) {
+    return fabs(x) <= MSPRING_MAX_COORDINATE; // and no NaN
+}
+
+static bool is_room(const mspring_id *ids, uint32_t capacity, const uint32_t *count) {
+    return count && (ids || capacity == 0);
+}
+
+mspring_result mspring_network_nearest_particle(const mspring_network *network, double x, double y, double within,
+                                                mspring_id *particle, double *distance) {
+    if (!network || !particle || !is_coordinate(x) || !is_coordinate(y) || !(within >= 0.0))
+        return MSPRING_ERROR_ARGUMENT;
+    const point centre = local_point(network, x, y);
+    mspring_id nearest = MSPRING_NONE;
+    double least = within * within;
+    for (mspring_id p = 0; p < network->topology.particle_count; ++p) {
+        const point at = point_of(network, network->topology.slot_of_particle[p]);
+        const double dx = at.x - centre.x, dy = at.y - centre.y, square = dx * dx + dy * dy;
+        if ((nearest == MSPRING_NONE ? square <= least : square < least) && mspringi_particle_exists(network, p)) {
+            nearest = p;
+            least = square;
+        }
+    }
+    *particle = nearest;
+    if (distance)
+        *distance = nearest == MSPRING_NONE ? INFINITY : sqrt(least);
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_particles_in_circle(const mspring_network *network, double x, double y,
+                                                   double radius, mspring_id *particles, uint32_t capacity,
+                                                   uint32_t *count) {
+    if (!network || !is_room(particles, capacity, count) || !is_coordinate(x) || !is_coordinate(y) ||
+        !(radius >= 0.0))
+        return MSPRING_ERROR_ARGUMENT;
+    const point centre = local_point(network, x, y);
+    found to = {particles, NULL, capacity, 0};
+    for (mspring_id p = 0; p < network->topology.particle_count; ++p) {
+        const point at = point_of(network, network->topology.slot_of_particle[p]);
+        const double dx = at.x - centre.x, dy = at.y - centre.y;
+        if (dx * dx + dy * dy <= radius * radius && mspringi_particle_exists(network, p))
+            add_found(&to, p, 0.0);
+    }
+    *count = to.count;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_particles_in_box(const mspring_network *network, double min_x, double min_y,
+                                                double max_x, double max_y, mspring_id *particles,
+                                                uint32_t capacity, uint32_t *count) {
+    if (!network || !is_room(particles, capacity, count) || !(min_x <= max_x) || !(min_y <= max_y))
+        return MSPRING_ERROR_ARGUMENT;
+    const point low = local_point(network, min_x, min_y), high = local_point(network, max_x, max_y);
+    found to = {particles, NULL, capacity, 0};
+    for (mspring_id p = 0; p < network->topology.particle_count; ++p) {
+        const point at = point_of(network, network->topology.slot_of_particle[p]);
+        if (at.x >= low.x && at.x <= high.x && at.y >= low.y && at.y <= high.y &&
+            mspringi_particle_exists(network, p))
+            add_found(&to, p, 0.0);
+    }
+    *count = to.count;
+    return MSPRING_OK;
+}
+
+// Twice the area of a triangle: positive if c lies to the left of the way from a to b.
+static double turn(point a, point b, point c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+static bool overlap(double a, double b, double c, double d) {
+    return fmax(fmin(a, b), fmin(c, d)) <= fmin(fmax(a, b), fmax(c, d));
+}
+
+// How much of the way from a to b comes before c, which lies on it.
+static double fraction_of(point a, point b, point c) {
+    const double dx = b.x - a.x, dy = b.y - a.y, square = dx * dx + dy * dy;
+    return square > 0.0 ? fmin(fmax(((c.x - a.x) * dx + (c.y - a.y) * dy) / square, 0.0), 1.0) : 0.0;
+}
+
+// Whether the way from a to b meets the spring from c to d, and after how much of it.
+static bool is_across(point a, point b, point c, point d, double *fraction) {
+    if (!overlap(a.x, b.x, c.x, d.x) || !overlap(a.y, b.y, c.y, d.y))
+        return false;
+    const double of_a = turn(c, d, a), of_b = turn(c, d, b), of_c = turn(a, b, c), of_d = turn(a, b, d);
+    if ((of_a > 0.0 && of_b > 0.0) || (of_a < 0.0 && of_b < 0.0) || (of_c > 0.0 && of_d > 0.0) ||
+        (of_c < 0.0 && of_d < 0.0))
+        return false;
+    // On one line they meet where the nearer end is, or at once if that lies behind.
+    *fraction = of_a != of_b ? of_a / (of_a - of_b) : fmin(fraction_of(a, b, c), fraction_of(a, b, d));
+    return true;
+}
+
+mspring_result mspring_network_springs_across(const mspring_network *network, double from_x, double from_y,
+                                              double to_x, double to_y, mspring_id *springs, double *fractions,
+                                              uint32_t capacity, uint32_t *count) {
+    if (!network || !is_room(springs, capacity, count) || !is_coordinate(from_x) || !is_coordinate(from_y) ||
+        !is_coordinate(to_x) || !is_coordinate(to_y))
+        return MSPRING_ERROR_ARGUMENT;
+    const point from = local_point(network, from_x, from_y), end = local_point(network, to_x, to_y);
+    found to = {springs, fractions, capacity, 0};
+    for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
+        if (!mspringi_spring_exists(network, i) || !mspringi_spring_is_live(network, i))
+            continue;
+        const mspringi_spring_values spring = mspringi_spring_get(network, i);
+        double fraction;
+        if (is_across(from, end, point_of(network, spring.base), point_of(network, spring.tip), &fraction))
+            add_found(&to, i, fraction);
+    }
+    *count = to.count;
+    return MSPRING_OK;
+}

@@ -1,0 +1,183 @@
+/// Measurements of the state, summed in double precision in id order.
+#include <math.h>
+
+#include "kernels/spring_law.h"
+#include "store/springs.h"
+
+static bool is_pinned(const mspring_network *network, mspring_id particle) {
+    return network->inverse_mass[network->topology.slot_of_particle[particle]] == 0.0f;
+}
+
+// Length of a spring, and how fast it grows.
+static double spring_length(const mspring_network *network, const mspringi_spring_values *r, double *rate) {
+    const mspringi_state *s = &network->state;
+    const double dx = mspringi_x_of(s, r->tip) - mspringi_x_of(s, r->base);
+    const double dy = mspringi_y_of(s, r->tip) - mspringi_y_of(s, r->base);
+    const double dvx = (double)s->vx[r->tip] - (double)s->vx[r->base];
+    const double dvy = (double)s->vy[r->tip] - (double)s->vy[r->base];
+    const double length = sqrt(dx * dx + dy * dy);
+    *rate = length > 0.0 ? (dvx * dx + dvy * dy) / length : 0.0;
+    return length;
+}
+
+float mspringi_spring_strain(const mspring_network *network, mspring_id spring) {
+    const mspringi_place place = mspringi_place_of(&network->topology, spring);
+    if (!mspringi_place_is_live(network, place))
+        return 0.0f;
+    const mspringi_spring_values r = mspringi_place_get(network, place);
+    const double rest_length = (double)r.rest_length;
+    double rate;
+    return (float)((spring_length(network, &r, &rate) - rest_length) / rest_length);
+}
+
+mspring_result mspring_network_energy(const mspring_network *network, double *kinetic, double *elastic,
+                                      double *potential) {
+    if (!network)
+        return MSPRING_ERROR_ARGUMENT;
+    const mspringi_topology *t = &network->topology;
+    const mspringi_state *s = &network->state;
+    double kinetic_sum = 0.0, potential_sum = 0.0, elastic_sum = 0.0;
+    for (mspring_id p = 0; p < t->particle_count; ++p) {
+        const uint32_t slot = t->slot_of_particle[p];
+        if (is_pinned(network, p))
+            continue;
+        const double mass = (double)network->mass[p], vx = (double)s->vx[slot], vy = (double)s->vy[slot];
+        const double x = network->origin_x + mspringi_x_of(s, slot), y = network->origin_y + mspringi_y_of(s, slot);
+        kinetic_sum += 0.5 * mass * (vx * vx + vy * vy);
+        potential_sum -= mass * ((double)network->gravity_x * x + (double)network->gravity_y * y);
+    }
+    for (mspring_id i = 0; elastic && i < t->spring_count; ++i) {
+        const mspringi_spring_values r = mspringi_spring_get(network, i);
+        double rate;
+        const double stretch = spring_length(network, &r, &rate) - (double)r.rest_length;
+        elastic_sum += 0.5 * (double)r.stiffness * stretch * stretch;
+    }
+    if (kinetic)
+        *kinetic = kinetic_sum;
+    if (elastic)
+        *elastic = elastic_sum;
+    if (potential)
+        *potential = potential_sum;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_momentum(const mspring_network *network, double *px, double *py, double *angular) {
+    if (!network)
+        return MSPRING_ERROR_ARGUMENT;
+    const mspringi_topology *t = &network->topology;
+    const mspringi_state *s = &network->state;
+    double sum_x = 0.0, sum_y = 0.0, sum_angular = 0.0;
+    for (mspring_id p = 0; p < t->particle_count; ++p) {
+        const uint32_t slot = t->slot_of_particle[p];
+        if (is_pinned(network, p))
+            continue;
+        const double mass = (double)network->mass[p];
+        const double x = network->origin_x + mspringi_x_of(s, slot), y = network->origin_y + mspringi_y_of(s, slot);
+        const double momentum_x = mass * (double)s->vx[slot], momentum_y = mass * (double)s->vy[slot];
+        sum_x += momentum_x;
+        sum_y += momentum_y;
+        sum_angular += x * momentum_y - y * momentum_x;
+    }
+    if (px)
+        *px = sum_x;
+    if (py)
+        *py = sum_y;
+    if (angular)
+        *angular = sum_angular;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_bounds(const mspring_network *network, double *min_x, double *min_y, double *max_x,
+                                      double *max_y) {
+    if (!network || !min_x || !min_y || !max_x || !max_y)
+        return MSPRING_ERROR_ARGUMENT;
+    const mspringi_topology *t = &network->topology;
+    const mspringi_state *s = &network->state;
+    double low_x = INFINITY, low_y = INFINITY, high_x = -INFINITY, high_y = -INFINITY;
+    bool any = false;
+    for (mspring_id p = 0; p < t->particle_count; ++p) {
+        const uint32_t slot = t->slot_of_particle[p];
+        if (!mspringi_particle_exists(network, p))
+            continue;
+        any = true;
+        low_x = fmin(low_x, mspringi_x_of(s, slot));
+        low_y = fmin(low_y, mspringi_y_of(s, slot));
+        high_x = fmax(high_x, mspringi_x_of(s, slot));
+        high_y = fmax(high_y, mspringi_y_of(s, slot));
+    }
+    if (!any)
+        low_x = low_y = high_x = high_y = 0.0;
+    *min_x = network->origin_x + low_x;
+    *min_y = network->origin_y + low_y;
+    *max_x = network->origin_x + high_x;
+    *max_y = network->origin_y + high_y;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_get_spring(const mspring_network *network, mspring_id spring,
+                                          mspring_spring_info *info) {
+    if (!network || !info)
+        return MSPRING_ERROR_ARGUMENT;
+    if (info->struct_size != sizeof *info)
+        return MSPRING_ERROR_STRUCT;
+    const mspringi_topology *t = &network->topology;
+    if (spring >= t->spring_count || !mspringi_spring_exists(network, spring))
+        return MSPRING_ERROR_ID;
+    const mspringi_place place = mspringi_place_of(t, spring);
+    const mspringi_spring_values r = mspringi_place_get(network, place);
+    const mspring_id a = t->particle_of_slot[r.base], b = t->particle_of_slot[r.tip];
+    double rate;
+    const double length = spring_length(network, &r, &rate), rest_length = (double)r.rest_length;
+    const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, place);
+    const double stiffness = (double)r.stiffness, damping = (double)r.damping;
+    const double pull = MSPRINGI_LAW_FORCE(MSPRINGI_TIMES, stiffness, length - rest_length);
+    const double force = length > 0.0 ? pull + MSPRINGI_LAW_DAMPING_FORCE(MSPRINGI_TIMES, damping, rate) : 0.0;
+    *info = (mspring_spring_info){
+        .struct_size = sizeof *info,
+        .flags = (mspringi_spring_is_relative(network, spring) ? MSPRING_SPRING_RELATIVE : 0u) |
+                 (mspringi_place_is_live(network, place) ? 0u : MSPRING_SPRING_BROKEN) |
+                 (mspringi_place_is_stressed(network, place) ? MSPRING_SPRING_STRESSED : 0u),
+        .a = a < b ? a : b,
+        .b = a < b ? b : a,
+        .stiffness = r.stiffness,
+        .damping = r.damping,
+        .rest_length = r.rest_length,
+        .length = (float)length,
+        .strain = mspringi_spring_strain(network, spring),
+        .force = (float)force,
+        .nominal_stiffness = nominal.stiffness,
+        .nominal_damping = nominal.damping,
+    };
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_get_strains(const mspring_network *network, mspring_id first, uint32_t count,
+                                           float *strain) {
+    if (!network || (count > 0 && !strain))
+        return MSPRING_ERROR_ARGUMENT;
+    const uint32_t total = network->topology.spring_count;
+    if (first > total || count > total - first)
+        return MSPRING_ERROR_ID;
+    for (uint32_t i = 0; i < count; ++i)
+        strain[i] = mspringi_spring_strain(network, first + i);
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_max_strain(const mspring_network *network, float *strain, mspring_id *spring) {
+    if (!network)
+        return MSPRING_ERROR_ARGUMENT;
+    float largest = 0.0f;
+    mspring_id where = MSPRING_NONE;
+    for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
+        const float size = fabsf(mspringi_spring_strain(network, i));
+        if (where == MSPRING_NONE || size > largest) {
+            largest = size;
+            where = i;
+        }
+    }
+    if (strain)
+        *strain = largest;
+    if (spring)
+        *spring = where;
+    return MSPRING_OK;
+}

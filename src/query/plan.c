@@ -1,0 +1,63 @@
+/// What a network says of itself: its sizes, its error, and how it was laid out.
+#include "store/growth.h"
+#include "store/network.h"
+
+const char *mspring_network_error(const mspring_network *network) {
+    return network ? network->message.text : "";
+}
+
+uint32_t mspring_network_particle_count(const mspring_network *network) {
+    return network ? network->topology.particle_count : 0;
+}
+
+uint32_t mspring_network_spring_count(const mspring_network *network) {
+    return network ? network->topology.spring_count : 0;
+}
+
+mspring_simd mspring_network_simd_level(const mspring_network *network) {
+    return network ? network->kernels->level : MSPRING_SIMD_AUTO;
+}
+
+uint32_t mspring_network_worker_count(const mspring_network *network) {
+    return network ? mspringi_tasks_workers(network->tasks) : 0;
+}
+
+size_t mspring_network_memory_used(const mspring_network *network) {
+    return network ? network->memory.used + network->tasks_memory.used : 0;
+}
+
+mspring_result mspring_network_plan(const mspring_network *network, mspring_plan *plan) {
+    if (!network || !plan)
+        return MSPRING_ERROR_ARGUMENT;
+    if (plan->struct_size != sizeof *plan)
+        return MSPRING_ERROR_STRUCT;
+    const mspringi_topology *t = &network->topology;
+    *plan = (mspring_plan){
+        .struct_size = sizeof *plan,
+        .particle_count = t->particle_count,
+        .spring_count = t->spring_count,
+        .lattice_count = t->lattice_count,
+        .lattice_particles = t->lattice_particles,
+        .lattice_springs = t->lattice_springs,
+        .lattice_rows = t->lattice_rows,
+        .lattice_blocks = t->lattice_blocks,
+        .chain_count = t->chain_count,
+        .chain_particles = t->chain_particles,
+        .chain_springs = t->chain_springs,
+        .web_particles = t->web_particles,
+        .loose_particles = t->loose_particles + mspringi_growth_added_particles(network),
+        .leftover_springs = t->woven_count + mspringi_growth_added_springs(network),
+        .pass_rows = t->wave_rows,
+        .pass_lag = t->lag,
+        .pass_substeps = network->depth,
+        .slot_count = (uint32_t)mspringi_slot_count(network),
+        .block_width = MSPRINGI_WIDTH,
+        .has_damping = network->parts > MSPRINGI_DAMPING,
+        .has_relative = network->fractions.values != NULL,
+        .simd_level = network->kernels->level,
+        .web_layers = t->layer_count,
+    };
+    if (network->solver.ops->describe)
+        network->solver.ops->describe(network->solver.object, plan);
+    return MSPRING_OK;
+}

@@ -1,0 +1,359 @@
+/// The system of an implicit substep as a matrix of 2 x 2 blocks, factored and solved.
+#include "solvers/direct/direct.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "solvers/implicit/implicit.h"
+#include "solvers/implicit/terms.h"
+
+/// The largest stiffness at a particle, in the units of its mass in A, that goes with single precision. Rounding is
+/// 6e-8 of the stiffness: 0.1 % of the mass there, at random, so far less in any motion of many particles.
+#define SINGLE_STIFFNESS 16384.0f
+
+/// Most numbers that a factor may take, 1.6 GB in both precisions: a square of some 600 x 600 particles, or a
+/// random graph of some 5,000, of which a substep takes seconds.
+#define MOST_NUMBERS 0x1p27
+
+/// What a pinned particle's mass is in A: what springs can take from it is lost in rounding.
+#define PINNED_MASS 0x1p100
+
+/// What is added to the mass where double precision fails, as a part of the stiffness: at first, and at most.
+#define LEAST_ADDED 0x1p-46
+#define MOST_ADDED 0x1p-10
+
+/* ------------------------------------------------------------------------------------------------------- graph */
+
+// Positions as a hint for the order: by layout alone, as the order has to be the same for all networks that are
+// made alike, wherever their particles are by now. What is in no grid is where a neighbour is.
+static void place_slots(const mspring_network *network, const mspringi_direct *direct, double *x, double *y,
+                        bool *is_placed) {
+    enum { PASSES = 4 };
+    const mspringi_topology *t = &network->topology;
+    for (uint32_t r = 0; r < t->lattice_rows; ++r) {
+        const mspringi_row *row = &t->rows[r];
+        for (uint32_t s = row->first_span; s < row->first_span + row->span_count; ++s) {
+            const mspringi_span *span = &t->spans[s];
+            for (uint32_t slot = span->first_slot; slot < span->end_slot; ++slot) {
+                x[slot] = (double)((int64_t)slot + span->carry);
+                y[slot] = (double)r;
+                is_placed[slot] = true;
+            }
+        }
+    }
+    const uint32_t count = direct->place_count;
+    for (uint32_t pass = 0; pass < PASSES; ++pass) {
+        for (uint32_t i = 0; i < count; ++i) {
+            const uint32_t place = pass % 2 == 0 ? i : count - 1 - i;
+            const uint32_t a = direct->end_a[place], b = direct->end_b[place];
+            const uint32_t from = is_placed[a] ? a : b, to = is_placed[a] ? b : a;
+            if (is_placed[from] && !is_placed[to]) {
+                x[to] = x[from];
+                y[to] = y[from];
+                is_placed[to] = true;
+            }
+        }
+    }
+}
+
+static void list_ends(const mspring_network *network, mspringi_direct *direct) {
+    const mspringi_topology *t = &network->topology;
+    const uint32_t nowhere = (uint32_t)mspringi_slot_count(network);
+    for (uint32_t place = 0; place < direct->place_count; ++place)
+        direct->end_a[place] = direct->end_b[place] = nowhere;
+    for (mspring_id spring = 0; spring < t->spring_count; ++spring) {
+        const mspringi_place place = t->place_of_spring[spring];
+        if (!mspringi_place_is_parked(t, place) && mspringi_spring_exists(network, spring))
+            mspringi_topology_ends(t, place, &direct->end_a[place], &direct->end_b[place]);
+    }
+}
+
+static size_t block_count(const mspringi_direct *direct) {
+    return ((size_t)direct->place_count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
+}
+
+// The springs of a block's places, if their ends follow on each other as the places do; else there is no tip.
+static mspringi_edge_block find_edge_block(const mspringi_direct *direct, size_t block, uint32_t slots) {
+    const uint32_t first = (uint32_t)(block * MSPRINGI_WIDTH);
+    const uint32_t rest = direct->place_count - first, count = rest < MSPRINGI_WIDTH ? rest : MSPRINGI_WIDTH;
+    const mspringi_edge_block others = {.lanes = UINT32_MAX};
+    mspringi_edge_block found = {0};
+    for (uint32_t i = 0; i < count; ++i) {
+        const uint32_t a = direct->end_a[first + i], b = direct->end_b[first + i];
+        if (a == slots)
+            continue;
+        if (found.lanes == 0 && (a < i || b < i))
+            return others;
+        if (found.lanes == 0)
+            found = (mspringi_edge_block){.base = a - i, .tip = b - i};
+        if (a != found.base + i || b != found.tip + i)
+            return others;
+        found.lanes |= (uint32_t)1 << i;
+    }
+    return found;
+}
+
+static void find_edge_blocks(const mspring_network *network, mspringi_direct *direct) {
+    const uint32_t slots = (uint32_t)mspringi_slot_count(network);
+    for (size_t block = 0; block < block_count(direct); ++block)
+        direct->edge_blocks[block] = find_edge_block(direct, block, slots);
+}
+
+// Slots without springs are absent, and so is the one behind the last, the end of places without spring.
+static void list_absent(const mspring_network *network, const mspringi_direct *direct, bool *absent) {
+    const size_t slots = mspringi_slot_count(network);
+    for (size_t slot = 0; slot <= slots; ++slot)
+        absent[slot] = true;
+    for (uint32_t place = 0; place < direct->place_count; ++place)
+        absent[direct->end_a[place]] = absent[direct->end_b[place]] = false;
+    absent[slots] = true;
+}
+
+static mspring_result make_plan(mspringi_direct *direct, mspring_network *network) {
+    mspringi_memory *memory = &network->memory;
+    const size_t nodes = mspringi_slot_count(network) + 1;
+    double *x = mspringi_alloc(memory, 2 * nodes, sizeof *x);
+    bool *absent = mspringi_alloc(memory, nodes, sizeof *absent);
+    bool *is_placed = mspringi_alloc(memory, nodes, sizeof *is_placed);
+    mspring_result result = MSPRING_ERROR_MEMORY;
+    if (x && absent && is_placed) {
+        const mspringi_cholesky_graph graph = {.node_count = (uint32_t)nodes,
+                                               .edge_count = direct->place_count,
+                                               .edge_a = direct->end_a,
+                                               .edge_b = direct->end_b,
+                                               .absent = absent,
+                                               .x = x,
+                                               .y = x + nodes,
+                                               .most_numbers = MOST_NUMBERS};
+        list_absent(network, direct, absent);
+        is_placed[nodes - 1] = false;
+        place_slots(network, direct, x, x + nodes, is_placed);
+        result = mspringi_cholesky_plan_create(&direct->plan, &graph, memory, &network->message);
+    }
+    mspringi_free(memory, x);
+    mspringi_free(memory, absent);
+    mspringi_free(memory, is_placed);
+    return result;
+}
+
+/* ------------------------------------------------------------------------------------------------------ memory */
+
+static mspring_result reserve(mspringi_direct *d, mspring_network *network) {
+    mspringi_memory *memory = &network->memory;
+    const mspring_simd level = network->kernels->level;
+    const size_t places = d->place_count, nodes = mspringi_slot_count(network) + 1;
+    const size_t whole = block_count(d) * MSPRINGI_WIDTH, all_nodes = nodes + MSPRINGI_WIDTH;
+    d->edges.xx = mspringi_alloc(memory, 3 * places, sizeof *d->edges.xx);
+    d->edges_twice.xx = mspringi_alloc(memory, 3 * whole, sizeof *d->edges_twice.xx);
+    d->nodes_twice.xx = mspringi_alloc(memory, 3 * all_nodes, sizeof *d->nodes_twice.xx);
+    d->solution = mspringi_alloc(memory, 2 * nodes, sizeof *d->solution);
+    if (!d->edges.xx || !d->edges_twice.xx || !d->nodes_twice.xx || !d->solution)
+        return MSPRING_ERROR_MEMORY;
+    d->edges.xy = d->edges.xx + places;
+    d->edges.yy = d->edges.xy + places;
+    d->edges_twice.xy = d->edges_twice.xx + whole;
+    d->edges_twice.yy = d->edges_twice.xy + whole;
+    d->nodes_twice.xy = d->nodes_twice.xx + all_nodes;
+    d->nodes_twice.yy = d->nodes_twice.xy + all_nodes;
+    mspring_result result = mspringi_cholesky_float_create(&d->single, &d->plan, level, memory, &network->message);
+    return result == MSPRING_OK
+               ? mspringi_cholesky_double_create(&d->twice, &d->plan, level, memory, &network->message)
+               : result;
+}
+
+mspring_result mspringi_direct_create(mspringi_direct *direct, mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    *direct = (mspringi_direct){.place_count = t->chain_places + t->leftover_count};
+    direct->end_a = mspringi_alloc(&network->memory, direct->place_count, sizeof *direct->end_a);
+    direct->end_b = mspringi_alloc(&network->memory, direct->place_count, sizeof *direct->end_b);
+    direct->edge_blocks = mspringi_alloc(&network->memory, block_count(direct), sizeof *direct->edge_blocks);
+    mspring_result result = MSPRING_ERROR_MEMORY;
+    if (direct->end_a && direct->end_b && direct->edge_blocks) {
+        list_ends(network, direct);
+        find_edge_blocks(network, direct);
+        result = make_plan(direct, network);
+    }
+    if (result == MSPRING_OK)
+        result = reserve(direct, network);
+    if (result == MSPRING_OK)
+        return result;
+    const double numbers = direct->plan.predicted_numbers, bytes = sizeof(float) + sizeof(double);
+    mspringi_direct_destroy(direct, &network->memory);
+    if (result == MSPRING_ERROR_LIMIT)
+        return mspringi_fail(
+            &network->message, result,
+            "the direct solver's factor for %u particles and %u springs would take at least %.3g numbers "
+            "(%.3g GB), more than %.3g (%.3g GB): take the implicit solver",
+            (unsigned)t->particle_count, (unsigned)t->spring_count, numbers, 1e-9 * bytes * numbers, MOST_NUMBERS,
+            1e-9 * bytes * MOST_NUMBERS);
+    return mspringi_fail(&network->message, result, "no memory for a direct solver of %u particles",
+                         (unsigned)t->particle_count);
+}
+
+#define ARRAY(member) MSPRINGI_COLUMN(mspringi_direct, member, MSPRINGI_ARRAY)
+#define VIEW(member) MSPRINGI_COLUMN(mspringi_direct, member, MSPRINGI_VIEW)
+static const mspringi_column columns[] = {
+    ARRAY(end_a),         ARRAY(end_b),          ARRAY(edge_blocks),   ARRAY(edges.xx),      VIEW(edges.xy),
+    VIEW(edges.yy),       ARRAY(edges_twice.xx), VIEW(edges_twice.xy), VIEW(edges_twice.yy), ARRAY(nodes_twice.xx),
+    VIEW(nodes_twice.xy), VIEW(nodes_twice.yy),  ARRAY(solution),
+};
+const mspringi_columns mspringi_direct_columns = MSPRINGI_COLUMNS(columns);
+
+void mspringi_direct_destroy(mspringi_direct *direct, mspringi_memory *memory) {
+    mspringi_cholesky_float_destroy(&direct->single, memory);
+    mspringi_cholesky_double_destroy(&direct->twice, memory);
+    mspringi_cholesky_plan_destroy(&direct->plan, memory);
+    mspringi_columns_free(mspringi_direct_columns, direct, memory);
+    *direct = (mspringi_direct){0};
+}
+
+/* ------------------------------------------------------------------------------------------- single precision */
+
+// Add the masses to the blocks on the diagonal. Returns whether single precision will do.
+static bool finish_diagonal(const mspringi_system *s, size_t slots) {
+    const float pinned = (float)PINNED_MASS;
+    uint32_t too_stiff = 0;
+    for (size_t i = 0; i < slots; ++i) {
+        const float mass = s->mass[i], xx = s->xx[i] + mass, yy = s->yy[i] + mass;
+        too_stiff |= (uint32_t)(mass > 0.0f) & (uint32_t) !(xx + yy <= mass * SINGLE_STIFFNESS);
+        s->xx[i] = mass > 0.0f ? xx : pinned; // also where no row writes to, and nothing must add up
+        s->yy[i] = mass > 0.0f ? yy : pinned;
+    }
+    return !too_stiff;
+}
+
+static const float *factors_of_block(const mspringi_implicit *n, size_t block) {
+    return n->factors + block * MSPRINGI_FACTORS * MSPRINGI_WIDTH;
+}
+
+// The blocks beside the diagonal, MSPRINGI_WIDTH places at a time.
+static void fill_edges(const mspringi_implicit *n) {
+    const mspringi_direct *d = &n->direct;
+    const size_t whole = d->place_count / MSPRINGI_WIDTH, rest = d->place_count % MSPRINGI_WIDTH;
+    for (size_t block = 0; block < whole + (rest > 0); ++block) {
+        const float *pull_x = factors_of_block(n, block), *pull_y = pull_x + MSPRINGI_WIDTH;
+        const float *swing = pull_y + MSPRINGI_WIDTH;
+        float *restrict xx = d->edges.xx + block * MSPRINGI_WIDTH;
+        float *restrict xy = d->edges.xy + block * MSPRINGI_WIDTH;
+        float *restrict yy = d->edges.yy + block * MSPRINGI_WIDTH;
+        const size_t count = block < whole ? MSPRINGI_WIDTH : rest;
+        for (size_t i = 0; i < count; ++i) {
+            xx[i] = -(swing[i] + pull_x[i] * pull_x[i]);
+            xy[i] = -(pull_x[i] * pull_y[i]);
+            yy[i] = -(swing[i] + pull_y[i] * pull_y[i]);
+        }
+    }
+}
+
+static bool solve_in_single(mspring_network *network) {
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    const mspringi_system *s = &n->system;
+    fill_edges(n);
+    const mspringi_blocks_float e = n->direct.edges;
+    const mspringi_cholesky_matrix_float matrix = {s->xx, s->xy, s->yy, e.xx, e.xy, e.yy};
+    memcpy(n->displacement.x, n->residual.x, 2 * mspringi_slot_count(network) * sizeof *n->displacement.x);
+    return mspringi_cholesky_float_factor_solve(&n->direct.single, &matrix, n->displacement.x, n->displacement.y) ==
+           MSPRING_NONE;
+}
+
+/* ------------------------------------------------------------------------------------------- double precision */
+
+// As mspringi_edges_fn, whatever the springs of a block join.
+static void add_any_edges(const mspringi_implicit *n, uint32_t first) {
+    const mspringi_direct *d = &n->direct;
+    const mspringi_blocks_double node = d->nodes_twice, edge = d->edges_twice;
+    const uint32_t rest = d->place_count - first, count = rest < MSPRINGI_WIDTH ? rest : MSPRINGI_WIDTH;
+    for (uint32_t place = first; place < first + count; ++place) {
+        const uint32_t a = d->end_a[place], b = d->end_b[place];
+        const float *f = factors_of_block(n, place / MSPRINGI_WIDTH) + place % MSPRINGI_WIDTH;
+        const double pull_x = (double)f[MSPRINGI_PULL_X * MSPRINGI_WIDTH];
+        const double pull_y = (double)f[MSPRINGI_PULL_Y * MSPRINGI_WIDTH];
+        const double swing = (double)f[MSPRINGI_SWING * MSPRINGI_WIDTH];
+        const double xx = swing + pull_x * pull_x, xy = pull_x * pull_y, yy = swing + pull_y * pull_y;
+        edge.xx[place] = -xx;
+        edge.xy[place] = -xy;
+        edge.yy[place] = -yy;
+        node.xx[a] += xx;
+        node.xy[a] += xy;
+        node.yy[a] += yy;
+        node.xx[b] += xx;
+        node.xy[b] += xy;
+        node.yy[b] += yy;
+    }
+}
+
+// All blocks, from the springs' factors: sums in single precision would not be positive definite.
+static void fill_twice(const mspring_network *network, double added) {
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    const mspringi_direct *d = &n->direct;
+    const size_t slots = mspringi_slot_count(network);
+    const mspringi_blocks_double node = d->nodes_twice;
+    memset(node.xx, 0, 3 * (slots + 1 + MSPRINGI_WIDTH) * sizeof *node.xx);
+    for (size_t block = 0; block < block_count(d); ++block) {
+        const size_t first = block * MSPRINGI_WIDTH;
+        const mspringi_edge_block *edges = &d->edge_blocks[block];
+        const mspringi_blocks_double to = {d->edges_twice.xx + first, d->edges_twice.xy + first,
+                                           d->edges_twice.yy + first};
+        if (edges->lanes == 0)
+            continue;
+        if (edges->base != edges->tip)
+            network->kernels->system.add_edges(edges, factors_of_block(n, block), &to, &node);
+        else
+            add_any_edges(n, (uint32_t)first);
+    }
+    mspringi_floor_add_nodes(network, node.xx, node.xy, node.yy);
+    for (size_t i = 0; i < slots; ++i) {
+        const double mass = n->mass[i] > 0.0f ? (double)n->mass[i] : PINNED_MASS;
+        const double on_top = mass + added * (node.xx[i] + node.yy[i]);
+        node.xx[i] += on_top;
+        node.yy[i] += on_top;
+    }
+}
+
+static bool solve_in_double(mspring_network *network) {
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    mspringi_direct *d = &n->direct;
+    const size_t slots = mspringi_slot_count(network);
+    const mspringi_cholesky_matrix_double matrix = {d->nodes_twice.xx, d->nodes_twice.xy, d->nodes_twice.yy,
+                                                    d->edges_twice.xx, d->edges_twice.xy, d->edges_twice.yy};
+    double *const x = d->solution, *const y = x + slots + 1;
+    for (size_t i = 0; i < slots; ++i) {
+        x[i] = (double)n->residual.x[i];
+        y[i] = (double)n->residual.y[i];
+    }
+    for (double added = 0.0; added <= MOST_ADDED; added = added > 0.0 ? 64.0 * added : LEAST_ADDED) {
+        fill_twice(network, added);
+        if (mspringi_cholesky_double_factor_solve(&d->twice, &matrix, x, y) != MSPRING_NONE)
+            continue;
+        for (size_t i = 0; i < slots; ++i) {
+            n->displacement.x[i] = (float)x[i];
+            n->displacement.y[i] = (float)y[i];
+        }
+        return true;
+    }
+    return false;
+}
+
+/* --------------------------------------------------------------------------------------------------- the whole */
+
+static void hold_pinned(const mspringi_implicit *n, size_t slots) {
+    for (size_t i = 0; i < slots; ++i) {
+        n->displacement.x[i] = n->mass[i] > 0.0f ? n->displacement.x[i] : 0.0f;
+        n->displacement.y[i] = n->mass[i] > 0.0f ? n->displacement.y[i] : 0.0f;
+    }
+}
+
+void mspringi_direct_solve(mspring_network *network) {
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    const size_t slots = mspringi_slot_count(network);
+    const bool is_soft = finish_diagonal(&n->system, slots);
+    if (!(is_soft && solve_in_single(network)) && !solve_in_double(network)) {
+        // Numbers overflowed: see to it that the step is refused.
+        mspring_id named = 0;
+        while (!mspringi_particle_exists(network, named))
+            ++named;
+        n->x[network->topology.slot_of_particle[named]] = NAN;
+        return;
+    }
+    hold_pinned(n, slots);
+}

@@ -1,0 +1,47 @@
+/// @file direct.h
+/// The direct solver: the linear system of an implicit substep, factored anew in each (see
+/// solvers/sparse/cholesky.h).
+///
+/// Its nodes are the slots, its edges the places of springs, so that what follows from the layout alone, the order
+/// of elimination, need never be found again: a broken spring is an edge of zeros, a pinned particle a node of
+/// enormous mass.
+///
+/// The factor is in single precision as long as that tells masses from the rounding of the stiffness beside them,
+/// else in double precision.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_DIRECT_H
+#define MSPRINGI_DIRECT_H
+
+#include "solvers/sparse/cholesky.h"
+#include "store/network.h"
+
+/// As mspringi_blocks_double.
+typedef struct mspringi_blocks_float {
+    float *xx, *xy, *yy;
+} mspringi_blocks_float;
+
+typedef struct mspringi_direct {
+    uint32_t place_count;             ///< edges
+    uint32_t *end_a, *end_b;          ///< [place_count] slots; of places without spring both the slot count
+    mspringi_edge_block *edge_blocks; ///< [place_count / MSPRINGI_WIDTH, rounded up]; tip = base: springs have to
+                                      ///< be taken one by one
+    mspringi_cholesky_plan plan;
+    mspringi_cholesky_float single;
+    mspringi_cholesky_double twice;
+    mspringi_blocks_float edges;        ///< [place_count]
+    mspringi_blocks_double edges_twice; ///< [place_count, rounded up to whole blocks]
+    mspringi_blocks_double nodes_twice; ///< [slots + 1 + MSPRINGI_WIDTH]
+    double *solution;                   ///< [slots + 1] x, then y
+} mspringi_direct;
+
+/// Analyse the network's springs and reserve memory for their factor.
+/// @return MSPRING_OK; MSPRING_ERROR_MEMORY; MSPRING_ERROR_LIMIT if the factor would be too large.
+mspring_result mspringi_direct_create(mspringi_direct *direct, mspring_network *network);
+extern const mspringi_columns mspringi_direct_columns;
+void mspringi_direct_destroy(mspringi_direct *direct, mspringi_memory *memory);
+
+/// Solve the system that mspringi_assemble() has left in the network's implicit solver.
+void mspringi_direct_solve(mspring_network *network);
+
+#endif

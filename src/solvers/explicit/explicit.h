@@ -1,0 +1,31 @@
+/// @file explicit.h
+/// The explicit solver.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_EXPLICIT_H
+#define MSPRINGI_EXPLICIT_H
+
+#include "stability/guard.h"
+#include "store/network.h"
+
+/// Deepest pass over the lattice rows that is worth it for this topology.
+uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t parts);
+
+/// After the last substep of a step: stop what creeps.
+void mspringi_explicit_end(mspring_network *network);
+
+/// Whether a particle is in the loose row, and no springs that were added pull at it or at one beside it.
+bool mspringi_explicit_is_alone(const mspring_network *network, const void *object, size_t slot);
+
+/// Forget what a step has left that went out of bounds.
+void mspringi_explicit_reset(mspring_network *network);
+
+/// Take count substeps of length h, all with the forces from outside that are in base (x NULL: none).
+void mspringi_explicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count);
+
+/// The same as a whole step that nothing interrupts: with the state of before copied into the backup, what creeps
+/// stopped, and the sight of the state that it ends in, each strip as it is swept, by the worker that has it.
+/// Without a floor.
+mspringi_sight mspringi_explicit_step(mspring_network *network, float h, mspringi_field base, uint32_t count);
+
+#endif

@@ -1,0 +1,158 @@
+/// Sweeping trees that stand in herds.
+#include "solvers/explicit/herds.h"
+
+#include <string.h>
+
+#include "contact/floor.h"
+#include "sleep/sleep.h"
+#include "solvers/explicit/strip.h"
+#include "store/precise.h"
+
+/// Substeps times springs from which more than one worker is worth it.
+#define SMALLEST_SHARED_WORK 400000u
+
+/// What the workers have in common.
+typedef struct job {
+    const mspring_network *network;
+    mspringi_field base;
+    float h;
+    uint32_t count, workers;
+    mspringi_sight *sights;
+} job;
+
+static const mspringi_row *row_of_herds(const mspringi_topology *topology) {
+    return &topology->rows[topology->strips[topology->herd_strip].first_row];
+}
+
+bool mspringi_herds_are_apart(const mspring_network *network) {
+    return network->topology.herd_strip != MSPRING_NONE && network->graft.count == 0;
+}
+
+/* -------------------------------------------------------------------------------------------- herds of a span */
+
+static uint32_t group_of_rung(const mspringi_web *web, uint32_t rung) {
+    return web->neighbour[rung * MSPRINGI_WIDTH] / MSPRINGI_WIDTH;
+}
+
+// Whether a group is the first of its trees: its first rung leads down.
+static bool begins_trees(const mspringi_web *web, uint32_t group) {
+    return group_of_rung(web, web->first_rung[group]) > group;
+}
+
+static uint32_t blocks_of(const mspringi_span *span) {
+    return (span->end_slot - span->first_slot) / MSPRINGI_WIDTH;
+}
+
+// Some of a span's blocks.
+static mspringi_span part_of(const mspringi_span *span, uint32_t first, uint32_t end) {
+    mspringi_span part = *span;
+    part.first_slot += first * MSPRINGI_WIDTH;
+    part.end_slot = span->first_slot + end * MSPRINGI_WIDTH;
+    part.first_record += first;
+    return part;
+}
+
+// The next run of whole trees of which something is swept, from a span's block *at on, which goes behind it. What
+// else of such trees sleeps, beyond a pin, is swept with them, which does nothing to it.
+static bool next_run(const mspring_network *network, const mspringi_span *span, uint32_t *at, mspringi_span *run) {
+    const mspringi_web *web = &network->topology.web;
+    const uint32_t first_block = span->first_slot / MSPRINGI_WIDTH, end = blocks_of(span);
+    uint32_t first = *at, behind = *at;
+    for (bool is_swept = true; *at < end; *at = behind) {
+        do
+            ++behind;
+        while (behind < end && !begins_trees(web, span->first_record + behind));
+        is_swept = mspringi_is_any_swept(network, first_block + *at, first_block + behind);
+        if (!is_swept && first < *at)
+            break;
+        first = is_swept ? first : behind;
+    }
+    *run = part_of(span, first, *at);
+    return first < *at;
+}
+
+// What the groups of a span and the springs between them are. Each spring is found at its upper end.
+static mspringi_herd herd_of(const mspringi_web *web, const mspringi_span *span) {
+    mspringi_herd herd;
+    uint32_t springs = 0;
+    herd.first_slot = span->first_slot;
+    herd.group_count = blocks_of(span);
+    for (uint32_t i = 0; i < herd.group_count; ++i)
+        herd.groups[i].above = MSPRING_NONE;
+    for (uint32_t i = 0; i < herd.group_count; ++i) {
+        const uint32_t group = span->first_record + i;
+        herd.groups[i].first_below = springs * MSPRINGI_WIDTH;
+        for (uint32_t rung = web->first_rung[group]; rung < web->first_rung[group + 1]; ++rung) {
+            const uint32_t other = group_of_rung(web, rung);
+            if (other < group)
+                continue;
+            const uint32_t below = other - span->first_record;
+            herd.groups[below].above = springs * MSPRINGI_WIDTH;
+            herd.springs[springs++] = (mspringi_herd_spring){.above = span->first_slot + i * MSPRINGI_WIDTH,
+                                                             .below = span->first_slot + below * MSPRINGI_WIDTH,
+                                                             .rung = rung};
+        }
+        herd.groups[i].end_below = springs * MSPRINGI_WIDTH;
+    }
+    for (uint32_t i = 0; i < herd.group_count; ++i)
+        if (herd.groups[i].above == MSPRING_NONE)
+            herd.groups[i].above = springs * MSPRINGI_WIDTH;
+    herd.spring_count = springs;
+    return herd;
+}
+
+/* -------------------------------------------------------------------------------------------------- the sweeps */
+
+static void sweep_run(const job *herds, const mspringi_sweep *sweep, const mspringi_span *run) {
+    const mspring_network *network = herds->network;
+    const mspringi_strip *strip = &network->topology.strips[network->topology.herd_strip];
+    const mspringi_herd_fn sweep_herd = mspringi_herd_kernel(network, herds->base.x != NULL);
+    const mspringi_herd herd = herd_of(sweep->web, run);
+    const size_t none = (size_t)herd.spring_count * MSPRINGI_WIDTH;
+    memset(sweep->carry_x + none, 0, MSPRINGI_WIDTH * sizeof *sweep->carry_x);
+    memset(sweep->carry_y + none, 0, MSPRINGI_WIDTH * sizeof *sweep->carry_y);
+    for (uint32_t i = 0; i < herds->count; ++i) {
+        mspringi_floor_note(network, strip, run, 1);
+        sweep_herd(sweep, &herd);
+        mspringi_floor_touch(network, strip, run, 1, herds->h);
+    }
+}
+
+static void sweep_span(const job *herds, const mspringi_sweep *sweep, const mspringi_span *span, uint32_t worker) {
+    const mspring_network *network = herds->network;
+    mspringi_span run;
+    if (herds->sights)
+        mspringi_span_keep(network, span);
+    for (uint32_t at = 0; next_run(network, span, &at, &run);)
+        sweep_run(herds, sweep, &run);
+    if (herds->sights)
+        herds->sights[worker] = mspringi_sight_join(herds->sights[worker], mspringi_span_look(network, span));
+}
+
+static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
+    const job *herds = argument;
+    const mspring_network *network = herds->network;
+    const mspringi_topology *t = &network->topology;
+    const mspringi_row *row = row_of_herds(t);
+    const mspringi_span *spans = t->spans + row->first_span;
+    const uint32_t begin = (uint32_t)((uint64_t)row->span_count * index / herds->workers),
+                   end = (uint32_t)((uint64_t)row->span_count * (index + 1) / herds->workers);
+    // Each worker has a carry row of its own, which it leaves as it found it.
+    const mspringi_substep substep =
+        mspringi_substep_prepare(network, herds->h, herds->base, 0, 1, index * network->depth);
+    (void)worker;
+    for (const mspringi_span *span = spans + begin; span < spans + end; ++span)
+        sweep_span(herds, &substep.sweep, span, index);
+    memset(substep.sweep.carry_x, 0, (size_t)2 * t->carry_blocks * MSPRINGI_WIDTH * sizeof *substep.sweep.carry_x);
+}
+
+void mspringi_herds_sweep(mspring_network *network, float h, mspringi_field base, uint32_t count,
+                          mspringi_sight *sights) {
+    const mspringi_topology *t = &network->topology;
+    job herds = {.network = network, .base = base, .h = h, .count = count, .workers = 1, .sights = sights};
+    if (mspringi_share_of_strip(network, &t->strips[t->herd_strip]) == MSPRINGI_ASLEEP)
+        return;
+    if ((uint64_t)t->herd_springs * count >= SMALLEST_SHARED_WORK)
+        herds.workers = mspringi_tasks_concurrency(network->tasks);
+    mspringi_tasks_run(herds.workers > 1 ? network->tasks : NULL, herds.workers, sweep_share, &herds);
+}

@@ -1,0 +1,206 @@
+/// The rows on both sides of a border.
+#include "solvers/explicit/seam.h"
+
+#include <string.h>
+
+#include "solvers/explicit/partly.h"
+#include "solvers/explicit/shares.h"
+#include "store/precise.h"
+
+/// Rows that a seam has: the row below as each of the workers sweeps it, and the velocities that the one below
+/// watches changes by; then the rows above, substep by substep.
+enum { BELOW_FOR_LOWER = 0, BELOW_FOR_UPPER = 1, BEFORE = 2, ABOVE = 3 };
+
+/* -------------------------------------------------------------------------------------------------- its memory */
+
+static uint32_t most_spans(const mspringi_topology *t) {
+    uint32_t most = 0;
+    for (uint32_t row = 0; row < t->wave_rows; ++row)
+        most = t->rows[row].span_count > most ? t->rows[row].span_count : most;
+    return most;
+}
+
+static mspringi_seams plan_seams(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    const uint32_t concurrency = mspringi_tasks_concurrency(network->tasks);
+    mspringi_seams seams = {.segment = ((size_t)t->carry_blocks + 1) * MSPRINGI_WIDTH};
+    if (concurrency == 1)
+        return seams;
+    seams.substeps = network->depth;
+    seams.workers = concurrency;
+    seams.row_spans = most_spans(t);
+    const uint32_t most = t->wave_strips / mspringi_shares_least(t->lag);
+    seams.count = most < 2 ? 0 : (most < concurrency ? most : concurrency) - 1;
+    seams.strips = t->wave_strips > t->layer_count ? t->wave_strips : t->layer_count;
+    return seams;
+}
+
+mspring_result mspringi_seams_reserve(mspring_network *network) {
+    mspringi_seams *seams = &network->seams, planned = plan_seams(network);
+    if (planned.workers <= seams->workers)
+        return MSPRING_OK;
+    mspringi_memory *memory = &network->memory;
+    planned.values =
+        mspringi_alloc(memory, (size_t)planned.count * MSPRINGI_STATE_ARRAYS * (ABOVE + planned.substeps),
+                       planned.segment * sizeof *planned.values);
+    planned.spans = mspringi_alloc(memory, (size_t)planned.count * 4 * planned.row_spans, sizeof *planned.spans);
+    planned.borders =
+        mspringi_alloc(memory, (size_t)planned.workers * MSPRINGI_PLANNED_PASSES, sizeof *planned.borders);
+    planned.weights = mspringi_alloc(memory, (size_t)planned.strips + 1, sizeof *planned.weights);
+    if (!planned.values || !planned.spans || !planned.borders || !planned.weights) {
+        mspringi_seams_free(&planned, memory);
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for what %u workers hand on",
+                             (unsigned)planned.workers);
+    }
+    mspringi_seams_free(seams, memory);
+    *seams = planned;
+    return MSPRING_OK;
+}
+
+void mspringi_seams_free(const mspringi_seams *seams, mspringi_memory *memory) {
+    mspringi_free(memory, seams->values);
+    mspringi_free(memory, seams->spans);
+    mspringi_free(memory, seams->borders);
+    mspringi_free(memory, seams->weights);
+}
+
+/* -------------------------------------------------------------------------------------------------- its rows */
+
+/// Slots of a row in whole blocks, those of its spans lying behind one another.
+typedef struct slots {
+    size_t first, count;
+} slots;
+
+static slots slots_of(const mspring_network *network, const mspringi_row *row) {
+    const mspringi_span *first = &network->topology.spans[row->first_span], *last = first + row->span_count - 1;
+    const size_t begin = first->first_slot / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+    const size_t end = ((size_t)last->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+    return (slots){begin, end - begin};
+}
+
+// A row of a seam as a state of its own, from slot 0 on; further rows lie behind it.
+static mspringi_state state_of(const mspring_network *network, uint32_t border, uint32_t row) {
+    const mspringi_seams *seams = &network->seams;
+    const size_t stride = (ABOVE + seams->substeps) * seams->segment;
+    float *x = seams->values + MSPRINGI_STATE_ARRAYS * border * stride + row * seams->segment;
+    return (mspringi_state){x, x + stride, x + 2 * stride, x + 3 * stride, x + 4 * stride, x + 5 * stride};
+}
+
+static void copy_slots(const mspringi_state *from, size_t first, const mspringi_state *to, size_t to_first,
+                       size_t count) {
+    const size_t size = count * sizeof *to->x;
+    memcpy(to->x + to_first, from->x + first, size);
+    memcpy(to->y + to_first, from->y + first, size);
+    memcpy(to->vx + to_first, from->vx + first, size);
+    memcpy(to->vy + to_first, from->vy + first, size);
+    memcpy(to->low_x + to_first, from->low_x + first, size);
+    memcpy(to->low_y + to_first, from->low_y + first, size);
+}
+
+/// The row below, copied to one of the seam's rows, and the way from there to the row above.
+typedef struct copied {
+    slots below;
+    mspringi_state state;
+    int64_t shift;               ///< of what is above
+    mspringi_span *spans, *runs; ///< [row_spans]
+} copied;
+
+static copied copy_below(const mspring_network *network, const mspringi_seam *seam, const mspringi_row *below,
+                         uint32_t row) {
+    const mspringi_seams *seams = &network->seams;
+    const slots from = slots_of(network, below), above = slots_of(network, below + 1);
+    mspringi_span *spans = seams->spans + ((size_t)2 * seam->border + row) * 2 * seams->row_spans;
+    const copied copy = {
+        .below = from,
+        .state = state_of(network, seam->border, row),
+        .shift = (int64_t)((ABOVE + seam->substep - row) * seams->segment + from.first) - (int64_t)above.first,
+        .spans = spans,
+        .runs = spans + seams->row_spans,
+    };
+    copy_slots(&network->state, from.first, &copy.state, 0, from.count);
+    return copy;
+}
+
+static mspringi_span move_span(const copied *copy, const mspringi_span *span) {
+    mspringi_span moved = *span;
+    moved.first_slot -= (uint32_t)copy->below.first;
+    moved.end_slot -= (uint32_t)copy->below.first;
+    moved.carry += (int64_t)copy->below.first;
+    moved.up += span->up != 0 ? copy->shift : 0;
+    return moved;
+}
+
+static void sweep_moved(const copied *copy, mspringi_row_fn lattice, const mspringi_sweep *sweep,
+                        const mspringi_span *spans, uint32_t count) {
+    for (uint32_t i = 0; i < count; ++i)
+        copy->spans[i] = move_span(copy, &spans[i]);
+    lattice(sweep, copy->spans, count);
+}
+
+// Sweep the copy as the row itself would be.
+static void sweep_copy(const mspring_network *network, const mspringi_substep *substep, const copied *copy,
+                       mspringi_sweep *sweep, const mspringi_row *below, bool is_partly) {
+    const mspringi_span *spans = &network->topology.spans[below->first_span];
+    const bool forced = substep->base.x != NULL;
+    const mspringi_row_fn lattice = mspringi_row_kernel(network, MSPRINGI_ROW_LATTICE, forced);
+    sweep->x = copy->state.x;
+    sweep->y = copy->state.y;
+    sweep->vx = copy->state.vx;
+    sweep->vy = copy->state.vy;
+    sweep->low_x = copy->state.low_x;
+    sweep->low_y = copy->state.low_y;
+    sweep->inverse_mass += copy->below.first;
+    if (forced) {
+        sweep->force_x += copy->below.first;
+        sweep->force_y += copy->below.first;
+    }
+    sweep->keep = NULL;
+    if (!is_partly) {
+        sweep_moved(copy, lattice, sweep, spans, below->span_count);
+        return;
+    }
+    mspringi_partly_at at = mspringi_partly_begin(spans, below->span_count);
+    for (uint32_t count; (count = mspringi_partly_next(network, &at, copy->runs)) > 0;) {
+        sweep_moved(copy, lattice, sweep, copy->runs, count);
+        for (uint32_t i = 0; i < count; ++i)
+            mspringi_partly_clear(network, &substep->sweep, &copy->runs[i]);
+    }
+}
+
+void mspringi_seam_keep(const mspring_network *network, const mspringi_seam *seam, const mspringi_substep *substep,
+                        const mspringi_strip *strip) {
+    const mspringi_row *above = &network->topology.rows[strip->first_row], *below = above - 1;
+    const mspringi_share share = mspringi_share_of_strip(network, strip - 1);
+    if (below->kind != MSPRINGI_ROW_LATTICE || share == MSPRINGI_ASLEEP)
+        return;
+    const mspringi_state kept = state_of(network, seam->border, ABOVE + seam->substep);
+    const slots from = slots_of(network, above);
+    copy_slots(&network->state, from.first, &kept, 0, from.count);
+    const copied copy = copy_below(network, seam, below, BELOW_FOR_UPPER);
+    mspringi_sweep sweep = substep->sweep;
+    sweep.watch = NULL;
+    sweep_copy(network, substep, &copy, &sweep, below, share == MSPRINGI_PARTLY);
+}
+
+void mspringi_seam_sweep(const mspring_network *network, const mspringi_seam *seam, const mspringi_substep *substep,
+                         const mspringi_strip *strip) {
+    const mspringi_row *below = &network->topology.rows[strip->first_row + strip->row_count - 1];
+    const copied copy = copy_below(network, seam, below, BELOW_FOR_LOWER);
+    const mspringi_state *backup = &network->backup;
+    mspringi_sweep sweep = substep->sweep;
+    if (sweep.keep)
+        copy_slots(&copy.state, 0, backup, copy.below.first, copy.below.count);
+    if (sweep.before) {
+        // Where vy lies as far behind vx as y behind x, as the sweep expects it.
+        const mspringi_state before = state_of(network, seam->border, BEFORE);
+        memcpy(before.x, backup->vx + copy.below.first, copy.below.count * sizeof *before.x);
+        memcpy(before.y, backup->vy + copy.below.first, copy.below.count * sizeof *before.y);
+        sweep.before = before.x;
+    }
+    sweep_copy(network, substep, &copy, &sweep, below, mspringi_share_of_strip(network, strip) == MSPRINGI_PARTLY);
+    copy_slots(&copy.state, 0, &network->state, copy.below.first, copy.below.count);
+    // The worker above has what the row hands on.
+    const size_t carried = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH;
+    memset(sweep.carry_x, 0, carried * sizeof *sweep.carry_x);
+    memset(sweep.carry_y, 0, carried * sizeof *sweep.carry_y);
+}

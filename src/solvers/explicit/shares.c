@@ -1,0 +1,144 @@
+/// Equal shares.
+#include "solvers/explicit/shares.h"
+
+#include "solvers/explicit/seam.h"
+#include "sleep/sleep.h"
+
+/// Substeps of a step times springs from which more than one worker is worth it, and those of a pass: workers meet
+/// in each.
+#define SMALLEST_SHARED_WORK 400000u
+#define SMALLEST_SHARED_PASS 40000u
+
+/// Strips that each of several workers should have: a bar of 640 x 10, whose rows go from one to the other and back
+/// every third substep, was 1.3 times as fast with two as with one where both cores were there, and 0.65 times where
+/// the host took turns.
+#define FEWEST_STRIPS 8u
+
+/// What it takes to sweep a lattice block, to sweep a rung of the web, and to keep a block of a seam and sweep it.
+#define BLOCK_WEIGHT 8u
+#define RUNG_WEIGHT 3u
+#define SEAM_WEIGHT 12u
+
+/* -------------------------------------------------------------------------------------------------- the weights */
+
+static uint64_t rungs_between(const mspringi_topology *t, uint32_t first_group, uint32_t end_group) {
+    return t->web.first_rung[end_group] - t->web.first_rung[first_group];
+}
+
+static uint64_t weight_of_strip(const mspring_network *network, const mspringi_strip *strip) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_row *first = &t->rows[strip->first_row], *last = first + strip->row_count - 1;
+    const uint32_t begin = t->spans[first->first_span].first_slot / MSPRINGI_WIDTH;
+    const uint32_t end = t->spans[last->first_span + last->span_count - 1].end_slot / MSPRINGI_WIDTH;
+    if (mspringi_share_of_strip(network, strip) == MSPRINGI_ASLEEP)
+        return 0;
+    uint64_t weight = (uint64_t)BLOCK_WEIGHT * (end - begin + 1);
+    if (strip->attached_count > 0) {
+        const uint32_t group = (t->web.own_count + strip->first_attached) / MSPRINGI_WIDTH;
+        const uint32_t groups = (strip->attached_count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
+        weight += RUNG_WEIGHT * rungs_between(t, group, group + groups);
+    }
+    if (strip->home_span != MSPRING_NONE) {
+        const mspringi_span *span = &t->spans[strip->home_span];
+        const uint32_t blocks =
+            (span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH - span->first_slot / MSPRINGI_WIDTH;
+        weight += RUNG_WEIGHT * rungs_between(t, span->first_record, span->first_record + blocks);
+    }
+    return weight;
+}
+
+static uint64_t weight_of_layer(const mspring_network *network, const mspringi_strip *web, uint32_t layer) {
+    const mspringi_topology *t = &network->topology;
+    const uint32_t first = t->spans[t->rows[web->first_row].first_span].first_record;
+    return RUNG_WEIGHT * rungs_between(t, first + t->layer_blocks[layer], first + t->layer_blocks[layer + 1]);
+}
+
+// What the strips below each have together.
+static void weigh(const mspring_network *network, const mspringi_strip *web, uint32_t strips) {
+    uint64_t *weights = network->seams.weights;
+    weights[0] = 0;
+    for (uint32_t s = 0; s < strips; ++s)
+        weights[s + 1] = weights[s] + (web ? weight_of_layer(network, web, s)
+                                           : weight_of_strip(network, &network->topology.strips[s]));
+}
+
+/* -------------------------------------------------------------------------------------------------- the borders */
+
+// What lies below a border in a pass of so many substeps.
+static uint64_t weight_below(const mspring_network *network, const mspringi_shares *shares, uint32_t border,
+                             uint32_t substeps) {
+    uint64_t sum = 0;
+    for (uint32_t i = 0; i < substeps; ++i)
+        sum += network->seams.weights[border + i * shares->lag];
+    return sum;
+}
+
+// Of the borders first to last the highest one that has no more than that weight below it.
+static uint32_t find_border(const mspring_network *network, const mspringi_shares *shares, uint64_t weight,
+                            uint32_t substeps, uint32_t first, uint32_t last) {
+    while (first < last) {
+        const uint32_t middle = last - (last - first) / 2;
+        if (weight_below(network, shares, middle, substeps) <= weight)
+            first = middle;
+        else
+            last = middle - 1;
+    }
+    return first;
+}
+
+// Find the borders of a pass. below: of each, what has been below it in the passes before, and will be after this
+// one. Whoever is below is rather ahead than behind, so that nobody waits for it when the next pass begins.
+static void find_borders(const mspring_network *network, const mspringi_shares *shares, uint32_t pass,
+                         uint64_t seam, uint64_t *below) {
+    const uint32_t substeps = mspringi_shares_substeps(shares, pass), least = mspringi_shares_least(shares->lag);
+    const uint64_t done = (uint64_t)pass * shares->group + substeps, workers = shares->workers;
+    const uint64_t each = done * (network->seams.weights[shares->strips] + (workers - 1) * seam) / workers;
+    uint32_t *borders = shares->borders + (size_t)pass * shares->workers;
+    borders[0] = 0;
+    for (uint32_t share = 1; share < workers; ++share) {
+        const uint64_t wanted = share * each, others = (share - 1) * seam * done + below[share];
+        const uint32_t last = shares->strips - (shares->workers - share) * least - (substeps - 1) * shares->lag;
+        borders[share] = find_border(network, shares, wanted > others ? wanted - others : 0, substeps,
+                                     borders[share - 1] + least, last);
+        below[share] += weight_below(network, shares, borders[share], substeps);
+    }
+}
+
+// Equal passes, no longer than shares are high: the uppermost one is lowest in the last substep of a pass.
+static void plan_passes(mspringi_shares *shares, uint32_t depth) {
+    const uint32_t least = mspringi_shares_least(shares->lag);
+    const uint32_t fits = 1 + (shares->strips / shares->workers - least) / shares->lag;
+    const uint32_t most = shares->workers == 1 || depth < fits ? depth : fits;
+    const uint32_t passes = (shares->count + most - 1) / most;
+    shares->group = (shares->count + passes - 1) / passes;
+}
+
+mspringi_shares mspringi_shares_plan(const mspring_network *network, const mspringi_strip *web, uint32_t count,
+                                     uint32_t depth) {
+    const mspringi_topology *t = &network->topology;
+    mspringi_shares shares = {.strips = web ? t->layer_count : t->wave_strips,
+                              .lag = web ? 1 : t->lag,
+                              .count = count,
+                              .workers = mspringi_tasks_concurrency(network->tasks),
+                              .borders = network->seams.borders};
+    const uint32_t least = mspringi_shares_least(shares.lag);
+    const uint32_t most = shares.strips / (least > FEWEST_STRIPS ? least : FEWEST_STRIPS);
+    const uint64_t springs = mspringi_swept_count(t);
+    uint64_t below[MSPRING_MAX_WORKERS] = {0};
+    if (shares.workers > most)
+        shares.workers = most > 1 ? most : 1;
+    if (springs * network->substeps < SMALLEST_SHARED_WORK || network->graft.count > 0)
+        shares.workers = 1;
+    plan_passes(&shares, depth);
+    if (springs * shares.group < SMALLEST_SHARED_PASS && shares.workers > 1) {
+        shares.workers = 1;
+        plan_passes(&shares, depth);
+    }
+    if (shares.workers == 1)
+        return shares;
+    weigh(network, web, shares.strips);
+    const uint64_t seam = web ? 0 : (uint64_t)SEAM_WEIGHT * t->carry_blocks;
+    for (uint32_t pass = 0; pass < MSPRINGI_PLANNED_PASSES && pass * shares.group < count; ++pass)
+        find_borders(network, &shares, pass, seam, below);
+    return shares;
+}

@@ -1,0 +1,48 @@
+/// The explicit solver's table. It keeps nothing from step to step.
+#include "solvers/explicit/creep.h"
+#include "solvers/explicit/explicit.h"
+#include "store/graft.h"
+
+static bool whole(mspring_network *network, const mspringi_attempt *attempt, mspringi_field base,
+                  mspringi_sight *sight) {
+    if (network->floor || network->graft.count > 0)
+        return false;
+    *sight = mspringi_explicit_step(network, attempt->h, base, attempt->substeps);
+    return true;
+}
+
+static void substeps(mspring_network *network, void *object, float h, mspringi_field base, uint32_t count) {
+    (void)object;
+    mspringi_explicit_substeps(network, h, base, count);
+}
+
+void mspringi_explicit_end(mspring_network *network) {
+    mspringi_creep_stop(network, 0, mspringi_slot_count(network));
+}
+
+static void restore(mspring_network *network, void *object) {
+    (void)object;
+    mspringi_explicit_reset(network);
+}
+
+bool mspringi_explicit_is_alone(const mspring_network *network, const void *object, size_t slot) {
+    const uint32_t block = (uint32_t)(slot / MSPRINGI_WIDTH);
+    (void)object;
+    return block >= network->topology.loose_first &&
+           mspringi_graft_find_block(&network->graft, block, block + 1, true) != block;
+}
+
+const mspringi_solver_ops mspringi_explicit_ops = {
+    .has_border = true,
+    .picks_substeps = true,
+    .skips_sleepers = true,
+    .lags = true,
+    .has_herds = true,
+    .can_add = true,
+    .begin = mspringi_graft_follow,
+    .whole = whole,
+    .substeps = substeps,
+    .end = mspringi_explicit_end,
+    .restore = restore,
+    .is_alone = mspringi_explicit_is_alone,
+};

@@ -1,0 +1,291 @@
+/// Sweeping a strip of rows, and what hangs on it.
+#include "solvers/explicit/strip.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/decay.h"
+#include "contact/floor.h"
+#include "solvers/explicit/creep.h"
+#include "solvers/explicit/partly.h"
+#include "solvers/explicit/seam.h"
+#include "store/precise.h"
+
+mspringi_substep mspringi_substep_prepare(const mspring_network *network, float h, mspringi_field base, uint32_t i,
+                                          uint32_t count, uint32_t carry_number) {
+    const mspringi_topology *t = &network->topology;
+    const size_t carry_slots = (size_t)t->carry_blocks * MSPRINGI_WIDTH;
+    const size_t packed_floats = (size_t)mspringi_packed_values(network) * t->web.group_count * MSPRINGI_WIDTH;
+    float *carry = network->carry + 2 * carry_number * carry_slots;
+    return (mspringi_substep){
+        .base = base,
+        .packed = network->packed + i % 2 * packed_floats,
+        .next_packed = i + 1 < count ? network->packed + (i + 1) % 2 * packed_floats : NULL,
+        .sweep =
+            {
+                .x = network->state.x,
+                .y = network->state.y,
+                .vx = network->state.vx,
+                .vy = network->state.vy,
+                .low_x = network->state.low_x,
+                .low_y = network->state.low_y,
+                .inverse_mass = mspringi_free_mass(network),
+                .force_x = base.x,
+                .force_y = base.y,
+                .carry_x = carry,
+                .carry_y = carry + carry_slots,
+                .lattice_springs = network->lattice_springs,
+                .springs_of_block = network->alike.of_block,
+                .rest_lengths = network->rests.lengths,
+                .rests_of_block = network->rests.of_block,
+                .chain_springs = network->chain_springs,
+                .web = &t->web,
+                .web_springs = network->web_springs,
+                .packed = network->packed + i % 2 * packed_floats,
+                .parts = network->parts,
+                .h = h,
+                .decay = mspringi_decay(network->global_damping, h),
+                // Never -0: a sum of forces may be +0 or -0, depending on what empty slots hold, and what is added
+                // to +0 does not tell.
+                .gravity_h_x = network->gravity_x * h + 0.0f,
+                .gravity_h_y = network->gravity_y * h + 0.0f,
+            },
+    };
+}
+
+// Pack what the web sees of the nodes that are slots of a strip.
+static void pack_attached(const mspring_network *network, const mspringi_strip *strip, float *packed) {
+    const mspringi_web *web = &network->topology.web;
+    const uint32_t *slots = web->attached_slot + strip->first_attached;
+    packed += 4 * ((size_t)web->own_count + strip->first_attached);
+    for (uint32_t i = 0; i < strip->attached_count; ++i, packed += 4)
+        mspringi_pack_slot(network, web, packed, slots[i]);
+}
+
+// Pack groups that lie behind one another.
+static void pack_blocks(const mspring_network *network, const mspringi_sweep *sweep, size_t first_block,
+                        size_t count, float *packed) {
+    mspringi_sweep from = *sweep;
+    if (network->is_precise) {
+        from.vx = from.low_x;
+        from.vy = from.low_y;
+    }
+    network->kernels->pack(&from, first_block, count, packed);
+    if (!mspringi_packs_halves(network))
+        return;
+    from.x = sweep->vx;
+    from.y = sweep->vy;
+    network->kernels->pack(&from, first_block, count, packed + mspringi_packed_half(sweep->web));
+}
+
+// Pack what the web sees of its own nodes in a span: runs of groups that somebody reads there.
+static void pack_span(const mspring_network *network, const mspringi_sweep *sweep, const mspringi_span *span,
+                      float *packed) {
+    const uint8_t *is_read = network->topology.web.is_read;
+    const size_t first_block = span->first_slot / MSPRINGI_WIDTH;
+    const size_t end = (span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH - first_block + span->first_record;
+    for (size_t first = span->first_record, last = first; first < end; first = ++last) {
+        while (last < end && (!is_read || is_read[last]))
+            ++last;
+        if (last > first)
+            pack_blocks(network, sweep, first_block + (first - span->first_record), last - first,
+                        packed + 4 * first * MSPRINGI_WIDTH);
+    }
+}
+
+// Add what the web's pull at the slots of a strip does in the substep that they have just been swept for. It could
+// be among the forces that they are swept with, but then whole strips would read them for the sake of some slots.
+static void pull_attached(const mspring_network *network, const mspringi_substep *substep,
+                          const mspringi_strip *strip) {
+    const mspringi_web *web = &network->topology.web;
+    const mspringi_sweep *sweep = &substep->sweep;
+    const uint32_t *slots = web->attached_slot + strip->first_attached;
+    float *pull_x = network->attached, *pull_y = network->attached + web->attached_count;
+    mspringi_attached_kernel(network)(sweep, strip->first_attached, strip->attached_count, pull_x, pull_y);
+    pull_x += strip->first_attached;
+    pull_y += strip->first_attached;
+    for (uint32_t i = 0; i < strip->attached_count; ++i) {
+        const uint32_t slot = slots[i];
+        if (!(sweep->inverse_mass[slot] > 0.0f))
+            continue;
+        const float change = sweep->inverse_mass[slot] * sweep->h * sweep->decay; // of velocity, per newton
+        const float dvx = pull_x[i] * change, dvy = pull_y[i] * change;
+        sweep->vx[slot] = sweep->vx[slot] + dvx;
+        sweep->vy[slot] = sweep->vy[slot] + dvy;
+        mspringi_move_by(&network->state, slot, dvx * sweep->h, dvy * sweep->h);
+    }
+}
+
+// Sweep rows that follow each other, all of one kind.
+static void sweep_rows(const mspring_network *network, const mspringi_substep *substep, const mspringi_row *rows,
+                       uint32_t row_count, bool is_partly) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_row *last = &rows[row_count - 1];
+    uint32_t first_span = rows->first_span, end_span = last->first_span + last->span_count;
+    const mspringi_span *spans = t->spans;
+    const mspringi_sweep *sweep = &substep->sweep;
+    if (rows->kind == MSPRINGI_ROW_LOOSE)
+        return; // moved apart, see explicit.c
+    const mspringi_row_fn sweep_spans = mspringi_row_kernel(network, rows->kind, substep->base.x != NULL);
+    if (is_partly) {
+        for (const mspringi_row *row = rows; row <= last; ++row)
+            mspringi_partly_sweep_row(network, substep, sweep_spans, row);
+        return;
+    }
+    if (t->tight_spans && first_span < t->tightened_count) {
+        spans = t->tight_spans;
+        first_span = t->first_tight[first_span];
+        end_span = t->first_tight[end_span];
+    }
+    sweep_spans(sweep, spans + first_span, end_span - first_span);
+}
+
+void mspringi_web_pack(const mspring_network *network, const mspringi_substep *substep, const mspringi_span *span) {
+    pack_span(network, &substep->sweep, span, substep->packed);
+}
+
+void mspringi_web_pack_next(const mspring_network *network, const mspringi_substep *substep,
+                            const mspringi_span *span) {
+    pack_span(network, &substep->sweep, span, substep->next_packed);
+}
+
+void mspringi_web_sweep(const mspring_network *network, const mspringi_substep *substep,
+                        const mspringi_span *span) {
+    const mspringi_row_fn web = mspringi_row_kernel(network, MSPRINGI_ROW_WEB, substep->base.x != NULL);
+    if (network->sleep.sleeping > 0)
+        mspringi_partly_sweep_web(network, substep, web, span);
+    else
+        web(&substep->sweep, span, 1);
+}
+
+void mspringi_strip_pack(const mspring_network *network, const mspringi_substep *substep,
+                         const mspringi_strip *strip) {
+    const mspringi_topology *t = &network->topology;
+    if (t->web.group_count == 0)
+        return;
+    pack_attached(network, strip, substep->packed);
+    if (strip->home_span != MSPRING_NONE)
+        mspringi_web_pack(network, substep, &t->spans[strip->home_span]);
+}
+
+void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep *substep,
+                          const mspringi_strip *strip, const mspringi_seam *seam) {
+    const mspringi_row *rows = &network->topology.rows[strip->first_row], *last = rows + strip->row_count - 1;
+    const bool is_partly = mspringi_share_of_strip(network, strip) == MSPRINGI_PARTLY;
+    const bool has_seam = seam && last->kind == MSPRINGI_ROW_LATTICE;
+    const uint32_t row_count = strip->row_count - has_seam;
+    const mspringi_span *spans = &network->topology.spans[rows->first_span];
+    const uint32_t span_count = last->first_span + last->span_count - rows->first_span;
+    mspringi_floor_note(network, strip, spans, span_count);
+    for (uint32_t first = 0, count; first < row_count; first += count) {
+        for (count = 1; first + count < row_count && rows[first + count].kind == rows[first].kind;)
+            ++count;
+        sweep_rows(network, substep, &rows[first], count, is_partly);
+    }
+    if (has_seam)
+        mspringi_seam_sweep(network, seam, substep, strip);
+    if (strip->attached_count > 0)
+        pull_attached(network, substep, strip);
+    if (network->graft.count > 0)
+        mspringi_graft_pull(network, &substep->sweep, network->topology.spans[rows->first_span].first_slot,
+                            network->topology.spans[last->first_span + last->span_count - 1].end_slot);
+    mspringi_floor_touch(network, strip, spans, span_count, substep->sweep.h);
+    if (strip->attached_count > 0 && substep->next_packed)
+        pack_attached(network, strip, substep->next_packed);
+    if (strip->home_span == MSPRING_NONE)
+        return;
+    const mspringi_span *span = &network->topology.spans[strip->home_span];
+    mspringi_floor_note(network, strip, span, 1);
+    mspringi_web_sweep(network, substep, span);
+    if (network->graft.count > 0)
+        mspringi_graft_pull(network, &substep->sweep, span->first_slot, span->end_slot);
+    mspringi_floor_touch(network, strip, span, 1, substep->sweep.h);
+    if (substep->next_packed)
+        pack_span(network, &substep->sweep, span, substep->next_packed);
+}
+
+/* -------------------------------------------------------------------------------------- before and after a step */
+
+// Slots first to end - 1, in whole blocks.
+static void keep_slots(const mspring_network *network, size_t first, size_t end) {
+    const mspringi_state *from = &network->state, *to = &network->backup;
+    const size_t size = (end - first) * sizeof *from->x;
+    memcpy(to->x + first, from->x + first, size);
+    memcpy(to->y + first, from->y + first, size);
+    memcpy(to->vx + first, from->vx + first, size);
+    memcpy(to->vy + first, from->vy + first, size);
+    memcpy(to->low_x + first, from->low_x + first, size);
+    memcpy(to->low_y + first, from->low_y + first, size);
+}
+
+static mspringi_sight look_at_slots(const mspring_network *network, size_t first, size_t end) {
+    mspringi_creep_stop(network, first, end);
+    return mspringi_guard_look(network, first, end);
+}
+
+static size_t first_block_slot(const mspringi_span *span) {
+    return span->first_slot / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+}
+
+static size_t end_block_slot(const mspringi_span *span) {
+    return ((size_t)span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+}
+
+// The spans of rows that follow each other lie behind one another.
+static size_t first_row_slot(const mspring_network *network, const mspringi_strip *strip) {
+    const mspringi_topology *t = &network->topology;
+    return first_block_slot(&t->spans[t->rows[strip->first_row].first_span]);
+}
+
+static size_t end_row_slot(const mspring_network *network, const mspringi_strip *strip) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_row *last = &t->rows[strip->first_row + strip->row_count - 1];
+    return end_block_slot(&t->spans[last->first_span + last->span_count - 1]);
+}
+
+void mspringi_span_keep(const mspring_network *network, const mspringi_span *span) {
+    keep_slots(network, first_block_slot(span), end_block_slot(span));
+}
+
+mspringi_sight mspringi_span_look(const mspring_network *network, const mspringi_span *span) {
+    return look_at_slots(network, first_block_slot(span), end_block_slot(span));
+}
+
+void mspringi_substep_keep(const mspring_network *network, mspringi_substep *substep) {
+    substep->sweep.keep = network->backup.x;
+}
+
+void mspringi_substep_watch(const mspring_network *network, mspringi_substep *substep, mspringi_watch *watch) {
+    substep->sweep.watch = watch;
+    substep->sweep.before = network->guard.watches ? network->backup.vx : NULL;
+    substep->sweep.watches_place = !network->guard.knows_place;
+    substep->sweep.watches_speed = !(network->guard.watches && network->guard.knows_speed);
+}
+
+mspringi_watch *mspringi_watch_in(mspringi_watch_room *room) {
+    const size_t bytes = sizeof(float) * MSPRINGI_WIDTH, over = (uintptr_t)room->values % bytes;
+    return (mspringi_watch *)(void *)(room->values + (bytes - over) % bytes / sizeof(float));
+}
+
+// What the web has pulled at after the slots of the strip were swept.
+static mspringi_sight look_at_attached(const mspring_network *network, const mspringi_strip *strip) {
+    const mspringi_state *s = &network->state, *b = &network->backup;
+    const uint32_t *slots = network->topology.web.attached_slot + strip->first_attached;
+    mspringi_sight sight = {0.0f, 0.0f, 0.0f};
+    for (uint32_t i = 0; i < strip->attached_count; ++i) {
+        const uint32_t slot = slots[i];
+        const float change_x = fabsf(s->vx[slot] - b->vx[slot]), change_y = fabsf(s->vy[slot] - b->vy[slot]);
+        sight = mspringi_sight_join(sight, (mspringi_sight){fabsf(s->x[slot]), fabsf(s->vx[slot]), change_x});
+        sight = mspringi_sight_join(sight, (mspringi_sight){fabsf(s->y[slot]), fabsf(s->vy[slot]), change_y});
+    }
+    return sight;
+}
+
+mspringi_sight mspringi_strip_end(const mspring_network *network, const mspringi_strip *strip) {
+    mspringi_creep_stop(network, first_row_slot(network, strip), end_row_slot(network, strip));
+    if (strip->home_span != MSPRING_NONE) {
+        const mspringi_span *span = &network->topology.spans[strip->home_span];
+        mspringi_creep_stop(network, first_block_slot(span), end_block_slot(span));
+    }
+    return strip->attached_count > 0 ? look_at_attached(network, strip) : (mspringi_sight){0.0f, 0.0f, 0.0f};
+}

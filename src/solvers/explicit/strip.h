@@ -1,0 +1,59 @@
+/// @file strip.h
+/// One substep of one strip of rows.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_STRIP_H
+#define MSPRINGI_STRIP_H
+
+#include "stability/guard.h"
+#include "store/network.h"
+
+/// What one substep works with.
+typedef struct mspringi_substep {
+    mspringi_sweep sweep;
+    mspringi_field base; ///< forces from outside; x NULL if there are none
+    float *packed;       ///< the web's nodes before the substep
+    float *next_packed;  ///< where those of a strip go after it; NULL if nobody will read them there
+} mspringi_substep;
+
+/// Substep i of count that are swept together, with the carry row of that number to itself.
+mspringi_substep mspringi_substep_prepare(const mspring_network *network, float h, mspringi_field base, uint32_t i,
+                                          uint32_t count, uint32_t carry_number);
+
+/// Pack the web's nodes that a strip has.
+void mspringi_strip_pack(const mspring_network *network, const mspringi_substep *substep,
+                         const mspringi_strip *strip);
+
+struct mspringi_seam;
+
+/// Sweep a strip with everything that hangs on it; with a seam (or NULL) above its last row.
+void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep *substep,
+                          const mspringi_strip *strip, const struct mspringi_seam *seam);
+
+/// Room for what is watched, aligned as vectors need it, wherever it lies.
+typedef struct mspringi_watch_room {
+    float values[4 * MSPRINGI_WIDTH];
+} mspringi_watch_room;
+
+/// The watch in a room of zeros.
+mspringi_watch *mspringi_watch_in(mspringi_watch_room *room);
+
+/// Have the substep copy the state that it finds into the backup: the first of a step.
+void mspringi_substep_keep(const mspring_network *network, mspringi_substep *substep);
+/// Have it look at where what it moves comes to, and how fast: the last of a step.
+void mspringi_substep_watch(const mspring_network *network, mspringi_substep *substep, mspringi_watch *watch);
+/// After the last substep of a strip, while it is in the cache: stop what creeps, and look at what has been moved
+/// again since it was swept.
+mspringi_sight mspringi_strip_end(const mspring_network *network, const mspringi_strip *strip);
+
+/// Copy the state of some blocks of a row into the backup; stop what creeps there and look at it.
+void mspringi_span_keep(const mspring_network *network, const mspringi_span *span);
+mspringi_sight mspringi_span_look(const mspring_network *network, const mspringi_span *span);
+
+/// Pack the web's nodes of some of a web row's blocks for this substep or for the next, or sweep them.
+void mspringi_web_pack(const mspring_network *network, const mspringi_substep *substep, const mspringi_span *span);
+void mspringi_web_pack_next(const mspring_network *network, const mspringi_substep *substep,
+                            const mspringi_span *span);
+void mspringi_web_sweep(const mspring_network *network, const mspringi_substep *substep, const mspringi_span *span);
+
+#endif

@@ -1,0 +1,261 @@
+/// The linear system of a substep.
+#include "solvers/implicit/implicit.h"
+#include "solvers/implicit/terms.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "kernels/spring_law.h"
+#include "sleep/sleep.h"
+#include "store/springs.h"
+
+/* ----------------------------------------------------------------------------------------------- matrix rows */
+
+/// A worker's share of the panels, with carry rows of its own.
+typedef struct panel_share {
+    mspringi_system system;
+    const mspringi_panel *begin, *end;
+} panel_share;
+
+static panel_share share_panels(const mspring_network *network, const mspringi_mate *mate) {
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH;
+    panel_share share = {.system = n->system,
+                         .begin = n->panels.list + mspringi_share_of(mate, n->panels.count),
+                         .end = n->panels.list + mspringi_share_end(mate, n->panels.count)};
+    share.system.force_carry_x = n->force_carry + 2 * mate->index * carry;
+    share.system.force_carry_y = share.system.force_carry_x + carry;
+    share.system.carry_xx = n->carry + 3 * mate->index * carry;
+    share.system.carry_xy = share.system.carry_xx + carry;
+    share.system.carry_yy = share.system.carry_xy + carry;
+    return share;
+}
+
+bool mspringi_panel_is_asleep(const mspring_network *network, const mspringi_panel *panel) {
+    const mspringi_topology *t = &network->topology;
+    if (network->sleep.sleeping == 0 || mspringi_implicit_of(network)->is_direct)
+        return false;
+    for (uint32_t i = panel->first_span; i < panel->first_span + panel->span_count; ++i)
+        if (mspringi_is_any_swept(network, t->spans[i].first_slot / MSPRINGI_WIDTH,
+                                  (t->spans[i].end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH))
+            return false;
+    return true;
+}
+
+// Whether the first of a share's panels gets something from a row that is another's.
+static bool is_handed_on(const mspring_network *network, const panel_share *share) {
+    return share->begin < share->end && share->begin->below_count > 0 &&
+           !mspringi_panel_is_asleep(network, share->begin);
+}
+
+// Carry rows are 0 where grids end. Where a share ends inside of one, or what follows on a panel is left out, they
+// are not.
+static void clear_carry(const mspring_network *network, const panel_share *share, const mspringi_panel *next,
+                        bool forces) {
+    const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH;
+    const mspringi_panels *panels = &mspringi_implicit_of(network)->panels;
+    if (next == panels->list + panels->count || next->below_count == 0 ||
+        (next < share->end && !mspringi_panel_is_asleep(network, next)))
+        return;
+    if (forces)
+        memset(share->system.force_carry_x, 0, 2 * carry * sizeof *share->system.force_carry_x);
+    memset(share->system.carry_xx, 0, (forces ? 3 : 2) * carry * sizeof *share->system.carry_xx);
+}
+
+static void assemble_panels(const mspring_network *network, const mspringi_mate *mate) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_system_kernels *kernels = &network->kernels->system;
+    const bool damped = network->parts > MSPRINGI_DAMPING;
+    const panel_share share = share_panels(network, mate);
+    if (is_handed_on(network, &share))
+        kernels->hand_on_forces[damped](&share.system, t->spans + share.begin->below_first,
+                                        share.begin->below_count);
+    for (const mspringi_panel *panel = share.begin; panel < share.end; ++panel) {
+        if (mspringi_panel_is_asleep(network, panel))
+            continue;
+        const mspringi_assemble_fn assemble =
+            panel->is_lattice ? kernels->assemble_lattice[damped] : kernels->assemble_chain[damped];
+        assemble(&share.system, t->spans + panel->first_span, panel->span_count);
+        clear_carry(network, &share, panel + 1, true);
+    }
+}
+
+static void multiply_panels(const mspring_network *network, const mspringi_mate *mate) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    const mspringi_system_kernels *kernels = &network->kernels->system;
+    const mspringi_field from = n->direction, to = n->product;
+    const panel_share share = share_panels(network, mate);
+    if (is_handed_on(network, &share))
+        kernels->hand_on_product(&share.system, t->spans + share.begin->below_first, share.begin->below_count,
+                                 from.x, from.y);
+    for (const mspringi_panel *panel = share.begin; panel < share.end; ++panel) {
+        n->panels.sums[panel - n->panels.list] = 0.0f;
+        if (mspringi_panel_is_asleep(network, panel))
+            continue;
+        const mspringi_multiply_fn multiply =
+            panel->is_lattice ? kernels->multiply_lattice : kernels->multiply_chain;
+        n->panels.sums[panel - n->panels.list] =
+            multiply(&share.system, t->spans + panel->first_span, panel->span_count, from.x, from.y, to.x, to.y);
+        clear_carry(network, &share, panel + 1, false);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------ leftover springs */
+
+/// One of them as it acts on its base.
+typedef struct leftover {
+    double force_x, force_y;
+    float pull_x, pull_y, swing;
+} leftover;
+
+// As in kernels/system_assemble.h, in double precision throughout.
+static leftover compute_leftover(const mspringi_system *s, uint32_t base, uint32_t tip,
+                                 const mspringi_spring_values *values) {
+    const double dx = s->x[tip] - s->x[base], dy = s->y[tip] - s->y[base];
+    const double length = sqrt(dx * dx + dy * dy), inverse = length > 0.0 ? 1.0 / length : 0.0;
+    const double nx = dx * inverse, ny = dy * inverse;
+    const double extension = length - (double)values->rest_length;
+    const double stiffness = s->force_scale * (double)values->stiffness;
+    const double damping = s->force_scale * (double)values->damping;
+    const double relative = extension * inverse, tensed = mspringi_swing_share(relative);
+    const double dvx = (double)s->vx[tip] - (double)s->vx[base], dvy = (double)s->vy[tip] - (double)s->vy[base];
+    const double force = MSPRINGI_LAW_FORCE(MSPRINGI_TIMES, stiffness, extension) +
+                         MSPRINGI_LAW_DAMPING_FORCE(MSPRINGI_TIMES, damping, dvx * nx + dvy * ny);
+    const double own = MSPRINGI_LAW_ALONG(stiffness), swing = own * tensed;
+    const double along = (own - swing) + MSPRINGI_LAW_DAMPING_ALONG(damping) * s->damping_rate;
+    const float root = sqrtf((float)along);
+    return (leftover){force * nx, force * ny, root * (float)nx, root * (float)ny, (float)swing};
+}
+
+static void add_to_diagonal(const mspringi_system *s, uint32_t slot, const leftover *spring) {
+    s->xx[slot] += spring->swing + spring->pull_x * spring->pull_x;
+    s->xy[slot] += spring->pull_x * spring->pull_y;
+    s->yy[slot] += spring->swing + spring->pull_y * spring->pull_y;
+}
+
+static float *leftover_factors(const mspringi_implicit *n, uint32_t i) {
+    return n->leftover_factors + (size_t)(i / MSPRINGI_WIDTH) * MSPRINGI_FACTORS * MSPRINGI_WIDTH +
+           i % MSPRINGI_WIDTH;
+}
+
+// Whether a leftover spring has nobody to pull at.
+static bool sleeps(const mspring_network *network, uint32_t i) {
+    const mspringi_topology *t = &network->topology;
+    return mspringi_slot_is_asleep(network, t->leftover_a[i]) && mspringi_slot_is_asleep(network, t->leftover_b[i]);
+}
+
+static void assemble_leftover(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_system *s = &mspringi_implicit_of(network)->system;
+    for (uint32_t i = 0; i < t->leftover_count; ++i) {
+        if (sleeps(network, i))
+            continue;
+        const mspringi_spring_values values = mspringi_place_get(network, t->chain_places + i);
+        const leftover l = compute_leftover(s, values.base, values.tip, &values);
+        float *factors = leftover_factors(mspringi_implicit_of(network), i);
+        factors[MSPRINGI_PULL_X * MSPRINGI_WIDTH] = l.pull_x;
+        factors[MSPRINGI_PULL_Y * MSPRINGI_WIDTH] = l.pull_y;
+        factors[MSPRINGI_SWING * MSPRINGI_WIDTH] = l.swing;
+        s->force_x[values.base] += (float)l.force_x;
+        s->force_y[values.base] += (float)l.force_y;
+        s->force_x[values.tip] -= (float)l.force_x;
+        s->force_y[values.tip] -= (float)l.force_y;
+        add_to_diagonal(s, values.base, &l);
+        add_to_diagonal(s, values.tip, &l);
+    }
+}
+
+// Multiply the web's own particles by their masses, and add the leftover springs. Returns direction . product of
+// all that.
+static double multiply_leftover(const mspring_network *network, mspringi_field from, mspringi_field to) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    const size_t web = (size_t)t->web_first * MSPRINGI_WIDTH,
+                 web_end = web + (size_t)t->web_blocks * MSPRINGI_WIDTH;
+    // Loose particles that nothing has been added to are not in the iteration.
+    const size_t added = (size_t)t->loose_first * MSPRINGI_WIDTH;
+    const size_t added_end =
+        t->leftover_count > t->woven_count ? (size_t)(t->block_count - 1) * MSPRINGI_WIDTH : added;
+    double sum = 0.0;
+    for (size_t i = web; i < web_end; ++i) {
+        to.x[i] = n->mass[i] * from.x[i];
+        to.y[i] = n->mass[i] * from.y[i];
+        sum += (double)(from.x[i] * to.x[i] + from.y[i] * to.y[i]);
+    }
+    for (size_t i = added; i < added_end; ++i) {
+        to.x[i] = n->mass[i] * from.x[i];
+        to.y[i] = n->mass[i] * from.y[i];
+        sum += (double)(from.x[i] * to.x[i] + from.y[i] * to.y[i]);
+    }
+    for (uint32_t i = 0; i < t->leftover_count; ++i) {
+        const uint32_t a = t->leftover_a[i], b = t->leftover_b[i];
+        if (sleeps(network, i))
+            continue;
+        const float *factors = leftover_factors(n, i);
+        const float pull_x = factors[MSPRINGI_PULL_X * MSPRINGI_WIDTH];
+        const float pull_y = factors[MSPRINGI_PULL_Y * MSPRINGI_WIDTH];
+        const float swing = factors[MSPRINGI_SWING * MSPRINGI_WIDTH];
+        const float dx = from.x[b] - from.x[a], dy = from.y[b] - from.y[a];
+        const float along = pull_x * dx + pull_y * dy;
+        const float x = swing * dx + pull_x * along, y = swing * dy + pull_y * along;
+        to.x[a] -= x;
+        to.y[a] -= y;
+        to.x[b] += x;
+        to.y[b] += y;
+        sum += (double)(dx * x + dy * y);
+    }
+    return sum;
+}
+
+/* --------------------------------------------------------------------------------------------------- the whole */
+
+// Rows write these; the slots of other rows begin at nothing.
+static void clear_others(const mspring_network *network, mspringi_slots slots) {
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    const size_t swept = (size_t)network->topology.web_first * MSPRINGI_WIDTH;
+    const size_t first = slots.first > swept ? slots.first : swept;
+    float *const arrays[] = {n->residual.x, n->residual.y, n->system.xx, n->system.xy, n->system.yy};
+    for (size_t i = 0; i < sizeof arrays / sizeof arrays[0] && first < slots.end; ++i)
+        memset(arrays[i] + first, 0, (slots.end - first) * sizeof *arrays[i]);
+}
+
+void mspringi_assemble(const mspringi_substep_of *substep, mspringi_mate *mate) {
+    const mspring_network *network = substep->network;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    const mspringi_slots slots = mspringi_slots_of(network, mate);
+    mspringi_slots run;
+    mspringi_meet(mate);
+    assemble_panels(network, mate);
+    clear_others(network, slots);
+    mspringi_meet(mate);
+    if (network->topology.leftover_count > 0) {
+        if (mate->index == 0)
+            assemble_leftover(network);
+        mspringi_meet(mate);
+    }
+    for (size_t at = slots.first; mspringi_next_slots(network, slots, &at, &run);) {
+        network->kernels->system.add_outside(&substep->outside[0], n->residual.x, run.first, run.end);
+        network->kernels->system.add_outside(&substep->outside[1], n->residual.y, run.first, run.end);
+    }
+}
+
+double mspringi_multiply(const mspringi_substep_of *substep, mspringi_mate *mate) {
+    const mspring_network *network = substep->network;
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    multiply_panels(network, mate);
+    mspringi_meet(mate);
+    const bool has_contacts = network->floor && network->floor->contact_count > 0;
+    const bool has_others =
+        network->topology.web_blocks > 0 || network->topology.leftover_count > 0 || has_contacts;
+    if (has_others) {
+        if (mate->index == 0)
+            n->leftover_product = multiply_leftover(network, n->direction, n->product) +
+                                  mspringi_floor_multiply(network, n->direction, n->product);
+        mspringi_meet(mate);
+    }
+    double sum = has_others ? n->leftover_product : 0.0;
+    for (uint32_t p = 0; p < n->panels.count; ++p)
+        sum += (double)n->panels.sums[p];
+    return sum;
+}

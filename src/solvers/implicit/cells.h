@@ -1,0 +1,52 @@
+/// @file cells.h
+/// Cells: the pieces that a network's particles are cut into by its layout alone, whichever springs are broken and
+/// whichever particles are pinned.
+///
+/// A cell is some rows by some columns of a grid, a piece of the chains, or a neighbourhood in the web. Loose
+/// particles are in none, unless springs may be added; then each block of them is one. Springs that were added are
+/// not among those of the cells.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_CELLS_H
+#define MSPRINGI_CELLS_H
+
+#include "store/network.h"
+
+/// A spring between two cells, or between a particle of a cell and one of its pinned ones.
+typedef struct mspringi_joint {
+    uint32_t slot,
+        other_slot;   ///< the end in the later cell, or the free one; the end in the earlier, or the pinned
+    uint32_t factors; ///< where in the factors
+} mspringi_joint;
+
+/// Rows and columns of a cell: a power of two.
+#define MSPRINGI_LEAST_TILE_SIZE 8u
+#define MSPRINGI_LARGEST_TILE_SIZE 256u
+
+typedef struct mspringi_cells {
+    uint32_t count, size;   ///< size: rows and columns of a cell in wide grids
+    uint32_t *of_slot;      ///< [slots] MSPRING_NONE: none
+    uint32_t *first_slot;   ///< [count + 1] in slots
+    uint32_t *slots;        ///< by cell, ascending in each
+    uint32_t *first_inner;  ///< [count + 1] in inner
+    uint32_t *inner;        ///< springs inside a cell, by cell
+    mspringi_joint *joints; ///< springs between cells, sorted by the two
+    uint32_t joint_count;
+    uint32_t *first_joint; ///< [count + 1] in joints, by the later cell
+    uint32_t *lowest;      ///< [count] lowest of a cell and its neighbours
+} mspringi_cells;
+
+/// Cut a network into cells of size x size particles, numbered so that neighbours have near numbers.
+mspring_result mspringi_cells_create(mspringi_cells *cells, const mspring_network *network, uint32_t size,
+                                     mspringi_memory *memory, mspringi_message *message);
+extern const mspringi_columns mspringi_cells_columns;
+void mspringi_cells_destroy(mspringi_cells *cells, mspringi_memory *memory);
+
+/// Where the factors of a spring begin: lattice, chain and leftover records one behind the other.
+uint32_t mspringi_factors_of_place(mspringi_place place);
+
+/// Give the cells, as of_slot has them, numbers that are near for neighbours (Cuthill and McKee 1969).
+/// @return false: no memory
+bool mspringi_cells_order(mspringi_cells *cells, const mspring_network *network, mspringi_memory *memory);
+
+#endif

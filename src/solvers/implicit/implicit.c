@@ -1,0 +1,394 @@
+/// Making an implicit solver, and what it keeps.
+#include "solvers/implicit/implicit.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "sleep/sleep.h"
+
+#define DEFAULT_ITERATIONS 8
+
+/// Most multiply-adds that factoring the coarse matrix may take, for each slot: about as long as one product with A
+/// takes.
+#define COARSE_COST_PER_SLOT 20.0
+
+/// Most that it may take at all, a few seconds.
+#define MOST_COARSE_COST 0x1p34
+
+/* ----------------------------------------------------------------------------------------------------- creation */
+
+static bool reserve_field(mspringi_memory *memory, mspringi_field *field, size_t slots) {
+    field->x = mspringi_alloc(memory, 2 * slots, sizeof *field->x);
+    if (field->x)
+        field->y = field->x + slots;
+    return field->x != NULL;
+}
+
+// A history is one block of memory: first and, with BDF2, second.
+static bool reserve_history(mspringi_memory *memory, mspringi_history *history, size_t slots, bool two) {
+    float *values = mspringi_alloc(memory, (two ? 4 : 2) * slots, sizeof *values);
+    if (!values)
+        return false;
+    history->restarts = 1;
+    history->first = (mspringi_field){values, values + slots};
+    if (two)
+        history->second = (mspringi_field){values + 2 * slots, values + 3 * slots};
+    return true;
+}
+
+// Brings the mean of the masses near 1, without rounding any.
+static double choose_scale(const mspring_network *network) {
+    double sum = 0.0;
+    int exponent;
+    for (uint32_t p = 0; p < network->topology.particle_count; ++p)
+        sum += (double)network->mass[p];
+    (void)frexp(sum / (double)network->topology.particle_count, &exponent);
+    return ldexp(1.0, -exponent);
+}
+
+static mspring_result allocate(mspringi_implicit *n, mspring_network *network) {
+    mspringi_memory *memory = &network->memory;
+    const mspringi_topology *t = &network->topology;
+    const size_t slots = mspringi_slot_count(network);
+    const size_t leftover = ((size_t)t->leftover_capacity + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+    const bool two = n->integrator == MSPRING_INTEGRATOR_BDF2;
+    const size_t loose = ((size_t)t->loose_blocks + t->spare_blocks) * MSPRINGI_WIDTH;
+    if (t->leftover_capacity > t->woven_count) {
+        n->is_solved = mspringi_alloc(memory, loose, sizeof *n->is_solved);
+        if (!n->is_solved)
+            return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for added springs");
+    }
+    n->history_size = (two ? 4 : 2) * slots;
+    n->factors = mspringi_alloc(memory, (t->chain_places + leftover) * MSPRINGI_FACTORS, sizeof *n->factors);
+    n->x = mspringi_alloc(memory, 2 * slots, sizeof *n->x);
+    n->mass = mspringi_alloc(memory, slots, sizeof *n->mass);
+    n->diagonal = mspringi_alloc(memory, 3 * slots, sizeof *n->diagonal);
+    n->sums = mspringi_alloc(memory, slots / MSPRINGI_CHUNK + 1, sizeof *n->sums);
+    if (!reserve_history(memory, &n->history, slots, two) || !reserve_history(memory, &n->backup, slots, two) ||
+        !reserve_history(memory, &n->previous, slots, two) || !reserve_field(memory, &n->velocity, slots) ||
+        !reserve_field(memory, &n->residual, slots) || !reserve_field(memory, &n->displacement, slots) ||
+        !reserve_field(memory, &n->product, slots) || !reserve_field(memory, &n->scaled, slots) || !n->factors ||
+        !n->x || !n->mass || !n->diagonal || !n->sums)
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                             "no memory for an implicit solver of %u particles", (unsigned)t->particle_count);
+    return MSPRING_OK;
+}
+
+// What conjugate gradients need besides.
+static mspring_result allocate_iterate(mspringi_implicit *n, mspring_network *network) {
+    mspringi_memory *memory = &network->memory;
+    const size_t slots = mspringi_slot_count(network);
+    n->flights = mspringi_alloc(memory, n->tiles.capacity, sizeof *n->flights);
+    if (!reserve_field(memory, &n->direction, slots) || !reserve_field(memory, &n->arm, slots) || !n->flights)
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                             "no memory for the iterations of %u particles",
+                             (unsigned)network->topology.particle_count);
+    return MSPRING_OK;
+}
+
+// Pointers into arrays of its own, and into those of the network that do not change from substep to substep.
+static void wire(mspringi_implicit *n, const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    const size_t slots = mspringi_slot_count(network);
+    mspringi_system *s = &n->system;
+    n->y = n->x + slots;
+    n->leftover_factors = n->factors + (size_t)t->chain_places * MSPRINGI_FACTORS;
+    n->seen.link_log = network->edits.link_log;
+    s->x = n->x;
+    s->y = n->y;
+    s->vx = n->velocity.x;
+    s->vy = n->velocity.y;
+    s->mass = n->mass;
+    s->lattice_springs = network->lattice_springs;
+    s->chain_springs = network->chain_springs;
+    s->rest_lengths = network->rests.lengths;
+    s->rests_of_block = network->rests.of_block;
+    s->lattice_factors = n->factors;
+    s->chain_factors = n->factors + (size_t)t->lattice_places * MSPRINGI_FACTORS;
+    s->force_x = n->residual.x;
+    s->force_y = n->residual.y;
+    s->xx = n->diagonal;
+    s->xy = n->diagonal + slots;
+    s->yy = n->diagonal + 2 * slots;
+    n->iterate = (mspringi_iterate){
+        .solution_x = n->displacement.x,
+        .solution_y = n->displacement.y,
+        .residual_x = n->residual.x,
+        .residual_y = n->residual.y,
+        .scaled_x = n->scaled.x,
+        .scaled_y = n->scaled.y,
+        .direction_x = n->direction.x,
+        .direction_y = n->direction.y,
+        .product_x = n->product.x,
+        .product_y = n->product.y,
+        .arm_x = n->arm.x,
+        .arm_y = n->arm.y,
+    };
+}
+
+// What each of the workers that there are now has for itself.
+mspring_result mspringi_implicit_reserve(mspringi_implicit *n, mspring_network *network) {
+    mspringi_memory *memory = &network->memory;
+    const uint32_t crew = mspringi_tasks_concurrency(network->tasks);
+    const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH;
+    if (n->crew >= crew)
+        return MSPRING_OK;
+    double *forces = mspringi_alloc(memory, 2 * carry * crew, sizeof *forces);
+    float *others = mspringi_alloc(memory, 3 * carry * crew, sizeof *others);
+    double(*unknowns)[MSPRINGI_RIGID] = mspringi_alloc(memory, (size_t)n->tiles.capacity * crew, sizeof *unknowns);
+    if (!forces || !others || !unknowns) {
+        mspringi_free(memory, forces);
+        mspringi_free(memory, others);
+        mspringi_free(memory, unknowns);
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for what %u workers compute",
+                             (unsigned)crew);
+    }
+    mspringi_free(memory, n->force_carry);
+    mspringi_free(memory, n->carry);
+    mspringi_free(memory, n->unknowns);
+    n->force_carry = forces;
+    n->carry = others;
+    n->unknowns = unknowns;
+    n->crew = crew;
+    return MSPRING_OK;
+}
+
+// Whether the coarse matrix of these tiles is one that can be factored in every substep.
+static mspring_result check_coarse(const mspringi_implicit *n, mspring_network *network) {
+    const double cost = mspringi_coarse_cost(&n->tiles);
+    if (cost <= MOST_COARSE_COST)
+        return MSPRING_OK;
+    return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
+                         "with tiles of size %u there are %u of them, so tied to each other that factoring their "
+                         "coarse matrix would take %.2g multiply-adds, more than %.2g: leave tile_size at 0, take "
+                         "larger tiles or the explicit solver",
+                         (unsigned)n->tiles.cells.size, (unsigned)n->tiles.count, cost, MOST_COARSE_COST);
+}
+
+// Cut into tiles of the size asked for or else, beginning at the default, of the first whose coarse matrix is cheap
+// to factor.
+static mspring_result cut_tiles(mspringi_implicit *n, mspring_network *network, uint32_t asked) {
+    const double most = COARSE_COST_PER_SLOT * (double)mspringi_slot_count(network);
+    uint32_t size = asked > 0 ? asked : MSPRINGI_LEAST_TILE_SIZE;
+    for (;;) {
+        mspring_result result =
+            mspringi_tiles_create(&n->tiles, network, size, &network->memory, &network->message);
+        if (result != MSPRING_OK || asked > 0 || size >= MSPRINGI_LARGEST_TILE_SIZE ||
+            mspringi_coarse_cost(&n->tiles) <= most)
+            return result;
+        mspringi_tiles_destroy(&n->tiles, &network->memory);
+        size *= 2;
+    }
+}
+
+static mspring_result make_two_level(mspringi_implicit *n, mspring_network *network) {
+    mspring_result result = cut_tiles(n, network, n->tile_size);
+    if (result == MSPRING_OK)
+        result = check_coarse(n, network);
+    if (result == MSPRING_OK)
+        result = mspringi_coarse_create(&n->coarse, &n->tiles, &network->memory, &network->message);
+    return result == MSPRING_OK ? allocate_iterate(n, network) : result;
+}
+
+// Mark the loose slots that are in tiles or, with the direct solver, that springs had been added to when it was
+// made.
+static void find_solved(mspringi_implicit *n, const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    const size_t loose = (size_t)t->loose_first * MSPRINGI_WIDTH;
+    const size_t count = ((size_t)t->loose_blocks + t->spare_blocks) * MSPRINGI_WIDTH;
+    for (size_t i = 0; n->is_solved && !n->is_direct && i < count; ++i)
+        n->is_solved[i] = n->tiles.of_slot[loose + i] != MSPRING_NONE;
+    for (uint32_t i = t->woven_count; n->is_direct && i < t->leftover_count; ++i) {
+        if (t->leftover_a[i] >= loose)
+            n->is_solved[t->leftover_a[i] - loose] = 1;
+        if (t->leftover_b[i] >= loose)
+            n->is_solved[t->leftover_b[i] - loose] = 1;
+    }
+}
+
+mspring_result mspringi_implicit_create(mspring_network *network, const mspring_solver_def *def,
+                                        mspringi_implicit **implicit) {
+    mspringi_implicit *n = mspringi_alloc(&network->memory, 1, sizeof *n);
+    if (!n)
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for an implicit solver");
+    n->tile_size = def->tile_size;
+    n->integrator = def->integrator;
+    n->is_direct = def->solver == MSPRING_SOLVER_DIRECT;
+    n->scale = choose_scale(network);
+    n->seen = network->edits;
+    mspringi_implicit_adjust(n, def);
+    mspring_result result = allocate(n, network);
+    if (result == MSPRING_OK)
+        result = mspringi_panels_create(&n->panels, &network->topology, &network->memory, &network->message);
+    if (result == MSPRING_OK)
+        result = mspringi_budget_create(&n->budget, network);
+    if (result == MSPRING_OK)
+        result = n->is_direct ? mspringi_direct_create(&n->direct, network) : make_two_level(n, network);
+    if (result == MSPRING_OK)
+        result = mspringi_implicit_reserve(n, network);
+    if (result == MSPRING_OK) {
+        wire(n, network);
+        find_solved(n, network);
+        *implicit = n;
+    } else {
+        mspringi_implicit_destroy(n, &network->memory);
+    }
+    return result;
+}
+
+void mspringi_implicit_adjust(mspringi_implicit *n, const mspring_solver_def *def) {
+    n->iterations = !n->is_direct && def->iterations > 0 ? def->iterations : DEFAULT_ITERATIONS;
+    n->coarse_period = !n->is_direct && def->coarse_period > 0 ? def->coarse_period : 1;
+    n->age = 0;
+}
+
+mspring_result mspringi_fallback_reserve(mspring_network *network, uint32_t tile_size) {
+    mspringi_implicit *made = NULL;
+    if (network->fallback.object)
+        return MSPRING_OK;
+    mspring_solver_def def;
+    (void)mspring_solver_def_init(&def, sizeof def);
+    def.solver = MSPRING_SOLVER_IMPLICIT;
+    def.integrator = MSPRING_INTEGRATOR_EULER;
+    def.tile_size = tile_size;
+    mspring_result result = mspringi_implicit_create(network, &def, &made);
+    if (result != MSPRING_OK)
+        return result;
+    made->tile_size = 0; // its tiles go by plan
+    network->fallback = (mspringi_solver){&mspringi_implicit_ops, made};
+    return MSPRING_OK;
+}
+
+#define ARRAY(member) MSPRINGI_COLUMN(mspringi_implicit, member, MSPRINGI_ARRAY)
+#define VIEW(member) MSPRINGI_COLUMN(mspringi_implicit, member, MSPRINGI_VIEW)
+#define FIELD(member) ARRAY(member.x), VIEW(member.y)
+#define HISTORY(member) FIELD(member.first), VIEW(member.second.x), VIEW(member.second.y)
+static const mspringi_column list[] = {
+    HISTORY(history), HISTORY(backup),     HISTORY(previous), ARRAY(x),        FIELD(velocity),
+    FIELD(residual),  FIELD(displacement), FIELD(direction),  FIELD(product),  FIELD(scaled),
+    FIELD(arm),       ARRAY(mass),         ARRAY(diagonal),   ARRAY(factors),  ARRAY(force_carry),
+    ARRAY(carry),     ARRAY(sums),         ARRAY(flights),    ARRAY(unknowns), ARRAY(is_solved),
+};
+static const mspringi_columns columns = MSPRINGI_COLUMNS(list);
+
+void mspringi_implicit_destroy(mspringi_implicit *n, mspringi_memory *memory) {
+    if (!n)
+        return;
+    mspringi_direct_destroy(&n->direct, memory);
+    mspringi_panels_destroy(&n->panels, memory);
+    mspringi_budget_destroy(&n->budget, memory);
+    mspringi_tiles_destroy(&n->tiles, memory);
+    mspringi_coarse_destroy(&n->coarse, memory);
+    mspringi_columns_free(columns, n, memory);
+    mspringi_free(memory, n);
+}
+
+void mspringi_implicit_relocate(mspringi_implicit *n, const mspring_network *network, const mspringi_memory *from,
+                                const mspringi_memory *to) {
+    mspringi_columns_relocate(columns, n, from, to);
+    mspringi_columns_relocate(mspringi_panels_columns, &n->panels, from, to);
+    mspringi_columns_relocate(mspringi_budget_columns, &n->budget, from, to);
+    mspringi_columns_relocate(mspringi_cells_columns, &n->tiles.cells, from, to);
+    mspringi_columns_relocate(mspringi_tiles_columns, &n->tiles, from, to);
+    mspringi_columns_relocate(mspringi_coarse_columns, &n->coarse, from, to);
+    mspringi_columns_relocate(mspringi_direct_columns, &n->direct, from, to);
+    mspringi_columns_relocate(mspringi_cholesky_plan_columns, &n->direct.plan, from, to);
+    mspringi_columns_relocate(mspringi_cholesky_float_columns, &n->direct.single, from, to);
+    mspringi_columns_relocate(mspringi_cholesky_double_columns, &n->direct.twice, from, to);
+    wire(n, network);
+}
+
+/* ------------------------------------------------------------------------------------------------------ history */
+
+// Whatever is computed by parts of tiles is 0 at slots that have none.
+static void clear_outside_of_tiles(const mspring_network *network, const mspringi_implicit *n) {
+    const mspringi_field fields[] = {n->scaled, n->direction, n->product};
+    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i)
+        memset(fields[i].x, 0, 2 * mspringi_slot_count(network) * sizeof *fields[i].x);
+}
+
+void mspringi_implicit_keep(mspringi_implicit *n) {
+    n->is_kept = true;
+    n->has_changed = false;
+    n->kept_age = n->age;
+    if (n->age > 0)
+        mspringi_coarse_keep(&n->coarse);
+}
+
+void mspringi_implicit_restore(const mspring_network *network, mspringi_implicit *n) {
+    if (n->has_changed) {
+        const mspringi_history failed = n->history;
+        n->history = n->backup;
+        n->backup = failed;
+    }
+    n->has_changed = n->is_kept = false;
+    n->budget.knows_elastic = false;
+    n->age = n->kept_age;
+    if (n->age > 0)
+        mspringi_coarse_take_back(&n->coarse);
+    // These are zero between steps, or where there is no tile, unless numbers overflowed.
+    const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH * n->crew;
+    memset(n->force_carry, 0, 2 * carry * sizeof *n->force_carry);
+    memset(n->carry, 0, 3 * carry * sizeof *n->carry);
+    if (!n->is_direct)
+        clear_outside_of_tiles(network, n);
+}
+
+// What sleeps is left out of substeps: it is predicted where it is, and does not go on from there.
+static void rest_sleepers(const mspring_network *network, mspringi_implicit *n) {
+    for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
+        if (!mspringi_slot_is_asleep(network, slot))
+            continue;
+        n->x[slot] = mspringi_x_of(&network->state, slot);
+        n->y[slot] = mspringi_y_of(&network->state, slot);
+        n->mass[slot] = 0.0f;
+        n->velocity.x[slot] = n->velocity.y[slot] = 0.0f;
+        n->displacement.x[slot] = n->displacement.y[slot] = 0.0f;
+    }
+    n->rested = network->edits.naps;
+}
+
+void mspringi_implicit_follow(const mspring_network *network, mspringi_implicit *n) {
+    if (n->rested != network->edits.naps && network->sleep.sleeping > 0)
+        rest_sleepers(network, n);
+    if (!n->is_direct && mspringi_tiles_are_outdated(&n->tiles, network, &n->seen)) {
+        mspringi_tiles_follow(&n->tiles, network, &n->seen);
+        mspringi_coarse_shape(&n->coarse, &n->tiles);
+        find_solved(n, network);
+        clear_outside_of_tiles(network, n);
+        n->age = n->kept_age = 0;
+    }
+    n->seen = network->edits;
+}
+
+void mspringi_implicit_forget(mspringi_implicit *n) {
+    memset(n->history.first.x, 0, n->history_size * sizeof *n->history.first.x);
+    n->history.restarts = 1;
+    n->budget.knows_elastic = false;
+}
+
+/* -------------------------------------------------------------------------------------------------------- ranges
+ */
+
+// The factorisation of the direct solver has places for all.
+bool mspringi_next_slots(const mspring_network *network, mspringi_slots slots, size_t *at, mspringi_slots *run) {
+    const size_t first = *at > slots.first ? *at : slots.first;
+    *run = (mspringi_slots){first, first};
+    *at = slots.end;
+    if (network->sleep.sleeping == 0 || mspringi_implicit_of(network)->is_direct) {
+        run->end = slots.end;
+        return run->first < run->end;
+    }
+    for (size_t chunk = first; chunk < slots.end; chunk += MSPRINGI_CHUNK) {
+        const size_t end = chunk + MSPRINGI_CHUNK < slots.end ? chunk + MSPRINGI_CHUNK : slots.end;
+        if (mspringi_is_any_swept(network, chunk / MSPRINGI_WIDTH, end / MSPRINGI_WIDTH)) {
+            run->end = end;
+        } else if (run->end > run->first) {
+            *at = chunk;
+            return true;
+        } else {
+            run->first = run->end = end;
+        }
+    }
+    return run->end > run->first;
+}

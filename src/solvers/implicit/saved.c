@@ -1,0 +1,136 @@
+/// What the implicit solver carries from step to step, in a snapshot: the history and, unless it is to be factored
+/// anew, the coarse matrix. The direct solver has no tiles, so that the hash of them is 0.
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "contact/floor.h"
+#include "solvers/implicit/implicit.h"
+#include "store/sections.h"
+
+typedef struct implicit_head {
+    uint64_t tiles_print;
+    double scale;
+    float h;
+    uint32_t restarts, integrator, iterations, coarse_period, age;
+} implicit_head;
+#define HEAD_BYTES ((size_t)40)
+
+static size_t implicit_size_of(const mspringi_implicit *n, size_t coarse_values) {
+    return HEAD_BYTES + n->history_size * sizeof(float) + coarse_values * sizeof(double);
+}
+
+// The age of the coarse matrix that the next substep finds. One that has contacts in it is not used again.
+static uint32_t age_of(const mspring_network *network, const mspringi_implicit *n) {
+    if (n->is_direct || (network->floor && network->floor->is_in_coarse))
+        return 0;
+    return mspringi_tiles_are_outdated(&n->tiles, network, &n->seen) ? 0 : n->age;
+}
+
+static size_t coarse_values(const mspring_network *network, const mspringi_implicit *n) {
+    return age_of(network, n) > 0 ? n->coarse.value_count : 0;
+}
+
+size_t mspringi_implicit_size(const mspring_network *network, const mspringi_implicit *n) {
+    return implicit_size_of(n, coarse_values(network, n));
+}
+
+void mspringi_implicit_save(const mspring_network *network, const mspringi_implicit *n, mspringi_writer *to) {
+    // A history of a motion that has ended is as good as none.
+    const bool ended = n->seen.motion != network->edits.motion;
+    const uint32_t words[] = {ended ? 1 : n->history.restarts, (uint32_t)n->integrator, n->iterations,
+                              n->coarse_period, age_of(network, n)};
+    mspringi_put(to, &n->tiles.print, 1, sizeof n->tiles.print);
+    mspringi_put(to, &n->scale, 1, sizeof n->scale);
+    mspringi_put(to, &n->history.h, 1, sizeof n->history.h);
+    mspringi_put(to, words, sizeof words / sizeof words[0], sizeof words[0]);
+    if (ended)
+        mspringi_put_zeros(to, n->history_size * sizeof(float));
+    else
+        mspringi_put(to, n->history.first.x, n->history_size, sizeof(float));
+    mspringi_put(to, n->coarse.values, coarse_values(network, n), sizeof(double));
+}
+
+static const uint8_t *read_head(const uint8_t *from, implicit_head *head) {
+    from = mspringi_get(from, &head->tiles_print, 1, sizeof head->tiles_print);
+    from = mspringi_get(from, &head->scale, 1, sizeof head->scale);
+    from = mspringi_get(from, &head->h, 1, sizeof head->h);
+    from = mspringi_get(from, &head->restarts, 1, sizeof head->restarts);
+    from = mspringi_get(from, &head->integrator, 1, sizeof head->integrator);
+    from = mspringi_get(from, &head->iterations, 1, sizeof head->iterations);
+    from = mspringi_get(from, &head->coarse_period, 1, sizeof head->coarse_period);
+    return mspringi_get(from, &head->age, 1, sizeof head->age);
+}
+
+static mspring_result check_head(mspring_network *network, const mspringi_implicit *n, const implicit_head *head) {
+    const mspringi_section *section = &mspringi_section_implicit;
+    if (head->integrator != (uint32_t)n->integrator || head->tiles_print != n->tiles.print)
+        return mspringi_section_fail(network, section,
+                                     "the network has another solver or integrator, or other tiles");
+    if (!(head->scale >= DBL_MIN && head->scale <= DBL_MAX && head->h >= 0.0f && head->h <= FLT_MAX) ||
+        head->restarts > MSPRINGI_CALM_SUBSTEPS)
+        return mspringi_section_fail(network, section, "its scale is %g, its substep %g s", head->scale,
+                                     (double)head->h);
+    if (head->iterations < 1 || head->iterations > MSPRINGI_MOST_ITERATIONS || head->coarse_period < 1 ||
+        head->coarse_period > MSPRINGI_MOST_ITERATIONS || head->age >= head->coarse_period)
+        return mspringi_section_fail(
+            network, section, "it has %u iterations, and a coarse matrix %u substeps old of %u",
+            (unsigned)head->iterations, (unsigned)head->age, (unsigned)head->coarse_period);
+    return MSPRING_OK;
+}
+
+mspring_result mspringi_implicit_check(mspring_network *network, const mspringi_implicit *n, const uint8_t *from,
+                                       size_t size) {
+    const mspringi_section *section = &mspringi_section_implicit;
+    implicit_head head = {0};
+    if (size < HEAD_BYTES)
+        return mspringi_section_check_size(network, section, size, HEAD_BYTES);
+    from = read_head(from, &head);
+    mspring_result result = check_head(network, n, &head);
+    // How large the coarse matrix is depends on what is broken in the snapshot.
+    const size_t fixed = implicit_size_of(n, 0), rest = size > fixed ? size - fixed : 0;
+    const size_t values = head.age > 0 ? rest / sizeof(double) : 0;
+    if (result == MSPRING_OK)
+        result = mspringi_section_check_size(network, section, size, implicit_size_of(n, values));
+    for (size_t i = 0; result == MSPRING_OK && i < n->history_size; ++i)
+        if (!isfinite(mspringi_float_at(from, i)))
+            result = mspringi_section_fail(network, section, "its history is not finite");
+    from += n->history_size * sizeof(float);
+    for (size_t i = 0; result == MSPRING_OK && i < values; ++i) {
+        double value;
+        from = mspringi_get(from, &value, 1, sizeof value);
+        if (!isfinite(value))
+            result = mspringi_section_fail(network, section, "its coarse matrix is not finite");
+    }
+    return result;
+}
+
+// Slots without particle stay where they are, and have no past for a particle that is added.
+static void clear_history(const mspring_network *network, const mspringi_implicit *n) {
+    float *const history = n->history.first.x;
+    const size_t slots = mspringi_slot_count(network);
+    for (size_t slot = 0; slot < slots; ++slot)
+        for (size_t i = slot; i < n->history_size; i += slots)
+            if (network->topology.particle_of_slot[slot] == MSPRING_NONE)
+                history[i] = 0.0f;
+}
+
+void mspringi_implicit_load(mspring_network *network, mspringi_implicit *n, const uint8_t *from, size_t size) {
+    implicit_head head;
+    from = read_head(from, &head);
+    n->scale = head.scale;
+    n->history.h = head.h;
+    n->history.restarts = head.restarts;
+    n->iterations = head.iterations;
+    n->coarse_period = head.coarse_period;
+    n->budget.is_known = n->budget.knows_elastic = false;
+    from = mspringi_get(from, n->history.first.x, n->history_size, sizeof(float));
+    clear_history(network, n);
+    mspringi_implicit_follow(network, n);
+    // The matrix of other tiles than those that follow from the rest of the snapshot would be of no use.
+    n->age = size == implicit_size_of(n, n->coarse.value_count) ? head.age : 0;
+    if (n->age > 0)
+        mspringi_get(from, n->coarse.values, n->coarse.value_count, sizeof(double));
+    if (network->floor)
+        network->floor->is_in_coarse = false;
+}

@@ -1,0 +1,199 @@
+/// A substep: one linear system, the floor, and the energy budget; or its halves.
+#include "contact/floor.h"
+#include "solvers/implicit/implicit.h"
+#include "solvers/implicit/terms.h"
+#include "stability/guard.h"
+
+/// Workers meet some forty times in a substep. Where they have to share cores, these become sleeps, and one worker
+/// is faster alone (two workers on cores with a load of 10: 2.3 times, 1800x5). So after a substep with more than
+/// so many sleeps the next ones are taken alone: so many, and twice as many each time, up to so many. The bits are
+/// the same. Few at first, as others take a core away for a moment now and then (with 64 our ship's two workers
+/// were as fast as one, where they are 1.3 to 1.7 times).
+#define BEARABLE_SLEEPS 6
+#define SHORTEST_PATIENCE 4
+#define LONGEST_PATIENCE 1024
+
+// Forget the history if the host has begun a new motion; cut tiles anew where springs broke or pins changed.
+static void follow_edits(mspring_network *network) {
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    if (n->seen.motion != network->edits.motion)
+        mspringi_implicit_forget(n);
+    mspringi_implicit_follow(network, n);
+    n->system.parts = network->parts;
+    n->system.rest_lengths = network->rests.lengths;
+    n->system.rests_of_block = network->rests.of_block;
+}
+
+// Find d = displacement + alpha direction. Returns alpha; NaN if numbers overflowed.
+static float solve(const mspringi_substep_of *substep, mspringi_mate *mate) {
+    if (!mspringi_implicit_of(substep->network)->is_direct)
+        return mspringi_solve(substep, mate);
+    mspringi_meet(mate);
+    if (mate->index == 0)
+        mspringi_direct_solve(substep->network);
+    mspringi_meet(mate);
+    return 0.0f;
+}
+
+// Most times that a substep is solved to find out which particles the floor holds.
+#define MOST_PASSES 4
+
+// Solve with what the floor adds. Returns false if the substep is to be begun anew.
+static bool solve_with_floor(const mspringi_substep_of *substep, mspringi_mate *mate, float *alpha) {
+    mspring_network *network = substep->network;
+    mspringi_floor *floor = network->floor;
+    for (uint32_t pass = 0; pass < MOST_PASSES; ++pass) {
+        if (pass > 0) {
+            mspringi_predict(substep, mate);
+            mspringi_assemble(substep, mate);
+        }
+        mspringi_meet(mate);
+        if (mate->index == 0)
+            floor->has_hit = !mspringi_floor_add_terms(network, substep->h, pass);
+        mspringi_meet(mate);
+        if (floor->has_hit)
+            return false;
+        *alpha = solve(substep, mate);
+        mspringi_meet(mate);
+        if (mate->index == 0)
+            floor->again = mspringi_floor_review(network, *alpha, pass);
+        mspringi_meet(mate);
+        if (!floor->again)
+            break;
+    }
+    return true;
+}
+
+// A worker's part of a substep.
+static void run_share(void *argument, uint32_t index, uint32_t worker) {
+    const mspringi_substep_of *substep = argument;
+    mspringi_mate mate = {.index = index, .count = substep->workers, .progress = substep->progress};
+    (void)worker;
+    mspringi_predict(substep, &mate);
+    mspringi_assemble(substep, &mate);
+    float alpha = 0.0f;
+    if (!substep->network->floor)
+        alpha = solve(substep, &mate);
+    else if (!solve_with_floor(substep, &mate, &alpha))
+        return;
+    mspringi_land(substep, &mate, alpha);
+}
+
+static void choose_crew(mspringi_substep_of *substep) {
+    const mspring_network *network = substep->network;
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    const bool shared = mspringi_slot_count(network) >= MSPRINGI_SMALLEST_SHARED_SLOTS && n->alone == 0;
+    n->alone -= n->alone > 0;
+    substep->workers = shared ? mspringi_tasks_concurrency(network->tasks) : 1;
+    substep->progress = substep->workers > 1 ? mspringi_tasks_progress(network->tasks) : NULL;
+}
+
+// Whether the workers had a core each.
+static void judge_crew(mspringi_implicit *n, uint32_t sleeps) {
+    if (sleeps <= BEARABLE_SLEEPS) {
+        n->patience = 0;
+        return;
+    }
+    const uint32_t longer = n->patience > 0 ? 2 * n->patience : SHORTEST_PATIENCE;
+    n->patience = longer < LONGEST_PATIENCE ? longer : LONGEST_PATIENCE;
+    n->alone = n->patience;
+}
+
+static void run_crew(mspringi_substep_of *substep) {
+    mspringi_tasks *tasks = substep->progress ? substep->network->tasks : NULL;
+    mspringi_scheme_prepare(substep);
+    mspringi_tasks_run(tasks, substep->workers, run_share, substep);
+}
+
+// Solve a substep, by implicit Euler if it is a piece of another, and let the floor act.
+static void run_substep(mspringi_substep_of *substep, bool is_piece) {
+    mspring_network *network = substep->network;
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    const uint32_t sleeps = mspringi_tasks_sleeps(network->tasks);
+    choose_crew(substep);
+    n->is_piece = is_piece;
+    n->is_hit = false;
+    run_crew(substep);
+    if (network->floor && network->floor->has_hit) {
+        n->is_hit = true;
+        run_crew(substep);
+    }
+    if (substep->progress)
+        judge_crew(n, mspringi_tasks_sleeps(network->tasks) - sleeps);
+    if (network->floor)
+        mspringi_floor_bear(network, substep->h);
+    mspringi_scheme_close(substep);
+    n->age = n->age + 1 < n->coarse_period ? n->age + 1 : 0;
+    if (network->floor)
+        mspringi_floor_touch_all(network, substep->h);
+}
+
+static void take_halves(mspringi_substep_of *substep, uint32_t halvings);
+
+// Take a substep of substep->h. One that gets energy from nowhere is taken again, by implicit Euler and with more
+// iterations, and then in halves.
+static void take_substep(mspringi_substep_of *substep, uint32_t tries) {
+    mspring_network *network = substep->network;
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    if (substep->watches)
+        mspringi_budget_open(network);
+    else
+        n->budget.knows_elastic = false;
+    run_substep(substep, tries > 0);
+    if (!substep->watches ||
+        mspringi_budget_close(network, substep->h, substep->base, tries <= MSPRINGI_MOST_HALVINGS))
+        return;
+    mspringi_budget_undo(network);
+    n->history.restarts = MSPRINGI_CALM_SUBSTEPS;
+    n->age = 0;
+    if (tries == 0)
+        take_substep(substep, 1);
+    else
+        take_halves(substep, tries + 1);
+}
+
+static void take_halves(mspringi_substep_of *substep, uint32_t tries) {
+    mspring_network *network = substep->network;
+    const float h = substep->h;
+    substep->h = 0.5f * h;
+    for (int half = 0; half < 2; ++half) {
+        mspringi_implicit_of(network)->age = 0; // the coarse matrix is one of another substep
+        if (network->floor)
+            mspringi_floor_keep(network, substep->h);
+        take_substep(substep, tries);
+    }
+    mspringi_implicit_of(network)->age = 0;
+    substep->h = h;
+}
+
+// Where particles would hit the floor hard, a substep is taken in pieces.
+static void take_pieces(mspringi_substep_of *substep) {
+    mspring_network *network = substep->network;
+    const float h = substep->h;
+    mspringi_floor_keep(network, h);
+    const uint32_t pieces = mspringi_floor_pieces(network, h);
+    substep->h = h / (float)pieces;
+    for (uint32_t i = 0; i < pieces; ++i) {
+        if (pieces > 1)
+            mspringi_floor_keep(network, substep->h);
+        take_substep(substep, 0);
+    }
+    substep->h = h;
+}
+
+void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+    mspringi_budget_follow(network);
+    if (network->floor)
+        mspringi_floor_keep_alone(network);
+    follow_edits(network);
+    mspringi_substep_of substep = {
+        .network = network, .base = base, .h = h, .watches = mspringi_guard_looks(network->guard_policy)};
+    for (uint32_t i = 0; i < count; ++i) {
+        if (network->floor)
+            take_pieces(&substep);
+        else
+            take_substep(&substep, 0);
+    }
+    if (network->floor)
+        mspringi_floor_fly_alone(network, h, base, count);
+}

@@ -1,0 +1,403 @@
+/// Finding the tiles in the cells, and following edits.
+#include "solvers/implicit/tiles.h"
+
+#include <string.h>
+
+#include "base/forest.h"
+#include "base/mix.h"
+#include "store/springs.h"
+
+/// Room for pieces: tiles beyond twice the cells, numbers of the coarse matrix beyond four times those of cells in
+/// one piece each, and springs to pinned particles beyond a quarter of all.
+#define SPARE_TILES 64u
+#define SPARE_VALUES ((size_t)4096)
+#define SPARE_ANCHORS 1024u
+
+// Whether a spring can pull.
+static bool is_live(const mspring_network *network, mspring_id spring, mspringi_place place) {
+    return mspringi_place_is_live(network, place) &&
+           mspringi_spring_get_nominal(network, spring, place).stiffness > 0.0f;
+}
+
+static bool is_free(const mspring_network *network, uint32_t slot) {
+    return mspringi_free_mass(network)[slot] > 0.0f;
+}
+
+// The other end of the added spring number end / 2, if the spring can pull; else MSPRING_NONE.
+static uint32_t slot_pulled_at(const mspring_network *network, uint32_t end) {
+    const mspringi_topology *t = &network->topology;
+    const mspring_id spring = t->reserve.first_spring + end / 2;
+    const mspringi_place place = mspringi_place_of(t, spring);
+    if (mspringi_place_is_woven(t, place) || !is_live(network, spring, place))
+        return MSPRING_NONE;
+    return t->slot_of_particle[network->growth.particle_of_end[end ^ 1u]];
+}
+
+// The first of the added springs' ends at a slot.
+static uint32_t first_end_at(const mspring_network *network, uint32_t slot) {
+    const mspring_id particle = network->topology.particle_of_slot[slot];
+    return particle == MSPRING_NONE || !network->growth.first_end ? MSPRINGI_NO_END
+                                                                  : network->growth.first_end[particle];
+}
+
+static bool is_loose(const mspring_network *network, uint32_t slot) {
+    return slot >= network->topology.loose_first * MSPRINGI_WIDTH;
+}
+
+// Whether a slot's particle is in some tile: one that is loose only while an added spring pulls at it.
+static bool is_in_tile(const mspring_network *network, uint32_t slot) {
+    if (!is_free(network, slot) || !is_loose(network, slot))
+        return is_free(network, slot);
+    uint32_t end = first_end_at(network, slot);
+    while (end != MSPRINGI_NO_END && slot_pulled_at(network, end) == MSPRING_NONE)
+        end = network->growth.next_end[end];
+    return end != MSPRINGI_NO_END;
+}
+
+/* ------------------------------------------------------------------------------------------------- components */
+
+// Join the loose particles of a cell that added springs connect.
+static void join_loose(mspringi_tiles *tiles, const mspring_network *network, uint32_t cell) {
+    const mspringi_cells *cells = &tiles->cells;
+    for (uint32_t i = cells->first_slot[cell]; i < cells->first_slot[cell + 1]; ++i) {
+        const uint32_t slot = cells->slots[i];
+        for (uint32_t end = first_end_at(network, slot); end != MSPRINGI_NO_END;
+             end = network->growth.next_end[end]) {
+            const uint32_t other = slot_pulled_at(network, end);
+            if (other != MSPRING_NONE && cells->of_slot[other] == cell && is_free(network, slot) &&
+                is_free(network, other))
+                mspringi_forest_join(tiles->parent, slot, other);
+        }
+    }
+}
+
+// Join the free particles of a cell that live springs connect. The root of a component is its lowest slot.
+static void find_components(mspringi_tiles *tiles, const mspring_network *network, uint32_t cell) {
+    const mspringi_cells *cells = &tiles->cells;
+    const mspringi_topology *t = &network->topology;
+    for (uint32_t i = cells->first_slot[cell]; i < cells->first_slot[cell + 1]; ++i)
+        tiles->parent[cells->slots[i]] = cells->slots[i];
+    for (uint32_t i = cells->first_inner[cell]; i < cells->first_inner[cell + 1]; ++i) {
+        const mspring_id spring = cells->inner[i];
+        const mspringi_place place = mspringi_place_of(t, spring);
+        uint32_t a, b;
+        mspringi_topology_ends(t, place, &a, &b);
+        // The id may be that of a spring that was added since, which lies elsewhere.
+        if (!mspringi_place_is_woven(t, place) || !is_free(network, a) || !is_free(network, b) ||
+            !is_live(network, spring, place))
+            continue;
+        mspringi_forest_join(tiles->parent, a, b);
+    }
+    if (is_loose(network, cells->slots[cells->first_slot[cell]]))
+        join_loose(tiles, network, cell);
+}
+
+// Number the components of a cell, in the order of their lowest slots, from first on; all of them as one tile if
+// they are more than most. Returns the end of the numbers.
+static uint32_t number_cell(mspringi_tiles *tiles, const mspring_network *network, uint32_t cell, uint32_t first,
+                            uint32_t most) {
+    const mspringi_cells *cells = &tiles->cells;
+    uint32_t end = first;
+    for (uint32_t i = cells->first_slot[cell]; i < cells->first_slot[cell + 1]; ++i) {
+        const uint32_t slot = cells->slots[i];
+        tiles->of_slot[slot] = MSPRING_NONE;
+        if (!is_in_tile(network, slot))
+            continue;
+        const uint32_t root = mspringi_forest_root(tiles->parent, slot);
+        tiles->of_slot[slot] = root == slot ? end++ : tiles->of_slot[root];
+    }
+    if (end - first <= most)
+        return end;
+    for (uint32_t i = cells->first_slot[cell]; i < cells->first_slot[cell + 1]; ++i)
+        if (tiles->of_slot[cells->slots[i]] != MSPRING_NONE)
+            tiles->of_slot[cells->slots[i]] = first;
+    return first + 1;
+}
+
+// Number the tiles of all cells, in the order of the cells.
+static void number_tiles(mspringi_tiles *tiles, const mspring_network *network, uint32_t most) {
+    tiles->count = 0;
+    for (uint32_t cell = 0; cell < tiles->cells.count; ++cell) {
+        tiles->first_of_cell[cell] = tiles->count;
+        tiles->count = number_cell(tiles, network, cell, tiles->count, most);
+    }
+    tiles->first_of_cell[tiles->cells.count] = tiles->count;
+}
+
+size_t mspringi_tiles_coarse_values(const mspringi_tiles *tiles) {
+    size_t values = 0;
+    for (uint32_t cell = 0; cell < tiles->cells.count; ++cell) {
+        const size_t first = mspringi_tiles_envelope(tiles, cell);
+        for (uint32_t t = tiles->first_of_cell[cell]; t < tiles->first_of_cell[cell + 1]; ++t)
+            values += 9 * (t - first + 1);
+    }
+    return values;
+}
+
+// The same, if every cell were one tile.
+static size_t values_of_cells(const mspringi_cells *cells) {
+    size_t values = 0;
+    for (uint32_t cell = 0; cell < cells->count; ++cell)
+        values += 9 * ((size_t)cell - cells->lowest[cell] + 1);
+    return values;
+}
+
+/* ------------------------------------------------------------------------------------------------------- parts */
+
+// List the particles of a cell's tiles, some slots at a time.
+static uint32_t list_cell_parts(mspringi_tiles *tiles, uint32_t cell, uint32_t first) {
+    const mspringi_cells *cells = &tiles->cells;
+    const uint32_t *const begin = cells->slots + cells->first_slot[cell];
+    const uint32_t *const end = cells->slots + cells->first_slot[cell + 1];
+    uint32_t part = first;
+    for (uint32_t t = tiles->first_of_cell[cell]; t < tiles->first_of_cell[cell + 1]; ++t) {
+        tiles->first_part[t] = part;
+        for (const uint32_t *slot = begin; slot < end; ++slot) {
+            if (tiles->of_slot[*slot] != t)
+                continue;
+            const uint32_t at = *slot / MSPRINGI_PART * MSPRINGI_PART;
+            if (part == tiles->first_part[t] || tiles->parts[part - 1].first_slot != at)
+                tiles->parts[part++] = (mspringi_tile_part){.first_slot = at, .tile = t};
+            tiles->parts[part - 1].lanes |= 1u << (*slot - at);
+        }
+    }
+    return part;
+}
+
+// Sort the parts by slot; those at the same slots stay in the order of their tiles.
+static void sort_parts(mspringi_tiles *tiles, size_t slots) {
+    const size_t groups = slots / MSPRINGI_PART;
+    const uint32_t count = tiles->first_part[tiles->count];
+    uint32_t *const first = tiles->first_by_slot;
+    memset(first, 0, (groups + 1) * sizeof *first);
+    for (uint32_t p = 0; p < count; ++p)
+        first[tiles->parts[p].first_slot / MSPRINGI_PART + 1]++;
+    for (size_t group = 0; group < groups; ++group)
+        first[group + 1] += first[group];
+    // From the last one on, so that first ends up at the beginnings.
+    for (uint32_t p = count; p-- > 0;)
+        tiles->parts_by_slot[--first[tiles->parts[p].first_slot / MSPRINGI_PART + 1]] = tiles->parts[p];
+    for (size_t group = 0; group < groups; ++group)
+        first[group] = first[group + 1];
+    first[groups] = count;
+}
+
+static void list_parts(mspringi_tiles *tiles, size_t slots) {
+    uint32_t part = 0;
+    for (uint32_t cell = 0; cell < tiles->cells.count; ++cell)
+        part = list_cell_parts(tiles, cell, part);
+    tiles->first_part[tiles->count] = part;
+    sort_parts(tiles, slots);
+}
+
+// Note a spring if just one of its ends is pinned, as far as there is room.
+static void add_anchor(mspringi_tiles *tiles, const mspring_network *network, uint32_t a, uint32_t b,
+                       uint32_t factors) {
+    const bool a_free = is_free(network, a);
+    if (a_free == is_free(network, b) || tiles->anchor_count == tiles->anchor_capacity)
+        return;
+    tiles->anchors[tiles->anchor_count++] =
+        (mspringi_joint){.slot = a_free ? a : b, .other_slot = a_free ? b : a, .factors = factors};
+}
+
+// Note both ends of an added spring, each as if the other were pinned: the coarse matrix has no room for what joins
+// any two tiles. Where the two are in one tile, they are left out of it.
+static void add_grafted(mspringi_tiles *tiles, const mspring_network *network, mspring_id spring) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_place place = mspringi_place_of(t, spring);
+    if (mspringi_place_is_woven(t, place) || !mspringi_spring_exists(network, spring) ||
+        tiles->anchor_count + 2 > tiles->anchor_capacity)
+        return;
+    const uint32_t factors = mspringi_factors_of_place(place);
+    uint32_t a, b;
+    mspringi_topology_ends(t, place, &a, &b);
+    tiles->anchors[tiles->anchor_count++] = (mspringi_joint){.slot = a, .other_slot = b, .factors = factors};
+    tiles->anchors[tiles->anchor_count++] = (mspringi_joint){.slot = b, .other_slot = a, .factors = factors};
+}
+
+// List the springs to pinned particles, inside cells and between them, and those that were added.
+static void list_anchors(mspringi_tiles *tiles, const mspring_network *network) {
+    const mspringi_cells *cells = &tiles->cells;
+    const mspringi_topology *t = &network->topology;
+    tiles->anchor_count = 0;
+    for (uint32_t i = 0; i < cells->first_inner[cells->count]; ++i) {
+        const mspringi_place place = mspringi_place_of(t, cells->inner[i]);
+        uint32_t a, b;
+        mspringi_topology_ends(t, place, &a, &b);
+        if (!mspringi_place_is_woven(t, place))
+            continue;
+        add_anchor(tiles, network, a, b, mspringi_factors_of_place(place));
+    }
+    for (const mspringi_joint *joint = cells->joints; joint < cells->joints + cells->joint_count; ++joint)
+        add_anchor(tiles, network, joint->slot, joint->other_slot, joint->factors);
+    for (mspring_id s = t->reserve.first_spring; s < t->spring_count; ++s)
+        add_grafted(tiles, network, s);
+}
+
+/* ------------------------------------------------------------------------------------------------------- edits */
+
+static void mark_dirty(mspringi_tiles *tiles, uint32_t cell) {
+    if (tiles->is_dirty[cell])
+        return;
+    tiles->is_dirty[cell] = 1;
+    tiles->dirty[tiles->dirty_count++] = cell;
+}
+
+static void mark_changed_links(mspringi_tiles *tiles, const mspring_network *network, uint64_t seen) {
+    const mspringi_topology *t = &network->topology;
+    for (uint64_t n = seen; n < network->edits.links; ++n) {
+        uint32_t a, b;
+        mspringi_topology_ends(t, mspringi_place_of(t, mspringi_edits_link(&network->edits, n)), &a, &b);
+        if (tiles->cells.of_slot[a] != MSPRING_NONE && tiles->cells.of_slot[a] == tiles->cells.of_slot[b])
+            mark_dirty(tiles, tiles->cells.of_slot[a]);
+    }
+}
+
+// What sleeps is as good as pinned.
+static bool pins_have_changed(const mspringi_tiles *tiles, const mspring_network *network,
+                              const mspringi_edits *seen) {
+    if (seen->masses == network->edits.masses && seen->naps == network->edits.naps)
+        return false;
+    const size_t slots = mspringi_slot_count(network);
+    size_t changed = 0;
+    for (size_t slot = 0; slot < slots; ++slot)
+        changed += tiles->cells.of_slot[slot] != MSPRING_NONE &&
+                   is_in_tile(network, (uint32_t)slot) != (tiles->of_slot[slot] != MSPRING_NONE);
+    return changed > 0;
+}
+
+// Cells whose particles are in tiles by what was added.
+static void mark_loose(mspringi_tiles *tiles, const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    for (uint32_t block = t->loose_first; block < t->spare_first + t->spare_blocks; ++block)
+        if (tiles->cells.of_slot[block * MSPRINGI_WIDTH] != MSPRING_NONE)
+            mark_dirty(tiles, tiles->cells.of_slot[block * MSPRINGI_WIDTH]);
+}
+
+static bool fits(const mspringi_tiles *tiles) {
+    return tiles->count <= tiles->capacity && mspringi_tiles_coarse_values(tiles) <= tiles->value_capacity;
+}
+
+// Look again at the dirty cells. Everything else is a matter of counting.
+static void renew(mspringi_tiles *tiles, const mspring_network *network) {
+    for (uint32_t i = 0; i < tiles->dirty_count; ++i) {
+        find_components(tiles, network, tiles->dirty[i]);
+        tiles->is_dirty[tiles->dirty[i]] = 0;
+    }
+    tiles->dirty_count = 0;
+    // With a tile to a cell they always fit.
+    uint32_t most = UINT32_MAX;
+    do {
+        number_tiles(tiles, network, most);
+        most = most > 16 ? 16 : most / 4;
+    } while (!fits(tiles) && most > 0);
+    list_parts(tiles, mspringi_slot_count(network));
+}
+
+bool mspringi_tiles_are_outdated(const mspringi_tiles *tiles, const mspring_network *network,
+                                 const mspringi_edits *seen) {
+    const mspringi_edits *edits = &network->edits;
+    return seen->links != edits->links || seen->values != edits->values || seen->grafts != edits->grafts ||
+           pins_have_changed(tiles, network, seen);
+}
+
+void mspringi_tiles_follow(mspringi_tiles *tiles, const mspring_network *network, const mspringi_edits *seen) {
+    const mspringi_edits *edits = &network->edits;
+    const bool pins = pins_have_changed(tiles, network, seen);
+    const bool has_grafts = network->topology.spring_count > network->topology.reserve.first_spring;
+    if (pins || seen->grafts != edits->grafts)
+        list_anchors(tiles, network);
+    if (seen->grafts != edits->grafts || (has_grafts && seen->links != edits->links))
+        mark_loose(tiles, network);
+    const bool outdated = network->is_compact && seen->grafts != edits->grafts; // what the cells list may be gone
+    if (pins || outdated || seen->values != edits->values || !mspringi_edits_have_link(edits, seen->links))
+        for (uint32_t cell = 0; cell < tiles->cells.count; ++cell)
+            mark_dirty(tiles, cell);
+    else
+        mark_changed_links(tiles, network, seen->links);
+    if (tiles->dirty_count > 0)
+        renew(tiles, network);
+}
+
+/* ---------------------------------------------------------------------------------------------------- the whole */
+
+// As if each body were at least about as large as a spring.
+static float choose_turn_inertia(const mspring_network *network) {
+    double sum = 0.0;
+    uint32_t count = 0;
+    for (mspring_id s = 0; s < network->topology.spring_count; ++s) {
+        if (!mspringi_spring_exists(network, s))
+            continue;
+        sum += (double)mspringi_spring_get(network, s).rest_length;
+        ++count;
+    }
+    const double mean = count > 0 ? sum / (double)count : 1.0;
+    return (float)(0.02 * mean * mean);
+}
+
+// Everything that edits do not change.
+static void take_print(mspringi_tiles *tiles, size_t slots) {
+    tiles->print = mspringi_mix_floats(MSPRINGI_MIX_START, tiles->turn_inertia, 0.0f);
+    for (size_t slot = 0; slot < slots; ++slot)
+        tiles->print = mspringi_mix(tiles->print, tiles->cells.of_slot[slot]);
+}
+
+static bool find_tiles(mspringi_tiles *tiles, const mspring_network *network, mspringi_memory *memory) {
+    const size_t slots = mspringi_slot_count(network), cells = tiles->cells.count;
+    tiles->capacity = 2 * (uint32_t)cells + SPARE_TILES;
+    tiles->value_capacity = 4 * values_of_cells(&tiles->cells) + SPARE_VALUES;
+    tiles->anchor_capacity = network->topology.spring_count / 4 + SPARE_ANCHORS +
+                             2 * (network->topology.leftover_capacity - network->topology.woven_count);
+    tiles->of_slot = mspringi_alloc(memory, slots, sizeof *tiles->of_slot);
+    tiles->parent = mspringi_alloc(memory, slots, sizeof *tiles->parent);
+    tiles->first_of_cell = mspringi_alloc(memory, cells + 1, sizeof *tiles->first_of_cell);
+    tiles->dirty = mspringi_alloc(memory, cells, sizeof *tiles->dirty);
+    tiles->is_dirty = mspringi_alloc(memory, cells, sizeof *tiles->is_dirty);
+    tiles->parts = mspringi_alloc(memory, network->topology.reserve.particle_end, sizeof *tiles->parts);
+    tiles->parts_by_slot =
+        mspringi_alloc(memory, network->topology.reserve.particle_end, sizeof *tiles->parts_by_slot);
+    tiles->first_by_slot = mspringi_alloc(memory, slots / MSPRINGI_PART + 1, sizeof *tiles->first_by_slot);
+    tiles->first_part = mspringi_alloc(memory, (size_t)tiles->capacity + 1, sizeof *tiles->first_part);
+    tiles->anchors = mspringi_alloc(memory, tiles->anchor_capacity, sizeof *tiles->anchors);
+    if (!tiles->of_slot || !tiles->parent || !tiles->first_of_cell || !tiles->dirty || !tiles->is_dirty ||
+        !tiles->parts || !tiles->parts_by_slot || !tiles->first_by_slot || !tiles->first_part || !tiles->anchors)
+        return false;
+    for (size_t slot = 0; slot < slots; ++slot)
+        tiles->of_slot[slot] = MSPRING_NONE;
+    for (uint32_t cell = 0; cell < cells; ++cell)
+        mark_dirty(tiles, cell);
+    list_anchors(tiles, network);
+    renew(tiles, network);
+    tiles->turn_inertia = choose_turn_inertia(network);
+    take_print(tiles, slots);
+    return true;
+}
+
+mspring_result mspringi_tiles_create(mspringi_tiles *tiles, const mspring_network *network, uint32_t size,
+                                     mspringi_memory *memory, mspringi_message *message) {
+    *tiles = (mspringi_tiles){0};
+    mspring_result result = mspringi_cells_create(&tiles->cells, network, size, memory, message);
+    if (result != MSPRING_OK || find_tiles(tiles, network, memory))
+        return result;
+    mspringi_tiles_destroy(tiles, memory);
+    return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to cut %u particles into tiles",
+                         (unsigned)network->topology.particle_count);
+}
+
+void mspringi_tiles_set_inertia(mspringi_tiles *tiles, float turn_inertia, size_t slots) {
+    tiles->turn_inertia = turn_inertia;
+    take_print(tiles, slots);
+}
+
+#define ARRAY(member) MSPRINGI_COLUMN(mspringi_tiles, member, MSPRINGI_ARRAY)
+static const mspringi_column columns[] = {
+    ARRAY(first_part),    ARRAY(parts),  ARRAY(parts_by_slot), ARRAY(first_by_slot), ARRAY(of_slot),
+    ARRAY(first_of_cell), ARRAY(parent), ARRAY(anchors),       ARRAY(dirty),         ARRAY(is_dirty),
+};
+const mspringi_columns mspringi_tiles_columns = MSPRINGI_COLUMNS(columns);
+
+void mspringi_tiles_destroy(mspringi_tiles *tiles, mspringi_memory *memory) {
+    mspringi_cells_destroy(&tiles->cells, memory);
+    mspringi_columns_free(mspringi_tiles_columns, tiles, memory);
+    *tiles = (mspringi_tiles){0};
+}

@@ -1,0 +1,72 @@
+/// @file tiles.h
+/// Tiles: small parts of a network, each moving as a rigid body in the coarse space of the two-level
+/// preconditioner.
+///
+/// A tile is a connected component of live springs inside a cell, so that the two sides of a crack are never one
+/// body. Pinned particles are in no tile. Where more springs break than there is room for tiles, cells in many
+/// pieces are one tile each again: the preconditioner is worse then, the result the same but for the iterations.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_TILES_H
+#define MSPRINGI_TILES_H
+
+#include "solvers/implicit/cells.h"
+
+typedef struct mspringi_tiles {
+    mspringi_cells cells;
+    uint32_t count, capacity;
+    uint32_t *first_part;              ///< [capacity + 1]
+    mspringi_tile_part *parts;         ///< tile after tile, at most one for each particle
+    mspringi_tile_part *parts_by_slot; ///< the same, sorted by slot
+    uint32_t *first_by_slot;           ///< [slots / MSPRINGI_PART + 1] in parts_by_slot
+    uint32_t *of_slot;                 ///< [slots] MSPRING_NONE: none
+    uint32_t *first_of_cell;           ///< [cells + 1] tiles follow the order of their cells
+    uint32_t *parent;                  ///< [slots] of a slot in the forest of components
+    mspringi_joint *anchors;           ///< springs of tiles to pinned particles
+    uint32_t anchor_count, anchor_capacity;
+    size_t value_capacity; ///< most numbers that the coarse matrix may have
+    uint32_t *dirty;       ///< cells to be looked at again
+    uint32_t dirty_count;
+    uint8_t *is_dirty;  ///< [cells]
+    float turn_inertia; ///< m^2; what is added to a tile's moment of inertia for each kg
+    uint64_t print;     ///< hash of all this
+} mspringi_tiles;
+
+mspring_result mspringi_tiles_create(mspringi_tiles *tiles, const mspring_network *network, uint32_t size,
+                                     mspringi_memory *memory, mspringi_message *message);
+/// Have the bodies turn as hard as those of other tiles of the same network, in which rest lengths may have been
+/// others.
+void mspringi_tiles_set_inertia(mspringi_tiles *tiles, float turn_inertia, size_t slots);
+extern const mspringi_columns mspringi_tiles_columns;
+void mspringi_tiles_destroy(mspringi_tiles *tiles, mspringi_memory *memory);
+
+/// Parts by slot.
+typedef struct mspringi_part_range {
+    const mspringi_tile_part *parts;
+    size_t count;
+} mspringi_part_range;
+
+/// Those of slots first to end - 1, multiples of MSPRINGI_PART.
+static inline mspringi_part_range mspringi_tiles_parts(const mspringi_tiles *tiles, size_t first, size_t end) {
+    if (tiles->count == 0)
+        return (mspringi_part_range){NULL, 0};
+    const uint32_t begin = tiles->first_by_slot[first / MSPRINGI_PART];
+    return (mspringi_part_range){tiles->parts_by_slot + begin, tiles->first_by_slot[end / MSPRINGI_PART] - begin};
+}
+
+/// Numbers in the coarse matrix of these tiles.
+size_t mspringi_tiles_coarse_values(const mspringi_tiles *tiles);
+
+/// The lowest tile in the coarse matrix's envelope for a tile of a cell.
+static inline uint32_t mspringi_tiles_envelope(const mspringi_tiles *tiles, uint32_t cell) {
+    return tiles->first_of_cell[tiles->cells.lowest[cell]];
+}
+
+/// Whether springs or pins that tiles depend on were edited since seen.
+bool mspringi_tiles_are_outdated(const mspringi_tiles *tiles, const mspring_network *network,
+                                 const mspringi_edits *seen);
+
+/// Follow the edits since seen. Allocates nothing.
+void mspringi_tiles_follow(mspringi_tiles *tiles, const mspring_network *network, const mspringi_edits *seen);
+
+#endif

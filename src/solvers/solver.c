@@ -1,0 +1,71 @@
+/// The solvers that there are, and what is done to any of them.
+#include "store/solver.h"
+
+#include "store/network.h"
+
+const mspringi_solver_ops *mspringi_solver_ops_of(mspring_solver name) {
+#define SOLVER(number, table)                                                                                      \
+    if (name == (number))                                                                                          \
+        return &table;
+#include "store/solvers.def"
+#undef SOLVER
+    return NULL;
+}
+
+void mspringi_solver_destroy(mspringi_solver *solver, mspringi_memory *memory) {
+    if (solver->ops && solver->ops->destroy)
+        solver->ops->destroy(solver->object, memory);
+    solver->object = NULL;
+}
+
+void mspringi_solver_forget(const mspringi_solver *solver) {
+    if (solver->ops->forget)
+        solver->ops->forget(solver->object);
+}
+
+mspringi_solver_basis mspringi_solver_get_basis(const mspringi_solver *solver) {
+    if (solver->ops && solver->ops->get_basis)
+        return solver->ops->get_basis(solver->object);
+    return (mspringi_solver_basis){0};
+}
+
+void mspringi_solver_take_over(const mspring_network *to, const mspringi_solver *made, const mspring_network *from,
+                               const mspringi_solver *had) {
+    if (had->ops && had->ops->take_over)
+        had->ops->take_over(to, made->object, from, had->object);
+}
+
+/* ------------------------------------------------------------------------------------------------------- both */
+
+void mspringi_solvers_clear_slot(const mspring_network *network, uint32_t slot) {
+    const mspringi_solver *const both[] = {&network->solver, &network->fallback};
+    for (size_t i = 0; i < 2; ++i)
+        if (both[i]->ops && both[i]->ops->clear_slot)
+            both[i]->ops->clear_slot(network, both[i]->object, slot);
+}
+
+void mspringi_solvers_clear_spring(const mspring_network *network, mspringi_place place) {
+    const mspringi_solver *const both[] = {&network->solver, &network->fallback};
+    for (size_t i = 0; i < 2; ++i)
+        if (both[i]->ops && both[i]->ops->clear_spring)
+            both[i]->ops->clear_spring(network, both[i]->object, place);
+}
+
+mspring_result mspringi_solvers_reserve(mspring_network *network) {
+    const mspringi_solver *const both[] = {&network->solver, &network->fallback};
+    mspring_result result = MSPRING_OK;
+    for (size_t i = 0; result == MSPRING_OK && i < 2; ++i)
+        if (both[i]->ops && both[i]->ops->reserve)
+            result = both[i]->ops->reserve(both[i]->object, network);
+    return result;
+}
+
+void mspringi_solvers_relocate(mspring_network *network, const mspringi_memory *from, const mspringi_memory *to) {
+    mspringi_solver *const both[] = {&network->solver, &network->fallback};
+    for (size_t i = 0; i < 2; ++i) {
+        if (!both[i]->object)
+            continue;
+        both[i]->object = mspringi_memory_moved(from, to, both[i]->object);
+        both[i]->ops->relocate(both[i]->object, network, from, to);
+    }
+}

@@ -1,0 +1,267 @@
+/// Host functions that are called in the course of a step.
+#include "store/stages.h"
+
+#include <string.h>
+
+/// Fewest slots that are worth to be handed to another worker, if the host does not say.
+#define SMALLEST_RANGE 2048
+
+/* ------------------------------------------------------------------------------------------- adding, removing */
+
+static mspring_result check_hook(mspring_network *network, const mspring_hook_def *def) {
+    mspringi_message *message = &network->message;
+    if (!def)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the hook's definition is NULL");
+    mspring_result result =
+        mspringi_check_struct(message, "mspring_hook_def", def->struct_size, sizeof *def, sizeof *def);
+    if (result == MSPRING_OK)
+        result = mspringi_check_reserved(message, "mspring_hook_def", def->reserved);
+    if (result != MSPRING_OK)
+        return result;
+    if (def->phase < MSPRING_PHASE_BEFORE_STEP || def->phase > MSPRING_PHASE_AFTER_SUBSTEP)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the hook's phase is %d, which is none",
+                             (int)def->phase);
+    if (!def->fn)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the hook's function is NULL");
+    if (def->flags & ~(uint32_t)MSPRING_HOOK_CONCURRENT)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the hook's flags are 0x%x, of which some are none",
+                             (unsigned)def->flags);
+    if (def->period < 1)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the hook's period is 0, it must be at least 1");
+    if (def->phase == MSPRING_PHASE_BEFORE_STEP && def->period != 1)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "the hook's period is %u substeps, but it is called before the step: it must be 1",
+                             (unsigned)def->period);
+    return MSPRING_OK;
+}
+
+// The fields that a hook adds its forces to. Those of others stay, should the last be refused.
+static mspring_result reserve_fields(mspring_network *network, const mspring_hook_def *def, mspringi_field *held) {
+    if (def->phase == MSPRING_PHASE_BEFORE_STEP)
+        return mspringi_field_reserve(network, &network->forces.base);
+    if (def->phase == MSPRING_PHASE_AFTER_SUBSTEP)
+        return MSPRING_OK;
+    mspring_result result = mspringi_field_reserve(network, &network->forces.driven);
+    return result == MSPRING_OK && def->period > 1 ? mspringi_field_reserve(network, held) : result;
+}
+
+mspring_result mspring_network_add_hook(mspring_network *network, const mspring_hook_def *def, uint32_t *hook) {
+    mspring_result result = mspringi_enter(network);
+    if (result == MSPRING_OK)
+        result = check_hook(network, def);
+    if (result != MSPRING_OK)
+        return result;
+    void *hooks = network->hooks;
+    if (!mspringi_grow(&network->memory, &hooks, &network->hook_capacity, network->hook_count + 1,
+                       sizeof *network->hooks))
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for hook %zu",
+                             network->hook_count);
+    network->hooks = hooks;
+    mspringi_hook added = {.def = *def, .number = network->next_hook};
+    result = reserve_fields(network, def, &added.held);
+    if (result != MSPRING_OK)
+        return result;
+    network->hooks[network->hook_count++] = added;
+    network->is_open = true;
+    if (hook)
+        *hook = network->next_hook;
+    network->next_hook++;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_remove_hook(mspring_network *network, uint32_t hook) {
+    mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK)
+        return result;
+    size_t i = 0;
+    while (i < network->hook_count && network->hooks[i].number != hook)
+        ++i;
+    if (i == network->hook_count)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ID, "there is no hook %u", (unsigned)hook);
+    mspringi_free(&network->memory, network->hooks[i].held.x);
+    network->hook_count--;
+    for (; i < network->hook_count; ++i)
+        network->hooks[i] = network->hooks[i + 1];
+    return MSPRING_OK;
+}
+
+/* --------------------------------------------------------------------------------------------------- one call */
+
+// A hook's call, divided into ranges.
+typedef struct hook_call {
+    const mspring_hook_def *def;
+    mspring_hook_args args; ///< but for range, worker and storage
+    uint32_t slot_count, range;
+} hook_call;
+
+static void call_range(void *argument, uint32_t index, uint32_t worker) {
+    const hook_call *call = argument;
+    mspring_hook_args args = call->args;
+    args.first_slot = index * call->range;
+    args.slot_count =
+        call->slot_count - args.first_slot < call->range ? call->slot_count - args.first_slot : call->range;
+    args.worker = worker;
+    if (call->def->storage)
+        args.storage = (char *)call->def->storage + worker * call->def->storage_stride;
+    call->def->fn(&args, call->def->user);
+}
+
+// Slots in a range: whole blocks.
+static uint32_t range_of(const mspring_network *network, const mspring_hook_def *def, uint32_t slot_count) {
+    if (!(def->flags & MSPRING_HOOK_CONCURRENT))
+        return slot_count;
+    const uint32_t workers = mspringi_tasks_workers(network->tasks);
+    uint32_t range = def->range_slots;
+    if (range == 0)
+        range = slot_count / workers > SMALLEST_RANGE ? slot_count / workers + 1 : SMALLEST_RANGE;
+    return range < slot_count ? (range + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH : slot_count;
+}
+
+// A group of substeps that a hook is called for.
+typedef struct hook_group {
+    uint32_t substep, count;
+    double seconds;
+} hook_group;
+
+static hook_group group_of(const mspringi_attempt *attempt, uint32_t substep, uint32_t count) {
+    return (hook_group){substep, count, (double)attempt->h * (double)count};
+}
+
+static void call_hook(mspring_network *network, const mspringi_attempt *attempt, const mspring_hook_def *def,
+                      hook_group group, mspringi_field field) {
+    const uint32_t slot_count = (uint32_t)mspringi_slot_count(network);
+    hook_call call = {
+        .def = def,
+        .slot_count = slot_count,
+        .range = range_of(network, def, slot_count),
+        .args =
+            {
+                .struct_size = sizeof call.args,
+                .phase = def->phase,
+                .substep = group.substep,
+                .substep_count = attempt->substeps,
+                .dt = group.seconds,
+                .origin_x = network->origin_x,
+                .origin_y = network->origin_y,
+                .x = network->state.x,
+                .y = network->state.y,
+                .vx = network->state.vx,
+                .vy = network->state.vy,
+                .force_x = field.x,
+                .force_y = field.y,
+                .inverse_mass = network->inverse_mass,
+                .particle_of_slot = network->topology.particle_of_slot,
+                .group_count = group.count,
+            },
+    };
+    network->in_hook = def->flags & MSPRING_HOOK_CONCURRENT ? MSPRINGI_IN_HOOKS : MSPRINGI_IN_HOOK;
+    mspringi_tasks_run(network->tasks, (slot_count + call.range - 1) / call.range, call_range, &call);
+    network->in_hook = MSPRINGI_IN_NO_HOOK;
+}
+
+/* ------------------------------------------------------------------------------------------------ whose turn */
+
+static bool has_any(const mspring_network *network, mspring_phase phase) {
+    for (size_t i = 0; i < network->hook_count; ++i)
+        if (network->hooks[i].def.phase == phase)
+            return true;
+    return false;
+}
+
+// Substeps, from this one on, that can be taken until a hook is due again.
+static uint32_t free_substeps(const mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
+    uint32_t count = attempt->substeps - substep;
+    for (size_t i = 0; i < network->hook_count; ++i) {
+        const mspring_hook_def *def = &network->hooks[i].def;
+        if (def->phase != MSPRING_PHASE_BEFORE_STEP && def->period - substep % def->period < count)
+            count = def->period - substep % def->period;
+    }
+    return count;
+}
+
+static void before_step(mspring_network *network, const mspringi_attempt *attempt, mspringi_field field) {
+    const hook_group all = {0, 1, attempt->dt};
+    for (size_t i = 0; i < network->hook_count; ++i)
+        if (network->hooks[i].def.phase == MSPRING_PHASE_BEFORE_STEP)
+            call_hook(network, attempt, &network->hooks[i].def, all, field);
+}
+
+static void clear(const mspring_network *network, mspringi_field field) {
+    memset(field.x, 0, 2 * mspringi_slot_count(network) * sizeof *field.x);
+}
+
+static void add(const mspring_network *network, mspringi_field from, mspringi_field to) {
+    const size_t count = 2 * mspringi_slot_count(network);
+    for (size_t i = 0; i < count; ++i)
+        to.x[i] += from.x[i];
+}
+
+// Call the hooks that are due before this substep, and give forces.driven anew: base (x NULL: none) and the forces
+// of all hooks. If none is due, the field stays as it was.
+static mspringi_field before_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
+                                     mspringi_field base) {
+    bool any = false;
+    for (size_t i = 0; i < network->hook_count && !any; ++i) {
+        const mspring_hook_def *def = &network->hooks[i].def;
+        any = def->phase == MSPRING_PHASE_BEFORE_SUBSTEP && substep % def->period == 0;
+    }
+    const mspringi_field driven = network->forces.driven;
+    if (!any)
+        return driven;
+    if (base.x)
+        memcpy(driven.x, base.x, 2 * mspringi_slot_count(network) * sizeof *driven.x);
+    else
+        clear(network, driven);
+    // A hook with a period has a field of its own, since its forces act on while others may be called again.
+    const uint32_t left = attempt->substeps - substep;
+    for (size_t i = 0; i < network->hook_count; ++i) {
+        const mspringi_hook *hook = &network->hooks[i];
+        if (hook->def.phase != MSPRING_PHASE_BEFORE_SUBSTEP)
+            continue;
+        if (!hook->held.x) {
+            call_hook(network, attempt, &hook->def, group_of(attempt, substep, 1), driven);
+            continue;
+        }
+        if (substep % hook->def.period == 0) {
+            clear(network, hook->held);
+            const uint32_t count = hook->def.period < left ? hook->def.period : left;
+            call_hook(network, attempt, &hook->def, group_of(attempt, substep, count), hook->held);
+        }
+        add(network, hook->held, driven);
+    }
+    return driven;
+}
+
+static void after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
+    for (size_t i = 0; i < network->hook_count; ++i) {
+        const mspring_hook_def *def = &network->hooks[i].def;
+        const uint32_t group = substep % def->period + 1;
+        const mspringi_field none = {NULL, NULL};
+        if (def->phase == MSPRING_PHASE_AFTER_SUBSTEP && (group == def->period || substep + 1 == attempt->substeps))
+            call_hook(network, attempt, def, group_of(attempt, substep, group), none);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------ stages */
+
+static bool has_before_step(const mspring_network *network) {
+    return has_any(network, MSPRING_PHASE_BEFORE_STEP);
+}
+static bool has_before_substep(const mspring_network *network) {
+    return has_any(network, MSPRING_PHASE_BEFORE_SUBSTEP);
+}
+static bool has_after_substep(const mspring_network *network) {
+    return has_any(network, MSPRING_PHASE_AFTER_SUBSTEP);
+}
+
+// Hooks may write to the state through the arrays that they are given.
+const mspringi_stage mspringi_stage_hooks_before_step = {
+    .is_used = has_before_step, .writes_state = true, .forces = before_step};
+const mspringi_stage mspringi_stage_hooks_before_substep = {.is_used = has_before_substep,
+                                                            .writes_state = true,
+                                                            .free_substeps = free_substeps,
+                                                            .before_substep = before_substep};
+const mspringi_stage mspringi_stage_hooks_after_substep = {.is_used = has_after_substep,
+                                                           .writes_state = true,
+                                                           .free_substeps = free_substeps,
+                                                           .after_substep = after_substep};

@@ -1,0 +1,108 @@
+/// Going through the stages of a step.
+#include "store/stages.h"
+
+#include <string.h>
+
+static const mspringi_stage *const all[] = {
+#define STAGE(table) &table,
+#include "store/stages.def"
+#undef STAGE
+};
+
+static bool cuts_substeps(const mspringi_stage *stage) {
+    return stage->writes_state || stage->before_substep || stage->after_substep;
+}
+
+mspringi_stages mspringi_stages_of(const mspring_network *network) {
+    mspringi_stages stages = {.count = 0};
+    for (size_t i = 0; i < MSPRINGI_STAGES; ++i) {
+        if (all[i]->is_used && !all[i]->is_used(network))
+            continue;
+        stages.used[stages.count++] = all[i];
+        stages.give_forces |= all[i]->forces != NULL;
+        stages.cut_substeps |= cuts_substeps(all[i]);
+        stages.follow_substeps |= all[i]->after_substep != NULL;
+    }
+    return stages;
+}
+
+mspringi_field mspringi_stages_forces(mspring_network *network, const mspringi_attempt *attempt) {
+    const mspringi_stages *stages = attempt->stages;
+    const mspringi_forces *forces = &network->forces;
+    const mspringi_field none = {NULL, NULL};
+    const size_t size = 2 * mspringi_slot_count(network) * sizeof *forces->base.x;
+    if (!stages->give_forces)
+        return forces->held_any ? forces->held : none;
+    if (forces->held_any)
+        memcpy(forces->base.x, forces->held.x, size);
+    else
+        memset(forces->base.x, 0, size);
+    for (size_t i = 0; i < stages->count; ++i)
+        if (stages->used[i]->forces)
+            stages->used[i]->forces(network, attempt, forces->base);
+    return forces->base;
+}
+
+void mspringi_stages_before_step(mspring_network *network, const mspringi_attempt *attempt) {
+    const mspringi_stages *stages = attempt->stages;
+    for (size_t i = 0; i < stages->count; ++i)
+        if (stages->used[i]->before_step)
+            stages->used[i]->before_step(network, attempt);
+}
+
+void mspringi_stages_forces_known(mspring_network *network, const mspringi_attempt *attempt, mspringi_field force) {
+    const mspringi_stages *stages = attempt->stages;
+    for (size_t i = 0; i < stages->count; ++i)
+        if (stages->used[i]->forces_known)
+            stages->used[i]->forces_known(network, force);
+}
+
+uint32_t mspringi_stages_free_substeps(const mspring_network *network, const mspringi_attempt *attempt,
+                                       uint32_t substep) {
+    const mspringi_stages *stages = attempt->stages;
+    uint32_t count = attempt->substeps - substep;
+    for (size_t i = 0; i < stages->count; ++i) {
+        const mspringi_stage *stage = stages->used[i];
+        if (!stage->before_substep && !stage->after_substep)
+            continue;
+        const uint32_t most = stage->free_substeps ? stage->free_substeps(network, attempt, substep) : 1;
+        count = most < count ? most : count;
+    }
+    return count;
+}
+
+mspringi_field mspringi_stages_before_substep(mspring_network *network, const mspringi_attempt *attempt,
+                                              uint32_t substep, mspringi_field base) {
+    const mspringi_stages *stages = attempt->stages;
+    for (size_t i = 0; i < stages->count; ++i)
+        if (stages->used[i]->before_substep)
+            base = stages->used[i]->before_substep(network, attempt, substep, base);
+    return base;
+}
+
+void mspringi_stages_after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
+    const mspringi_stages *stages = attempt->stages;
+    for (size_t i = 0; i < stages->count; ++i)
+        if (stages->used[i]->after_substep)
+            stages->used[i]->after_substep(network, attempt, substep);
+}
+
+void mspringi_stages_after_step(mspring_network *network, const mspringi_stages *stages, double dt) {
+    for (size_t i = 0; i < stages->count; ++i)
+        if (stages->used[i]->after_step)
+            stages->used[i]->after_step(network, dt);
+}
+
+void mspringi_stages_take_back(mspring_network *network, const mspringi_attempt *attempt) {
+    const mspringi_stages *stages = attempt->stages;
+    for (size_t i = 0; i < stages->count; ++i)
+        if (stages->used[i]->take_back)
+            stages->used[i]->take_back(network);
+}
+
+void mspringi_stages_undo(mspring_network *network, const mspringi_attempt *attempt) {
+    const mspringi_stages *stages = attempt->stages;
+    for (size_t i = stages->count; i-- > 0;)
+        if (stages->used[i]->undo)
+            stages->used[i]->undo(network, attempt);
+}

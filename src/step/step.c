@@ -1,0 +1,314 @@
+/// One step: substeps with the forces that act in them, and the way back if it goes wrong.
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/cpu.h"
+#include "sleep/sleep.h"
+#include "stability/guard.h"
+#include "stability/stability.h"
+#include "store/growth.h"
+#include "store/network.h"
+#include "store/stages.h"
+
+typedef struct copying {
+    const float *from;
+    float *to;
+} copying;
+
+static void copy_range(void *argument, size_t first, size_t end) {
+    const copying *all = argument;
+    memcpy(all->to + first, all->from + first, (end - first) * sizeof *all->to);
+}
+
+static void copy_state(const mspring_network *network, const mspringi_state *from, const mspringi_state *to) {
+    copying all = {from->x, to->x};
+    mspringi_tasks_run_ranges(network->tasks, MSPRINGI_STATE_ARRAYS * mspringi_slot_count(network), MSPRINGI_WIDTH,
+                              copy_range, &all);
+}
+
+static void clear_field(const mspring_network *network, mspringi_field field) {
+    memset(field.x, 0, 2 * mspringi_slot_count(network) * sizeof *field.x);
+}
+
+/* -------------------------------------------------------------------------------------------------- substeps */
+
+static void run_substeps(mspring_network *network, const mspringi_attempt *attempt, mspringi_field base) {
+    const mspringi_solver *solver = attempt->solver;
+    const mspringi_stages *stages = attempt->stages;
+    for (uint32_t substep = 0, count; substep < attempt->substeps; substep += count) {
+        count = mspringi_stages_free_substeps(network, attempt, substep);
+        const mspringi_field force = mspringi_stages_before_substep(network, attempt, substep, base);
+        if (substep == 0 && stages->cut_substeps)
+            mspringi_stages_forces_known(network, attempt, force);
+        if (stages->follow_substeps)
+            mspringi_sleep_hold(network);
+        if (!mspringi_sleep_is_whole(network))
+            solver->ops->substeps(network, solver->object, attempt->h, force, count);
+        if (stages->follow_substeps)
+            mspringi_sleep_put_back(network);
+        mspringi_stages_after_substep(network, attempt, substep + count - 1);
+    }
+}
+
+void mspringi_drop_stale_lows(const mspring_network *network) {
+    const mspringi_state *s = &network->state;
+    for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
+        s->low_x[slot] = mspringi_low_of(s->x[slot], s->low_x[slot]);
+        s->low_y[slot] = mspringi_low_of(s->y[slot], s->low_y[slot]);
+    }
+}
+
+// Keep the state in the backup, run all substeps, and look at what they have led to.
+static mspringi_sight run(mspring_network *network, const mspringi_attempt *attempt) {
+    const mspringi_solver_ops *ops = attempt->solver->ops;
+    const bool is_cut = attempt->stages->cut_substeps;
+    mspringi_sight sight = {0.0f, 0.0f, 0.0f};
+    mspringi_field base = {NULL, NULL};
+    if (network->is_open) {
+        mspringi_clear_empty_slots(network);
+        mspringi_drop_stale_lows(network);
+    }
+    if (ops->begin)
+        ops->begin(network);
+    if (!is_cut) {
+        base = mspringi_stages_forces(network, attempt);
+        mspringi_stages_forces_known(network, attempt, base);
+        if (mspringi_sleep_is_whole(network) || (ops->whole && ops->whole(network, attempt, base, &sight)))
+            return sight;
+    }
+    copy_state(network, &network->state, &network->backup);
+    if (ops->keep)
+        ops->keep(attempt->solver->object);
+    if (is_cut)
+        base = mspringi_stages_forces(network, attempt);
+    run_substeps(network, attempt, base);
+    if (network->is_open)
+        mspringi_clear_empty_slots(network);
+    if (ops->end)
+        ops->end(network);
+    return mspringi_guard_look(network, 0, mspringi_slot_count(network));
+}
+
+/* ------------------------------------------------------------------------------------------------- the step */
+
+void mspringi_clear_empty_slots(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_state *s = &network->state;
+    float *const arrays[MSPRINGI_STATE_ARRAYS] = {s->x, s->y, s->vx, s->vy, s->low_x, s->low_y};
+    for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
+        for (uint32_t run = 0; run < t->empty_run_count; ++run)
+            memset(arrays[i] + t->empty_runs[run].first_slot, 0, t->empty_runs[run].slot_count * sizeof *arrays[i]);
+    if (network->growth.particles)
+        mspringi_growth_clear_slots(network);
+}
+
+// Choose the substeps of a step where that is left to the library.
+static mspring_result choose_substeps(mspring_network *network, double dt) {
+    mspring_id spring;
+    const double limit = mspringi_stable_in_any_shape(network, &spring);
+    uint32_t substeps = mspringi_substeps_within(dt, limit, network->max_substeps);
+    if (network->guard_policy == MSPRING_GUARD_CLAMP_BOUNDS && substeps > network->max_substeps)
+        substeps = network->max_substeps;
+    if (substeps > network->max_substeps) {
+        const mspring_id tightest = mspringi_tightest_spring(network, dt / (double)network->max_substeps);
+        return mspringi_fail(
+            &network->message, MSPRING_ERROR_UNSTABLE,
+            "a step of %g s needs substeps of at most %g s, as spring %u is that stiff or damped for "
+            "its masses: more than max_substeps, which is %u",
+            dt, limit, (unsigned)tightest, (unsigned)network->max_substeps);
+    }
+    network->substeps = substeps;
+    return MSPRING_OK;
+}
+
+// To the state of before the step.
+static void go_back(mspring_network *network, const mspringi_attempt *attempt) {
+    const mspringi_solver *solver = attempt->solver;
+    copy_state(network, &network->backup, &network->state);
+    if (solver->ops->restore)
+        solver->ops->restore(network, solver->object);
+    mspringi_stages_take_back(network, attempt);
+    mspringi_clear_empty_slots(network);
+}
+
+/// Global damping times dt from which on a speed that is no speed any more (MSPRING_MAX_SPEED) could be one again
+/// by the end of the step: exp(-20) is 2e-9, and at 1e24 m/s nothing overflows yet.
+#define STRONG_DAMPING 20.0
+
+// Refuse speeds that somebody outside has written to the state, which the end of the step would not show any more.
+// In the step they overflow where rates of strain are computed, for springs that are not there too, of which wide
+// vectors have more: not all levels would take it.
+static mspring_result check_given_speeds(mspring_network *network, double dt) {
+    if (!network->is_open || !((double)network->global_damping * dt > STRONG_DAMPING))
+        return MSPRING_OK;
+    if (network->guard_policy == MSPRING_GUARD_CLAMP_BOUNDS) {
+        mspringi_guard_put_back(network, NULL);
+        return MSPRING_OK;
+    }
+    const mspringi_state *s = &network->state;
+    for (mspring_id p = 0; p < network->topology.particle_count; ++p) {
+        const uint32_t slot = network->topology.slot_of_particle[p];
+        if (mspringi_particle_exists(network, p) &&
+            !(fabsf(s->vx[slot]) <= (float)MSPRING_MAX_SPEED && fabsf(s->vy[slot]) <= (float)MSPRING_MAX_SPEED))
+            return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
+                                 "particle %u has been given a velocity of (%g, %g) m/s: at most 1e15 is allowed",
+                                 (unsigned)p, (double)s->vx[slot], (double)s->vy[slot]);
+    }
+    return MSPRING_OK;
+}
+
+// Whether a step has nothing to do at all.
+static bool is_idle(const mspring_network *network, const mspringi_stages *stages) {
+    return mspringi_sleep_is_idle(network) && !stages->give_forces && !stages->cut_substeps;
+}
+
+// Make an attempt whose substeps are numbers, or leave everything as it is.
+static mspring_result carry_out(mspring_network *network, const mspringi_attempt *attempt) {
+    mspringi_sleep_begin(network, attempt);
+    if (is_idle(network, attempt->stages))
+        return MSPRING_OK;
+    const mspringi_guard guard = network->guard;
+    mspringi_stages_before_step(network, attempt);
+    mspring_result result = mspringi_guard_begin(network, attempt);
+    if (result == MSPRING_OK) {
+        result = mspringi_guard_end(network, attempt, run(network, attempt));
+        if (result != MSPRING_OK)
+            go_back(network, attempt);
+    }
+    if (result != MSPRING_OK) {
+        network->guard = guard;
+        mspringi_stages_undo(network, attempt);
+    }
+    return result;
+}
+
+// What all attempts at a step have in common.
+typedef struct request {
+    double dt;
+    const mspringi_stages *stages;
+} request;
+
+// Have a solver take the step in so many substeps, or leave everything as it is.
+static mspring_result attempt(mspring_network *network, const request *asked, const mspringi_solver *solver,
+                              uint32_t substeps) {
+    const mspringi_attempt made = {.dt = asked->dt,
+                                   .h = (float)(asked->dt / (double)substeps),
+                                   .substeps = substeps,
+                                   .solver = solver,
+                                   .stages = asked->stages,
+                                   .relative_h = network->relative_h};
+    if (!(made.h >= FLT_MIN && made.h <= FLT_MAX))
+        return mspringi_fail(
+            &network->message, MSPRING_ERROR_ARGUMENT,
+            "dt is %g s (substeps: %u): each substep must be a finite number of at least 1.2e-38 s", made.dt,
+            (unsigned)substeps);
+    network->running = solver;
+    const mspring_result result = carry_out(network, &made);
+    network->running = NULL;
+    return result;
+}
+
+/// Steps that follow one which the explicit solver could not take, and which it is not asked to: to find that it
+/// still cannot takes longer than they do.
+#define LENT_STEPS 15
+
+// The solver for steps that the chosen one cannot take, or NULL.
+static const mspringi_solver *fallback_of(const mspring_network *network) {
+    if (network->guard_policy == MSPRING_GUARD_CLAMP)
+        return &mspringi_clamped;
+    return network->guard_policy == MSPRING_GUARD_IMPLICIT && network->solver.ops->has_border ? &network->fallback
+                                                                                              : NULL;
+}
+
+// Have the fallback take the step, or leave everything as it is. Neither it nor the chosen solver, for which a new
+// motion begins after it, has a history then.
+static mspring_result attempt_otherwise(mspring_network *network, const request *asked,
+                                        const mspringi_solver *fallback) {
+    const uint32_t own = network->auto_substeps ? network->max_substeps : network->substeps;
+    const bool takes_one = fallback->ops->takes_one;
+    mspringi_solver_forget(fallback);
+    const mspring_result result = attempt(network, asked, fallback, takes_one ? 1 : own);
+    if (result != MSPRING_OK)
+        return result;
+    mspringi_solver_forget(&network->solver);
+    if (!takes_one)
+        network->substeps = own;
+    return result;
+}
+
+// Take the step that the solver cannot take, or will not be asked to.
+static mspring_result fall_back(mspring_network *network, const request *asked, const mspringi_solver *fallback) {
+    const uint32_t lent = network->guard.lent, next = network->solver.ops->has_border ? LENT_STEPS : 0;
+    const mspring_result result = attempt_otherwise(network, asked, fallback);
+    const bool took_it = result == MSPRING_OK && !is_idle(network, asked->stages);
+    if (took_it)
+        network->guard.h = 0.0f; // before the solver is asked again, it is looked whether it can be
+    network->guard.lent = !took_it ? lent : lent > 0 ? lent - 1 : next;
+    network->fallback_count += took_it;
+    return result;
+}
+
+static mspring_result attempt_as_chosen(mspring_network *network, const request *asked) {
+    const mspring_result result = network->auto_substeps ? choose_substeps(network, asked->dt) : MSPRING_OK;
+    return result == MSPRING_OK ? attempt(network, asked, &network->solver, network->substeps) : result;
+}
+
+// Try the solver, its fallback, and more substeps, as the host wants it.
+static mspring_result take_step(mspring_network *network, const request *asked) {
+    const mspringi_solver *fallback = fallback_of(network);
+    const bool lent = fallback && network->guard.lent > 0;
+    mspring_result result = lent ? fall_back(network, asked, fallback) : attempt_as_chosen(network, asked);
+    if (result == MSPRING_ERROR_UNSTABLE && fallback && !lent)
+        result = fall_back(network, asked, fallback);
+    while (result == MSPRING_ERROR_UNSTABLE && network->guard_policy == MSPRING_GUARD_RETRY &&
+           network->substeps < network->max_substeps) {
+        const uint32_t twice = 2 * network->substeps;
+        network->substeps = twice < network->max_substeps ? twice : network->max_substeps;
+        result = attempt(network, asked, &network->solver, network->substeps);
+    }
+    return result;
+}
+
+static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt) {
+    const double longest = (double)FLT_MAX * MSPRING_MAX_SUBSTEPS;
+    if (!(dt > 0.0 && dt <= longest))
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "dt is %g s, it must be > 0 and at most %g s: a substep is a float, and at most %u "
+                             "make a step",
+                             dt, longest, (unsigned)MSPRING_MAX_SUBSTEPS);
+    const uint32_t substeps = network->substeps;
+    const mspringi_any_shape any_shape = network->any_shape;
+    if (check_given_speeds(network, dt) != MSPRING_OK)
+        return MSPRING_ERROR_UNSTABLE;
+    network->sleep.has_kept = false;
+    const mspringi_stages stages = mspringi_stages_of(network);
+    const mspring_result result = take_step(network, &(request){dt, &stages});
+    if (result != MSPRING_OK) {
+        network->substeps = substeps;
+        network->any_shape = any_shape;
+        mspringi_sleep_undo(network);
+        return result;
+    }
+    if (is_idle(network, &stages))
+        return MSPRING_OK;
+    mspringi_stages_after_step(network, &stages, dt);
+    if (network->forces.held_any)
+        clear_field(network, network->forces.held);
+    network->forces.held_any = false;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_step(mspring_network *network, double dt) {
+    mspring_result result = mspringi_enter(network);
+    if (result == MSPRING_OK)
+        result = mspringi_tasks_follow(network->tasks, &network->message);
+    if (result != MSPRING_OK)
+        return result;
+    const size_t used = network->memory.used;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    result = step(network, dt);
+    mspringi_fp_leave(before);
+    MSPRINGI_ASSERT(network->memory.used == used); // a step allocates nothing
+    return result;
+}

@@ -1,0 +1,282 @@
+/// Thresholds of strain, and the pass that compares them.
+#include "step/strain.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "sleep/sleep.h"
+#include "step/breaking.h"
+#include "store/changed.h"
+#include "store/events.h"
+#include "store/growth.h"
+#include "store/selection.h"
+#include "store/springs.h"
+#include "store/stages.h"
+#include "store/store.h"
+
+/* ---------------------------------------------------------------------------------------------------- the pass */
+
+static float stretch_of(const mspring_network *network, const mspringi_spring_values *values) {
+    const mspringi_state *s = &network->state;
+    const float dx = s->x[values->tip] - s->x[values->base], dy = s->y[values->tip] - s->y[values->base];
+    return fabsf(sqrtf(dx * dx + dy * dy) - values->rest_length);
+}
+
+// Until a spring is to be stressed, the least strain that anything happens at is the one that it breaks at.
+static const float *least_of(const mspringi_strain *strain) {
+    return strain->least ? strain->least : strain->break_strain;
+}
+
+static bool has_bit(const uint16_t *words, mspringi_place place) {
+    return words[place / MSPRINGI_WIDTH] >> place % MSPRINGI_WIDTH & 1;
+}
+
+// The springs of the web, as the kernels do those of rows.
+static uint32_t leftover_strain(const mspring_network *network, mspringi_strain_hit *hits) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_strain *strain = &network->strain;
+    uint32_t count = 0;
+    for (uint32_t first = 0; first < t->leftover_count; first += MSPRINGI_WIDTH) {
+        const uint32_t word = (t->chain_places + first) / MSPRINGI_WIDTH;
+        uint32_t bits = strain->stressed[word];
+        for (uint32_t i = first; i < first + MSPRINGI_WIDTH && i < t->leftover_count; ++i) {
+            const mspringi_place place = t->chain_places + i;
+            if (mspringi_slot_is_asleep(network, t->leftover_a[i]))
+                continue;
+            const mspringi_spring_values values = mspringi_place_get(network, place);
+            if (has_bit(network->live, place) &&
+                stretch_of(network, &values) > least_of(strain)[place] * values.rest_length)
+                bits |= 1u << (i - first);
+        }
+        if (bits)
+            hits[count++] = (mspringi_strain_hit){word, bits};
+    }
+    return count;
+}
+
+// The next of so many blocks from one on that have to be looked at: *first to *end - 1, counted from base. What
+// sleeps was looked at when it fell asleep.
+static bool next_swept(const mspring_network *network, uint32_t base, uint32_t count, uint32_t *first,
+                       uint32_t *end) {
+    const mspringi_sleep *sleep = &network->sleep;
+    *end = count;
+    if (sleep->sleeping == 0)
+        return *first < count;
+    while (*first < count && !sleep->swept[base + *first])
+        ++*first;
+    *end = *first;
+    while (*end < count && sleep->swept[base + *end])
+        ++*end;
+    return *first < count;
+}
+
+// Break, stress or relax the spring in this place, if it is time for that.
+static void look_at(mspring_network *network, mspringi_place place) {
+    const mspringi_topology *t = &network->topology;
+    mspringi_strain *strain = &network->strain;
+    const mspringi_spring_values values = mspringi_place_get(network, place);
+    const float stretch = stretch_of(network, &values);
+    const float stress_at = strain->stress_strain ? strain->stress_strain[place] * values.rest_length : INFINITY;
+    const bool is_stressed = has_bit(strain->stressed, place);
+    mspring_event event = {.other = MSPRING_NONE};
+    if (stretch > strain->break_strain[place] * values.rest_length)
+        event.kind = MSPRING_EVENT_BROKEN;
+    else if (!is_stressed && stretch > stress_at)
+        event.kind = MSPRING_EVENT_STRESSED;
+    else if (is_stressed && stress_at * strain->relax > stretch)
+        event.kind = MSPRING_EVENT_RELAXED;
+    else
+        return;
+    event.id = mspringi_around_find(network, t->particle_of_slot[values.base], place);
+    event.strain = mspringi_spring_strain(network, event.id);
+    if (event.kind == MSPRING_EVENT_BROKEN)
+        (void)mspringi_spring_break(network, event.id);
+    else
+        strain->stressed[place / MSPRINGI_WIDTH] ^= (uint16_t)(1u << place % MSPRINGI_WIDTH);
+    mspringi_changed(network, MSPRINGI_CHANGED_PLACE, place);
+    mspringi_events_push(network, event);
+}
+
+// Break, stress and relax springs by the strain that they have now.
+static void compare(mspring_network *network, double dt) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_strain *strain = &network->strain;
+    (void)dt;
+    const mspringi_strain_sweep sweep = {
+        .x = network->state.x,
+        .y = network->state.y,
+        .rest_lengths = network->rests.lengths,
+        .rests_of_block = network->rests.of_block,
+        .chain_springs = network->chain_springs,
+        .parts = network->parts,
+        .up_of_block = t->up_of_block,
+        .lattice_first = t->lattice_first,
+        .chain_first = t->chain_first,
+        .chain_word = t->lattice_places / MSPRINGI_WIDTH,
+        .least = least_of(strain),
+        .live = network->live,
+        .stressed = strain->stressed,
+    };
+    mspringi_strain_hit *hits = strain->hits;
+    uint32_t count = 0;
+    for (uint32_t first = 0, end; next_swept(network, t->lattice_first, t->lattice_blocks, &first, &end);
+         first = end)
+        count += network->kernels->lattice_strain(&sweep, first, end, hits + count);
+    for (uint32_t first = 0, end; next_swept(network, t->chain_first, t->chain_blocks, &first, &end); first = end)
+        count += network->kernels->chain_strain(&sweep, first, end, hits + count);
+    count += leftover_strain(network, hits + count);
+    for (const mspringi_strain_hit *hit = hits; hit < hits + count; ++hit)
+        for (uint32_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
+            if (hit->bits >> lane & 1)
+                look_at(network, hit->word * MSPRINGI_WIDTH + lane);
+}
+
+/* -------------------------------------------------------------------------------------------------- thresholds */
+
+static void set_infinite(const mspring_network *network, float *thresholds) {
+    const size_t count = mspringi_place_words(&network->topology) * MSPRINGI_WIDTH;
+    for (size_t place = 0; place < count; ++place)
+        thresholds[place] = INFINITY;
+}
+
+mspring_result mspringi_strain_reserve(mspring_network *network) {
+    const mspringi_strain *strain = &network->strain;
+    if (strain->break_strain)
+        return MSPRING_OK;
+    mspring_result result = mspringi_breaking_reserve(network);
+    if (result == MSPRING_OK)
+        result = mspringi_incidence_reserve(network);
+    if (result == MSPRING_OK)
+        result = mspringi_strain_reserve_layout(network);
+    if (result == MSPRING_OK)
+        mspringi_changed(network, MSPRINGI_CHANGED_PLACES, 0);
+    return result;
+}
+
+mspring_result mspringi_strain_reserve_layout(mspring_network *network) {
+    const mspringi_strain *strain = &network->strain;
+    if (strain->break_strain)
+        return MSPRING_OK;
+    if (!mspringi_store_reserve(network, MSPRINGI_STORE_STRAIN))
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to watch the strain of %u springs",
+                             (unsigned)network->topology.spring_count);
+    set_infinite(network, strain->break_strain);
+    return MSPRING_OK;
+}
+
+mspring_result mspringi_strain_reserve_stress(mspring_network *network) {
+    const mspringi_strain *strain = &network->strain;
+    if (strain->stress_strain)
+        return MSPRING_OK;
+    if (!mspringi_store_reserve(network, MSPRINGI_STORE_STRESS))
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                             "no memory for the stress strains of %u springs",
+                             (unsigned)network->topology.spring_count);
+    set_infinite(network, strain->stress_strain);
+    memcpy(strain->least, strain->break_strain,
+           mspringi_place_words(&network->topology) * MSPRINGI_WIDTH * sizeof *strain->least);
+    mspringi_changed(network, MSPRINGI_CHANGED_PLACES, 0);
+    return MSPRING_OK;
+}
+
+void mspringi_strain_store(mspring_network *network, mspringi_place place, bool stress, float value) {
+    mspringi_strain *strain = &network->strain;
+    MSPRINGI_ASSERT(strain->break_strain && (strain->stress_strain || !stress));
+    if (stress)
+        strain->stress_strain[place] = value;
+    else
+        strain->break_strain[place] = value;
+    strain->stresses = strain->stresses || (stress && value < INFINITY);
+    strain->breaks = strain->breaks || (!stress && value < INFINITY);
+    if (strain->stress_strain)
+        // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): its callers have looked for it
+        strain->least[place] = fminf(strain->break_strain[place], strain->stress_strain[place]);
+    mspringi_changed(network, MSPRINGI_CHANGED_PLACE, place);
+}
+
+void mspringi_strain_forget(mspring_network *network, mspring_id spring) {
+    const mspringi_strain *strain = &network->strain;
+    const mspringi_place place = mspringi_place_of(&network->topology, spring);
+    if (strain->stressed)
+        strain->stressed[place / MSPRINGI_WIDTH] &= (uint16_t) ~(1u << place % MSPRINGI_WIDTH);
+    if (strain->break_strain)
+        mspringi_strain_store(network, place, false, INFINITY);
+    if (strain->stress_strain)
+        mspringi_strain_store(network, place, true, INFINITY);
+}
+
+static mspring_result set_thresholds(mspring_network *network, bool stress, const mspringi_selection *at,
+                                     const float *strain) {
+    for (uint32_t i = 0; i < at->count; ++i)
+        if (!(strain[i] > 0.0f))
+            return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                                 "spring %u: %s strain is %g, it must be > 0", (unsigned)mspringi_selected(at, i),
+                                 stress ? "stress" : "break", (double)strain[i]);
+    mspring_result result = at->count > 0 ? mspringi_strain_reserve(network) : MSPRING_OK;
+    if (result == MSPRING_OK && stress && at->count > 0)
+        result = mspringi_strain_reserve_stress(network);
+    for (uint32_t i = 0; result == MSPRING_OK && i < at->count; ++i) {
+        const mspring_id spring = mspringi_selected(at, i);
+        if (!mspringi_spring_exists(network, spring))
+            continue;
+        mspringi_fingerprint(network, stress ? MSPRINGI_EDIT_STRESS_STRAIN : MSPRINGI_EDIT_BREAK_STRAIN, spring);
+        mspringi_fingerprint_floats(network, strain[i], 0.0f);
+        mspringi_strain_store(network, mspringi_place_of(&network->topology, spring), stress, strain[i]);
+        mspringi_changed(network, MSPRINGI_CHANGED_SPRING, spring);
+    }
+    return result;
+}
+
+static mspring_result set_range(mspring_network *network, bool stress, mspring_id first, uint32_t count,
+                                const float *strain) {
+    mspringi_selection at;
+    mspring_result result = mspringi_select_range(network, MSPRINGI_SPRINGS, first, count, strain, strain, &at);
+    return result == MSPRING_OK ? set_thresholds(network, stress, &at, strain) : result;
+}
+
+static mspring_result set_list(mspring_network *network, bool stress, const mspring_id *springs, uint32_t count,
+                               const float *strain) {
+    mspringi_selection at;
+    mspring_result result = mspringi_select_list(network, MSPRINGI_SPRINGS, springs, count, strain, strain, &at);
+    return result == MSPRING_OK ? set_thresholds(network, stress, &at, strain) : result;
+}
+
+mspring_result mspring_network_set_break_strains(mspring_network *network, mspring_id first, uint32_t count,
+                                                 const float *strain) {
+    return set_range(network, false, first, count, strain);
+}
+
+mspring_result mspring_network_set_break_strains_at(mspring_network *network, const mspring_id *springs,
+                                                    uint32_t count, const float *strain) {
+    return set_list(network, false, springs, count, strain);
+}
+
+mspring_result mspring_network_set_stress_strains(mspring_network *network, mspring_id first, uint32_t count,
+                                                  const float *strain) {
+    return set_range(network, true, first, count, strain);
+}
+
+mspring_result mspring_network_set_stress_strains_at(mspring_network *network, const mspring_id *springs,
+                                                     uint32_t count, const float *strain) {
+    return set_list(network, true, springs, count, strain);
+}
+
+mspring_result mspring_network_set_relax_fraction(mspring_network *network, float fraction) {
+    mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK)
+        return result;
+    if (!(fraction >= 0.0f && fraction <= 1.0f))
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "the relax fraction is %g, it must be 0 to 1", (double)fraction);
+    const bool is_new = fraction != network->strain.relax;
+    network->strain.relax = fraction;
+    if (is_new)
+        mspringi_changed(network, MSPRINGI_CHANGED_RELAX, 0);
+    return MSPRING_OK;
+}
+
+static bool is_used(const mspring_network *network) {
+    return network->strain.break_strain != NULL;
+}
+
+const mspringi_stage mspringi_stage_strain = {.is_used = is_used, .after_step = compare};

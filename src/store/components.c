@@ -1,0 +1,174 @@
+/// The components as the host sees them: numbered by their lowest particles, with events of what has split or
+/// joined.
+#include "store/components.h"
+
+#include <string.h>
+
+#include "base/cpu.h"
+#include "store/events.h"
+#include "store/growth.h"
+#include "store/roots.h"
+#include "store/store.h"
+
+static mspring_result reserve(mspring_network *network) {
+    if (network->components.number)
+        return MSPRING_OK;
+    const size_t particles = network->topology.reserve.particle_end;
+    mspringi_components *made = &network->components;
+    const bool is_there = mspringi_store_reserve(network, MSPRINGI_STORE_COMPONENTS) &&
+                          mspringi_store_reserve(network, MSPRINGI_STORE_ROOT);
+    mspring_result result =
+        is_there ? mspringi_incidence_reserve(network)
+                 : mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                                 "no memory for the components of %zu particles", particles);
+    for (size_t p = 0; result == MSPRING_OK && p < particles; ++p)
+        made->number[p] = made->old[p] = MSPRING_NONE;
+    if (result != MSPRING_OK) {
+        mspringi_store_free(network, MSPRINGI_STORE_COMPONENTS);
+        mspringi_store_free(network, MSPRINGI_STORE_ROOT);
+    }
+    return result;
+}
+
+/* ------------------------------------------------------------------------------------------------------ numbers */
+
+/// Marks a root that has been given the number in its other bits. There are fewer slots than that.
+#define NUMBERED 0x80000000u
+
+// Number the components in the order of their lowest particles.
+static void number_components(mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    mspringi_components *c = &network->components;
+    c->count = 0;
+    for (mspring_id p = 0; p < t->particle_count; ++p) {
+        if (!mspringi_particle_exists(network, p)) {
+            // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): made with the components
+            c->number[p] = MSPRING_NONE;
+            continue;
+        }
+        const uint32_t slot = t->slot_of_particle[p];
+        const uint32_t root = c->root[slot] & NUMBERED ? slot : c->root[slot];
+        if (!(c->root[root] & NUMBERED)) {
+            c->root[root] = NUMBERED | c->count;
+            // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): made with the components
+            c->head[c->count] = p;
+            c->size[c->count++] = 0;
+        }
+        const uint32_t number = c->root[root] & ~NUMBERED;
+        // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): made with the components
+        c->number[p] = number;
+        c->size[number]++;
+    }
+}
+
+static void push_event(mspring_network *network, mspring_event_kind kind, mspring_id id, mspring_id other) {
+    mspringi_events_push(network, (mspring_event){.kind = kind, .id = id, .other = other});
+}
+
+// Tell of the heads that have come and gone.
+static void compare_heads(mspring_network *network) {
+    const mspringi_components *c = &network->components;
+    for (mspring_id p = 0; p < network->topology.particle_count; ++p) {
+        if (c->number[p] == MSPRING_NONE || c->old[p] == MSPRING_NONE)
+            continue; // removed or added since
+        const mspring_id head = c->head[c->number[p]], old_head = c->old_head[c->old[p]];
+        if (head == p && old_head != p)
+            push_event(network, MSPRING_EVENT_SPLIT, p, old_head);
+        else if (head != p && old_head == p)
+            push_event(network, MSPRING_EVENT_JOINED, p, head);
+    }
+}
+
+/* ----------------------------------------------------------------------------------------------------- updates */
+
+static void swap(uint32_t **a, uint32_t **b) {
+    uint32_t *const other = *a;
+    *a = *b;
+    *b = other;
+}
+
+mspring_result mspring_network_update_components(mspring_network *network, uint32_t *count, uint32_t *changed) {
+    mspring_result result = mspringi_enter(network);
+    if (result == MSPRING_OK)
+        result = reserve(network);
+    if (result != MSPRING_OK)
+        return result;
+    mspringi_components *c = &network->components;
+    const bool is_first = c->count == 0,
+               unchanged = !is_first && c->seen_growth == network->edits.growth &&
+                           mspringi_links_change_nothing(network, c->seen, c->number, NULL);
+    if (!unchanged) {
+        swap(&c->number, &c->old);
+        swap(&c->head, &c->old_head);
+        mspringi_find_roots(network, c->root);
+        number_components(network);
+        if (!is_first)
+            compare_heads(network);
+    }
+    c->seen = network->edits.links;
+    c->seen_growth = network->edits.growth;
+    if (count)
+        *count = c->count;
+    if (changed)
+        *changed = is_first || (!unchanged && memcmp(c->number, c->old,
+                                                     network->topology.particle_count * sizeof *c->number) != 0);
+    return MSPRING_OK;
+}
+
+/* ----------------------------------------------------------------------------------------------------- reading */
+
+mspring_result mspring_network_get_component_numbers(const mspring_network *network, mspring_id first,
+                                                     uint32_t count, uint32_t *component) {
+    if (!network || (count > 0 && !component) || network->components.count == 0)
+        return MSPRING_ERROR_ARGUMENT;
+    const uint32_t total = network->topology.particle_count;
+    if (first > total || count > total - first)
+        return MSPRING_ERROR_ID;
+    if (count > 0)
+        memcpy(component, network->components.number + first, count * sizeof *component);
+    return MSPRING_OK;
+}
+
+// Add a particle to its component: mass, centre times mass, momentum.
+static void add_particle(const mspring_network *network, mspring_id particle, mspring_component *to) {
+    const mspringi_state *s = &network->state;
+    const uint32_t slot = network->topology.slot_of_particle[particle];
+    const double mass = (double)network->mass[particle];
+    to->mass += mass;
+    to->x += mass * (double)s->x[slot];
+    to->y += mass * (double)s->y[slot];
+    if (network->inverse_mass[slot] > 0.0f) {
+        to->px += mass * (double)s->vx[slot];
+        to->py += mass * (double)s->vy[slot];
+    }
+}
+
+static MSPRINGI_NOINLINE void measure(const mspring_network *network, uint32_t first, uint32_t count,
+                                      mspring_component *components) {
+    const mspringi_components *c = &network->components;
+    for (uint32_t i = 0; i < count; ++i)
+        components[i] = (mspring_component){
+            .struct_size = sizeof *components, .head = c->head[first + i], .particle_count = c->size[first + i]};
+    for (mspring_id p = 0; p < network->topology.particle_count; ++p)
+        if (c->number[p] - first < count && mspringi_particle_exists(network, p)) // unsigned: below first are not
+            add_particle(network, p, &components[c->number[p] - first]);
+    for (uint32_t i = 0; i < count; ++i) {
+        components[i].x = network->origin_x + components[i].x / components[i].mass;
+        components[i].y = network->origin_y + components[i].y / components[i].mass;
+    }
+}
+
+mspring_result mspring_network_get_components(const mspring_network *network, uint32_t first, uint32_t count,
+                                              mspring_component *components) {
+    if (!network || (count > 0 && !components) || network->components.count == 0)
+        return MSPRING_ERROR_ARGUMENT;
+    if (first > network->components.count || count > network->components.count - first)
+        return MSPRING_ERROR_ID;
+    for (uint32_t i = 0; i < count; ++i)
+        if (components[i].struct_size != sizeof *components)
+            return MSPRING_ERROR_STRUCT;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    measure(network, first, count, components);
+    mspringi_fp_leave(before);
+    return MSPRING_OK;
+}

@@ -1,0 +1,397 @@
+/// @file network.h
+/// What a network holds.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_NETWORK_H
+#define MSPRINGI_NETWORK_H
+
+#include "base/assert.h"
+#include "kernels/kernels.h"
+#include "layout/topology.h"
+#include "store/components.h"
+#include "store/graft.h"
+#include "store/solver.h"
+#include "tasks/tasks.h"
+
+/// What a step changes. The arrays lie behind one another in one block of memory, so that they can be copied at
+/// once. Positions are x + low_x and y + low_y: what a substep adds to a position would be rounded away the more
+/// of, the shorter the substep is.
+typedef struct mspringi_state {
+    float *x, *y, *vx, *vy;
+    float *low_x, *low_y; ///< m, beyond single precision
+} mspringi_state;
+enum { MSPRINGI_STATE_ARRAYS = 6 };
+
+/// Part of a coordinate that its low word is at most, some units in the last place. A larger one was left by
+/// another coordinate, which somebody has written over through a view, and counts as 0.
+#define MSPRINGI_LARGEST_LOW 0x1p-21f
+
+static inline float mspringi_low_of(float coordinate, float low) {
+    const float size = coordinate < 0.0f ? -coordinate : coordinate;
+    const float limit = size * MSPRINGI_LARGEST_LOW;
+    return low <= limit && -low <= limit ? low : 0.0f;
+}
+
+/// Local coordinates in full.
+static inline double mspringi_x_of(const mspringi_state *s, size_t slot) {
+    return (double)s->x[slot] + (double)mspringi_low_of(s->x[slot], s->low_x[slot]);
+}
+
+static inline double mspringi_y_of(const mspringi_state *s, size_t slot) {
+    return (double)s->y[slot] + (double)mspringi_low_of(s->y[slot], s->low_y[slot]);
+}
+
+/// Set local coordinates.
+static inline void mspringi_set_x(const mspringi_state *s, size_t slot, double x) {
+    s->x[slot] = (float)x;
+    s->low_x[slot] = mspringi_low_of(s->x[slot], (float)(x - (double)s->x[slot]));
+}
+
+static inline void mspringi_set_y(const mspringi_state *s, size_t slot, double y) {
+    s->y[slot] = (float)y;
+    s->low_y[slot] = mspringi_low_of(s->y[slot], (float)(y - (double)s->y[slot]));
+}
+
+/// Add to local coordinates in single precision: Kahan's sum, as the kernels have it.
+static inline void mspringi_move_by(const mspringi_state *s, size_t slot, float dx, float dy) {
+    const float way_x = dx + s->low_x[slot], way_y = dy + s->low_y[slot];
+    const float x = s->x[slot] + way_x, y = s->y[slot] + way_y;
+    s->low_x[slot] = way_x - (x - s->x[slot]);
+    s->low_y[slot] = way_y - (y - s->y[slot]);
+    s->x[slot] = x;
+    s->y[slot] = y;
+}
+
+/// Forces from outside, in N by slot. Fields that a network does not need are NULL.
+typedef struct mspringi_forces {
+    mspringi_field held;   ///< given by the host for the next step
+    mspringi_field base;   ///< held and what hooks before the step added: where each substep starts from
+    mspringi_field driven; ///< base, and what hooks before the substep added
+    bool held_any;         ///< held is not all zero
+} mspringi_forces;
+
+typedef struct mspringi_hook {
+    mspring_hook_def def;
+    uint32_t number;
+    mspringi_field held; ///< forces of a hook that is not called before every substep; else none
+} mspringi_hook;
+
+typedef enum mspringi_in_hook {
+    MSPRINGI_IN_NO_HOOK,
+    MSPRINGI_IN_HOOK, ///< in one at a time
+    MSPRINGI_IN_HOOKS ///< in several, perhaps, on different threads
+} mspringi_in_hook;
+
+/// Stiffness and damping as fractions; stiffness < 0 for a spring that is not relative.
+typedef struct mspringi_relative {
+    float stiffness, damping;
+} mspringi_relative;
+
+/// Those of all springs; values is NULL if no spring is relative.
+typedef struct mspringi_fractions {
+    mspringi_relative *values;
+    uint8_t *of_spring; ///< [springs] which of values; NULL: values is [springs]
+} mspringi_fractions;
+
+/// What has been edited between steps, in counters that only ever grow. Whoever keeps something that follows from
+/// the edited (a solver its history or its tiles, a measurement its components) remembers the counters that it has
+/// seen and looks whether they are still the same: mspringi_edits_have_link() and mspringi_edits_link() then tell
+/// which springs it was. Views may be written to without any counter knowing; what relative springs derive from a
+/// new substep is no edit either.
+typedef struct mspringi_edits {
+    uint64_t state;  ///< calls that set positions or velocities
+    uint64_t motion; ///< calls that set the positions of all particles at once: a new motion begins
+    uint64_t masses; ///< calls that changed inverse masses
+    uint64_t values; ///< calls that changed stiffness, damping or rest lengths
+    uint64_t growth; ///< calls that added or removed particles or springs
+    uint64_t grafts; ///< those among them in which springs were added or removed
+    uint64_t links;  ///< springs that were broken or restored, added or removed, one by one
+    uint64_t naps;   ///< times that islands fell asleep or woke
+    mspring_id
+        *link_log; ///< the last of these springs: change n, counted from 0, is at n & link_mask; NULL before any
+    uint32_t link_mask;
+    bool broke; ///< there have been such changes, here or in what was loaded
+} mspringi_edits;
+
+/// A restored spring on its way to its own rest length.
+typedef struct mspringi_ramp {
+    mspring_id spring;
+    float to;       ///< its own rest length, m
+    double from;    ///< rest length when it was restored
+    double seconds; ///< that the way takes
+    double passed;  ///< of these
+} mspringi_ramp;
+
+typedef struct mspringi_ramps {
+    mspringi_ramp *list;
+    size_t count, capacity;
+} mspringi_ramps;
+
+/// What mspringi_stable_in_any_shape() has found, and the edits that it has seen.
+typedef struct mspringi_any_shape {
+    double dt;
+    mspring_id spring;
+    bool is_known;
+    uint64_t masses, values, growth;
+} mspringi_any_shape;
+
+/// The events that the host has not read yet: a ring, empty if the host has not asked for one.
+typedef struct mspringi_events {
+    mspring_event *ring; ///< [capacity]
+    uint32_t first, count, capacity;
+    uint64_t lost;
+} mspringi_events;
+
+/// What springs break and are stressed at, by place; NULL as long as none does.
+typedef struct mspringi_strain {
+    float *break_strain, *stress_strain;
+    float *least;              ///< the smaller of the two; NULL as long as break_strain is alone
+    uint16_t *stressed;        ///< [places / MSPRINGI_WIDTH] a bit for each place
+    mspringi_strain_hit *hits; ///< [places / MSPRINGI_WIDTH] for the pass to write to
+    bool breaks, stresses;     ///< a threshold of this kind has been finite: there is something to save
+    float relax;               ///< fraction of its stress strain below which a stressed spring relaxes
+} mspringi_strain;
+
+/// Fraction below which springs relax, until the host sets another.
+#define MSPRINGI_USUAL_RELAX 0.8f
+
+/// What the guard knows from step to step.
+typedef struct mspringi_guard {
+    float h, global_damping; ///< the border was looked at for these; h is 0 at first
+    bool watches;            ///< this step's substeps are longer than what is stable in any shape
+    uint32_t lent;           ///< steps that the fallback still takes before the explicit solver is tried again
+    float peak;              ///< largest change when the border was looked at last, fading, m/s
+    bool knows_speed;        ///< speed is that of the state before this step
+    bool knows_place;        ///< place is, and how far it gets in this step follows from speeds at its end
+    float speed;             ///< none was larger at the end of the last step, m/s; infinite if that is not known
+    float place;             ///< so with coordinates, m
+    uint64_t state;          ///< edits.state then
+} mspringi_guard;
+
+/// Rest lengths of the lattices' springs, in blocks of [direction][lane].
+typedef struct mspringi_rests {
+    float *lengths;     ///< [count] blocks: those that several lattice blocks share, then those of one each
+    uint32_t *of_block; ///< [lattice blocks] which of them is whose
+    uint32_t count, shared_count;
+} mspringi_rests;
+
+/// Lattice blocks whose springs are alike in stiffness and damping.
+typedef struct mspringi_alike {
+    uint32_t *of_block; ///< [lattice blocks] the block whose record is read for each
+    uint32_t *readers;  ///< [lattice blocks] other blocks that each block's record is read for
+    uint64_t changes;   ///< springs that were set since these were looked for
+} mspringi_alike;
+
+/// What workers leave to each other where they share strips, see solvers/explicit/seam.h and shares.h; no arrays
+/// for one.
+typedef struct mspringi_seams {
+    uint32_t workers;     ///< that there is room for; 0: none
+    uint32_t count;       ///< seams: borders between lattice strips
+    uint32_t substeps;    ///< in the deepest pass
+    uint32_t row_spans;   ///< spans in a row, at most
+    uint32_t strips;      ///< or layers, whichever are more
+    size_t segment;       ///< slots of the widest row, and a block to be read behind
+    float *values;        ///< [count][MSPRINGI_STATE_ARRAYS][rows of a seam][segment]
+    mspringi_span *spans; ///< [count][2][2][row_spans]
+    uint32_t *borders;    ///< [MSPRINGI_PLANNED_PASSES][workers]
+    uint64_t *weights;    ///< [strips + 1] of the strips below each
+} mspringi_seams;
+
+/// Which islands sleep, and what they were when they fell asleep; no arrays if none ever does. An island is a
+/// component of live springs, numbered by its lowest slot.
+typedef struct mspringi_sleep {
+    float speed, time; ///< still is what is no faster (0: nothing), asleep what has been so for that long; m/s, s
+    uint32_t count;    ///< islands; 0: not looked for yet
+    uint32_t sleeping; ///< of these asleep; what follows of slots and blocks is of no use as long as this is 0
+    uint32_t *island;  ///< [slots] of each slot, MSPRING_NONE if it has no particle
+    uint32_t *lowest;  ///< [particles] the lowest slot of each island
+    double *still;     ///< [particles] of each island, for how long it has been still, s; < 0: asleep
+    double *kept;      ///< [particles] still before the step, if it woke any
+    bool has_kept;
+    bool is_mapped;            ///< what follows is up to date
+    uint8_t *mark;             ///< [particles] of each island, while all are gone through
+    uint32_t *scratch;         ///< [slots]
+    uint32_t *block_island;    ///< [blocks] the island that all of a block is of, MSPRING_NONE if there are several
+    float *free_mass;          ///< [slots] inverse mass, 0 of what sleeps
+    uint16_t *sleepers;        ///< [blocks] a bit for each slot
+    uint8_t *swept;            ///< [blocks] 1 where a particle is awake, or springs are of one that is
+    uint8_t *share;            ///< [strips] mspringi_share
+    mspringi_span *runs;       ///< [spans] runs of blocks of a row while that is swept, from its first span on
+    bool has_force;            ///< force is not all zero
+    double origin_x, origin_y; ///< that state is relative to, m
+    float *state;              ///< [MSPRINGI_STATE_ARRAYS][slots]
+    float *inverse_mass;       ///< [slots]
+    float *held;               ///< [4][slots] positions and their low words, while substeps are taken
+    mspringi_field force;      ///< from outside
+    mspringi_field in_force;   ///< of the step that is being made; else NULL
+    uint64_t masses, links, moved; ///< edits that it has seen; the last is edits.state
+} mspringi_sleep;
+
+/// Whether an id names something.
+enum {
+    MSPRINGI_GONE = 0,  ///< it was removed
+    MSPRINGI_THERE = 1, ///< it does
+    MSPRINGI_SPARE = 2  ///< it can be given to what is added next
+};
+
+/// No end of a spring.
+#define MSPRINGI_NO_END UINT32_MAX
+
+/// What has been added and removed. End e of the spare springs is that of the spare spring number e / 2; those at a
+/// particle are linked.
+typedef struct mspringi_growth {
+    uint8_t *particles, *springs; ///< [reserve.particle_end], [reserve.spring_end] NULL: all ids so far are there
+    uint32_t *first_end;          ///< [reserve.particle_end] MSPRINGI_NO_END if there is none
+    uint32_t *next_end;           ///< [2 * spare springs]
+    mspring_id *particle_of_end;  ///< [2 * spare springs]
+    mspring_id lowest_particle, lowest_spring; ///< no id below is spare
+} mspringi_growth;
+
+/// The springs of particle p are springs[first[p]] ... springs[first[p + 1] - 1], by rising id. Spare springs are
+/// in none of these lists.
+typedef struct mspringi_incidence {
+    uint32_t *first;   ///< [particles + 1], or NULL: not made yet
+    uint32_t *springs; ///< [2 * springs]
+} mspringi_incidence;
+
+/// What is needed to measure all springs at once; NULL as long as that has not been done.
+typedef struct mspringi_extents {
+    float *scratch;     ///< [2][places] what is computed, see extents.c
+    uint16_t *reversed; ///< [place words] a bit for each place: 1 where its base is the end with the higher id
+} mspringi_extents;
+
+/// An array that is added here goes into store/network.def.
+struct mspring_network {
+    mspringi_memory memory;       ///< the network itself and all that it holds, but for
+    mspringi_memory tasks_memory; ///< what its workers are, which a copy of the network has none of
+    mspringi_message message;
+    mspringi_topology topology;
+    mspringi_topology whole; ///< the one the network was created with, while it is compact; else empty
+    bool is_compact;
+    uint64_t whole_print;         ///< topology_print of whole
+    uint32_t whole_tile_size;     ///< of the implicit solver that whole had; 0 if there was none
+    uint32_t whole_fallback_size; ///< the same of the fallback's
+    mspring_job *job;             ///< another layout that is being made, or NULL
+    bool is_seen_compact;         ///< with these edits it was found to have nothing to do
+    uint64_t seen_links, seen_growth;
+    uint64_t topology_print;  ///< hash of which particles the springs join, and of where they lie
+    uint64_t parameter_print; ///< hash of what the springs are like, and of all edits of that
+    const mspringi_kernels *kernels;
+    mspringi_tasks *tasks; ///< NULL: the caller's thread steps alone
+
+    // State.
+    mspringi_state state, backup;
+    double origin_x, origin_y; ///< world = origin + local
+    float recentre_distance;   ///< how far the network may be from its origin until that is moved along
+
+    // Parameters.
+    float *inverse_mass;          ///< [slots] 0 if pinned or empty
+    float *mass;                  ///< [particles]
+    float *inverse_mass_scale;    ///< [particles], or NULL as long as all are 0 (where inverse_mass is) or 1
+    float *spring_mass;           ///< [particles] masses that relative springs go by, or NULL if these are mass
+    bool is_scaled, is_reweighed; ///< scales, or masses, have been given that these two are needed for
+    uint32_t parts;               ///< values per spring in the records: 2, or 3 with damping
+    bool is_precise;              ///< low words count in the lengths of springs
+    mspringi_rests rests;         ///< of lattice_springs, whose records have stiffness and damping only
+    float *lattice_springs, *chain_springs;
+    mspringi_alike alike;
+    float *web_springs;
+    float *packed;   ///< [2][nodes of the web][4] at the start of every other substep; see store/precise.h
+    float *attached; ///< forces on the attached nodes, all x and then all y
+    mspringi_fractions fractions;
+    float relative_h;        ///< the substep that relative springs were derived for; 0: not yet
+    uint16_t *live;          ///< [places / 16] a bit for each place: 1 where a spring is, and is not broken
+    mspringi_relative *kept; ///< [springs] N/m, N s/m of broken springs that are not relative; NULL before any
+    bool keeps_none;         ///< all springs were seen to be relative, and stay so
+    uint32_t depth;          ///< substeps that may be swept in one pass over the lattice rows
+    uint32_t carry_rows;     ///< depth, for each worker
+    float *carry;            ///< [carry_rows] forces on the row above, all x and then all y of each
+    mspringi_seams seams;
+
+    float gravity_x, gravity_y, global_damping, max_speed;
+    uint32_t substeps; ///< of the last step or, unless auto_substeps, of the next
+    uint32_t max_substeps;
+    bool auto_substeps;
+    mspringi_solver solver;         ///< the one that the host chose
+    mspringi_solver fallback;       ///< takes steps for the explicit one; none before MSPRING_GUARD_IMPLICIT
+    const mspringi_solver *running; ///< the one that takes the step that is being made; else NULL
+    uint64_t fallback_count;        ///< steps that it has taken
+    struct mspringi_floor *floor;   ///< NULL: there is none
+    mspring_guard guard_policy;
+    mspringi_guard guard;
+    float *looks;    ///< [5][slots] weights of the guard's bound, and room; NULL if it never looks at the border
+    double shortest; ///< smallest rest length at first, m
+
+    mspringi_edits edits;
+    mspringi_ramps ramps;
+    mspringi_strain strain;
+    mspringi_events events;
+    mspringi_components components;
+    mspringi_extents extents;
+    mspringi_sleep sleep;
+    mspringi_incidence incidence; ///< made when it is needed first, of the springs that are not spare ones
+    mspringi_growth growth;
+    mspringi_graft graft;
+    mspringi_any_shape any_shape;
+    mspringi_any_shape last_shape; ///< found last, maybe in a step that was refused: to find it again costs nothing
+
+    mspringi_forces forces;
+    mspringi_hook *hooks;
+    size_t hook_count, hook_capacity;
+    uint32_t next_hook;
+    mspringi_in_hook in_hook;
+    bool is_open; ///< somebody outside has the state's arrays: there was a view or a hook
+};
+
+static inline size_t mspringi_slot_count(const mspring_network *network) {
+    return (size_t)network->topology.block_count * MSPRINGI_WIDTH;
+}
+
+/// Inverse masses as a step sees them, 0 of what sleeps.
+static inline const float *mspringi_free_mass(const mspring_network *network) {
+    return network->sleep.sleeping > 0 ? network->sleep.free_mass : network->inverse_mass;
+}
+
+/// Whether the log still has everything from change number seen on; if not, any spring may have changed.
+static inline bool mspringi_edits_have_link(const mspringi_edits *edits, uint64_t seen) {
+    return edits->links - seen <= (uint64_t)edits->link_mask + 1;
+}
+
+/// The spring that was broken or restored in change number n.
+static inline mspring_id mspringi_edits_link(const mspringi_edits *edits, uint64_t n) {
+    MSPRINGI_ASSERT(edits->link_log && n < edits->links && mspringi_edits_have_link(edits, n));
+    return edits->link_log[n & edits->link_mask];
+}
+
+static inline bool mspringi_particle_exists(const mspring_network *network, mspring_id particle) {
+    return !network->growth.particles || network->growth.particles[particle] == MSPRINGI_THERE;
+}
+static inline bool mspringi_spring_exists(const mspring_network *network, mspring_id spring) {
+    return !network->growth.springs || network->growth.springs[spring] == MSPRINGI_THERE;
+}
+
+/// Refuse NULL, and calls from inside a hook.
+mspring_result mspringi_enter(mspring_network *network);
+
+/// Refuse ranges of ids that leave the network.
+mspring_result mspringi_check_range(mspring_network *network, const char *what, mspring_id first, uint32_t count,
+                                    uint32_t total);
+
+/// Refuse solver definitions that mspring_network_set_solver() would.
+mspring_result mspringi_check_solver(const mspring_solver_def *def, mspringi_message *message);
+
+/// Take back what a hook, or the host through a view, has written to slots without particle.
+void mspringi_clear_empty_slots(const mspring_network *network);
+
+/// Drop the low words that are too large for their coordinates.
+void mspringi_drop_stale_lows(const mspring_network *network);
+
+/// Allocate the carry rows and seams that the network's workers need, unless it has as many.
+mspring_result mspringi_carry_reserve(mspring_network *network);
+
+/// Allocate what the explicit solver has by slot and by place. On error some of it is there.
+mspring_result mspringi_layout_reserve(mspring_network *network);
+/// Allocate a field of all slots, zeroed; leaves it alone if it is there.
+mspring_result mspringi_field_reserve(mspring_network *network, mspringi_field *field);
+
+#endif

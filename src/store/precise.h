@@ -1,0 +1,64 @@
+/// @file precise.h
+/// Where the explicit solver goes apart for networks in whose springs' lengths low words count: other kernels, and
+/// more that is packed of a web's nodes for its springs to read.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_PRECISE_H
+#define MSPRINGI_PRECISE_H
+
+#include "store/network.h"
+
+/// What sweeps rows of that kind, with or without forces from outside.
+static inline mspringi_row_fn mspringi_row_kernel(const mspring_network *network, mspringi_row_kind kind,
+                                                  bool forced) {
+    const mspringi_kernels *k = network->kernels;
+    const bool damped = network->parts > MSPRINGI_DAMPING;
+    switch (kind) {
+    case MSPRINGI_ROW_LATTICE:
+        return network->is_precise ? k->precise.lattice : k->lattice[damped][forced];
+    case MSPRINGI_ROW_CHAIN:
+        return network->is_precise ? k->precise.chain : k->chain[damped][forced];
+    default:
+        return network->is_precise ? k->precise.web : k->web[damped][forced];
+    }
+}
+
+static inline mspringi_herd_fn mspringi_herd_kernel(const mspring_network *network, bool forced) {
+    const mspringi_kernels *k = network->kernels;
+    return network->is_precise ? k->precise.herd : k->herd[network->parts > MSPRINGI_DAMPING][forced];
+}
+
+static inline mspringi_attached_fn mspringi_attached_kernel(const mspring_network *network) {
+    const mspringi_kernels *k = network->kernels;
+    return network->is_precise ? k->precise.attached : k->attached[network->parts > MSPRINGI_DAMPING];
+}
+
+/// Of each node four values are packed: x, y, vx and vy. Of a precise network these are x, y, low_x and low_y; with
+/// damping there is a second half, of vx, vy and two that nobody reads.
+static inline bool mspringi_packs_halves(const mspring_network *network) {
+    return network->is_precise && network->parts > MSPRINGI_DAMPING;
+}
+
+static inline uint32_t mspringi_packed_values(const mspring_network *network) {
+    return mspringi_packs_halves(network) ? 8 : 4;
+}
+
+/// From a node's first half to its second; 0 if there is none.
+static inline size_t mspringi_packed_distance(const mspring_network *network, const mspringi_web *web) {
+    return mspringi_packs_halves(network) ? mspringi_packed_half(web) : 0;
+}
+
+/// Pack what is in a slot.
+static inline void mspringi_pack_slot(const mspring_network *network, const mspringi_web *web, float *packed,
+                                      uint32_t slot) {
+    const mspringi_state *s = &network->state;
+    float *half = packed + mspringi_packed_distance(network, web);
+    half[0] = s->vx[slot];
+    half[1] = s->vy[slot];
+    packed[2] = network->is_precise ? s->low_x[slot] : s->vx[slot];
+    packed[3] = network->is_precise ? s->low_y[slot] : s->vy[slot];
+    packed[0] = s->x[slot];
+    packed[1] = s->y[slot];
+}
+
+#endif

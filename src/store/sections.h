@@ -1,0 +1,72 @@
+/// @file sections.h
+/// What snapshots hold: a section for each thing that the next step depends on.
+///
+/// Whoever adds something of that kind, a solver with a history for instance, adds a section for it to the list in
+/// snapshot.c. What follows from other things (springs' values in N/m from relative ones, say) needs none.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_SNAPSHOT_SECTIONS_H
+#define MSPRINGI_SNAPSHOT_SECTIONS_H
+
+#include "store/format.h"
+#include "store/network.h"
+
+typedef struct mspringi_section {
+    char tag[5];      ///< 4 letters
+    const char *name; ///< what is in it, for messages
+    bool parameters;  ///< only edits change it: left out of MSPRING_SNAPSHOT_FRAME
+
+    /// Bytes, 0 if the network has none of it: then there is no such section.
+    size_t (*size)(const mspring_network *network);
+    void (*save)(const mspring_network *network, mspringi_writer *to);
+
+    /// Refuse what a network must not hold, and allocate what load() needs. A section that is not in the snapshot
+    /// has size 0. Must not change what a step does.
+    mspring_result (*check)(mspring_network *network, const uint8_t *from, size_t size);
+    /// Put it into force; after check(). Size 0: the network is to have none of it.
+    void (*load)(mspring_network *network, const uint8_t *from, size_t size);
+} mspringi_section;
+
+// In state.c.
+extern const mspringi_section mspringi_section_settings;
+extern const mspringi_section mspringi_section_motion;
+extern const mspringi_section mspringi_section_masses;
+extern const mspringi_section mspringi_section_forces;
+
+// In growth.c.
+extern const mspringi_section mspringi_section_growth;
+
+// In sleep.c.
+extern const mspringi_section mspringi_section_sleep;
+
+// In guard.c.
+extern const mspringi_section mspringi_section_guard;
+
+// In solver.c.
+extern const mspringi_section mspringi_section_precision;
+extern const mspringi_section mspringi_section_implicit;
+
+// In springs.c.
+extern const mspringi_section mspringi_section_broken;
+extern const mspringi_section mspringi_section_values;
+extern const mspringi_section mspringi_section_break_strains;
+extern const mspringi_section mspringi_section_stress_strains;
+extern const mspringi_section mspringi_section_stressed;
+extern const mspringi_section mspringi_section_ramps;
+
+/// Fail with what is wrong with a section.
+mspring_result mspringi_section_fail(mspring_network *network, const mspringi_section *section, const char *format,
+                                     ...) MSPRINGI_PRINTF(3, 4);
+
+/// Refuse another size than the expected one.
+mspring_result mspringi_section_check_size(mspring_network *network, const mspringi_section *section, size_t size,
+                                           size_t expected);
+
+/// Value number index of a section's array.
+static inline float mspringi_float_at(const uint8_t *from, size_t index) {
+    float value;
+    mspringi_get(from + index * sizeof value, &value, 1, sizeof value);
+    return value;
+}
+
+#endif

@@ -1,0 +1,31 @@
+/// @file selection.h
+/// The particles or springs that an edit is about: a range of ids, or a list of them.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_SELECTION_H
+#define MSPRINGI_SELECTION_H
+
+#include "store/network.h"
+
+/// What ids are of.
+typedef enum mspringi_kind { MSPRINGI_PARTICLES, MSPRINGI_SPRINGS } mspringi_kind;
+
+typedef struct mspringi_selection {
+    const mspring_id *list; ///< [count], or NULL for first, first + 1 ...
+    mspring_id first;
+    uint32_t count;
+} mspringi_selection;
+
+static inline mspring_id mspringi_selected(const mspringi_selection *selection, uint32_t i) {
+    return selection->list ? selection->list[i] : selection->first + i;
+}
+
+/// Check that an edit may be made now, that all it names exists, and that its values (two arrays of them, or one
+/// twice) are there. A range may have removed ids in it, which the edit is to leave out.
+mspring_result mspringi_select_range(mspring_network *network, mspringi_kind kind, mspring_id first, uint32_t count,
+                                     const void *values, const void *more, mspringi_selection *selection);
+mspring_result mspringi_select_list(mspring_network *network, mspringi_kind kind, const mspring_id *list,
+                                    uint32_t count, const void *values, const void *more,
+                                    mspringi_selection *selection);
+
+#endif

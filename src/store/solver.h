@@ -1,0 +1,135 @@
+/// @file solver.h
+/// What a solver is to the rest of the library: a table of operations, some properties, and an object of its own.
+///
+/// A network has the solver that the host chose, and perhaps a fallback for steps which that one cannot take; a
+/// step chooses between them (step.c). To add one: its table in its own folder, and a line in solvers.def.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_SOLVER_H
+#define MSPRINGI_SOLVER_H
+
+#include "base/memory.h"
+#include "kernels/kernels.h"
+#include "layout/topology.h"
+
+struct mspringi_writer;
+typedef struct mspringi_solver_ops mspringi_solver_ops;
+
+/// Two floats per slot, x and then y, in one block of memory.
+typedef struct mspringi_field {
+    float *x, *y;
+} mspringi_field;
+
+typedef struct mspringi_solver {
+    const mspringi_solver_ops *ops; ///< NULL: there is no such solver
+    void *object;                   ///< NULL if it keeps nothing
+} mspringi_solver;
+
+/// One try at a step. It travels through the step's stages; what the network says of substeps is a setting.
+typedef struct mspringi_attempt {
+    double dt; ///< s
+    float h;   ///< length of a substep, s
+    uint32_t substeps;
+    const mspringi_solver *solver; ///< the one that runs, which may be the fallback
+    const struct mspringi_stages *stages;
+    float relative_h; ///< substep that relative springs were derived for before, s
+} mspringi_attempt;
+
+/// What an object was made for: masses, rest lengths and springs of that time, which edits do not change.
+typedef struct mspringi_solver_basis {
+    double scale;
+    float turn_inertia;
+    uint32_t tile_size;
+} mspringi_solver_basis;
+
+/// Operations that a solver does not need are NULL, unless it says otherwise.
+struct mspringi_solver_ops {
+    bool has_border;     ///< its substeps may be too long: the guard looks
+    bool picks_substeps; ///< the library may choose their number (MSPRING_SUBSTEPS_AUTO)
+    bool takes_one;      ///< as a fallback it takes a step in one substep
+    bool skips_sleepers; ///< leaves alone blocks in which nothing is to be swept
+    bool lags;           ///< velocities are those of half a substep before the positions, as of symplectic Euler
+    bool has_herds;      ///< sweeps small trees in herds
+    bool can_add;        ///< springs may be added
+
+    // Life. create: for a network that is otherwise complete; on failure there is nothing to free. fits: whether it
+    // can go on with this definition; then adjust is all there is to do. relocate: lead pointers of a copy into the
+    // copy of the network. reserve: what the workers need that there are now.
+    mspring_result (*create)(mspring_network *network, const mspring_solver_def *def, void **object);
+    bool (*fits)(const void *object, const mspring_solver_def *def);
+    void (*adjust)(void *object, const mspring_solver_def *def);
+    void (*destroy)(void *object, mspringi_memory *memory);
+    void (*relocate)(void *object, const mspring_network *network, const mspringi_memory *from,
+                     const mspringi_memory *to);
+    mspring_result (*reserve)(void *object, mspring_network *network);
+
+    // Another layout of the same network, in two halves. get_def: as it was asked for. remake: one of that kind,
+    // from what the new layout and its springs are, which may be on another thread; tile_size is for one whose
+    // tiles go by plan, 0: by that of the new layout. take_over: what it knows of the motion.
+    void (*get_def)(const void *object, mspring_solver_def *def);
+    mspring_result (*remake)(mspring_network *to, const mspring_solver_def *def, uint32_t tile_size, void **object);
+    void (*take_over)(const mspring_network *to, void *object, const mspring_network *from, const void *had);
+    mspringi_solver_basis (*get_basis)(const void *object);
+    void (*set_basis)(void *object, const mspring_network *network, const mspringi_solver_basis *basis);
+
+    // A step. begin: before forces are known. whole: take all substeps at once, with the copy into the backup and
+    // the sight of what comes out; false: it cannot, and has done nothing. substeps (never NULL): count of them,
+    // with the same forces from outside (x NULL: none), and with the floor. end: after the last.
+    void (*begin)(mspring_network *network);
+    bool (*whole)(mspring_network *network, const mspringi_attempt *attempt, mspringi_field base,
+                  mspringi_sight *sight);
+    void (*substeps)(mspring_network *network, void *object, float h, mspringi_field base, uint32_t count);
+    void (*end)(mspring_network *network);
+
+    // Undo. keep: before a step. restore: to what was kept. forget: a new motion begins.
+    void (*keep)(void *object);
+    void (*restore)(mspring_network *network, void *object);
+    void (*forget)(void *object);
+
+    // Edits. clear_slot: the particle falls freely. rest_slot: it has come to rest. clear_spring: no spring lies in
+    // the place any more. new_floor: it is another one, or none. is_alone (never NULL): whether no spring pulls at
+    // a particle; it may say so of those of the loose row alone, unless has_alone.
+    void (*clear_slot)(const mspring_network *network, void *object, uint32_t slot);
+    void (*rest_slot)(const mspring_network *network, void *object, size_t slot);
+    void (*clear_spring)(const mspring_network *network, void *object, mspringi_place place);
+    void (*new_floor)(void *object);
+    bool (*is_alone)(const mspring_network *network, const void *object, size_t slot);
+    bool (*has_alone)(const void *object);
+
+    // describe: what a plan says of it. The others are those of a snapshot's section (store/sections.h).
+    void (*describe)(const void *object, mspring_plan *plan);
+    size_t (*size)(const mspring_network *network, const void *object);
+    void (*save)(const mspring_network *network, const void *object, struct mspringi_writer *to);
+    mspring_result (*check)(mspring_network *network, const void *object, const uint8_t *from, size_t size);
+    void (*load)(mspring_network *network, void *object, const uint8_t *from, size_t size);
+};
+
+#define SOLVER(name, table) extern const mspringi_solver_ops table;
+#include "store/solvers.def"
+#undef SOLVER
+
+/// The table of the solver that the host names, or NULL: it is none.
+const mspringi_solver_ops *mspringi_solver_ops_of(mspring_solver name);
+
+/// Strain rates clamped (solvers/clamped/clamp.c). It can only be a fallback.
+extern const mspringi_solver mspringi_clamped;
+
+/// Make the solver that takes steps for the explicit one, if it is not there, with tiles of that size (0: by plan).
+/// It keeps nothing from step to step. In implicit.c.
+mspring_result mspringi_fallback_reserve(mspring_network *network, uint32_t tile_size);
+
+void mspringi_solver_destroy(mspringi_solver *solver, mspringi_memory *memory);
+void mspringi_solver_forget(const mspringi_solver *solver);
+mspringi_solver_basis mspringi_solver_get_basis(const mspringi_solver *solver);
+
+/// Let a solver take over what another one knows, which has the same settings and another layout.
+void mspringi_solver_take_over(const mspring_network *to, const mspringi_solver *made, const mspring_network *from,
+                               const mspringi_solver *had);
+
+/// What both solvers of a network are told, the chosen one and the fallback.
+void mspringi_solvers_clear_slot(const mspring_network *network, uint32_t slot);
+void mspringi_solvers_clear_spring(const mspring_network *network, mspringi_place place);
+mspring_result mspringi_solvers_reserve(mspring_network *network);
+void mspringi_solvers_relocate(mspring_network *network, const mspringi_memory *from, const mspringi_memory *to);
+
+#endif

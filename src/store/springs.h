@@ -1,0 +1,70 @@
+/// @file springs.h
+/// What springs are like, wherever they lie.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_SPRINGS_H
+#define MSPRINGI_SPRINGS_H
+
+#include "store/fractions.h"
+
+/// What a spring is like, and the slots that it joins.
+typedef struct mspringi_spring_values {
+    float rest_length, stiffness, damping;
+    uint32_t base, tip;
+} mspringi_spring_values;
+mspringi_spring_values mspringi_place_get(const mspring_network *network, mspringi_place place);
+mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspring_id spring);
+/// Set stiffness and damping in force, wherever the spring has records.
+void mspringi_place_set(mspring_network *network, mspringi_place place, float stiffness, float damping);
+
+/// Give the spring in a place of another network what the one in a place of this one has.
+void mspringi_place_copy(const mspring_network *from, mspringi_place had, mspring_network *to,
+                         mspringi_place place);
+
+/// Let mspring_network_get_extents() know which end of a spring has the lower id, if it has been called before.
+void mspringi_extents_turn(mspring_network *network, mspring_id spring);
+
+/// (length - rest_length) / rest_length, now; of a broken spring 0.
+float mspringi_spring_strain(const mspring_network *network, mspring_id spring);
+
+static inline bool mspringi_place_is_live(const mspring_network *network, mspringi_place place) {
+    return network->live[place / MSPRINGI_WIDTH] >> place % MSPRINGI_WIDTH & 1;
+}
+
+static inline bool mspringi_spring_is_live(const mspring_network *network, mspring_id spring) {
+    return mspringi_place_is_live(network, mspringi_place_of(&network->topology, spring));
+}
+
+static inline bool mspringi_place_is_stressed(const mspring_network *network, mspringi_place place) {
+    const uint16_t *stressed = network->strain.stressed;
+    return stressed && stressed[place / MSPRINGI_WIDTH] >> place % MSPRINGI_WIDTH & 1;
+}
+
+static inline bool mspringi_spring_is_relative(const mspring_network *network, mspring_id spring) {
+    return network->fractions.values && mspringi_fractions_of(&network->fractions, spring).stiffness >= 0.0f;
+}
+
+/// By particle, the masses that relative springs go by.
+static inline const float *mspringi_spring_masses(const mspring_network *network) {
+    return network->spring_mass ? network->spring_mass : network->mass;
+}
+
+/// Stiffness and damping that a spring, which lies in this place, has while it is not broken; fractions if it is
+/// relative.
+mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, mspring_id spring,
+                                              mspringi_place place);
+/// Set these, of a relative spring after mspringi_fractions_separate() only, unless it is what it has. What a
+/// broken spring exerts stays 0.
+void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, mspringi_place place,
+                                 mspringi_relative nominal);
+
+/// Set the rest length in force: a ramp of the spring goes on from its own. After mspringi_rests_separate() only,
+/// unless it is what the spring has.
+void mspringi_place_set_rest_length(mspring_network *network, mspringi_place place, float rest_length);
+
+/// Derive stiffness and damping of the relative springs for a substep; 0: as before the first one, both 0.
+void mspringi_derive_relative(mspring_network *network, float h);
+/// Derive them again, with other masses.
+void mspringi_renew_relative(mspring_network *network);
+
+#endif

@@ -1,0 +1,76 @@
+/// @file stages.h
+/// What happens in a step besides the solver: a table of functions for each stage, one for each place in a step
+/// that it acts in. A step goes through the stages that its network uses; what a network does not use costs one
+/// look.
+///
+///   before_step      once, before the guard: values for this substep
+///   forces           add forces from outside, the same in all substeps; forces.base has been reserved for that
+///   forces_known     once, with those of the first substep
+///   before_substep   each substep, or each free group of them; returns the forces that act in them
+///   after_substep    likewise
+///   after_step       once the step is taken, and will not be undone
+///   take_back        the substeps were undone, and the state is that of before: in the order of the stages
+///   undo             what before_step did is to be undone: in reverse order
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_STAGES_H
+#define MSPRINGI_STAGES_H
+
+#include "store/network.h"
+
+/// Places where a stage does nothing are NULL.
+typedef struct mspringi_stage {
+    bool (*is_used)(const mspring_network *network); ///< NULL: always
+    bool writes_state; ///< before or between substeps: the backup is made before its forces are asked for
+
+    void (*before_step)(mspring_network *network, const mspringi_attempt *attempt);
+    void (*forces)(mspring_network *network, const mspringi_attempt *attempt, mspringi_field field);
+    void (*forces_known)(mspring_network *network, mspringi_field force);
+    uint32_t (*free_substeps)(const mspring_network *network, const mspringi_attempt *attempt,
+                              uint32_t substep); ///< that it lets follow each other; NULL: one
+    mspringi_field (*before_substep)(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
+                                     mspringi_field base);
+    void (*after_substep)(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep);
+    void (*after_step)(mspring_network *network, double dt);
+    void (*take_back)(mspring_network *network);
+    void (*undo)(mspring_network *network, const mspringi_attempt *attempt);
+} mspringi_stage;
+
+#define STAGE(table) extern const mspringi_stage table;
+#include "store/stages.def"
+#undef STAGE
+
+enum {
+#define STAGE(table) MSPRINGI_NUMBER_OF_##table,
+#include "store/stages.def"
+#undef STAGE
+    MSPRINGI_STAGES
+};
+
+/// Those that a step uses.
+typedef struct mspringi_stages {
+    const mspringi_stage *used[MSPRINGI_STAGES];
+    size_t count;
+    bool give_forces;     ///< some stage does
+    bool cut_substeps;    ///< substeps cannot be taken all at once
+    bool follow_substeps; ///< some stage acts after substeps
+} mspringi_stages;
+
+mspringi_stages mspringi_stages_of(const mspring_network *network);
+
+/// The forces that all substeps have in common: what the host holds, with what stages add; x NULL: none.
+mspringi_field mspringi_stages_forces(mspring_network *network, const mspringi_attempt *attempt);
+
+/// Each place in turn.
+void mspringi_stages_before_step(mspring_network *network, const mspringi_attempt *attempt);
+void mspringi_stages_forces_known(mspring_network *network, const mspringi_attempt *attempt, mspringi_field force);
+uint32_t mspringi_stages_free_substeps(const mspring_network *network, const mspringi_attempt *attempt,
+                                       uint32_t substep);
+mspringi_field mspringi_stages_before_substep(mspring_network *network, const mspringi_attempt *attempt,
+                                              uint32_t substep, mspringi_field base);
+void mspringi_stages_after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep);
+void mspringi_stages_after_step(mspring_network *network, const mspringi_stages *stages, double dt);
+void mspringi_stages_take_back(mspring_network *network, const mspringi_attempt *attempt);
+void mspringi_stages_undo(mspring_network *network, const mspringi_attempt *attempt);
+
+#endif
