@@ -156,7 +156,7 @@ static void bounce(const mspringi_floor *floor, const mspringi_ground *g, block 
 
 static void fly(const mspringi_floor *floor, const mspringi_ground *g, block *b, uint32_t i) {
     const mspringi_turning how = {
-        .friction = floor->friction, .restitution = floor->restitution, .h = g->h, .lag = 0.5 * g->h};
+        .friction = floor->friction, .restitution = floor->restitution, .h = g->h, .skew = 0.5 * g->h};
     mspringi_flyer p = mspringi_flyer_from((double)b->x[i], (double)b->y[i], (double)b->vx[i], (double)b->vy[i],
                                            (double)b->from_vx[i], (double)b->from_vy[i], g->h);
     double vx, vy;

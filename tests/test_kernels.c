@@ -63,7 +63,7 @@ typedef struct arena {
     _Alignas(64) float kept[6 * STRIDE];
     uint32_t after_kept[GUARD];
     mspringi_watch watch;
-    mspringi_sight sight; ///< of the watch
+    mspringi_extrema extrema; ///< of the watch
 } arena;
 
 static arena *arena_new(void) {
@@ -135,7 +135,7 @@ static void fill(arena *a, const setup *s) {
         a->kept[i] = is_empty || s->keeps ? 0 : random_float(&seed, -5, 5);
     }
     a->watch = (mspringi_watch){{0}, {0}, {0}};
-    a->sight = (mspringi_sight){0, 0, 0};
+    a->extrema = (mspringi_extrema){0, 0, 0};
     for (uint32_t i = 0; i < CARRY; i++) {
         // Only where there are particles: the row below has no spring to an empty slot.
         bool pulled = s->from_below && i >= s->idle && i < s->idle + s->live;
@@ -168,7 +168,7 @@ static void fill(arena *a, const setup *s) {
     }
 }
 
-static void run(arena *a, const setup *s, mspringi_row_fn kernel, mspringi_sight_fn sight_of) {
+static void run(arena *a, const setup *s, mspringi_row_fn kernel, mspringi_extrema_fn extrema_of) {
     const mspringi_sweep sweep = {
         .x = a->x,
         .y = a->y,
@@ -209,36 +209,36 @@ static void run(arena *a, const setup *s, mspringi_row_fn kernel, mspringi_sight
         .carry = -FIRST * W,
     }};
     uint32_t count = s->blocks > 0;
-    const uint32_t seam = (FIRST + s->split) * W;
-    if (s->split > 0 && spans[0].first_slot < seam && spans[0].end_slot > seam) {
+    const uint32_t halo = (FIRST + s->split) * W;
+    if (s->split > 0 && spans[0].first_slot < halo && spans[0].end_slot > halo) {
         spans[1] = spans[0];
-        spans[0].end_slot = spans[1].first_slot = seam;
+        spans[0].end_slot = spans[1].first_slot = halo;
         spans[1].first_record = s->split;
         count = 2;
     }
     kernel(&sweep, spans, count);
     // Which lane has seen what is a level's own business.
-    a->sight = sight_of(&a->watch);
+    a->extrema = extrema_of(&a->watch);
     a->watch = (mspringi_watch){{0}, {0}, {0}};
 }
 
 /// What a watch has to see of a row that has been moved.
-static mspringi_sight expected_sight(const arena *a, const setup *s) {
-    mspringi_sight sight = {0, 0, 0};
+static mspringi_extrema expected_extrema(const arena *a, const setup *s) {
+    mspringi_extrema extrema = {0, 0, 0};
     for (uint32_t i = FIRST * W; i < (FIRST + s->blocks) * W; i++) {
         if (s->watches_place) {
-            sight.place = fmaxf(sight.place, fmaxf(fabsf(a->x[i]), fabsf(a->y[i])));
+            extrema.place = fmaxf(extrema.place, fmaxf(fabsf(a->x[i]), fabsf(a->y[i])));
         }
         if (s->watches_speed) {
-            sight.speed = fmaxf(sight.speed, fmaxf(fabsf(a->vx[i]), fabsf(a->vy[i])));
+            extrema.speed = fmaxf(extrema.speed, fmaxf(fabsf(a->vx[i]), fabsf(a->vy[i])));
         }
         if (s->watches_change) {
             const float *before = a->kept + 2 * (size_t)STRIDE + i;
-            sight.change = fmaxf(sight.change, fabsf(a->vx[i] - before[0]));
-            sight.change = fmaxf(sight.change, fabsf(a->vy[i] - before[STRIDE]));
+            extrema.change = fmaxf(extrema.change, fabsf(a->vx[i] - before[0]));
+            extrema.change = fmaxf(extrema.change, fabsf(a->vy[i] - before[STRIDE]));
         }
     }
-    return sight;
+    return extrema;
 }
 
 /// A force of zero may be +0 or -0 where no spring pulls: the step's result is the same.
@@ -253,8 +253,8 @@ static void compare(const setup *s, mspringi_row_fn kernel, mspringi_row_fn scal
     fill(mine, s);
     fill(reference, s);
     fill(before, s);
-    run(mine, s, kernel, kernels->sight_of);
-    run(reference, s, scalar, mspringi_kernels_scalar.sight_of);
+    run(mine, s, kernel, kernels->extrema_of);
+    run(reference, s, scalar, mspringi_kernels_scalar.extrema_of);
     check_canaries(mine);
     check_canaries(reference);
     drop_signs_of_zero(mine->carry_x, CARRY);
@@ -273,9 +273,9 @@ static void compare(const setup *s, mspringi_row_fn kernel, mspringi_row_fn scal
             offsetof(arena, vx), offsetof(arena, carry_x));
         fail();
     }
-    const mspringi_sight expected = expected_sight(mine, s);
+    const mspringi_extrema expected = expected_extrema(mine, s);
     if (kind != MSPRINGI_ROW_LOOSE) {
-        assert_memory_equal(&mine->sight, &expected, sizeof expected);
+        assert_memory_equal(&mine->extrema, &expected, sizeof expected);
         const float *found[] = {before->x, before->y, before->vx, before->vy};
         for (uint32_t i = 0; s->keeps && i < 4 * s->live; i++) {
             const uint32_t slot = FIRST * W + s->idle + i / 4;

@@ -51,7 +51,7 @@ static void check_same(const laid_out *a, const laid_out *b) {
     assert_int_equal(s->span_count, t->span_count);
     assert_int_equal(s->row_count, t->row_count);
     assert_int_equal(s->strip_count, t->strip_count);
-    assert_int_equal(s->lag, t->lag);
+    assert_int_equal(s->skew, t->skew);
     assert_int_equal(s->empty_run_count, t->empty_run_count);
     assert_memory_equal(s->place_of_spring, t->place_of_spring, s->spring_count * sizeof *s->place_of_spring);
     assert_memory_equal(s->slot_of_particle, t->slot_of_particle,

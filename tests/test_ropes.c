@@ -165,7 +165,7 @@ static uint32_t strip_of(const mspringi_topology *t, uint32_t slot) {
     return MSPRING_NONE;
 }
 
-static void ropes_stand_within_the_lag(void **state) {
+static void ropes_stand_within_the_skew(void **state) {
     (void)state;
     rigging r = rig(0, 5);
     const fate f = {.workers = 1};
@@ -174,8 +174,8 @@ static void ropes_stand_within_the_lag(void **state) {
     uint32_t upright = 0;
     for (uint32_t i = 0; i < t->woven_count; i++) {
         const uint32_t a = strip_of(t, t->leftover_a[i]), b = strip_of(t, t->leftover_b[i]);
-        assert_true(a < t->wave_strips && b < t->wave_strips);
-        assert_true((a > b ? a - b : b - a) <= t->lag);
+        assert_true(a < t->wavefront_strips && b < t->wavefront_strips);
+        assert_true((a > b ? a - b : b - a) <= t->skew);
         if (t->web.entry[2 * i] == t->web.entry[2 * i + 1]) {
             assert_int_equal(a, b);
             upright++;
@@ -221,7 +221,7 @@ static void standing_ropes_sleep_as_few_do(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ropes_stand_within_the_lag),
+        cmocka_unit_test(ropes_stand_within_the_skew),
         cmocka_unit_test(standing_ropes_move_as_few_do),
         cmocka_unit_test(standing_ropes_sleep_as_few_do),
     };

@@ -53,7 +53,7 @@ static uint64_t run(const recipe *made, const way *w, uint32_t worker_count) {
     mspring_network_def def = support_def(-9.8f, ROUNDS(w->substeps));
     def.worker_count = worker_count;
     mspring_network *network = recipe_network(made, &def);
-    assert_int_equal(network->seams.count > 0, worker_count > 1);
+    assert_int_equal(network->halos.count > 0, worker_count > 1);
     if (w->period > 0) {
         mspring_hook_def hooked;
         check_ok(mspring_hook_def_init(&hooked, sizeof hooked));
@@ -133,7 +133,7 @@ static uint64_t run_sleepers(uint32_t worker_count) {
     def.sleep_time = 0.02f;
     mspring_network *network = recipe_network(&made, &def);
     recipe_free(&made);
-    assert_int_equal(network->seams.count > 0, worker_count > 1);
+    assert_int_equal(network->halos.count > 0, worker_count > 1);
     support_kick(network, 30 * 60 + 30, 3);
     support_kick(network, 2 * 3600 + 59 * 60 + 7, 3);
     for (int step = 0; step < 8; step++) {
@@ -157,12 +157,12 @@ enum { WIDE = 96, STILL = 60, ROWS = 60, NOTCH = 32, COUNT = WIDE * ROWS };
 /// Enough for networks of that size to be worth more than one worker.
 enum { SUBSTEPS_BESIDE_NOTCH = 14, SUBSTEPS_OF_QUILT = 40 };
 
-/// Whether workers have met: what they hand on has been in the seams.
-static bool has_used_seams(const mspring_network *network) {
-    const mspringi_seams *seams = &network->seams;
-    const size_t count = (size_t)seams->count * 4 * (3 + seams->substeps) * seams->segment;
+/// Whether workers have met: what they hand on has been in the halos.
+static bool has_used_halos(const mspring_network *network) {
+    const mspringi_halos *halos = &network->halos;
+    const size_t count = (size_t)halos->count * 4 * (3 + halos->substeps) * halos->segment;
     for (size_t i = 0; i < count; i++)
-        if (seams->values[i] != 0)
+        if (halos->values[i] != 0)
             return true;
     return false;
 }
@@ -212,7 +212,7 @@ static bool run_beside_sleeper(int depth, float sleep_speed, uint32_t worker_cou
     support_steps(network, 8, 0.01);
     assert_true(support_sleeps(network, count) == (sleep_speed > 0) && !support_sleeps(network, 0));
     check_ok(mspring_network_get_positions(network, 0, count, x, y));
-    const bool shared = has_used_seams(network);
+    const bool shared = has_used_halos(network);
     mspring_network_destroy(network);
     return shared;
 }
@@ -286,7 +286,7 @@ static uint64_t run_quilt(uint64_t seed, int mover, float sleep_speed, uint32_t 
     for (p = 0; p < count; p++)
         support_kick(network, p, side_of[p] == mover ? 1 + (float)(p % 7) : 2e-3f * (float)(p % 3));
     support_steps(network, 5, 0.01);
-    *shared += has_used_seams(network);
+    *shared += has_used_halos(network);
     uint64_t hash = 0;
     for (p = 0; p < count; p++) {
         assert_int_equal(support_sleeps(network, p), sleep_speed > 0 && side_of[p] != mover);

@@ -291,11 +291,11 @@ static uint32_t spans_of(const setup *s, mspringi_span spans[3]) {
         .carry = -W,
     };
     spans[1] = spans[2] = spans[0];
-    const uint32_t seam = W + s->split * W;
-    if (s->split == 0 || spans[0].first_slot >= seam || spans[0].end_slot <= seam) {
+    const uint32_t halo = W + s->split * W;
+    if (s->split == 0 || spans[0].first_slot >= halo || spans[0].end_slot <= halo) {
         return s->blocks > 0;
     }
-    spans[0].end_slot = spans[1].first_slot = seam;
+    spans[0].end_slot = spans[1].first_slot = halo;
     spans[1].first_record = s->split;
     return 2;
 }
@@ -430,9 +430,9 @@ static void run_by_slot(arena *a, const setup *s, const mspringi_system_kernels 
         .turned = a->by_slot[SCALED_X],
         .first = a->by_slot[FIRST],
         .second = s->variant & 2 ? a->by_slot[SECOND] : NULL,
-        .force_share = 0.1f,
-        .velocity_share = -0.2f,
-        .turned_share = 0.9f,
+        .force_fraction = 0.1f,
+        .velocity_fraction = -0.2f,
+        .turned_fraction = 0.9f,
         .first_share = 0.3f,
         .second_share = 0.4f,
         .shift = -9,
@@ -640,8 +640,8 @@ static void fill_doubles(doubles *d, uint64_t seed) {
 static void add_one_by_one(const mspringi_edge_block *block, const float *factors, doubles *d) {
     for (uint32_t i = 0; i < W; i++) {
         const double pull_x = (double)factors[i], pull_y = (double)factors[W + i];
-        const double swing = (double)factors[2 * W + i];
-        const double spring[] = {swing + pull_x * pull_x, pull_x * pull_y, swing + pull_y * pull_y};
+        const double geometric = (double)factors[2 * W + i];
+        const double spring[] = {geometric + pull_x * pull_x, pull_x * pull_y, geometric + pull_y * pull_y};
         for (int part = 0; part < 3; part++) {
             d->edges[part * W + i] = -spring[part];
             if (block->lanes >> i & 1) {

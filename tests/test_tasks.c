@@ -25,11 +25,11 @@ typedef struct made {
     mspringi_tasks *tasks;
 } made;
 
-static made make(uint32_t worker_count, const mspring_tasks *lent) {
+static made make(uint32_t worker_count, const mspring_tasks *fallback_steps) {
     made out;
     memset(&out, 0, sizeof out);
     check_ok(mspringi_memory_init(&out.memory, NULL, &out.message));
-    check_ok(mspringi_tasks_create(worker_count, lent, &out.memory, &out.message, &out.tasks));
+    check_ok(mspringi_tasks_create(worker_count, fallback_steps, &out.memory, &out.message, &out.tasks));
     return out;
 }
 
@@ -47,9 +47,9 @@ static void with_all(void (*check)(mspringi_tasks *tasks, uint32_t worker_count)
         for (uint32_t h = 0; worker_counts[i] > 1 && h < HOST_COUNT; h++) {
             host hosts[HOST_COUNT];
             hosts_fill(hosts, worker_counts[i]);
-            made lent = make(1, &hosts[h].tasks);
-            check(lent.tasks, worker_counts[i]);
-            unmake(&lent);
+            made fallback_steps = make(1, &hosts[h].tasks);
+            check(fallback_steps.tasks, worker_counts[i]);
+            unmake(&fallback_steps);
         }
     }
 }
@@ -140,19 +140,19 @@ enum { ROWS = 120, PASSES = 5 };
 
 /// Several passes over rows, body b taking passes b, b + bodies ...: each is one row behind the one before, so that
 /// the first body waits for the last one, too. Row r of pass p is made of rows r and r + 1 of the pass before.
-typedef struct wave {
+typedef struct wavefront {
     mspringi_progress *progress;
     uint32_t bodies;
     uint32_t rows[ROWS + 1];
     bool slow; ///< one body sleeps now and then
-} wave;
+} wavefront;
 
 static uint32_t next_row(uint32_t row, uint32_t above) {
     return row * 1664525u + above * 22695477u + 1;
 }
 
-static void wave_body(void *argument, uint32_t index, uint32_t worker) {
-    wave *of = argument;
+static void wavefront_body(void *argument, uint32_t index, uint32_t worker) {
+    wavefront *of = argument;
     (void)worker;
     uint32_t done = 0;
     const uint32_t before = (index + of->bodies - 1) % of->bodies;
@@ -173,14 +173,14 @@ static void wave_body(void *argument, uint32_t index, uint32_t worker) {
     }
 }
 
-static void check_wave(mspringi_tasks *tasks, uint32_t worker_count) {
+static void check_wavefront(mspringi_tasks *tasks, uint32_t worker_count) {
     const uint32_t bodies = mspringi_tasks_concurrency(tasks);
     assert_in_range(bodies, 1, worker_count);
     if (bodies == 1) {
         return; // nothing that may wait
     }
     for (int slow = 0; slow < 2; slow++) {
-        wave of = {.progress = mspringi_tasks_progress(tasks), .bodies = bodies, .slow = slow};
+        wavefront of = {.progress = mspringi_tasks_progress(tasks), .bodies = bodies, .slow = slow};
         uint32_t expected[ROWS + 1];
         for (uint32_t row = 0; row <= ROWS; row++) {
             of.rows[row] = expected[row] = row * row;
@@ -190,14 +190,14 @@ static void check_wave(mspringi_tasks *tasks, uint32_t worker_count) {
                 expected[row] = next_row(expected[row], expected[row + 1]);
             }
         }
-        mspringi_tasks_run(tasks, bodies, wave_body, &of);
+        mspringi_tasks_run(tasks, bodies, wavefront_body, &of);
         assert_memory_equal(of.rows, expected, sizeof expected);
     }
 }
 
 static void bodies_may_wait_for_each_other(void **state) {
     (void)state;
-    with_all(check_wave);
+    with_all(check_wavefront);
 }
 
 static void counters_go_on_after_the_largest_number(void **state) {

@@ -42,8 +42,8 @@ typedef struct arena {
     uint32_t after_low_x[GUARD];
     float low_y[SLOTS];
     uint32_t after_low_y[GUARD];
-    float packed[2 * GROUPS * W * 4]; ///< in halves if precise
-    uint32_t after_packed[GUARD];
+    float gathered[2 * GROUPS * W * 4]; ///< in halves if precise
+    uint32_t after_gathered[GUARD];
     float attached_x[ATTACHED * W];
     uint32_t after_attached_x[GUARD];
     float attached_y[ATTACHED * W];
@@ -57,8 +57,8 @@ typedef struct arena {
 } arena;
 
 static void check_canaries(const arena *a) {
-    const uint32_t *guards[] = {a->front,       a->after_x,      a->after_y,          a->after_vx,
-                                a->after_vy,    a->after_packed, a->after_attached_x, a->after_attached_y,
+    const uint32_t *guards[] = {a->front,       a->after_x,        a->after_y,          a->after_vx,
+                                a->after_vy,    a->after_gathered, a->after_attached_x, a->after_attached_y,
                                 a->after_low_x, a->after_low_y};
     for (size_t i = 0; i < COUNT_OF(guards); i++) {
         for (size_t j = 0; j < GUARD; j++) {
@@ -117,8 +117,8 @@ static arena *arena_new(const setup *s) {
     arena *a = support_aligned_alloc(sizeof *a);
     uint64_t seed = s->seed;
     memset(a, 0, sizeof *a);
-    uint32_t *guards[] = {a->front,       a->after_x,      a->after_y,          a->after_vx,
-                          a->after_vy,    a->after_packed, a->after_attached_x, a->after_attached_y,
+    uint32_t *guards[] = {a->front,       a->after_x,        a->after_y,          a->after_vx,
+                          a->after_vy,    a->after_gathered, a->after_attached_x, a->after_attached_y,
                           a->after_low_x, a->after_low_y};
     for (size_t i = 0; i < COUNT_OF(guards); i++) {
         for (size_t j = 0; j < GUARD; j++) {
@@ -138,12 +138,12 @@ static arena *arena_new(const setup *s) {
     }
     // Own nodes are packed from their slots by the kernel; attached ones lie elsewhere.
     for (uint32_t i = s->own * W * 4; i < (s->own + s->attached) * W * 4; i++) {
-        a->packed[i] = random_float(&seed, -20, 20);
-        a->packed[i + (s->own + s->attached) * W * 4] = random_float(&seed, -5, 5);
+        a->gathered[i] = random_float(&seed, -20, 20);
+        a->gathered[i + (s->own + s->attached) * W * 4] = random_float(&seed, -5, 5);
     }
     for (uint32_t i = s->own * W * 4; s->precise && i < (s->own + s->attached) * W * 4; i += 4) {
-        a->packed[i + 2] = random_float(&seed, -1e-7, 1e-7);
-        a->packed[i + 3] = random_float(&seed, -1e-7, 1e-7);
+        a->gathered[i + 2] = random_float(&seed, -1e-7, 1e-7);
+        a->gathered[i + 3] = random_float(&seed, -1e-7, 1e-7);
     }
     fill_web(a, s, &seed);
     return a;
@@ -162,7 +162,7 @@ static mspringi_sweep sweep_of(arena *a, const setup *s) {
         .force_y = s->forced ? a->force_y : NULL,
         .web = &a->web,
         .web_springs = a->records,
-        .packed = a->packed,
+        .gathered = a->gathered,
         .parts = s->parts,
         .h = 0.01f,
         .decay = 0.99f,
@@ -176,17 +176,17 @@ static void run(arena *a, const setup *s, const mspringi_kernels *with) {
     const bool damped = s->parts > MSPRINGI_DAMPING;
     const mspringi_sweep sweep = sweep_of(a, s);
     const mspringi_span span = {.first_slot = FIRST * W, .end_slot = (FIRST + s->own) * W};
-    with->pack(&sweep, FIRST, s->own, a->packed);
+    with->pack(&sweep, FIRST, s->own, a->gathered);
     const mspringi_attached_fn attached = s->precise ? with->precise.attached : with->attached[damped];
     if (s->precise) {
         mspringi_sweep half = sweep;
         half.x = sweep.vx;
         half.y = sweep.vy;
-        with->pack(&half, FIRST, s->own, a->packed + mspringi_packed_half(&a->web));
+        with->pack(&half, FIRST, s->own, a->gathered + mspringi_gathered_half(&a->web));
         half = sweep;
         half.vx = sweep.low_x;
         half.vy = sweep.low_y;
-        with->pack(&half, FIRST, s->own, a->packed);
+        with->pack(&half, FIRST, s->own, a->gathered);
     }
     attached(&sweep, 0, a->web.attached_count, a->attached_x, a->attached_y);
     (s->precise ? with->precise.web : with->web[damped][s->forced])(&sweep, &span, 1);
@@ -231,16 +231,16 @@ static void pack_copies_blocks(void **state) {
         const setup s = {.own = OWN, .parts = 2, .seed = 5};
         arena *a = arena_new(&s);
         const mspringi_sweep sweep = sweep_of(a, &s);
-        for (size_t i = 0; i < COUNT_OF(a->packed); i++) {
-            a->packed[i] = -1;
+        for (size_t i = 0; i < COUNT_OF(a->gathered); i++) {
+            a->gathered[i] = -1;
         }
-        kernels->pack(&sweep, FIRST, blocks, a->packed);
+        kernels->pack(&sweep, FIRST, blocks, a->gathered);
         for (uint32_t i = 0; i < OWN * W; i++) {
-            const float *packed = a->packed + (size_t)4 * i;
+            const float *gathered = a->gathered + (size_t)4 * i;
             const size_t slot = FIRST * W + i;
             const float expected[4] = {a->x[slot], a->y[slot], a->vx[slot], a->vy[slot]},
                         none[4] = {-1, -1, -1, -1};
-            assert_memory_equal(packed, i < blocks * W ? expected : none, sizeof expected);
+            assert_memory_equal(gathered, i < blocks * W ? expected : none, sizeof expected);
         }
         check_canaries(a);
         support_aligned_free(a);

@@ -171,7 +171,7 @@ static double kept_of(const mspringi_flyer *start, const mspringi_flyer *end, do
 // / 2. Where it comes off the part, that must not be thrown back by the next one. (3 % of a particle's energy in
 // each, at restitution 1 and 0.25 s.)
 static bool leave_part(const mspringi_floor *floor, const mspringi_turning *how, double slop, mspringi_flyer *p) {
-    if (floor->heights.count == 0 || !(how->lag > 0.0))
+    if (floor->heights.count == 0 || !(how->skew > 0.0))
         return false;
     double x, y;
     find_end(p, &x, &y);
@@ -182,7 +182,7 @@ static bool leave_part(const mspringi_floor *floor, const mspringi_turning *how,
     const double across = line.nx * p->wx + line.ny * p->wy, along = line.nx * p->wy - line.ny * p->wx;
     const double pull = line.nx * p->ax + line.ny * p->ay;
     const bool lay = distance_from(&line, p->x, p->y) <= slop && across < 0.0 &&
-                     -across <= -how->lag * pull + MSPRINGI_LAST_PLACES * fabs(along);
+                     -across <= -how->skew * pull + MSPRINGI_LAST_PLACES * fabs(along);
     p->wx -= lay ? across * line.nx : 0.0;
     p->wy -= lay ? across * line.ny : 0.0;
     return lay;
@@ -196,8 +196,8 @@ static void let_go(const mspringi_floor *floor, const mspringi_turning *how, con
         !(mspringi_floor_distance(floor, end->x, end->y) > mspringi_floor_slop(end->x, end->y)))
         return;
     const double along = (start->ax * end->wx + start->ay * end->wy) / square;
-    *vx -= how->lag * (start->ax - along * end->wx);
-    *vy -= how->lag * (start->ay - along * end->wy);
+    *vx -= how->skew * (start->ax - along * end->wx);
+    *vy -= how->skew * (start->ay - along * end->wy);
 }
 
 bool mspringi_floor_fly(const mspringi_floor *floor, const mspringi_turning *how, mspringi_flyer *p, double *vx,
@@ -219,20 +219,20 @@ bool mspringi_floor_fly(const mspringi_floor *floor, const mspringi_turning *how
                             turns == MSPRINGI_MOST_TURNS, p);
     }
     find_end(p, &x, &y);
-    const double since = p->left - how->lag, keep = has_slid ? kept_of(&start, p, since, x, y) : 1.0;
+    const double since = p->left - how->skew, keep = has_slid ? kept_of(&start, p, since, x, y) : 1.0;
     *vx = keep * (p->wx + since * p->ax);
     *vy = keep * (p->wy + since * p->ay);
     p->x = x;
     p->y = y;
-    if (acts && how->lag > 0.0)
+    if (acts && how->skew > 0.0)
         let_go(floor, how, &start, p, vx, vy);
     if (acts && (keep == 0.0 || !(mspringi_floor_distance(floor, x, y) >= -mspringi_floor_slop(x, y)))) {
         // A corner that leads nowhere: it stays, and turns back as fast as it bounces.
         const double e = how->restitution > MSPRINGI_LEAST_RESTITUTION ? how->restitution : 0.0;
         p->x = start.x;
         p->y = start.y;
-        *vx = e > 0.0 ? -e * start.wx - how->lag * start.ax : 0.0;
-        *vy = e > 0.0 ? -e * start.wy - how->lag * start.ay : 0.0;
+        *vx = e > 0.0 ? -e * start.wx - how->skew * start.ax : 0.0;
+        *vy = e > 0.0 ? -e * start.wy - how->skew * start.ay : 0.0;
     }
     return acts;
 }

@@ -57,7 +57,7 @@ static void bounce_slot(const mspring_network *network, const mspringi_ground *g
 
 static void fly_slot(const mspring_network *network, const mspringi_ground *g, size_t slot) {
     const mspringi_turning how = {
-        .friction = g->friction, .restitution = g->restitution, .h = g->h, .lag = 0.5 * g->h};
+        .friction = g->friction, .restitution = g->restitution, .h = g->h, .skew = 0.5 * g->h};
     mspringi_flyer p =
         mspringi_flyer_from((double)g->x[slot], (double)g->y[slot], (double)g->vx[slot], (double)g->vy[slot],
                             (double)g->from_vx[slot], (double)g->from_vy[slot], g->h);
@@ -205,19 +205,19 @@ typedef struct gliding {
     double before, within, after; ///< what global damping leaves of velocities
 } gliding;
 
-// Velocities of symplectic Euler lag by half a substep and are damped within it. After implicit substeps damping
+// Velocities of symplectic Euler skew by half a substep and are damped within it. After implicit substeps damping
 // acts before and after a parabola (Strang, 1968), so that it takes energy whatever bounces there are: as a part of
 // the acceleration, found before a bounce, it gave some after it.
 static gliding glide(const mspring_network *network, float h) {
     const mspringi_floor *floor = network->floor;
-    const bool lags = network->running->ops->lags;
-    const double half = lags ? 1.0 : (double)mspringi_decay(network->global_damping, 0.5f * h);
+    const bool skews = network->running->ops->skews;
+    const double half = skews ? 1.0 : (double)mspringi_decay(network->global_damping, 0.5f * h);
     return (gliding){.how = {.friction = floor->friction,
                              .restitution = floor->restitution,
                              .h = (double)h,
-                             .lag = lags ? 0.5 * (double)h : 0.0},
+                             .skew = skews ? 0.5 * (double)h : 0.0},
                      .before = half,
-                     .within = lags ? (double)mspringi_decay(network->global_damping, h) : 1.0,
+                     .within = skews ? (double)mspringi_decay(network->global_damping, h) : 1.0,
                      .after = half};
 }
 
@@ -229,8 +229,8 @@ static void fly_free(const mspring_network *network, size_t slot, const gliding 
     mspringi_flyer p = {.left = h};
     p.x = (double)s->x[slot] + (double)s->low_x[slot];
     p.y = (double)s->y[slot] + (double)s->low_y[slot];
-    p.wx = g->how.lag > 0.0 ? 0.5 * (vx + to_vx) : vx;
-    p.wy = g->how.lag > 0.0 ? 0.5 * (vy + to_vy) : vy;
+    p.wx = g->how.skew > 0.0 ? 0.5 * (vx + to_vx) : vx;
+    p.wy = g->how.skew > 0.0 ? 0.5 * (vy + to_vy) : vy;
     p.ax = (to_vx - vx) / h;
     p.ay = (to_vy - vy) / h;
     s->vx[slot] = (float)(g->after * to_vx);

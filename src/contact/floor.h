@@ -135,7 +135,7 @@ bool mspringi_floor_bounce(const mspringi_floor *floor, double h, double from_vx
                            mspringi_going *p);
 
 /// Let a particle without springs fly past the surface for p->left seconds. Returns whether that did anything;
-/// (*vx, *vy) is the velocity of how->lag ago.
+/// (*vx, *vy) is the velocity of how->skew ago.
 bool mspringi_floor_fly(const mspringi_floor *floor, const mspringi_turning *how, mspringi_flyer *p, double *vx,
                         double *vy);
 

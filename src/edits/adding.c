@@ -81,7 +81,7 @@ static void put_particle(mspring_network *network, mspring_id p, const mspring_p
     network->state.vy[slot] = def->vy;
     mspringi_set_position(network, p, def->x, def->y);
     mspringi_fingerprint(network, MSPRINGI_EDIT_ADDED_PARTICLE, p);
-    network->parameter_print = mspringi_mix(network->parameter_print, def->flags);
+    network->parameter_fingerprint = mspringi_mix(network->parameter_fingerprint, def->flags);
 }
 
 static MSPRINGI_NOINLINE mspring_result add_particles(mspring_network *network, const mspring_particle_def *defs,

@@ -43,7 +43,7 @@ mspring_result mspring_network_restore_springs(mspring_network *network, const m
     if (result == MSPRING_OK && ramp_seconds > 0.0)
         result = mspringi_ramps_reserve(network, count);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
-        if (mspringi_spring_is_parked(network, springs[i]))
+        if (mspringi_spring_is_inactive(network, springs[i]))
             result = mspringi_expand(network);
     if (result != MSPRING_OK)
         return result;

@@ -50,9 +50,9 @@ static inline uint32_t bits_greater(vec a, vec b) {
 }
 // The last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {
-    const __m256i seam =
+    const __m256i halo =
         _mm256_castps_si256(_mm256_permute2f128_ps(a, before, 0x03)); // upper of before, lower of a
-    return _mm256_castsi256_ps(_mm256_alignr_epi8(_mm256_castps_si256(a), seam, 12));
+    return _mm256_castsi256_ps(_mm256_alignr_epi8(_mm256_castps_si256(a), halo, 12));
 }
 
 // Transpose the two 4 x 4 halves.
@@ -64,24 +64,24 @@ static inline void transpose(vec *a, vec *b, vec *c, vec *d) {
     *c = _mm256_shuffle_ps(ab_high, cd_high, _MM_SHUFFLE(1, 0, 1, 0));
     *d = _mm256_shuffle_ps(ab_high, cd_high, _MM_SHUFFLE(3, 2, 3, 2));
 }
-static inline vec load_two(const float *packed, uint32_t low, uint32_t high) {
-    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(packed + 4 * (size_t)low)),
-                                _mm_load_ps(packed + 4 * (size_t)high), 1);
+static inline vec load_two(const float *gathered, uint32_t low, uint32_t high) {
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(gathered + 4 * (size_t)low)),
+                                _mm_load_ps(gathered + 4 * (size_t)high), 1);
 }
 // Four values of each of LANES nodes, from [node][4].
-static inline void load_packed(const float *packed, const uint32_t *nodes, vec *x, vec *y, vec *vx, vec *vy) {
-    *x = load_two(packed, nodes[0], nodes[4]);
-    *y = load_two(packed, nodes[1], nodes[5]);
-    *vx = load_two(packed, nodes[2], nodes[6]);
-    *vy = load_two(packed, nodes[3], nodes[7]);
+static inline void load_gathered(const float *gathered, const uint32_t *nodes, vec *x, vec *y, vec *vx, vec *vy) {
+    *x = load_two(gathered, nodes[0], nodes[4]);
+    *y = load_two(gathered, nodes[1], nodes[5]);
+    *vx = load_two(gathered, nodes[2], nodes[6]);
+    *vy = load_two(gathered, nodes[3], nodes[7]);
     transpose(x, y, vx, vy);
 }
-static inline void store_packed(float *packed, vec x, vec y, vec vx, vec vy) {
+static inline void store_gathered(float *gathered, vec x, vec y, vec vx, vec vy) {
     transpose(&x, &y, &vx, &vy);
     const vec nodes[] = {x, y, vx, vy};
     for (int i = 0; i < 4; ++i) {
-        _mm_store_ps(packed + 4 * i, _mm256_castps256_ps128(nodes[i]));
-        _mm_store_ps(packed + 4 * i + 16, _mm256_extractf128_ps(nodes[i], 1));
+        _mm_store_ps(gathered + 4 * i, _mm256_castps256_ps128(nodes[i]));
+        _mm_store_ps(gathered + 4 * i + 16, _mm256_extractf128_ps(nodes[i], 1));
     }
 }
 

@@ -62,33 +62,33 @@ static inline void transpose(vec *a, vec *b, vec *c, vec *d) {
     *c = _mm512_shuffle_ps(ab_high, cd_high, _MM_SHUFFLE(1, 0, 1, 0));
     *d = _mm512_shuffle_ps(ab_high, cd_high, _MM_SHUFFLE(3, 2, 3, 2));
 }
-static inline __m256 load_two(const float *packed, uint32_t low, uint32_t high) {
-    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(packed + 4 * (size_t)low)),
-                                _mm_load_ps(packed + 4 * (size_t)high), 1);
+static inline __m256 load_two(const float *gathered, uint32_t low, uint32_t high) {
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(gathered + 4 * (size_t)low)),
+                                _mm_load_ps(gathered + 4 * (size_t)high), 1);
 }
 // The nodes first, first + 4, first + 8 and first + 12 of a list. (Two halves take 5 % less time than quarter after
 // quarter, since an insertion into 512 bits takes two turns.)
-static inline vec load_four(const float *packed, const uint32_t *nodes) {
-    const __m256 low = load_two(packed, nodes[0], nodes[4]), high = load_two(packed, nodes[8], nodes[12]);
+static inline vec load_four(const float *gathered, const uint32_t *nodes) {
+    const __m256 low = load_two(gathered, nodes[0], nodes[4]), high = load_two(gathered, nodes[8], nodes[12]);
     return _mm512_castpd_ps(
         _mm512_insertf64x4(_mm512_castps_pd(_mm512_castps256_ps512(low)), _mm256_castps_pd(high), 1));
 }
 // Four values of each of LANES nodes, from [node][4].
-static inline void load_packed(const float *packed, const uint32_t *nodes, vec *x, vec *y, vec *vx, vec *vy) {
-    *x = load_four(packed, nodes);
-    *y = load_four(packed, nodes + 1);
-    *vx = load_four(packed, nodes + 2);
-    *vy = load_four(packed, nodes + 3);
+static inline void load_gathered(const float *gathered, const uint32_t *nodes, vec *x, vec *y, vec *vx, vec *vy) {
+    *x = load_four(gathered, nodes);
+    *y = load_four(gathered, nodes + 1);
+    *vx = load_four(gathered, nodes + 2);
+    *vy = load_four(gathered, nodes + 3);
     transpose(x, y, vx, vy);
 }
-static inline void store_packed(float *packed, vec x, vec y, vec vx, vec vy) {
+static inline void store_gathered(float *gathered, vec x, vec y, vec vx, vec vy) {
     transpose(&x, &y, &vx, &vy);
     const vec nodes[] = {x, y, vx, vy};
     for (int i = 0; i < 4; ++i) {
-        _mm_store_ps(packed + 4 * i, _mm512_castps512_ps128(nodes[i]));
-        _mm_store_ps(packed + 4 * i + 16, _mm512_extractf32x4_ps(nodes[i], 1));
-        _mm_store_ps(packed + 4 * i + 32, _mm512_extractf32x4_ps(nodes[i], 2));
-        _mm_store_ps(packed + 4 * i + 48, _mm512_extractf32x4_ps(nodes[i], 3));
+        _mm_store_ps(gathered + 4 * i, _mm512_castps512_ps128(nodes[i]));
+        _mm_store_ps(gathered + 4 * i + 16, _mm512_extractf32x4_ps(nodes[i], 1));
+        _mm_store_ps(gathered + 4 * i + 32, _mm512_extractf32x4_ps(nodes[i], 2));
+        _mm_store_ps(gathered + 4 * i + 48, _mm512_extractf32x4_ps(nodes[i], 3));
     }
 }
 

@@ -21,9 +21,9 @@ typedef struct border_end {
 
 /// What LANES springs add: to bound by, three sums at both ends; of an image, a force on their tips, whose opposite
 /// is on their bases.
-typedef struct border_share {
+typedef struct border_fraction {
     vec sums[3];
-} border_share;
+} border_fraction;
 
 MSPRINGI_BORDER_INLINE border_end border_end_at(const mspringi_border *b, size_t slot, bool is_image) {
     border_end end = {load_unaligned(b->x + slot), load_unaligned(b->y + slot), load_unaligned(b->in[0] + slot),
@@ -34,26 +34,26 @@ MSPRINGI_BORDER_INLINE border_end border_end_at(const mspringi_border *b, size_t
 }
 
 // See stability/certificate.c. A spring that is pressed counts as if it were as long as at rest.
-MSPRINGI_BORDER_INLINE border_share border_bound(border_end base, border_end tip, vec nx, vec ny, vec along,
+MSPRINGI_BORDER_INLINE border_fraction border_bound(border_end base, border_end tip, vec nx, vec ny, vec along,
                                                  vec across, vec inverse) {
     const vec both = add(base.in_x, tip.in_x), half = mul(set(0.5f), both);
     const vec stretched = choose_positive(across, across, zero()), turned = mul(half, sub(along, stretched));
     const vec all = choose_positive(inverse, mul(half, add(along, stretched)), zero());
     const vec beside = mul(add(turned, turned), mul(nx, ny));
-    return (border_share){{all, mul(turned, sub(mul(nx, nx), mul(ny, ny))), beside}};
+    return (border_fraction){{all, mul(turned, sub(mul(nx, nx), mul(ny, ny))), beside}};
 }
 
 // What springs do against a displacement.
-MSPRINGI_BORDER_INLINE border_share border_pull(border_end base, border_end tip, vec nx, vec ny, vec along,
+MSPRINGI_BORDER_INLINE border_fraction border_pull(border_end base, border_end tip, vec nx, vec ny, vec along,
                                                 vec across) {
     const vec dx = sub(tip.in_x, base.in_x), dy = sub(tip.in_y, base.in_y);
     const vec pull = mul(along, add(mul(nx, dx), mul(ny, dy)));
     const vec shear = mul(across, sub(mul(ny, dx), mul(nx, dy)));
-    return (border_share){{add(mul(pull, nx), mul(shear, ny)), sub(mul(pull, ny), mul(shear, nx)), zero()}};
+    return (border_fraction){{add(mul(pull, nx), mul(shear, ny)), sub(mul(pull, ny), mul(shear, nx)), zero()}};
 }
 
 // record is where the springs' stiffness is, with their damping behind.
-MSPRINGI_BORDER_INLINE border_share share_of_springs(const mspringi_border *b, border_end base, border_end tip,
+MSPRINGI_BORDER_INLINE border_fraction share_of_springs(const mspringi_border *b, border_end base, border_end tip,
                                                      const float *rests, const float *record, bool damped,
                                                      bool is_image) {
     const vec dx = sub(tip.x, base.x), dy = sub(tip.y, base.y);
@@ -78,18 +78,18 @@ MSPRINGI_BORDER_INLINE void add_shares(const mspringi_border *b, size_t sum, siz
 // The springs of LANES slots of a lattice; before: what those of the slots before hand on to the right, and to the
 // right above.
 MSPRINGI_BORDER_INLINE void border_slots(const mspringi_border *b, size_t slot, size_t up, const float *rests,
-                                         const float *records, border_share before[2], bool damped, bool is_image) {
+                                         const float *records, border_fraction before[2], bool damped, bool is_image) {
     const size_t part = (size_t)(damped ? 2 : 1) * MSPRINGI_WIDTH;
     const border_end here = border_end_at(b, slot, is_image), next = border_end_at(b, slot + 1, is_image);
     const border_end above = border_end_at(b, up, is_image), above_next = border_end_at(b, up + 1, is_image);
-    const border_share east = share_of_springs(b, here, next, rests + MSPRINGI_EAST * MSPRINGI_WIDTH,
+    const border_fraction east = share_of_springs(b, here, next, rests + MSPRINGI_EAST * MSPRINGI_WIDTH,
                                                records + MSPRINGI_EAST * part, damped, is_image);
-    const border_share north = share_of_springs(b, here, above, rests + MSPRINGI_NORTH * MSPRINGI_WIDTH,
+    const border_fraction north = share_of_springs(b, here, above, rests + MSPRINGI_NORTH * MSPRINGI_WIDTH,
                                                 records + MSPRINGI_NORTH * part, damped, is_image);
-    const border_share north_east =
+    const border_fraction north_east =
         share_of_springs(b, here, above_next, rests + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH,
                          records + MSPRINGI_NORTH_EAST * part, damped, is_image);
-    const border_share south_east = share_of_springs(b, above, next, rests + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH,
+    const border_fraction south_east = share_of_springs(b, above, next, rests + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH,
                                                      records + MSPRINGI_SOUTH_EAST * part, damped, is_image);
     for (size_t sum = 0; sum < (is_image ? 2 : 3); ++sum) {
         const vec right = add(east.sums[sum], south_east.sums[sum]);
@@ -104,7 +104,7 @@ MSPRINGI_BORDER_INLINE void border_slots(const mspringi_border *b, size_t slot, 
 
 MSPRINGI_BORDER_INLINE void border_lattice(const mspringi_border *border, bool damped, bool is_image) {
     const mspringi_border copy = *border, *const b = &copy; // of its own, so that no store can change it
-    border_share before[2] = {{{zero(), zero(), zero()}}, {{zero(), zero(), zero()}}};
+    border_fraction before[2] = {{{zero(), zero(), zero()}}, {{zero(), zero(), zero()}}};
     for (size_t block = 0; block < b->lattice_blocks; ++block) {
         const size_t here = (b->lattice_first + block) * MSPRINGI_WIDTH;
         const size_t up = (size_t)b->up_of_block[block] * MSPRINGI_WIDTH;
@@ -120,11 +120,11 @@ MSPRINGI_BORDER_INLINE void border_lattice(const mspringi_border *border, bool d
 MSPRINGI_BORDER_INLINE void border_chain(const mspringi_border *border, bool damped, bool is_image) {
     const mspringi_border copy = *border, *const b = &copy;
     const size_t parts = damped ? 3 : 2;
-    border_share before = {{zero(), zero(), zero()}};
+    border_fraction before = {{zero(), zero(), zero()}};
     for (size_t i = 0; i < (size_t)b->chain_blocks * MSPRINGI_WIDTH; i += LANES) {
         const size_t slot = b->chain_first * MSPRINGI_WIDTH + i;
         const float *record = b->chain_springs + i / MSPRINGI_WIDTH * parts * MSPRINGI_WIDTH + i % MSPRINGI_WIDTH;
-        const border_share east =
+        const border_fraction east =
             share_of_springs(b, border_end_at(b, slot, is_image), border_end_at(b, slot + 1, is_image),
                              record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH,
                              record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, damped, is_image);

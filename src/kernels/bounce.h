@@ -124,8 +124,8 @@ static inline mspringi_flyer mspringi_flyer_from(double x, double y, double vx, 
 /// How it is turned.
 typedef struct mspringi_turning {
     double friction, restitution;
-    double h;   ///< of the substep, s
-    double lag; ///< by which a velocity that is stored is behind w: h / 2, or 0 after implicit substeps
+    double h;    ///< of the substep, s
+    double skew; ///< by which a velocity that is stored is behind w: h / 2, or 0 after implicit substeps
 } mspringi_turning;
 
 /// What rounding leaves across of a velocity along a surface.
@@ -166,7 +166,7 @@ static inline bool mspringi_turn_flyer(double nx, double ny, double offset, cons
     const double speed = nx * wx + ny * wy, along = nx * wy - ny * wx;
     const double pull = nx * p->ax + ny * p->ay, pull_along = nx * p->ay - ny * p->ax;
     const double inward = speed < 0.0 ? -speed : 0.0, pressing = pull < 0.0 ? -pull : 0.0;
-    const double up = how->restitution * inward, rest = left - how->lag;
+    const double up = how->restitution * inward, rest = left - how->skew;
     const bool lies = is_last | (up <= 0.5 * how->h * pressing + MSPRINGI_LAST_PLACES * fabs(along));
     const double borne = inward - rest * pull;
     const double given = lies ? (borne > 0.0 ? borne : 0.0) : up + inward;

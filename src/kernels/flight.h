@@ -148,11 +148,11 @@ static void begin_flown(const mspringi_ground *g, flying *b, parts_below *parts)
     leave_moved(g, parts, b->x, b->is_left);
 }
 
-static void find_flight_end(const flying *restrict b, double lag, block_end *restrict end) {
+static void find_flight_end(const flying *restrict b, double skew, block_end *restrict end) {
     find_flight_ends(b, end->x, end->y);
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
-        const double since = b->left[i] - lag;
+        const double since = b->left[i] - skew;
         end->vx[i] = b->wx[i] + since * b->ax[i];
         end->vy[i] = b->wy[i] + since * b->ay[i];
     }
@@ -163,7 +163,7 @@ static uint32_t fly_past(const mspringi_ground *g, size_t slot) {
     parts_below parts;
     block_end end;
     const mspringi_turning how = {
-        .friction = g->friction, .restitution = g->restitution, .h = g->h, .lag = 0.5 * g->h};
+        .friction = g->friction, .restitution = g->restitution, .h = g->h, .skew = 0.5 * g->h};
     find_held(g, slot, b.is_held);
     load_flying(g, slot, &b);
     if (g->height_count > 0)
@@ -174,7 +174,7 @@ static uint32_t fly_past(const mspringi_ground *g, size_t slot) {
         if (g->height_count > 0)
             leave_flown(g, &parts, &b);
     }
-    find_flight_end(&b, how.lag, &end);
+    find_flight_end(&b, how.skew, &end);
     if (g->line_count + (g->height_count > 0) > 1)
         leave_stuck(g, &parts, end.x, end.y, b.slop, b.is_left);
     const uint32_t left = find_moved(b.is_held, b.is_hit, b.is_left, end.is_moved);

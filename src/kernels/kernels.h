@@ -33,10 +33,10 @@ typedef struct mspringi_watch {
 } mspringi_watch;
 
 /// The same of all lanes.
-typedef struct mspringi_sight {
+typedef struct mspringi_extrema {
     float place, speed, change;
-} mspringi_sight;
-typedef mspringi_sight (*mspringi_sight_fn)(const mspringi_watch *watch);
+} mspringi_extrema;
+typedef mspringi_extrema (*mspringi_extrema_fn)(const mspringi_watch *watch);
 
 /// What a sweep works on: arrays by slot, and what is the same for all of them.
 typedef struct mspringi_sweep {
@@ -52,9 +52,9 @@ typedef struct mspringi_sweep {
     const float *chain_springs;       ///< records: [block][part][lane]
     const mspringi_web *web;
     const float *web_springs;       ///< records: [rung][part][lane]
-    const float *packed;            ///< [node][4] x, y, vx, vy of the web's nodes at the start of the substep; of
+    const float *gathered;          ///< [node][4] x, y, vx, vy of the web's nodes at the start of the substep; of
                                     ///< precise kernels x, y, low_x, low_y and, with damping, at
-                                    ///< mspringi_packed_half() vx and vy, with something behind
+                                    ///< mspringi_gathered_half() vx and vy, with something behind
     uint32_t parts;                 ///< parts in a record: 2 or, with damping, 3
     float h;                        ///< substep, s
     float decay;                    ///< what global damping leaves of a velocity
@@ -67,7 +67,7 @@ typedef struct mspringi_sweep {
 } mspringi_sweep;
 
 /// Floats that four values of each of a web's nodes take.
-static inline size_t mspringi_packed_half(const mspringi_web *web) {
+static inline size_t mspringi_gathered_half(const mspringi_web *web) {
     return (size_t)4 * web->group_count * MSPRINGI_WIDTH;
 }
 
@@ -116,7 +116,7 @@ typedef void (*mspringi_herd_fn)(const mspringi_sweep *sweep, const mspringi_her
 
 /// Copy position and velocity of block_count blocks of slots behind one another into packed.
 typedef void (*mspringi_pack_fn)(const mspringi_sweep *sweep, size_t first_block, size_t block_count,
-                                 float *packed);
+                                 float *gathered);
 
 /// Compute the forces of the web on the attached nodes first (a multiple of MSPRINGI_WIDTH) to first + count - 1,
 /// and perhaps on some more of the last one's group, into x and y by number of the attached node.
@@ -236,7 +236,7 @@ typedef struct mspringi_kernels {
     mspringi_attached_fn attached[2]; ///< [with damping]
     mspringi_precise_kernels precise;
     mspringi_largest_fn largest;
-    mspringi_sight_fn sight_of;
+    mspringi_extrema_fn extrema_of;
     mspringi_leaves_fn leaves;
     mspringi_touch_fn touch, fly_past; ///< of particles with and without springs
     mspringi_strain_fn lattice_strain, chain_strain;

@@ -61,9 +61,9 @@ static inline vec second_halves(vec a, vec b) {
     return vcombine_f32(vget_high_f32(a), vget_high_f32(b));
 }
 // Four values of each of LANES nodes, from [node][4].
-static inline void load_packed(const float *packed, const uint32_t *nodes, vec *x, vec *y, vec *vx, vec *vy) {
-    const vec a = vld1q_f32(packed + 4 * (size_t)nodes[0]), b = vld1q_f32(packed + 4 * (size_t)nodes[1]);
-    const vec c = vld1q_f32(packed + 4 * (size_t)nodes[2]), d = vld1q_f32(packed + 4 * (size_t)nodes[3]);
+static inline void load_gathered(const float *gathered, const uint32_t *nodes, vec *x, vec *y, vec *vx, vec *vy) {
+    const vec a = vld1q_f32(gathered + 4 * (size_t)nodes[0]), b = vld1q_f32(gathered + 4 * (size_t)nodes[1]);
+    const vec c = vld1q_f32(gathered + 4 * (size_t)nodes[2]), d = vld1q_f32(gathered + 4 * (size_t)nodes[3]);
     const vec ab_even = vtrn1q_f32(a, b), ab_odd = vtrn2q_f32(a, b);
     const vec cd_even = vtrn1q_f32(c, d), cd_odd = vtrn2q_f32(c, d);
     *x = first_halves(ab_even, cd_even);
@@ -71,9 +71,9 @@ static inline void load_packed(const float *packed, const uint32_t *nodes, vec *
     *vx = second_halves(ab_even, cd_even);
     *vy = second_halves(ab_odd, cd_odd);
 }
-static inline void store_packed(float *packed, vec x, vec y, vec vx, vec vy) {
+static inline void store_gathered(float *gathered, vec x, vec y, vec vx, vec vy) {
     const float32x4x4_t nodes = {{x, y, vx, vy}};
-    vst4q_f32(packed, nodes);
+    vst4q_f32(gathered, nodes);
 }
 
 // The larger of a and of the size of b; the maximum of NaN and a number is NaN here.

@@ -202,12 +202,12 @@ MSPRINGI_INLINE void sweep_chain(const mspringi_sweep *s, const mspringi_span *s
 }
 
 static inline motion node_at(const mspringi_sweep *s, size_t node, mspringi_variant of) {
-    const float *packed = s->packed + 4 * node, *half = packed;
+    const float *gathered = s->gathered + 4 * node, *half = gathered;
     if (!(of & MSPRINGI_PRECISE))
-        return (motion){packed[0], packed[1], packed[2], packed[3], 0.0f, 0.0f};
+        return (motion){gathered[0], gathered[1], gathered[2], gathered[3], 0.0f, 0.0f};
     if (of & MSPRINGI_DAMPED)
-        half += mspringi_packed_half(s->web);
-    return (motion){packed[0], packed[1], half[0], half[1], packed[2], packed[3]};
+        half += mspringi_gathered_half(s->web);
+    return (motion){gathered[0], gathered[1], half[0], half[1], gathered[2], gathered[3]};
 }
 
 // The force of the web on one of its nodes: the sum over the rungs of its group, in their order, from a first one
@@ -324,13 +324,13 @@ static inline void attached(const mspringi_sweep *s, uint32_t first, uint32_t co
     }
 }
 
-static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count, float *packed) {
+static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count, float *gathered) {
     const size_t first = first_block * MSPRINGI_WIDTH;
-    for (size_t slot = first; slot < first + block_count * MSPRINGI_WIDTH; ++slot, packed += 4) {
-        packed[0] = s->x[slot];
-        packed[1] = s->y[slot];
-        packed[2] = s->vx[slot];
-        packed[3] = s->vy[slot];
+    for (size_t slot = first; slot < first + block_count * MSPRINGI_WIDTH; ++slot, gathered += 4) {
+        gathered[0] = s->x[slot];
+        gathered[1] = s->y[slot];
+        gathered[2] = s->vx[slot];
+        gathered[3] = s->vy[slot];
     }
 }
 

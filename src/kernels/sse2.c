@@ -51,24 +51,24 @@ static inline uint32_t bits_greater(vec a, vec b) {
 }
 // The last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {
-    const vec seam = _mm_shuffle_ps(before, a, _MM_SHUFFLE(0, 0, 3, 3));
-    return _mm_shuffle_ps(seam, a, _MM_SHUFFLE(2, 1, 2, 0));
+    const vec halo = _mm_shuffle_ps(before, a, _MM_SHUFFLE(0, 0, 3, 3));
+    return _mm_shuffle_ps(halo, a, _MM_SHUFFLE(2, 1, 2, 0));
 }
 
 // Four values of each of LANES nodes, from [node][4].
-static inline void load_packed(const float *packed, const uint32_t *nodes, vec *x, vec *y, vec *vx, vec *vy) {
-    *x = _mm_load_ps(packed + 4 * (size_t)nodes[0]);
-    *y = _mm_load_ps(packed + 4 * (size_t)nodes[1]);
-    *vx = _mm_load_ps(packed + 4 * (size_t)nodes[2]);
-    *vy = _mm_load_ps(packed + 4 * (size_t)nodes[3]);
+static inline void load_gathered(const float *gathered, const uint32_t *nodes, vec *x, vec *y, vec *vx, vec *vy) {
+    *x = _mm_load_ps(gathered + 4 * (size_t)nodes[0]);
+    *y = _mm_load_ps(gathered + 4 * (size_t)nodes[1]);
+    *vx = _mm_load_ps(gathered + 4 * (size_t)nodes[2]);
+    *vy = _mm_load_ps(gathered + 4 * (size_t)nodes[3]);
     _MM_TRANSPOSE4_PS(*x, *y, *vx, *vy);
 }
-static inline void store_packed(float *packed, vec x, vec y, vec vx, vec vy) {
+static inline void store_gathered(float *gathered, vec x, vec y, vec vx, vec vy) {
     _MM_TRANSPOSE4_PS(x, y, vx, vy);
-    _mm_store_ps(packed, x);
-    _mm_store_ps(packed + 4, y);
-    _mm_store_ps(packed + 8, vx);
-    _mm_store_ps(packed + 12, vy);
+    _mm_store_ps(gathered, x);
+    _mm_store_ps(gathered + 4, y);
+    _mm_store_ps(gathered + 8, vx);
+    _mm_store_ps(gathered + 12, vy);
 }
 
 // Absolute values, as integers: those of floats are in the same order, with NaN above all.

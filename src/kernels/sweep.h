@@ -319,15 +319,15 @@ typedef struct gap {
 MSPRINGI_INLINE motion load_nodes(const mspringi_sweep *s, const uint32_t *nodes, mspringi_variant of) {
     motion m;
     if (!(of & MSPRINGI_PRECISE)) {
-        load_packed(s->packed, nodes, &m.x, &m.y, &m.vx, &m.vy);
+        load_gathered(s->gathered, nodes, &m.x, &m.y, &m.vx, &m.vy);
         m.low_x = m.low_y = zero();
         return m;
     }
     vec low_x, low_y; // once more
-    load_packed(s->packed, nodes, &m.x, &m.y, &m.low_x, &m.low_y);
+    load_gathered(s->gathered, nodes, &m.x, &m.y, &m.low_x, &m.low_y);
     m.vx = m.vy = zero();
     if (of & MSPRINGI_DAMPED)
-        load_packed(s->packed + mspringi_packed_half(s->web), nodes, &m.vx, &m.vy, &low_x, &low_y);
+        load_gathered(s->gathered + mspringi_gathered_half(s->web), nodes, &m.vx, &m.vy, &low_x, &low_y);
     return m;
 }
 
@@ -506,13 +506,13 @@ MSPRINGI_INLINE void attached(const mspringi_sweep *s, uint32_t first_attached, 
     }
 }
 
-static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count, float *packed) {
+static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count, float *gathered) {
     const mspringi_variant all = MSPRINGI_DAMPED;
     const size_t first = first_block * MSPRINGI_WIDTH;
     for (size_t slot = first; slot < first + block_count * MSPRINGI_WIDTH; slot += LANES) {
         const motion m = load_motion(s, slot, all);
-        store_packed(packed, m.x, m.y, m.vx, m.vy);
-        packed += 4 * LANES;
+        store_gathered(gathered, m.x, m.y, m.vx, m.vy);
+        gathered += 4 * LANES;
     }
 }
 

@@ -27,7 +27,7 @@
 typedef enum mspringi_factor {
     MSPRINGI_PULL_X = 0,
     MSPRINGI_PULL_Y = 1,
-    MSPRINGI_SWING = 2,
+    MSPRINGI_GEOMETRIC = 2,
     MSPRINGI_FACTORS = 3
 } mspringi_factor;
 
@@ -60,7 +60,7 @@ static inline const float *mspringi_system_rests(const mspringi_system *system, 
 /// which would make A indefinite: 0, then. A spring pressed to less than three quarters, which has more than one
 /// side to escape to, goes over to stiffness in all directions: the quadratic model is above the potential then
 /// wherever its ends go, so no step overshoots into more energy than there was.
-static inline double mspringi_swing_share(double relative) {
+static inline double mspringi_geometric_fraction(double relative) {
     const double pressed = -1.5 * relative - 0.5;
     const double share = relative > pressed ? relative : pressed;
     const double positive = share > 0.0 ? share : 0.0;
@@ -181,7 +181,7 @@ typedef struct mspringi_outside {
     const float *velocity;       ///< v*
     const float *turned;         ///< by how much x* is turned on
     const float *first, *second; ///< history of BDF2; second NULL: none
-    float force_share, velocity_share, turned_share, first_share, second_share;
+    float force_fraction, velocity_fraction, turned_fraction, first_share, second_share;
     float shift; ///< gravity's
 } mspringi_outside;
 

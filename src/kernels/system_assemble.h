@@ -51,8 +51,8 @@ typedef struct spring_strip {
 /// Squared length, m^2, that any spring has at least: one of no length has no direction, but a finite inverse.
 #define NO_SQUARE 1e-36f
 
-// As mspringi_swing_share().
-static inline float swing_share(float relative) {
+// As mspringi_geometric_fraction().
+static inline float geometric_fraction(float relative) {
     const float pressed = -1.5f * relative - 0.5f;
     const float share = relative > pressed ? relative : pressed;
     const float positive = share > 0.0f ? share : 0.0f;
@@ -109,17 +109,17 @@ MSPRINGI_PART_INLINE void find_factors(const linearised *s, const float *stiffne
     const float scale = s->scale, damping_rate = s->damping_rate;
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const float stiffness = MSPRINGI_LAW_ALONG(scale * stiffnesses[i]);
-        const float swing = stiffness * swing_share(to->extension[i] * to->inverse[i]);
-        float along = stiffness - swing;
+        const float geometric = stiffness * geometric_fraction(to->extension[i] * to->inverse[i]);
+        float along = stiffness - geometric;
         if (damped)
             along = along + MSPRINGI_LAW_DAMPING_ALONG(scale * dampings[i]) * damping_rate;
         const float root = sqrtf(along), pull_x = root * to->x[i], pull_y = root * to->y[i];
         factors[MSPRINGI_PULL_X * MSPRINGI_WIDTH + i] = pull_x;
         factors[MSPRINGI_PULL_Y * MSPRINGI_WIDTH + i] = pull_y;
-        factors[MSPRINGI_SWING * MSPRINGI_WIDTH + i] = swing;
-        to->xx[i] = swing + pull_x * pull_x;
+        factors[MSPRINGI_GEOMETRIC * MSPRINGI_WIDTH + i] = geometric;
+        to->xx[i] = geometric + pull_x * pull_x;
         to->xy[i] = pull_x * pull_y;
-        to->yy[i] = swing + pull_y * pull_y;
+        to->yy[i] = geometric + pull_y * pull_y;
     }
 }
 

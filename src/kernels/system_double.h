@@ -21,10 +21,10 @@ static void add_edges(const mspringi_edge_block *block, const float *restrict fa
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const double pull_x = (double)factors[MSPRINGI_PULL_X * MSPRINGI_WIDTH + i];
         const double pull_y = (double)factors[MSPRINGI_PULL_Y * MSPRINGI_WIDTH + i];
-        const double swing = (double)factors[MSPRINGI_SWING * MSPRINGI_WIDTH + i];
-        xx[i] = swing + pull_x * pull_x;
+        const double geometric = (double)factors[MSPRINGI_GEOMETRIC * MSPRINGI_WIDTH + i];
+        xx[i] = geometric + pull_x * pull_x;
         xy[i] = pull_x * pull_y;
-        yy[i] = swing + pull_y * pull_y;
+        yy[i] = geometric + pull_y * pull_y;
     }
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {

@@ -138,12 +138,12 @@ MSPRINGI_PART_INLINE void add_some_outside(const mspringi_outside *outside, floa
     const float *restrict const turned = o.turned, *restrict const force = o.force;
     const float *restrict const first_history = o.first, *restrict const second_history = o.second;
     for (size_t i = first; i < end; ++i) {
-        float shift = o.shift + velocity[i] * o.velocity_share - turned[i] * o.turned_share;
+        float shift = o.shift + velocity[i] * o.velocity_fraction - turned[i] * o.turned_fraction;
         if (second)
             shift = shift + (first_history[i] * o.first_share + second_history[i] * o.second_share);
         float sum = residual[i] + mass[i] * shift;
         if (forced)
-            sum = sum + force[i] * o.force_share;
+            sum = sum + force[i] * o.force_fraction;
         residual[i] = mass[i] > 0.0f ? sum : 0.0f;
     }
 }

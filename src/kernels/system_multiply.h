@@ -21,10 +21,10 @@ typedef struct displacement {
 MSPRINGI_PRODUCT displacement spring_product(displacement base, displacement tip, const float *factors) {
     const vec pull_x = load(factors + MSPRINGI_PULL_X * MSPRINGI_WIDTH);
     const vec pull_y = load(factors + MSPRINGI_PULL_Y * MSPRINGI_WIDTH);
-    const vec swing = load(factors + MSPRINGI_SWING * MSPRINGI_WIDTH);
+    const vec geometric = load(factors + MSPRINGI_GEOMETRIC * MSPRINGI_WIDTH);
     const vec dx = sub(tip.x, base.x), dy = sub(tip.y, base.y);
     const vec along = add(mul(pull_x, dx), mul(pull_y, dy));
-    const displacement result = {add(mul(swing, dx), mul(pull_x, along)), add(mul(swing, dy), mul(pull_y, along))};
+    const displacement result = {add(mul(geometric, dx), mul(pull_x, along)), add(mul(geometric, dy), mul(pull_y, along))};
     return result;
 }
 

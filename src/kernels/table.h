@@ -1,6 +1,6 @@
 /// @file table.h
 /// The variants of an instruction set's lattice(), chain(), web(), herd(), loose(), attached(), pack(), largest(),
-/// sight_of(), touch(), fly_past(), lattice_strain(), chain_strain(), bound_ and image_lattice() and _chain() and
+/// extrema_of(), touch(), fly_past(), lattice_strain(), chain_strain(), bound_ and image_lattice() and _chain() and
 /// take_checksum(), and the table of them. Included at the end of each kernel file, which defines MSPRINGI_TABLE
 /// and MSPRINGI_LEVEL.
 ///
@@ -9,8 +9,8 @@
 #include "kernels/border.h"
 #include "kernels/bounds.h"
 #include "kernels/checksum.h"
+#include "kernels/extrema.h"
 #include "kernels/flight.h"
-#include "kernels/sight.h"
 #include "kernels/strain.h"
 #include "kernels/system_assemble.h"
 #include "kernels/system_double.h"
@@ -95,7 +95,7 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .attached = {attached_plain, attached_damped},
     .precise = {lattice_precise, chain_precise, web_precise, herd_precise, attached_precise},
     .largest = largest,
-    .sight_of = sight_of,
+    .extrema_of = extrema_of,
     .leaves = leaves,
     .touch = touch,
     .fly_past = fly_past,

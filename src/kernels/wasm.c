@@ -62,19 +62,19 @@ static inline void transpose(vec *a, vec *b, vec *c, vec *d) {
     *d = wasm_i32x4_shuffle(ab_high, cd_high, 2, 3, 6, 7);
 }
 // Four values of each of LANES nodes, from [node][4].
-static inline void load_packed(const float *packed, const uint32_t *nodes, vec *x, vec *y, vec *vx, vec *vy) {
-    *x = wasm_v128_load(packed + 4 * (size_t)nodes[0]);
-    *y = wasm_v128_load(packed + 4 * (size_t)nodes[1]);
-    *vx = wasm_v128_load(packed + 4 * (size_t)nodes[2]);
-    *vy = wasm_v128_load(packed + 4 * (size_t)nodes[3]);
+static inline void load_gathered(const float *gathered, const uint32_t *nodes, vec *x, vec *y, vec *vx, vec *vy) {
+    *x = wasm_v128_load(gathered + 4 * (size_t)nodes[0]);
+    *y = wasm_v128_load(gathered + 4 * (size_t)nodes[1]);
+    *vx = wasm_v128_load(gathered + 4 * (size_t)nodes[2]);
+    *vy = wasm_v128_load(gathered + 4 * (size_t)nodes[3]);
     transpose(x, y, vx, vy);
 }
-static inline void store_packed(float *packed, vec x, vec y, vec vx, vec vy) {
+static inline void store_gathered(float *gathered, vec x, vec y, vec vx, vec vy) {
     transpose(&x, &y, &vx, &vy);
-    wasm_v128_store(packed, x);
-    wasm_v128_store(packed + 4, y);
-    wasm_v128_store(packed + 8, vx);
-    wasm_v128_store(packed + 12, vy);
+    wasm_v128_store(gathered, x);
+    wasm_v128_store(gathered + 4, y);
+    wasm_v128_store(gathered + 8, vx);
+    wasm_v128_store(gathered + 12, vy);
 }
 
 // As integers: NaN is above infinity, as floats it would be whatever the host's processor makes of it.

@@ -146,8 +146,8 @@ typedef struct mspringi_lattice_spring {
 bool mspringi_grids_place(const mspringi_grids *grids, const mspringi_spring *spring,
                           mspringi_lattice_spring *found);
 
-/// Largest lag worth having: with more, too few substeps of too many strips share the cache.
-#define MSPRINGI_LONGEST_LAG 16
+/// Largest skew worth having: with more, too few substeps of too many strips share the cache.
+#define MSPRINGI_LONGEST_SKEW 16
 
 /// Which grids have rows that are swept for several substeps in one pass, and in which strips of these rows the
 /// particles that hang on them are swept.
@@ -157,13 +157,13 @@ typedef struct mspringi_homes {
     uint32_t *first_row;  ///< [grids] number of a grid's first row, all rows in that order
     uint32_t row_count;   ///< such rows
     uint32_t strip_rows;  ///< rows in a strip; the last one may have fewer
-    uint32_t lag;         ///< strips that each substep stays behind the one before: ends of leftover springs are
+    uint32_t skew;        ///< strips that each substep stays behind the one before: ends of leftover springs are
                           ///< no further apart
     struct mspringi_homes_finder *finder; ///< while they are looked for
 } mspringi_homes;
 
 /// Find them, in this order; all that they are given must stay. attach goes through the members of grids,
-/// join_springs through springs, try_lags through lags up to MSPRINGI_LONGEST_LAG.
+/// join_springs through springs, try_skews through skews up to MSPRINGI_LONGEST_SKEW.
 mspring_result mspringi_homes_begin(mspringi_homes *homes, const mspringi_graph *graph, const mspringi_grids *grids,
                                     const mspringi_strands *strands, mspringi_memory *memory,
                                     mspringi_message *message);
@@ -172,7 +172,7 @@ mspring_result mspringi_homes_prepare(mspringi_homes *homes, uint32_t workers, m
                                       mspringi_message *message);
 void mspringi_homes_join_springs(mspringi_homes *homes, uint32_t first, uint32_t end);
 void mspringi_homes_judge(mspringi_homes *homes);
-void mspringi_homes_try_lags(mspringi_homes *homes, uint32_t first, uint32_t end);
+void mspringi_homes_try_skews(mspringi_homes *homes, uint32_t first, uint32_t end);
 void mspringi_homes_end(mspringi_homes *homes, mspringi_memory *memory);
 void mspringi_homes_destroy(mspringi_homes *homes, mspringi_memory *memory);
 

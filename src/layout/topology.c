@@ -22,7 +22,7 @@ static void attach_to_strips(mspringi_assembly *a) {
         const uint32_t number = a->weaving.strip_of_block[t->web.attached_slot[i] / MSPRINGI_WIDTH];
         mspringi_strip *strip = &t->strips[number];
         // Such a strip is swept with the web, one substep after the other.
-        if (number >= t->wave_strips)
+        if (number >= t->wavefront_strips)
             t->layer_count = 0;
         if (strip->attached_count++ == 0)
             strip->first_attached = i;
@@ -224,8 +224,8 @@ static mspring_result judge_homes(mspringi_assembly *a) {
     return MSPRING_OK;
 }
 
-static mspring_result try_lags(mspringi_assembly *a, uint32_t first, uint32_t end) {
-    mspringi_homes_try_lags(&a->homes, first, end);
+static mspring_result try_skews(mspringi_assembly *a, uint32_t first, uint32_t end) {
+    mspringi_homes_try_skews(&a->homes, first, end);
     return MSPRING_OK;
 }
 
@@ -292,9 +292,9 @@ static uint32_t members_of(const mspringi_assembly *a) {
     return a->grids.member_count;
 }
 
-static uint32_t lags_of(const mspringi_assembly *a) {
+static uint32_t skews_of(const mspringi_assembly *a) {
     (void)a;
-    return MSPRINGI_LONGEST_LAG;
+    return MSPRINGI_LONGEST_SKEW;
 }
 
 static uint32_t web_springs_of(const mspringi_assembly *a) {
@@ -341,7 +341,7 @@ static const layout_pass layout_passes[] = {
     ONCE(prepare_homes),
     EACH(join_homes, springs_of, 32000),
     ONCE(judge_homes),
-    EACH(try_lags, lags_of, 1),
+    EACH(try_skews, skews_of, 1),
     ONCE(settle_ropes),
     ONCE(list_web),
     ONCE(sort_web),

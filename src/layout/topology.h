@@ -38,7 +38,7 @@ typedef enum mspringi_direction {
 /// Where a spring lies: below lattice_places a lattice record, (block * MSPRINGI_DIRECTIONS + direction) *
 /// MSPRINGI_WIDTH + lane; below chain_places a chain record, lattice_places + block * MSPRINGI_WIDTH + lane; above
 /// that, chain_places + number among the leftover springs, behind which are those with spare ids (see spare.h) and
-/// the parked ones. Block counts from the first of its kind.
+/// the inactive ones. Block counts from the first of its kind.
 typedef uint32_t mspringi_place;
 
 /// Lanes of the narrowest vector register.
@@ -107,8 +107,8 @@ typedef struct mspringi_topology {
     uint32_t leftover_count;            ///< springs of the web, and as many more as spare ids have been used
     uint32_t woven_count;               ///< springs of the web
     uint32_t leftover_capacity;         ///< woven_count, and a place for each spare spring
-    uint32_t parked_count;              ///< springs that are broken and that nothing sweeps, see network/left.c
-    uint32_t *leftover_a, *leftover_b;  ///< [leftover_capacity + parked_count] slots
+    uint32_t inactive_count;            ///< springs that are broken and that nothing sweeps, see network/left.c
+    uint32_t *leftover_a, *leftover_b;  ///< [leftover_capacity + inactive_count] slots
     uint32_t *laid_slots, *laid_places; ///< of the spare ids, when the topology was made
     mspringi_web web;
 
@@ -122,12 +122,12 @@ typedef struct mspringi_topology {
     uint32_t row_count;
     mspringi_strip *strips; ///< all rows, in order
     uint32_t strip_count;
-    uint32_t wave_rows;    ///< lattice rows, the first ones, that can be swept for several substeps in one pass
-    uint32_t wave_strips;  ///< the strips that they are in
-    uint32_t lag;          ///< strips by which each substep of such a pass must stay behind the one before
-    uint32_t carry_blocks; ///< blocks of the carry row
-    uint32_t herd_strip;   ///< strip of the web's trees that stand in herds, or MSPRING_NONE
-    uint32_t herd_springs; ///< springs of these
+    uint32_t wavefront_rows;   ///< lattice rows, the first ones, that can be swept for several substeps in one pass
+    uint32_t wavefront_strips; ///< the strips that they are in
+    uint32_t skew;             ///< strips by which each substep of such a pass must stay behind the one before
+    uint32_t carry_blocks;     ///< blocks of the carry row
+    uint32_t herd_strip;       ///< strip of the web's trees that stand in herds, or MSPRING_NONE
+    uint32_t herd_springs;     ///< springs of these
 
     uint32_t layer_count;   ///< of the web row, if it is swept in layers, each with springs to the next ones only
     uint32_t *layer_blocks; ///< [layer_count + 1] where each begins, counted from the row's first block
@@ -140,8 +140,8 @@ typedef struct mspringi_topology {
 
 /// Words of MSPRINGI_WIDTH bits that hold a bit for each place.
 static inline size_t mspringi_place_words(const mspringi_topology *topology) {
-    return ((size_t)topology->chain_places + topology->leftover_capacity + topology->parked_count + MSPRINGI_WIDTH -
-            1) /
+    return ((size_t)topology->chain_places + topology->leftover_capacity + topology->inactive_count +
+            MSPRINGI_WIDTH - 1) /
            MSPRINGI_WIDTH;
 }
 
@@ -151,19 +151,19 @@ static inline mspringi_place mspringi_place_of(const mspringi_topology *topology
     return topology->place_of_spring[spring];
 }
 
-/// Whether the spring in this place is parked.
-static inline bool mspringi_place_is_parked(const mspringi_topology *topology, mspringi_place place) {
+/// Whether the spring in this place is inactive.
+static inline bool mspringi_place_is_inactive(const mspringi_topology *topology, mspringi_place place) {
     return place - topology->chain_places >= topology->leftover_capacity && place >= topology->chain_places;
 }
 
-/// Whether the spring in this place has been laid out with the others: it is neither parked nor in a spare place.
+/// Whether the spring in this place has been laid out with the others: it is neither inactive nor in a spare place.
 static inline bool mspringi_place_is_woven(const mspringi_topology *topology, mspringi_place place) {
     return place < topology->chain_places + topology->woven_count;
 }
 
 /// Springs that are swept.
 static inline uint32_t mspringi_swept_count(const mspringi_topology *topology) {
-    return topology->spring_count - topology->parked_count;
+    return topology->spring_count - topology->inactive_count;
 }
 
 /// Lay out what the builder holds, for steps that so many workers share and make with registers of so many lanes

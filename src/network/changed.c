@@ -88,9 +88,9 @@ void mspringi_tell(mspring_network *network, mspringi_change what, uint32_t inde
 #undef FLOOR
 
 void mspringi_fingerprint(mspring_network *network, uint32_t edit, mspring_id id) {
-    network->parameter_print = mspringi_mix(network->parameter_print, (uint64_t)edit << 32 | id);
+    network->parameter_fingerprint = mspringi_mix(network->parameter_fingerprint, (uint64_t)edit << 32 | id);
 }
 
 void mspringi_fingerprint_floats(mspring_network *network, float a, float b) {
-    network->parameter_print = mspringi_mix_floats(network->parameter_print, a, b);
+    network->parameter_fingerprint = mspringi_mix_floats(network->parameter_fingerprint, a, b);
 }

@@ -8,9 +8,9 @@
 #include "store/network.h"
 
 /// Whether no step sweeps this spring until the network is expanded.
-static inline bool mspringi_spring_is_parked(const mspring_network *network, mspring_id spring) {
+static inline bool mspringi_spring_is_inactive(const mspring_network *network, mspring_id spring) {
     const mspringi_topology *t = &network->topology;
-    return mspringi_place_is_parked(t, mspringi_place_of(t, spring));
+    return mspringi_place_is_inactive(t, mspringi_place_of(t, spring));
 }
 
 /// Go back to the plan that the network was created with. On error nothing has changed.

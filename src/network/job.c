@@ -35,7 +35,8 @@ void mspringi_job_lose(mspring_network *network) {
 // Whether a spring that is live is in the layout.
 static bool has_spring(const mspring_job *job, const mspring_network *network, mspring_id spring) {
     const mspringi_topology *t = &job->to.topology;
-    return !mspringi_place_is_parked(t, mspringi_place_of(t, spring)) || !mspringi_spring_is_live(network, spring);
+    return !mspringi_place_is_inactive(t, mspringi_place_of(t, spring)) ||
+           !mspringi_spring_is_live(network, spring);
 }
 
 // Whether the layout sweeps every spring that is live now. It may sweep some that have broken since.
@@ -160,7 +161,7 @@ mspring_result mspring_job_begin(mspring_network *network, mspring_layout layout
 
 static mspring_result take_whole(mspring_job *job) {
     job->to.topology = job->first;
-    job->print = job->from.whole_print;
+    job->fingerprint = job->from.whole_fingerprint;
     // What is made belongs to to's memory, of which there is nothing yet.
     return mspringi_columns_duplicate(mspringi_topology_columns, &job->to.topology, &job->to.memory)
                ? MSPRING_OK
@@ -279,21 +280,21 @@ const char *mspring_job_error(const mspring_job *job) {
 // Keep the layout that the network was created with, or free the one that it has.
 static mspring_result exchange(mspring_network *network, mspring_job *job) {
     const bool was_compact = network->is_compact, is_whole = job->layout == MSPRING_LAYOUT_WHOLE;
-    const uint64_t print = network->topology_print;
+    const uint64_t fingerprint = network->topology_fingerprint;
     const uint32_t tile_size = mspringi_solver_get_basis(&network->solver).tile_size;
     const uint32_t fallback_size = mspringi_solver_get_basis(&network->fallback).tile_size;
     mspringi_topology before = network->topology, whole = network->whole;
     mspring_result result = mspringi_move_network(network, job);
     if (result != MSPRING_OK)
         return result;
-    network->topology_print = job->print;
+    network->topology_fingerprint = job->fingerprint;
     network->is_compact = !is_whole;
     network->is_seen_compact = false;
     if (was_compact) {
         mspringi_topology_destroy(&before, &network->memory);
     } else {
         network->whole = before;
-        network->whole_print = print;
+        network->whole_fingerprint = fingerprint;
         network->whole_tile_size = tile_size;
         network->whole_fallback_size = fallback_size;
     }

@@ -48,8 +48,8 @@ struct mspring_job {
     uint32_t live, listed;       ///< of these counted, and listed so far
     mspringi_assembly *assembly;
     mspringi_place *woven_places; ///< [left.spring_count] of the live springs
-    mspringi_place next_parked;
-    uint64_t print; ///< of the layout, so far
+    mspringi_place next_inactive;
+    uint64_t fingerprint; ///< of the layout, so far
 
     // move.c
     mspringi_place *there;           ///< by place in from, that in to

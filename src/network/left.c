@@ -2,7 +2,7 @@
 ///
 /// The layout that a network is created with sweeps all springs, broken ones too. This one lays out the live ones
 /// alone: lattices where squares are left, strands, a web of what is between, and loose particles. Springs that are
-/// broken are parked: they keep a place and a record, so that everything that can be asked or set of a broken
+/// broken are inactive: they keep a place and a record, so that everything that can be asked or set of a broken
 /// spring goes on as it did, but nothing sweeps them.
 ///
 /// Grids are looked for where the first topology has found some, by row and column: where the particles are by then
@@ -132,14 +132,14 @@ mspring_result mspringi_left_finish_layout(mspring_job *job) {
     mspringi_topology_finish(job->assembly, &job->to.memory, t);
     job->assembly = NULL;
     job->woven_places = t->place_of_spring;
-    const uint32_t parked = t->reserve.first_spring - count_woven(job, t->reserve.first_spring);
+    const uint32_t inactive = t->reserve.first_spring - count_woven(job, t->reserve.first_spring);
     t->place_of_spring = mspringi_alloc(&job->to.memory, t->reserve.spring_end, sizeof *t->place_of_spring);
     if (!t->place_of_spring)
         return mspringi_job_no_memory(job);
     t->spring_count = mspringi_job_first(job)->spring_count;
-    job->next_parked = t->chain_places + t->woven_count + mspringi_spare_springs(t);
+    job->next_inactive = t->chain_places + t->woven_count + mspringi_spare_springs(t);
     job->listed = 0;
-    mspring_result result = mspringi_spare_reserve(t, parked, &job->to.memory, &job->to.message);
+    mspring_result result = mspringi_spare_reserve(t, inactive, &job->to.memory, &job->to.message);
     if (result == MSPRING_OK)
         mspringi_spare_enter(t);
     return result;
@@ -153,7 +153,7 @@ mspring_result mspringi_left_number_places(mspring_job *job, uint32_t first, uin
         if (job->was_live[s / MSPRINGI_WIDTH] >> s % MSPRINGI_WIDTH & 1)
             t->place_of_spring[s] = job->woven_places[job->listed++];
         else
-            t->place_of_spring[s] = s < t->reserve.first_spring ? job->next_parked++ : mspringi_spare_place(t, s);
+            t->place_of_spring[s] = s < t->reserve.first_spring ? job->next_inactive++ : mspringi_spare_place(t, s);
     }
     return MSPRING_OK;
 }
@@ -182,7 +182,7 @@ mspring_result mspringi_left_keep_spare(mspring_job *job) {
     mspring_result result = mspringi_spare_keep(t, &job->to.memory, &job->to.message);
     if (result == MSPRING_OK)
         mspringi_spare_count(t, t->particle_count, t->spring_count);
-    job->print = job->from.is_compact ? job->from.whole_print : job->from.topology_print;
+    job->fingerprint = job->from.is_compact ? job->from.whole_fingerprint : job->from.topology_fingerprint;
     return result;
 }
 
@@ -191,12 +191,12 @@ mspring_result mspringi_left_keep_spare(mspring_job *job) {
 mspring_result mspringi_left_print_slots(mspring_job *job, uint32_t first, uint32_t end) {
     const mspringi_topology *t = &job->to.topology;
     for (mspring_id p = first; p < end; ++p)
-        job->print = mspringi_mix(job->print, t->slot_of_particle[p]);
+        job->fingerprint = mspringi_mix(job->fingerprint, t->slot_of_particle[p]);
     return MSPRING_OK;
 }
 
 mspring_result mspringi_left_print_places(mspring_job *job, uint32_t first, uint32_t end) {
     for (mspring_id s = first; s < end; ++s)
-        job->print = mspringi_mix(job->print, job->to.topology.place_of_spring[s]);
+        job->fingerprint = mspringi_mix(job->fingerprint, job->to.topology.place_of_spring[s]);
     return MSPRING_OK;
 }

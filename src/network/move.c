@@ -195,7 +195,7 @@ mspring_network mspringi_move_shell(const mspring_network *network) {
     mspring_network to = *network;
     mspringi_store_forget_layout(&to);
     to.topology = (mspringi_topology){0};
-    to.seams = (mspringi_seams){0};
+    to.halos = (mspringi_halos){0};
     to.rests = (mspringi_rests){0};
     mspringi_sleep_forget(&to.sleep);
     to.solver.object = to.fallback.object = NULL;
@@ -212,7 +212,7 @@ static mspring_network with_layout_of(const mspring_network *network, const mspr
     mspringi_store_take_layout(&to, made);
     to.alike.changes = made->alike.changes;
     to.rests = made->rests;
-    to.seams = made->seams;
+    to.halos = made->halos;
     to.carry_rows = made->carry_rows;
     to.depth = made->depth;
     return to;

@@ -8,7 +8,7 @@
 #include "network/job.h"
 #include "sleep/sleep.h"
 #include "solvers/explicit/explicit.h"
-#include "solvers/explicit/seam.h"
+#include "solvers/explicit/halo.h"
 #include "stability/border.h"
 #include "stability/guard.h"
 #include "step/origin.h"
@@ -83,7 +83,7 @@ mspring_result mspringi_field_reserve(mspring_network *network, mspringi_field *
 mspring_result mspringi_carry_reserve(mspring_network *network) {
     const uint32_t rows = network->depth * mspringi_tasks_concurrency(network->tasks);
     if (network->carry && network->carry_rows >= rows)
-        return mspringi_seams_reserve(network);
+        return mspringi_halos_reserve(network);
     const size_t values = (size_t)2 * rows * network->topology.carry_blocks * MSPRINGI_WIDTH;
     float *carry = mspringi_alloc(&network->memory, values, sizeof *carry);
     if (!carry)
@@ -91,7 +91,7 @@ mspring_result mspringi_carry_reserve(mspring_network *network) {
     mspringi_free(&network->memory, network->carry);
     network->carry = carry;
     network->carry_rows = rows;
-    return mspringi_seams_reserve(network);
+    return mspringi_halos_reserve(network);
 }
 
 // What the springs have in common decides what a network has to hold for them.
@@ -159,24 +159,24 @@ static void fill_particles(mspring_network *network, const mspring_builder *buil
 }
 
 // What tells this network's snapshots from those of others.
-static void take_prints(mspring_network *network, const mspringi_spring *spring, mspringi_place place) {
-    uint64_t print = network->topology_print;
-    print = mspringi_mix(print, (uint64_t)spring->a << 32 | spring->b);
-    print = mspringi_mix(print, (uint64_t)place << 32 | spring->flags);
-    network->topology_print = print;
-    print = mspringi_mix_floats(network->parameter_print, spring->stiffness, spring->damping);
-    network->parameter_print = mspringi_mix_floats(print, spring->rest_length, 0.0f);
+static void take_fingerprints(mspring_network *network, const mspringi_spring *spring, mspringi_place place) {
+    uint64_t fingerprint = network->topology_fingerprint;
+    fingerprint = mspringi_mix(fingerprint, (uint64_t)spring->a << 32 | spring->b);
+    fingerprint = mspringi_mix(fingerprint, (uint64_t)place << 32 | spring->flags);
+    network->topology_fingerprint = fingerprint;
+    fingerprint = mspringi_mix_floats(network->parameter_fingerprint, spring->stiffness, spring->damping);
+    network->parameter_fingerprint = mspringi_mix_floats(fingerprint, spring->rest_length, 0.0f);
 }
 
 static void fill_springs(mspring_network *network, const mspring_builder *builder) {
     const mspringi_topology *t = &network->topology;
     network->shortest = INFINITY;
-    network->topology_print = network->parameter_print = MSPRINGI_MIX_START;
+    network->topology_fingerprint = network->parameter_fingerprint = MSPRINGI_MIX_START;
     if (t->reserve.particle_end > t->particle_count || t->reserve.spring_end > t->spring_count)
-        network->topology_print =
-            mspringi_mix(network->topology_print, (uint64_t)t->reserve.particle_end << 32 | t->reserve.spring_end);
+        network->topology_fingerprint = mspringi_mix(
+            network->topology_fingerprint, (uint64_t)t->reserve.particle_end << 32 | t->reserve.spring_end);
     for (mspring_id p = 0; p < t->particle_count; ++p)
-        network->topology_print = mspringi_mix(network->topology_print, t->slot_of_particle[p]);
+        network->topology_fingerprint = mspringi_mix(network->topology_fingerprint, t->slot_of_particle[p]);
     for (mspring_id s = 0; s < t->spring_count; ++s) {
         const mspringi_spring *spring = &builder->springs[s];
         network->shortest = fmin(network->shortest, (double)spring->rest_length);
@@ -184,7 +184,7 @@ static void fill_springs(mspring_network *network, const mspring_builder *builde
         const bool relative = spring->flags & MSPRING_SPRING_RELATIVE;
         mspringi_place_set_rest_length(network, place, spring->rest_length);
         mspringi_place_set(network, place, relative ? 0.0f : spring->stiffness, relative ? 0.0f : spring->damping);
-        take_prints(network, spring, place);
+        take_fingerprints(network, spring, place);
         network->live[place / MSPRINGI_WIDTH] |= (uint16_t)(1u << place % MSPRINGI_WIDTH);
     }
 }

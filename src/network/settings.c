@@ -79,7 +79,7 @@ mspring_result mspring_network_set_solver(mspring_network *network, const msprin
     network->auto_substeps = automatic && network->solver.ops->picks_substeps;
     network->substeps = automatic ? 1 : def->substeps;
     network->max_substeps = def->max_substeps;
-    network->guard.lent = 0;
+    network->guard.fallback_steps = 0;
     return MSPRING_OK;
 }
 
@@ -96,7 +96,7 @@ mspring_result mspring_network_set_guard(mspring_network *network, mspring_guard
         return result;
     network->guard_policy = guard;
     network->guard.h = network->guard.peak = 0.0f;
-    network->guard.lent = 0;
+    network->guard.fallback_steps = 0;
     return MSPRING_OK;
 }
 

@@ -94,10 +94,10 @@ static inline void compute_word(const mspring_network *network, size_t word, con
         memcpy(extents->scratch + plane_size(network) + at, second, sizeof second);
 }
 
-// The springs of the web and the parked ones, gathered sixteen at a time.
+// The springs of the web and the inactive ones, gathered sixteen at a time.
 static inline void compute_leftovers(const mspring_network *network, measure what) {
     const mspringi_topology *t = &network->topology;
-    const uint32_t count = t->leftover_capacity + t->parked_count;
+    const uint32_t count = t->leftover_capacity + t->inactive_count;
     const mspringi_state *s = &network->state;
     for (uint32_t first = 0; first < count; first += MSPRINGI_WIDTH) {
         float x[2 * MSPRINGI_WIDTH] = {0}, y[2 * MSPRINGI_WIDTH] = {0}, rest_lengths[MSPRINGI_WIDTH] = {0};

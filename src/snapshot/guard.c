@@ -10,7 +10,7 @@
 typedef struct guard_head {
     double dt; ///< what is stable in any shape, s, and for which spring
     float h, global_damping, peak;
-    uint32_t policy, reserved, spring, state, lent;
+    uint32_t policy, reserved, spring, state, fallback_steps;
 } guard_head;
 #define HEAD_BYTES ((size_t)40)
 
@@ -41,7 +41,7 @@ static void guard_save(const mspring_network *network, mspringi_writer *to) {
                               !any_shape->is_known ? UNKNOWN
                               : outdated           ? OUTDATED
                                                    : KNOWN,
-                              guard->lent};
+                              guard->fallback_steps};
     mspringi_put(to, &any_shape->dt, 1, sizeof any_shape->dt);
     mspringi_put(to, floats, sizeof floats / sizeof floats[0], sizeof floats[0]);
     mspringi_put(to, words, sizeof words / sizeof words[0], sizeof words[0]);
@@ -58,7 +58,7 @@ static const uint8_t *read_head(const uint8_t *from, guard_head *head) {
     from = mspringi_get(from, &head->reserved, 1, sizeof head->reserved);
     from = mspringi_get(from, &head->spring, 1, sizeof head->spring);
     from = mspringi_get(from, &head->state, 1, sizeof head->state);
-    return mspringi_get(from, &head->lent, 1, sizeof head->lent);
+    return mspringi_get(from, &head->fallback_steps, 1, sizeof head->fallback_steps);
 }
 
 static mspringi_solver_basis read_fallback(const uint8_t *from) {
@@ -127,7 +127,7 @@ static void guard_load(mspring_network *network, const uint8_t *from, size_t siz
                                       .peak = head.peak,
                                       .speed = INFINITY, // are not known
                                       .place = INFINITY,
-                                      .lent = head.lent};
+                                      .fallback_steps = head.fallback_steps};
     if (head.policy == MSPRING_GUARD_IMPLICIT)
         fallback_load(network, from);
     // Edits of before and after are counted differently.

@@ -96,8 +96,8 @@ mspring_result mspring_network_save(const mspring_network *network, mspring_snap
         .contents = (uint32_t)contents,
         .particle_count = network->topology.reserve.particle_end,
         .spring_count = network->topology.reserve.spring_end,
-        .topology_print = network->topology_print,
-        .parameter_print = network->parameter_print,
+        .topology_fingerprint = network->topology_fingerprint,
+        .parameter_fingerprint = network->parameter_fingerprint,
     };
     const size_t total = total_size(network, contents, &header.section_count);
     if (capacity < total)
@@ -153,7 +153,7 @@ static mspring_result check_frame(mspring_network *network, const uint8_t *snaps
     return MSPRING_OK;
 }
 
-static mspring_result check_kin(mspring_network *network, const mspringi_snapshot_header *header) {
+static mspring_result check_compatible(mspring_network *network, const mspringi_snapshot_header *header) {
     const mspringi_reserve *r = &network->topology.reserve;
     if (header->particle_count != r->particle_end || header->spring_count != r->spring_end)
         return mspringi_fail(&network->message, MSPRING_ERROR_SNAPSHOT,
@@ -161,9 +161,10 @@ static mspring_result check_kin(mspring_network *network, const mspringi_snapsho
                              "%u and %u",
                              (unsigned)header->particle_count, (unsigned)header->spring_count,
                              (unsigned)r->particle_end, (unsigned)r->spring_end);
-    if (header->topology_print != network->topology_print)
+    if (header->topology_fingerprint != network->topology_fingerprint)
         return fail(network, "is of another network: its springs join other particles, or are laid out otherwise");
-    if (header->contents == MSPRING_SNAPSHOT_FRAME && header->parameter_print != network->parameter_print)
+    if (header->contents == MSPRING_SNAPSHOT_FRAME &&
+        header->parameter_fingerprint != network->parameter_fingerprint)
         return fail(network,
                     "leaves out stiffness, damping, rest lengths and strains (MSPRING_SNAPSHOT_FRAME), and "
                     "the network's are others than when it was saved");
@@ -213,7 +214,7 @@ static MSPRINGI_NOINLINE mspring_result load(mspring_network *network, const uin
     found in;
     mspring_result result = check_frame(network, snapshot, size, &header);
     if (result == MSPRING_OK)
-        result = check_kin(network, &header);
+        result = check_compatible(network, &header);
     if (result == MSPRING_OK)
         result = find_sections(network, &header, snapshot, &in);
     for (int i = 0; result == MSPRING_OK && i < SECTIONS; ++i)
@@ -226,7 +227,7 @@ static MSPRINGI_NOINLINE mspring_result load(mspring_network *network, const uin
     for (int i = 0; i < SECTIONS; ++i)
         if (concerns(sections[i], &header))
             sections[i]->load(network, in.from[i], in.size[i]);
-    network->parameter_print = header.parameter_print;
+    network->parameter_fingerprint = header.parameter_fingerprint;
     network->events.count = 0;
     return MSPRING_OK;
 }

@@ -35,14 +35,14 @@ static void broken_save(const mspring_network *network, mspringi_writer *to) {
     mspringi_put(to, network->live, mspringi_place_words(&network->topology), sizeof *network->live);
 }
 
-// A spring that is parked was broken when the network was compacted, and a restored one ends that.
+// A spring that is inactive was broken when the network was compacted, and a restored one ends that.
 static mspring_result broken_check(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_section *section = &mspringi_section_broken;
     const mspringi_topology *t = &network->topology;
-    if (size == 0 && t->parked_count == 0)
+    if (size == 0 && t->inactive_count == 0)
         return MSPRING_OK;
     mspring_result result = mspringi_section_check_size(network, section, size, words_size(network));
-    for (uint32_t i = 0; result == MSPRING_OK && i < t->parked_count; ++i)
+    for (uint32_t i = 0; result == MSPRING_OK && i < t->inactive_count; ++i)
         if (bit_at(from, t->chain_places + t->leftover_capacity + i))
             result = mspringi_section_fail(network, section, "a spring that the plan leaves out is whole");
     return result == MSPRING_OK ? mspringi_breaking_reserve(network) : result;

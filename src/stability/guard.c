@@ -103,7 +103,7 @@ void mspringi_guard_put_back(mspring_network *network, const mspringi_state *bef
 }
 
 // The same at the end of a step.
-static mspringi_sight put_back(mspring_network *network) {
+static mspringi_extrema put_back(mspring_network *network) {
     mspringi_guard_put_back(network, &network->backup);
     mspringi_floor_take_back(network->floor);
     return mspringi_guard_look(network, 0, mspringi_slot_count(network));
@@ -199,18 +199,18 @@ static float larger(float a, float b) {
     return b > a || b != b ? b : a;
 }
 
-mspringi_sight mspringi_sight_join(mspringi_sight a, mspringi_sight b) {
-    return (mspringi_sight){larger(a.place, b.place), larger(a.speed, b.speed), larger(a.change, b.change)};
+mspringi_extrema mspringi_extrema_join(mspringi_extrema a, mspringi_extrema b) {
+    return (mspringi_extrema){larger(a.place, b.place), larger(a.speed, b.speed), larger(a.change, b.change)};
 }
 
-mspringi_sight mspringi_guard_look(const mspring_network *network, size_t first, size_t end) {
+mspringi_extrema mspringi_guard_look(const mspring_network *network, size_t first, size_t end) {
     const mspringi_largest_fn largest = network->kernels->largest;
     const mspringi_state *s = &network->state, *b = &network->backup;
     const bool watches = network->guard.watches;
     const size_t count = end - first;
     const mspringi_largest vx = largest(s->vx + first, watches ? b->vx + first : NULL, count);
     const mspringi_largest vy = largest(s->vy + first, watches ? b->vy + first : NULL, count);
-    return (mspringi_sight){
+    return (mspringi_extrema){
         larger(largest(s->x + first, NULL, count).value, largest(s->y + first, NULL, count).value),
         larger(vx.value, vy.value), larger(vx.change, vy.change)};
 }
@@ -232,42 +232,43 @@ static bool is_suspicious(mspring_network *network, float h, float change) {
 // What no speed is above after a step. Where changes are watched speeds are not (see sweep.h for what either
 // takes), as no particle is faster than the fastest was before by more than the largest change; with room for
 // rounding.
-static float bound_speed(const mspring_network *network, mspringi_sight sight) {
+static float bound_speed(const mspring_network *network, mspringi_extrema extrema) {
     const mspringi_guard *guard = &network->guard;
     if (!(guard->watches && guard->knows_speed))
-        return sight.speed;
-    const float bound = (guard->speed + sight.change) * (1.0f + 1e-6f);
+        return extrema.speed;
+    const float bound = (guard->speed + extrema.change) * (1.0f + 1e-6f);
     return bound <= network->max_speed ? bound
                                        : mspringi_guard_look(network, 0, mspringi_slot_count(network)).speed;
 }
 
 // What no coordinate is above after a step. One substep takes none further than by the speed at its end, unless
 // a floor does: then all of it has been looked at.
-static float bound_place(const mspring_network *network, float h, float speed, mspringi_sight sight) {
+static float bound_place(const mspring_network *network, float h, float speed, mspringi_extrema extrema) {
     const mspringi_guard *guard = &network->guard;
     if (!guard->knows_place)
-        return sight.place;
-    const float bound = larger(sight.place, (guard->place + h * speed) * (1.0f + 1e-6f));
+        return extrema.place;
+    const float bound = larger(extrema.place, (guard->place + h * speed) * (1.0f + 1e-6f));
     return bound <= (float)MSPRING_MAX_COORDINATE
                ? bound
                : mspringi_guard_look(network, 0, mspringi_slot_count(network)).place;
 }
 
-mspring_result mspringi_guard_end(mspring_network *network, const mspringi_attempt *attempt, mspringi_sight sight) {
+mspring_result mspringi_guard_end(mspring_network *network, const mspringi_attempt *attempt,
+                                  mspringi_extrema extrema) {
     const float h = attempt->h;
     mspringi_guard *guard = &network->guard;
-    float speed = bound_speed(network, sight), place = bound_place(network, h, speed, sight);
+    float speed = bound_speed(network, extrema), place = bound_place(network, h, speed, extrema);
     const bool is_out = !(place <= (float)MSPRING_MAX_COORDINATE && speed <= network->max_speed);
     if (is_out && network->guard_policy == MSPRING_GUARD_CLAMP_BOUNDS) {
-        sight = put_back(network);
-        speed = sight.speed;
-        place = sight.place;
+        extrema = put_back(network);
+        speed = extrema.speed;
+        place = extrema.place;
     } else if (is_out) {
         const mspring_result result = check_bounds(network, attempt);
         if (result != MSPRING_OK)
             return result;
     }
-    if (guard->watches && is_suspicious(network, h, sight.change)) {
+    if (guard->watches && is_suspicious(network, h, extrema.change)) {
         const mspring_result result = look_at_border(network, attempt, true);
         if (result != MSPRING_OK)
             return result;

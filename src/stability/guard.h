@@ -23,15 +23,16 @@ mspring_result mspringi_guard_begin(mspring_network *network, const mspringi_att
 
 /// Look at the slots first to end - 1, multiples of MSPRINGI_WIDTH, whose state before the step is in the backup.
 /// May be called by several threads at once.
-mspringi_sight mspringi_guard_look(const mspring_network *network, size_t first, size_t end);
+mspringi_extrema mspringi_guard_look(const mspring_network *network, size_t first, size_t end);
 
 /// Put what is out of bounds back into them: before is the state of before the step, or NULL.
 void mspringi_guard_put_back(mspring_network *network, const mspringi_state *before);
 
 /// The sight of both, in whatever order they are joined.
-mspringi_sight mspringi_sight_join(mspringi_sight a, mspringi_sight b);
+mspringi_extrema mspringi_extrema_join(mspringi_extrema a, mspringi_extrema b);
 
 /// Judge the state that the substeps have led to by the sight of all slots. That of before is in the backup.
-mspring_result mspringi_guard_end(mspring_network *network, const mspringi_attempt *attempt, mspringi_sight sight);
+mspring_result mspringi_guard_end(mspring_network *network, const mspringi_attempt *attempt,
+                                  mspringi_extrema extrema);
 
 #endif

@@ -60,10 +60,10 @@ void mspringi_drop_stale_lows(const mspring_network *network) {
 }
 
 // Keep the state in the backup, run all substeps, and look at what they have led to.
-static mspringi_sight run(mspring_network *network, const mspringi_attempt *attempt) {
+static mspringi_extrema run(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_solver_ops *ops = attempt->solver->ops;
     const bool is_cut = attempt->stages->cut_substeps;
-    mspringi_sight sight = {0.0f, 0.0f, 0.0f};
+    mspringi_extrema extrema = {0.0f, 0.0f, 0.0f};
     mspringi_field base = {NULL, NULL};
     if (network->is_open) {
         mspringi_clear_empty_slots(network);
@@ -74,8 +74,8 @@ static mspringi_sight run(mspring_network *network, const mspringi_attempt *atte
     if (!is_cut) {
         base = mspringi_stages_forces(network, attempt);
         mspringi_stages_forces_known(network, attempt, base);
-        if (mspringi_sleep_is_whole(network) || (ops->whole && ops->whole(network, attempt, base, &sight)))
-            return sight;
+        if (mspringi_sleep_is_whole(network) || (ops->whole && ops->whole(network, attempt, base, &extrema)))
+            return extrema;
     }
     copy_state(network, &network->state, &network->backup);
     if (ops->keep)
@@ -211,7 +211,7 @@ static mspring_result attempt(mspring_network *network, const request *asked, co
 
 /// Steps that follow one which the explicit solver could not take, and which it is not asked to: to find that it
 /// still cannot takes longer than they do.
-#define LENT_STEPS 15
+#define FALLBACK_STEPS 15
 
 // The solver for steps that the chosen one cannot take, or NULL.
 static const mspringi_solver *fallback_of(const mspring_network *network) {
@@ -239,12 +239,13 @@ static mspring_result attempt_otherwise(mspring_network *network, const request 
 
 // Take the step that the solver cannot take, or will not be asked to.
 static mspring_result fall_back(mspring_network *network, const request *asked, const mspringi_solver *fallback) {
-    const uint32_t lent = network->guard.lent, next = network->solver.ops->has_border ? LENT_STEPS : 0;
+    const uint32_t fallback_steps = network->guard.fallback_steps,
+                   next = network->solver.ops->has_border ? FALLBACK_STEPS : 0;
     const mspring_result result = attempt_otherwise(network, asked, fallback);
     const bool took_it = result == MSPRING_OK && !is_idle(network, asked->stages);
     if (took_it)
         network->guard.h = 0.0f; // before the solver is asked again, it is looked whether it can be
-    network->guard.lent = !took_it ? lent : lent > 0 ? lent - 1 : next;
+    network->guard.fallback_steps = !took_it ? fallback_steps : fallback_steps > 0 ? fallback_steps - 1 : next;
     network->fallback_count += took_it;
     return result;
 }
@@ -257,9 +258,10 @@ static mspring_result attempt_as_chosen(mspring_network *network, const request 
 // Try the solver, its fallback, and more substeps, as the host wants it.
 static mspring_result take_step(mspring_network *network, const request *asked) {
     const mspringi_solver *fallback = fallback_of(network);
-    const bool lent = fallback && network->guard.lent > 0;
-    mspring_result result = lent ? fall_back(network, asked, fallback) : attempt_as_chosen(network, asked);
-    if (result == MSPRING_ERROR_UNSTABLE && fallback && !lent)
+    const bool fallback_steps = fallback && network->guard.fallback_steps > 0;
+    mspring_result result =
+        fallback_steps ? fall_back(network, asked, fallback) : attempt_as_chosen(network, asked);
+    if (result == MSPRING_ERROR_UNSTABLE && fallback && !fallback_steps)
         result = fall_back(network, asked, fallback);
     while (result == MSPRING_ERROR_UNSTABLE && network->guard_policy == MSPRING_GUARD_RETRY &&
            network->substeps < network->max_substeps) {

@@ -82,8 +82,8 @@ void mspringi_put_header(mspringi_writer *to, const mspringi_snapshot_header *he
     mspringi_put(to, &header->particle_count, 1, 4);
     mspringi_put(to, &header->spring_count, 1, 4);
     mspringi_put_zeros(to, 4);
-    mspringi_put(to, &header->topology_print, 1, 8);
-    mspringi_put(to, &header->parameter_print, 1, 8);
+    mspringi_put(to, &header->topology_fingerprint, 1, 8);
+    mspringi_put(to, &header->parameter_fingerprint, 1, 8);
 }
 
 bool mspringi_get_header(const uint8_t *from, mspringi_snapshot_header *header) {
@@ -97,7 +97,7 @@ bool mspringi_get_header(const uint8_t *from, mspringi_snapshot_header *header) 
     from = mspringi_get(from, &header->particle_count, 1, 4);
     from = mspringi_get(from, &header->spring_count, 1, 4);
     from = mspringi_get(from, &reserved, 1, 4);
-    from = mspringi_get(from, &header->topology_print, 1, 8);
-    mspringi_get(from, &header->parameter_print, 1, 8);
+    from = mspringi_get(from, &header->topology_fingerprint, 1, 8);
+    mspringi_get(from, &header->parameter_fingerprint, 1, 8);
     return true;
 }

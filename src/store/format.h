@@ -26,7 +26,7 @@ typedef struct mspringi_snapshot_header {
     uint64_t size; ///< of all, with the checksum
     uint32_t contents;
     uint32_t particle_count, spring_count;
-    uint64_t topology_print, parameter_print;
+    uint64_t topology_fingerprint, parameter_fingerprint;
 } mspringi_snapshot_header;
 #define MSPRINGI_SNAPSHOT_HEADER_BYTES ((size_t)56)
 

@@ -54,13 +54,13 @@ static void number_nodes(mspring_network *network) {
         web->neighbour[node] = graft->node_of_end[(uint32_t)graft->keys[node] ^ 1u];
     web->group_count = (graft->count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
     web->attached_count = web->group_count * MSPRINGI_WIDTH;
-    const size_t half = mspringi_packed_distance(network, web);
+    const size_t half = mspringi_gathered_distance(network, web);
     for (uint32_t node = graft->count; node < web->attached_count; ++node) {
         web->attached_slot[node] = MSPRING_NONE;
         web->neighbour[node] = node;
-        float *packed = graft->packed + 4 * (size_t)node;
+        float *gathered = graft->gathered + 4 * (size_t)node;
         for (uint32_t i = 0; i < 4; ++i)
-            packed[i] = packed[half + i] = 0.0f;
+            gathered[i] = gathered[half + i] = 0.0f;
     }
 }
 
@@ -110,10 +110,10 @@ void mspringi_graft_begin(const mspring_network *network, const mspringi_sweep *
     mspringi_sweep own = *sweep;
     own.web = &graft->web;
     own.web_springs = graft->records;
-    own.packed = graft->packed;
-    float *packed = graft->packed;
-    for (uint32_t node = 0; node < graft->count; ++node, packed += 4)
-        mspringi_pack_slot(network, &graft->web, packed, graft->web.attached_slot[node]);
+    own.gathered = graft->gathered;
+    float *gathered = graft->gathered;
+    for (uint32_t node = 0; node < graft->count; ++node, gathered += 4)
+        mspringi_pack_slot(network, &graft->web, gathered, graft->web.attached_slot[node]);
     mspringi_attached_kernel(network)(&own, 0, graft->web.attached_count, graft->pulls,
                                       graft->pulls + graft->capacity);
 }

@@ -22,7 +22,7 @@ typedef struct mspringi_graft {
     mspringi_web web;
     mspring_id *springs;      ///< [capacity] of each node
     float *records;           ///< [capacity / MSPRINGI_WIDTH][parts][MSPRINGI_WIDTH]
-    float *packed;            ///< [capacity][4] where the nodes are before the substep
+    float *gathered;          ///< [capacity][4] where the nodes are before the substep
     float *pulls;             ///< forces on the nodes, all x and then all y
     uint64_t *keys, *scratch; ///< [capacity] to sort the nodes by
     uint32_t *node_of_end;    ///< [capacity]

@@ -159,7 +159,7 @@ typedef struct mspringi_strain {
 typedef struct mspringi_guard {
     float h, global_damping; ///< the border was looked at for these; h is 0 at first
     bool watches;            ///< this step's substeps are longer than what is stable in any shape
-    uint32_t lent;           ///< steps that the fallback still takes before the explicit solver is tried again
+    uint32_t fallback_steps; ///< steps that the fallback still takes before the explicit solver is tried again
     float peak;              ///< largest change when the border was looked at last, fading, m/s
     bool knows_speed;        ///< speed is that of the state before this step
     bool knows_place;        ///< place is, and how far it gets in this step follows from speeds at its end
@@ -182,20 +182,20 @@ typedef struct mspringi_alike {
     uint64_t changes;   ///< springs that were set since these were looked for
 } mspringi_alike;
 
-/// What workers leave to each other where they share strips, see solvers/explicit/seam.h and shares.h; no arrays
+/// What workers leave to each other where they share strips, see solvers/explicit/halo.h and shares.h; no arrays
 /// for one.
-typedef struct mspringi_seams {
+typedef struct mspringi_halos {
     uint32_t workers;     ///< that there is room for; 0: none
-    uint32_t count;       ///< seams: borders between lattice strips
+    uint32_t count;       ///< halos: borders between lattice strips
     uint32_t substeps;    ///< in the deepest pass
     uint32_t row_spans;   ///< spans in a row, at most
     uint32_t strips;      ///< or layers, whichever are more
     size_t segment;       ///< slots of the widest row, and a block to be read behind
-    float *values;        ///< [count][MSPRINGI_STATE_ARRAYS][rows of a seam][segment]
+    float *values;        ///< [count][MSPRINGI_STATE_ARRAYS][rows of a halo][segment]
     mspringi_span *spans; ///< [count][2][2][row_spans]
     uint32_t *borders;    ///< [MSPRINGI_PLANNED_PASSES][workers]
     uint64_t *weights;    ///< [strips + 1] of the strips below each
-} mspringi_seams;
+} mspringi_halos;
 
 /// Which islands sleep, and what they were when they fell asleep; no arrays if none ever does. An island is a
 /// component of live springs, numbered by its lowest slot.
@@ -268,14 +268,14 @@ struct mspring_network {
     mspringi_topology topology;
     mspringi_topology whole; ///< the one the network was created with, while it is compact; else empty
     bool is_compact;
-    uint64_t whole_print;         ///< topology_print of whole
+    uint64_t whole_fingerprint;   ///< topology_fingerprint of whole
     uint32_t whole_tile_size;     ///< of the implicit solver that whole had; 0 if there was none
     uint32_t whole_fallback_size; ///< the same of the fallback's
     mspring_job *job;             ///< another layout that is being made, or NULL
     bool is_seen_compact;         ///< with these edits it was found to have nothing to do
     uint64_t seen_links, seen_growth;
-    uint64_t topology_print;  ///< hash of which particles the springs join, and of where they lie
-    uint64_t parameter_print; ///< hash of what the springs are like, and of all edits of that
+    uint64_t topology_fingerprint;  ///< hash of which particles the springs join, and of where they lie
+    uint64_t parameter_fingerprint; ///< hash of what the springs are like, and of all edits of that
     const mspringi_kernels *kernels;
     mspringi_tasks *tasks; ///< NULL: the caller's thread steps alone
 
@@ -296,7 +296,7 @@ struct mspring_network {
     float *lattice_springs, *chain_springs;
     mspringi_alike alike;
     float *web_springs;
-    float *packed;   ///< [2][nodes of the web][4] at the start of every other substep; see store/precise.h
+    float *gathered; ///< [2][nodes of the web][4] at the start of every other substep; see store/precise.h
     float *attached; ///< forces on the attached nodes, all x and then all y
     mspringi_fractions fractions;
     float relative_h;        ///< the substep that relative springs were derived for; 0: not yet
@@ -306,7 +306,7 @@ struct mspring_network {
     uint32_t depth;          ///< substeps that may be swept in one pass over the lattice rows
     uint32_t carry_rows;     ///< depth, for each worker
     float *carry;            ///< [carry_rows] forces on the row above, all x and then all y of each
-    mspringi_seams seams;
+    mspringi_halos halos;
 
     float gravity_x, gravity_y, global_damping, max_speed;
     uint32_t substeps; ///< of the last step or, unless auto_substeps, of the next
@@ -386,7 +386,7 @@ void mspringi_clear_empty_slots(const mspring_network *network);
 /// Drop the low words that are too large for their coordinates.
 void mspringi_drop_stale_lows(const mspring_network *network);
 
-/// Allocate the carry rows and seams that the network's workers need, unless it has as many.
+/// Allocate the carry rows and halos that the network's workers need, unless it has as many.
 mspring_result mspringi_carry_reserve(mspring_network *network);
 
 /// Allocate what the explicit solver has by slot and by place. On error some of it is there.

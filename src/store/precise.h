@@ -39,26 +39,26 @@ static inline bool mspringi_packs_halves(const mspring_network *network) {
     return network->is_precise && network->parts > MSPRINGI_DAMPING;
 }
 
-static inline uint32_t mspringi_packed_values(const mspring_network *network) {
+static inline uint32_t mspringi_gathered_values(const mspring_network *network) {
     return mspringi_packs_halves(network) ? 8 : 4;
 }
 
 /// From a node's first half to its second; 0 if there is none.
-static inline size_t mspringi_packed_distance(const mspring_network *network, const mspringi_web *web) {
-    return mspringi_packs_halves(network) ? mspringi_packed_half(web) : 0;
+static inline size_t mspringi_gathered_distance(const mspring_network *network, const mspringi_web *web) {
+    return mspringi_packs_halves(network) ? mspringi_gathered_half(web) : 0;
 }
 
 /// Pack what is in a slot.
-static inline void mspringi_pack_slot(const mspring_network *network, const mspringi_web *web, float *packed,
+static inline void mspringi_pack_slot(const mspring_network *network, const mspringi_web *web, float *gathered,
                                       uint32_t slot) {
     const mspringi_state *s = &network->state;
-    float *half = packed + mspringi_packed_distance(network, web);
+    float *half = gathered + mspringi_gathered_distance(network, web);
     half[0] = s->vx[slot];
     half[1] = s->vy[slot];
-    packed[2] = network->is_precise ? s->low_x[slot] : s->vx[slot];
-    packed[3] = network->is_precise ? s->low_y[slot] : s->vy[slot];
-    packed[0] = s->x[slot];
-    packed[1] = s->y[slot];
+    gathered[2] = network->is_precise ? s->low_x[slot] : s->vx[slot];
+    gathered[3] = network->is_precise ? s->low_y[slot] : s->vy[slot];
+    gathered[0] = s->x[slot];
+    gathered[1] = s->y[slot];
 }
 
 #endif

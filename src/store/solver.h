@@ -48,7 +48,7 @@ struct mspringi_solver_ops {
     bool picks_substeps; ///< the library may choose their number (MSPRING_SUBSTEPS_AUTO)
     bool takes_one;      ///< as a fallback it takes a step in one substep
     bool skips_sleepers; ///< leaves alone blocks in which nothing is to be swept
-    bool lags;           ///< velocities are those of half a substep before the positions, as of symplectic Euler
+    bool skews;          ///< velocities are those of half a substep before the positions, as of symplectic Euler
     bool has_herds;      ///< sweeps small trees in herds
     bool can_add;        ///< springs may be added
 
@@ -77,7 +77,7 @@ struct mspringi_solver_ops {
     // with the same forces from outside (x NULL: none), and with the floor. end: after the last.
     void (*begin)(mspring_network *network);
     bool (*whole)(mspring_network *network, const mspringi_attempt *attempt, mspringi_field base,
-                  mspringi_sight *sight);
+                  mspringi_extrema *extrema);
     void (*substeps)(mspring_network *network, void *object, float h, mspringi_field base, uint32_t count);
     void (*end)(mspring_network *network);
 

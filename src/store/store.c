@@ -39,7 +39,7 @@ static const mspringi_column list[] = {
 
 static size_t web_places(const mspringi_topology *t) {
     const size_t own = t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0;
-    const size_t others = (size_t)(t->leftover_capacity - t->woven_count) + t->parked_count;
+    const size_t others = (size_t)(t->leftover_capacity - t->woven_count) + t->inactive_count;
     return (own + (others + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH) * MSPRINGI_WIDTH;
 }
 

@@ -18,13 +18,13 @@
 #define TWO_PI 6.283185307179586
 
 /// Sums over the steps of a run, weighted by mass.
-typedef struct swing {
+typedef struct geometric {
     double *x, *y;          ///< [particles] sums of displacements, m
     double squares, speeds; ///< of displacements and of velocities
     uint32_t steps;
-} swing;
+} geometric;
 
-static void note(const mspringi_tuning *tuning, const mspring_network *clone, swing *s) {
+static void note(const mspringi_tuning *tuning, const mspring_network *clone, geometric *s) {
     const mspringi_state *now = &clone->state, *start = &tuning->base->state;
     const double shift_x = clone->origin_x - tuning->base->origin_x,
                  shift_y = clone->origin_y - tuning->base->origin_y;
@@ -45,7 +45,7 @@ static void note(const mspringi_tuning *tuning, const mspring_network *clone, sw
 }
 
 // The period that the motion so far tells of, s; 0 if nothing moves.
-static double period_of(const mspring_network *clone, const swing *s) {
+static double period_of(const mspring_network *clone, const geometric *s) {
     const double steps = (double)s->steps;
     double means = 0.0;
     for (uint32_t p = 0; p < clone->topology.particle_count; ++p) {
@@ -90,7 +90,7 @@ static uint32_t run_one_period(mspringi_tuning *tuning, mspring_network *clone, 
     const mspring_tune_def *def = &tuning->def;
     const size_t particles = clone->topology.particle_count;
     const double begun = def->clock(def->user);
-    swing s = {.x = tuning->places, .y = tuning->places + particles};
+    geometric s = {.x = tuning->places, .y = tuning->places + particles};
     memset(tuning->places, 0, 2 * particles * sizeof *tuning->places);
     while ((double)s.steps < most && mspringi_tuning_goes_on(tuning, 0.0) &&
            mspring_network_step(clone, def->dt) == MSPRING_OK) {

@@ -1,9 +1,9 @@
 /// Homes: which lattice rows the particles of ropes and other oddments are swept with.
 ///
 /// Strips of rows are swept for several substeps in one pass, each substep some strips behind the one before: the
-/// lag. A leftover spring needs both its ends as they were at the substep before, so its ends must be swept within
-/// lag strips of each other. For a given lag, the highest and lowest strip that each particle can have follow from
-/// the lattice particles that it hangs on (the extensions of a Lipschitz function by McShane, 1934); halfway
+/// skew. A leftover spring needs both its ends as they were at the substep before, so its ends must be swept within
+/// skew strips of each other. For a given skew, the highest and lowest strip that each particle can have follow
+/// from the lattice particles that it hangs on (the extensions of a Lipschitz function by McShane, 1934); halfway
 /// between them is a solution too, and the smoothest of the three.
 #include <string.h>
 
@@ -25,7 +25,7 @@
 #define STRIPS_PER_WORKER 12
 
 /// Whether the rows of a component can be swept together.
-enum { FIT, UNFIT_FOR_LAG, UNFIT };
+enum { FIT, UNFIT_FOR_SKEW, UNFIT };
 
 typedef struct mspringi_homes_finder {
     const mspringi_graph *graph;
@@ -145,11 +145,11 @@ static void begin_spreading(finder *f, uint32_t *bounds, bool upside_down) {
             enqueue(f, f->attached[i], bounds[f->attached[i]]);
 }
 
-// From one particle to its neighbours: they have a bound lower by the lag, and the highest bound counts. False:
-// some component does not fit this lag.
+// From one particle to its neighbours: they have a bound lower by the skew, and the highest bound counts. False:
+// some component does not fit this skew.
 static bool spread_from(finder *f, uint32_t p, uint32_t *bounds) {
     const mspringi_graph *graph = f->graph;
-    const uint32_t lag = f->homes->lag, bound = f->strip > lag ? f->strip - lag : 0;
+    const uint32_t skew = f->homes->skew, bound = f->strip > skew ? f->strip - skew : 0;
     bool fits = true;
     for (uint32_t i = graph->first[p]; i < graph->first[p + 1]; ++i) {
         const uint32_t other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], p);
@@ -158,7 +158,7 @@ static bool spread_from(finder *f, uint32_t p, uint32_t *bounds) {
             enqueue(f, other, bound);
         } else if (bound > bounds[other]) {
             // Only lattice particles can be lower: all others were reached from the highest first.
-            *fitness_of(f, other) = UNFIT_FOR_LAG;
+            *fitness_of(f, other) = UNFIT_FOR_SKEW;
             fits = false;
         }
     }
@@ -192,16 +192,16 @@ static void combine(const finder *f) {
             homes->home[p] = (f->low[p] + (strips - 1 - homes->home[p])) / 2;
 }
 
-// Components that need more than the longest lag are left out; the others get a longer one.
+// Components that need more than the longest skew are left out; the others get a longer one.
 static void relent(const finder *f) {
-    const bool is_longest = f->homes->lag == MSPRINGI_LONGEST_LAG;
+    const bool is_longest = f->homes->skew == MSPRINGI_LONGEST_SKEW;
     for (uint32_t p = 0; p < f->graph->builder->particle_count; ++p)
-        if (f->fitness[p] == UNFIT_FOR_LAG)
+        if (f->fitness[p] == UNFIT_FOR_SKEW)
             f->fitness[p] = is_longest ? UNFIT : FIT;
-    f->homes->lag += !is_longest;
+    f->homes->skew += !is_longest;
 }
 
-static void try_lag(finder *f) {
+static void try_skew(finder *f) {
     number_rows(f);
     f->is_found = spread(f, f->low, false) && spread(f, f->homes->home, true);
     if (f->is_found)
@@ -231,7 +231,7 @@ mspring_result mspringi_homes_begin(mspringi_homes *homes, const mspringi_graph 
                                     mspringi_message *message) {
     const size_t particles = graph->builder->particle_count;
     finder *f = homes->finder = mspringi_alloc(memory, 1, sizeof *f);
-    homes->lag = 1;
+    homes->skew = 1;
     homes->home = mspringi_alloc(memory, particles, sizeof *homes->home);
     homes->grid_order = mspringi_alloc(memory, grids->count, sizeof *homes->grid_order);
     homes->first_row = mspringi_alloc(memory, grids->count, sizeof *homes->first_row);
@@ -296,12 +296,12 @@ static void free_finder(finder *f, mspringi_memory *memory) {
         mspringi_free(memory, blocks[i]);
 }
 
-// At the longest lag each try leaves out a component at least.
-void mspringi_homes_try_lags(mspringi_homes *homes, uint32_t first, uint32_t end) {
+// At the longest skew each try leaves out a component at least.
+void mspringi_homes_try_skews(mspringi_homes *homes, uint32_t first, uint32_t end) {
     finder *f = homes->finder;
-    for (uint32_t lag = first + 1; lag <= end; ++lag)
-        while (!f->is_found && homes->lag == lag)
-            try_lag(f);
+    for (uint32_t skew = first + 1; skew <= end; ++skew)
+        while (!f->is_found && homes->skew == skew)
+            try_skew(f);
 }
 
 void mspringi_homes_end(mspringi_homes *homes, mspringi_memory *memory) {

@@ -1,9 +1,10 @@
 /// Layers: a large web in pieces of which each has springs to the one before and the one behind alone.
 ///
 /// A web that does not fit the cache is read from memory once for each substep, unless several are taken in one
-/// pass over its layers, each substep one layer behind the one before (a wave, as over the strips of lattices).
-/// Layers are whole levels of a search in breadth, from a particle that is as far away as a first such search could
-/// find. A spring or rope from anywhere to anywhere is searched along like any other: there are fewer layers then.
+/// pass over its layers, each substep one layer behind the one before (a wavefront, as over the strips of
+/// lattices). Layers are whole levels of a search in breadth, from a particle that is as far away as a first such
+/// search could find. A spring or rope from anywhere to anywhere is searched along like any other: there are fewer
+/// layers then.
 #include <string.h>
 
 #include "layout/analysis.h"
@@ -11,7 +12,7 @@
 /// Particles in a layer, or more: fewer make more calls, and levels of webs that have so many particles are wider.
 #define LAYER_PARTICLES 1024
 
-/// With fewer layers than these a wave is no more than its front.
+/// With fewer layers than these a wavefront is no more than its front.
 #define FEWEST_LAYERS 8
 
 /// Instead of a layer's number.

@@ -2,7 +2,7 @@
 ///
 /// Springs between particles that lie one above the other, sixteen ropes side by side, are computed once and gather
 /// nothing (see web.h). So a rope goes from the strip that one of its ends hangs on to near the other's in as few
-/// particles as the lag allows, and stays there with all others. What stays is cut into pieces of two lengths:
+/// particles as the skew allows, and stays there with all others. What stays is cut into pieces of two lengths:
 /// sixteen of the same length begin and end together, and only springs between pieces, at the first and the last
 /// row, are computed at both ends.
 #include "layout/arrange/ropes.h"
@@ -32,18 +32,18 @@ static int64_t clamp(int64_t value, int64_t low, int64_t high) {
     return value < low ? low : value > high ? high : value;
 }
 
-// Give a strand's particles homes that are no more than the lag from each other and from what its ends hang on.
+// Give a strand's particles homes that are no more than the skew from each other and from what its ends hang on.
 static void settle(const mspringi_ropes *ropes, uint32_t begin, uint32_t end) {
     const uint32_t *particles = ropes->strands->particles, *springs = ropes->strands->springs;
-    const int64_t lag = ropes->homes->lag;
+    const int64_t skew = ropes->homes->skew;
     uint32_t from = strip_at_end(ropes, particles[begin], springs[begin]);
     uint32_t to = strip_at_end(ropes, particles[end - 1], end - begin > 1 ? springs[end - 2] : MSPRING_NONE);
     from = from == MSPRING_NONE ? to : from;
     to = to == MSPRING_NONE ? from : to;
-    // Of each 2 * lag strips one, within reach of all others, so that more ropes meet there.
-    const int64_t stay = clamp((int64_t)to / (2 * lag) * (2 * lag) + lag, 0, (int64_t)ropes->strip_count - 1);
+    // Of each 2 * skew strips one, within reach of all others, so that more ropes meet there.
+    const int64_t stay = clamp((int64_t)to / (2 * skew) * (2 * skew) + skew, 0, (int64_t)ropes->strip_count - 1);
     for (uint32_t i = begin; i < end; ++i) {
-        const int64_t since = lag * (i + 1 - begin), left = lag * (end - i);
+        const int64_t since = skew * (i + 1 - begin), left = skew * (end - i);
         const int64_t low = from - since > to - left ? from - since : to - left;
         const int64_t high = from + since < to + left ? from + since : to + left;
         ropes->homes->home[particles[i]] = (uint32_t)clamp(stay, low, high);

@@ -182,20 +182,23 @@ static bool list_layers(mspringi_assembly *a) {
     return true;
 }
 
-// Cut the rows into strips: those of the wave as their homes want it, of the others each on its own.
+// Cut the rows into strips: those of the wavefront as their homes want it, of the others each on its own.
 mspring_result mspringi_assembly_make_strips(mspringi_assembly *a) {
     mspringi_topology *t = a->topology;
     const uint32_t rows = a->homes.strip_rows;
-    t->lag = a->homes.lag;
-    t->wave_rows = a->homes.row_count;
-    t->wave_strips = (t->wave_rows + rows - 1) / rows;
-    t->strip_count = t->wave_strips + (t->row_count - t->wave_rows);
-    t->herd_strip = a->herds.group_count > 0 ? t->wave_strips + (a->herd_row - t->wave_rows) : MSPRING_NONE;
+    t->skew = a->homes.skew;
+    t->wavefront_rows = a->homes.row_count;
+    t->wavefront_strips = (t->wavefront_rows + rows - 1) / rows;
+    t->strip_count = t->wavefront_strips + (t->row_count - t->wavefront_rows);
+    t->herd_strip =
+        a->herds.group_count > 0 ? t->wavefront_strips + (a->herd_row - t->wavefront_rows) : MSPRING_NONE;
     t->strips = mspringi_alloc(a->memory, t->strip_count, sizeof *t->strips);
     if (!t->strips)
         return mspringi_assembly_fail(a);
     for (uint32_t s = 0, row = 0; s < t->strip_count; ++s) {
-        const uint32_t left = t->wave_rows - row, count = s >= t->wave_strips ? 1 : left < rows ? left : rows;
+        const uint32_t left = t->wavefront_rows - row, count = s >= t->wavefront_strips ? 1
+                                                               : left < rows            ? left
+                                                                                        : rows;
         t->strips[s] = (mspringi_strip){.first_row = row, .row_count = count, .home_span = MSPRING_NONE};
         row += count;
     }

@@ -26,18 +26,18 @@ static bool note_layout(mspringi_topology *t, mspringi_memory *memory) {
     return true;
 }
 
-mspring_result mspringi_spare_reserve(mspringi_topology *t, uint32_t parked, mspringi_memory *memory,
+mspring_result mspringi_spare_reserve(mspringi_topology *t, uint32_t inactive, mspringi_memory *memory,
                                       mspringi_message *message) {
     const uint32_t springs = mspringi_spare_springs(t), woven = t->woven_count;
-    const size_t count = (size_t)woven + springs + parked;
+    const size_t count = (size_t)woven + springs + inactive;
     const uint32_t rungs = t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0;
     if ((uint64_t)t->chain_places + count >= MSPRING_NONE ||
-        (uint64_t)rungs * MSPRINGI_WIDTH + springs + parked >= MSPRING_NONE)
+        (uint64_t)rungs * MSPRINGI_WIDTH + springs + inactive >= MSPRING_NONE)
         return mspringi_fail(message, MSPRING_ERROR_LIMIT, "%u springs are more than can be numbered",
                              (unsigned)t->spring_count);
     t->leftover_capacity = woven + springs;
-    t->parked_count = parked;
-    if (springs + parked > 0 &&
+    t->inactive_count = inactive;
+    if (springs + inactive > 0 &&
         (!lengthen(&t->leftover_a, woven, count, memory) || !lengthen(&t->leftover_b, woven, count, memory) ||
          !lengthen(&t->web.entry, (size_t)2 * (t->web.entry ? woven : 0), 2 * count, memory)))
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the places of %zu springs", count);
@@ -47,7 +47,7 @@ mspring_result mspringi_spare_reserve(mspringi_topology *t, uint32_t parked, msp
 
 void mspringi_spare_enter(mspringi_topology *t) {
     const uint32_t rungs = t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0;
-    for (uint32_t i = 0; i < mspringi_spare_springs(t) + t->parked_count; ++i) {
+    for (uint32_t i = 0; i < mspringi_spare_springs(t) + t->inactive_count; ++i) {
         uint32_t *entry = t->web.entry + 2 * ((size_t)t->woven_count + i);
         entry[0] = entry[1] = rungs * MSPRINGI_WIDTH + i;
     }

@@ -35,10 +35,10 @@ static inline bool mspringi_slot_is_spare(const mspringi_topology *t, uint32_t s
     return slot / MSPRINGI_WIDTH - t->spare_first < t->spare_blocks; // unsigned: slots before it are not
 }
 
-/// Give the spare springs, and so many parked ones behind them, room among the leftover springs; then
+/// Give the spare springs, and so many inactive ones behind them, room among the leftover springs; then
 /// records behind the web's rungs, of which one serves both ends; then let the springs with spare ids that
 /// are behind the last have theirs, and note it. On error the topology is still to be destroyed.
-mspring_result mspringi_spare_reserve(mspringi_topology *t, uint32_t parked, mspringi_memory *memory,
+mspring_result mspringi_spare_reserve(mspringi_topology *t, uint32_t inactive, mspringi_memory *memory,
                                       mspringi_message *message);
 void mspringi_spare_enter(mspringi_topology *t);
 mspring_result mspringi_spare_keep(mspringi_topology *t, mspringi_memory *memory, mspringi_message *message);

@@ -97,7 +97,7 @@ static void take_substeps(mspring_network *network, void *object, float h, mspri
 }
 
 static const mspringi_solver_ops ops = {
-    .lags = true,
+    .skews = true,
     .can_add = true,
     .begin = mspringi_graft_follow,
     .substeps = take_substeps,

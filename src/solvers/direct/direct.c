@@ -63,7 +63,7 @@ static void list_ends(const mspring_network *network, mspringi_direct *direct) {
         direct->end_a[place] = direct->end_b[place] = nowhere;
     for (mspring_id spring = 0; spring < t->spring_count; ++spring) {
         const mspringi_place place = t->place_of_spring[spring];
-        if (!mspringi_place_is_parked(t, place) && mspringi_spring_exists(network, spring))
+        if (!mspringi_place_is_inactive(t, place) && mspringi_spring_exists(network, spring))
             mspringi_topology_ends(t, place, &direct->end_a[place], &direct->end_b[place]);
     }
 }
@@ -232,15 +232,15 @@ static void fill_edges(const mspringi_implicit *n) {
     const size_t whole = d->place_count / MSPRINGI_WIDTH, rest = d->place_count % MSPRINGI_WIDTH;
     for (size_t block = 0; block < whole + (rest > 0); ++block) {
         const float *pull_x = factors_of_block(n, block), *pull_y = pull_x + MSPRINGI_WIDTH;
-        const float *swing = pull_y + MSPRINGI_WIDTH;
+        const float *geometric = pull_y + MSPRINGI_WIDTH;
         float *restrict xx = d->edges.xx + block * MSPRINGI_WIDTH;
         float *restrict xy = d->edges.xy + block * MSPRINGI_WIDTH;
         float *restrict yy = d->edges.yy + block * MSPRINGI_WIDTH;
         const size_t count = block < whole ? MSPRINGI_WIDTH : rest;
         for (size_t i = 0; i < count; ++i) {
-            xx[i] = -(swing[i] + pull_x[i] * pull_x[i]);
+            xx[i] = -(geometric[i] + pull_x[i] * pull_x[i]);
             xy[i] = -(pull_x[i] * pull_y[i]);
-            yy[i] = -(swing[i] + pull_y[i] * pull_y[i]);
+            yy[i] = -(geometric[i] + pull_y[i] * pull_y[i]);
         }
     }
 }
@@ -268,8 +268,8 @@ static void add_any_edges(const mspringi_implicit *n, uint32_t first) {
         const float *f = factors_of_block(n, place / MSPRINGI_WIDTH) + place % MSPRINGI_WIDTH;
         const double pull_x = (double)f[MSPRINGI_PULL_X * MSPRINGI_WIDTH];
         const double pull_y = (double)f[MSPRINGI_PULL_Y * MSPRINGI_WIDTH];
-        const double swing = (double)f[MSPRINGI_SWING * MSPRINGI_WIDTH];
-        const double xx = swing + pull_x * pull_x, xy = pull_x * pull_y, yy = swing + pull_y * pull_y;
+        const double geometric = (double)f[MSPRINGI_GEOMETRIC * MSPRINGI_WIDTH];
+        const double xx = geometric + pull_x * pull_x, xy = pull_x * pull_y, yy = geometric + pull_y * pull_y;
         edge.xx[place] = -xx;
         edge.xy[place] = -xy;
         edge.yy[place] = -yy;

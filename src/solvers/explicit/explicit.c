@@ -5,16 +5,16 @@
 
 #include "contact/floor.h"
 #include "sleep/sleep.h"
-#include "solvers/explicit/creep.h"
+#include "solvers/explicit/flush.h"
+#include "solvers/explicit/halo.h"
 #include "solvers/explicit/herds.h"
-#include "solvers/explicit/seam.h"
 #include "solvers/explicit/shares.h"
 #include "solvers/explicit/strip.h"
 #include "store/alike.h"
-#include "tasks/crew.h"
+#include "tasks/team.h"
 
 /// Strips that are swept several times in one pass should stay in the second-level cache: this much of it. Where
-/// only a few substeps would find room there (strips are long, or ropes ask for a large lag), more of them are
+/// only a few substeps would find room there (strips are long, or ropes ask for a large skew), more of them are
 /// better off in the third level: this much of it.
 #define NEAR_CACHE_BYTES ((size_t)1 << 20)
 #define FAR_CACHE_BYTES ((size_t)4 << 20)
@@ -34,13 +34,14 @@ typedef struct job {
     uint32_t count;              ///< substeps
     uint32_t workers;            ///< bodies that run at the same time
     mspringi_progress *progress; ///< [workers]; NULL for one
-    mspringi_shares shares;      ///< (wave)
-    const mspringi_strip *web;   ///< the web row's, if that is swept in layers, as strips of a wave of its own
-    mspringi_sight *sights;      ///< [workers] if the substeps are a whole step; else NULL
-    bool herds_are_apart;        ///< and not to be swept here
+    mspringi_shares shares;      ///< (wavefront)
+    const mspringi_strip *web;   ///< the web row's, if that is swept in layers, as strips of a wavefront of its own
+    mspringi_extrema *all_extrema; ///< [workers] if the substeps are a whole step; else NULL
+    bool herds_are_apart;          ///< and not to be swept here
 } job;
 
-/* ------------------------------------------------------------------------------------------------- the wave */
+/* ------------------------------------------------------------------------------------------------- the wavefront
+ */
 
 // Substeps whose strips fit so much cache, at least one.
 static uint32_t depth_within(const mspringi_topology *topology, uint32_t parts, size_t cache_bytes) {
@@ -49,45 +50,45 @@ static uint32_t depth_within(const mspringi_topology *topology, uint32_t parts, 
     const uint64_t slots = (uint64_t)topology->lattice_blocks * MSPRINGI_WIDTH;
     const uint64_t rows =
         cache_bytes / (floats_per_slot * sizeof(float)) * (uint64_t)topology->lattice_rows / slots;
-    const uint64_t strips = rows * topology->wave_strips / topology->wave_rows;
-    const uint64_t depth = strips > topology->lag ? (strips - 1) / topology->lag : 1;
+    const uint64_t strips = rows * topology->wavefront_strips / topology->wavefront_rows;
+    const uint64_t depth = strips > topology->skew ? (strips - 1) / topology->skew : 1;
     return (uint32_t)(depth < DEEPEST ? depth : DEEPEST);
 }
 
 uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t parts) {
-    if (topology->wave_rows == 0)
+    if (topology->wavefront_rows == 0)
         return 1;
     const uint32_t near_depth = depth_within(topology, parts, NEAR_CACHE_BYTES);
     return near_depth > FEW_SUBSTEPS ? near_depth : depth_within(topology, parts, FAR_CACHE_BYTES);
 }
 
 // If the substeps are a whole step, have the first one keep the state and the last one look at it.
-static void mark_ends(const job *wave, mspringi_substep *substep, uint32_t number, mspringi_watch *watch) {
-    if (wave->sights && number == 0)
-        mspringi_substep_keep(wave->network, substep);
-    if (wave->sights && number + 1 == wave->count)
-        mspringi_substep_watch(wave->network, substep, watch);
+static void mark_ends(const job *wavefront, mspringi_substep *substep, uint32_t number, mspringi_watch *watch) {
+    if (wavefront->all_extrema && number == 0)
+        mspringi_substep_keep(wavefront->network, substep);
+    if (wavefront->all_extrema && number + 1 == wavefront->count)
+        mspringi_substep_watch(wavefront->network, substep, watch);
 }
 
-static void add_sight(const job *wave, uint32_t worker, mspringi_sight sight) {
-    wave->sights[worker] = mspringi_sight_join(wave->sights[worker], sight);
+static void add_extrema(const job *wavefront, uint32_t worker, mspringi_extrema extrema) {
+    wavefront->all_extrema[worker] = mspringi_extrema_join(wavefront->all_extrema[worker], extrema);
 }
 
 // Take one substep of a strip and, if it is the last of a whole step, what belongs after it.
-static void sweep_strip(const job *wave, const mspringi_substep *substep, uint32_t worker,
-                        const mspringi_strip *strip, const mspringi_seam *seam) {
-    if (mspringi_share_of_strip(wave->network, strip) == MSPRINGI_ASLEEP)
+static void sweep_strip(const job *wavefront, const mspringi_substep *substep, uint32_t worker,
+                        const mspringi_strip *strip, const mspringi_halo *halo) {
+    if (mspringi_share_of_strip(wavefront->network, strip) == MSPRINGI_ASLEEP)
         return;
-    mspringi_strip_sweep(wave->network, substep, strip, seam);
+    mspringi_strip_sweep(wavefront->network, substep, strip, halo);
     if (substep->sweep.watch)
-        add_sight(wave, worker, mspringi_strip_end(wave->network, strip));
+        add_extrema(wavefront, worker, mspringi_strip_end(wavefront->network, strip));
 }
 
 // A layer of the web row, as a span of its own.
-static mspringi_span layer_span(const job *wave, uint32_t layer) {
-    const mspringi_topology *t = &wave->network->topology;
+static mspringi_span layer_span(const job *wavefront, uint32_t layer) {
+    const mspringi_topology *t = &wavefront->network->topology;
     const uint32_t begin = t->layer_blocks[layer], end = t->layer_blocks[layer + 1];
-    mspringi_span span = t->spans[t->rows[wave->web->first_row].first_span];
+    mspringi_span span = t->spans[t->rows[wavefront->web->first_row].first_span];
     span.first_slot += begin * MSPRINGI_WIDTH;
     span.end_slot = span.first_slot + (end - begin) * MSPRINGI_WIDTH;
     span.first_record += begin;
@@ -95,21 +96,21 @@ static mspringi_span layer_span(const job *wave, uint32_t layer) {
 }
 
 // The same of a layer of the web row.
-static void sweep_layer(const job *wave, const mspringi_substep *substep, uint32_t layer) {
-    const mspring_network *network = wave->network;
-    const mspringi_span span = layer_span(wave, layer);
-    mspringi_floor_note(network, wave->web, &span, 1);
+static void sweep_layer(const job *wavefront, const mspringi_substep *substep, uint32_t layer) {
+    const mspring_network *network = wavefront->network;
+    const mspringi_span span = layer_span(wavefront, layer);
+    mspringi_floor_note(network, wavefront->web, &span, 1);
     mspringi_web_sweep(network, substep, &span);
-    mspringi_floor_touch(network, wave->web, &span, 1, substep->sweep.h);
-    if (substep->next_packed)
+    mspringi_floor_touch(network, wavefront->web, &span, 1, substep->sweep.h);
+    if (substep->next_gathered)
         mspringi_web_pack_next(network, substep, &span);
     if (substep->sweep.watch)
-        mspringi_creep_stop(network, span.first_slot, span.end_slot);
+        mspringi_flush_to_zero(network, span.first_slot, span.end_slot);
 }
 
 /// What one worker does in a pass.
 typedef struct turn {
-    const job *wave;
+    const job *wavefront;
     uint32_t share, pass;
     uint32_t passed; ///< what the worker's counter is at when the pass begins
     uint32_t above;  ///< where the counter of the worker above was last
@@ -118,75 +119,76 @@ typedef struct turn {
 // The counter of a worker says in how many substeps of a pass it has left its lower border behind, and one more at
 // the end of the pass.
 static void say(const turn *t, uint32_t passed) {
-    if (t->wave->progress)
-        mspringi_progress_advance(&t->wave->progress[t->share], t->passed + passed);
+    if (t->wavefront->progress)
+        mspringi_progress_advance(&t->wavefront->progress[t->share], t->passed + passed);
 }
 
 // Wait for the worker above where it and this one read what the other writes: in the last strips of the share,
 // whose springs lead to the first ones above the border, or to what is read from there.
 static void wait_for_above(turn *t, uint32_t substep, uint32_t strip) {
-    const mspringi_shares *shares = &t->wave->shares;
+    const mspringi_shares *shares = &t->wavefront->shares;
     const uint32_t passed = t->passed + substep + 1;
     if (t->share + 1 < shares->workers && t->above < passed &&
-        strip + 2 * shares->lag >= mspringi_shares_end(shares, t->share, t->pass, substep))
-        t->above = mspringi_progress_wait(&t->wave->progress[t->share + 1], passed);
+        strip + 2 * shares->skew >= mspringi_shares_end(shares, t->share, t->pass, substep))
+        t->above = mspringi_progress_wait(&t->wavefront->progress[t->share + 1], passed);
 }
 
 // Take a substep of the pass for a strip of the share.
 static void take_strip(turn *t, uint32_t number, const mspringi_substep *substep, uint32_t strip) {
-    const job *wave = t->wave;
-    const mspringi_shares *shares = &wave->shares;
+    const job *wavefront = t->wavefront;
+    const mspringi_shares *shares = &wavefront->shares;
     const uint32_t begin = mspringi_shares_begin(shares, t->share, t->pass, number);
     const uint32_t end = mspringi_shares_end(shares, t->share, t->pass, number);
     wait_for_above(t, number, strip);
-    if (wave->web) {
-        sweep_layer(wave, substep, strip);
+    if (wavefront->web) {
+        sweep_layer(wavefront, substep, strip);
     } else {
-        const mspringi_strip *here = &wave->network->topology.strips[strip];
-        const mspringi_seam below = {.border = t->share - 1, .substep = number};
-        const mspringi_seam above = {.border = t->share, .substep = number};
+        const mspringi_strip *here = &wavefront->network->topology.strips[strip];
+        const mspringi_halo below = {.border = t->share - 1, .substep = number};
+        const mspringi_halo above = {.border = t->share, .substep = number};
         if (strip == begin && t->share > 0)
-            mspringi_seam_keep(wave->network, &below, substep, here);
-        sweep_strip(wave, substep, t->share, here, strip + 1 == end && end < shares->strips ? &above : NULL);
+            mspringi_halo_keep(wavefront->network, &below, substep, here);
+        sweep_strip(wavefront, substep, t->share, here, strip + 1 == end && end < shares->strips ? &above : NULL);
     }
-    if (t->share > 0 && strip + 1 == begin + shares->lag)
+    if (t->share > 0 && strip + 1 == begin + shares->skew)
         say(t, number + 1);
 }
 
-// Make one pass: several substeps over all strips of a share, each lag strips behind the one before, so that a
+// Make one pass: several substeps over all strips of a share, each skew strips behind the one before, so that a
 // strip is in the cache for all of them. A strip's substep needs the one before of the strip itself, of the row
 // above, and of the other ends of leftover springs: all are done by then, and none is further.
 static void make_pass(turn *t) {
-    const job *wave = t->wave;
-    const mspring_network *network = wave->network;
-    const mspringi_shares *shares = &wave->shares;
-    const uint32_t count = mspringi_shares_substeps(shares, t->pass), lag = shares->lag;
+    const job *wavefront = t->wavefront;
+    const mspring_network *network = wavefront->network;
+    const mspringi_shares *shares = &wavefront->shares;
+    const uint32_t count = mspringi_shares_substeps(shares, t->pass), skew = shares->skew;
     mspringi_substep substeps[DEEPEST];
     mspringi_watch_room room = {{0.0f}};
     mspringi_watch *const watch = mspringi_watch_in(&room);
     for (uint32_t i = 0; i < count; ++i) {
         const uint32_t number = t->pass * shares->group + i;
-        substeps[i] = mspringi_substep_prepare(network, wave->h, wave->base, number, wave->count,
-                                               wave->web ? 0 : t->share * network->depth + i);
-        mark_ends(wave, &substeps[i], number, watch);
+        substeps[i] = mspringi_substep_prepare(network, wavefront->h, wavefront->base, number, wavefront->count,
+                                               wavefront->web ? 0 : t->share * network->depth + i);
+        mark_ends(wavefront, &substeps[i], number, watch);
     }
-    const uint32_t end = mspringi_shares_end(shares, t->share, t->pass, count - 1) + (count - 1) * lag;
+    const uint32_t end = mspringi_shares_end(shares, t->share, t->pass, count - 1) + (count - 1) * skew;
     for (uint32_t front = mspringi_shares_begin(shares, t->share, t->pass, 0); front < end; ++front)
-        for (uint32_t i = 0; i < count && i * lag <= front; ++i) {
-            const uint32_t strip = front - i * lag;
+        for (uint32_t i = 0; i < count && i * skew <= front; ++i) {
+            const uint32_t strip = front - i * skew;
             if (strip >= mspringi_shares_begin(shares, t->share, t->pass, i) &&
                 strip < mspringi_shares_end(shares, t->share, t->pass, i))
                 take_strip(t, i, &substeps[i], strip);
         }
-    if (wave->sights)
-        add_sight(wave, t->share, network->kernels->sight_of(watch));
+    if (wavefront->all_extrema)
+        add_extrema(wavefront, t->share, network->kernels->extrema_of(watch));
 }
 
 // Whether a share comes in a pass to strips that another one, which is no neighbour, had in the pass before, or
 // reads beside. Where most strips sleep, borders move that far.
 static bool comes_to(const turn *t, uint32_t other) {
-    const mspringi_shares *shares = &t->wave->shares;
-    const uint32_t least = mspringi_shares_least(shares->lag), last = mspringi_shares_substeps(shares, t->pass) - 1;
+    const mspringi_shares *shares = &t->wavefront->shares;
+    const uint32_t least = mspringi_shares_least(shares->skew),
+                   last = mspringi_shares_substeps(shares, t->pass) - 1;
     return mspringi_shares_begin(shares, t->share, t->pass, 0) <
                mspringi_shares_end(shares, other, t->pass - 1, shares->group - 1) + least &&
            mspringi_shares_begin(shares, other, t->pass - 1, 0) <
@@ -196,25 +198,25 @@ static bool comes_to(const turn *t, uint32_t other) {
 // Before a pass, wait for the worker below to have done with the last one and, where the border above has gone up
 // so far that strips which nobody waits for any more were the other's, for the one above.
 static void wait_for_last(const turn *t) {
-    const mspringi_shares *shares = &t->wave->shares;
+    const mspringi_shares *shares = &t->wavefront->shares;
     if (t->pass == 0)
         return;
     if (t->share > 0)
-        mspringi_progress_wait(&t->wave->progress[t->share - 1], t->passed);
+        mspringi_progress_wait(&t->wavefront->progress[t->share - 1], t->passed);
     if (t->share + 1 < shares->workers && mspringi_shares_end(shares, t->share, t->pass, 0) >
                                               mspringi_shares_end(shares, t->share, t->pass - 1, shares->group - 1))
-        mspringi_progress_wait(&t->wave->progress[t->share + 1], t->passed);
+        mspringi_progress_wait(&t->wavefront->progress[t->share + 1], t->passed);
     for (uint32_t other = 0; other < shares->workers; ++other)
         if ((other + 1 < t->share || other > t->share + 1) && comes_to(t, other))
-            mspringi_progress_wait(&t->wave->progress[other], t->passed);
+            mspringi_progress_wait(&t->wavefront->progress[other], t->passed);
 }
 
 // Make all passes over a share. What is computed, and in which order, is the same for any number of workers. The
 // first bodies are those above, which wait for nobody within a pass.
 static void take_share(void *argument, uint32_t index, uint32_t worker) {
-    const job *wave = argument;
-    const mspringi_shares *shares = &wave->shares;
-    turn t = {.wave = wave, .share = shares->workers - 1 - index};
+    const job *wavefront = argument;
+    const mspringi_shares *shares = &wavefront->shares;
+    turn t = {.wavefront = wavefront, .share = shares->workers - 1 - index};
     (void)worker;
     for (; t.pass * shares->group < shares->count; t.pass++, t.passed += shares->group + 1) {
         wait_for_last(&t);
@@ -223,79 +225,81 @@ static void take_share(void *argument, uint32_t index, uint32_t worker) {
     }
 }
 
-static void run_wave(job *wave) {
-    const mspring_network *network = wave->network;
-    wave->progress = wave->shares.workers > 1 ? mspringi_tasks_progress(network->tasks) : NULL;
-    mspringi_tasks_run(wave->progress ? network->tasks : NULL, wave->shares.workers, take_share, wave);
+static void run_wavefront(job *wavefront) {
+    const mspring_network *network = wavefront->network;
+    wavefront->progress = wavefront->shares.workers > 1 ? mspringi_tasks_progress(network->tasks) : NULL;
+    mspringi_tasks_run(wavefront->progress ? network->tasks : NULL, wavefront->shares.workers, take_share,
+                       wavefront);
 }
 
 // Pack what the first substep sees of the web's nodes.
-static void pack_wave(const mspring_network *network, float h, mspringi_field base, uint32_t count) {
+static void pack_wavefront(const mspring_network *network, float h, mspringi_field base, uint32_t count) {
     const mspringi_topology *t = &network->topology;
     const mspringi_substep first = mspringi_substep_prepare(network, h, base, 0, count, 0);
-    for (uint32_t s = 0; s < t->wave_strips; ++s)
+    for (uint32_t s = 0; s < t->wavefront_strips; ++s)
         if (mspringi_share_of_strip(network, &t->strips[s]) != MSPRINGI_ASLEEP)
             mspringi_strip_pack(network, &first, &t->strips[s]);
 }
 
-static void sweep_wave(mspring_network *network, float h, mspringi_field base, uint32_t count,
-                       mspringi_sight *sights) {
+static void sweep_wavefront(mspring_network *network, float h, mspringi_field base, uint32_t count,
+                            mspringi_extrema *all_extrema) {
     const mspringi_topology *t = &network->topology;
-    if (t->wave_strips == 0)
+    if (t->wavefront_strips == 0)
         return;
-    job wave = {.network = network,
-                .base = base,
-                .h = h,
-                .count = count,
-                .shares = mspringi_shares_plan(network, NULL, count, network->depth),
-                .sights = sights};
+    job wavefront = {.network = network,
+                     .base = base,
+                     .h = h,
+                     .count = count,
+                     .shares = mspringi_shares_plan(network, NULL, count, network->depth),
+                     .all_extrema = all_extrema};
     if (t->web.group_count > 0)
-        pack_wave(network, h, base, count);
-    run_wave(&wave);
+        pack_wavefront(network, h, base, count);
+    run_wavefront(&wavefront);
 }
 
-/* ---------------------------------------------------------------------------------------- a web's own wave */
+/* ---------------------------------------------------------------------------------------- a web's own wavefront */
 
 static const mspringi_strip *find_web_strip(const mspringi_topology *t) {
-    for (uint32_t s = t->wave_strips; s < t->strip_count; ++s)
+    for (uint32_t s = t->wavefront_strips; s < t->strip_count; ++s)
         if (t->rows[t->strips[s].first_row].kind == MSPRINGI_ROW_WEB)
             return &t->strips[s];
     return NULL;
 }
 
 // Substeps for which layers of the web row fit so much cache, at least one: a pass has as many under way, and two.
-static uint32_t web_depth_within(const job *wave, size_t cache_bytes) {
-    const mspringi_topology *t = &wave->network->topology;
-    const uint32_t first = t->spans[t->rows[wave->web->first_row].first_span].first_record;
+static uint32_t web_depth_within(const job *wavefront, size_t cache_bytes) {
+    const mspringi_topology *t = &wavefront->network->topology;
+    const uint32_t first = t->spans[t->rows[wavefront->web->first_row].first_span].first_record;
     const uint32_t groups = t->layer_blocks[t->layer_count];
     const uint64_t rungs = t->web.first_rung[first + groups] - t->web.first_rung[first];
-    const uint64_t parts = wave->network->parts + 1; // and the neighbour
+    const uint64_t parts = wavefront->network->parts + 1; // and the neighbour
     const uint64_t floats =
         rungs * parts + (uint64_t)groups * (MSPRINGI_STATE_ARRAYS + 1 + 2 * 4); // state, inverse mass, packed twice
     const uint64_t layers = cache_bytes * t->layer_count / (floats * MSPRINGI_WIDTH * sizeof(float) + 1);
     return layers < 3 ? 1 : layers - 2 < DEEPEST ? (uint32_t)layers - 2 : DEEPEST;
 }
 
-// Sweep the web row in layers, if it has them and that is worth it: for several substeps, where a wave has work for
-// all workers. (100,000 particles of about 8 neighbours, which take 15 MB, 40 substeps, on a Zen 4 whose
+// Sweep the web row in layers, if it has them and that is worth it: for several substeps, where a wavefront has
+// work for all workers. (100,000 particles of about 8 neighbours, which take 15 MB, 40 substeps, on a Zen 4 whose
 // third-level cache others use, too: 28 ms instead of 60 to 75.)
 static bool sweep_layers(const mspring_network *network, float h, mspringi_field base, uint32_t count,
-                         mspringi_sight *sights) {
+                         mspringi_extrema *all_extrema) {
     const mspringi_topology *t = &network->topology;
     const mspringi_strip *web = find_web_strip(t);
     if (!web || t->layer_count == 0 || count == 1 || network->graft.count > 0)
         return false;
-    job wave = {.network = network, .base = base, .h = h, .count = count, .web = web, .sights = sights};
-    const uint32_t near_depth = web_depth_within(&wave, NEAR_CACHE_BYTES);
-    const uint32_t depth = near_depth > FEW_SUBSTEPS ? near_depth : web_depth_within(&wave, FAR_CACHE_BYTES);
-    wave.shares = mspringi_shares_plan(network, web, count, depth);
-    if (depth == 1 || wave.shares.workers < mspringi_tasks_concurrency(network->tasks))
+    job wavefront = {
+        .network = network, .base = base, .h = h, .count = count, .web = web, .all_extrema = all_extrema};
+    const uint32_t near_depth = web_depth_within(&wavefront, NEAR_CACHE_BYTES);
+    const uint32_t depth = near_depth > FEW_SUBSTEPS ? near_depth : web_depth_within(&wavefront, FAR_CACHE_BYTES);
+    wavefront.shares = mspringi_shares_plan(network, web, count, depth);
+    if (depth == 1 || wavefront.shares.workers < mspringi_tasks_concurrency(network->tasks))
         return false;
     if (mspringi_share_of_strip(network, web) == MSPRINGI_ASLEEP)
         return true;
     const mspringi_substep first = mspringi_substep_prepare(network, h, base, 0, count, 0);
     mspringi_web_pack(network, &first, &t->spans[t->rows[web->first_row].first_span]);
-    run_wave(&wave);
+    run_wavefront(&wavefront);
     return true;
 }
 
@@ -316,13 +320,13 @@ static mspringi_span share_of(const mspringi_span *all, uint32_t worker, uint32_
 // What belongs before the first and after the last substep of a share of the web or of the loose particles, if the
 // substeps are a whole step.
 static void begin_share(const job *rest, const mspringi_span *share) {
-    if (rest->sights)
+    if (rest->all_extrema)
         mspringi_span_keep(rest->network, share);
 }
 
 static void end_share(const job *rest, const mspringi_span *share, uint32_t worker) {
-    if (rest->sights)
-        add_sight(rest, worker, mspringi_span_look(rest->network, share));
+    if (rest->all_extrema)
+        add_extrema(rest, worker, mspringi_span_look(rest->network, share));
 }
 
 // What so many substeps make of particles that nothing pulls at. (Substep by substep they took a quarter of the
@@ -469,9 +473,9 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
     (void)worker;
     for (uint32_t i = 0; i < rest->count; ++i) {
         mspringi_substep substep = mspringi_substep_prepare(network, rest->h, rest->base, i, rest->count, 0);
-        substep.next_packed = NULL;
+        substep.next_gathered = NULL;
         mspringi_span share;
-        for (uint32_t s = t->wave_strips; s < t->strip_count; ++s) {
+        for (uint32_t s = t->wavefront_strips; s < t->strip_count; ++s) {
             const mspringi_row *row = &t->rows[t->strips[s].first_row];
             if (row->kind == MSPRINGI_ROW_LOOSE) {
                 if (i == 0 && network->graft.count == 0)
@@ -484,28 +488,28 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
             }
         }
         mspringi_meet(&mate);
-        for (uint32_t s = t->wave_strips; s < t->strip_count; ++s)
+        for (uint32_t s = t->wavefront_strips; s < t->strip_count; ++s)
             if (share_of_web(rest, s, index, &share))
                 sweep_web_share(rest, &substep, &t->strips[s], &share, i, index);
         mark_ends(rest, &substep, i, watch);
-        for (uint32_t s = t->wave_strips; index == 0 && s < t->strip_count; ++s)
+        for (uint32_t s = t->wavefront_strips; index == 0 && s < t->strip_count; ++s)
             if (t->rows[t->strips[s].first_row].kind < MSPRINGI_ROW_WEB)
                 sweep_strip(rest, &substep, index, &t->strips[s], NULL);
     }
-    if (rest->sights)
-        add_sight(rest, index, rest->network->kernels->sight_of(watch));
+    if (rest->all_extrema)
+        add_extrema(rest, index, rest->network->kernels->extrema_of(watch));
 }
 
 static void sweep_rest(mspring_network *network, float h, mspringi_field base, uint32_t count,
-                       mspringi_sight *sights) {
+                       mspringi_extrema *all_extrema) {
     const mspringi_topology *t = &network->topology;
-    if (t->wave_strips == t->strip_count)
+    if (t->wavefront_strips == t->strip_count)
         return;
-    job rest = {.network = network, .base = base, .h = h, .count = count, .workers = 1, .sights = sights};
-    if (sweep_layers(network, h, base, count, sights))
+    job rest = {.network = network, .base = base, .h = h, .count = count, .workers = 1, .all_extrema = all_extrema};
+    if (sweep_layers(network, h, base, count, all_extrema))
         rest.web = find_web_strip(t);
     rest.herds_are_apart = mspringi_herds_are_apart(network);
-    if (t->wave_strips + (rest.web != NULL) + rest.herds_are_apart == t->strip_count)
+    if (t->wavefront_strips + (rest.web != NULL) + rest.herds_are_apart == t->strip_count)
         return;
     const uint32_t springs = t->leftover_count - (rest.herds_are_apart ? t->herd_springs : 0);
     if ((uint64_t)springs * count >= SMALLEST_SHARED_WEB && network->graft.count == 0)
@@ -522,35 +526,35 @@ static void sweep_grafted(mspring_network *network, float h, mspringi_field base
     const mspringi_substep substep = mspringi_substep_prepare(network, h, base, 0, 1, 0);
     for (uint32_t i = 0; i < count; ++i) {
         mspringi_graft_begin(network, &substep.sweep);
-        sweep_wave(network, h, base, 1, NULL);
+        sweep_wavefront(network, h, base, 1, NULL);
         sweep_rest(network, h, base, 1, NULL);
         if (has_loose)
             sweep_grafted_loose(&loose, &substep, &t->strips[t->strip_count - 1], i, count);
     }
 }
 
-// The wave's strips know nothing of the others, nor they of the wave's, unless springs were added.
+// The wavefront's strips know nothing of the others, nor they of the wavefront's, unless springs were added.
 static void sweep_all(mspring_network *network, float h, mspringi_field base, uint32_t count,
-                      mspringi_sight *sights) {
+                      mspringi_extrema *all_extrema) {
     mspringi_alike_renew(network);
     if (network->graft.count > 0) {
         sweep_grafted(network, h, base, count);
         return;
     }
-    sweep_wave(network, h, base, count, sights);
-    sweep_rest(network, h, base, count, sights);
+    sweep_wavefront(network, h, base, count, all_extrema);
+    sweep_rest(network, h, base, count, all_extrema);
     if (mspringi_herds_are_apart(network))
-        mspringi_herds_sweep(network, h, base, count, sights);
+        mspringi_herds_sweep(network, h, base, count, all_extrema);
 }
 
-mspringi_sight mspringi_explicit_step(mspring_network *network, float h, mspringi_field base, uint32_t count) {
-    mspringi_sight sights[MSPRING_MAX_WORKERS];
+mspringi_extrema mspringi_explicit_step(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+    mspringi_extrema all_extrema[MSPRING_MAX_WORKERS];
     const uint32_t workers = mspringi_tasks_concurrency(network->tasks);
-    memset(sights, 0, workers * sizeof *sights);
-    sweep_all(network, h, base, count, sights);
+    memset(all_extrema, 0, workers * sizeof *all_extrema);
+    sweep_all(network, h, base, count, all_extrema);
     for (uint32_t worker = 1; worker < workers; ++worker)
-        sights[0] = mspringi_sight_join(sights[0], sights[worker]);
-    return sights[0];
+        all_extrema[0] = mspringi_extrema_join(all_extrema[0], all_extrema[worker]);
+    return all_extrema[0];
 }
 
 void mspringi_explicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {

@@ -26,6 +26,6 @@ void mspringi_explicit_substeps(mspring_network *network, float h, mspringi_fiel
 /// The same as a whole step that nothing interrupts: with the state of before copied into the backup, what creeps
 /// stopped, and the sight of the state that it ends in, each strip as it is swept, by the worker that has it.
 /// Without a floor.
-mspringi_sight mspringi_explicit_step(mspring_network *network, float h, mspringi_field base, uint32_t count);
+mspringi_extrema mspringi_explicit_step(mspring_network *network, float h, mspringi_field base, uint32_t count);
 
 #endif

@@ -17,7 +17,7 @@ typedef struct job {
     mspringi_field base;
     float h;
     uint32_t count, workers;
-    mspringi_sight *sights;
+    mspringi_extrema *all_extrema;
 } job;
 
 static const mspringi_row *row_of_herds(const mspringi_topology *topology) {
@@ -121,12 +121,13 @@ static void sweep_run(const job *herds, const mspringi_sweep *sweep, const mspri
 static void sweep_span(const job *herds, const mspringi_sweep *sweep, const mspringi_span *span, uint32_t worker) {
     const mspring_network *network = herds->network;
     mspringi_span run;
-    if (herds->sights)
+    if (herds->all_extrema)
         mspringi_span_keep(network, span);
     for (uint32_t at = 0; next_run(network, span, &at, &run);)
         sweep_run(herds, sweep, &run);
-    if (herds->sights)
-        herds->sights[worker] = mspringi_sight_join(herds->sights[worker], mspringi_span_look(network, span));
+    if (herds->all_extrema)
+        herds->all_extrema[worker] =
+            mspringi_extrema_join(herds->all_extrema[worker], mspringi_span_look(network, span));
 }
 
 static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
@@ -147,9 +148,10 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
 }
 
 void mspringi_herds_sweep(mspring_network *network, float h, mspringi_field base, uint32_t count,
-                          mspringi_sight *sights) {
+                          mspringi_extrema *all_extrema) {
     const mspringi_topology *t = &network->topology;
-    job herds = {.network = network, .base = base, .h = h, .count = count, .workers = 1, .sights = sights};
+    job herds = {
+        .network = network, .base = base, .h = h, .count = count, .workers = 1, .all_extrema = all_extrema};
     if (mspringi_share_of_strip(network, &t->strips[t->herd_strip]) == MSPRINGI_ASLEEP)
         return;
     if ((uint64_t)t->herd_springs * count >= SMALLEST_SHARED_WORK)

@@ -15,6 +15,6 @@ bool mspringi_herds_are_apart(const mspring_network *network);
 /// Take some substeps of h.
 /// @param sights  [workers] joined with what is seen after them, if they are a whole step; else NULL
 void mspringi_herds_sweep(mspring_network *network, float h, mspringi_field base, uint32_t count,
-                          mspringi_sight *sights);
+                          mspringi_extrema *all_extrema);
 
 #endif

@@ -1,7 +1,7 @@
 /// Equal shares.
 #include "solvers/explicit/shares.h"
 
-#include "solvers/explicit/seam.h"
+#include "solvers/explicit/halo.h"
 #include "sleep/sleep.h"
 
 /// Substeps of a step times springs from which more than one worker is worth it, and those of a pass: workers meet
@@ -14,10 +14,10 @@
 /// the host took turns.
 #define FEWEST_STRIPS 8u
 
-/// What it takes to sweep a lattice block, to sweep a rung of the web, and to keep a block of a seam and sweep it.
+/// What it takes to sweep a lattice block, to sweep a rung of the web, and to keep a block of a halo and sweep it.
 #define BLOCK_WEIGHT 8u
 #define RUNG_WEIGHT 3u
-#define SEAM_WEIGHT 12u
+#define HALO_WEIGHT 12u
 
 /* -------------------------------------------------------------------------------------------------- the weights */
 
@@ -55,7 +55,7 @@ static uint64_t weight_of_layer(const mspring_network *network, const mspringi_s
 
 // What the strips below each have together.
 static void weigh(const mspring_network *network, const mspringi_strip *web, uint32_t strips) {
-    uint64_t *weights = network->seams.weights;
+    uint64_t *weights = network->halos.weights;
     weights[0] = 0;
     for (uint32_t s = 0; s < strips; ++s)
         weights[s + 1] = weights[s] + (web ? weight_of_layer(network, web, s)
@@ -69,7 +69,7 @@ static uint64_t weight_below(const mspring_network *network, const mspringi_shar
                              uint32_t substeps) {
     uint64_t sum = 0;
     for (uint32_t i = 0; i < substeps; ++i)
-        sum += network->seams.weights[border + i * shares->lag];
+        sum += network->halos.weights[border + i * shares->skew];
     return sum;
 }
 
@@ -89,15 +89,15 @@ static uint32_t find_border(const mspring_network *network, const mspringi_share
 // Find the borders of a pass. below: of each, what has been below it in the passes before, and will be after this
 // one. Whoever is below is rather ahead than behind, so that nobody waits for it when the next pass begins.
 static void find_borders(const mspring_network *network, const mspringi_shares *shares, uint32_t pass,
-                         uint64_t seam, uint64_t *below) {
-    const uint32_t substeps = mspringi_shares_substeps(shares, pass), least = mspringi_shares_least(shares->lag);
+                         uint64_t halo, uint64_t *below) {
+    const uint32_t substeps = mspringi_shares_substeps(shares, pass), least = mspringi_shares_least(shares->skew);
     const uint64_t done = (uint64_t)pass * shares->group + substeps, workers = shares->workers;
-    const uint64_t each = done * (network->seams.weights[shares->strips] + (workers - 1) * seam) / workers;
+    const uint64_t each = done * (network->halos.weights[shares->strips] + (workers - 1) * halo) / workers;
     uint32_t *borders = shares->borders + (size_t)pass * shares->workers;
     borders[0] = 0;
     for (uint32_t share = 1; share < workers; ++share) {
-        const uint64_t wanted = share * each, others = (share - 1) * seam * done + below[share];
-        const uint32_t last = shares->strips - (shares->workers - share) * least - (substeps - 1) * shares->lag;
+        const uint64_t wanted = share * each, others = (share - 1) * halo * done + below[share];
+        const uint32_t last = shares->strips - (shares->workers - share) * least - (substeps - 1) * shares->skew;
         borders[share] = find_border(network, shares, wanted > others ? wanted - others : 0, substeps,
                                      borders[share - 1] + least, last);
         below[share] += weight_below(network, shares, borders[share], substeps);
@@ -106,8 +106,8 @@ static void find_borders(const mspring_network *network, const mspringi_shares *
 
 // Equal passes, no longer than shares are high: the uppermost one is lowest in the last substep of a pass.
 static void plan_passes(mspringi_shares *shares, uint32_t depth) {
-    const uint32_t least = mspringi_shares_least(shares->lag);
-    const uint32_t fits = 1 + (shares->strips / shares->workers - least) / shares->lag;
+    const uint32_t least = mspringi_shares_least(shares->skew);
+    const uint32_t fits = 1 + (shares->strips / shares->workers - least) / shares->skew;
     const uint32_t most = shares->workers == 1 || depth < fits ? depth : fits;
     const uint32_t passes = (shares->count + most - 1) / most;
     shares->group = (shares->count + passes - 1) / passes;
@@ -116,12 +116,12 @@ static void plan_passes(mspringi_shares *shares, uint32_t depth) {
 mspringi_shares mspringi_shares_plan(const mspring_network *network, const mspringi_strip *web, uint32_t count,
                                      uint32_t depth) {
     const mspringi_topology *t = &network->topology;
-    mspringi_shares shares = {.strips = web ? t->layer_count : t->wave_strips,
-                              .lag = web ? 1 : t->lag,
+    mspringi_shares shares = {.strips = web ? t->layer_count : t->wavefront_strips,
+                              .skew = web ? 1 : t->skew,
                               .count = count,
                               .workers = mspringi_tasks_concurrency(network->tasks),
-                              .borders = network->seams.borders};
-    const uint32_t least = mspringi_shares_least(shares.lag);
+                              .borders = network->halos.borders};
+    const uint32_t least = mspringi_shares_least(shares.skew);
     const uint32_t most = shares.strips / (least > FEWEST_STRIPS ? least : FEWEST_STRIPS);
     const uint64_t springs = mspringi_swept_count(t);
     uint64_t below[MSPRING_MAX_WORKERS] = {0};
@@ -137,8 +137,8 @@ mspringi_shares mspringi_shares_plan(const mspring_network *network, const mspri
     if (shares.workers == 1)
         return shares;
     weigh(network, web, shares.strips);
-    const uint64_t seam = web ? 0 : (uint64_t)SEAM_WEIGHT * t->carry_blocks;
+    const uint64_t halo = web ? 0 : (uint64_t)HALO_WEIGHT * t->carry_blocks;
     for (uint32_t pass = 0; pass < MSPRINGI_PLANNED_PASSES && pass * shares.group < count; ++pass)
-        find_borders(network, &shares, pass, seam, below);
+        find_borders(network, &shares, pass, halo, below);
     return shares;
 }

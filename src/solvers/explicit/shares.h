@@ -2,8 +2,8 @@
 /// How workers divide strips of rows, or layers of a web, among each other.
 ///
 /// Each worker has a share: strips that follow each other. It takes several substeps in a pass over its share, by
-/// itself but for what it needs of its neighbours' shares at the borders, see seam.h. In a pass borders move up by
-/// the lag with each substep; before the next they go back.
+/// itself but for what it needs of its neighbours' shares at the borders, see halo.h. In a pass borders move up by
+/// the skew with each substep; before the next they go back.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SHARES_H
@@ -15,28 +15,28 @@
 #define MSPRINGI_PLANNED_PASSES 16u
 
 typedef struct mspringi_shares {
-    uint32_t strips, lag; ///< strips or layers; by how many substeps follow each other
-    uint32_t count;       ///< substeps
-    uint32_t group;       ///< substeps in a pass; the last one may have fewer
-    uint32_t workers;     ///< shares: share 0 is the lowest one
-    uint32_t *borders;    ///< [passes][workers] first strips of the shares in a pass's first substep
+    uint32_t strips, skew; ///< strips or layers; by how many substeps follow each other
+    uint32_t count;        ///< substeps
+    uint32_t group;        ///< substeps in a pass; the last one may have fewer
+    uint32_t workers;      ///< shares: share 0 is the lowest one
+    uint32_t *borders;     ///< [passes][workers] first strips of the shares in a pass's first substep
 } mspringi_shares;
 
-/// Divide count substeps of strips of the wave or, if web is not NULL, of the layers of its row, in passes of at
-/// most depth.
+/// Divide count substeps of strips of the wavefront or, if web is not NULL, of the layers of its row, in passes of
+/// at most depth.
 mspringi_shares mspringi_shares_plan(const mspring_network *network, const mspringi_strip *web, uint32_t count,
                                      uint32_t depth);
 
 /// Strips that a share needs at any time, for its worker to have what it reads around a border for itself.
-static inline uint32_t mspringi_shares_least(uint32_t lag) {
-    return 2 * lag + 1;
+static inline uint32_t mspringi_shares_least(uint32_t skew) {
+    return 2 * skew + 1;
 }
 
 /// The strips of a share in a substep of a pass: the first, and the one behind the last.
 static inline uint32_t mspringi_shares_begin(const mspringi_shares *shares, uint32_t share, uint32_t pass,
                                              uint32_t substep) {
     const uint32_t row = pass % MSPRINGI_PLANNED_PASSES * shares->workers;
-    return share == 0 ? 0 : shares->borders[row + share] + substep * shares->lag;
+    return share == 0 ? 0 : shares->borders[row + share] + substep * shares->skew;
 }
 static inline uint32_t mspringi_shares_end(const mspringi_shares *shares, uint32_t share, uint32_t pass,
                                            uint32_t substep) {

@@ -1,13 +1,13 @@
 /// The explicit solver's table. It keeps nothing from step to step.
-#include "solvers/explicit/creep.h"
 #include "solvers/explicit/explicit.h"
+#include "solvers/explicit/flush.h"
 #include "store/graft.h"
 
 static bool whole(mspring_network *network, const mspringi_attempt *attempt, mspringi_field base,
-                  mspringi_sight *sight) {
+                  mspringi_extrema *extrema) {
     if (network->floor || network->graft.count > 0)
         return false;
-    *sight = mspringi_explicit_step(network, attempt->h, base, attempt->substeps);
+    *extrema = mspringi_explicit_step(network, attempt->h, base, attempt->substeps);
     return true;
 }
 
@@ -17,7 +17,7 @@ static void substeps(mspring_network *network, void *object, float h, mspringi_f
 }
 
 void mspringi_explicit_end(mspring_network *network) {
-    mspringi_creep_stop(network, 0, mspringi_slot_count(network));
+    mspringi_flush_to_zero(network, 0, mspringi_slot_count(network));
 }
 
 static void restore(mspring_network *network, void *object) {
@@ -36,7 +36,7 @@ const mspringi_solver_ops mspringi_explicit_ops = {
     .has_border = true,
     .picks_substeps = true,
     .skips_sleepers = true,
-    .lags = true,
+    .skews = true,
     .has_herds = true,
     .can_add = true,
     .begin = mspringi_graft_follow,

@@ -6,21 +6,21 @@
 
 #include "base/decay.h"
 #include "contact/floor.h"
-#include "solvers/explicit/creep.h"
+#include "solvers/explicit/flush.h"
+#include "solvers/explicit/halo.h"
 #include "solvers/explicit/partly.h"
-#include "solvers/explicit/seam.h"
 #include "store/precise.h"
 
 mspringi_substep mspringi_substep_prepare(const mspring_network *network, float h, mspringi_field base, uint32_t i,
                                           uint32_t count, uint32_t carry_number) {
     const mspringi_topology *t = &network->topology;
     const size_t carry_slots = (size_t)t->carry_blocks * MSPRINGI_WIDTH;
-    const size_t packed_floats = (size_t)mspringi_packed_values(network) * t->web.group_count * MSPRINGI_WIDTH;
+    const size_t gathered_floats = (size_t)mspringi_gathered_values(network) * t->web.group_count * MSPRINGI_WIDTH;
     float *carry = network->carry + 2 * carry_number * carry_slots;
     return (mspringi_substep){
         .base = base,
-        .packed = network->packed + i % 2 * packed_floats,
-        .next_packed = i + 1 < count ? network->packed + (i + 1) % 2 * packed_floats : NULL,
+        .gathered = network->gathered + i % 2 * gathered_floats,
+        .next_gathered = i + 1 < count ? network->gathered + (i + 1) % 2 * gathered_floats : NULL,
         .sweep =
             {
                 .x = network->state.x,
@@ -41,7 +41,7 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
                 .chain_springs = network->chain_springs,
                 .web = &t->web,
                 .web_springs = network->web_springs,
-                .packed = network->packed + i % 2 * packed_floats,
+                .gathered = network->gathered + i % 2 * gathered_floats,
                 .parts = network->parts,
                 .h = h,
                 .decay = mspringi_decay(network->global_damping, h),
@@ -54,33 +54,33 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
 }
 
 // Pack what the web sees of the nodes that are slots of a strip.
-static void pack_attached(const mspring_network *network, const mspringi_strip *strip, float *packed) {
+static void pack_attached(const mspring_network *network, const mspringi_strip *strip, float *gathered) {
     const mspringi_web *web = &network->topology.web;
     const uint32_t *slots = web->attached_slot + strip->first_attached;
-    packed += 4 * ((size_t)web->own_count + strip->first_attached);
-    for (uint32_t i = 0; i < strip->attached_count; ++i, packed += 4)
-        mspringi_pack_slot(network, web, packed, slots[i]);
+    gathered += 4 * ((size_t)web->own_count + strip->first_attached);
+    for (uint32_t i = 0; i < strip->attached_count; ++i, gathered += 4)
+        mspringi_pack_slot(network, web, gathered, slots[i]);
 }
 
 // Pack groups that lie behind one another.
 static void pack_blocks(const mspring_network *network, const mspringi_sweep *sweep, size_t first_block,
-                        size_t count, float *packed) {
+                        size_t count, float *gathered) {
     mspringi_sweep from = *sweep;
     if (network->is_precise) {
         from.vx = from.low_x;
         from.vy = from.low_y;
     }
-    network->kernels->pack(&from, first_block, count, packed);
+    network->kernels->pack(&from, first_block, count, gathered);
     if (!mspringi_packs_halves(network))
         return;
     from.x = sweep->vx;
     from.y = sweep->vy;
-    network->kernels->pack(&from, first_block, count, packed + mspringi_packed_half(sweep->web));
+    network->kernels->pack(&from, first_block, count, gathered + mspringi_gathered_half(sweep->web));
 }
 
 // Pack what the web sees of its own nodes in a span: runs of groups that somebody reads there.
 static void pack_span(const mspring_network *network, const mspringi_sweep *sweep, const mspringi_span *span,
-                      float *packed) {
+                      float *gathered) {
     const uint8_t *is_read = network->topology.web.is_read;
     const size_t first_block = span->first_slot / MSPRINGI_WIDTH;
     const size_t end = (span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH - first_block + span->first_record;
@@ -89,7 +89,7 @@ static void pack_span(const mspring_network *network, const mspringi_sweep *swee
             ++last;
         if (last > first)
             pack_blocks(network, sweep, first_block + (first - span->first_record), last - first,
-                        packed + 4 * first * MSPRINGI_WIDTH);
+                        gathered + 4 * first * MSPRINGI_WIDTH);
     }
 }
 
@@ -141,12 +141,12 @@ static void sweep_rows(const mspring_network *network, const mspringi_substep *s
 }
 
 void mspringi_web_pack(const mspring_network *network, const mspringi_substep *substep, const mspringi_span *span) {
-    pack_span(network, &substep->sweep, span, substep->packed);
+    pack_span(network, &substep->sweep, span, substep->gathered);
 }
 
 void mspringi_web_pack_next(const mspring_network *network, const mspringi_substep *substep,
                             const mspringi_span *span) {
-    pack_span(network, &substep->sweep, span, substep->next_packed);
+    pack_span(network, &substep->sweep, span, substep->next_gathered);
 }
 
 void mspringi_web_sweep(const mspring_network *network, const mspringi_substep *substep,
@@ -163,17 +163,17 @@ void mspringi_strip_pack(const mspring_network *network, const mspringi_substep 
     const mspringi_topology *t = &network->topology;
     if (t->web.group_count == 0)
         return;
-    pack_attached(network, strip, substep->packed);
+    pack_attached(network, strip, substep->gathered);
     if (strip->home_span != MSPRING_NONE)
         mspringi_web_pack(network, substep, &t->spans[strip->home_span]);
 }
 
 void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep *substep,
-                          const mspringi_strip *strip, const mspringi_seam *seam) {
+                          const mspringi_strip *strip, const mspringi_halo *halo) {
     const mspringi_row *rows = &network->topology.rows[strip->first_row], *last = rows + strip->row_count - 1;
     const bool is_partly = mspringi_share_of_strip(network, strip) == MSPRINGI_PARTLY;
-    const bool has_seam = seam && last->kind == MSPRINGI_ROW_LATTICE;
-    const uint32_t row_count = strip->row_count - has_seam;
+    const bool has_halo = halo && last->kind == MSPRINGI_ROW_LATTICE;
+    const uint32_t row_count = strip->row_count - has_halo;
     const mspringi_span *spans = &network->topology.spans[rows->first_span];
     const uint32_t span_count = last->first_span + last->span_count - rows->first_span;
     mspringi_floor_note(network, strip, spans, span_count);
@@ -182,16 +182,16 @@ void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep
             ++count;
         sweep_rows(network, substep, &rows[first], count, is_partly);
     }
-    if (has_seam)
-        mspringi_seam_sweep(network, seam, substep, strip);
+    if (has_halo)
+        mspringi_halo_sweep(network, halo, substep, strip);
     if (strip->attached_count > 0)
         pull_attached(network, substep, strip);
     if (network->graft.count > 0)
         mspringi_graft_pull(network, &substep->sweep, network->topology.spans[rows->first_span].first_slot,
                             network->topology.spans[last->first_span + last->span_count - 1].end_slot);
     mspringi_floor_touch(network, strip, spans, span_count, substep->sweep.h);
-    if (strip->attached_count > 0 && substep->next_packed)
-        pack_attached(network, strip, substep->next_packed);
+    if (strip->attached_count > 0 && substep->next_gathered)
+        pack_attached(network, strip, substep->next_gathered);
     if (strip->home_span == MSPRING_NONE)
         return;
     const mspringi_span *span = &network->topology.spans[strip->home_span];
@@ -200,8 +200,8 @@ void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep
     if (network->graft.count > 0)
         mspringi_graft_pull(network, &substep->sweep, span->first_slot, span->end_slot);
     mspringi_floor_touch(network, strip, span, 1, substep->sweep.h);
-    if (substep->next_packed)
-        pack_span(network, &substep->sweep, span, substep->next_packed);
+    if (substep->next_gathered)
+        pack_span(network, &substep->sweep, span, substep->next_gathered);
 }
 
 /* -------------------------------------------------------------------------------------- before and after a step */
@@ -218,8 +218,8 @@ static void keep_slots(const mspring_network *network, size_t first, size_t end)
     memcpy(to->low_y + first, from->low_y + first, size);
 }
 
-static mspringi_sight look_at_slots(const mspring_network *network, size_t first, size_t end) {
-    mspringi_creep_stop(network, first, end);
+static mspringi_extrema look_at_slots(const mspring_network *network, size_t first, size_t end) {
+    mspringi_flush_to_zero(network, first, end);
     return mspringi_guard_look(network, first, end);
 }
 
@@ -247,7 +247,7 @@ void mspringi_span_keep(const mspring_network *network, const mspringi_span *spa
     keep_slots(network, first_block_slot(span), end_block_slot(span));
 }
 
-mspringi_sight mspringi_span_look(const mspring_network *network, const mspringi_span *span) {
+mspringi_extrema mspringi_span_look(const mspring_network *network, const mspringi_span *span) {
     return look_at_slots(network, first_block_slot(span), end_block_slot(span));
 }
 
@@ -268,24 +268,26 @@ mspringi_watch *mspringi_watch_in(mspringi_watch_room *room) {
 }
 
 // What the web has pulled at after the slots of the strip were swept.
-static mspringi_sight look_at_attached(const mspring_network *network, const mspringi_strip *strip) {
+static mspringi_extrema look_at_attached(const mspring_network *network, const mspringi_strip *strip) {
     const mspringi_state *s = &network->state, *b = &network->backup;
     const uint32_t *slots = network->topology.web.attached_slot + strip->first_attached;
-    mspringi_sight sight = {0.0f, 0.0f, 0.0f};
+    mspringi_extrema extrema = {0.0f, 0.0f, 0.0f};
     for (uint32_t i = 0; i < strip->attached_count; ++i) {
         const uint32_t slot = slots[i];
         const float change_x = fabsf(s->vx[slot] - b->vx[slot]), change_y = fabsf(s->vy[slot] - b->vy[slot]);
-        sight = mspringi_sight_join(sight, (mspringi_sight){fabsf(s->x[slot]), fabsf(s->vx[slot]), change_x});
-        sight = mspringi_sight_join(sight, (mspringi_sight){fabsf(s->y[slot]), fabsf(s->vy[slot]), change_y});
+        extrema =
+            mspringi_extrema_join(extrema, (mspringi_extrema){fabsf(s->x[slot]), fabsf(s->vx[slot]), change_x});
+        extrema =
+            mspringi_extrema_join(extrema, (mspringi_extrema){fabsf(s->y[slot]), fabsf(s->vy[slot]), change_y});
     }
-    return sight;
+    return extrema;
 }
 
-mspringi_sight mspringi_strip_end(const mspring_network *network, const mspringi_strip *strip) {
-    mspringi_creep_stop(network, first_row_slot(network, strip), end_row_slot(network, strip));
+mspringi_extrema mspringi_strip_end(const mspring_network *network, const mspringi_strip *strip) {
+    mspringi_flush_to_zero(network, first_row_slot(network, strip), end_row_slot(network, strip));
     if (strip->home_span != MSPRING_NONE) {
         const mspringi_span *span = &network->topology.spans[strip->home_span];
-        mspringi_creep_stop(network, first_block_slot(span), end_block_slot(span));
+        mspringi_flush_to_zero(network, first_block_slot(span), end_block_slot(span));
     }
-    return strip->attached_count > 0 ? look_at_attached(network, strip) : (mspringi_sight){0.0f, 0.0f, 0.0f};
+    return strip->attached_count > 0 ? look_at_attached(network, strip) : (mspringi_extrema){0.0f, 0.0f, 0.0f};
 }

@@ -11,9 +11,9 @@
 /// What one substep works with.
 typedef struct mspringi_substep {
     mspringi_sweep sweep;
-    mspringi_field base; ///< forces from outside; x NULL if there are none
-    float *packed;       ///< the web's nodes before the substep
-    float *next_packed;  ///< where those of a strip go after it; NULL if nobody will read them there
+    mspringi_field base;  ///< forces from outside; x NULL if there are none
+    float *gathered;      ///< the web's nodes before the substep
+    float *next_gathered; ///< where those of a strip go after it; NULL if nobody will read them there
 } mspringi_substep;
 
 /// Substep i of count that are swept together, with the carry row of that number to itself.
@@ -24,11 +24,11 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
 void mspringi_strip_pack(const mspring_network *network, const mspringi_substep *substep,
                          const mspringi_strip *strip);
 
-struct mspringi_seam;
+struct mspringi_halo;
 
-/// Sweep a strip with everything that hangs on it; with a seam (or NULL) above its last row.
+/// Sweep a strip with everything that hangs on it; with a halo (or NULL) above its last row.
 void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep *substep,
-                          const mspringi_strip *strip, const struct mspringi_seam *seam);
+                          const mspringi_strip *strip, const struct mspringi_halo *halo);
 
 /// Room for what is watched, aligned as vectors need it, wherever it lies.
 typedef struct mspringi_watch_room {
@@ -44,11 +44,11 @@ void mspringi_substep_keep(const mspring_network *network, mspringi_substep *sub
 void mspringi_substep_watch(const mspring_network *network, mspringi_substep *substep, mspringi_watch *watch);
 /// After the last substep of a strip, while it is in the cache: stop what creeps, and look at what has been moved
 /// again since it was swept.
-mspringi_sight mspringi_strip_end(const mspring_network *network, const mspringi_strip *strip);
+mspringi_extrema mspringi_strip_end(const mspring_network *network, const mspringi_strip *strip);
 
 /// Copy the state of some blocks of a row into the backup; stop what creeps there and look at it.
 void mspringi_span_keep(const mspring_network *network, const mspringi_span *span);
-mspringi_sight mspringi_span_look(const mspring_network *network, const mspringi_span *span);
+mspringi_extrema mspringi_span_look(const mspring_network *network, const mspringi_span *span);
 
 /// Pack the web's nodes of some of a web row's blocks for this substep or for the next, or sweep them.
 void mspringi_web_pack(const mspring_network *network, const mspringi_substep *substep, const mspringi_span *span);

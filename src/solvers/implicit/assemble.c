@@ -106,7 +106,7 @@ static void multiply_panels(const mspring_network *network, const mspringi_mate 
 /// One of them as it acts on its base.
 typedef struct leftover {
     double force_x, force_y;
-    float pull_x, pull_y, swing;
+    float pull_x, pull_y, geometric;
 } leftover;
 
 // As in kernels/system_assemble.h, in double precision throughout.
@@ -118,20 +118,20 @@ static leftover compute_leftover(const mspringi_system *s, uint32_t base, uint32
     const double extension = length - (double)values->rest_length;
     const double stiffness = s->force_scale * (double)values->stiffness;
     const double damping = s->force_scale * (double)values->damping;
-    const double relative = extension * inverse, tensed = mspringi_swing_share(relative);
+    const double relative = extension * inverse, tensed = mspringi_geometric_fraction(relative);
     const double dvx = (double)s->vx[tip] - (double)s->vx[base], dvy = (double)s->vy[tip] - (double)s->vy[base];
     const double force = MSPRINGI_LAW_FORCE(MSPRINGI_TIMES, stiffness, extension) +
                          MSPRINGI_LAW_DAMPING_FORCE(MSPRINGI_TIMES, damping, dvx * nx + dvy * ny);
-    const double own = MSPRINGI_LAW_ALONG(stiffness), swing = own * tensed;
-    const double along = (own - swing) + MSPRINGI_LAW_DAMPING_ALONG(damping) * s->damping_rate;
+    const double own = MSPRINGI_LAW_ALONG(stiffness), geometric = own * tensed;
+    const double along = (own - geometric) + MSPRINGI_LAW_DAMPING_ALONG(damping) * s->damping_rate;
     const float root = sqrtf((float)along);
-    return (leftover){force * nx, force * ny, root * (float)nx, root * (float)ny, (float)swing};
+    return (leftover){force * nx, force * ny, root * (float)nx, root * (float)ny, (float)geometric};
 }
 
 static void add_to_diagonal(const mspringi_system *s, uint32_t slot, const leftover *spring) {
-    s->xx[slot] += spring->swing + spring->pull_x * spring->pull_x;
+    s->xx[slot] += spring->geometric + spring->pull_x * spring->pull_x;
     s->xy[slot] += spring->pull_x * spring->pull_y;
-    s->yy[slot] += spring->swing + spring->pull_y * spring->pull_y;
+    s->yy[slot] += spring->geometric + spring->pull_y * spring->pull_y;
 }
 
 static float *leftover_factors(const mspringi_implicit *n, uint32_t i) {
@@ -156,7 +156,7 @@ static void assemble_leftover(const mspring_network *network) {
         float *factors = leftover_factors(mspringi_implicit_of(network), i);
         factors[MSPRINGI_PULL_X * MSPRINGI_WIDTH] = l.pull_x;
         factors[MSPRINGI_PULL_Y * MSPRINGI_WIDTH] = l.pull_y;
-        factors[MSPRINGI_SWING * MSPRINGI_WIDTH] = l.swing;
+        factors[MSPRINGI_GEOMETRIC * MSPRINGI_WIDTH] = l.geometric;
         s->force_x[values.base] += (float)l.force_x;
         s->force_y[values.base] += (float)l.force_y;
         s->force_x[values.tip] -= (float)l.force_x;
@@ -195,10 +195,10 @@ static double multiply_leftover(const mspring_network *network, mspringi_field f
         const float *factors = leftover_factors(n, i);
         const float pull_x = factors[MSPRINGI_PULL_X * MSPRINGI_WIDTH];
         const float pull_y = factors[MSPRINGI_PULL_Y * MSPRINGI_WIDTH];
-        const float swing = factors[MSPRINGI_SWING * MSPRINGI_WIDTH];
+        const float geometric = factors[MSPRINGI_GEOMETRIC * MSPRINGI_WIDTH];
         const float dx = from.x[b] - from.x[a], dy = from.y[b] - from.y[a];
         const float along = pull_x * dx + pull_y * dy;
-        const float x = swing * dx + pull_x * along, y = swing * dy + pull_y * along;
+        const float x = geometric * dx + pull_x * along, y = geometric * dy + pull_y * along;
         to.x[a] -= x;
         to.y[a] -= y;
         to.x[b] += x;

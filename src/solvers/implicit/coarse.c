@@ -105,8 +105,8 @@ static void add_joint(joint_sum *sum, const mspringi_joint *joint, const mspring
     const float *const arm_y = parts->iterate->arm_y;
     const double pull_x = (double)f[MSPRINGI_PULL_X * MSPRINGI_WIDTH];
     const double pull_y = (double)f[MSPRINGI_PULL_Y * MSPRINGI_WIDTH];
-    const double swing = (double)f[MSPRINGI_SWING * MSPRINGI_WIDTH];
-    const double xx = swing + pull_x * pull_x, xy = pull_x * pull_y, yy = swing + pull_y * pull_y;
+    const double geometric = (double)f[MSPRINGI_GEOMETRIC * MSPRINGI_WIDTH];
+    const double xx = geometric + pull_x * pull_x, xy = pull_x * pull_y, yy = geometric + pull_y * pull_y;
     const double near_arm_x = (double)arm_x[joint->slot], near_arm_y = (double)arm_y[joint->slot];
     const double far_arm_x = (double)arm_x[joint->other_slot], far_arm_y = (double)arm_y[joint->other_slot];
     const double near_x = near_arm_x * xy - near_arm_y * xx, near_y = near_arm_x * yy - near_arm_y * xy;

@@ -129,19 +129,19 @@ static void wire(mspringi_implicit *n, const mspring_network *network) {
 // What each of the workers that there are now has for itself.
 mspring_result mspringi_implicit_reserve(mspringi_implicit *n, mspring_network *network) {
     mspringi_memory *memory = &network->memory;
-    const uint32_t crew = mspringi_tasks_concurrency(network->tasks);
+    const uint32_t team = mspringi_tasks_concurrency(network->tasks);
     const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH;
-    if (n->crew >= crew)
+    if (n->team >= team)
         return MSPRING_OK;
-    double *forces = mspringi_alloc(memory, 2 * carry * crew, sizeof *forces);
-    float *others = mspringi_alloc(memory, 3 * carry * crew, sizeof *others);
-    double(*unknowns)[MSPRINGI_RIGID] = mspringi_alloc(memory, (size_t)n->tiles.capacity * crew, sizeof *unknowns);
+    double *forces = mspringi_alloc(memory, 2 * carry * team, sizeof *forces);
+    float *others = mspringi_alloc(memory, 3 * carry * team, sizeof *others);
+    double(*unknowns)[MSPRINGI_RIGID] = mspringi_alloc(memory, (size_t)n->tiles.capacity * team, sizeof *unknowns);
     if (!forces || !others || !unknowns) {
         mspringi_free(memory, forces);
         mspringi_free(memory, others);
         mspringi_free(memory, unknowns);
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for what %u workers compute",
-                             (unsigned)crew);
+                             (unsigned)team);
     }
     mspringi_free(memory, n->force_carry);
     mspringi_free(memory, n->carry);
@@ -149,7 +149,7 @@ mspring_result mspringi_implicit_reserve(mspringi_implicit *n, mspring_network *
     n->force_carry = forces;
     n->carry = others;
     n->unknowns = unknowns;
-    n->crew = crew;
+    n->team = team;
     return MSPRING_OK;
 }
 
@@ -327,7 +327,7 @@ void mspringi_implicit_restore(const mspring_network *network, mspringi_implicit
     if (n->age > 0)
         mspringi_coarse_take_back(&n->coarse);
     // These are zero between steps, or where there is no tile, unless numbers overflowed.
-    const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH * n->crew;
+    const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH * n->team;
     memset(n->force_carry, 0, 2 * carry * sizeof *n->force_carry);
     memset(n->carry, 0, 3 * carry * sizeof *n->carry);
     if (!n->is_direct)

@@ -8,7 +8,7 @@
 ///   land                   positions and velocities from d                           scheme.c
 ///   budget                 what no force has done is taken back                      budget.h
 ///
-/// Workers share all of it (crew.h): slots in chunks, rows in panels (panels.h), and tiles. Whatever is summed is
+/// Workers share all of it (team.h): slots in chunks, rows in panels (panels.h), and tiles. Whatever is summed is
 /// summed in these pieces first, so that the bits do not depend on how many there are. The factorisation of the
 /// direct solver is one worker's.
 ///
@@ -17,7 +17,7 @@
 #define MSPRINGI_IMPLICIT_H
 
 #include "store/network.h"
-#include "tasks/crew.h"
+#include "tasks/team.h"
 
 #include "solvers/direct/direct.h"
 #include "solvers/implicit/budget.h"
@@ -65,7 +65,7 @@ typedef struct mspringi_implicit {
     double *force_carry;                ///< carry rows, one for each worker: see mspringi_system
     float *carry;                       ///< likewise
     double (*unknowns)[MSPRINGI_RIGID]; ///< [workers][tiles] of the coarse matrix; each worker solves for them
-    uint32_t crew;                      ///< workers that there are carry rows and unknowns for
+    uint32_t team;                      ///< workers that there are carry rows and unknowns for
     uint32_t alone;                     ///< substeps to come that one worker takes, as others had no core
     uint32_t patience;                  ///< how many these were to be
     float *sums;                        ///< [chunks]
@@ -171,10 +171,10 @@ static inline bool mspringi_is_solved(const mspring_network *network, const mspr
 
 /* scheme.c */
 
-/// Where an integrator puts the forces: A = M + c K + s C, with c = force_share h^2 and s = c velocity_share / h;
-/// the velocity after the substep is that of d = 0 plus velocity_share d / h.
+/// Where an integrator puts the forces: A = M + c K + s C, with c = force_fraction h^2 and s = c velocity_fraction
+/// / h; the velocity after the substep is that of d = 0 plus velocity_fraction d / h.
 typedef struct mspringi_scheme {
-    double force_share, velocity_share;
+    double force_fraction, velocity_fraction;
 } mspringi_scheme;
 mspringi_scheme mspringi_scheme_of(mspring_integrator integrator);
 

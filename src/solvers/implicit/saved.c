@@ -9,7 +9,7 @@
 #include "store/sections.h"
 
 typedef struct implicit_head {
-    uint64_t tiles_print;
+    uint64_t tiles_fingerprint;
     double scale;
     float h;
     uint32_t restarts, integrator, iterations, coarse_period, age;
@@ -40,7 +40,7 @@ void mspringi_implicit_save(const mspring_network *network, const mspringi_impli
     const bool ended = n->seen.motion != network->edits.motion;
     const uint32_t words[] = {ended ? 1 : n->history.restarts, (uint32_t)n->integrator, n->iterations,
                               n->coarse_period, age_of(network, n)};
-    mspringi_put(to, &n->tiles.print, 1, sizeof n->tiles.print);
+    mspringi_put(to, &n->tiles.fingerprint, 1, sizeof n->tiles.fingerprint);
     mspringi_put(to, &n->scale, 1, sizeof n->scale);
     mspringi_put(to, &n->history.h, 1, sizeof n->history.h);
     mspringi_put(to, words, sizeof words / sizeof words[0], sizeof words[0]);
@@ -52,7 +52,7 @@ void mspringi_implicit_save(const mspring_network *network, const mspringi_impli
 }
 
 static const uint8_t *read_head(const uint8_t *from, implicit_head *head) {
-    from = mspringi_get(from, &head->tiles_print, 1, sizeof head->tiles_print);
+    from = mspringi_get(from, &head->tiles_fingerprint, 1, sizeof head->tiles_fingerprint);
     from = mspringi_get(from, &head->scale, 1, sizeof head->scale);
     from = mspringi_get(from, &head->h, 1, sizeof head->h);
     from = mspringi_get(from, &head->restarts, 1, sizeof head->restarts);
@@ -64,7 +64,7 @@ static const uint8_t *read_head(const uint8_t *from, implicit_head *head) {
 
 static mspring_result check_head(mspring_network *network, const mspringi_implicit *n, const implicit_head *head) {
     const mspringi_section *section = &mspringi_section_implicit;
-    if (head->integrator != (uint32_t)n->integrator || head->tiles_print != n->tiles.print)
+    if (head->integrator != (uint32_t)n->integrator || head->tiles_fingerprint != n->tiles.fingerprint)
         return mspringi_section_fail(network, section,
                                      "the network has another solver or integrator, or other tiles");
     if (!(head->scale >= DBL_MIN && head->scale <= DBL_MAX && head->h >= 0.0f && head->h <= FLT_MAX) ||

@@ -1,7 +1,7 @@
 /// The integrators. All three solve
 ///
 ///     (M + c K + s C) d = c (f(x*, v*) + f_outside) + M e,      x* = x + h v,   x(t+h) = x* + d,
-///     v(t+h) = v* + g d / h,                                    c = force_share h^2,   s = c g / h
+///     v(t+h) = v* + g d / h,                                    c = force_fraction h^2,   s = c g / h
 ///
 /// f being the springs' and dampers' force, and K and C their matrices, at x*. They come from requiring
 /// M a = f(x(t+h), v(t+h)), linearised there, with
@@ -75,7 +75,7 @@ static mspringi_flight prepare_flight(const mspringi_substep_of *substep, msprin
         .mass = n->mass,
         .h = h,
         .first_share = share,
-        .rate = (float)(mspringi_scheme_of(integrator).velocity_share / (double)h),
+        .rate = (float)(mspringi_scheme_of(integrator).velocity_fraction / (double)h),
         .turned_x = n->scaled.x, // free before the solution
         .turned_y = n->scaled.y,
         .arm_x = n->arm.x,
@@ -96,9 +96,9 @@ static void prepare_outside(mspringi_substep_of *substep, double c, double heavi
     const double damping = (double)network->global_damping;
     mspringi_outside o = {
         .mass = n->mass,
-        .force_share = (float)n->system.force_scale,
-        .velocity_share = (float)(-c * damping / heavier),
-        .turned_share = (float)(1.0 / heavier),
+        .force_fraction = (float)n->system.force_scale,
+        .velocity_fraction = (float)(-c * damping / heavier),
+        .turned_fraction = (float)(1.0 / heavier),
         .first_share = (float)(1.0 / 3.0 / heavier) * (ratio * ratio),
         .second_share = (float)(2.0 / 9.0 * (double)h / heavier) * ratio,
     };
@@ -170,11 +170,12 @@ void mspringi_scheme_prepare(mspringi_substep_of *substep) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     const mspring_integrator integrator = integrator_now(n);
     const mspringi_scheme scheme = mspringi_scheme_of(integrator);
-    const double h = (double)substep->h, c = scheme.force_share * h * h;
+    const double h = (double)substep->h, c = scheme.force_fraction * h * h;
     // What global damping multiplies masses by.
-    const double heavier = 1.0 + scheme.force_share * scheme.velocity_share * h * (double)network->global_damping;
+    const double heavier =
+        1.0 + scheme.force_fraction * scheme.velocity_fraction * h * (double)network->global_damping;
     n->system.force_scale = n->scale * c;
-    n->system.damping_rate = scheme.velocity_share / h;
+    n->system.damping_rate = scheme.velocity_fraction / h;
     substep->mass_scale = (float)(n->scale * heavier);
     substep->flight = prepare_flight(substep, integrator);
     prepare_outside(substep, c, heavier);

@@ -79,7 +79,7 @@ static void run_share(void *argument, uint32_t index, uint32_t worker) {
     mspringi_land(substep, &mate, alpha);
 }
 
-static void choose_crew(mspringi_substep_of *substep) {
+static void choose_team(mspringi_substep_of *substep) {
     const mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
     const bool shared = mspringi_slot_count(network) >= MSPRINGI_SMALLEST_SHARED_SLOTS && n->alone == 0;
@@ -89,7 +89,7 @@ static void choose_crew(mspringi_substep_of *substep) {
 }
 
 // Whether the workers had a core each.
-static void judge_crew(mspringi_implicit *n, uint32_t sleeps) {
+static void judge_team(mspringi_implicit *n, uint32_t sleeps) {
     if (sleeps <= BEARABLE_SLEEPS) {
         n->patience = 0;
         return;
@@ -99,7 +99,7 @@ static void judge_crew(mspringi_implicit *n, uint32_t sleeps) {
     n->alone = n->patience;
 }
 
-static void run_crew(mspringi_substep_of *substep) {
+static void run_team(mspringi_substep_of *substep) {
     mspringi_tasks *tasks = substep->progress ? substep->network->tasks : NULL;
     mspringi_scheme_prepare(substep);
     mspringi_tasks_run(tasks, substep->workers, run_share, substep);
@@ -110,16 +110,16 @@ static void run_substep(mspringi_substep_of *substep, bool is_piece) {
     mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
     const uint32_t sleeps = mspringi_tasks_sleeps(network->tasks);
-    choose_crew(substep);
+    choose_team(substep);
     n->is_piece = is_piece;
     n->is_hit = false;
-    run_crew(substep);
+    run_team(substep);
     if (network->floor && network->floor->has_hit) {
         n->is_hit = true;
-        run_crew(substep);
+        run_team(substep);
     }
     if (substep->progress)
-        judge_crew(n, mspringi_tasks_sleeps(network->tasks) - sleeps);
+        judge_team(n, mspringi_tasks_sleeps(network->tasks) - sleeps);
     if (network->floor)
         mspringi_floor_bear(network, substep->h);
     mspringi_scheme_close(substep);

@@ -85,7 +85,7 @@ static void keep_slots(const mspring_network *network, size_t first, size_t end)
 }
 
 // A worker's part.
-static void measure_share(void *argument, uint32_t index, uint32_t worker) {
+static void measure_fraction(void *argument, uint32_t index, uint32_t worker) {
     const measuring *all = argument;
     mspring_network *network = all->network;
     const mspringi_implicit *n = mspringi_implicit_of(network);
@@ -212,7 +212,7 @@ void mspringi_budget_measure(measuring *all) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     const bool shared = mspringi_slot_count(network) >= MSPRINGI_SMALLEST_SHARED_SLOTS && n->alone == 0;
     all->workers = shared ? mspringi_tasks_concurrency(network->tasks) : 1;
-    mspringi_tasks_run(all->workers > 1 ? network->tasks : NULL, all->workers, measure_share, all);
+    mspringi_tasks_run(all->workers > 1 ? network->tasks : NULL, all->workers, measure_fraction, all);
     for (account *a = n->budget.accounts; a < n->budget.accounts + n->budget.count; ++a) {
         memset(a->sums, 0, sizeof a->sums);
         a->elastic = all->knows_elastic ? a->elastic : 0.0;

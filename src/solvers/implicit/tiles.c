@@ -336,10 +336,10 @@ static float choose_turn_inertia(const mspring_network *network) {
 }
 
 // Everything that edits do not change.
-static void take_print(mspringi_tiles *tiles, size_t slots) {
-    tiles->print = mspringi_mix_floats(MSPRINGI_MIX_START, tiles->turn_inertia, 0.0f);
+static void take_fingerprint(mspringi_tiles *tiles, size_t slots) {
+    tiles->fingerprint = mspringi_mix_floats(MSPRINGI_MIX_START, tiles->turn_inertia, 0.0f);
     for (size_t slot = 0; slot < slots; ++slot)
-        tiles->print = mspringi_mix(tiles->print, tiles->cells.of_slot[slot]);
+        tiles->fingerprint = mspringi_mix(tiles->fingerprint, tiles->cells.of_slot[slot]);
 }
 
 static bool find_tiles(mspringi_tiles *tiles, const mspring_network *network, mspringi_memory *memory) {
@@ -369,7 +369,7 @@ static bool find_tiles(mspringi_tiles *tiles, const mspring_network *network, ms
     list_anchors(tiles, network);
     renew(tiles, network);
     tiles->turn_inertia = choose_turn_inertia(network);
-    take_print(tiles, slots);
+    take_fingerprint(tiles, slots);
     return true;
 }
 
@@ -386,7 +386,7 @@ mspring_result mspringi_tiles_create(mspringi_tiles *tiles, const mspring_networ
 
 void mspringi_tiles_set_inertia(mspringi_tiles *tiles, float turn_inertia, size_t slots) {
     tiles->turn_inertia = turn_inertia;
-    take_print(tiles, slots);
+    take_fingerprint(tiles, slots);
 }
 
 #define ARRAY(member) MSPRINGI_COLUMN(mspringi_tiles, member, MSPRINGI_ARRAY)

@@ -27,9 +27,9 @@ typedef struct mspringi_tiles {
     size_t value_capacity; ///< most numbers that the coarse matrix may have
     uint32_t *dirty;       ///< cells to be looked at again
     uint32_t dirty_count;
-    uint8_t *is_dirty;  ///< [cells]
-    float turn_inertia; ///< m^2; what is added to a tile's moment of inertia for each kg
-    uint64_t print;     ///< hash of all this
+    uint8_t *is_dirty;    ///< [cells]
+    float turn_inertia;   ///< m^2; what is added to a tile's moment of inertia for each kg
+    uint64_t fingerprint; ///< hash of all this
 } mspringi_tiles;
 
 mspring_result mspringi_tiles_create(mspringi_tiles *tiles, const mspring_network *network, uint32_t size,

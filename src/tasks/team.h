@@ -1,10 +1,10 @@
-/// @file crew.h
+/// @file team.h
 /// The workers of a substep: each runs the whole of it, on its share of everything, and meets the others where it
 /// needs what they have done.
 ///
 /// SPDX-License-Identifier: MIT
-#ifndef MSPRINGI_CREW_H
-#define MSPRINGI_CREW_H
+#ifndef MSPRINGI_TEAM_H
+#define MSPRINGI_TEAM_H
 
 #include "tasks/tasks.h"
 

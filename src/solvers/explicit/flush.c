@@ -1,5 +1,5 @@
 /// Stopping what is no motion any more.
-#include "solvers/explicit/creep.h"
+#include "solvers/explicit/flush.h"
 
 #include <math.h>
 
@@ -16,7 +16,7 @@ static void stop(float *velocity, size_t count) {
         velocity[i] = fabsf(velocity[i]) < NO_SPEED ? 0.0f : velocity[i];
 }
 
-void mspringi_creep_stop(const mspring_network *network, size_t first, size_t end) {
+void mspringi_flush_to_zero(const mspring_network *network, size_t first, size_t end) {
     if (!(network->global_damping > 0.0f || network->parts > MSPRINGI_DAMPING))
         return;
     stop(network->state.vx + first, end - first);

@@ -1,5 +1,5 @@
 /// The rows on both sides of a border.
-#include "solvers/explicit/seam.h"
+#include "solvers/explicit/halo.h"
 
 #include <string.h>
 
@@ -7,7 +7,7 @@
 #include "solvers/explicit/shares.h"
 #include "store/precise.h"
 
-/// Rows that a seam has: the row below as each of the workers sweeps it, and the velocities that the one below
+/// Rows that a halo has: the row below as each of the workers sweeps it, and the velocities that the one below
 /// watches changes by; then the rows above, substep by substep.
 enum { BELOW_FOR_LOWER = 0, BELOW_FOR_UPPER = 1, BEFORE = 2, ABOVE = 3 };
 
@@ -15,29 +15,29 @@ enum { BELOW_FOR_LOWER = 0, BELOW_FOR_UPPER = 1, BEFORE = 2, ABOVE = 3 };
 
 static uint32_t most_spans(const mspringi_topology *t) {
     uint32_t most = 0;
-    for (uint32_t row = 0; row < t->wave_rows; ++row)
+    for (uint32_t row = 0; row < t->wavefront_rows; ++row)
         most = t->rows[row].span_count > most ? t->rows[row].span_count : most;
     return most;
 }
 
-static mspringi_seams plan_seams(const mspring_network *network) {
+static mspringi_halos plan_halos(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const uint32_t concurrency = mspringi_tasks_concurrency(network->tasks);
-    mspringi_seams seams = {.segment = ((size_t)t->carry_blocks + 1) * MSPRINGI_WIDTH};
+    mspringi_halos halos = {.segment = ((size_t)t->carry_blocks + 1) * MSPRINGI_WIDTH};
     if (concurrency == 1)
-        return seams;
-    seams.substeps = network->depth;
-    seams.workers = concurrency;
-    seams.row_spans = most_spans(t);
-    const uint32_t most = t->wave_strips / mspringi_shares_least(t->lag);
-    seams.count = most < 2 ? 0 : (most < concurrency ? most : concurrency) - 1;
-    seams.strips = t->wave_strips > t->layer_count ? t->wave_strips : t->layer_count;
-    return seams;
+        return halos;
+    halos.substeps = network->depth;
+    halos.workers = concurrency;
+    halos.row_spans = most_spans(t);
+    const uint32_t most = t->wavefront_strips / mspringi_shares_least(t->skew);
+    halos.count = most < 2 ? 0 : (most < concurrency ? most : concurrency) - 1;
+    halos.strips = t->wavefront_strips > t->layer_count ? t->wavefront_strips : t->layer_count;
+    return halos;
 }
 
-mspring_result mspringi_seams_reserve(mspring_network *network) {
-    mspringi_seams *seams = &network->seams, planned = plan_seams(network);
-    if (planned.workers <= seams->workers)
+mspring_result mspringi_halos_reserve(mspring_network *network) {
+    mspringi_halos *halos = &network->halos, planned = plan_halos(network);
+    if (planned.workers <= halos->workers)
         return MSPRING_OK;
     mspringi_memory *memory = &network->memory;
     planned.values =
@@ -48,20 +48,20 @@ mspring_result mspringi_seams_reserve(mspring_network *network) {
         mspringi_alloc(memory, (size_t)planned.workers * MSPRINGI_PLANNED_PASSES, sizeof *planned.borders);
     planned.weights = mspringi_alloc(memory, (size_t)planned.strips + 1, sizeof *planned.weights);
     if (!planned.values || !planned.spans || !planned.borders || !planned.weights) {
-        mspringi_seams_free(&planned, memory);
+        mspringi_halos_free(&planned, memory);
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for what %u workers hand on",
                              (unsigned)planned.workers);
     }
-    mspringi_seams_free(seams, memory);
-    *seams = planned;
+    mspringi_halos_free(halos, memory);
+    *halos = planned;
     return MSPRING_OK;
 }
 
-void mspringi_seams_free(const mspringi_seams *seams, mspringi_memory *memory) {
-    mspringi_free(memory, seams->values);
-    mspringi_free(memory, seams->spans);
-    mspringi_free(memory, seams->borders);
-    mspringi_free(memory, seams->weights);
+void mspringi_halos_free(const mspringi_halos *halos, mspringi_memory *memory) {
+    mspringi_free(memory, halos->values);
+    mspringi_free(memory, halos->spans);
+    mspringi_free(memory, halos->borders);
+    mspringi_free(memory, halos->weights);
 }
 
 /* -------------------------------------------------------------------------------------------------- its rows */
@@ -78,11 +78,11 @@ static slots slots_of(const mspring_network *network, const mspringi_row *row) {
     return (slots){begin, end - begin};
 }
 
-// A row of a seam as a state of its own, from slot 0 on; further rows lie behind it.
+// A row of a halo as a state of its own, from slot 0 on; further rows lie behind it.
 static mspringi_state state_of(const mspring_network *network, uint32_t border, uint32_t row) {
-    const mspringi_seams *seams = &network->seams;
-    const size_t stride = (ABOVE + seams->substeps) * seams->segment;
-    float *x = seams->values + MSPRINGI_STATE_ARRAYS * border * stride + row * seams->segment;
+    const mspringi_halos *halos = &network->halos;
+    const size_t stride = (ABOVE + halos->substeps) * halos->segment;
+    float *x = halos->values + MSPRINGI_STATE_ARRAYS * border * stride + row * halos->segment;
     return (mspringi_state){x, x + stride, x + 2 * stride, x + 3 * stride, x + 4 * stride, x + 5 * stride};
 }
 
@@ -97,7 +97,7 @@ static void copy_slots(const mspringi_state *from, size_t first, const mspringi_
     memcpy(to->low_y + to_first, from->low_y + first, size);
 }
 
-/// The row below, copied to one of the seam's rows, and the way from there to the row above.
+/// The row below, copied to one of the halo's rows, and the way from there to the row above.
 typedef struct copied {
     slots below;
     mspringi_state state;
@@ -105,17 +105,17 @@ typedef struct copied {
     mspringi_span *spans, *runs; ///< [row_spans]
 } copied;
 
-static copied copy_below(const mspring_network *network, const mspringi_seam *seam, const mspringi_row *below,
+static copied copy_below(const mspring_network *network, const mspringi_halo *halo, const mspringi_row *below,
                          uint32_t row) {
-    const mspringi_seams *seams = &network->seams;
+    const mspringi_halos *halos = &network->halos;
     const slots from = slots_of(network, below), above = slots_of(network, below + 1);
-    mspringi_span *spans = seams->spans + ((size_t)2 * seam->border + row) * 2 * seams->row_spans;
+    mspringi_span *spans = halos->spans + ((size_t)2 * halo->border + row) * 2 * halos->row_spans;
     const copied copy = {
         .below = from,
-        .state = state_of(network, seam->border, row),
-        .shift = (int64_t)((ABOVE + seam->substep - row) * seams->segment + from.first) - (int64_t)above.first,
+        .state = state_of(network, halo->border, row),
+        .shift = (int64_t)((ABOVE + halo->substep - row) * halos->segment + from.first) - (int64_t)above.first,
         .spans = spans,
-        .runs = spans + seams->row_spans,
+        .runs = spans + halos->row_spans,
     };
     copy_slots(&network->state, from.first, &copy.state, 0, from.count);
     return copy;
@@ -167,32 +167,32 @@ static void sweep_copy(const mspring_network *network, const mspringi_substep *s
     }
 }
 
-void mspringi_seam_keep(const mspring_network *network, const mspringi_seam *seam, const mspringi_substep *substep,
+void mspringi_halo_keep(const mspring_network *network, const mspringi_halo *halo, const mspringi_substep *substep,
                         const mspringi_strip *strip) {
     const mspringi_row *above = &network->topology.rows[strip->first_row], *below = above - 1;
     const mspringi_share share = mspringi_share_of_strip(network, strip - 1);
     if (below->kind != MSPRINGI_ROW_LATTICE || share == MSPRINGI_ASLEEP)
         return;
-    const mspringi_state kept = state_of(network, seam->border, ABOVE + seam->substep);
+    const mspringi_state kept = state_of(network, halo->border, ABOVE + halo->substep);
     const slots from = slots_of(network, above);
     copy_slots(&network->state, from.first, &kept, 0, from.count);
-    const copied copy = copy_below(network, seam, below, BELOW_FOR_UPPER);
+    const copied copy = copy_below(network, halo, below, BELOW_FOR_UPPER);
     mspringi_sweep sweep = substep->sweep;
     sweep.watch = NULL;
     sweep_copy(network, substep, &copy, &sweep, below, share == MSPRINGI_PARTLY);
 }
 
-void mspringi_seam_sweep(const mspring_network *network, const mspringi_seam *seam, const mspringi_substep *substep,
+void mspringi_halo_sweep(const mspring_network *network, const mspringi_halo *halo, const mspringi_substep *substep,
                          const mspringi_strip *strip) {
     const mspringi_row *below = &network->topology.rows[strip->first_row + strip->row_count - 1];
-    const copied copy = copy_below(network, seam, below, BELOW_FOR_LOWER);
+    const copied copy = copy_below(network, halo, below, BELOW_FOR_LOWER);
     const mspringi_state *backup = &network->backup;
     mspringi_sweep sweep = substep->sweep;
     if (sweep.keep)
         copy_slots(&copy.state, 0, backup, copy.below.first, copy.below.count);
     if (sweep.before) {
         // Where vy lies as far behind vx as y behind x, as the sweep expects it.
-        const mspringi_state before = state_of(network, seam->border, BEFORE);
+        const mspringi_state before = state_of(network, halo->border, BEFORE);
         memcpy(before.x, backup->vx + copy.below.first, copy.below.count * sizeof *before.x);
         memcpy(before.y, backup->vy + copy.below.first, copy.below.count * sizeof *before.y);
         sweep.before = before.x;

@@ -1,9 +1,9 @@
-/// @file sight.h
+/// @file extrema.h
 /// What there is to see of values and of motion, in the vectors of sweep.h.
 ///
 /// SPDX-License-Identifier: MIT
-#ifndef MSPRINGI_SIGHT_H
-#define MSPRINGI_SIGHT_H
+#ifndef MSPRINGI_EXTREMA_H
+#define MSPRINGI_EXTREMA_H
 
 static mspringi_largest largest(const float *now, const float *before, size_t count) {
     vec value = zero(), change = zero();
@@ -23,8 +23,8 @@ static inline float largest_watched(const float *lanes) {
     return largest_lane(value);
 }
 
-static mspringi_sight sight_of(const mspringi_watch *watch) {
-    return (mspringi_sight){largest_watched(watch->place), largest_watched(watch->speed),
+static mspringi_extrema extrema_of(const mspringi_watch *watch) {
+    return (mspringi_extrema){largest_watched(watch->place), largest_watched(watch->speed),
                             largest_watched(watch->change)};
 }
 
