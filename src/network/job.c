@@ -144,9 +144,7 @@ mspring_result mspring_job_begin(mspring_network *network, mspring_layout layout
         return result;
     if (!job || (layout != MSPRING_LAYOUT_COMPACT && layout != MSPRING_LAYOUT_WHOLE))
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                             "the place for the job is NULL, or layout %d "
-                             "is none",
-                             (int)layout);
+                             "the place for the job is NULL, or layout %d is none", (int)layout);
     if (network->job)
         return mspringi_fail(&network->message, MSPRING_ERROR_BUSY, "the network has a job that is not finished");
     result = begin(network, layout, job);

@@ -405,8 +405,9 @@ enum {
     /// over the springs. If that does not answer it, it searches for a motion that grows, for as long as a part of
     /// the step's substeps takes. What such a search overlooks is found once it has grown to a thousandth of the
     /// shortest spring in a substep: that step is refused. Up to 0.95 of the border a step of 8 or more substeps
-    /// takes at most twice its usual time, and the first one at most three times; closer to it, three and four. Watching velocities takes 2 to 3 % of a step of one
-    /// substep, less than 0.5 % of one of 8 (bench/STABILITY.md).
+    /// takes at most twice its usual time, and the first one at most three times; closer to it, three and four.
+    /// Watching velocities takes 2 to 3 % of a step of one substep, less than 0.5 % of one of 8
+    /// (bench/STABILITY.md).
     ///
     /// The implicit and the direct solver keep an energy budget instead, of each component (all that live springs join)
     /// in each substep. Kinetic and elastic energy grow by no more than the work of gravity, forces and moving pins. A
@@ -1554,10 +1555,11 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_expand(mspring_netw
 typedef struct mspring_job mspring_job;
 
 /// What a job makes.
-typedef enum mspring_layout {
+typedef int32_t mspring_layout;
+enum {
     MSPRING_LAYOUT_COMPACT = 0, ///< as mspring_network_compact()
     MSPRING_LAYOUT_WHOLE = 1    ///< as mspring_network_expand(), so that springs can be restored without a long frame
-} mspring_layout;
+};
 
 /// Begin a job: copy what springs are and where they lie. About as long as cloning a network without solver.
 /// @return MSPRING_OK; MSPRING_ERROR_BUSY inside a hook, or if the network has a job that is neither finished nor
@@ -1578,11 +1580,11 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_job_run(mspring_job *job, u
 
 /// Move the network to the plan that a job has made. Slots change, views end. Afterwards the job can only be
 /// destroyed, whatever is returned, unless that is MSPRING_ERROR_BUSY.
-/// @return MSPRING_OK, also if there was nothing to do; MSPRING_ERROR_OUTDATED if since begin particles or springs were
-///         added or removed, a spring was restored that the plan leaves out, or the plan has changed otherwise: begin
-///         another job; MSPRING_ERROR_BUSY inside a hook, or if the job has not been run to its end;
-///         MSPRING_ERROR_MEMORY; MSPRING_ERROR_LIMIT; MSPRING_ERROR_ARGUMENT for NULL, or for a job that is finished.
-///         If a run failed, its error is returned again. On error the network is as it was.
+/// @return MSPRING_OK, also if there was nothing to do; MSPRING_ERROR_OUTDATED if since begin particles or springs
+///         were added or removed, a spring was restored that the plan leaves out, or the plan has changed
+///         otherwise: begin another job; MSPRING_ERROR_BUSY inside a hook, or if the job has not been run to its
+///         end; MSPRING_ERROR_MEMORY; MSPRING_ERROR_LIMIT; MSPRING_ERROR_ARGUMENT for NULL, or for a job that is
+///         finished. If a run failed, its error is returned again. On error the network is as it was.
 /// @threads exclusive access to network and job   @allocates some   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_job_finish(mspring_network *network, mspring_job *job);
 
