@@ -6,8 +6,8 @@
 /// and c, which may therefore come with a factor, such as the length of a spring or the scale of a matrix.
 /// k: stiffness, N/m; c: damping, N s/m; e: extension, m; rate: of it, m/s.
 ///
-/// Not here, as each has a form of its own against cancellation: differences of energy (solvers/implicit/sums.c, settle/), what
-/// pulls across a spring, and the impulse of a clamped substep (solvers/clamped/clamp.c).
+/// Not here, as each has a form of its own against cancellation: differences of energy (solvers/implicit/sums.c,
+/// analysis/settle/), what pulls across a spring, and the impulse of a clamped substep (solvers/clamped/clamp.c).
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SPRING_LAW_H
