@@ -161,8 +161,7 @@ static map_verdict take_steps(const map_case *what, mspring_network *network, ma
     return verdict;
 }
 
-/* ------------------------------------------------------------------------------------------------ violent motion
- */
+/* --------------------------------------------------------------------------------------------- violent motion */
 
 /// How much the energy of a case grows at most, as a part of what could move.
 static double growth_of(const map_case *what) {

@@ -60,8 +60,7 @@ static void sum_moments(const mspringi_motion *m, size_t first, size_t end, cons
         to[i] = sum_wide_lanes(sums[i]);
 }
 
-/* ------------------------------------------------------------------------------------------------ elastic energy
- */
+/* --------------------------------------------------------------------------------------------- elastic energy */
 
 static MSPRINGI_NOINLINE void
 add_elastic_lanes(const float *restrict ax, const float *restrict ay, const float *restrict bx,
@@ -80,8 +79,8 @@ add_elastic_lanes(const float *restrict ax, const float *restrict ay, const floa
 
 // The springs of a row's block.
 MSPRINGI_PART_INLINE void put_elastic(const mspringi_motion *m, size_t slot, size_t up, size_t directions,
-                               const float *rest_lengths, const float *stiffnesses, size_t stride,
-                               mspringi_elastic *to) {
+                                      const float *rest_lengths, const float *stiffnesses, size_t stride,
+                                      mspringi_elastic *to) {
     const size_t bases[MSPRINGI_DIRECTIONS] = {
         [MSPRINGI_EAST] = slot, [MSPRINGI_NORTH] = slot, [MSPRINGI_NORTH_EAST] = slot, [MSPRINGI_SOUTH_EAST] = up};
     const size_t tips[MSPRINGI_DIRECTIONS] = {[MSPRINGI_EAST] = slot + 1,

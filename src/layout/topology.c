@@ -104,8 +104,7 @@ static mspring_result trim_spans(mspringi_assembly *a) {
     return mspringi_assembly_tighten_spans(a);
 }
 
-/* ------------------------------------------------------------------------------------- what there is to be laid
- * out */
+/* ------------------------------------------------------------------------------- what there is to be laid out */
 
 static mspring_result make_graph(mspringi_assembly *a) {
     const size_t particles = a->builder->particle_count;

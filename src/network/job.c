@@ -208,8 +208,8 @@ static const job_pass compact_passes[] = {
     EACH(mspringi_left_number_places, springs_of, 64000),
     EACH(mspringi_left_note_ends, springs_of, 32000),
     ONCE(mspringi_left_keep_spare),
-    EACH(mspringi_left_print_slots, particles_of, 64000),
-    EACH(mspringi_left_print_places, springs_of, 64000),
+    EACH(mspringi_left_fingerprint_slots, particles_of, 64000),
+    EACH(mspringi_left_fingerprint_places, springs_of, 64000),
     MOVE,
 };
 
@@ -252,15 +252,13 @@ static MSPRINGI_NOINLINE mspring_result run(mspring_job *job, uint32_t at_most) 
     return result;
 }
 
-static mspring_result fail_spent(mspring_job *job) {
-    return mspringi_fail(&job->to.message, MSPRING_ERROR_ARGUMENT, "the job has failed or is finished: destroy it");
-}
-
 mspring_result mspring_job_run(mspring_job *job, uint32_t at_most, uint32_t *left) {
     if (!job)
         return MSPRING_ERROR_ARGUMENT;
+    if (job->failure != MSPRING_OK) // what is said of it stays
+        return MSPRING_ERROR_ARGUMENT;
     if (job->is_spent)
-        return fail_spent(job);
+        return mspringi_fail(&job->to.message, MSPRING_ERROR_ARGUMENT, "the job is finished: destroy it");
     const mspringi_fp_state before = mspringi_fp_enter();
     mspring_result result = run(job, at_most);
     mspringi_fp_leave(before);
@@ -333,11 +331,13 @@ mspring_result mspring_job_finish(mspring_network *network, mspring_job *job) {
     }
     if (!job || job->is_spent)
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the job is NULL or is finished");
+    if (job->network && job->network != network)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the job was begun for another network");
     if (!is_done(job))
         return mspringi_fail(&network->message, MSPRING_ERROR_BUSY, "the job has not been run to its end");
-    if (job->network != network)
+    if (!job->network)
         return mspringi_fail(&network->message, MSPRING_ERROR_OUTDATED,
-                             "the job was begun for another network, or for a layout that is no more");
+                             "the job was begun for a layout that is no more");
     mspringi_job_lose(network);
     const mspringi_fp_state before = mspringi_fp_enter();
     result = finish(network, job);

@@ -87,8 +87,8 @@ mspring_result mspringi_left_finish_layout(mspring_job *job);
 mspring_result mspringi_left_number_places(mspring_job *job, uint32_t first, uint32_t end);
 mspring_result mspringi_left_note_ends(mspring_job *job, uint32_t first, uint32_t end);
 mspring_result mspringi_left_keep_spare(mspring_job *job);
-mspring_result mspringi_left_print_slots(mspring_job *job, uint32_t first, uint32_t end);
-mspring_result mspringi_left_print_places(mspring_job *job, uint32_t first, uint32_t end);
+mspring_result mspringi_left_fingerprint_slots(mspring_job *job, uint32_t first, uint32_t end);
+mspring_result mspringi_left_fingerprint_places(mspring_job *job, uint32_t first, uint32_t end);
 
 /* move.c: what lies by slot or place in the new topology, in this order. */
 mspring_result mspringi_move_begin(mspring_job *job);

@@ -112,7 +112,7 @@ mspring_result mspringi_left_lay_out(mspring_job *job) {
     return result;
 }
 
-/* ------------------------------------------------------------------------------------------------- parking */
+/* ----------------------------------------------------------------------------------------- inactive springs */
 
 // How many of the live springs are not spare ones.
 static uint32_t count_woven(const mspring_job *job, uint32_t first_spare) {
@@ -186,16 +186,16 @@ mspring_result mspringi_left_keep_spare(mspring_job *job) {
     return result;
 }
 
-/* ------------------------------------------------------------------------------------------------- the print */
+/* --------------------------------------------------------------------------------------------- fingerprint */
 
-mspring_result mspringi_left_print_slots(mspring_job *job, uint32_t first, uint32_t end) {
+mspring_result mspringi_left_fingerprint_slots(mspring_job *job, uint32_t first, uint32_t end) {
     const mspringi_topology *t = &job->to.topology;
     for (mspring_id p = first; p < end; ++p)
         job->fingerprint = mspringi_mix(job->fingerprint, t->slot_of_particle[p]);
     return MSPRING_OK;
 }
 
-mspring_result mspringi_left_print_places(mspring_job *job, uint32_t first, uint32_t end) {
+mspring_result mspringi_left_fingerprint_places(mspring_job *job, uint32_t first, uint32_t end) {
     for (mspring_id s = first; s < end; ++s)
         job->fingerprint = mspringi_mix(job->fingerprint, job->to.topology.place_of_spring[s]);
     return MSPRING_OK;

@@ -140,8 +140,7 @@ static inline void compute(const mspring_network *network, measure what) {
     compute_leftovers(network, what);
 }
 
-/* ---------------------------------------------------------------------------------------------------- reading out
- */
+/* ------------------------------------------------------------------------------------------------ reading out */
 
 // Springs that were removed lie somewhere yet, but have nothing that could be measured.
 static void leave_out_what_is_gone(const mspring_network *network, float *of_spring) {

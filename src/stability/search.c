@@ -71,8 +71,7 @@ static void start_from_noise(const search *f, displacement to) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- the iteration
- */
+/* ---------------------------------------------------------------------------------------------- the iteration */
 
 // a . M b, in an order that does not depend on the machine.
 static double dot(const search *f, displacement a, displacement b) {

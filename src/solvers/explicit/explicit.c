@@ -40,8 +40,7 @@ typedef struct job {
     bool herds_are_apart;          ///< and not to be swept here
 } job;
 
-/* ------------------------------------------------------------------------------------------------- the wavefront
- */
+/* ---------------------------------------------------------------------------------------------- the wavefront */
 
 // Substeps whose strips fit so much cache, at least one.
 static uint32_t depth_within(const mspringi_topology *topology, uint32_t parts, size_t cache_bytes) {

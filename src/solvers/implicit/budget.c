@@ -160,8 +160,7 @@ void mspringi_budget_open(mspring_network *network) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- the judgement
- */
+/* ---------------------------------------------------------------------------------------------- the judgement */
 
 /// How momenta change in a substep of h but for springs and floor: what is left of them, and for how long forces
 /// act.

@@ -367,8 +367,7 @@ void mspringi_implicit_forget(mspringi_implicit *n) {
     n->budget.knows_elastic = false;
 }
 
-/* -------------------------------------------------------------------------------------------------------- ranges
- */
+/* ----------------------------------------------------------------------------------------------------- ranges */
 
 // The factorisation of the direct solver has places for all.
 bool mspringi_next_slots(const mspring_network *network, mspringi_slots slots, size_t *at, mspringi_slots *run) {

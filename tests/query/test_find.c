@@ -1,6 +1,6 @@
 /// @file test_find.c
-/// What lies where: particles near a point, in a circle or a box, and springs across a line, against a search by the
-/// public getters in long double.
+/// What lies where: particles near a point, in a circle or a box, and springs across a line, against a search by
+/// the public getters in long double.
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
@@ -124,7 +124,8 @@ static void particles_are_found(void **state) {
     }
 }
 
-/// Whether a spring's ends lie on both sides of a line, the line's on both sides of the spring, and where they meet.
+/// Whether a spring's ends lie on both sides of a line, the line's on both sides of the spring, and where they
+/// meet.
 static bool meets(const double way[4], support_point c, support_point d, long double *fraction) {
     const long double wx = (long double)way[2] - way[0], wy = (long double)way[3] - way[1];
     const long double sx = (long double)d.x - c.x, sy = (long double)d.y - c.y;
@@ -140,7 +141,8 @@ static uint32_t check_across(const mspring_network *network, const double way[4]
     mspring_plan plan = {.struct_size = sizeof plan};
     uint32_t count = 0, at = 0;
     check_ok(mspring_network_plan(network, &plan));
-    check_ok(mspring_network_springs_across(network, way[0], way[1], way[2], way[3], found, fractions, MOST, &count));
+    check_ok(
+        mspring_network_springs_across(network, way[0], way[1], way[2], way[3], found, fractions, MOST, &count));
     for (mspring_id i = 0; i < plan.spring_count; i++) {
         mspring_spring_info info = {.struct_size = sizeof info};
         if (mspring_network_get_spring(network, i, &info) != MSPRING_OK || (info.flags & MSPRING_SPRING_BROKEN))
@@ -187,9 +189,10 @@ static void touching_counts(void **state) {
         uint32_t count;
         double fraction;
     } cases[] = {
-        {{1, -1, 1, 1}, 1, 0.5}, {{1, -1, 1, 0}, 1, 1},    {{1, 0, 1, 3}, 1, 0},     {{0, -1, 0, 1}, 1, 0.5},
-        {{2, 0, 2, 0}, 1, 0},    {{-1, 0, 3, 0}, 1, 0.25}, {{3, 0, -1, 0}, 1, 0.25}, {{0.5, 0, 1, 0}, 1, 0},
-        {{3, 0, 4, 0}, 0, 0},    {{-2, 0, -1, 0}, 0, 0},   {{1, 1e-9, 1, 1}, 0, 0},  {{2.000001, -1, 2.000001, 1}, 0, 0},
+        {{1, -1, 1, 1}, 1, 0.5},  {{1, -1, 1, 0}, 1, 1},   {{1, 0, 1, 3}, 1, 0},
+        {{0, -1, 0, 1}, 1, 0.5},  {{2, 0, 2, 0}, 1, 0},    {{-1, 0, 3, 0}, 1, 0.25},
+        {{3, 0, -1, 0}, 1, 0.25}, {{0.5, 0, 1, 0}, 1, 0},  {{3, 0, 4, 0}, 0, 0},
+        {{-2, 0, -1, 0}, 0, 0},   {{1, 1e-9, 1, 1}, 0, 0}, {{2.000001, -1, 2.000001, 1}, 0, 0},
     };
     mspring_builder *builder = support_builder();
     support_spring(builder, support_particle(builder, 0, 0, 1), support_particle(builder, 2, 0, 1), 1, 0);
@@ -200,7 +203,8 @@ static void touching_counts(void **state) {
         mspring_id found = MSPRING_NONE;
         double fraction = 0;
         uint32_t count = 7;
-        check_ok(mspring_network_springs_across(network, way[0], way[1], way[2], way[3], &found, &fraction, 1, &count));
+        check_ok(
+            mspring_network_springs_across(network, way[0], way[1], way[2], way[3], &found, &fraction, 1, &count));
         assert_int_equal(count, cases[i].count);
         check_near(fraction, cases[i].fraction, 1e-12);
     }

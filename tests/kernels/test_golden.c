@@ -92,7 +92,8 @@ static int write_hashes(void) {
         return 1;
     }
     fprintf(file,
-            "# State hashes of the scenes in tests/golden.c, the same at every SIMD level, with every compiler\n"
+            "# State hashes of the scenes in tests/kernels/golden.c, the same at every SIMD level, with every "
+            "compiler\n"
             "# and at every optimisation level. Written by: test_golden scalar tests/golden/hashes.txt --write\n");
     for (uint32_t i = 0; i < golden_scene_count; i++) {
         fprintf(file, "%s %016" PRIx64 "\n", golden_scenes[i].name, golden_run(&golden_scenes[i], level, workers));

@@ -92,8 +92,8 @@ void support_fall_asleep(mspring_network *network, double dt);
 /// Give a particle a speed along x, m/s, and a third of it along y.
 void support_kick(mspring_network *network, mspring_id particle, float speed);
 
-/// Go on with a compaction by so many functions, with all for 0: one that is finished if it has come to its end, and
-/// begun if there is none, or it is outdated.
+/// Go on with a compaction by so many functions, with all for 0: one that is finished if it has come to its end,
+/// and begun if there is none, or it is outdated.
 /// @param job  NULL if there is none; NULL when the network is compact
 void support_compact(mspring_network *network, uint32_t functions, mspring_job **job);
 

@@ -97,8 +97,7 @@ static void what_is_switched_on_acts(void **state) {
     mspring_network_destroy(network);
 }
 
-/* -------------------------------------------------------------------------------------------------- runs by hand
- */
+/* ----------------------------------------------------------------------------------------------- runs by hand */
 
 /// Has each start fall at a speed of its own, whatever the kick was, and one spring break before.
 static mspring_result drop(mspring_network *run, uint32_t start, void *user) {
@@ -218,8 +217,7 @@ static void starts_are_kicked(void **state) {
     mspring_network_destroy(network);
 }
 
-/* ---------------------------------------------------------------------------------------- everywhere, and in time
- */
+/* ------------------------------------------------------------------------------------ everywhere, and in time */
 
 static void scenes_are_the_same_everywhere(void **state) {
     (void)state;
