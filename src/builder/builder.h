@@ -38,6 +38,31 @@ static inline bool mspringi_is_speed(float value) {
     return value >= -(float)MSPRING_MAX_SPEED && value <= (float)MSPRING_MAX_SPEED;
 }
 
+/// Over any distance between two places within MSPRING_MAX_COORDINATE.
+#define MSPRINGI_LARGEST_LENGTH 4e12f
+
+// Comparisons are written so that NaN fails them.
+
+static inline bool mspringi_in_range(float value, float low, float high) {
+    return value >= low && value <= high;
+}
+
+static inline bool mspringi_is_coordinate(double value) {
+    return value >= -MSPRING_MAX_COORDINATE && value <= MSPRING_MAX_COORDINATE;
+}
+
+/// Make room for count more.
+mspring_result mspringi_builder_reserve_particles(mspring_builder *builder, size_t count);
+mspring_result mspringi_builder_reserve_springs(mspring_builder *builder, size_t count);
+
+/// Refuse values that no particle or spring may have. what and index are for the message.
+mspring_result mspringi_check_mass(mspringi_message *message, const char *what, size_t index, float mass);
+mspring_result mspringi_check_coefficients(mspringi_message *message, const char *what, size_t index,
+                                           float stiffness, float damping, uint32_t flags);
+/// Refuse a struct_size, where the definition is one of several.
+mspring_result mspringi_check_struct_of(mspringi_message *message, const char *what, size_t index, const char *name,
+                                        size_t given, size_t known);
+
 /// Refuse definitions that are wrong whatever they are added to. index is for the message.
 mspring_result mspringi_check_particle_def(mspringi_message *message, size_t index,
                                            const mspring_particle_def *def);

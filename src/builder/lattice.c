@@ -1,0 +1,172 @@
+/// A lattice: cells become particles, neighbours are joined.
+#include "builder/builder.h"
+
+#include "base/cpu.h"
+
+static mspring_result check_materials(mspring_builder *builder, const mspring_lattice_def *def) {
+    mspringi_message *message = &builder->message;
+    if (!def->materials && def->material_count > 0)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "lattice materials are NULL");
+    if (def->material_count > MSPRING_CELL_EMPTY)
+        return mspringi_fail(message, MSPRING_ERROR_LIMIT, "%u materials are over the limit of %u",
+                             (unsigned)def->material_count, (unsigned)MSPRING_CELL_EMPTY);
+    for (uint32_t i = 0; i < def->material_count; ++i) {
+        const mspring_material *material = &def->materials[i];
+        mspring_result result = mspringi_check_struct_of(&builder->message, "material", i, "mspring_material",
+                                                         material->struct_size, sizeof *material);
+        if (result == MSPRING_OK)
+            result = mspringi_check_mass(&builder->message, "material", i, material->mass);
+        if (result == MSPRING_OK)
+            result = mspringi_check_coefficients(&builder->message, "material", i, material->stiffness,
+                                                 material->damping, material->spring_flags);
+        if (result != MSPRING_OK)
+            return result;
+        if (material->particle_flags & ~(uint32_t)MSPRING_PARTICLE_PINNED)
+            return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "material %u: unknown particle flags 0x%x",
+                                 (unsigned)i, (unsigned)material->particle_flags);
+        if (material->spring_flags != def->materials[0].spring_flags)
+            return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                                 "material %u: some materials are relative and some are not", (unsigned)i);
+    }
+    return MSPRING_OK;
+}
+
+// Whether neighbouring cells between two coordinates would round to the same place.
+static bool is_lost(double spacing, size_t cells, double low, double high) {
+    return cells > 1 && (low + spacing == low || high - spacing == high);
+}
+
+// Check a lattice's cells and count what it will add.
+static mspring_result check_lattice(mspring_builder *builder, const mspring_lattice_def *def, size_t *particles,
+                                    size_t *springs) {
+    mspringi_message *message = &builder->message;
+    mspring_result result =
+        mspringi_check_struct(message, "mspring_lattice_def", def->struct_size, sizeof *def, sizeof *def);
+    if (result != MSPRING_OK)
+        return result;
+    const size_t width = def->width, height = def->height;
+    if (width == 0 || height == 0)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "lattice has %u x %u cells, it needs at least one",
+                             (unsigned)def->width, (unsigned)def->height);
+    if (width > MSPRING_MAX_PARTICLES / height)
+        return mspringi_fail(message, MSPRING_ERROR_LIMIT, "lattice of %u x %u cells is over the limit of %u",
+                             (unsigned)def->width, (unsigned)def->height, (unsigned)MSPRING_MAX_PARTICLES);
+    if (!def->cells)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "lattice cells are NULL");
+    if (!(def->spacing >= 1e-9 && def->spacing <= 1e9))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "lattice spacing is %g m, it must be 1e-9 to 1e9",
+                             def->spacing);
+    const double right = def->x + (double)(width - 1) * def->spacing;
+    const double top = def->y + (double)(height - 1) * def->spacing;
+    if (!mspringi_is_coordinate(def->x) || !mspringi_is_coordinate(def->y) || !mspringi_is_coordinate(right) ||
+        !mspringi_is_coordinate(top))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "lattice from (%g, %g) to (%g, %g) m is not within 1e12", def->x, def->y, right, top);
+    if (is_lost(def->spacing, width, def->x, right) || is_lost(def->spacing, height, def->y, top))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "lattice spacing %g m is lost in coordinates from (%g, %g) to (%g, %g) m",
+                             def->spacing, def->x, def->y, right, top);
+    result = check_materials(builder, def);
+    if (result != MSPRING_OK)
+        return result;
+
+    *particles = *springs = 0;
+    for (size_t row = 0; row < height; ++row) {
+        const uint16_t *cells = def->cells + row * width;
+        const uint16_t *below = row + 1 < height ? cells + width : NULL;
+        for (size_t column = 0; column < width; ++column) {
+            if (cells[column] == MSPRING_CELL_EMPTY)
+                continue;
+            if (cells[column] >= def->material_count)
+                return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                                     "lattice cell in column %zu, row %zu has material %u, but there are only %u",
+                                     column, row, (unsigned)cells[column], (unsigned)def->material_count);
+            *particles += 1;
+            *springs += column + 1 < width && cells[column + 1] != MSPRING_CELL_EMPTY;
+            *springs += below && column > 0 && below[column - 1] != MSPRING_CELL_EMPTY;
+            *springs += below && below[column] != MSPRING_CELL_EMPTY;
+            *springs += below && column + 1 < width && below[column + 1] != MSPRING_CELL_EMPTY;
+        }
+    }
+    return MSPRING_OK;
+}
+
+// The ids of a lattice's particles are dense in cell order, so those of two rows are enough to join them.
+static void join_cells(mspring_builder *builder, const mspring_lattice_def *def, mspring_id a, uint16_t material_a,
+                       mspring_id b, uint16_t material_b, bool diagonal) {
+    const mspring_material *ma = &def->materials[material_a], *mb = &def->materials[material_b];
+    const double length = diagonal ? def->spacing * 1.4142135623730951 : def->spacing;
+    builder->springs[builder->spring_count++] =
+        (mspringi_spring){.a = a,
+                          .b = b,
+                          .stiffness = 0.5f * ma->stiffness + 0.5f * mb->stiffness,
+                          .damping = 0.5f * ma->damping + 0.5f * mb->damping,
+                          .rest_length = (float)length,
+                          .flags = ma->spring_flags};
+}
+
+static void append_lattice(mspring_builder *builder, const mspring_lattice_def *def, mspring_id *cell_ids) {
+    const size_t width = def->width, height = def->height;
+    mspring_id id = (mspring_id)builder->particle_count;
+    mspring_id next_below = id; // id of the first particle of the row below
+    for (size_t column = 0; column < width; ++column)
+        next_below += def->cells[column] != MSPRING_CELL_EMPTY;
+
+    for (size_t row = 0; row < height; ++row) {
+        const uint16_t *cells = def->cells + row * width;
+        const uint16_t *below = row + 1 < height ? cells + width : NULL;
+        // The id that the cell below this one has, if it is not empty.
+        mspring_id below_id = next_below;
+        for (size_t column = 0; column < width; ++column) {
+            const bool has_below = below && below[column] != MSPRING_CELL_EMPTY;
+            if (cell_ids)
+                cell_ids[row * width + column] = MSPRING_NONE;
+            if (cells[column] != MSPRING_CELL_EMPTY) {
+                const mspring_material *material = &def->materials[cells[column]];
+                builder->particles[builder->particle_count++] =
+                    (mspringi_particle){.x = def->x + (double)column * def->spacing,
+                                        .y = def->y + (double)(height - 1 - row) * def->spacing,
+                                        .mass = material->mass,
+                                        .flags = material->particle_flags};
+                if (column + 1 < width && cells[column + 1] != MSPRING_CELL_EMPTY)
+                    join_cells(builder, def, id, cells[column], id + 1, cells[column + 1], false);
+                if (below && column > 0 && below[column - 1] != MSPRING_CELL_EMPTY)
+                    join_cells(builder, def, id, cells[column], below_id - 1, below[column - 1], true);
+                if (has_below)
+                    join_cells(builder, def, id, cells[column], below_id, below[column], false);
+                if (below && column + 1 < width && below[column + 1] != MSPRING_CELL_EMPTY)
+                    join_cells(builder, def, id, cells[column], below_id + has_below, below[column + 1], true);
+                if (cell_ids)
+                    cell_ids[row * width + column] = id;
+                ++id;
+            }
+            below_id += has_below;
+        }
+        next_below = below_id;
+    }
+}
+
+static MSPRINGI_NOINLINE mspring_result add_lattice(mspring_builder *builder, const mspring_lattice_def *def,
+                                                    mspring_id *cell_ids) {
+    size_t particles = 0, springs = 0;
+    if (!def)
+        return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "lattice definition is NULL");
+    mspring_result result = check_lattice(builder, def, &particles, &springs);
+    if (result == MSPRING_OK)
+        result = mspringi_builder_reserve_particles(builder, particles);
+    if (result == MSPRING_OK)
+        result = mspringi_builder_reserve_springs(builder, springs);
+    if (result == MSPRING_OK)
+        append_lattice(builder, def, cell_ids);
+    return result;
+}
+
+mspring_result mspring_builder_add_lattice(mspring_builder *builder, const mspring_lattice_def *def,
+                                           mspring_id *cell_ids) {
+    if (!builder)
+        return MSPRING_ERROR_ARGUMENT;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    mspring_result result = add_lattice(builder, def, cell_ids);
+    mspringi_fp_leave(before);
+    return result;
+}

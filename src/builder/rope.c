@@ -1,0 +1,88 @@
+/// A rope: equal springs in a row.
+#include "builder/builder.h"
+
+#include <math.h>
+
+#include "base/cpu.h"
+
+static mspring_result check_rope(mspring_builder *builder, const mspring_rope_def *def, float *segment_length) {
+    mspringi_message *message = &builder->message;
+    mspring_result result =
+        mspringi_check_struct(message, "mspring_rope_def", def->struct_size, sizeof *def, sizeof *def);
+    if (result != MSPRING_OK)
+        return result;
+    if (def->from >= builder->particle_count || def->to >= builder->particle_count)
+        return mspringi_fail(message, MSPRING_ERROR_ID,
+                             "rope from particle %u to %u, but there are only %zu particles", (unsigned)def->from,
+                             (unsigned)def->to, builder->particle_count);
+    if (def->from == def->to)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "rope from particle %u to itself",
+                             (unsigned)def->from);
+    if (def->segment_count == 0)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "rope has no segment, it needs at least one");
+    result = mspringi_check_mass(&builder->message, "rope from particle", def->from, def->mass);
+    if (result == MSPRING_OK)
+        result = mspringi_check_coefficients(&builder->message, "rope from particle", def->from, def->stiffness,
+                                             def->damping, def->spring_flags);
+    if (result != MSPRING_OK)
+        return result;
+    if (!mspringi_in_range(def->slack, 0.001f, 1000.0f))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "rope slack is %g, it must be 0.001 to 1000",
+                             (double)def->slack);
+    const mspringi_particle *from = &builder->particles[def->from], *to = &builder->particles[def->to];
+    const double dx = to->x - from->x, dy = to->y - from->y;
+    const float segment = (float)(sqrt(dx * dx + dy * dy) * (double)def->slack / (double)def->segment_count);
+    if (!(segment > 0.0f && segment <= MSPRINGI_LARGEST_LENGTH))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "rope from particle %u to %u: a segment would be %g m long, it must be > 0 and at "
+                             "most 4e12",
+                             (unsigned)def->from, (unsigned)def->to, (double)segment);
+    *segment_length = segment;
+    return MSPRING_OK;
+}
+
+static MSPRINGI_NOINLINE mspring_result add_rope(mspring_builder *builder, const mspring_rope_def *def,
+                                                 mspring_id *first_particle, mspring_id *first_spring) {
+    float segment_length = 0.0f;
+    if (!def)
+        return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "rope definition is NULL");
+    mspring_result result = check_rope(builder, def, &segment_length);
+    if (result == MSPRING_OK)
+        result = mspringi_builder_reserve_particles(builder, def->segment_count - 1);
+    if (result == MSPRING_OK)
+        result = mspringi_builder_reserve_springs(builder, def->segment_count);
+    if (result != MSPRING_OK)
+        return result;
+
+    const mspring_id inner = (mspring_id)builder->particle_count;
+    const mspring_id spring = (mspring_id)builder->spring_count;
+    const uint32_t segments = def->segment_count;
+    const mspringi_particle from = builder->particles[def->from], to = builder->particles[def->to];
+    for (uint32_t i = 1; i < segments; ++i) {
+        const double t = (double)i / (double)segments;
+        builder->particles[builder->particle_count++] = (mspringi_particle){
+            .x = from.x + (to.x - from.x) * t, .y = from.y + (to.y - from.y) * t, .mass = def->mass};
+    }
+    for (uint32_t i = 0; i < segments; ++i)
+        builder->springs[builder->spring_count++] = (mspringi_spring){.a = i == 0 ? def->from : inner + i - 1,
+                                                                      .b = i + 1 == segments ? def->to : inner + i,
+                                                                      .stiffness = def->stiffness,
+                                                                      .damping = def->damping,
+                                                                      .rest_length = segment_length,
+                                                                      .flags = def->spring_flags};
+    if (first_particle)
+        *first_particle = segments > 1 ? inner : MSPRING_NONE;
+    if (first_spring)
+        *first_spring = spring;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_builder_add_rope(mspring_builder *builder, const mspring_rope_def *def,
+                                        mspring_id *first_particle, mspring_id *first_spring) {
+    if (!builder)
+        return MSPRING_ERROR_ARGUMENT;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    mspring_result result = add_rope(builder, def, first_particle, first_spring);
+    mspringi_fp_leave(before);
+    return result;
+}
