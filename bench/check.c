@@ -80,7 +80,12 @@ static bool create(const bench_scene *subject, const bench_options *options, msp
         network->start_vx[i] *= CHECK_SPEED_FACTOR;
         network->start_vy[i] *= CHECK_SPEED_FACTOR;
     }
-    mspring_result result = mspring_network_set_global_damping(network->network, CHECK_GLOBAL_DAMPING);
+    mspring_settings settings = {.struct_size = sizeof settings};
+    mspring_result result = mspring_network_get_settings(network->network, &settings);
+    settings.global_damping = CHECK_GLOBAL_DAMPING;
+    if (result == MSPRING_OK) {
+        result = mspring_network_set_settings(network->network, &settings);
+    }
     if (result != MSPRING_OK) {
         bench_library_error(error, "setting global damping", result, mspring_network_error(network->network));
     }

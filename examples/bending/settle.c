@@ -167,7 +167,12 @@ static bool is_calm(const settling *state, const window_means *means) {
 // Sets the global damping that is critical for the slowest motion.
 static bool damp(settling *state) {
     double rate = pi / (state->quarter * state->request->dt);
-    if (mspring_network_set_global_damping(state->network, (float)fmin(rate, 1e6)) == MSPRING_OK)
+    mspring_settings settings = {.struct_size = sizeof settings};
+    mspring_result result = mspring_network_get_settings(state->network, &settings);
+    settings.global_damping = (float)fmin(rate, 1e6);
+    if (result == MSPRING_OK)
+        result = mspring_network_set_settings(state->network, &settings);
+    if (result == MSPRING_OK)
         return true;
     state->end = SETTLE_UNSTABLE;
     return false;

@@ -35,7 +35,9 @@ int main() try {
     const mspring_id free_end = builder.add_lattice(bar)[width - 1];
 
     massspring::network network(builder);
-    network.set_global_damping(1.0f);
+    mspring_settings settings = network.settings();
+    settings.global_damping = 1.0f;
+    network.set_settings(settings);
     const double top = network.position(free_end).y;
     for (int step = 0; step < 60 * 64 * 30; ++step)
         network.step(1.0 / (64 * 30));

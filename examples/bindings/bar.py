@@ -21,6 +21,12 @@ class LatticeDef(ctypes.Structure):
                 ("cells", POINTER(c_uint16)), ("materials", POINTER(Material))]
 
 
+class Settings(ctypes.Structure):
+    _fields_ = [("struct_size", c_uint32), ("guard", c_int32), ("gravity_x", c_float), ("gravity_y", c_float),
+                ("global_damping", c_float), ("max_speed", c_float), ("sleep_speed", c_float),
+                ("sleep_time", c_float), ("relax_fraction", c_float)]
+
+
 PINNED = 1
 FUNCTIONS = {  # name: result, arguments
     "result_string": (c_char_p, [c_int32]),
@@ -32,7 +38,8 @@ FUNCTIONS = {  # name: result, arguments
     "builder_add_lattice": (c_int32, [c_void_p, POINTER(LatticeDef), POINTER(c_uint32)]),
     "network_create": (c_int32, [c_void_p, c_void_p, POINTER(c_void_p)]),
     "network_destroy": (None, [c_void_p]),
-    "network_set_global_damping": (c_int32, [c_void_p, c_float]),
+    "network_get_settings": (c_int32, [c_void_p, POINTER(Settings)]),
+    "network_set_settings": (c_int32, [c_void_p, POINTER(Settings)]),
     "network_step": (c_int32, [c_void_p, c_double]),
     "network_get_positions": (c_int32, [c_void_p, c_uint32, c_uint32, POINTER(c_double), POINTER(c_double)]),
     "network_state_hash": (c_int32, [c_void_p, POINTER(c_uint64)]),
@@ -85,7 +92,10 @@ def main():
     library.network_create(builder, None, byref(network))
     library.builder_destroy(builder)
 
-    library.network_set_global_damping(network, 1.0)
+    settings = Settings(struct_size=ctypes.sizeof(Settings))
+    library.network_get_settings(network, byref(settings))
+    settings.global_damping = 1.0
+    library.network_set_settings(network, byref(settings))
     free_end = ids[width - 1]
     top = height_of(library, network, free_end)
     for _ in range(60 * 64 * 30):

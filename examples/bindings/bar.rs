@@ -30,6 +30,20 @@ struct LatticeDef {
     materials: *const Material,
 }
 
+#[repr(C)]
+#[derive(Default)]
+struct Settings {
+    struct_size: u32,
+    guard: i32,
+    gravity_x: f32,
+    gravity_y: f32,
+    global_damping: f32,
+    max_speed: f32,
+    sleep_speed: f32,
+    sleep_time: f32,
+    relax_fraction: f32,
+}
+
 const PINNED: u32 = 1;
 
 #[link(name = "massspring")]
@@ -42,7 +56,8 @@ extern "C" {
     fn mspring_builder_add_lattice(builder: *mut c_void, def: *const LatticeDef, ids: *mut u32) -> i32;
     fn mspring_network_create(builder: *mut c_void, def: *const c_void, network: *mut *mut c_void) -> i32;
     fn mspring_network_destroy(network: *mut c_void);
-    fn mspring_network_set_global_damping(network: *mut c_void, rate: f32) -> i32;
+    fn mspring_network_get_settings(network: *const c_void, settings: *mut Settings) -> i32;
+    fn mspring_network_set_settings(network: *mut c_void, settings: *const Settings) -> i32;
     fn mspring_network_step(network: *mut c_void, dt: f64) -> i32;
     fn mspring_network_get_positions(network: *const c_void, first: u32, count: u32, x: *mut f64, y: *mut f64) -> i32;
     fn mspring_network_state_hash(network: *const c_void, hash: *mut u64) -> i32;
@@ -103,7 +118,10 @@ impl Drop for Network {
 
 fn main() -> Result<(), String> {
     let (network, free_end) = Network::bar(80, 5)?;
-    check(unsafe { mspring_network_set_global_damping(network.0, 1.0) })?;
+    let mut settings = Settings { struct_size: size_of::<Settings>() as u32, ..Default::default() };
+    check(unsafe { mspring_network_get_settings(network.0, &mut settings) })?;
+    settings.global_damping = 1.0;
+    check(unsafe { mspring_network_set_settings(network.0, &settings) })?;
     let top = network.height_of(free_end)?;
     for _ in 0..60 * 64 * 30 {
         check(unsafe { mspring_network_step(network.0, 1.0 / (64.0 * 30.0)) })?;

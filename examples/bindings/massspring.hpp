@@ -66,7 +66,15 @@ public:
         from.check(mspring_network_create(from.get(), def, &made));
         handle.reset(made);
     }
-    void set_global_damping(float rate) { check(mspring_network_set_global_damping(get(), rate)); }
+    mspring_settings settings() const {
+        mspring_settings now{};
+        now.struct_size = sizeof now;
+        check(mspring_network_get_settings(get(), &now));
+        return now;
+    }
+    void set_settings(const mspring_settings &settings) {
+        check(mspring_network_set_settings(get(), &settings));
+    }
     void step(double dt) { check(mspring_network_step(get(), dt)); }
 
     struct point {

@@ -122,12 +122,16 @@ static mspring_result set_floor(lab_side *side, bool has_floor) {
     return mspring_network_set_floor(side->network, has_floor ? &def : NULL);
 }
 
+static mspring_result set_surroundings(lab_side *side, const lab_settings *settings) {
+    mspring_settings now = {.struct_size = sizeof now};
+    const mspring_result result = mspring_network_get_settings(side->network, &now);
+    now.gravity_y = (float)-settings->gravity;
+    now.global_damping = (float)settings->air;
+    return result == MSPRING_OK ? mspring_network_set_settings(side->network, &now) : result;
+}
+
 bool side_set_settings(lab_side *side, const lab_settings *settings, const lab_settings *before) {
-    mspring_result result = MSPRING_OK;
-    if (settings->gravity != before->gravity)
-        result = mspring_network_set_gravity(side->network, 0, (float)-settings->gravity);
-    if (result == MSPRING_OK && settings->air != before->air)
-        result = mspring_network_set_global_damping(side->network, (float)settings->air);
+    mspring_result result = set_surroundings(side, settings);
     if (result == MSPRING_OK && settings->mass != before->mass)
         result = set_masses(side, settings->mass);
     if (result == MSPRING_OK && settings->has_floor != before->has_floor)
@@ -328,7 +332,8 @@ void side_position(const lab_side *side, mspring_id particle, double *x, double 
 
 mspring_id side_nearest(const lab_side *side, double x, double y) {
     mspring_id nearest;
-    return mspring_network_nearest_particle(side->network, x, y, INFINITY, &nearest, NULL) == MSPRING_OK ? nearest : 0;
+    return mspring_network_nearest_particle(side->network, x, y, INFINITY, &nearest, NULL) == MSPRING_OK ? nearest
+                                                                                                         : 0;
 }
 
 bool side_is_pinned(const lab_side *side, mspring_id particle) {

@@ -290,11 +290,22 @@ mspring_result page_set_solver(uint32_t solver, uint32_t substeps, uint32_t iter
 }
 
 mspring_result page_set_gravity(float y) {
-    return done(mspring_network_set_gravity(page.network, 0, y));
+    mspring_settings settings = {.struct_size = sizeof settings};
+    mspring_result result = mspring_network_get_settings(page.network, &settings);
+    settings.gravity_x = 0;
+    settings.gravity_y = y;
+    if (result == MSPRING_OK)
+        result = mspring_network_set_settings(page.network, &settings);
+    return done(result);
 }
 
 mspring_result page_set_damping(float rate) {
-    return done(mspring_network_set_global_damping(page.network, rate));
+    mspring_settings settings = {.struct_size = sizeof settings};
+    mspring_result result = mspring_network_get_settings(page.network, &settings);
+    settings.global_damping = rate;
+    if (result == MSPRING_OK)
+        result = mspring_network_set_settings(page.network, &settings);
+    return done(result);
 }
 
 mspring_result page_set_stiffness(float factor) {

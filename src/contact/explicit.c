@@ -211,13 +211,13 @@ typedef struct gliding {
 static gliding glide(const mspring_network *network, float h) {
     const mspringi_floor *floor = network->floor;
     const bool skews = network->running->ops->skews;
-    const double half = skews ? 1.0 : (double)mspringi_decay(network->global_damping, 0.5f * h);
+    const double half = skews ? 1.0 : (double)mspringi_decay(network->settings.global_damping, 0.5f * h);
     return (gliding){.how = {.friction = floor->friction,
                              .restitution = floor->restitution,
                              .h = (double)h,
                              .skew = skews ? 0.5 * (double)h : 0.0},
                      .before = half,
-                     .within = skews ? (double)mspringi_decay(network->global_damping, h) : 1.0,
+                     .within = skews ? (double)mspringi_decay(network->settings.global_damping, h) : 1.0,
                      .after = half};
 }
 
@@ -253,8 +253,8 @@ void mspringi_floor_fly_alone(mspring_network *network, float h, mspringi_field 
         if (!(inverse_mass[slot] > 0.0f) || !mspringi_floor_is_alone(network, slot))
             continue;
         const double per_mass = (double)inverse_mass[slot];
-        const double ax = (double)network->gravity_x + (base.x ? (double)base.x[slot] * per_mass : 0.0);
-        const double ay = (double)network->gravity_y + (base.x ? (double)base.y[slot] * per_mass : 0.0);
+        const double ax = (double)network->settings.gravity_x + (base.x ? (double)base.x[slot] * per_mass : 0.0);
+        const double ay = (double)network->settings.gravity_y + (base.x ? (double)base.y[slot] * per_mass : 0.0);
         s->x[slot] = before->x[slot];
         s->y[slot] = before->y[slot];
         s->low_x[slot] = before->low_x[slot];

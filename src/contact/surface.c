@@ -267,7 +267,8 @@ void mspringi_floor_survey(mspring_network *network, double seconds) {
             (mspringi_bounds){(float)all.min_x, (float)all.max_x, (float)all.min_y, (float)all.max_y};
     }
     // Half of the reach is twice as far as the fastest particle gets by its speed, gravity and forces from outside.
-    const double push = fabs((double)network->gravity_x) + fabs((double)network->gravity_y) + hardest_push(network);
+    const double push = fabs((double)network->settings.gravity_x) + fabs((double)network->settings.gravity_y) +
+                        hardest_push(network);
     const double reach = 4.0 * seconds * ((double)fastest + push * seconds) + 1e-6;
     floor->reach = reach;
     for (uint32_t i = 0; i < t->strip_count; ++i) {

@@ -19,6 +19,9 @@
 #include "store/springs.h"
 #include "store/store.h"
 
+/// Fraction of their stress strain below which springs relax, until the host sets another.
+#define USUAL_RELAX_FRACTION 0.8f
+
 /* --------------------------------------------------------------------------------------------------- checks */
 
 mspring_result mspringi_enter(mspring_network *network) {
@@ -40,6 +43,18 @@ mspring_result mspringi_check_range(mspring_network *network, const char *what, 
                          (unsigned)count, what, (unsigned)first, (unsigned)total);
 }
 
+static mspring_settings settings_of(const mspring_network_def *def) {
+    return (mspring_settings){.struct_size = sizeof(mspring_settings),
+                              .guard = def->guard,
+                              .gravity_x = def->gravity_x,
+                              .gravity_y = def->gravity_y,
+                              .global_damping = def->global_damping,
+                              .max_speed = def->max_speed,
+                              .sleep_speed = def->sleep_speed,
+                              .sleep_time = def->sleep_time,
+                              .relax_fraction = USUAL_RELAX_FRACTION};
+}
+
 static mspring_result check_def(const mspring_network_def *def, mspringi_message *message) {
     mspring_result result =
         mspringi_check_struct(message, "mspring_network_def", def->struct_size, sizeof *def, sizeof *def);
@@ -52,18 +67,8 @@ static mspring_result check_def(const mspring_network_def *def, mspringi_message
         ~(uint32_t)(MSPRING_NETWORK_RESERVE_DAMPING | MSPRING_NETWORK_RESERVE_RELATIVE | MSPRING_NETWORK_PRECISE))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "network flags %#x are unknown",
                              (unsigned)def->flags);
-    result = mspringi_guard_check(def->guard, message);
-    if (result != MSPRING_OK)
-        return result;
-    if (!(def->max_speed > 0.0f && def->max_speed <= 1e15f))
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
-                             "max_speed is %g m/s, it must be > 0 and at most 1e15", (double)def->max_speed);
-    if (!(def->sleep_speed >= 0.0f && def->sleep_speed <= 1e15f && def->sleep_time >= 0.0f &&
-          def->sleep_time <= 1e6f))
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
-                             "sleep_speed is %g m/s, sleep_time %g s, they must be 0 to 1e15 and 0 to 1e6",
-                             (double)def->sleep_speed, (double)def->sleep_time);
-    return MSPRING_OK;
+    const mspring_settings settings = settings_of(def);
+    return mspringi_check_settings(&settings, message);
 }
 
 /* ---------------------------------------------------------------------------------------------------- filling */
@@ -222,21 +227,12 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
                                        &network->message);
     if (result != MSPRING_OK)
         return result;
-    network->max_speed = def->max_speed;
-    network->sleep.speed = def->sleep_speed;
-    network->sleep.time = def->sleep_time;
+    network->settings = settings_of(def);
     if (def->sleep_speed > 0.0f)
         result = mspringi_sleep_reserve(network);
     if (result != MSPRING_OK)
         return result;
-    network->guard_policy = def->guard;
     network->guard.speed = network->guard.place = INFINITY; // are not known
-    network->strain.relax = MSPRINGI_USUAL_RELAX;
-    result = mspring_network_set_gravity(network, def->gravity_x, def->gravity_y);
-    if (result == MSPRING_OK)
-        result = mspring_network_set_global_damping(network, def->global_damping);
-    if (result != MSPRING_OK)
-        return result;
     fill_particles(network, builder);
     fill_springs(network, builder);
     for (mspring_id p = network->topology.particle_count; p < network->topology.reserve.particle_end; ++p)

@@ -1,7 +1,8 @@
-/// Settings that may change between steps: solver, gravity, global damping.
+/// What may change between steps: the solver, and the settings.
 #include <math.h>
 
 #include "base/cpu.h"
+#include "sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
 #include "stability/guard.h"
 #include "store/changed.h"
@@ -83,50 +84,81 @@ mspring_result mspring_network_set_solver(mspring_network *network, const msprin
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_set_guard(mspring_network *network, mspring_guard guard) {
-    mspring_result result = mspringi_enter(network);
-    if (result == MSPRING_OK)
-        result = mspringi_guard_check(guard, &network->message);
-    if (result != MSPRING_OK || guard == network->guard_policy)
-        return result;
+/* ---------------------------------------------------------------------------------------------------- settings */
+
+static bool is_within(float value, float least, float most) {
+    return value >= least && value <= most;
+}
+
+mspring_result mspringi_check_settings(const mspring_settings *settings, mspringi_message *message) {
+    const mspring_settings *s = settings;
+    const struct {
+        const char *name, *range;
+        float value;
+        bool is_good;
+    } values[] = {
+        {"gravity_x", "finite", s->gravity_x, isfinite(s->gravity_x)},
+        {"gravity_y", "finite", s->gravity_y, isfinite(s->gravity_y)},
+        {"global_damping", "0 to 1e6 1/s", s->global_damping, is_within(s->global_damping, 0.0f, 1e6f)},
+        {"max_speed", "> 0 and at most 1e15 m/s", s->max_speed, s->max_speed > 0.0f && s->max_speed <= 1e15f},
+        {"sleep_speed", "0 to 1e15 m/s", s->sleep_speed, is_within(s->sleep_speed, 0.0f, 1e15f)},
+        {"sleep_time", "0 to 1e6 s", s->sleep_time, is_within(s->sleep_time, 0.0f, 1e6f)},
+        {"relax_fraction", "0 to 1", s->relax_fraction, is_within(s->relax_fraction, 0.0f, 1.0f)},
+    };
+    for (size_t i = 0; i < sizeof values / sizeof values[0]; ++i)
+        if (!values[i].is_good)
+            return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s is %g, it must be %s", values[i].name,
+                                 (double)values[i].value, values[i].range);
+    return mspringi_guard_check(s->guard, message);
+}
+
+mspring_result mspring_network_get_settings(const mspring_network *network, mspring_settings *settings) {
+    if (!network || !settings)
+        return MSPRING_ERROR_ARGUMENT;
+    if (settings->struct_size != sizeof *settings)
+        return MSPRING_ERROR_STRUCT;
+    *settings = network->settings;
+    return MSPRING_OK;
+}
+
+// Allocate what the network does not need with the settings that it has.
+static mspring_result reserve_for(mspring_network *network, const mspring_settings *settings) {
     const mspringi_fp_state before = mspringi_fp_enter();
-    result = mspringi_guard_reserve(network, guard);
+    mspring_result result = MSPRING_OK;
+    if (settings->sleep_speed > 0.0f)
+        result = mspringi_sleep_reserve(network);
+    if (result == MSPRING_OK && settings->guard != network->settings.guard)
+        result = mspringi_guard_reserve(network, settings->guard);
     mspringi_fp_leave(before);
-    if (result != MSPRING_OK)
-        return result;
-    network->guard_policy = guard;
-    network->guard.h = network->guard.peak = 0.0f;
-    network->guard.fallback_steps = 0;
-    return MSPRING_OK;
+    return result;
 }
 
-mspring_guard mspring_network_get_guard(const mspring_network *network) {
-    return network ? network->guard_policy : MSPRING_GUARD_GROWTH;
-}
-
-mspring_result mspring_network_set_gravity(mspring_network *network, float x, float y) {
+mspring_result mspring_network_set_settings(mspring_network *network, const mspring_settings *settings) {
     mspring_result result = mspringi_enter(network);
     if (result != MSPRING_OK)
         return result;
-    if (!isfinite(x) || !isfinite(y))
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "gravity (%g, %g) m/s^2 is not finite",
-                             (double)x, (double)y);
-    const bool is_new = x != network->gravity_x || y != network->gravity_y;
-    network->gravity_x = x;
-    network->gravity_y = y;
-    if (is_new)
+    if (!settings)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the settings are NULL");
+    result = mspringi_check_struct(&network->message, "mspring_settings", settings->struct_size, sizeof *settings,
+                                   sizeof *settings);
+    if (result == MSPRING_OK)
+        result = mspringi_check_settings(settings, &network->message);
+    if (result == MSPRING_OK)
+        result = reserve_for(network, settings);
+    if (result != MSPRING_OK)
+        return result;
+    const mspring_settings old = network->settings;
+    network->settings = *settings;
+    if (settings->guard != old.guard) {
+        network->guard.h = network->guard.peak = 0.0f;
+        network->guard.fallback_steps = 0;
+    }
+    if (settings->gravity_x != old.gravity_x || settings->gravity_y != old.gravity_y)
         mspringi_changed(network, MSPRINGI_CHANGED_GRAVITY, 0);
-    return MSPRING_OK;
-}
-
-mspring_result mspring_network_set_global_damping(mspring_network *network, float rate) {
-    mspring_result result = mspringi_enter(network);
-    if (result != MSPRING_OK)
-        return result;
-    if (!(rate >= 0.0f && rate <= 1e6f))
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                             "global damping is %g 1/s, it must be 0 to 1e6", (double)rate);
-    network->global_damping = rate;
+    if (settings->relax_fraction != old.relax_fraction)
+        mspringi_changed(network, MSPRINGI_CHANGED_RELAX, 0);
+    if (settings->sleep_speed != old.sleep_speed || settings->sleep_time != old.sleep_time)
+        mspringi_changed(network, MSPRINGI_CHANGED_SLEEP, 0);
     return MSPRING_OK;
 }
 

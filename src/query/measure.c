@@ -44,7 +44,7 @@ mspring_result mspring_network_energy(const mspring_network *network, double *ki
         const double mass = (double)network->mass[p], vx = (double)s->vx[slot], vy = (double)s->vy[slot];
         const double x = network->origin_x + mspringi_x_of(s, slot), y = network->origin_y + mspringi_y_of(s, slot);
         kinetic_sum += 0.5 * mass * (vx * vx + vy * vy);
-        potential_sum -= mass * ((double)network->gravity_x * x + (double)network->gravity_y * y);
+        potential_sum -= mass * ((double)network->settings.gravity_x * x + (double)network->settings.gravity_y * y);
     }
     for (mspring_id i = 0; elastic && i < t->spring_count; ++i) {
         const mspringi_spring_values r = mspringi_spring_get(network, i);

@@ -26,7 +26,7 @@ mspring_result mspringi_sleep_reserve(mspring_network *network) {
 }
 
 void mspringi_sleep_forget(mspringi_sleep *s) {
-    *s = (mspringi_sleep){.speed = s->speed, .time = s->time};
+    *s = (mspringi_sleep){0};
 }
 
 /* -------------------------------------------------------------------------------------------------- the state */
@@ -195,14 +195,15 @@ bool mspringi_sleep_is_idle(const mspring_network *network) {
 // which it would have been asleep again.
 static uint32_t feel_block(const mspring_network *network, mspringi_field force, size_t first) {
     const mspringi_sleep *s = &network->sleep;
+    const float speed = network->settings.sleep_speed, time = network->settings.sleep_time;
     static const float none[MSPRINGI_WIDTH];
     const float *x = force.x ? force.x + first : none, *y = force.x ? force.y + first : none;
     uint32_t felt[MSPRINGI_WIDTH], bits = 0;
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
         const float dx = fabsf(x[lane] - s->force.x[first + lane]), dy = fabsf(y[lane] - s->force.y[first + lane]);
         const float inverse_mass = s->inverse_mass[first + lane];
-        felt[lane] = (uint32_t) !(dx * inverse_mass * s->time <= s->speed) |
-                     (uint32_t) !(dy * inverse_mass * s->time <= s->speed);
+        felt[lane] =
+            (uint32_t) !(dx * inverse_mass * time <= speed) | (uint32_t) !(dy * inverse_mass * time <= speed);
     }
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
         bits |= felt[lane] << lane;
@@ -307,7 +308,7 @@ void mspringi_sleep_undo(mspring_network *network) {
 // Slots of a block that are faster than what is still, or pinned and on their way.
 static uint32_t loud_in_block(const mspring_network *network, size_t first) {
     const mspringi_state *state = &network->state;
-    const float speed = network->sleep.speed;
+    const float speed = network->settings.sleep_speed;
     uint32_t loud[MSPRINGI_WIDTH], bits = 0;
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
         const float vx = state->vx[first + lane], vy = state->vy[first + lane];
@@ -349,7 +350,7 @@ static bool mark_sleepy(const mspring_network *network, double dt) {
     for (uint32_t i = 0; i < s->count; ++i) {
         if (s->still[i] >= 0.0)
             s->still[i] = s->mark[i] ? 0.0 : s->still[i] + dt;
-        s->mark[i] = s->still[i] > 0.0 && s->still[i] >= (double)s->time;
+        s->mark[i] = s->still[i] > 0.0 && s->still[i] >= (double)network->settings.sleep_time;
         any |= s->mark[i];
     }
     return any;
@@ -411,7 +412,7 @@ static void fall_asleep(mspring_network *network, double dt) {
     mspringi_sleep *s = &network->sleep;
     const mspringi_field force = s->in_force;
     s->in_force = (mspringi_field){NULL, NULL};
-    if (!(s->speed > 0.0f))
+    if (!(network->settings.sleep_speed > 0.0f))
         return;
     follow_origin(network);
     if (mspringi_sleep_is_whole(network))

@@ -21,7 +21,7 @@ typedef struct guard_head {
 enum { UNKNOWN, OUTDATED, KNOWN };
 
 static size_t guard_size(const mspring_network *network) {
-    return HEAD_BYTES + (network->guard_policy == MSPRING_GUARD_IMPLICIT ? FALLBACK_BYTES : 0);
+    return HEAD_BYTES + (network->settings.guard == MSPRING_GUARD_IMPLICIT ? FALLBACK_BYTES : 0);
 }
 
 static void fallback_save(const mspringi_solver *fallback, mspringi_writer *to) {
@@ -37,7 +37,7 @@ static void guard_save(const mspring_network *network, mspringi_writer *to) {
     const bool outdated = any_shape->masses != network->edits.masses ||
                           any_shape->values != network->edits.values || any_shape->growth != network->edits.growth;
     const float floats[] = {guard->h, guard->global_damping, guard->peak};
-    const uint32_t words[] = {(uint32_t)network->guard_policy, 0, any_shape->spring,
+    const uint32_t words[] = {(uint32_t)network->settings.guard, 0, any_shape->spring,
                               !any_shape->is_known ? UNKNOWN
                               : outdated           ? OUTDATED
                                                    : KNOWN,
@@ -45,7 +45,7 @@ static void guard_save(const mspring_network *network, mspringi_writer *to) {
     mspringi_put(to, &any_shape->dt, 1, sizeof any_shape->dt);
     mspringi_put(to, floats, sizeof floats / sizeof floats[0], sizeof floats[0]);
     mspringi_put(to, words, sizeof words / sizeof words[0], sizeof words[0]);
-    if (network->guard_policy == MSPRING_GUARD_IMPLICIT)
+    if (network->settings.guard == MSPRING_GUARD_IMPLICIT)
         fallback_save(&network->fallback, to);
 }
 
@@ -75,7 +75,7 @@ static mspring_result check_fallback(mspring_network *network, const mspringi_so
     if (!(basis->scale >= DBL_MIN && basis->scale <= DBL_MAX && basis->turn_inertia >= 0.0f &&
           basis->turn_inertia <= FLT_MAX) ||
         size < MSPRINGI_LEAST_TILE_SIZE || size > MSPRINGI_LARGEST_TILE_SIZE || (size & (size - 1)) != 0 ||
-        (here > 0 && network->guard_policy == MSPRING_GUARD_IMPLICIT && here != size))
+        (here > 0 && network->settings.guard == MSPRING_GUARD_IMPLICIT && here != size))
         return mspringi_section_fail(
             network, &mspringi_section_guard,
             "the implicit solver that takes steps has tiles of size %u, scale %g and inertia %g m^2",
@@ -121,7 +121,7 @@ static void guard_load(mspring_network *network, const uint8_t *from, size_t siz
     guard_head head;
     (void)size;
     from = read_head(from, &head);
-    network->guard_policy = (mspring_guard)head.policy;
+    network->settings.guard = (mspring_guard)head.policy;
     network->guard = (mspringi_guard){.h = head.h,
                                       .global_damping = head.global_damping,
                                       .peak = head.peak,

@@ -40,8 +40,8 @@ static bool is_listed(const mspringi_sleep *sleep, uint32_t island) {
 
 static sleep_head make_head(const mspring_network *network) {
     const mspringi_sleep *sleep = &network->sleep;
-    sleep_head head = {.speed = sleep->speed,
-                       .time = sleep->time,
+    sleep_head head = {.speed = network->settings.sleep_speed,
+                       .time = network->settings.sleep_time,
                        .any_asleep = sleep->sleeping > 0,
                        .has_force = sleep->sleeping > 0 && sleep->has_force};
     for (uint32_t i = 0; i < sleep->count; ++i)
@@ -51,7 +51,7 @@ static sleep_head make_head(const mspring_network *network) {
 
 static size_t sleep_size(const mspring_network *network) {
     const sleep_head head = make_head(network);
-    return network->sleep.speed > 0.0f ? size_of(network, &head) : 0;
+    return size_of(network, &head);
 }
 
 // What has been disturbed wakes before the next step.
@@ -114,14 +114,12 @@ static mspring_result check_still(mspring_network *network, const uint8_t *from,
 static mspring_result sleep_check(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_section *section = &mspringi_section_sleep;
     sleep_head head;
-    if (size == 0)
-        return MSPRING_OK;
     if (size < HEAD_BYTES)
         return mspringi_section_check_size(network, section, size, HEAD_BYTES);
     from = read_head(from, &head);
-    if (!(head.speed > 0.0f && head.speed <= 1e15f && head.time >= 0.0f && head.time <= 1e6f) ||
-        head.any_asleep > 1 || head.has_force > head.any_asleep ||
-        head.still_count > network->topology.reserve.particle_end)
+    if (!(head.speed >= 0.0f && head.speed <= 1e15f && head.time >= 0.0f && head.time <= 1e6f) ||
+        head.any_asleep > (head.speed > 0.0f) || head.has_force > head.any_asleep ||
+        head.still_count > (head.speed > 0.0f ? network->topology.reserve.particle_end : 0))
         return mspringi_section_fail(network, section, "%u islands below %g m/s for less than %g s",
                                      (unsigned)head.still_count, (double)head.speed, (double)head.time);
     mspring_result result = mspringi_section_check_size(network, section, size, size_of(network, &head));
@@ -134,7 +132,7 @@ static mspring_result sleep_check(mspring_network *network, const uint8_t *from,
     for (size_t i = 0; result == MSPRING_OK && i < floats; ++i)
         if (!isfinite(mspringi_float_at(from, i)))
             result = mspringi_section_fail(network, section, "a force is %g N", (double)mspringi_float_at(from, i));
-    return result == MSPRING_OK ? mspringi_sleep_reserve(network) : result;
+    return result == MSPRING_OK && head.speed > 0.0f ? mspringi_sleep_reserve(network) : result;
 }
 
 // Mark the islands all of whose particles sleep.
@@ -155,14 +153,14 @@ static const uint8_t *mark_asleep(const mspring_network *network, const uint8_t 
 // After all that could disturb it.
 static void sleep_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_sleep *sleep = &network->sleep;
-    sleep_head head = {0};
-    if (size > 0)
-        from = read_head(from, &head);
-    sleep->speed = head.speed;
-    sleep->time = head.time;
+    sleep_head head;
+    (void)size;
+    from = read_head(from, &head);
+    network->settings.sleep_speed = head.speed;
+    network->settings.sleep_time = head.time;
     sleep->count = sleep->sleeping = 0;
     mspringi_changed(network, MSPRINGI_CHANGED_NAPS, 0);
-    if (size == 0)
+    if (!(head.speed > 0.0f))
         return;
     mspringi_islands_find(network);
     for (uint32_t i = 0; i < head.still_count; ++i) {

@@ -25,9 +25,10 @@ static size_t settings_size(const mspring_network *network) {
 
 static void settings_save(const mspring_network *network, mspringi_writer *to) {
     const double origin[] = {network->origin_x, network->origin_y};
-    const float values[] = {network->recentre_distance, network->relative_h,     network->gravity_x,
-                            network->gravity_y,         network->global_damping, network->max_speed,
-                            network->strain.relax};
+    const float values[] = {network->recentre_distance,       network->relative_h,
+                            network->settings.gravity_x,      network->settings.gravity_y,
+                            network->settings.global_damping, network->settings.max_speed,
+                            network->settings.relax_fraction};
     const uint32_t counts[] = {network->substeps, network->max_substeps, network->auto_substeps};
     mspringi_put(to, origin, 2, sizeof origin[0]);
     mspringi_put(to, values, 7, sizeof values[0]);
@@ -83,11 +84,11 @@ static void settings_load(mspring_network *network, const uint8_t *from, size_t 
     network->origin_x = s.origin_x;
     network->origin_y = s.origin_y;
     network->recentre_distance = s.recentre_distance;
-    network->gravity_x = s.gravity_x;
-    network->gravity_y = s.gravity_y;
-    network->global_damping = s.global_damping;
-    network->max_speed = s.max_speed;
-    network->strain.relax = s.relax;
+    network->settings.gravity_x = s.gravity_x;
+    network->settings.gravity_y = s.gravity_y;
+    network->settings.global_damping = s.global_damping;
+    network->settings.max_speed = s.max_speed;
+    network->settings.relax_fraction = s.relax;
     network->substeps = s.substeps;
     network->max_substeps = s.max_substeps;
     network->auto_substeps = s.auto_substeps;

@@ -40,7 +40,7 @@
 
 static bool is_in_bounds(const mspring_network *network, uint32_t slot) {
     const mspringi_state *s = &network->state;
-    const float largest = (float)MSPRING_MAX_COORDINATE, fastest = network->max_speed;
+    const float largest = (float)MSPRING_MAX_COORDINATE, fastest = network->settings.max_speed;
     return fabsf(s->x[slot]) <= largest && fabsf(s->y[slot]) <= largest && fabsf(s->vx[slot]) <= fastest &&
            fabsf(s->vy[slot]) <= fastest;
 }
@@ -96,8 +96,8 @@ void mspringi_guard_put_back(mspring_network *network, const mspringi_state *bef
         }
         s->x[slot] = between(s->x[slot], (float)MSPRING_MAX_COORDINATE);
         s->y[slot] = between(s->y[slot], (float)MSPRING_MAX_COORDINATE);
-        s->vx[slot] = between(s->vx[slot], network->max_speed);
-        s->vy[slot] = between(s->vy[slot], network->max_speed);
+        s->vx[slot] = between(s->vx[slot], network->settings.max_speed);
+        s->vy[slot] = between(s->vy[slot], network->settings.max_speed);
     }
     mspringi_solver_forget(&network->solver);
 }
@@ -139,7 +139,7 @@ static int affordable_iterations(const mspring_network *network, uint32_t subste
 
 static mspring_result look_at_border(mspring_network *network, const mspringi_attempt *attempt, bool from_motion) {
     const float h = attempt->h;
-    const double decay = (double)mspringi_decay(network->global_damping, h);
+    const double decay = (double)mspringi_decay(network->settings.global_damping, h);
     // Vectors are floats: room for their rounding.
     const double sharp = 2.0 * (1.0 + 1.0 / decay), bound = sharp * (1.0 + 1e-4);
     if (mspringi_border_is_below(network, (double)h, sharp))
@@ -175,12 +175,12 @@ mspring_result mspringi_guard_reserve(mspring_network *network, mspring_guard po
 mspring_result mspringi_guard_begin(mspring_network *network, const mspringi_attempt *attempt) {
     const float h = attempt->h;
     mspringi_guard *guard = &network->guard;
-    const bool same = guard->h == h && guard->global_damping == network->global_damping;
+    const bool same = guard->h == h && guard->global_damping == network->settings.global_damping;
     guard->watches = false;
     const bool is_same = guard->state == network->edits.state && !network->is_open;
-    guard->knows_speed = is_same && guard->speed <= network->max_speed;
+    guard->knows_speed = is_same && guard->speed <= network->settings.max_speed;
     guard->knows_place = is_same && guard->place <= (float)MSPRING_MAX_COORDINATE && attempt->substeps == 1;
-    if (!mspringi_guard_looks(network->guard_policy) || !attempt->solver->ops->has_border)
+    if (!mspringi_guard_looks(network->settings.guard) || !attempt->solver->ops->has_border)
         return MSPRING_OK;
     const mspringi_any_shape *any_shape = &network->any_shape;
     if (same && (any_shape->masses != network->edits.masses || any_shape->values != network->edits.values)) {
@@ -190,7 +190,7 @@ mspring_result mspringi_guard_begin(mspring_network *network, const mspringi_att
     mspring_id spring;
     guard->watches = (double)h > mspringi_stable_in_any_shape(network, &spring);
     guard->h = h;
-    guard->global_damping = network->global_damping;
+    guard->global_damping = network->settings.global_damping;
     return guard->watches && !same ? look_at_border(network, attempt, false) : MSPRING_OK;
 }
 
@@ -237,8 +237,9 @@ static float bound_speed(const mspring_network *network, mspringi_extrema extrem
     if (!(guard->watches && guard->knows_speed))
         return extrema.speed;
     const float bound = (guard->speed + extrema.change) * (1.0f + 1e-6f);
-    return bound <= network->max_speed ? bound
-                                       : mspringi_guard_look(network, 0, mspringi_slot_count(network)).speed;
+    return bound <= network->settings.max_speed
+               ? bound
+               : mspringi_guard_look(network, 0, mspringi_slot_count(network)).speed;
 }
 
 // What no coordinate is above after a step. One substep takes none further than by the speed at its end, unless
@@ -258,8 +259,8 @@ mspring_result mspringi_guard_end(mspring_network *network, const mspringi_attem
     const float h = attempt->h;
     mspringi_guard *guard = &network->guard;
     float speed = bound_speed(network, extrema), place = bound_place(network, h, speed, extrema);
-    const bool is_out = !(place <= (float)MSPRING_MAX_COORDINATE && speed <= network->max_speed);
-    if (is_out && network->guard_policy == MSPRING_GUARD_CLAMP_BOUNDS) {
+    const bool is_out = !(place <= (float)MSPRING_MAX_COORDINATE && speed <= network->settings.max_speed);
+    if (is_out && network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS) {
         extrema = put_back(network);
         speed = extrema.speed;
         place = extrema.place;
@@ -275,7 +276,7 @@ mspring_result mspringi_guard_end(mspring_network *network, const mspringi_attem
     }
     // What sleeps is not seen, and the bounds of the next step hold only after one of the same kind.
     const bool is_known = attempt->solver->ops->has_border;
-    guard->speed = is_known ? larger(speed, network->sleep.speed) : INFINITY;
+    guard->speed = is_known ? larger(speed, network->settings.sleep_speed) : INFINITY;
     guard->place = is_known && network->sleep.sleeping == 0 ? place : INFINITY;
     guard->state = network->edits.state;
     return MSPRING_OK;

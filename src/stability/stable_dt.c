@@ -68,7 +68,7 @@ static double find_border(const mspring_network *network, workspace *work, doubl
         quotient.damping *= margin;
         quotient.relative *= margin;
         const double before = border;
-        border = mspringi_quotient_limit(&quotient, network->global_damping);
+        border = mspringi_quotient_limit(&quotient, network->settings.global_damping);
         // Without dampers and relative springs the eigenvector is the same at every h.
         if ((quotient.damping == 0.0 && quotient.relative == 0.0) || !(border > 0.0 && border < INFINITY) ||
             fabs(border - before) <= SETTLED * border)

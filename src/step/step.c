@@ -108,7 +108,7 @@ static mspring_result choose_substeps(mspring_network *network, double dt) {
     mspring_id spring;
     const double limit = mspringi_stable_in_any_shape(network, &spring);
     uint32_t substeps = mspringi_substeps_within(dt, limit, network->max_substeps);
-    if (network->guard_policy == MSPRING_GUARD_CLAMP_BOUNDS && substeps > network->max_substeps)
+    if (network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS && substeps > network->max_substeps)
         substeps = network->max_substeps;
     if (substeps > network->max_substeps) {
         const mspring_id tightest = mspringi_tightest_spring(network, dt / (double)network->max_substeps);
@@ -140,9 +140,9 @@ static void go_back(mspring_network *network, const mspringi_attempt *attempt) {
 // In the step they overflow where rates of strain are computed, for springs that are not there too, of which wide
 // vectors have more: not all levels would take it.
 static mspring_result check_given_speeds(mspring_network *network, double dt) {
-    if (!network->is_open || !((double)network->global_damping * dt > STRONG_DAMPING))
+    if (!network->is_open || !((double)network->settings.global_damping * dt > STRONG_DAMPING))
         return MSPRING_OK;
-    if (network->guard_policy == MSPRING_GUARD_CLAMP_BOUNDS) {
+    if (network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS) {
         mspringi_guard_put_back(network, NULL);
         return MSPRING_OK;
     }
@@ -215,10 +215,10 @@ static mspring_result attempt(mspring_network *network, const request *asked, co
 
 // The solver for steps that the chosen one cannot take, or NULL.
 static const mspringi_solver *fallback_of(const mspring_network *network) {
-    if (network->guard_policy == MSPRING_GUARD_CLAMP)
+    if (network->settings.guard == MSPRING_GUARD_CLAMP)
         return &mspringi_clamped;
-    return network->guard_policy == MSPRING_GUARD_IMPLICIT && network->solver.ops->has_border ? &network->fallback
-                                                                                              : NULL;
+    return network->settings.guard == MSPRING_GUARD_IMPLICIT && network->solver.ops->has_border ? &network->fallback
+                                                                                                : NULL;
 }
 
 // Have the fallback take the step, or leave everything as it is. Neither it nor the chosen solver, for which a new
@@ -263,7 +263,7 @@ static mspring_result take_step(mspring_network *network, const request *asked) 
         fallback_steps ? fall_back(network, asked, fallback) : attempt_as_chosen(network, asked);
     if (result == MSPRING_ERROR_UNSTABLE && fallback && !fallback_steps)
         result = fall_back(network, asked, fallback);
-    while (result == MSPRING_ERROR_UNSTABLE && network->guard_policy == MSPRING_GUARD_RETRY &&
+    while (result == MSPRING_ERROR_UNSTABLE && network->settings.guard == MSPRING_GUARD_RETRY &&
            network->substeps < network->max_substeps) {
         const uint32_t twice = 2 * network->substeps;
         network->substeps = twice < network->max_substeps ? twice : network->max_substeps;

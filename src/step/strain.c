@@ -83,7 +83,7 @@ static void look_at(mspring_network *network, mspringi_place place) {
         event.kind = MSPRING_EVENT_BROKEN;
     else if (!is_stressed && stretch > stress_at)
         event.kind = MSPRING_EVENT_STRESSED;
-    else if (is_stressed && stress_at * strain->relax > stretch)
+    else if (is_stressed && stress_at * network->settings.relax_fraction > stretch)
         event.kind = MSPRING_EVENT_RELAXED;
     else
         return;
@@ -259,20 +259,6 @@ mspring_result mspring_network_set_stress_strains(mspring_network *network, mspr
 mspring_result mspring_network_set_stress_strains_at(mspring_network *network, const mspring_id *springs,
                                                      uint32_t count, const float *strain) {
     return set_list(network, true, springs, count, strain);
-}
-
-mspring_result mspring_network_set_relax_fraction(mspring_network *network, float fraction) {
-    mspring_result result = mspringi_enter(network);
-    if (result != MSPRING_OK)
-        return result;
-    if (!(fraction >= 0.0f && fraction <= 1.0f))
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                             "the relax fraction is %g, it must be 0 to 1", (double)fraction);
-    const bool is_new = fraction != network->strain.relax;
-    network->strain.relax = fraction;
-    if (is_new)
-        mspringi_changed(network, MSPRINGI_CHANGED_RELAX, 0);
-    return MSPRING_OK;
 }
 
 static bool is_used(const mspring_network *network) {

@@ -149,11 +149,7 @@ typedef struct mspringi_strain {
     uint16_t *stressed;        ///< [places / MSPRINGI_WIDTH] a bit for each place
     mspringi_strain_hit *hits; ///< [places / MSPRINGI_WIDTH] for the pass to write to
     bool breaks, stresses;     ///< a threshold of this kind has been finite: there is something to save
-    float relax;               ///< fraction of its stress strain below which a stressed spring relaxes
 } mspringi_strain;
-
-/// Fraction below which springs relax, until the host sets another.
-#define MSPRINGI_USUAL_RELAX 0.8f
 
 /// What the guard knows from step to step.
 typedef struct mspringi_guard {
@@ -200,7 +196,6 @@ typedef struct mspringi_halos {
 /// Which islands sleep, and what they were when they fell asleep; no arrays if none ever does. An island is a
 /// component of live springs, numbered by its lowest slot.
 typedef struct mspringi_sleep {
-    float speed, time; ///< still is what is no faster (0: nothing), asleep what has been so for that long; m/s, s
     uint32_t count;    ///< islands; 0: not looked for yet
     uint32_t sleeping; ///< of these asleep; what follows of slots and blocks is of no use as long as this is 0
     uint32_t *island;  ///< [slots] of each slot, MSPRING_NONE if it has no particle
@@ -308,7 +303,7 @@ struct mspring_network {
     float *carry;            ///< [carry_rows] forces on the row above, all x and then all y of each
     mspringi_halos halos;
 
-    float gravity_x, gravity_y, global_damping, max_speed;
+    mspring_settings settings;
     uint32_t substeps; ///< of the last step or, unless auto_substeps, of the next
     uint32_t max_substeps;
     bool auto_substeps;
@@ -317,7 +312,6 @@ struct mspring_network {
     const mspringi_solver *running; ///< the one that takes the step that is being made; else NULL
     uint64_t fallback_count;        ///< steps that it has taken
     struct mspringi_floor *floor;   ///< NULL: there is none
-    mspring_guard guard_policy;
     mspringi_guard guard;
     float *looks;    ///< [5][slots] weights of the guard's bound, and room; NULL if it never looks at the border
     double shortest; ///< smallest rest length at first, m
@@ -376,6 +370,9 @@ mspring_result mspringi_enter(mspring_network *network);
 /// Refuse ranges of ids that leave the network.
 mspring_result mspringi_check_range(mspring_network *network, const char *what, mspring_id first, uint32_t count,
                                     uint32_t total);
+
+/// Refuse settings that mspring_network_set_settings() would.
+mspring_result mspringi_check_settings(const mspring_settings *settings, mspringi_message *message);
 
 /// Refuse solver definitions that mspring_network_set_solver() would.
 mspring_result mspringi_check_solver(const mspring_solver_def *def, mspringi_message *message);

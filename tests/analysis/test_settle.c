@@ -460,7 +460,7 @@ static void floating_parts(void **state) {
     check_near(support_velocity(network, 15).x, 0, 0);
 
     // Without gravity it takes its own shape, where it is.
-    check_ok(mspring_network_set_gravity(network, 0, 0));
+    check_ok(support_set_gravity(network, 0, 0));
     check_ok(mspring_network_settle(network, NULL, &result));
     assert_int_equal(result.left_alone, 0);
     check_near(force_left(network, &made, 0), 0, 20 * 1e6 * 6e-8 * 20);

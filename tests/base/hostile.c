@@ -119,6 +119,11 @@ static void make_tune_row(arguments *a) {
     memcpy(a->given_bytes, &made, sizeof made);
 }
 
+static void make_settings(arguments *a) {
+    const mspring_settings made = support_settings(a->network);
+    memcpy(a->given_bytes, &made, sizeof made);
+}
+
 static void make_floor(arguments *a) {
     static const double plane[4] = {0, -1, 0, 1};
     mspring_floor_def made;
@@ -222,11 +227,9 @@ static void add_hook(arguments *a) {
     X(mspring_simd_available, "k", NOTHING, note_size(mspring_simd_available(a->kind)))                            \
     X(mspring_simd_name, "k", NOTHING, note_text(mspring_simd_name(a->kind)))                                      \
     X(mspring_network_set_solver, "NSW", FILL(solver_def), mspring_network_set_solver(a->network, a->given))       \
-    X(mspring_network_set_guard, "NK", a->kind = MSPRING_GUARD_IMPLICIT,                                           \
-      mspring_network_set_guard(a->network, a->kind))                                                              \
-    X(mspring_network_get_guard, "v", NOTHING, note_size((size_t)mspring_network_get_guard(a->network)))           \
-    X(mspring_network_set_gravity, "NXY", NOTHING, mspring_network_set_gravity(a->network, a->x, a->y))            \
-    X(mspring_network_set_global_damping, "NX", NOTHING, mspring_network_set_global_damping(a->network, a->x))     \
+    X(mspring_network_get_settings, "nP", OUT_STRUCT(0, settings),                                                 \
+      mspring_network_get_settings(a->network, a->out[0]))                                                         \
+    X(mspring_network_set_settings, "NSW", make_settings(a), mspring_network_set_settings(a->network, a->given))   \
     X(mspring_network_step, "NT", NOTHING, mspring_network_step(a->network, a->dt))                                \
     X(mspring_network_stable_dt, "No", NOTHING, mspring_network_stable_dt(a->network, a->out[0], a->out[1]))       \
     X(mspring_network_suggest_substeps, "NTL0", NOTHING,                                                           \
@@ -310,7 +313,6 @@ static void add_hook(arguments *a) {
       mspring_network_set_stress_strains(a->network, a->first, a->count, a->f))                                    \
     X(mspring_network_set_stress_strains_at, "NAf", NOTHING,                                                       \
       mspring_network_set_stress_strains_at(a->network, a->ids, a->count, a->f))                                   \
-    X(mspring_network_set_relax_fraction, "NX", NOTHING, mspring_network_set_relax_fraction(a->network, a->x))     \
     X(mspring_network_reserve_events, "N", NOTHING, mspring_network_reserve_events(a->network, 100))               \
     X(mspring_network_read_events, "N01", NOTHING,                                                                 \
       mspring_network_read_events(a->network, a->out[0], 8, a->out[1], a->out[2]))                                 \

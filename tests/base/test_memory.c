@@ -344,8 +344,8 @@ static void no_step_allocates(void **state) {
     for (int step = 0; step < 10; step++) {
         solver.substeps = 1 + step;
         check_ok(mspring_network_set_solver(network, &solver));
-        check_ok(mspring_network_set_gravity(network, 0, (float)-step));
-        check_ok(mspring_network_set_global_damping(network, 0.1f));
+        check_ok(support_set_gravity(network, 0, (float)-step));
+        check_ok(support_set_global_damping(network, 0.1f));
         check_ok(mspring_network_apply_forces(network, 0, 10, f, f));
         check_ok(mspring_network_get_positions(network, 0, 10, x, y));
         check_ok(mspring_network_set_positions(network, 0, 10, x, y));

@@ -416,7 +416,7 @@ static void bars_lie_still(const way *how, uint32_t seconds) {
     mspring_floor_def def = level_floor(0.5f, 0.1f);
     set_way(network, how);
     check_ok(mspring_network_set_floor(network, &def));
-    check_ok(mspring_network_set_global_damping(network, 0.2f));
+    check_ok(support_set_global_damping(network, 0.2f));
     support_steps(network, 64 * seconds, 1.0 / 64);
     const double before = centre_x(network);
     double most = 0;

@@ -341,9 +341,9 @@ static mspring_result make_call(mspring_network *network, const call *c) {
     case 10:
         return mspring_network_set_rest_lengths(network, c->spring, c->count, pair);
     case 11:
-        return mspring_network_set_gravity(network, c->a, c->b);
+        return support_set_gravity(network, c->a, c->b);
     case 12:
-        return mspring_network_set_global_damping(network, c->a);
+        return support_set_global_damping(network, c->a);
     case 13: {
         mspring_result result = mspring_network_stable_dt(network, &now, &any_shape);
         FUZZ_CHECK(result != MSPRING_OK || (now >= any_shape && any_shape >= 0));
@@ -424,8 +424,8 @@ static void compare_with_reference(twins *all, const recipe *made) {
     FUZZ_CHECK(mspring_solver_def_init(&solver, sizeof solver) == MSPRING_OK);
     solver.substeps = 3;
     FUZZ_CHECK(mspring_network_set_solver(all->of[0], &solver) == MSPRING_OK);
-    FUZZ_CHECK(mspring_network_set_gravity(all->of[0], 1, -9.8f) == MSPRING_OK);
-    FUZZ_CHECK(mspring_network_set_global_damping(all->of[0], 0.25f) == MSPRING_OK);
+    FUZZ_CHECK(support_set_gravity(all->of[0], 1, -9.8f) == MSPRING_OK);
+    FUZZ_CHECK(support_set_global_damping(all->of[0], 0.25f) == MSPRING_OK);
     FUZZ_CHECK(mspring_network_stable_dt(all->of[0], &now, NULL) == MSPRING_OK);
     const float h = (float)fmin(0.3 * now, 0.01);
     reference net = reference_of(made, 1, (double)-9.8f, 0.25);

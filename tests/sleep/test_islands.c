@@ -622,7 +622,7 @@ static void a_step_that_goes_wrong_wakes_nobody(void **state) {
 static void check_refused_step(mspring_guard guard, change_fn disturb, double dt, bool one_is_awake) {
     mspring_id broken;
     mspring_network *network = make_two_guarded(MSPRING_SOLVER_EXPLICIT, guard, &broken), *other = NULL;
-    check_ok(mspring_network_set_global_damping(network, 0)); // over such times all would come to rest
+    check_ok(support_set_global_damping(network, 0)); // over such times all would come to rest
     if (one_is_awake) {
         support_kick(network, LOOSE, 1);
         support_steps(network, 1, DT);
@@ -715,7 +715,7 @@ static void the_floor_bears_sleepers(void **state) {
         def.plane_count = 1;
         def.friction = 1;
         check_ok(mspring_network_set_floor(network, &def));
-        check_ok(mspring_network_set_gravity(network, 0, -9.8f));
+        check_ok(support_set_gravity(network, 0, -9.8f));
         for (int i = 0; i < 1500 && !(support_sleeps(network, IN_A) && support_sleeps(network, IN_B)); i++) {
             support_steps(network, 1, DT);
         }

@@ -172,7 +172,7 @@ static void let_go(mspring_network *network) {
     check_ok(mspring_network_set_inverse_mass_scales(network, 100, 1, &scale));
 }
 static void tilt(mspring_network *network) {
-    check_ok(mspring_network_set_gravity(network, 1, -9.8f));
+    check_ok(support_set_gravity(network, 1, -9.8f));
 }
 static void change_solver(mspring_network *network) {
     set_solver(network, MSPRING_SOLVER_IMPLICIT);
@@ -256,8 +256,8 @@ static void what_stays_the_same_wakes_nothing(void **state) {
         check_ok(mspring_network_set_masses(network, 0, made.particle_count, mass));
         check_ok(mspring_network_set_positions(network, 3, 1, &at.x, &at.y));
         check_ok(mspring_network_set_velocities(network, 3, 1, &none, &none));
-        check_ok(mspring_network_set_gravity(network, 0, -9.8f));
-        check_ok(mspring_network_set_global_damping(network, (float)i));
+        check_ok(support_set_gravity(network, 0, -9.8f));
+        check_ok(support_set_global_damping(network, (float)i));
         // 0.005 N on at least 1 kg for 0.5 s: 0.0025 m/s.
         check_ok(mspring_network_apply_force(network, 3, 0.005f, 0));
         check_ok(mspring_network_step(network, i % 2 == 0 ? DT : 2 * DT));
@@ -704,7 +704,7 @@ static void another_relax_fraction_wakes_it(void **state) {
         const float strain = 0.01f;
         check_ok(mspring_network_set_stress_strains(network, s, 1, &strain));
     }
-    check_ok(mspring_network_set_relax_fraction(network, 0));
+    check_ok(support_set_relax_fraction(network, 0));
     const float kick = 20;
     check_ok(mspring_network_set_velocities(network, 50, 1, &kick, &kick));
     support_fall_asleep(network, DT);
@@ -712,7 +712,7 @@ static void another_relax_fraction_wakes_it(void **state) {
     uint32_t events_read;
     check_ok(mspring_network_read_events(network, events, COUNT_OF(events), &events_read, NULL));
     // Springs that were stressed only on the way relax.
-    check_ok(mspring_network_set_relax_fraction(network, 1));
+    check_ok(support_set_relax_fraction(network, 1));
     support_steps(network, 1, DT);
     check_ok(mspring_network_read_events(network, events, COUNT_OF(events), &events_read, NULL));
     assert_true(events_read > 0);

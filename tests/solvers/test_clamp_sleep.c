@@ -130,7 +130,7 @@ static void momentum_stays_where_it_is(void **state) {
     recipe made = lumps(1e6, false);
     mspring_network *network = make(&made, 0, 1, 1);
     support_fall_asleep(network, DT);
-    check_ok(mspring_network_set_global_damping(network, 0));
+    check_ok(support_set_global_damping(network, 0));
     support_kick(network, IN_LUMP + 40, 50);
     double px = 0, py = 0, turn = 0, px_then = 0, py_then = 0, turn_then = 0;
     check_ok(mspring_network_momentum(network, &px, &py, &turn));

@@ -205,7 +205,7 @@ static void solvers_change_without_a_kick(void **state) {
     support_point rest[64];
     for (mspring_id id = 0; id < made.particle_count; id++)
         rest[id] = support_position(network, id);
-    check_ok(mspring_network_set_global_damping(network, 0));
+    check_ok(support_set_global_damping(network, 0));
     for (int round = 0; round < 20; round++) {
         use_explicit(network, 16);
         support_steps(network, 5, 1.0 / 64);

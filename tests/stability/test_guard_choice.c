@@ -72,7 +72,7 @@ static void what_is_written_is_put_back(void **state) {
     for (size_t i = 0; i < 4 * COUNT_OF(values) * COUNT_OF(rates); i++) {
         mspring_network *network = make(1, MSPRING_SOLVER_EXPLICIT, MSPRING_GUARD_CLAMP_BOUNDS, 2);
         mspring_view view = {.struct_size = sizeof view};
-        check_ok(mspring_network_set_global_damping(network, rates[i / 4 / COUNT_OF(values)]));
+        check_ok(support_set_global_damping(network, rates[i / 4 / COUNT_OF(values)]));
         check_ok(mspring_network_view(network, &view));
         float *const arrays[] = {view.x, view.y, view.vx, view.vy};
         arrays[i % 4][view.slot_of_particle[7]] = values[i / 4 % COUNT_OF(values)];
@@ -94,9 +94,9 @@ static void a_guard_can_be_chosen_later(void **state) {
             const double dt = 2 * border_of(network);
             support_steps(network, 3, 0.4 * dt);
             support_steps(twin, 3, 0.4 * dt);
-            assert_int_equal(mspring_network_get_guard(network), first);
-            check_ok(mspring_network_set_guard(network, then));
-            assert_int_equal(mspring_network_get_guard(network), then);
+            assert_int_equal(support_settings(network).guard, first);
+            check_ok(support_set_guard(network, then));
+            assert_int_equal(support_settings(network).guard, then);
             for (int step = 0; step < 20; step++) {
                 assert_int_equal(mspring_network_step(network, 1.2 * dt), mspring_network_step(twin, 1.2 * dt));
                 assert_int_equal(support_hash(network), support_hash(twin));
@@ -112,9 +112,9 @@ static void it_goes_with_snapshots(void **state) {
     (void)state;
     mspring_network *network = make(1, MSPRING_SOLVER_EXPLICIT, MSPRING_GUARD_BOUNDS, 2);
     mspring_network *other = make(1, MSPRING_SOLVER_EXPLICIT, MSPRING_GUARD_BOUNDS, 2);
-    check_ok(mspring_network_set_guard(network, MSPRING_GUARD_IMPLICIT));
+    check_ok(support_set_guard(network, MSPRING_GUARD_IMPLICIT));
     support_bring(network, other, MSPRING_SNAPSHOT_ALL);
-    assert_int_equal(mspring_network_get_guard(other), MSPRING_GUARD_IMPLICIT);
+    assert_int_equal(support_settings(other).guard, MSPRING_GUARD_IMPLICIT);
     const double dt = 2.4 * border_of(network);
     for (int step = 0; step < 40; step++) {
         support_steps(network, 1, dt);
@@ -129,12 +129,10 @@ static void it_goes_with_snapshots(void **state) {
 static void what_is_no_guard_is_refused(void **state) {
     (void)state;
     mspring_network *network = make(0, MSPRING_SOLVER_EXPLICIT, MSPRING_GUARD_RETRY, 2);
-    check_error(mspring_network_set_guard(network, -1), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_set_guard(network, MSPRING_GUARD_CLAMP_BOUNDS + 1), MSPRING_ERROR_ARGUMENT);
+    check_error(support_set_guard(network, -1), MSPRING_ERROR_ARGUMENT);
+    check_error(support_set_guard(network, MSPRING_GUARD_CLAMP_BOUNDS + 1), MSPRING_ERROR_ARGUMENT);
     check_contains(mspring_network_error(network), "guard is 6, which is none");
-    assert_int_equal(mspring_network_get_guard(network), MSPRING_GUARD_RETRY);
-    check_error(mspring_network_set_guard(NULL, MSPRING_GUARD_GROWTH), MSPRING_ERROR_ARGUMENT);
-    assert_int_equal(mspring_network_get_guard(NULL), MSPRING_GUARD_GROWTH);
+    assert_int_equal(support_settings(network).guard, MSPRING_GUARD_RETRY);
     mspring_network_destroy(network);
 }
 

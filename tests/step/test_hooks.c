@@ -383,8 +383,8 @@ static void call_from_inside(const mspring_hook_args *args, void *user) {
     check_error(mspring_network_step(network, 0.01), MSPRING_ERROR_BUSY);
     check_contains(mspring_network_error(network), "hook");
     check_error(mspring_network_set_solver(network, &solver), MSPRING_ERROR_BUSY);
-    check_error(mspring_network_set_gravity(network, 0, 0), MSPRING_ERROR_BUSY);
-    check_error(mspring_network_set_global_damping(network, 1), MSPRING_ERROR_BUSY);
+    check_error(support_set_gravity(network, 0, 0), MSPRING_ERROR_BUSY);
+    check_error(support_set_global_damping(network, 1), MSPRING_ERROR_BUSY);
     check_error(mspring_network_apply_force(network, 0, 1, 1), MSPRING_ERROR_BUSY);
     check_error(mspring_network_apply_forces(network, 0, 2, f, f), MSPRING_ERROR_BUSY);
     check_error(support_add_hook(network, args->phase, call_from_inside, user, &number), MSPRING_ERROR_BUSY);
@@ -426,7 +426,7 @@ static void exclusive_calls_from_inside_are_refused(void **state) {
     assert_true(inside.calls >= 3 * (1 + 2 + 2));
     assert_int_equal(support_hash(network), support_hash(clean));
     // Outside they work again.
-    check_ok(mspring_network_set_gravity(network, 0, 0));
+    check_ok(support_set_gravity(network, 0, 0));
     mspring_network_destroy(network);
     mspring_network_destroy(clean);
 }

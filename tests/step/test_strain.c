@@ -110,7 +110,7 @@ static void springs_break_and_are_stressed_by_the_rules(void **state) {
         mspring_network *network = network_of(&made, levels[i]);
         check_ok(mspring_network_set_break_strains(network, 0, made.spring_count, at.break_strain));
         check_ok(mspring_network_set_stress_strains(network, 0, made.spring_count, at.stress_strain));
-        check_ok(mspring_network_set_relax_fraction(network, 0.6f));
+        check_ok(support_set_relax_fraction(network, 0.6f));
         condition *conditions = calloc(made.spring_count, sizeof *conditions);
         mspring_event *events = malloc(CAPACITY * sizeof *events);
         assert_true(conditions && events);
@@ -238,7 +238,7 @@ static void a_swinging_weight_stresses_once_a_period(void **state) {
     mspring_network *network = swinging_weight();
     const float stress = 0.15f;
     check_ok(mspring_network_set_stress_strains(network, 0, 1, &stress));
-    check_ok(mspring_network_set_relax_fraction(network, 0.5f));
+    check_ok(support_set_relax_fraction(network, 0.5f));
     mspring_event events[CAPACITY];
     support_steps(network, 314, 0.01); // five periods
     const uint32_t count = read_all(network, events);
@@ -272,7 +272,7 @@ static void what_is_at_its_threshold_stays(void **state) {
     const float stress = 0.5f, limit = 0.75f;
     check_ok(mspring_network_set_stress_strains(network, 0, 1, &stress));
     check_ok(mspring_network_set_break_strains(network, 0, 1, &limit));
-    check_ok(mspring_network_set_relax_fraction(network, 0.5f));
+    check_ok(support_set_relax_fraction(network, 0.5f));
     const double little = 0x1p-20, y = 0;
     const struct {
         double length;
@@ -622,9 +622,8 @@ static void bad_thresholds_are_refused(void **state) {
     check_error(mspring_network_set_break_strains(NULL, 0, 1, good), MSPRING_ERROR_ARGUMENT);
     const float fractions[] = {-0.1f, 1.1f, NAN};
     for (size_t i = 0; i < COUNT_OF(fractions); i++) {
-        check_error(mspring_network_set_relax_fraction(network, fractions[i]), MSPRING_ERROR_ARGUMENT);
+        check_error(support_set_relax_fraction(network, fractions[i]), MSPRING_ERROR_ARGUMENT);
     }
-    check_error(mspring_network_set_relax_fraction(NULL, 0.5f), MSPRING_ERROR_ARGUMENT);
     mspring_event event;
     uint32_t count = 7;
     check_error(mspring_network_read_events(NULL, &event, 1, &count, NULL), MSPRING_ERROR_ARGUMENT);

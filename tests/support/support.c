@@ -134,6 +134,37 @@ mspring_network *support_network(mspring_builder *builder, const mspring_network
     return network;
 }
 
+mspring_settings support_settings(const mspring_network *network) {
+    mspring_settings settings = {.struct_size = sizeof settings};
+    check_ok(mspring_network_get_settings(network, &settings));
+    return settings;
+}
+
+mspring_result support_set_gravity(mspring_network *network, float x, float y) {
+    mspring_settings settings = support_settings(network);
+    settings.gravity_x = x;
+    settings.gravity_y = y;
+    return mspring_network_set_settings(network, &settings);
+}
+
+mspring_result support_set_global_damping(mspring_network *network, float rate) {
+    mspring_settings settings = support_settings(network);
+    settings.global_damping = rate;
+    return mspring_network_set_settings(network, &settings);
+}
+
+mspring_result support_set_guard(mspring_network *network, mspring_guard guard) {
+    mspring_settings settings = support_settings(network);
+    settings.guard = guard;
+    return mspring_network_set_settings(network, &settings);
+}
+
+mspring_result support_set_relax_fraction(mspring_network *network, float fraction) {
+    mspring_settings settings = support_settings(network);
+    settings.relax_fraction = fraction;
+    return mspring_network_set_settings(network, &settings);
+}
+
 void support_steps(mspring_network *network, uint32_t count, double dt) {
     for (uint32_t step = 0; step < count; step++) {
         mspring_result result = mspring_network_step(network, dt);

@@ -79,6 +79,13 @@ mspring_network_def support_def(float gravity_y, uint32_t substeps);
 /// Make a network of a builder and destroy the builder.
 mspring_network *support_network(mspring_builder *builder, const mspring_network_def *def);
 
+/// Change one of the settings.
+mspring_settings support_settings(const mspring_network *network);
+mspring_result support_set_gravity(mspring_network *network, float x, float y);
+mspring_result support_set_global_damping(mspring_network *network, float rate);
+mspring_result support_set_guard(mspring_network *network, mspring_guard guard);
+mspring_result support_set_relax_fraction(mspring_network *network, float fraction);
+
 /// Step count times by dt; every step succeeds.
 void support_steps(mspring_network *network, uint32_t count, double dt);
 

@@ -217,7 +217,7 @@ static void call_from_inside(const mspring_hook_args *args, void *user) {
                 mspring_network_energy(inside->network, &energy, NULL, NULL) == MSPRING_OK &&
                 mspring_network_state_hash(inside->network, &hash) == MSPRING_OK;
     good = good && mspring_network_step(inside->network, 0.01) == MSPRING_ERROR_BUSY &&
-           mspring_network_set_gravity(inside->network, 0, 0) == MSPRING_ERROR_BUSY &&
+           support_set_gravity(inside->network, 0, 0) == MSPRING_ERROR_BUSY &&
            mspring_network_set_positions(inside->network, 0, 1, &x, &y) == MSPRING_ERROR_BUSY;
     atomic_fetch_add(&inside->calls, 1);
     atomic_fetch_add(&inside->wrong, !good);
@@ -237,7 +237,7 @@ static void shared_calls_from_several_threads_work(void **state) {
     assert_true(atomic_load(&inside.calls) >= 3 * (1 + 2 * SUBSTEPS));
     assert_int_equal(atomic_load(&inside.wrong), 0);
     assert_int_equal(support_hash(network), support_hash(clean));
-    check_ok(mspring_network_set_gravity(network, 0, 0));
+    check_ok(support_set_gravity(network, 0, 0));
     mspring_network_destroy(network);
     mspring_network_destroy(clean);
     recipe_free(&made);

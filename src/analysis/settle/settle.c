@@ -30,8 +30,8 @@ static void fill_particles(mspringi_statics *statics, const mspring_network *net
         if (statics->fixed[p])
             continue;
         // Where a step leaves the velocity as it is: force * inverse_mass + gravity = 0.
-        statics->outside.x[p] = (double)network->gravity_x / inverse_mass;
-        statics->outside.y[p] = (double)network->gravity_y / inverse_mass;
+        statics->outside.x[p] = (double)network->settings.gravity_x / inverse_mass;
+        statics->outside.y[p] = (double)network->settings.gravity_y / inverse_mass;
         if (forces->held_any) {
             statics->outside.x[p] += (double)forces->held.x[slot];
             statics->outside.y[p] += (double)forces->held.y[slot];

@@ -89,9 +89,9 @@ static void fill_springs(mspringi_reference *r, const mspring_network *network) 
 mspring_result mspringi_reference_create(mspringi_reference *reference, mspring_network *network) {
     mspringi_reference made = {
         .particle_count = network->topology.particle_count,
-        .gravity_x = (double)network->gravity_x,
-        .gravity_y = (double)network->gravity_y,
-        .global_damping = (double)network->global_damping,
+        .gravity_x = (double)network->settings.gravity_x,
+        .gravity_y = (double)network->settings.gravity_y,
+        .global_damping = (double)network->settings.global_damping,
     };
     mspring_result result = allocate(&made, network, count_springs(network));
     if (result != MSPRING_OK)

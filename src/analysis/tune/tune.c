@@ -132,11 +132,11 @@ bool mspringi_tuning_goes_on(mspringi_tuning *tuning, double part) {
 // A setting is to be measured, not what would stand in for it.
 void mspringi_tune_expose(mspring_network *clone) {
     mspringi_wake(clone);
-    clone->sleep.speed = 0.0f;
-    if (clone->guard_policy == MSPRING_GUARD_IMPLICIT || clone->guard_policy == MSPRING_GUARD_CLAMP)
-        clone->guard_policy = MSPRING_GUARD_GROWTH;
-    else if (clone->guard_policy == MSPRING_GUARD_CLAMP_BOUNDS)
-        clone->guard_policy = MSPRING_GUARD_BOUNDS;
+    clone->settings.sleep_speed = 0.0f;
+    if (clone->settings.guard == MSPRING_GUARD_IMPLICIT || clone->settings.guard == MSPRING_GUARD_CLAMP)
+        clone->settings.guard = MSPRING_GUARD_GROWTH;
+    else if (clone->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS)
+        clone->settings.guard = MSPRING_GUARD_BOUNDS;
 }
 
 void mspringi_tune_make_unbreakable(mspring_network *clone) {

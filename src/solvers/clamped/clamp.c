@@ -22,8 +22,8 @@
 static void push_from_outside(const mspring_network *network, float h, mspringi_field base) {
     const mspringi_state *s = &network->state;
     const float *inverse_mass = mspringi_free_mass(network);
-    const float decay = mspringi_decay(network->global_damping, h);
-    const float gravity_h_x = network->gravity_x * h, gravity_h_y = network->gravity_y * h;
+    const float decay = mspringi_decay(network->settings.global_damping, h);
+    const float gravity_h_x = network->settings.gravity_x * h, gravity_h_y = network->settings.gravity_y * h;
     for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
         const float inverse_mass_h = inverse_mass[slot] * h;
         if (!(inverse_mass[slot] > 0.0f))

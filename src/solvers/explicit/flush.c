@@ -17,7 +17,7 @@ static void stop(float *velocity, size_t count) {
 }
 
 void mspringi_flush_to_zero(const mspring_network *network, size_t first, size_t end) {
-    if (!(network->global_damping > 0.0f || network->parts > MSPRINGI_DAMPING))
+    if (!(network->settings.global_damping > 0.0f || network->parts > MSPRINGI_DAMPING))
         return;
     stop(network->state.vx + first, end - first);
     stop(network->state.vy + first, end - first);

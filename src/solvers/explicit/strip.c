@@ -44,11 +44,11 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
                 .gathered = network->gathered + i % 2 * gathered_floats,
                 .parts = network->parts,
                 .h = h,
-                .decay = mspringi_decay(network->global_damping, h),
+                .decay = mspringi_decay(network->settings.global_damping, h),
                 // Never -0: a sum of forces may be +0 or -0, depending on what empty slots hold, and what is added
                 // to +0 does not tell.
-                .gravity_h_x = network->gravity_x * h + 0.0f,
-                .gravity_h_y = network->gravity_y * h + 0.0f,
+                .gravity_h_x = network->settings.gravity_x * h + 0.0f,
+                .gravity_h_y = network->settings.gravity_y * h + 0.0f,
             },
     };
 }

@@ -169,8 +169,8 @@ typedef struct outside {
 } outside;
 
 static outside outside_in(const mspring_network *network, double h) {
-    const double rate = (double)network->global_damping, x = rate * h;
-    const double left = (double)mspringi_decay(network->global_damping, (float)h);
+    const double rate = (double)network->settings.global_damping, x = rate * h;
+    const double left = (double)mspringi_decay(network->settings.global_damping, (float)h);
     return (outside){left, x > 0.01 ? (1.0 - left) / rate : h * (1.0 - x * (0.5 - x * (1.0 / 6.0))), h};
 }
 
@@ -227,8 +227,10 @@ static void judge_free(const mspring_network *network, account *a, const centre 
     const double fx = s[MSPRINGI_EFFECT_X], fy = s[MSPRINGI_EFFECT_Y];
     const double torque = s[MSPRINGI_EFFECT_TORQUE] - 0.5 * ((a->x + c->x) * fy - (a->y + c->y) * fx);
     const double spin = c->inertia > 0.0 ? o->left * a->spin + o->seconds * torque : 0.0;
-    const double vx = o->left * (a->origin[2] + a->vx) + o->seconds * ((double)network->gravity_x + fx / mass);
-    const double vy = o->left * (a->origin[3] + a->vy) + o->seconds * ((double)network->gravity_y + fy / mass);
+    const double vx =
+        o->left * (a->origin[2] + a->vx) + o->seconds * ((double)network->settings.gravity_x + fx / mass);
+    const double vy =
+        o->left * (a->origin[3] + a->vy) + o->seconds * ((double)network->settings.gravity_y + fy / mass);
     const double work = s[MSPRINGI_EFFECT_WORK] - (fx * (c->x - a->x) + fy * (c->y - a->y));
     const double turns = c->inertia > 0.0 ? c->spin / c->inertia : 0.0;
     const double turn = c->inertia > 0.0 ? spin / c->inertia : 0.0;
@@ -248,9 +250,9 @@ static void judge_free(const mspring_network *network, account *a, const centre 
 static void judge_held(const mspring_network *network, account *a, const centre *c, double h) {
     const double before = a->internal + a->flight, *s = a->sums, mass = c->mass;
     // In the frame of the pins global damping is a wind.
-    const double wind = (double)network->global_damping, way_x = h * a->frame_x, way_y = h * a->frame_y;
-    const double gx = (double)network->gravity_x - wind * a->frame_x;
-    const double gy = (double)network->gravity_y - wind * a->frame_y;
+    const double wind = (double)network->settings.global_damping, way_x = h * a->frame_x, way_y = h * a->frame_y;
+    const double gx = (double)network->settings.gravity_x - wind * a->frame_x;
+    const double gy = (double)network->settings.gravity_y - wind * a->frame_y;
     const double work = mass * (gx * (c->x - a->x - way_x) + gy * (c->y - a->y - way_y)) +
                         (s[MSPRINGI_EFFECT_WORK] - (s[MSPRINGI_EFFECT_X] * way_x + s[MSPRINGI_EFFECT_Y] * way_y)) +
                         a->given;
@@ -476,8 +478,8 @@ static void find_owed(const mspring_network *network, account *a, const outside 
     const double fx = a->sums[MSPRINGI_EFFECT_X], fy = a->sums[MSPRINGI_EFFECT_Y];
     const double vx = a->keep * (a->origin[2] + c.vx) + a->add_x - o->left * (a->origin[2] + a->vx);
     const double vy = a->keep * (a->origin[3] + c.vy) + a->add_y - o->left * (a->origin[3] + a->vy);
-    a->owed_x = c.mass * vx - o->seconds * (c.mass * (double)network->gravity_x + fx);
-    a->owed_y = c.mass * vy - o->seconds * (c.mass * (double)network->gravity_y + fy);
+    a->owed_x = c.mass * vx - o->seconds * (c.mass * (double)network->settings.gravity_x + fx);
+    a->owed_y = c.mass * vy - o->seconds * (c.mass * (double)network->settings.gravity_y + fy);
     a->bearers = 0;
     a->borne_at = a->is_stopped ? a->stopped_at : MSPRING_NONE;
 }

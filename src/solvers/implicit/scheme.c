@@ -93,7 +93,7 @@ static void prepare_outside(mspringi_substep_of *substep, double c, double heavi
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const bool two = n->integrator == MSPRING_INTEGRATOR_BDF2 && !starts_anew(n);
     const float h = substep->h, ratio = rescaling(n, h);
-    const double damping = (double)network->global_damping;
+    const double damping = (double)network->settings.global_damping;
     mspringi_outside o = {
         .mass = n->mass,
         .force_fraction = (float)n->system.force_scale,
@@ -107,14 +107,14 @@ static void prepare_outside(mspringi_substep_of *substep, double c, double heavi
     o.turned = n->scaled.x;
     o.first = n->history.first.x;
     o.second = two ? n->history.second.x : NULL;
-    o.shift = (float)(c * (double)network->gravity_x / heavier);
+    o.shift = (float)(c * (double)network->settings.gravity_x / heavier);
     substep->outside[0] = o;
     o.force = substep->base.y;
     o.velocity = n->velocity.y;
     o.turned = n->scaled.y;
     o.first = n->history.first.y;
     o.second = two ? n->history.second.y : NULL;
-    o.shift = (float)(c * (double)network->gravity_y / heavier);
+    o.shift = (float)(c * (double)network->settings.gravity_y / heavier);
     substep->outside[1] = o;
 }
 
@@ -173,7 +173,7 @@ void mspringi_scheme_prepare(mspringi_substep_of *substep) {
     const double h = (double)substep->h, c = scheme.force_fraction * h * h;
     // What global damping multiplies masses by.
     const double heavier =
-        1.0 + scheme.force_fraction * scheme.velocity_fraction * h * (double)network->global_damping;
+        1.0 + scheme.force_fraction * scheme.velocity_fraction * h * (double)network->settings.global_damping;
     n->system.force_scale = n->scale * c;
     n->system.damping_rate = scheme.velocity_fraction / h;
     substep->mass_scale = (float)(n->scale * heavier);

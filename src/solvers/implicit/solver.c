@@ -112,12 +112,12 @@ static void clear_slot(const mspring_network *network, void *object, uint32_t sl
     mspringi_implicit *n = object;
     const bool two = n->integrator == MSPRING_INTEGRATOR_BDF2, falls = network->inverse_mass[slot] > 0.0f;
     const float h = n->history.h, share = !falls ? 0.0f : two ? -0.5f * h * h : 1.0f;
-    n->history.first.x[slot] = share * network->gravity_x;
-    n->history.first.y[slot] = share * network->gravity_y;
+    n->history.first.x[slot] = share * network->settings.gravity_x;
+    n->history.first.y[slot] = share * network->settings.gravity_y;
     if (!n->history.second.x)
         return;
-    n->history.second.x[slot] = falls ? h * network->gravity_x : 0.0f;
-    n->history.second.y[slot] = falls ? h * network->gravity_y : 0.0f;
+    n->history.second.x[slot] = falls ? h * network->settings.gravity_x : 0.0f;
+    n->history.second.y[slot] = falls ? h * network->settings.gravity_y : 0.0f;
 }
 
 static void rest_slot(const mspring_network *network, void *object, size_t slot) {

@@ -187,7 +187,7 @@ void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_fiel
         mspringi_floor_keep_alone(network);
     follow_edits(network);
     mspringi_substep_of substep = {
-        .network = network, .base = base, .h = h, .watches = mspringi_guard_looks(network->guard_policy)};
+        .network = network, .base = base, .h = h, .watches = mspringi_guard_looks(network->settings.guard)};
     for (uint32_t i = 0; i < count; ++i) {
         if (network->floor)
             take_pieces(&substep);

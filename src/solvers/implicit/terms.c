@@ -57,7 +57,8 @@ static bool consider(mspring_network *network, const mover *m, const mspringi_li
     const double x = n->x[m->slot], y = n->y[m->slot], slop = mspringi_floor_slop(x, y);
     const double before = distance_from(line, m->start_x, m->start_y);
     const double straight = distance_from(line, m->straight_x, m->straight_y);
-    const double drop = fall * (line->nx * (double)network->gravity_x + line->ny * (double)network->gravity_y);
+    const double drop =
+        fall * (line->nx * (double)network->settings.gravity_x + line->ny * (double)network->settings.gravity_y);
     const bool is_near = straight < 4.0 * slop + 2.0 * fabs(drop) + fabs(straight - before);
     if (!is_near || floor->contact_count == floor->contact_capacity)
         return false;

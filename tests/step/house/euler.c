@@ -81,8 +81,8 @@ static void substeps(mspring_network *network, void *object, float h, mspringi_f
             const double force_y = y[slot] + (base.x ? (double)base.y[slot] : 0.0);
             mspringi_set_x(s, slot, mspringi_x_of(s, slot) + step * (double)s->vx[slot]);
             mspringi_set_y(s, slot, mspringi_y_of(s, slot) + step * (double)s->vy[slot]);
-            s->vx[slot] += (float)(step * (force_x * inverse_mass + (double)network->gravity_x));
-            s->vy[slot] += (float)(step * (force_y * inverse_mass + (double)network->gravity_y));
+            s->vx[slot] += (float)(step * (force_x * inverse_mass + (double)network->settings.gravity_x));
+            s->vy[slot] += (float)(step * (force_y * inverse_mass + (double)network->settings.gravity_y));
         }
     }
 }

@@ -453,7 +453,23 @@ enum {
     MSPRING_GUARD_CLAMP_BOUNDS = 5
 };
 
-/// A network's settings at the start. Fill with mspring_network_def_init() first.
+/// What may change at any time: see mspring_network_set_settings().
+typedef struct mspring_settings {
+    uint32_t struct_size;
+    mspring_guard guard;  ///< what a step does beside checking bounds
+    float gravity_x;      ///< m/s^2, finite
+    float gravity_y;      ///< m/s^2, finite
+    float global_damping; ///< 1/s, 0 to 1e6: velocities decay by exp(-global_damping t), whatever the step
+    float max_speed;      ///< m/s, > 0 and at most 1e15: a step that ends with a particle faster than this in
+                          ///< x or y is refused with MSPRING_ERROR_UNSTABLE
+    float sleep_speed;    ///< m/s, 0 to 1e15: an island sleeps once none of its particles has been faster in x or y
+                          ///< at the end of a step for sleep_time, see mspring_network_is_asleep(). 0: never
+    float sleep_time;     ///< s of simulated time, 0 to 1e6
+    float relax_fraction; ///< 0 to 1: a stressed spring relaxes below this fraction of its stress strain. The
+                          ///< lower, the longer it stays stressed; at 0 for ever. 0.8 in a new network
+} mspring_settings;
+
+/// A network at the start. Fill with mspring_network_def_init() first.
 typedef struct mspring_network_def {
     uint32_t struct_size;
     mspring_simd simd_level; ///< highest level to use; default MSPRING_SIMD_AUTO. A level that this machine lacks,
@@ -461,11 +477,10 @@ typedef struct mspring_network_def {
                              ///< at most AVX2 on x86 and run on ARM, too. MSPRING_SIMD_SCALAR is the lowest level
                              ///< that this build has. The environment variable MSPRING_SIMD
                              ///< (scalar, sse2, avx2, avx512, neon, wasm) can lower it further, never raise.
-    float gravity_x;         ///< m/s^2, finite; default 0
-    float gravity_y;         ///< m/s^2, finite; default -9.8
-    float global_damping;    ///< 1/s, 0 to 1e6; velocities decay by exp(-global_damping t); default 0
-    float max_speed;         ///< m/s, > 0 and at most 1e15: a step that ends with a particle faster than this in
-                             ///< x or y is refused with MSPRING_ERROR_UNSTABLE; default 1e6
+    float gravity_x;         ///< as in mspring_settings; default 0
+    float gravity_y;         ///< as in mspring_settings; default -9.8
+    float global_damping;    ///< as in mspring_settings; default 0
+    float max_speed;         ///< as in mspring_settings; default 1e6
     mspring_solver solver;   ///< default MSPRING_SOLVER_EXPLICIT; its other settings are those of
                              ///< mspring_solver_def_init()
     uint32_t substeps;       ///< as in mspring_solver_def; default 1
@@ -477,10 +492,9 @@ typedef struct mspring_network_def {
                            ///< helps. With tasks, whose number counts, this is not looked at.
     uint32_t flags;        ///< bits of MSPRING_NETWORK_; default 0
     uint32_t max_substeps; ///< as in mspring_solver_def; default 1000
-    mspring_guard guard;   ///< default MSPRING_GUARD_GROWTH; mspring_network_set_guard() changes it
-    float sleep_speed; ///< m/s, 0 to 1e15: an island sleeps once none of its particles has been faster in x or y
-                       ///< at the end of a step for sleep_time, see mspring_network_is_asleep(); default 0: never
-    float sleep_time;  ///< s of simulated time, 0 to 1e6; default 0.5
+    mspring_guard guard;   ///< as in mspring_settings; default MSPRING_GUARD_GROWTH
+    float sleep_speed;     ///< as in mspring_settings; default 0: never
+    float sleep_time;      ///< as in mspring_settings; default 0.5
     uint32_t spare_particles; ///< particles that may be added (mspring_network_add_particles()), with those that
                               ///< the builder holds at most MSPRING_MAX_PARTICLES; default 0
     uint32_t spare_springs;   ///< springs that may be added, likewise; default 0. Memory for both is reserved with
@@ -662,24 +676,34 @@ MSPRING_API uint32_t mspring_network_spring_count(const mspring_network *network
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_solver(mspring_network *network,
                                                                         const mspring_solver_def *def);
 
-/// Set the acceleration of gravity, m/s^2, finite.
-/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_gravity(mspring_network *network, float x,
-                                                                         float y);
+/// Read the settings that the next step uses. Set struct_size first.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_settings(const mspring_network *network,
+                                                                          mspring_settings *settings);
 
-/// Set the rate (1/s, 0 to 1e6) at which all velocities decay: by exp(-rate t), whatever the step.
-/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_global_damping(mspring_network *network,
-                                                                                float rate);
+/// Set all settings or, on error, none. To change one, get them, change it and set them:
+///
+///     mspring_settings settings = {.struct_size = sizeof settings};
+///     (void)mspring_network_get_settings(network, &settings);
+///     settings.gravity_y = -1.6f;
+///     if (mspring_network_set_settings(network, &settings) != MSPRING_OK) ...
+///
+/// A value that is what it was changes nothing. Another gravity, sleep_speed, sleep_time or relax_fraction wakes
+/// all islands. After another guard, the next step looks at the border of stability, if that guard does so at all.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT (the message names the field and its value), MSPRING_ERROR_STRUCT,
+///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network
+/// @allocates what a guard or sleep needs, the first time that the network has it   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_settings(mspring_network *network,
+                                                                          const mspring_settings *settings);
 
 /* --------------------------------------------------------------------------------------------------- step */
 
 /// Evolve the network by dt.
 ///
 /// A step that would end with a coordinate or speed that is not finite or out of bounds (MSPRING_MAX_COORDINATE,
-/// mspring_network_def.max_speed), or in which the scheme itself makes motion grow (mspring_guard), is taken back:
+/// mspring_settings.max_speed), or in which the scheme itself makes motion grow (mspring_guard), is taken back:
 /// the state is the one of before the step, bit for bit, forces given for it are still there, and the error message
 /// names a particle. Take a shorter dt, more substeps or a lower stiffness.
 /// @param dt  seconds, finite, > 0, and long enough that dt / substeps is a normal float
@@ -690,7 +714,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_step(mspring_networ
 
 /// Whether the network sleeps, all of it: 1 or 0. NULL gives 0.
 ///
-/// In a network that may sleep (mspring_network_def.sleep_speed) every island does so by itself: particles that
+/// In a network that may sleep (mspring_settings.sleep_speed) every island does so by itself: particles that
 /// hang together by springs that are not broken (mspring_network_update_components()), or one without springs. It
 /// falls asleep at the end of a step, once every particle of it has been slow for long enough, no pinned one moves
 /// and none of its springs is on a ramp. Its velocities are set to 0 then, so what was left of its kinetic energy
@@ -704,12 +728,12 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_step(mspring_networ
 /// that is another one (set by a call or through a view; by a hook, which wakes it at the end of the step); a
 /// stiffness, damping, rest length or threshold of its that was set, a spring of its that was broken, or one that
 /// joins it to another island restored; a force from outside that differs from the one under which it fell asleep,
-/// so much that it would bring its particle to sleep_speed within sleep_time. All wake when gravity, solver, floor
-/// or relax fraction change, with the length of the substep where springs are relative, with
-/// mspring_network_renew_relative_springs(), when the host sets positions that move the local origin, and when
-/// particles or springs are added or removed. Hooks are called as ever; the forces of those before substeps are
-/// looked at in the first of a step. The implicit solver's history of an island is that of one at rest; of a
-/// network that slept as a whole, none.
+/// so much that it would bring its particle to sleep_speed within sleep_time. All wake when solver, floor or these
+/// settings change: gravity, relax_fraction, sleep_speed, sleep_time. So they do with the length of the substep
+/// where springs are relative, with mspring_network_renew_relative_springs(), when the host sets positions that
+/// move the local origin, and when particles or springs are added or removed. Hooks are called as ever; the forces
+/// of those before substeps are looked at in the first of a step. The implicit solver's history of an island is
+/// that of one at rest; of a network that slept as a whole, none.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_network_is_asleep(const mspring_network *network);
 
@@ -732,18 +756,6 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_wake(mspring_networ
 /// the first. NULL gives 0.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API uint32_t mspring_network_substeps(const mspring_network *network);
-
-/// Choose what a step does beside checking bounds, as mspring_network_def.guard does at creation.
-/// With another guard than before, the next step looks at the border of stability, if this one looks at it at all.
-/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for a network NULL or no guard; MSPRING_ERROR_MEMORY,
-///         MSPRING_ERROR_BUSY. On error nothing changes.
-/// @threads exclusive access to network   @allocates what the guard needs, if no guard before did   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_guard(mspring_network *network,
-                                                                       mspring_guard guard);
-
-/// What a step does beside checking bounds: see mspring_network_set_guard(). NULL gives MSPRING_GUARD_GROWTH.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_API mspring_guard mspring_network_get_guard(const mspring_network *network);
 
 /// Number of steps so far that the implicit solver took for the explicit one (MSPRING_GUARD_IMPLICIT), or that were
 /// taken with strain rates clamped (MSPRING_GUARD_CLAMP). NULL: 0.
@@ -1618,7 +1630,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_break_strains_a
                                                                                   const float *strain);
 
 /// Have springs watched: one whose absolute strain is over its stress strain at the end of a step is stressed from
-/// then on, until at the end of some step the strain is below the relax fraction of that. See
+/// then on, until at the end of some step the strain is below relax_fraction (mspring_settings) of that. See
 /// MSPRING_EVENT_STRESSED.
 /// @param strain  [count], > 0; INFINITY, the default, for never
 /// @return as mspring_network_set_break_strains()
@@ -1631,20 +1643,13 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_stress_strains_
                                                                                    uint32_t count,
                                                                                    const float *strain);
 
-/// Set the relax fraction of all springs: 0.8 at first. The lower, the longer a spring stays stressed.
-/// @param fraction  0 (once stressed, always) to 1
-/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_relax_fraction(mspring_network *network,
-                                                                                float fraction);
-
 /// What an event tells.
 typedef int32_t mspring_event_kind;
 enum {
     MSPRING_EVENT_BROKEN = 0, ///< spring id broke: at the end of a step, by its strain; or in an edit, with strain
                               ///< 0 and, if that was a detachment, the particle detached in other
     MSPRING_EVENT_STRESSED = 1, ///< the strain of spring id rose over its stress strain
-    MSPRING_EVENT_RELAXED = 2,  ///< and fell below the relax fraction of it
+    MSPRING_EVENT_RELAXED = 2,  ///< and fell below relax_fraction of it
     MSPRING_EVENT_RESTORED = 3, ///< spring id was restored
     MSPRING_EVENT_DETACHED = 4, ///< particle id was detached; after the events of its springs
     MSPRING_EVENT_SPLIT =
