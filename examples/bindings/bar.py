@@ -18,7 +18,8 @@ class Material(ctypes.Structure):
 class LatticeDef(ctypes.Structure):
     _fields_ = [("struct_size", c_uint32), ("width", c_uint32), ("height", c_uint32), ("material_count", c_uint32),
                 ("x", c_double), ("y", c_double), ("spacing", c_double),
-                ("cells", POINTER(c_uint16)), ("materials", POINTER(Material))]
+                ("cells", POINTER(c_uint16)), ("materials", POINTER(Material)),
+                ("shear_share", c_float), ("bend_share", c_float)]
 
 
 class Settings(ctypes.Structure):

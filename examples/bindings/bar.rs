@@ -28,6 +28,8 @@ struct LatticeDef {
     spacing: f64,
     cells: *const u16,
     materials: *const Material,
+    shear_share: f32,
+    bend_share: f32,
 }
 
 #[repr(C)]

@@ -84,7 +84,7 @@ static mspring_result add_rope(ship *made, mspring_builder *builder, const ship_
     def.mass = ship_materials[SHIP_ROPE].mass;
     measure_spring(choice, def.mass, &def.spring_flags, &def.stiffness, &def.damping);
     if (result == MSPRING_OK)
-        result = mspring_builder_add_rope(builder, &def, NULL, &first);
+        result = mspring_builder_add_rope(builder, &def, NULL, 0, &first);
     if (result != MSPRING_OK)
         return result;
     made->first_rope = made->rope_springs == 0 ? first : made->first_rope;

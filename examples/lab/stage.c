@@ -110,12 +110,12 @@ static bool make_bridge(lab_stage *made, bool relative, scene_error *error) {
         rope.spring_flags = relative ? MSPRING_SPRING_RELATIVE : 0;
         if (result == MSPRING_OK && i > 0) {
             rope.from = knot, rope.to = here, rope.segment_count = 6;
-            result = mspring_builder_add_rope(builder, &rope, NULL, NULL);
+            result = mspring_builder_add_rope(builder, &rope, NULL, 0, NULL);
         }
         if (result == MSPRING_OK && i > 0 && i <= ROPES) {
             rope.from = here, rope.to = ids[0][i * PITCH];
             rope.segment_count = 2 + (uint32_t)(particle.y / 3);
-            result = mspring_builder_add_rope(builder, &rope, NULL, NULL);
+            result = mspring_builder_add_rope(builder, &rope, NULL, 0, NULL);
         }
         knot = here;
     }

@@ -65,7 +65,7 @@ static bool add_ropes(scene *target, const mspring_network *network, uint32_t co
         ok = choose_ends(network, &joined, &seed, &rope, error);
         if (!ok)
             break;
-        mspring_result result = mspring_builder_add_rope(target->builder, &rope, NULL, NULL);
+        mspring_result result = mspring_builder_add_rope(target->builder, &rope, NULL, 0, NULL);
         if (result != MSPRING_OK)
             ok = scene_fail_builder(error, "cannot add a rope", target->builder, result);
     }

@@ -79,11 +79,10 @@ static bool add_hanging_rope(scene *out, uint32_t particles, const scene_options
     rope.stiffness = options->stiffness;
     rope.damping = options->damping;
     rope.spring_flags = options->relative ? MSPRING_SPRING_RELATIVE : 0;
-    mspring_id first = MSPRING_NONE;
-    mspring_result result = mspring_builder_add_rope(out->builder, &rope, &first, NULL);
+    mspring_result result = mspring_builder_add_rope(out->builder, &rope, NULL, 0, NULL);
     if (result != MSPRING_OK)
         return scene_fail_builder(error, "cannot make the rope", out->builder, result);
-    out->probe = first + (particles - 2) / 2;
+    out->probe = particles / 2 + 1; // behind the two ends
     snprintf(out->name, sizeof out->name, "rope_%u", particles);
     return true;
 }

@@ -63,7 +63,7 @@ static mspring_result fill(mspring_builder *builder, const check_scene *scene) {
         rope.damping = 20;
         rope.slack = 1.1f;
         if (result == MSPRING_OK)
-            result = mspring_builder_add_rope(builder, &rope, NULL, NULL);
+            result = mspring_builder_add_rope(builder, &rope, NULL, 0, NULL);
     }
     return result;
 }

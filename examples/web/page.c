@@ -166,7 +166,7 @@ static mspring_result add_ropes(mspring_builder *builder, const page_rope *ropes
         def.stiffness = ropes[i].stiffness;
         def.damping = ropes[i].damping;
         def.slack = ropes[i].slack;
-        result = mspring_builder_add_rope(builder, &def, NULL, NULL);
+        result = mspring_builder_add_rope(builder, &def, NULL, 0, NULL);
         if (result != MSPRING_OK)
             return failed(result, mspring_builder_error(builder));
     }

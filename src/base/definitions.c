@@ -34,7 +34,7 @@ mspring_result mspring_material_init(mspring_material *material, size_t size) {
 }
 
 mspring_result mspring_lattice_def_init(mspring_lattice_def *def, size_t size) {
-    const mspring_lattice_def defaults = {.struct_size = sizeof defaults, .spacing = 1.0};
+    const mspring_lattice_def defaults = {.struct_size = sizeof defaults, .spacing = 1.0, .shear_share = 1.0f};
     return fill(def, size, &defaults, sizeof defaults);
 }
 
@@ -45,6 +45,17 @@ mspring_result mspring_rope_def_init(mspring_rope_def *def, size_t size) {
                                        .segment_count = 1,
                                        .mass = 1.0f,
                                        .slack = 1.0f};
+    return fill(def, size, &defaults, sizeof defaults);
+}
+
+mspring_result mspring_mesh_def_init(mspring_mesh_def *def, size_t size) {
+    const mspring_mesh_def defaults = {.struct_size = sizeof defaults, .area_density = 1.0f};
+    return fill(def, size, &defaults, sizeof defaults);
+}
+
+mspring_result mspring_disc_def_init(mspring_disc_def *def, size_t size) {
+    const mspring_disc_def defaults = {
+        .struct_size = sizeof defaults, .ring_count = 1, .radius = 1.0, .area_density = 1.0f};
     return fill(def, size, &defaults, sizeof defaults);
 }
 

@@ -6,6 +6,7 @@
 #include "base/cpu.h"
 
 #define LARGEST_VALUE 1e30f
+#define LARGEST_RATIO 1e3f
 #define SMALLEST_MASS 1e-30f
 
 mspring_result mspring_builder_create(const mspring_allocator *allocator, mspring_builder **builder) {
@@ -107,13 +108,23 @@ mspring_result mspringi_check_coefficients(mspringi_message *message, const char
     if (!mspringi_in_range(stiffness, 0.0f, LARGEST_VALUE))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s %zu: stiffness is %g, it must be 0 to 1e30", what,
                              index, (double)stiffness);
-    if (!mspringi_in_range(damping, 0.0f, LARGEST_VALUE))
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s %zu: damping is %g, it must be 0 to 1e30", what,
-                             index, (double)damping);
-    if (flags & ~(uint32_t)MSPRING_SPRING_RELATIVE)
+    if (flags & ~(uint32_t)(MSPRING_SPRING_RELATIVE | MSPRING_SPRING_DAMPING_RATIO))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s %zu: unknown spring flags 0x%x", what, index,
                              (unsigned)flags);
+    const bool is_ratio = flags & MSPRING_SPRING_DAMPING_RATIO;
+    if (!mspringi_in_range(damping, 0.0f, is_ratio ? LARGEST_RATIO : LARGEST_VALUE))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s %zu: damping%s is %g, it must be 0 to %s", what,
+                             index, is_ratio ? " ratio" : "", (double)damping, is_ratio ? "1000" : "1e30");
     return MSPRING_OK;
+}
+
+float mspringi_find_damping(float stiffness, float damping, uint32_t flags, float mass_a, float mass_b) {
+    if (!(flags & MSPRING_SPRING_DAMPING_RATIO))
+        return damping;
+    const double reduced_mass = 1.0 / (1.0 / (double)mass_a + 1.0 / (double)mass_b);
+    const double unit = flags & MSPRING_SPRING_RELATIVE ? 1.0 : reduced_mass;
+    const double found = 2.0 * (double)damping * sqrt((double)stiffness * unit);
+    return found < (double)LARGEST_VALUE ? (float)found : LARGEST_VALUE;
 }
 
 mspring_result mspringi_check_particle_def(mspringi_message *message, size_t index,
@@ -192,12 +203,14 @@ static void append_particle(mspring_builder *builder, const mspring_particle_def
 }
 
 static void append_spring(mspring_builder *builder, const mspring_spring_def *def, float rest_length) {
-    builder->springs[builder->spring_count++] = (mspringi_spring){.a = def->a,
-                                                                  .b = def->b,
-                                                                  .stiffness = def->stiffness,
-                                                                  .damping = def->damping,
-                                                                  .rest_length = rest_length,
-                                                                  .flags = def->flags};
+    const float mass_a = builder->particles[def->a].mass, mass_b = builder->particles[def->b].mass;
+    builder->springs[builder->spring_count++] = (mspringi_spring){
+        .a = def->a,
+        .b = def->b,
+        .stiffness = def->stiffness,
+        .damping = mspringi_find_damping(def->stiffness, def->damping, def->flags, mass_a, mass_b),
+        .rest_length = rest_length,
+        .flags = def->flags & MSPRING_SPRING_RELATIVE};
 }
 
 mspring_result mspring_builder_add_particles(mspring_builder *builder, const mspring_particle_def *defs,

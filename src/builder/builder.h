@@ -59,9 +59,15 @@ mspring_result mspringi_builder_reserve_springs(mspring_builder *builder, size_t
 mspring_result mspringi_check_mass(mspringi_message *message, const char *what, size_t index, float mass);
 mspring_result mspringi_check_coefficients(mspringi_message *message, const char *what, size_t index,
                                            float stiffness, float damping, uint32_t flags);
+/// The damping of a spring between these masses, where it may be given as a ratio: N s/m, or a fraction if the
+/// spring is relative.
+float mspringi_find_damping(float stiffness, float damping, uint32_t flags, float mass_a, float mass_b);
 /// Refuse a struct_size, where the definition is one of several.
 mspring_result mspringi_check_struct_of(mspringi_message *message, const char *what, size_t index, const char *name,
                                         size_t given, size_t known);
+
+/// Add a mesh: all of it or, on error, nothing.
+mspring_result mspringi_builder_add_mesh(mspring_builder *builder, const mspring_mesh_def *def);
 
 /// Refuse definitions that are wrong whatever they are added to. index is for the message.
 mspring_result mspringi_check_particle_def(mspringi_message *message, size_t index,

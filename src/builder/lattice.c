@@ -36,6 +36,19 @@ static bool is_lost(double spacing, size_t cells, double low, double high) {
     return cells > 1 && (low + spacing == low || high - spacing == high);
 }
 
+// Whether a cell that is not empty has a bend spring to the second one on its right, or below.
+
+static bool reaches_right(const mspring_lattice_def *def, size_t row, size_t column) {
+    const uint16_t *cell = def->cells + row * def->width + column;
+    return column + 2 < def->width && cell[1] != MSPRING_CELL_EMPTY && cell[2] != MSPRING_CELL_EMPTY;
+}
+
+static bool reaches_down(const mspring_lattice_def *def, size_t row, size_t column) {
+    const size_t width = def->width;
+    const uint16_t *cell = def->cells + row * width + column;
+    return row + 2 < def->height && cell[width] != MSPRING_CELL_EMPTY && cell[2 * width] != MSPRING_CELL_EMPTY;
+}
+
 // Check a lattice's cells and count what it will add.
 static mspring_result check_lattice(mspring_builder *builder, const mspring_lattice_def *def, size_t *particles,
                                     size_t *springs) {
@@ -70,6 +83,13 @@ static mspring_result check_lattice(mspring_builder *builder, const mspring_latt
     if (result != MSPRING_OK)
         return result;
 
+    if (!(def->shear_share >= 0.0f && def->shear_share <= 1e3f) ||
+        !(def->bend_share >= 0.0f && def->bend_share <= 1e3f))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "lattice has shear_share %g and bend_share %g, they must be 0 to 1000",
+                             (double)def->shear_share, (double)def->bend_share);
+    const bool has_shear = def->shear_share > 0.0f, has_bend = def->bend_share > 0.0f;
+
     *particles = *springs = 0;
     for (size_t row = 0; row < height; ++row) {
         const uint16_t *cells = def->cells + row * width;
@@ -85,28 +105,38 @@ static mspring_result check_lattice(mspring_builder *builder, const mspring_latt
             *springs += column + 1 < width && cells[column + 1] != MSPRING_CELL_EMPTY;
             *springs += below && column > 0 && below[column - 1] != MSPRING_CELL_EMPTY;
             *springs += below && below[column] != MSPRING_CELL_EMPTY;
-            *springs += below && column + 1 < width && below[column + 1] != MSPRING_CELL_EMPTY;
+            *springs += has_shear && below && column + 1 < width && below[column + 1] != MSPRING_CELL_EMPTY;
+            *springs += has_bend && reaches_right(def, row, column);
+            *springs += has_bend && reaches_down(def, row, column);
         }
     }
     return MSPRING_OK;
 }
 
+typedef enum join { STRUCTURAL, SHEAR, BEND } join;
+
 // The ids of a lattice's particles are dense in cell order, so those of two rows are enough to join them.
 static void join_cells(mspring_builder *builder, const mspring_lattice_def *def, mspring_id a, uint16_t material_a,
-                       mspring_id b, uint16_t material_b, bool diagonal) {
+                       mspring_id b, uint16_t material_b, join kind) {
+    static const double cells[] = {[STRUCTURAL] = 1.0, [SHEAR] = 1.4142135623730951, [BEND] = 2.0};
+    const float shares[] = {[STRUCTURAL] = 1.0f, [SHEAR] = def->shear_share, [BEND] = def->bend_share};
     const mspring_material *ma = &def->materials[material_a], *mb = &def->materials[material_b];
-    const double length = diagonal ? def->spacing * 1.4142135623730951 : def->spacing;
+    const uint32_t flags = ma->spring_flags;
+    const float stiffness = shares[kind] * (0.5f * ma->stiffness + 0.5f * mb->stiffness);
+    const float given = 0.5f * ma->damping + 0.5f * mb->damping;
+    const float damping = flags & MSPRING_SPRING_DAMPING_RATIO ? given : shares[kind] * given;
     builder->springs[builder->spring_count++] =
         (mspringi_spring){.a = a,
                           .b = b,
-                          .stiffness = 0.5f * ma->stiffness + 0.5f * mb->stiffness,
-                          .damping = 0.5f * ma->damping + 0.5f * mb->damping,
-                          .rest_length = (float)length,
-                          .flags = ma->spring_flags};
+                          .stiffness = stiffness,
+                          .damping = mspringi_find_damping(stiffness, damping, flags, ma->mass, mb->mass),
+                          .rest_length = (float)(def->spacing * cells[kind]),
+                          .flags = flags & MSPRING_SPRING_RELATIVE};
 }
 
 static void append_lattice(mspring_builder *builder, const mspring_lattice_def *def, mspring_id *cell_ids) {
     const size_t width = def->width, height = def->height;
+    const bool has_shear = def->shear_share > 0.0f;
     mspring_id id = (mspring_id)builder->particle_count;
     mspring_id next_below = id; // id of the first particle of the row below
     for (size_t column = 0; column < width; ++column)
@@ -129,13 +159,13 @@ static void append_lattice(mspring_builder *builder, const mspring_lattice_def *
                                         .mass = material->mass,
                                         .flags = material->particle_flags};
                 if (column + 1 < width && cells[column + 1] != MSPRING_CELL_EMPTY)
-                    join_cells(builder, def, id, cells[column], id + 1, cells[column + 1], false);
-                if (below && column > 0 && below[column - 1] != MSPRING_CELL_EMPTY)
-                    join_cells(builder, def, id, cells[column], below_id - 1, below[column - 1], true);
+                    join_cells(builder, def, id, cells[column], id + 1, cells[column + 1], STRUCTURAL);
+                if (has_shear && below && column > 0 && below[column - 1] != MSPRING_CELL_EMPTY)
+                    join_cells(builder, def, id, cells[column], below_id - 1, below[column - 1], SHEAR);
                 if (has_below)
-                    join_cells(builder, def, id, cells[column], below_id, below[column], false);
-                if (below && column + 1 < width && below[column + 1] != MSPRING_CELL_EMPTY)
-                    join_cells(builder, def, id, cells[column], below_id + has_below, below[column + 1], true);
+                    join_cells(builder, def, id, cells[column], below_id, below[column], STRUCTURAL);
+                if (has_shear && below && column + 1 < width && below[column + 1] != MSPRING_CELL_EMPTY)
+                    join_cells(builder, def, id, cells[column], below_id + has_below, below[column + 1], SHEAR);
                 if (cell_ids)
                     cell_ids[row * width + column] = id;
                 ++id;
@@ -143,6 +173,32 @@ static void append_lattice(mspring_builder *builder, const mspring_lattice_def *
             below_id += has_below;
         }
         next_below = below_id;
+    }
+}
+
+static uint32_t particles_in_row(const mspring_lattice_def *def, size_t row) {
+    uint32_t count = 0;
+    for (size_t column = 0; row < def->height && column < def->width; ++column)
+        count += def->cells[row * def->width + column] != MSPRING_CELL_EMPTY;
+    return count;
+}
+
+static void append_bend_springs(mspring_builder *builder, const mspring_lattice_def *def, mspring_id first_id) {
+    const size_t width = def->width;
+    mspring_id id = first_id;
+    mspring_id second_below = first_id + particles_in_row(def, 0) + particles_in_row(def, 1);
+    for (size_t row = 0; row < def->height; ++row) {
+        for (size_t column = 0; column < width; ++column) {
+            const uint16_t *cell = def->cells + row * width + column;
+            if (cell[0] != MSPRING_CELL_EMPTY) {
+                if (reaches_right(def, row, column))
+                    join_cells(builder, def, id, cell[0], id + 2, cell[2], BEND);
+                if (reaches_down(def, row, column))
+                    join_cells(builder, def, id, cell[0], second_below, cell[2 * width], BEND);
+                ++id;
+            }
+            second_below += row + 2 < def->height && cell[2 * width] != MSPRING_CELL_EMPTY;
+        }
     }
 }
 
@@ -156,9 +212,13 @@ static MSPRINGI_NOINLINE mspring_result add_lattice(mspring_builder *builder, co
         result = mspringi_builder_reserve_particles(builder, particles);
     if (result == MSPRING_OK)
         result = mspringi_builder_reserve_springs(builder, springs);
-    if (result == MSPRING_OK)
-        append_lattice(builder, def, cell_ids);
-    return result;
+    if (result != MSPRING_OK)
+        return result;
+    const mspring_id first_id = (mspring_id)builder->particle_count;
+    append_lattice(builder, def, cell_ids);
+    if (def->bend_share > 0.0f)
+        append_bend_springs(builder, def, first_id);
+    return MSPRING_OK;
 }
 
 mspring_result mspring_builder_add_lattice(mspring_builder *builder, const mspring_lattice_def *def,

@@ -42,10 +42,14 @@ static mspring_result check_rope(mspring_builder *builder, const mspring_rope_de
 }
 
 static MSPRINGI_NOINLINE mspring_result add_rope(mspring_builder *builder, const mspring_rope_def *def,
-                                                 mspring_id *first_particle, mspring_id *first_spring) {
+                                                 mspring_id *particles, uint32_t capacity,
+                                                 mspring_id *first_spring) {
     float segment_length = 0.0f;
     if (!def)
         return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "rope definition is NULL");
+    if (!particles && capacity > 0)
+        return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "the array of %u particles is NULL",
+                             (unsigned)capacity);
     mspring_result result = check_rope(builder, def, &segment_length);
     if (result == MSPRING_OK)
         result = mspringi_builder_reserve_particles(builder, def->segment_count - 1);
@@ -63,26 +67,30 @@ static MSPRINGI_NOINLINE mspring_result add_rope(mspring_builder *builder, const
         builder->particles[builder->particle_count++] = (mspringi_particle){
             .x = from.x + (to.x - from.x) * t, .y = from.y + (to.y - from.y) * t, .mass = def->mass};
     }
-    for (uint32_t i = 0; i < segments; ++i)
-        builder->springs[builder->spring_count++] = (mspringi_spring){.a = i == 0 ? def->from : inner + i - 1,
-                                                                      .b = i + 1 == segments ? def->to : inner + i,
-                                                                      .stiffness = def->stiffness,
-                                                                      .damping = def->damping,
-                                                                      .rest_length = segment_length,
-                                                                      .flags = def->spring_flags};
-    if (first_particle)
-        *first_particle = segments > 1 ? inner : MSPRING_NONE;
+    for (uint32_t i = 0; i < segments; ++i) {
+        const mspring_id a = i == 0 ? def->from : inner + i - 1, b = i + 1 == segments ? def->to : inner + i;
+        const float mass_a = builder->particles[a].mass, mass_b = builder->particles[b].mass;
+        builder->springs[builder->spring_count++] = (mspringi_spring){
+            .a = a,
+            .b = b,
+            .stiffness = def->stiffness,
+            .damping = mspringi_find_damping(def->stiffness, def->damping, def->spring_flags, mass_a, mass_b),
+            .rest_length = segment_length,
+            .flags = def->spring_flags & MSPRING_SPRING_RELATIVE};
+    }
+    for (uint32_t i = 0; i < capacity && i <= segments; ++i)
+        particles[i] = i == 0 ? def->from : i == segments ? def->to : inner + i - 1;
     if (first_spring)
         *first_spring = spring;
     return MSPRING_OK;
 }
 
 mspring_result mspring_builder_add_rope(mspring_builder *builder, const mspring_rope_def *def,
-                                        mspring_id *first_particle, mspring_id *first_spring) {
+                                        mspring_id *particles, uint32_t capacity, mspring_id *first_spring) {
     if (!builder)
         return MSPRING_ERROR_ARGUMENT;
     const mspringi_fp_state before = mspringi_fp_enter();
-    mspring_result result = add_rope(builder, def, first_particle, first_spring);
+    mspring_result result = add_rope(builder, def, particles, capacity, first_spring);
     mspringi_fp_leave(before);
     return result;
 }

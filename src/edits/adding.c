@@ -210,14 +210,16 @@ static void put_spring(mspring_network *network, mspring_id s, const mspring_spr
                                (mspringi_relative){relative ? def->stiffness : -1.0f, 0.0f});
     mspringi_ramp_drop(network, s);
     const mspringi_place place = mspringi_place_of(&network->topology, s);
+    const float damping = mspringi_find_damping(def->stiffness, def->damping, def->flags, network->mass[def->a],
+                                                network->mass[def->b]);
     mspringi_place_set_rest_length(network, place, rest_length);
     mspringi_spring_come_live(network, s);
-    mspringi_spring_set_nominal(network, s, place, (mspringi_relative){def->stiffness, def->damping});
+    mspringi_spring_set_nominal(network, s, place, (mspringi_relative){def->stiffness, damping});
     mspringi_strain_forget(network, s);
     mspringi_extents_turn(network, s);
     mspringi_fingerprint(network, relative ? MSPRINGI_EDIT_ADDED_RELATIVE : MSPRINGI_EDIT_ADDED_SPRING, s);
     mspringi_fingerprint(network, def->a, def->b);
-    mspringi_fingerprint_floats(network, def->stiffness, def->damping);
+    mspringi_fingerprint_floats(network, def->stiffness, damping);
     mspringi_fingerprint_floats(network, rest_length, 0.0f);
 }
 

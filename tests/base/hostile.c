@@ -97,6 +97,15 @@ static void make_lattice(arguments *a) {
     memcpy(a->given_bytes, &made, sizeof made);
 }
 
+static void make_mesh(arguments *a) {
+    static const double x[3] = {0, 1, 0}, y[3] = {0, 0, 1};
+    static const uint32_t triangle[3] = {0, 1, 2};
+    mspring_mesh_def made;
+    check_ok(mspring_mesh_def_init(&made, sizeof made));
+    made.vertex_count = 3, made.triangle_count = 1, made.x = x, made.y = y, made.triangles = triangle;
+    memcpy(a->given_bytes, &made, sizeof made);
+}
+
 static void make_hook(arguments *a) {
     mspring_hook_def made;
     check_ok(mspring_hook_def_init(&made, sizeof made));
@@ -186,6 +195,8 @@ static void add_hook(arguments *a) {
     X(mspring_lattice_def_init, "Z0", a->size = sizeof(mspring_lattice_def),                                       \
       mspring_lattice_def_init(a->out[0], a->size))                                                                \
     X(mspring_rope_def_init, "Z0", a->size = sizeof(mspring_rope_def), mspring_rope_def_init(a->out[0], a->size))  \
+    X(mspring_mesh_def_init, "Z0", a->size = sizeof(mspring_mesh_def), mspring_mesh_def_init(a->out[0], a->size))  \
+    X(mspring_disc_def_init, "Z0", a->size = sizeof(mspring_disc_def), mspring_disc_def_init(a->out[0], a->size))  \
     X(mspring_solver_def_init, "Z0", a->size = sizeof(mspring_solver_def),                                         \
       mspring_solver_def_init(a->out[0], a->size))                                                                 \
     X(mspring_network_def_init, "Z0", a->size = sizeof(mspring_network_def),                                       \
@@ -211,7 +222,15 @@ static void add_hook(arguments *a) {
     X(mspring_builder_add_lattice, "BSo", make_lattice(a),                                                         \
       mspring_builder_add_lattice(a->builder, a->given, a->out[0]))                                                \
     X(mspring_builder_add_rope, "BSo", make_rope(a),                                                               \
-      mspring_builder_add_rope(a->builder, a->given, a->out[0], a->out[1]))                                        \
+      mspring_builder_add_rope(a->builder, a->given, a->out[0], a->out[0] ? 3 : 0, a->out[1]))                     \
+    X(mspring_builder_add_mesh, "BSo", make_mesh(a),                                                               \
+      mspring_builder_add_mesh(a->builder, a->given, a->out[0], a->out[1]))                                        \
+    X(mspring_builder_add_disc, "BSWo", FILL(disc_def),                                                            \
+      mspring_builder_add_disc(a->builder, a->given, a->out[0], a->out[1]))                                        \
+    X(mspring_material_preset, "Z0KT", (a->size = sizeof(mspring_material), a->kind = MSPRING_PRESET_WOOD),          \
+      mspring_material_preset(a->out[0], a->size, a->kind, 1, a->dt))                                              \
+    X(mspring_builder_add_network, "Bno", NOTHING,                                                                  \
+      mspring_builder_add_network(a->builder, a->network, NULL, 0, a->out[0], a->out[1]))                          \
     X(mspring_network_create, "Bs0", FILL(network_def), create_network(a))                                         \
     X(mspring_network_destroy, "", NOTHING, destroy_nothing())                                                     \
     X(mspring_network_clone, "ns0", FILL(clone_def), clone_network(a))                                             \

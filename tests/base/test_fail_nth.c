@@ -69,7 +69,18 @@ static mspring_result add_rope(life *l) {
     mspring_rope_def def;
     check_ok(mspring_rope_def_init(&def, sizeof def));
     def.from = 2, def.to = l->made.particle_count + 5, def.segment_count = 30, def.stiffness = 100;
-    return mspring_builder_add_rope(l->builder, &def, NULL, NULL);
+    return mspring_builder_add_rope(l->builder, &def, NULL, 0, NULL);
+}
+
+static mspring_result add_disc(life *l) {
+    mspring_disc_def def;
+    check_ok(mspring_disc_def_init(&def, sizeof def));
+    def.ring_count = 6, def.y = 50, def.young_modulus = 100;
+    return mspring_builder_add_disc(l->builder, &def, NULL, NULL);
+}
+
+static mspring_result add_network(life *l) {
+    return mspring_builder_add_network(l->builder, l->network, NULL, 0, NULL, NULL);
 }
 
 static mspring_result create(life *l) {
@@ -286,6 +297,7 @@ static const struct {
     {"spring", add_spring},
     {"lattice", add_lattice},
     {"rope", add_rope},
+    {"disc", add_disc},
     {"create", create},
     {"stable_dt", stable_dt},
     {"suggest_substeps", suggest_substeps},
@@ -329,6 +341,7 @@ static const struct {
     {"step", step},
     {"settle", settle},
     {"step", step},
+    {"network", add_network},
 };
 
 /* --------------------------------------------------------------------------------------------------- the lives */

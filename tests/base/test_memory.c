@@ -85,8 +85,8 @@ static void fill(mspring_builder *builder, const input *in) {
         check_ok(mspring_builder_add_lattice(builder, &in->lattice, NULL));
     }
     before = counts_of(builder);
-    if (!done(builder, before, mspring_builder_add_rope(builder, &in->rope, NULL, NULL))) {
-        check_ok(mspring_builder_add_rope(builder, &in->rope, NULL, NULL));
+    if (!done(builder, before, mspring_builder_add_rope(builder, &in->rope, NULL, 0, NULL))) {
+        check_ok(mspring_builder_add_rope(builder, &in->rope, NULL, 0, NULL));
     }
     // One by one until the arrays have to grow again.
     for (uint32_t i = 0; i < 1000; i++) {

@@ -197,7 +197,7 @@ static spring_case *bad_springs(size_t *count) {
     BAD(rest_length, -0.5f, MSPRING_ERROR_ARGUMENT, "rest length");
     BAD(rest_length, -2, MSPRING_ERROR_ARGUMENT, "rest length");
     BAD(rest_length, 4.1e12f, MSPRING_ERROR_ARGUMENT, "rest length");
-    BAD(flags, MSPRING_SPRING_RELATIVE << 1, MSPRING_ERROR_ARGUMENT, "flags");
+    BAD(flags, MSPRING_SPRING_DAMPING_RATIO << 1, MSPRING_ERROR_ARGUMENT, "flags");
     BAD(b, 2, MSPRING_ERROR_ARGUMENT, "particle 2");     // to itself
     BAD(b, 10, MSPRING_ERROR_ID, "10");                  // to nowhere
     BAD(a, 12345, MSPRING_ERROR_ID, "12345");            // from nowhere
@@ -365,7 +365,7 @@ static void bad_material_is_refused_and_named(void **state) {
     REFUSED(stiffness, -3, MSPRING_ERROR_ARGUMENT, "material 1: stiffness");
     REFUSED(damping, -3, MSPRING_ERROR_ARGUMENT, "material 1: damping");
     REFUSED(particle_flags, 2, MSPRING_ERROR_ARGUMENT, "material 1");
-    REFUSED(spring_flags, 2, MSPRING_ERROR_ARGUMENT, "material 1");
+    REFUSED(spring_flags, 4, MSPRING_ERROR_ARGUMENT, "material 1");
     REFUSED(spring_flags, MSPRING_SPRING_RELATIVE, MSPRING_ERROR_ARGUMENT, "material 1"); // material 0 is not
     REFUSED(struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_material");
     REFUSED(struct_size, sizeof materials[0] + 8, MSPRING_ERROR_STRUCT, "mspring_material");
@@ -381,13 +381,12 @@ static void bad_rope_is_refused(void **state) {
     good.from = 2;
     good.to = 6;
     good.segment_count = 3;
-    mspring_id first_particle = 4711, first_spring = 4712;
+    mspring_id ids[2] = {4711, 4711}, first_spring = 4712;
 #define REFUSED(field, value, code, part)                                                                          \
     do {                                                                                                           \
         mspring_rope_def def = good;                                                                               \
         def.field = (value);                                                                                       \
-        check_refused(builder, mspring_builder_add_rope(builder, &def, &first_particle, &first_spring), (code),    \
-                      (part));                                                                                     \
+        check_refused(builder, mspring_builder_add_rope(builder, &def, ids, 2, &first_spring), (code), (part));    \
     } while (0)
     for (size_t i = 0; i < COUNT_OF(not_finite); i++) {
         REFUSED(mass, not_finite[i], MSPRING_ERROR_ARGUMENT, "mass");
@@ -401,7 +400,7 @@ static void bad_rope_is_refused(void **state) {
     REFUSED(slack, 0, MSPRING_ERROR_ARGUMENT, "slack");
     REFUSED(slack, 0.0009f, MSPRING_ERROR_ARGUMENT, "slack");
     REFUSED(slack, 1001, MSPRING_ERROR_ARGUMENT, "slack");
-    REFUSED(spring_flags, 2, MSPRING_ERROR_ARGUMENT, "flags");
+    REFUSED(spring_flags, 4, MSPRING_ERROR_ARGUMENT, "flags");
     REFUSED(segment_count, 0, MSPRING_ERROR_ARGUMENT, "segment");
     REFUSED(segment_count, MSPRING_MAX_PARTICLES + 2, MSPRING_ERROR_LIMIT, "limit");
     REFUSED(segment_count, UINT32_MAX, MSPRING_ERROR_LIMIT, "limit");
@@ -416,10 +415,12 @@ static void bad_rope_is_refused(void **state) {
     mspring_rope_def def = good;
     def.from = 8;
     def.to = 9;
-    check_refused(builder, mspring_builder_add_rope(builder, &def, NULL, NULL), MSPRING_ERROR_ARGUMENT, "8 to 9");
-    check_refused(builder, mspring_builder_add_rope(builder, NULL, NULL, NULL), MSPRING_ERROR_ARGUMENT, "NULL");
-    check_error(mspring_builder_add_rope(NULL, &good, NULL, NULL), MSPRING_ERROR_ARGUMENT);
-    assert_int_equal(first_particle, 4711);
+    check_refused(builder, mspring_builder_add_rope(builder, &def, NULL, 0, NULL), MSPRING_ERROR_ARGUMENT,
+                  "8 to 9");
+    check_refused(builder, mspring_builder_add_rope(builder, NULL, NULL, 0, NULL), MSPRING_ERROR_ARGUMENT, "NULL");
+    check_error(mspring_builder_add_rope(NULL, &good, NULL, 0, NULL), MSPRING_ERROR_ARGUMENT);
+    check_refused(builder, mspring_builder_add_rope(builder, &good, NULL, 1, NULL), MSPRING_ERROR_ARGUMENT, "NULL");
+    assert_int_equal(ids[0], 4711);
     assert_int_equal(first_spring, 4712);
 }
 

@@ -236,9 +236,10 @@ static void rope_runs_evenly_from_end_to_end(void **state) {
     def.stiffness = 70;
     def.damping = 3;
     def.slack = 1.5f;
-    mspring_id first_particle = 0, first_spring = MSPRING_NONE;
-    check_ok(mspring_builder_add_rope(builder, &def, &first_particle, &first_spring));
-    assert_int_equal(first_particle, 2);
+    mspring_id first_spring = MSPRING_NONE, chain[7] = {9, 9, 9, 9, 9, 9, 9};
+    check_ok(mspring_builder_add_rope(builder, &def, chain, COUNT_OF(chain), &first_spring));
+    const mspring_id filled[] = {from, 2, 3, 4, 5, to, 9};
+    assert_memory_equal(chain, filled, sizeof chain);
     assert_int_equal(first_spring, 0);
     assert_int_equal(mspring_builder_particle_count(builder), 6);
     assert_int_equal(mspring_builder_spring_count(builder), 5);
@@ -248,12 +249,13 @@ static void rope_runs_evenly_from_end_to_end(void **state) {
     def.to = 2;
     def.from = 5;
     def.slack = 1;
-    check_ok(mspring_builder_add_rope(builder, &def, &first_particle, &first_spring));
-    assert_int_equal(first_particle, MSPRING_NONE);
+    check_ok(mspring_builder_add_rope(builder, &def, chain, 1, &first_spring)); // as many as fit
+    assert_int_equal(chain[0], 5);
+    assert_int_equal(chain[1], 2);
     assert_int_equal(first_spring, 5);
     def.from = 3;
     def.to = 5;
-    check_ok(mspring_builder_add_rope(builder, &def, NULL, NULL));
+    check_ok(mspring_builder_add_rope(builder, &def, NULL, 0, NULL));
     assert_int_equal(mspring_builder_particle_count(builder), 6);
     assert_int_equal(mspring_builder_spring_count(builder), 7);
 

@@ -140,7 +140,7 @@ static void a_cut_rope_falls_in_two(void **state) {
     rope.mass = 0.1f;
     rope.stiffness = 1e4f;
     mspring_id first_spring;
-    check_ok(mspring_builder_add_rope(builder, &rope, NULL, &first_spring));
+    check_ok(mspring_builder_add_rope(builder, &rope, NULL, 0, &first_spring));
     mspring_network_def def = support_def(-9.8f, 1);
     mspring_network *network = support_network(builder, &def);
     const mspring_id last = first_spring + 3;

@@ -95,7 +95,9 @@ static rope loaded_rope(bool implicit) {
         def.stiffness = def.stiffness * 0.5f / (h * h);
         def.damping = def.damping * 0.5f / h;
     }
-    check_ok(mspring_builder_add_rope(builder, &def, &made.first_particle, &made.first_spring));
+    mspring_id ids[SEGMENTS + 1];
+    check_ok(mspring_builder_add_rope(builder, &def, ids, SEGMENTS + 1, &made.first_spring));
+    made.first_particle = ids[1];
     mspring_network_def network = support_def(-9.8f, 40);
     network.global_damping = 0.3f; // air
     if (implicit) {

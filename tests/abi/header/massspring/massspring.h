@@ -222,6 +222,12 @@ enum {
     /// with h the substep. They follow the substep, so such a network is as stiff as its step allows. A full
     /// lattice of equal springs and masses is stable below stiffness = 1.
     MSPRING_SPRING_RELATIVE = 1u << 0,
+    /// damping is a ratio of critical damping, 0 to 1000: 1 lets the spring's ends come to rest without swinging.
+    ///     c = 2 damping sqrt(stiffness * mu)
+    /// In definitions only. The library computes c once, from the masses at that time, and then forgets the ratio:
+    /// later changes of mass or stiffness leave c as it is. A pinned particle counts with its mass. If the spring
+    /// is relative, c is a fraction and follows the substep. c is at most 1e30.
+    MSPRING_SPRING_DAMPING_RATIO = 1u << 1,
     /// The spring is broken. In mspring_spring_info only.
     MSPRING_SPRING_BROKEN = 1u << 8,
     /// The spring is stressed (mspring_network_set_stress_strains()). In mspring_spring_info only.
@@ -243,10 +249,10 @@ typedef struct mspring_particle_def {
 /// One spring. Fill with mspring_spring_def_init() first.
 typedef struct mspring_spring_def {
     uint32_t struct_size;
-    uint32_t flags;    ///< MSPRING_SPRING_RELATIVE or 0; default 0
+    uint32_t flags;    ///< MSPRING_SPRING_RELATIVE, MSPRING_SPRING_DAMPING_RATIO; default 0
     mspring_id a, b;   ///< the particles it joins, not the same; default MSPRING_NONE
     float stiffness;   ///< N/m (or a fraction, see MSPRING_SPRING_RELATIVE), 0 to 1e30; default 0
-    float damping;     ///< N s/m (or a fraction), 0 to 1e30; default 0
+    float damping;     ///< N s/m (or a fraction, or a ratio), 0 to 1e30; default 0
     float rest_length; ///< m, > 0 and at most 4e12, or MSPRING_REST_LENGTH_DISTANCE, the default
 } mspring_spring_def;
 
@@ -254,11 +260,20 @@ typedef struct mspring_spring_def {
 typedef struct mspring_material {
     uint32_t struct_size;
     uint32_t particle_flags; ///< MSPRING_PARTICLE_PINNED or 0; default 0
-    uint32_t spring_flags;   ///< MSPRING_SPRING_RELATIVE or 0; default 0; all materials of a lattice must agree
+    uint32_t spring_flags;   ///< as flags of mspring_spring_def; default 0; all materials of a lattice must agree
     float mass;              ///< kg per cell, 1e-30 to 1e30; default 1
     float stiffness;         ///< as in mspring_spring_def
     float damping;           ///< as in mspring_spring_def
 } mspring_material;
+
+/// Materials that mspring_material_preset() knows.
+typedef int32_t mspring_preset;
+enum {
+    MSPRING_PRESET_STEEL = 0, ///< heavy, as firm as substeps allow, hardly damped
+    MSPRING_PRESET_WOOD = 1,  ///< light and firm
+    MSPRING_PRESET_RUBBER = 2, ///< bends and stretches far
+    MSPRING_PRESET_JELLY = 3  ///< sags under its own weight and wobbles
+};
 
 /// Cell of a lattice with nothing in it.
 #define MSPRING_CELL_EMPTY UINT16_MAX
@@ -266,6 +281,12 @@ typedef struct mspring_material {
 /// A grid of cells, as an image gives it: every cell that is not empty becomes a particle, every pair of
 /// neighbours (8 to a cell) is joined by a spring at its rest length. The spring's stiffness and damping are
 /// the means of its two materials'. Fill with mspring_lattice_def_init() first.
+///
+/// Cloth has three kinds of spring. Structural springs join the 4 neighbours in rows and columns. Shear springs join
+/// the diagonal ones. Bend springs join cells two apart in a row or column, if the cell between is not empty. Shear
+/// and bend springs have a share of the materials' stiffness and damping (a damping ratio stays as it is). Steps of a
+/// lattice are fastest without bend springs, which are leftover springs of the plan. Bend springs lower the stable
+/// stiffness: use mspring_network_stable_dt().
 typedef struct mspring_lattice_def {
     uint32_t struct_size;
     uint32_t width, height;            ///< cells, each at least 1, product at most MSPRING_MAX_PARTICLES
@@ -274,13 +295,15 @@ typedef struct mspring_lattice_def {
     double spacing;                    ///< m between neighbouring columns and rows, 1e-9 to 1e9; default 1
     const uint16_t *cells;             ///< [height][width], the top row first: index into materials, or empty
     const mspring_material *materials; ///< [material_count]
+    float shear_share;                 ///< of diagonal springs, 0 to 1000; 0: none are made; default 1
+    float bend_share;                  ///< of springs two cells long, 0 to 1000; 0: none are made; default 0
 } mspring_lattice_def;
 
 /// A chain of equal springs between two particles that are there already. Its inner particles lie evenly on the
 /// straight line between the two. Fill with mspring_rope_def_init() first.
 typedef struct mspring_rope_def {
     uint32_t struct_size;
-    uint32_t spring_flags;  ///< MSPRING_SPRING_RELATIVE or 0; default 0
+    uint32_t spring_flags;  ///< as flags of mspring_spring_def; default 0
     mspring_id from, to;    ///< its ends; default MSPRING_NONE
     uint32_t segment_count; ///< springs, at least 1; default 1. The rope has one inner particle fewer.
     float mass;             ///< kg of each inner particle; default 1
@@ -288,6 +311,43 @@ typedef struct mspring_rope_def {
     float damping;          ///< of each spring
     float slack;            ///< rest length of the whole over the distance of its ends, 0.001 to 1000; default 1
 } mspring_rope_def;
+
+/// A mesh of triangles: each vertex becomes a particle, each edge one spring at rest, whichever triangles share it.
+/// Fill with mspring_mesh_def_init() first.
+///
+/// A vertex has a third of the mass of each triangle at it. All springs are equally stiff, or young_modulus gives
+/// each edge the stiffness
+///     k = young_modulus * (sum of the areas of its triangles) / length^2
+/// (Van Gelder 1998). A mesh of equilateral triangles then has that modulus, and Poisson's ratio 1/3. Other meshes
+/// come near it.
+typedef struct mspring_mesh_def {
+    uint32_t struct_size;
+    uint32_t spring_flags;     ///< as flags of mspring_spring_def; default 0
+    uint32_t vertex_count;     ///< at most MSPRING_MAX_PARTICLES; 0: the mesh adds nothing
+    uint32_t triangle_count;   ///< at most MSPRING_MAX_SPRINGS
+    const double *x, *y;       ///< [vertex_count] world positions, m
+    const uint32_t *triangles; ///< [triangle_count][3] indices of vertices, clockwise or not
+    float area_density;        ///< kg/m^2, 1e-30 to 1e30; default 1
+    float stiffness;           ///< of each spring, as in mspring_spring_def; default 0
+    float young_modulus;       ///< N/m: Young's modulus times thickness, at most 1e30; default 0: stiffness counts
+    float damping;             ///< of each spring, as in mspring_spring_def; default 0
+} mspring_mesh_def;
+
+/// A disc: a mesh of rings around a particle in the centre. Ring i has 6 i particles. No spring is shorter than the
+/// distance of two rings, or longer than 1.45 of it. If its rim may be jagged, a lattice of the cells within a circle
+/// is cheaper and bears a longer substep. Fill with mspring_disc_def_init() first.
+typedef struct mspring_disc_def {
+    uint32_t struct_size;
+    uint32_t spring_flags; ///< as flags of mspring_spring_def; default 0
+    uint32_t centre_flags; ///< of the particle in the centre: MSPRING_PARTICLE_PINNED or 0; default 0
+    uint32_t ring_count;   ///< 1 to 4729; default 1. There are 1 + 3 n (n + 1) particles, n (9 n + 3) springs.
+    double x, y;           ///< world position of the centre, m; default 0
+    double radius;         ///< m, 1e-9 to 1e12; default 1
+    float area_density;    ///< this and what follows: as in mspring_mesh_def
+    float stiffness;
+    float young_modulus;
+    float damping;
+} mspring_disc_def;
 
 /// How a network is evolved.
 typedef int32_t mspring_solver;
@@ -510,8 +570,38 @@ MSPRING_API mspring_result mspring_spring_def_init(mspring_spring_def *def, size
 MSPRING_API mspring_result mspring_material_init(mspring_material *material, size_t size);
 MSPRING_API mspring_result mspring_lattice_def_init(mspring_lattice_def *def, size_t size);
 MSPRING_API mspring_result mspring_rope_def_init(mspring_rope_def *def, size_t size);
+MSPRING_API mspring_result mspring_mesh_def_init(mspring_mesh_def *def, size_t size);
+MSPRING_API mspring_result mspring_disc_def_init(mspring_disc_def *def, size_t size);
 MSPRING_API mspring_result mspring_solver_def_init(mspring_solver_def *def, size_t size);
 MSPRING_API mspring_result mspring_network_def_init(mspring_network_def *def, size_t size);
+
+/// Fill a material with what looks like steel, wood, rubber or jelly at this substep.
+///
+/// Springs are relative, so a lattice of presets is stable at any dt, in any shape. Mass is that of a plate of 1 m
+/// thickness. Stiffness is that of the real material, if substeps are short enough for it. With c the speed of sound
+/// along a bar, c^2 = (Young's modulus) / density, a lattice with relative stiffness s has
+///     c = spacing / substep * sqrt(3 s / 4)
+/// and s is at most the limit below. Then a bar bends more than the real one: use shorter substeps or a larger
+/// spacing.
+///
+///     preset   kg/m^2   c, m/s   largest s   damping ratio
+///     steel      7850     5000       0.4         0.01
+///     wood        600     4000       0.2         0.03
+///     rubber     1100       40       0.05        0.1
+///     jelly      1000        4       0.01        0.1
+///
+/// A level bar that is clamped at one end bends under its own weight. With n springs in a row and m in a column, its
+/// free end sinks by 1.5 gravity n^4 spacing^2 / (c^2 m (m + 1)), if that is small beside its length.
+/// @param material  filled whole, struct_size, too
+/// @param size      sizeof *material
+/// @param spacing   m, 1e-9 to 1e9, as in mspring_lattice_def
+/// @param substep   s, 1e-12 to 1e6: dt / substeps
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL, an unknown preset or a value out of range;
+///         MSPRING_ERROR_STRUCT for an impossible size. On error nothing changes.
+/// @threads any   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_material_preset(mspring_material *material, size_t size,
+                                                                     mspring_preset preset, double spacing,
+                                                                     double substep);
 
 /* ------------------------------------------------------------------------------------------------ builder */
 
@@ -575,7 +665,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_springs(mspring
 
 /// Add a lattice: all of it or, on error, nothing. Particle ids follow the cells, row by row from the top, left
 /// to right, empty cells left out. Spring ids follow the particles; each brings those to its right, lower left,
-/// lower and lower right neighbour, in this order, where they exist.
+/// lower and lower right neighbour, in this order, where they exist. Bend springs follow behind all others; each
+/// particle brings those to its right and below.
 /// @param cell_ids  [height][width], receives each cell's particle id or MSPRING_NONE; may be NULL
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT (the message names cell or material), MSPRING_ERROR_STRUCT,
 ///         MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
@@ -586,12 +677,37 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_lattice(mspring
 
 /// Add a rope: all of it or, on error, nothing. Ids of particles and of springs follow the rope from its first
 /// end to its second.
-/// @param first_particle  receives the id of the first inner particle, MSPRING_NONE if there is none; may be NULL
-/// @param first_spring    receives the id of the first spring; may be NULL
+/// @param particles     [capacity] receives the ids along the rope, both ends included, as many as fit; may be NULL
+///                      if capacity is 0
+/// @param capacity      segment_count + 1 for all of them
+/// @param first_spring  receives the id of the first spring; may be NULL
 /// @return as mspring_builder_add_spring()
 /// @threads exclusive access to builder   @allocates yes   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_rope(mspring_builder *builder,
                                                                       const mspring_rope_def *def,
+                                                                      mspring_id *particles, uint32_t capacity,
+                                                                      mspring_id *first_spring);
+
+/// Add a mesh of triangles: all of it or, on error, nothing. Particle ids follow the vertices. Spring ids follow the
+/// triangles: each brings those of its edges 0-1, 1-2 and 2-0 that no triangle before it has.
+/// @param first_particle  receives the id of vertex 0; may be NULL
+/// @param first_spring    receives the id of the first spring; may be NULL
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for a value out of range, a triangle without area or with a vertex
+///         that there is not, or a vertex of no triangle (the message names it); MSPRING_ERROR_STRUCT,
+///         MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
+/// @threads exclusive access to builder   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_mesh(mspring_builder *builder,
+                                                                      const mspring_mesh_def *def,
+                                                                      mspring_id *first_particle,
+                                                                      mspring_id *first_spring);
+
+/// Add a disc: all of it or, on error, nothing. Particle ids go from the centre outwards, ring by ring, each ring
+/// counter-clockwise from the right. So the rim is the last 6 * ring_count particles.
+/// @param first_particle, first_spring  as of mspring_builder_add_mesh(); the first particle is the centre
+/// @return as mspring_builder_add_mesh()
+/// @threads exclusive access to builder   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_disc(mspring_builder *builder,
+                                                                      const mspring_disc_def *def,
                                                                       mspring_id *first_particle,
                                                                       mspring_id *first_spring);
 
@@ -611,6 +727,29 @@ typedef struct mspring_network mspring_network;
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_create(mspring_builder *builder,
                                                                     const mspring_network_def *def,
                                                                     mspring_network **network);
+
+/// Add what a network holds now to a builder: to store it, to merge networks, or to split one.
+///
+/// Adds particles with position, velocity, mass and pin, and the springs between them that are not broken. Springs
+/// have rest length, stiffness and damping of now (nominal ones, fractions if relative). A spring on a ramp keeps the
+/// rest length that it has now. Not added: settings, solver, floor, hooks, forces and events. An inverse mass scale
+/// becomes 1, or a pin if it is 0. Both kinds of id keep their order.
+///
+/// A network that is created from the builder starts where the other is, but for the rounding of positions: its local
+/// origin may be another. If the other has not moved since it was created from the same particles and springs, both
+/// have the same bits, and so have their steps with the same settings.
+/// @param particles     [count] the particles to add, in any order; NULL for all
+/// @param count         0 if particles is NULL
+/// @param particle_ids  [particle count of the network] receives the builder's id of each, MSPRING_NONE if it was not
+///                      added; may be NULL
+/// @param spring_ids    [spring count of the network] likewise
+/// @return MSPRING_OK; MSPRING_ERROR_ID for a particle that does not exist; MSPRING_ERROR_ARGUMENT for NULL or a
+///         particle out of bounds (the builder's message names it); MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY. On
+///         error nothing is added.
+/// @threads exclusive access to builder, shared for network   @allocates yes   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result
+mspring_builder_add_network(mspring_builder *builder, const mspring_network *network, const mspring_id *particles,
+                            uint32_t count, mspring_id *particle_ids, mspring_id *spring_ids);
 
 /// Free a network. NULL is allowed. Must not be called from a hook.
 /// @threads exclusive access to network   @allocates never   @since 0.1

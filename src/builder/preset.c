@@ -1,0 +1,46 @@
+/// Materials that look like real ones.
+///
+/// A square lattice whose springs have stiffness k, the diagonal ones, too, has Young's modulus times thickness 3 k
+/// / 2 along its rows. With k = s m / (2 h^2), and m / spacing^2 = density times thickness, the square of the speed
+/// of sound is (3 s / 4) (spacing / h)^2. A relative lattice of equal masses is stable in any shape if 2 s + 4 d is
+/// at most 1, with d the relative damping: 2 zeta sqrt(s) for the damping ratio zeta.
+#include <massspring/massspring.h>
+
+typedef struct preset {
+    double density;       // kg/m^3
+    double sound;         // m/s
+    double largest_share; // relative stiffness
+    double damping_ratio;
+} preset;
+
+// Densities and speeds are those of structural steel, pine along its grain, soft rubber and gelatine. Largest
+// shares keep the order of the materials where substeps are too long for all of them.
+static const preset presets[] = {
+    [MSPRING_PRESET_STEEL] = {7850.0, 5000.0, 0.4, 0.01},
+    [MSPRING_PRESET_WOOD] = {600.0, 4000.0, 0.2, 0.03},
+    [MSPRING_PRESET_RUBBER] = {1100.0, 40.0, 0.05, 0.1},
+    [MSPRING_PRESET_JELLY] = {1000.0, 4.0, 0.01, 0.1},
+};
+
+mspring_result mspring_material_preset(mspring_material *material, size_t size, mspring_preset preset_number,
+                                       double spacing, double substep) {
+    const int32_t count = (int32_t)(sizeof presets / sizeof *presets);
+    if (!material || preset_number < 0 || preset_number >= count || !(spacing >= 1e-9 && spacing <= 1e9) ||
+        !(substep >= 1e-12 && substep <= 1e6))
+        return MSPRING_ERROR_ARGUMENT;
+    mspring_material filled;
+    if (size != sizeof filled)
+        return MSPRING_ERROR_STRUCT;
+    mspring_result result = mspring_material_init(&filled, sizeof filled);
+    if (result != MSPRING_OK)
+        return result;
+    const preset *of = &presets[preset_number];
+    const double cells = of->sound * substep / spacing;
+    const double share = 4.0 / 3.0 * cells * cells;
+    filled.mass = (float)(of->density * spacing * spacing);
+    filled.stiffness = (float)(share < of->largest_share ? share : of->largest_share);
+    filled.damping = (float)of->damping_ratio;
+    filled.spring_flags = MSPRING_SPRING_RELATIVE | MSPRING_SPRING_DAMPING_RATIO;
+    *material = filled;
+    return MSPRING_OK;
+}

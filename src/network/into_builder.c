@@ -1,0 +1,162 @@
+/// What a network holds, put into a builder: to store it, to join it to others, to split it.
+#include "base/cpu.h"
+#include "builder/builder.h"
+#include "store/springs.h"
+
+// Ids in the builder by those in the network; MSPRING_NONE for what is left out.
+typedef struct id_maps {
+    mspring_id *particles, *springs;
+} id_maps;
+
+static mspring_result allocate(mspring_builder *builder, const mspring_network *network, id_maps *maps) {
+    maps->particles = mspringi_alloc(&builder->memory, network->topology.particle_count, sizeof *maps->particles);
+    maps->springs = mspringi_alloc(&builder->memory, network->topology.spring_count, sizeof *maps->springs);
+    if (maps->particles && maps->springs)
+        return MSPRING_OK;
+    return mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for a network of %u particles",
+                         (unsigned)network->topology.particle_count);
+}
+
+// Number what is added. Returns how many particles and springs these are.
+
+static mspring_result number_particles(mspring_builder *builder, const mspring_network *network,
+                                       const mspring_id *particles, uint32_t count, mspring_id *map,
+                                       uint32_t *added) {
+    const uint32_t total = network->topology.particle_count;
+    for (mspring_id p = 0; p < total; ++p)
+        map[p] = !particles && mspringi_particle_exists(network, p) ? 0 : MSPRING_NONE;
+    for (uint32_t i = 0; particles && i < count; ++i) {
+        if (particles[i] >= total || !mspringi_particle_exists(network, particles[i]))
+            return mspringi_fail(&builder->message, MSPRING_ERROR_ID, "the network has no particle %u",
+                                 (unsigned)particles[i]);
+        map[particles[i]] = 0;
+    }
+    *added = 0;
+    for (mspring_id p = 0; p < total; ++p)
+        if (map[p] != MSPRING_NONE)
+            map[p] = (mspring_id)builder->particle_count + (*added)++;
+    return MSPRING_OK;
+}
+
+static void find_ends(const mspring_network *network, mspring_id spring, mspring_id *a, mspring_id *b) {
+    const mspringi_topology *t = &network->topology;
+    uint32_t base, tip;
+    mspringi_topology_ends(t, mspringi_place_of(t, spring), &base, &tip);
+    const mspring_id from = t->particle_of_slot[base], to = t->particle_of_slot[tip];
+    *a = from < to ? from : to;
+    *b = from < to ? to : from;
+}
+
+static uint32_t number_springs(const mspring_builder *builder, const mspring_network *network,
+                               const id_maps *maps) {
+    uint32_t added = 0;
+    for (mspring_id s = 0; s < network->topology.spring_count; ++s) {
+        maps->springs[s] = MSPRING_NONE;
+        if (!mspringi_spring_exists(network, s) || !mspringi_spring_is_live(network, s))
+            continue;
+        mspring_id a, b;
+        find_ends(network, s, &a, &b);
+        if (maps->particles[a] != MSPRING_NONE && maps->particles[b] != MSPRING_NONE)
+            maps->springs[s] = (mspring_id)builder->spring_count + added++;
+    }
+    return added;
+}
+
+/* ---------------------------------------------------------------------------------------------------- appending */
+
+static mspring_result append_particle(mspring_builder *builder, const mspring_network *network, mspring_id p) {
+    const mspringi_state *s = &network->state;
+    const uint32_t slot = network->topology.slot_of_particle[p];
+    const mspringi_particle particle = {
+        .x = network->origin_x + mspringi_x_of(s, slot),
+        .y = network->origin_y + mspringi_y_of(s, slot),
+        .vx = s->vx[slot],
+        .vy = s->vy[slot],
+        .mass = network->mass[p],
+        .flags = network->inverse_mass[slot] == 0.0f ? MSPRING_PARTICLE_PINNED : 0,
+    };
+    if (!mspringi_is_coordinate(particle.x) || !mspringi_is_coordinate(particle.y))
+        return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT,
+                             "particle %u of the network: position (%g, %g) m is not within 1e12", (unsigned)p,
+                             particle.x, particle.y);
+    if (!mspringi_is_speed(particle.vx) || !mspringi_is_speed(particle.vy))
+        return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT,
+                             "particle %u of the network: velocity (%g, %g) m/s is not within 1e15", (unsigned)p,
+                             (double)particle.vx, (double)particle.vy);
+    builder->particles[builder->particle_count++] = particle;
+    return MSPRING_OK;
+}
+
+static void append_spring(mspring_builder *builder, const mspring_network *network, const id_maps *maps,
+                          mspring_id s) {
+    const mspringi_place place = mspringi_place_of(&network->topology, s);
+    const mspringi_relative nominal = mspringi_spring_get_nominal(network, s, place);
+    mspring_id a, b;
+    find_ends(network, s, &a, &b);
+    builder->springs[builder->spring_count++] = (mspringi_spring){
+        .a = maps->particles[a],
+        .b = maps->particles[b],
+        .stiffness = nominal.stiffness,
+        .damping = nominal.damping,
+        .rest_length = mspringi_place_get(network, place).rest_length,
+        .flags = mspringi_spring_is_relative(network, s) ? MSPRING_SPRING_RELATIVE : 0,
+    };
+}
+
+static mspring_result append(mspring_builder *builder, const mspring_network *network, const id_maps *maps) {
+    const size_t before = builder->particle_count;
+    for (mspring_id p = 0; p < network->topology.particle_count; ++p) {
+        if (maps->particles[p] == MSPRING_NONE)
+            continue;
+        mspring_result result = append_particle(builder, network, p);
+        if (result != MSPRING_OK) {
+            builder->particle_count = before;
+            return result;
+        }
+    }
+    for (mspring_id s = 0; s < network->topology.spring_count; ++s)
+        if (maps->springs[s] != MSPRING_NONE)
+            append_spring(builder, network, maps, s);
+    return MSPRING_OK;
+}
+
+/* ----------------------------------------------------------------------------------------------------- the call */
+
+static MSPRINGI_NOINLINE mspring_result add_network(mspring_builder *builder, const mspring_network *network,
+                                                    const mspring_id *particles, uint32_t count, id_maps *maps) {
+    uint32_t added = 0;
+    mspring_result result = allocate(builder, network, maps);
+    if (result == MSPRING_OK)
+        result = number_particles(builder, network, particles, count, maps->particles, &added);
+    if (result == MSPRING_OK)
+        result = mspringi_builder_reserve_particles(builder, added);
+    if (result == MSPRING_OK)
+        result = mspringi_builder_reserve_springs(builder, number_springs(builder, network, maps));
+    return result == MSPRING_OK ? append(builder, network, maps) : result;
+}
+
+static void copy_ids(mspring_id *to, const mspring_id *from, uint32_t count) {
+    for (uint32_t i = 0; to && i < count; ++i)
+        to[i] = from[i];
+}
+
+mspring_result mspring_builder_add_network(mspring_builder *builder, const mspring_network *network,
+                                           const mspring_id *particles, uint32_t count, mspring_id *particle_ids,
+                                           mspring_id *spring_ids) {
+    if (!builder)
+        return MSPRING_ERROR_ARGUMENT;
+    if (!network || (!particles && count > 0))
+        return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "%s NULL",
+                             network ? "the list of particles is" : "the network is");
+    id_maps maps = {0};
+    const mspringi_fp_state before = mspringi_fp_enter();
+    mspring_result result = add_network(builder, network, particles, count, &maps);
+    mspringi_fp_leave(before);
+    if (result == MSPRING_OK) {
+        copy_ids(particle_ids, maps.particles, network->topology.particle_count);
+        copy_ids(spring_ids, maps.springs, network->topology.spring_count);
+    }
+    mspringi_free(&builder->memory, maps.particles);
+    mspringi_free(&builder->memory, maps.springs);
+    return result;
+}

@@ -1,0 +1,227 @@
+/// @file test_into_builder.c
+/// Networks put into a builder: whole, in part, several together.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "allocator.h"
+#include "recipe.h"
+#include "support.h"
+
+static recipe mixed_recipe(void) {
+    uint64_t seed = 8;
+    const recipe_stuff stuff = {
+        .mass = {1, 2}, .stiffness = {100, 200}, .damping = {0, 1}, .holes = 0.1, .pinned = 0.02};
+    recipe made = {0};
+    recipe_lattice(&made, 20, 9, 0, 0, 1, &stuff, &seed);
+    recipe_rope(&made, 0, made.particle_count - 1, 12, &stuff, &seed);
+    recipe_particle(&made, 40, 2, 1, MSPRING_PARTICLE_PINNED);
+    recipe_disturb(&made, 0.01, 0.1, &seed);
+    return made;
+}
+
+static mspring_network *mixed_network(void) {
+    recipe made = mixed_recipe();
+    mspring_network_def def = support_def(-9.8f, 4);
+    def.spare_springs = def.spare_particles = 4;
+    mspring_network *network = recipe_network(&made, &def);
+    recipe_free(&made);
+    return network;
+}
+
+static mspring_network *copy_of(const mspring_network *network) {
+    mspring_builder *builder = support_builder();
+    check_ok(mspring_builder_add_network(builder, network, NULL, 0, NULL, NULL));
+    mspring_network_def def = support_def(-9.8f, 4);
+    return support_network(builder, &def);
+}
+
+static void new_network_steps_with_the_same_bits(void **state) {
+    (void)state;
+    mspring_network *network = mixed_network(), *copy = copy_of(network);
+    for (int i = 0; i < 50; i++) {
+        assert_int_equal(support_hash(copy), support_hash(network));
+        support_steps(network, 1, 0.01);
+        support_steps(copy, 1, 0.01);
+    }
+    mspring_network_destroy(network);
+    mspring_network_destroy(copy);
+}
+
+static void moved_network_goes_on_but_for_rounding(void **state) {
+    (void)state;
+    mspring_network *network = mixed_network();
+    support_steps(network, 100, 0.01);
+    mspring_network *copy = copy_of(network);
+    const uint32_t count = mspring_network_particle_count(network);
+    assert_int_equal(mspring_network_particle_count(copy), count);
+    for (int round = 0; round < 2; round++) {
+        for (mspring_id i = 0; i < count; i++) {
+            const support_point a = support_position(network, i), b = support_position(copy, i);
+            // Positions of 20 m have a last place of 2e-6; springs turn that into 1e-4 m/s^2.
+            check_near(a.x, b.x, round == 0 ? 1e-9 : 1e-3);
+            check_near(a.y, b.y, round == 0 ? 1e-9 : 1e-3);
+        }
+        support_steps(network, 10, 0.01);
+        support_steps(copy, 10, 0.01);
+    }
+    mspring_network_destroy(network);
+    mspring_network_destroy(copy);
+}
+
+/// What was edited is as it is now.
+static void edits_are_taken_over(void **state) {
+    (void)state;
+    mspring_network *network = mixed_network();
+    const mspring_id broken[2] = {3, 17}, gone = 30;
+    const float mass = 7, stiffness = 55, rest = 1.25f, scale[2] = {0.5f, 0};
+    mspring_particle_def particle;
+    mspring_id added;
+    check_ok(mspring_network_break_springs(network, broken, 2));
+    check_ok(mspring_network_set_masses(network, 5, 1, &mass));
+    check_ok(mspring_network_set_stiffnesses(network, 20, 1, &stiffness));
+    check_ok(mspring_network_set_rest_lengths(network, 21, 1, &rest));
+    check_ok(mspring_network_set_inverse_mass_scales(network, 6, 2, scale));
+    check_ok(mspring_network_remove_particles(network, &gone, 1));
+    check_ok(mspring_particle_def_init(&particle, sizeof particle));
+    particle.x = -30, particle.vx = 2, particle.flags = MSPRING_PARTICLE_PINNED;
+    check_ok(mspring_network_add_particles(network, &particle, 1, &added));
+
+    const uint32_t particles = mspring_network_particle_count(network),
+                   springs = mspring_network_spring_count(network);
+    mspring_id *particle_ids = test_malloc(particles * sizeof *particle_ids);
+    mspring_id *spring_ids = test_malloc(springs * sizeof *spring_ids);
+    mspring_builder *builder = support_builder();
+    const mspring_id lone = support_particle(builder, 100, 0, 1); // ids begin behind what is there
+    check_ok(mspring_builder_add_network(builder, network, NULL, 0, particle_ids, spring_ids));
+    mspring_network *copy = support_network(builder, NULL);
+    mspring_id next = lone + 1;
+    for (mspring_id i = 0; i < particles; i++) {
+        if (i == gone) {
+            assert_int_equal(particle_ids[i], MSPRING_NONE);
+            continue;
+        }
+        assert_int_equal(particle_ids[i], next++);
+        float had, has, had_scale, has_scale;
+        check_ok(mspring_network_get_masses(network, i, 1, &had));
+        check_ok(mspring_network_get_masses(copy, particle_ids[i], 1, &has));
+        check_ok(mspring_network_get_inverse_mass_scales(network, i, 1, &had_scale));
+        check_ok(mspring_network_get_inverse_mass_scales(copy, particle_ids[i], 1, &has_scale));
+        assert_true(has == had && has_scale == (had_scale > 0 ? 1 : 0));
+        const support_point v = support_velocity(network, i), w = support_velocity(copy, particle_ids[i]);
+        assert_true(v.x == w.x && v.y == w.y);
+    }
+    assert_int_equal(mspring_network_particle_count(copy), next);
+    next = 0;
+    for (mspring_id s = 0; s < springs; s++) {
+        mspring_spring_info had = {.struct_size = sizeof had}, has = {.struct_size = sizeof has};
+        if (mspring_network_get_spring(network, s, &had) != MSPRING_OK || had.flags & MSPRING_SPRING_BROKEN) {
+            assert_int_equal(spring_ids[s], MSPRING_NONE);
+            continue;
+        }
+        assert_int_equal(spring_ids[s], next++);
+        check_ok(mspring_network_get_spring(copy, spring_ids[s], &has));
+        assert_int_equal(has.a, particle_ids[had.a]);
+        assert_int_equal(has.b, particle_ids[had.b]);
+        assert_true(has.rest_length == had.rest_length && has.nominal_stiffness == had.nominal_stiffness &&
+                    has.nominal_damping == had.nominal_damping);
+    }
+    assert_int_equal(mspring_network_spring_count(copy), next);
+    assert_int_equal(spring_ids[3], MSPRING_NONE);
+    test_free(particle_ids);
+    test_free(spring_ids);
+    mspring_network_destroy(network);
+    mspring_network_destroy(copy);
+}
+
+/// A chain of six, cut in the middle: its two halves by their components, and together again.
+static void parts_are_split_and_merged(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    for (int i = 0; i < 6; i++)
+        support_particle(builder, i, 0, 1);
+    for (mspring_id i = 0; i < 5; i++)
+        support_spring(builder, i, i + 1, 10, 0);
+    mspring_network *network = support_network(builder, NULL);
+    const mspring_id middle = 2;
+    check_ok(mspring_network_break_springs(network, &middle, 1));
+
+    builder = support_builder();
+    mspring_id right[] = {5, 3, 4, 3}, left[] = {0, 1, 2}, particle_ids[6], spring_ids[5];
+    check_ok(mspring_builder_add_network(builder, network, right, COUNT_OF(right), particle_ids, spring_ids));
+    const mspring_id none = MSPRING_NONE, of_right[] = {none, none, none, 0, 1, 2},
+                     springs[] = {none, none, none, 0, 1};
+    assert_memory_equal(particle_ids, of_right, sizeof of_right);
+    assert_memory_equal(spring_ids, springs, sizeof springs);
+    check_ok(mspring_builder_add_network(builder, network, left, COUNT_OF(left), particle_ids, NULL));
+    const mspring_id of_left[] = {3, 4, 5, none, none, none};
+    assert_memory_equal(particle_ids, of_left, sizeof of_left);
+    check_ok(mspring_builder_add_network(builder, network, left, 0, particle_ids, spring_ids)); // nothing
+    assert_int_equal(particle_ids[0], none);
+    assert_int_equal(spring_ids[0], none);
+    assert_int_equal(mspring_builder_particle_count(builder), 6);
+    assert_int_equal(mspring_builder_spring_count(builder), 4);
+    mspring_network *merged = support_network(builder, NULL);
+    assert_true(support_position(merged, 5).x == 2);
+    mspring_network_destroy(merged);
+    mspring_network_destroy(network);
+}
+
+static void relative_springs_stay_relative(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    mspring_spring_def def;
+    check_ok(mspring_spring_def_init(&def, sizeof def));
+    def.a = support_particle(builder, 0, 0, 1), def.b = support_particle(builder, 1, 0, 2);
+    def.stiffness = 0.25f, def.damping = 0.5f, def.flags = MSPRING_SPRING_RELATIVE;
+    check_ok(mspring_builder_add_spring(builder, &def, NULL));
+    mspring_network *network = support_network(builder, NULL);
+    support_steps(network, 1, 0.01);
+    mspring_network *copy = copy_of(network);
+    mspring_spring_info info = {.struct_size = sizeof info};
+    check_ok(mspring_network_get_spring(copy, 0, &info));
+    assert_int_equal(info.flags, MSPRING_SPRING_RELATIVE);
+    assert_true(info.nominal_stiffness == 0.25f && info.nominal_damping == 0.5f && info.stiffness == 0);
+    mspring_network_destroy(network);
+    mspring_network_destroy(copy);
+}
+
+static void bad_selection_is_refused(void **state) {
+    (void)state;
+    mspring_network *network = mixed_network();
+    mspring_builder *builder = support_builder();
+    mspring_id list[2] = {1, mspring_network_particle_count(network)};
+    check_error(mspring_builder_add_network(builder, network, list, 2, NULL, NULL), MSPRING_ERROR_ID);
+    check_contains(mspring_builder_error(builder), "no particle");
+    list[1] = 2;
+    check_ok(mspring_network_remove_particles(network, &list[1], 1));
+    check_error(mspring_builder_add_network(builder, network, list, 2, NULL, NULL), MSPRING_ERROR_ID);
+    check_contains(mspring_builder_error(builder), "no particle 2");
+    check_error(mspring_builder_add_network(builder, network, NULL, 2, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_builder_add_network(builder, NULL, NULL, 0, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_builder_add_network(NULL, network, NULL, 0, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    // A velocity that only a view lets in.
+    mspring_view view = {.struct_size = sizeof view};
+    check_ok(mspring_network_view(network, &view));
+    view.vx[view.slot_of_particle[9]] = NAN;
+    check_error(mspring_builder_add_network(builder, network, NULL, 0, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_builder_error(builder), "particle 9");
+    assert_int_equal(mspring_builder_particle_count(builder), 0);
+    assert_int_equal(mspring_builder_spring_count(builder), 0);
+    mspring_builder_destroy(builder);
+    mspring_network_destroy(network);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(new_network_steps_with_the_same_bits),
+        cmocka_unit_test(moved_network_goes_on_but_for_rounding),
+        cmocka_unit_test(edits_are_taken_over),
+        cmocka_unit_test(parts_are_split_and_merged),
+        cmocka_unit_test(relative_springs_stay_relative),
+        cmocka_unit_test(bad_selection_is_refused),
+    };
+    return cmocka_run_group_tests_name("into_builder", tests, NULL, NULL);
+}
