@@ -83,7 +83,16 @@ errors() {
   for value in mmx AVX2 '' 3; do
     refused 2 '--level' "$good" --level "$value"
   done
-  refused 2 'relative|stiffness' "$good" --relative
+  refused 2 'relative|stiffness|materials' "$good" --relative
+  for value in Explicit cg '' 1; do
+    refused 2 '--solver|explicit, implicit or direct' "$good" --solver "$value"
+  done
+  for value in 0 -1 1.5 10001 x; do
+    refused 2 '--iterations' "$good" --solver implicit --iterations "$value"
+  done
+  refused 2 '--iterations|--solver implicit' "$good" --iterations 8
+  refused 2 '--iterations|--solver implicit' "$good" --iterations 8 --solver direct
+  refused 2 '--at-once|--solver' "$good" --at-once --solver direct
 
   # Images that are none.
   refused 1 'missing.png|No such file' "$scratch/missing.png"
@@ -137,8 +146,6 @@ errors() {
   refused 1 '#123456|column 2|row 1' "$image"
   printf 'P3 2 2 255\n 255 255 255  255 255 255  255 255 255  255 255 255\n' >"$image"
   refused 1 'no particle' "$image"
-  printf 'P3 2 1 255\n 10 10 10  128 128 144\n' >"$image"
-  refused 1 'no probe' "$image"
   printf 'P3 3 1 255\n 10 10 10  33 108 207  33 108 207\n' >"$image"
   refused 1 'probe|column 1|column 2' "$image"
   printf 'P3 3 1 255\n 10 10 10  255 255 255  33 108 207\n' >"$image"
@@ -170,6 +177,10 @@ errors() {
   refused 1 'table.csv:3|#123456|line 2' "$good" --materials "$table"
   rows "$header" '#123456,x,1,1,0,0,0,0'
   refused 1 '#0A0A0A' "$good" --materials "$table" # a colour of the image that the table lacks
+  rows "$header" '#123456,x,1,0.5,0,0,0,0' '#0A0A0A,soft rock,1,1.5,0,0,0,0'
+  refused 1 'soft rock|stiffness 1.5|fractions' "$good" --relative --materials "$table"
+  rows "$header" '#123456,x,1,0.5,1.5,0,0,0'
+  refused 1 "'x'|damping 1.5|fractions" "$good" --relative --materials "$table"
 
   # Text networks.
   refused 1 'missing.msn' "$scratch/missing.msn"
@@ -212,10 +223,12 @@ errors() {
   refused 1 'net.msn:3|second probe|line 2' "$network"
   lines '2 1' '0 0 1 1 0' '1 0 1 0 1' '0 1 1 100 0' '0 1 1 100 0'
   refused 1 'net.msn:5|more lines' "$network"
-  lines '2 1' '0 0 1 1 0' '1 0 1 0 0' '0 1 1 100 0'
-  refused 1 'no probe' "$network"
   lines '2 0' '0 0 1 1 0' '1 0 1 0 1'
   refused 1 'particle 1|not joined' "$network"
+  lines '2 0' '0 0 1 1 0' '1 0 1 0 0'
+  refused 1 'particle 1|not joined' "$network"
+  lines '2 1' '0 0 1 1 0' '1 0 1 0 0' '0 1 1 100 0'
+  refused 1 'relative|fraction' "$network" --relative --materials "$table"
   head -c 5000 /dev/urandom >"$network"
   refused 1 'net.msn' "$network"
 
@@ -288,6 +301,40 @@ results() {
   near "$(field 9)" "$near_bending" 1e-4 'relative springs at once'
   succeed "$network" --at-once
   grep -q 'static equilibrium' "$scratch/out" || complain 'the table does not say how the equilibrium was found'
+
+  # Each solver finds the same rest.
+  for solver in implicit direct; do
+    succeed "$network" --csv --solver "$solver"
+    same "$(field 4),$(field 5)" "$solver,1" "$line"
+    near "$(field 9)" 0.0392 1e-4 "m g / k by the $solver solver"
+  done
+  succeed "$network" --solver implicit --iterations 5 --substeps 2
+  grep -q 'implicit, 2 substeps' "$scratch/out" || complain 'the table does not name the solver'
+
+  # Fractions of each material: the upper spring joins 1 and 3 kg, the lower one two of 3 kg. Below the pin h^2 k / mu
+  # is 0.3, the mean of 0.2 and 0.4, and 0.4.
+  rows() {
+    printf '%s\n' "$@" >"$scratch/table.csv"
+  }
+  rows colour,name,mass,stiffness,damping,break_strain,pinned,probe '#0A0A0A,hook,1,0.2,0,0,1,0' \
+    '#808090,weight,3,0.4,0,0,0,0' '#216CCF,last,3,0.4,0.1,0,0,1'
+  printf 'P3 1 3 255\n 10 10 10  128 128 144  33 108 207\n' >"$image"
+  succeed "$image" --csv --relative --materials "$scratch/table.csv" --dt 0.01 --substeps 1
+  near "$(field 6)" 6000 1e-4 '0.4 mu / h^2, mu = 1.5 kg'
+  near "$(field 7)" 7.5 1e-4 '0.05 mu / h'
+  near "$(field 9)" "$(awk 'BEGIN { print 9.8 * (6 / 2250 + 3 / 6000) }')" 1e-3 'two springs in a row'
+
+  # Without a probe the mean is measured, and drawn.
+  lines '3 2' '0 0 1 1 0' '0 -1 2 0 0' '0 -2 1 0 0' '0 1 1 300 0' '1 2 1 100 0'
+  succeed "$network" --csv
+  near "$(field 9)" "$(awk 'BEGIN { print 9.8 * (3 / 300 * 2 + 1 / 100) / 3 }')" 1e-3 'mean displacement'
+  succeed "$network" --out "$scratch/no_probe"
+  grep -q 'mean of all particles' "$scratch/out" || complain 'the table does not say what was measured'
+  png "$scratch/no_probe/net.png"
+  svg "$scratch/no_probe/net.svg"
+  png "$scratch/no_probe/net_animation.png"
+  succeed "$network" --at-once --picture "$scratch/q.png"
+  lines '# a weight on a spring' '2 1' '0 0 1 1 0' '0 -1 2 0 1' '' '0 1 1 500 0 # the spring'
 
   # Pictures are what they are called.
   succeed "$network" --picture "$scratch/p.png" --svg "$scratch/p.svg"

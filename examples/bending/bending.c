@@ -48,17 +48,18 @@ static bool load_scene(bending_run *run) {
     } else {
         ok = scene_network_file(options->input, &options->scene, &run->scene, &error);
     }
-    if (!ok)
-        return fail(error.text);
-    if (run->scene.probe != MSPRING_NONE)
-        return true;
-    fprintf(
-        stderr,
-        "bending: %s has no probe, so there is nothing to measure: mark one particle as the probe (in an image a "
-        "pixel of a probe material, #216CCF in the built-in table; in a network file the fifth number of its "
-        "line)\n",
-        options->input);
-    return false;
+    return ok || fail(error.text);
+}
+
+static bool choose_solver(bending_run *run) {
+    const bending_options *options = run->options;
+    mspring_solver_def def;
+    mspring_solver_def_init(&def, sizeof def);
+    def.solver = options->solver;
+    def.substeps = options->substeps;
+    def.iterations = options->iterations;
+    return mspring_network_set_solver(run->network, &def) == MSPRING_OK ||
+           fail(mspring_network_error(run->network));
 }
 
 static bool make_network(bending_run *run) {
@@ -74,7 +75,7 @@ static bool make_network(bending_run *run) {
     if (!settle_find_loose(run->network, &loose))
         return fail("out of memory: take a smaller network");
     if (loose == MSPRING_NONE)
-        return true;
+        return choose_solver(run);
     double x = 0;
     double y = 0;
     if (mspring_network_get_positions(run->network, loose, 1, &x, &y) != MSPRING_OK)
@@ -123,9 +124,10 @@ static void after_step(mspring_network *network, const settle_progress *at, void
     if (!progress_due(&run->line))
         return;
     char text[128];
-    snprintf(text, sizeof text, "%-8s step %llu, %.1f s simulated, probe down %.6g m, moving at %.3g m/s",
+    snprintf(text, sizeof text, "%-8s step %llu, %.1f s simulated, %s down %.6g m, moving at %.3g m/s",
              at->measuring ? "swinging" : "settling", (unsigned long long)at->step,
-             (double)at->step * run->options->dt, at->drop, at->rms_speed);
+             (double)at->step * run->options->dt, run->scene.probe == MSPRING_NONE ? "mean" : "probe", at->drop,
+             at->rms_speed);
     progress_write(&run->line, text);
 }
 
@@ -133,6 +135,8 @@ static bool fail_unstable(const bending_run *run) {
     const spring_measures *measures = &run->measures;
     fprintf(stderr, "bending: unstable in step %llu: %s\n", (unsigned long long)run->settled.steps + 1,
             mspring_network_error(run->network));
+    if (run->options->solver != MSPRING_SOLVER_EXPLICIT)
+        return false;
     // The limit grows with the square of the number of substeps; half of it leaves room for damping.
     double wanted = ceil(run->options->substeps * sqrt(measures->most_fraction / 0.5));
     if (measures->most_fraction > 0.5 && wanted <= 1e6)
@@ -166,9 +170,9 @@ static bool settle(bending_run *run) {
     case SETTLE_NOT_FOUND:
         return fail(mspring_network_error(run->network));
     case SETTLE_OUT_OF_STEPS:
-        fprintf(stderr,
-                "bending: not at rest after %llu steps (the probe is %.6g m down): allow more with --steps\n",
-                (unsigned long long)run->settled.steps, run->settled.drop);
+        fprintf(stderr, "bending: not at rest after %llu steps (the %s is %.6g m down): allow more with --steps\n",
+                (unsigned long long)run->settled.steps, run->scene.probe == MSPRING_NONE ? "mean" : "probe",
+                run->settled.drop);
         return false;
     case SETTLE_NO_MEMORY:
         return fail("out of memory: take a smaller network, or fewer steps");
@@ -209,7 +213,8 @@ static bool draw_final(const bending_run *run, const char *title, draw_error *er
 static bool write_pictures(bending_run *run) {
     char title[160];
     draw_error error = {""};
-    snprintf(title, sizeof title, "%s: bending %.4g m", run->scene.name, run->settled.drop);
+    snprintf(title, sizeof title, "%s: %s %.4g m", run->scene.name,
+             run->scene.probe == MSPRING_NONE ? "mean displacement" : "bending", run->settled.drop);
     if ((run->picture[0] || run->svg[0]) && !draw_final(run, title, &error))
         return fail(error.text);
     if (run->animation[0] && !film_write(&run->film, run->animation, title, &error))

@@ -16,6 +16,7 @@ static const char help[] =
     "\n"
     "FILE is an image, each pixel a particle, or a plain text network (.msn, .txt): a line `P S` with the numbers\n"
     "of particles and springs, P lines `x y mass pinned probe`, S lines `a b rest stiffness damping`.\n"
+    "Without a probe, what is measured is how far the mean of all particles comes down.\n"
     "In images #0A0A0A is pinned iron, #216CCF iron with the probe, #808090 iron, white nothing, unless\n"
     "--materials gives another table.\n"
     "\n"
@@ -23,9 +24,12 @@ static const char help[] =
     "                     colour,name,mass,stiffness,damping,break_strain,pinned,probe\n"
     "  --stiffness X      of all springs, N/m (default: that of the file)\n"
     "  --damping X        of all springs, N s/m (default: that of the file)\n"
-    "  --relative         stiffness and damping are fractions of what an explicit substep bears\n"
+    "  --relative         stiffness and damping are fractions of what an explicit substep bears: those given by\n"
+    "                     --stiffness and --damping, or each material's in the CSV file\n"
     "  --dt S             length of a step, s (default 1/64)\n"
-    "  --substeps N       substeps in a step (default 30)\n"
+    "  --solver NAME      explicit, implicit or direct (default explicit)\n"
+    "  --substeps N       substeps in a step (default 30; of the implicit and the direct solver 1)\n"
+    "  --iterations N     of the implicit solver in a substep (default 8)\n"
     "  --steps N          give up after so many steps (default 2000000)\n"
     "  --at-once          find where it rests without stepping there, by mspring_network_settle()\n"
     "  --gravity G        m/s^2, downwards (default 9.8)\n"
@@ -85,6 +89,17 @@ static bool read_level(const char *value, mspring_simd *level) {
     return wrong("--level %s: give scalar, sse2, avx2, avx512 or neon", value);
 }
 
+static bool read_solver(const char *value, mspring_solver *solver) {
+    static const char *const names[] = {"explicit", "implicit", "direct"};
+    for (mspring_solver i = MSPRING_SOLVER_EXPLICIT; i <= MSPRING_SOLVER_DIRECT; i++) {
+        if (strcmp(value, names[i]) != 0)
+            continue;
+        *solver = i;
+        return true;
+    }
+    return wrong("--solver %s: give explicit, implicit or direct", value);
+}
+
 // Options without a value. Returns false if it is none of them.
 static bool read_flag(const char *option, bending_options *options) {
     if (strcmp(option, "--relative") == 0)
@@ -116,8 +131,8 @@ static const char **find_path(const char *option, bending_options *options) {
 }
 
 static bool is_number_option(const char *option) {
-    static const char *const names[] = {"--stiffness", "--damping", "--dt",   "--substeps",
-                                        "--steps",     "--gravity", "--level"};
+    static const char *const names[] = {"--stiffness", "--damping", "--dt",     "--substeps",  "--steps",
+                                        "--gravity",   "--level",   "--solver", "--iterations"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcmp(option, names[i]) == 0)
             return true;
@@ -130,6 +145,11 @@ static bool read_value(const char *option, const char *value, bending_options *o
     bool ok = true;
     if (strcmp(option, "--level") == 0) {
         ok = read_level(value, &options->level);
+    } else if (strcmp(option, "--solver") == 0) {
+        ok = read_solver(value, &options->solver);
+    } else if (strcmp(option, "--iterations") == 0) {
+        ok = read_count(option, value, 1, 10000, &count);
+        options->iterations = (uint32_t)count;
     } else if (strcmp(option, "--substeps") == 0) {
         ok = read_count(option, value, 1, 1000000, &count);
         options->substeps = (uint32_t)count;
@@ -173,8 +193,15 @@ static bool read_arguments(int count, char **arguments, bending_options *options
     }
     if (!options->input)
         return wrong("no file given: give an image or a network, such as examples/data/bar_80x5.png");
-    if (options->scene.relative && options->scene.stiffness < 0)
-        return wrong("--relative needs --stiffness with a fraction such as 0.5");
+    if (options->scene.relative && options->scene.stiffness < 0 && !options->materials)
+        return wrong("--relative needs --stiffness with a fraction such as 0.5, or --materials with a table of "
+                     "fractions");
+    if (options->iterations > 0 && options->solver != MSPRING_SOLVER_IMPLICIT)
+        return wrong("--iterations is of the implicit solver: add --solver implicit");
+    if (options->at_once && options->solver != MSPRING_SOLVER_EXPLICIT)
+        return wrong("--at-once steps with no solver: leave --solver out");
+    if (options->substeps == 0)
+        options->substeps = options->solver == MSPRING_SOLVER_EXPLICIT ? 30 : 1;
     return true;
 }
 
@@ -182,7 +209,6 @@ options_outcome options_read(int count, char **arguments, bending_options *optio
     *options = (bending_options){
         .scene = scene_options_from_file(),
         .dt = 1.0 / 64,
-        .substeps = 30,
         .steps = 2000000,
         .gravity = 9.8f,
         .level = MSPRING_SIMD_AUTO,

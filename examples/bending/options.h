@@ -12,9 +12,11 @@ typedef struct bending_options {
     const char *materials; ///< CSV file, or NULL for the built-in table
     scene_options scene;
     double dt;
+    mspring_solver solver;
     uint32_t substeps;
-    uint64_t steps; ///< most steps
-    float gravity;  ///< m/s^2 downwards
+    uint32_t iterations; ///< of the implicit solver; 0: as many as the library takes by itself
+    uint64_t steps;      ///< most steps
+    float gravity;       ///< m/s^2 downwards
     mspring_simd level;
     bool at_once; ///< find the equilibrium without stepping
     bool csv, csv_header;

@@ -90,6 +90,11 @@ static void print_strain(const spring_measures *measures) {
         printf("  would break   %u springs\n", measures->broken);
 }
 
+static const char *solver_name(const bending_options *options) {
+    static const char *const names[] = {"explicit", "implicit", "direct"};
+    return options->at_once ? "static" : names[options->solver];
+}
+
 void report_print_table(mspring_network *network, const scene *measured, const bending_options *options,
                         const settle_result *settled, const spring_measures *measures) {
     printf("%s\n", measured->name);
@@ -101,8 +106,8 @@ void report_print_table(mspring_network *network, const scene *measured, const b
         printf("  solver        static equilibrium, %llu iterations, level %s\n",
                (unsigned long long)settled->steps, level);
     else
-        printf("  solver        explicit, %u substeps in a step of %.6g s, level %s\n", options->substeps,
-               options->dt, level);
+        printf("  solver        %s, %u substep%s in a step of %.6g s, level %s\n", solver_name(options),
+               options->substeps, options->substeps == 1 ? "" : "s", options->dt, level);
     print_stiffness(measures);
     printf("  damping       %.6g N s/m\n", measures->most_damping);
     if (options->at_once)
@@ -113,7 +118,10 @@ void report_print_table(mspring_network *network, const scene *measured, const b
     print_strain(measures);
     if (!options->at_once)
         printf("  settled       after %.4g s of simulated time\n", settled->time);
-    printf("  bending       %.6g m\n", settled->drop);
+    if (measured->probe == MSPRING_NONE)
+        printf("  displacement  %.6g m, mean of all particles: there is no probe\n", settled->drop);
+    else
+        printf("  bending       %.6g m\n", settled->drop);
 }
 
 void report_print_csv_header(void) {
@@ -124,8 +132,8 @@ void report_print_csv_header(void) {
 void report_print_csv(mspring_network *network, const scene *measured, const bending_options *options,
                       const settle_result *settled, const spring_measures *measures) {
     printf("%s,%u,%u,%s,%u,%.9g,%.9g,%.9g,", measured->name, mspring_network_particle_count(network),
-           mspring_network_spring_count(network), options->at_once ? "static" : "explicit", options->substeps,
-           measures->most_stiffness, measures->most_damping, options->dt);
+           mspring_network_spring_count(network), solver_name(options), options->substeps, measures->most_stiffness,
+           measures->most_damping, options->dt);
     // Not printf's nan, whose spelling differs from system to system.
     if (settled->end == SETTLE_AT_REST)
         printf("%.9g,%.9g,", settled->drop, settled->time);

@@ -71,6 +71,23 @@ static bool note_duration(settling *state, double seconds) {
     return true;
 }
 
+// Height of the probe, or the mean height of all particles. Returns false when out of memory.
+static bool measure_height(const mspring_network *network, mspring_id probe, double *height) {
+    const bool has_probe = probe != MSPRING_NONE;
+    const uint32_t count = has_probe ? 1 : mspring_network_particle_count(network);
+    double *x = malloc(count * sizeof *x);
+    double *y = malloc(count * sizeof *y);
+    bool ok = x && y && mspring_network_get_positions(network, has_probe ? probe : 0, count, x, y) == MSPRING_OK;
+    double sum = 0;
+    for (uint32_t i = 0; ok && i < count; i++)
+        sum += y[i];
+    if (ok)
+        *height = sum / count;
+    free(x);
+    free(y);
+    return ok;
+}
+
 // One step. Returns false, with the reason in end, when there are to be no more.
 static bool make_step(settling *state) {
     if (state->step == state->request->most_steps) {
@@ -80,14 +97,12 @@ static bool make_step(settling *state) {
     double start = clock_seconds();
     mspring_result result = mspring_network_step(state->network, state->request->dt);
     double seconds = clock_seconds() - start;
-    double x = 0;
-    double y = 0;
-    if (result != MSPRING_OK || mspring_network_energy(state->network, &state->energy, NULL, NULL) != MSPRING_OK ||
-        mspring_network_get_positions(state->network, state->request->probe, 1, &x, &y) != MSPRING_OK) {
+    if (result != MSPRING_OK || mspring_network_energy(state->network, &state->energy, NULL, NULL) != MSPRING_OK) {
         state->end = SETTLE_UNSTABLE;
         return false;
     }
-    if (!note_duration(state, seconds)) {
+    double y = 0;
+    if (!measure_height(state->network, state->request->probe, &y) || !note_duration(state, seconds)) {
         state->end = SETTLE_NO_MEMORY;
         return false;
     }
@@ -234,10 +249,10 @@ static double median(double *values, size_t count) {
 // Mass of what moves, and the larger side of the box around the network.
 static bool measure_mass(settling *state) {
     mspring_view view = {.struct_size = sizeof view};
-    double min_x, min_y, max_x, max_y, x;
+    double min_x, min_y, max_x, max_y;
     if (mspring_network_view(state->network, &view) != MSPRING_OK ||
         mspring_network_bounds(state->network, &min_x, &min_y, &max_x, &max_y) != MSPRING_OK ||
-        mspring_network_get_positions(state->network, state->request->probe, 1, &x, &state->start_y) != MSPRING_OK)
+        !measure_height(state->network, state->request->probe, &state->start_y))
         return false;
     for (uint32_t i = 0; i < view.slot_count; i++)
         if (view.inverse_mass[i] > 0)
@@ -265,15 +280,14 @@ settle_result settle_at_once(mspring_network *network, const settle_request *req
     settle_result result = {.end = SETTLE_NOT_FOUND};
     mspring_settle_def def;
     mspring_settle_result found = {.struct_size = sizeof found};
-    double x = 0;
     double before = 0;
     double after = 0;
     mspring_settle_def_init(&def, sizeof def);
     def.relative_substep = substep;
     double start = clock_seconds();
-    if (mspring_network_get_positions(network, request->probe, 1, &x, &before) == MSPRING_OK &&
+    if (measure_height(network, request->probe, &before) &&
         mspring_network_settle(network, &def, &found) == MSPRING_OK &&
-        mspring_network_get_positions(network, request->probe, 1, &x, &after) == MSPRING_OK) {
+        measure_height(network, request->probe, &after)) {
         result.end = SETTLE_AT_REST;
         result.steps = found.iterations;
         result.drop = before - after;

@@ -13,7 +13,7 @@
 typedef struct settle_progress {
     bool measuring;   ///< how slow the network is; the positions of before come back after that
     uint64_t step;    ///< steps made so far
-    double drop;      ///< how far the probe has come down, m
+    double drop;      ///< how far the probe, or the mean, has come down, m
     double rms_speed; ///< of the particles that are not pinned, weighted by mass, m/s
 } settle_progress;
 
@@ -23,7 +23,7 @@ typedef void (*settle_step_fn)(mspring_network *network, const settle_progress *
 typedef struct settle_request {
     double dt;
     uint64_t most_steps;
-    mspring_id probe;
+    mspring_id probe;          ///< MSPRING_NONE: the mean of all particles
     settle_step_fn after_step; ///< or NULL
     void *user;
 } settle_request;

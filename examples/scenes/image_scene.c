@@ -95,6 +95,19 @@ static bool read_cells(const pixel_image *image, const colour_table *colours, co
     return true;
 }
 
+// Whether the materials hold fractions, where they are to be taken for such.
+static bool check_fractions(const scene_materials *materials, const scene_options *options, scene_error *error) {
+    for (size_t i = 0; options->relative && options->stiffness < 0 && i < materials->count; i++) {
+        const scene_material *given = &materials->items[i];
+        if (given->stiffness > 1 || given->damping > 1)
+            return scene_fail(error,
+                              "material '%s' has stiffness %g and damping %g, which are no fractions: relative "
+                              "springs need 0 to 1, in the table or for all",
+                              given->name, given->stiffness, given->damping);
+    }
+    return true;
+}
+
 static mspring_material *make_materials(const scene_materials *materials, const scene_options *options) {
     mspring_material *made = malloc(materials->count * sizeof *made);
     if (!made)
@@ -104,7 +117,9 @@ static mspring_material *make_materials(const scene_materials *materials, const 
         mspring_material_init(&made[i], sizeof made[i]);
         made[i].mass = given->mass;
         made[i].stiffness = options->stiffness >= 0 ? options->stiffness : given->stiffness;
-        made[i].damping = options->damping >= 0 ? options->damping : options->relative ? 0 : given->damping;
+        made[i].damping = options->damping >= 0                          ? options->damping
+                          : options->relative && options->stiffness >= 0 ? 0
+                                                                         : given->damping;
         made[i].particle_flags = given->pinned ? MSPRING_PARTICLE_PINNED : 0;
         made[i].spring_flags = options->relative ? MSPRING_SPRING_RELATIVE : 0;
     }
@@ -210,7 +225,8 @@ static bool build_scene(const pixel_image *image, const scene_materials *materia
 bool scene_image_parse(const void *bytes, size_t length, const char *name, const scene_materials *materials,
                        const scene_options *options, scene *out, scene_error *error) {
     pixel_image image = {0};
-    if (!scene_options_check(options, true, error) || !image_decode(bytes, length, name, &image, error))
+    if (!scene_options_check(options, true, error) || !check_fractions(materials, options, error) ||
+        !image_decode(bytes, length, name, &image, error))
         return false;
     uint16_t *cells = malloc((size_t)image.width * image.height * sizeof *cells);
     bool ok = cells ? build_scene(&image, materials, options, name, cells, out, error)

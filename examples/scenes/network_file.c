@@ -231,6 +231,9 @@ static bool read_network(line_reader *reader, const scene_options *options, scen
 bool scene_network_parse(const char *text, size_t length, const char *name, const scene_options *options,
                          scene *out, scene_error *error) {
     line_reader reader = {.at = text, .end = text + length, .name = name};
+    if (options->relative && options->stiffness < 0)
+        return scene_fail(error, "relative springs need a stiffness: network files hold N/m, not fractions; give a "
+                                 "fraction such as 0.5");
     if (!scene_options_check(options, true, error) || !scene_start(out, error))
         return false;
     scene_name_from_path(out, name);

@@ -40,10 +40,6 @@ bool scene_options_check(const scene_options *options, bool from_file, scene_err
     if (!from_file && (options->stiffness < 0 || options->damping < 0))
         return scene_fail(error, "stiffness %g and damping %g: neither may be negative here", options->stiffness,
                           options->damping);
-    if (from_file && options->relative && options->stiffness < 0)
-        return scene_fail(error,
-                          "relative springs need a stiffness: files hold N/m, not fractions; give a fraction "
-                          "such as 0.5");
     return true;
 }
 

@@ -36,8 +36,9 @@ typedef struct scene_options {
     float stiffness; ///< N/m, or a fraction if relative; < 0 in files: the material's own. Default iron's;
                      ///< scene_options_from_file() gives -1
     float damping;   ///< N s/m, or a fraction if relative; < 0 in files: the material's own. Default 0 / -1
-    bool relative;   ///< stiffness and damping are fractions (MSPRING_SPRING_RELATIVE); default false. Files hold
-                     ///< no fractions: stiffness must then be given, and damping < 0 means 0.
+    bool relative;   ///< stiffness and damping are fractions (MSPRING_SPRING_RELATIVE); default false. If stiffness
+                     ///< is given, damping < 0 means 0. If not, those of the materials are fractions; network files
+                     ///< hold none.
     double spacing;  ///< m; default 1
 } scene_options;
 
@@ -53,9 +54,9 @@ void scene_free(scene *unwanted);
 /// its top right. Named "bar_<columns>x<rows>". At least 2 columns.
 bool scene_bar(uint32_t columns, uint32_t rows, const scene_options *options, scene *out, scene_error *error);
 
-/// A ring of columns particles around and rows deep with all 8-neighbour springs, its innermost row pinned, the probe
-/// outermost on the right (wheel.c). Its spacing is that halfway out. Named "wheel_<columns>x<rows>". At least 8
-/// columns for each row.
+/// A ring of columns particles around and rows deep with all 8-neighbour springs, its innermost row pinned, the
+/// probe outermost on the right (wheel.c). Its spacing is that halfway out. Named "wheel_<columns>x<rows>". At
+/// least 8 columns for each row.
 bool scene_wheel(uint32_t columns, uint32_t rows, const scene_options *options, scene *out, scene_error *error);
 
 /// A hanging rope: a horizontal chain of particles (at least 3), both ends pinned, the probe in its middle.
