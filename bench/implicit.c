@@ -3,6 +3,7 @@
 /// with one worker each; and, with --threads, how much faster several workers are than one.
 ///
 /// SPDX-License-Identifier: MIT
+#include <massspring/massspring_tools.h>
 #include <stdio.h>
 
 #include "modes.h"

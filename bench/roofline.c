@@ -2,6 +2,7 @@
 /// The bounds of this machine, measured, and how near to them each scene comes.
 ///
 /// SPDX-License-Identifier: MIT
+#include <massspring/massspring_tools.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

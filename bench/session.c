@@ -2,6 +2,7 @@
 /// What a game does to its network from step to step, and what that costs: each call next to a step, in turn.
 ///
 /// SPDX-License-Identifier: MIT
+#include <massspring/massspring_tools.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -4,6 +4,7 @@
 /// SPDX-License-Identifier: MIT
 #include "scenes/scene.h"
 
+#include <massspring/massspring_tools.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

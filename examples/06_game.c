@@ -13,6 +13,7 @@
 #include "game/ship.h"
 #include "game/strip.h"
 
+#include <massspring/massspring_tools.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -13,6 +13,7 @@
 #include "draw/scatter.h"
 #include "scenes/scene.h"
 
+#include <massspring/massspring_tools.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #!/bin/sh
 # What the built libraries are made of, seen from outside.
 #
-#   exports.sh symbols      LIBRARY.so HEADER   it exports what the header declares, and nothing else
+#   exports.sh symbols      LIBRARY.so HEADER...   it exports what the headers declare, and nothing else
 #   exports.sh dependencies LIBRARY.so          it needs libc, libm and threads at most
 #   exports.sh instructions LIBRARY.a           no fused multiply-add, no approximate reciprocal; wide registers only
 #                                               in the files that are chosen at run time
@@ -9,6 +9,7 @@
 # NM, OBJDUMP and READELF come from the environment if they are not the system's.
 set -eu
 check=$1 library=$2
+shift 2
 
 skip() {
   echo "skipped: $1"
@@ -28,7 +29,7 @@ symbols)
   # Version nodes (type A) are names of versions, not of symbols.
   "$NM" -D --defined-only "$library" | awk '$2 != "A" { sub(/@.*/, "", $3); print $3 }' | sort >"$scratch/exported"
   # Declarations: names before a parenthesis, outside of comments.
-  sed -e 's|///.*||' -e 's|//.*||' -e 's|([*]|*|g' "$3" | grep -o 'mspring_[a-z0-9_]* *(' | tr -d ' (' | sort -u >"$scratch/declared"
+  sed -e 's|///.*||' -e 's|//.*||' -e 's|([*]|*|g' "$@" | grep -o 'mspring_[a-z0-9_]* *(' | tr -d ' (' | sort -u >"$scratch/declared"
   count=$(wc -l <"$scratch/declared")
   echo "$count functions declared, $(wc -l <"$scratch/exported") symbols exported"
   [ "$count" -ge 50 ] # or the pattern above has gone blind

@@ -14,6 +14,7 @@
 #include "bending/settle.h"
 #include "common/clock.h"
 
+#include <massspring/massspring_tools.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

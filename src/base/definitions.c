@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include <massspring/massspring.h>
+#include <massspring/massspring_tools.h>
 
 // Copy the defaults into a struct of the size that its header gives it. This is the first version of every struct,
 // so there is one size.

@@ -8,6 +8,8 @@
 #ifndef MSPRINGI_SOLVER_H
 #define MSPRINGI_SOLVER_H
 
+#include <massspring/massspring_tools.h>
+
 #include "base/memory.h"
 #include "kernels/kernels.h"
 #include "layout/topology.h"

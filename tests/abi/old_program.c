@@ -3,7 +3,7 @@
 /// and says what it said then (old_program.txt).
 ///
 /// SPDX-License-Identifier: MIT
-#include <massspring/massspring.h>
+#include <massspring/massspring_tools.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>

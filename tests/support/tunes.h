@@ -5,6 +5,7 @@
 #ifndef TUNES_H
 #define TUNES_H
 
+#include <massspring/massspring_tools.h>
 #include <stdbool.h>
 
 #include "recipe.h"

@@ -5,6 +5,7 @@
 #ifndef TEST_WRECKS_H
 #define TEST_WRECKS_H
 
+#include <massspring/massspring_tools.h>
 #include <stdbool.h>
 
 #include "recipe.h"

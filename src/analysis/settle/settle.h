@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-#include <massspring/massspring.h>
+#include <massspring/massspring_tools.h>
 
 /// Whether a search goes on. fn NULL: it does.
 typedef struct mspringi_watcher {
