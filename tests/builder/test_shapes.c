@@ -251,6 +251,58 @@ static void edges_become_one_spring_each(void **state) {
     mspring_network_destroy(network);
 }
 
+/// Triangles at random, many on each edge, against a look at all sides before each.
+static void shared_edges_are_found_among_many(void **state) {
+    (void)state;
+    enum { VERTICES = 24, TRIANGLES = 150 };
+    uint64_t seed = 11;
+    for (int round = 0; round < 10; round++) {
+        double x[VERTICES], y[VERTICES], areas[3 * TRIANGLES] = {0};
+        uint32_t corners[3 * TRIANGLES], edge[3 * TRIANGLES][2], edges = 0;
+        for (int i = 0; i < VERTICES; i++) {
+            x[i] = support_random_between(&seed, -5, 5);
+            y[i] = support_random_between(&seed, -5, 5);
+        }
+        for (uint32_t t = 0; t < TRIANGLES; t++) {
+            uint32_t *c = corners + 3 * (size_t)t;
+            double area = 0;
+            while (area < 1e-3) {
+                for (int i = 0; i < 3; i++)
+                    c[i] = t < VERTICES / 3 ? 3 * t + i : (uint32_t)(support_random(&seed) % VERTICES);
+                area =
+                    fabs((x[c[1]] - x[c[0]]) * (y[c[2]] - y[c[0]]) - (y[c[1]] - y[c[0]]) * (x[c[2]] - x[c[0]])) / 2;
+                if (area < 1e-3 && t < VERTICES / 3)
+                    x[c[0]] += 1;
+            }
+            for (int i = 0; i < 3; i++) {
+                const uint32_t a = c[i], b = c[(i + 1) % 3], low = a < b ? a : b, high = a < b ? b : a;
+                uint32_t e = 0;
+                while (e < edges && (edge[e][0] != low || edge[e][1] != high))
+                    e++;
+                edges = e == edges ? edges + 1 : edges;
+                edge[e][0] = low, edge[e][1] = high;
+                areas[e] += area;
+            }
+        }
+        mspring_mesh_def def;
+        check_ok(mspring_mesh_def_init(&def, sizeof def));
+        def.vertex_count = VERTICES, def.triangle_count = TRIANGLES;
+        def.x = x, def.y = y, def.triangles = corners, def.young_modulus = 3;
+        mspring_builder *builder = support_builder();
+        check_ok(mspring_builder_add_mesh(builder, &def, NULL, NULL));
+        mspring_network *network = support_network(builder, NULL);
+        assert_int_equal(mspring_network_spring_count(network), edges);
+        for (mspring_id e = 0; e < edges; e++) {
+            const mspring_spring_info info = spring_info(network, e);
+            assert_int_equal(info.a, edge[e][0]);
+            assert_int_equal(info.b, edge[e][1]);
+            const double stiffness = 3 * areas[e] / (pow(x[info.a] - x[info.b], 2) + pow(y[info.a] - y[info.b], 2));
+            check_near(info.stiffness, stiffness, 1e-6 * stiffness);
+        }
+        mspring_network_destroy(network);
+    }
+}
+
 static void empty_mesh_adds_nothing(void **state) {
     (void)state;
     mspring_builder *builder = support_builder();
@@ -514,6 +566,7 @@ int main(void) {
         cmocka_unit_test(cloth_and_ropes_take_ratios),
         cmocka_unit_test(bad_ratio_is_refused),
         cmocka_unit_test(edges_become_one_spring_each),
+        cmocka_unit_test(shared_edges_are_found_among_many),
         cmocka_unit_test(empty_mesh_adds_nothing),
         cmocka_unit_test(bad_mesh_is_refused),
         cmocka_unit_test(disc_has_rings_of_short_springs),

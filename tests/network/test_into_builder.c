@@ -136,6 +136,28 @@ static void edits_are_taken_over(void **state) {
     mspring_network_destroy(copy);
 }
 
+/// A layout of the live springs alone holds the same.
+static void compact_network_gives_the_same(void **state) {
+    (void)state;
+    mspring_network *network = mixed_network();
+    const uint32_t springs = mspring_network_spring_count(network);
+    for (mspring_id s = 0; s < springs; s += 2)
+        check_ok(mspring_network_break_springs(network, &s, 1));
+    mspring_network *before = copy_of(network);
+    check_ok(mspring_network_compact(network));
+    mspring_network *after = copy_of(network);
+    assert_int_equal(mspring_network_spring_count(before), springs / 2);
+    assert_int_equal(mspring_network_spring_count(after), springs / 2);
+    for (int i = 0; i < 10; i++) {
+        assert_int_equal(support_hash(before), support_hash(after));
+        support_steps(before, 1, 0.01);
+        support_steps(after, 1, 0.01);
+    }
+    mspring_network_destroy(network);
+    mspring_network_destroy(before);
+    mspring_network_destroy(after);
+}
+
 /// A chain of six, cut in the middle: its two halves by their components, and together again.
 static void parts_are_split_and_merged(void **state) {
     (void)state;
@@ -219,6 +241,7 @@ int main(void) {
         cmocka_unit_test(new_network_steps_with_the_same_bits),
         cmocka_unit_test(moved_network_goes_on_but_for_rounding),
         cmocka_unit_test(edits_are_taken_over),
+        cmocka_unit_test(compact_network_gives_the_same),
         cmocka_unit_test(parts_are_split_and_merged),
         cmocka_unit_test(relative_springs_stay_relative),
         cmocka_unit_test(bad_selection_is_refused),

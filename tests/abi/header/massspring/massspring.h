@@ -286,9 +286,9 @@ enum {
 ///
 /// Cloth has three kinds of spring. Structural springs join the 4 neighbours in rows and columns. Shear springs join
 /// the diagonal ones. Bend springs join cells two apart in a row or column, if the cell between is not empty. Shear
-/// and bend springs have a share of the materials' stiffness and damping (a damping ratio stays as it is). Steps of a
-/// lattice are fastest without bend springs, which are leftover springs of the plan. Bend springs lower the stable
-/// stiffness: use mspring_network_stable_dt().
+/// and bend springs have a share of the materials' stiffness and damping (a damping ratio stays as it is). Bend springs
+/// are no neighbours on a grid: with them the plan has all of the lattice in the web, where a step costs several times
+/// as much. They also lower the stable stiffness, see mspring_network_stable_dt().
 typedef struct mspring_lattice_def {
     uint32_t struct_size;
     uint32_t width, height;            ///< cells, each at least 1, product at most MSPRING_MAX_PARTICLES
