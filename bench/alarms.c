@@ -8,6 +8,7 @@
 
 #include "modes.h"
 
+#include <massspring/massspring_tools.h>
 /// Of the border. A stretched network's is lower than that at rest: by a tenth where iron hangs by its own weight.
 #define SHARE 0.85
 

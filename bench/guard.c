@@ -14,6 +14,7 @@
 #include "machine.h"
 #include "modes.h"
 
+#include <massspring/massspring_tools.h>
 enum { PAIRS = 9, TURNS = 15 };
 #define TURN_SECONDS 1e-3
 

@@ -11,6 +11,7 @@
 #include "modes.h"
 #include "table.h"
 
+#include <massspring/massspring_tools.h>
 enum { FRAMES = 240, RUNS = 3, BOMB_AT = 80 };
 
 typedef enum happening { CALM, DROP, BOMB, HAPPENINGS } happening;

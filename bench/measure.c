@@ -6,6 +6,7 @@
 
 #include "modes.h"
 
+#include <massspring/massspring_tools.h>
 void bench_complain(const char *about, const scene_error *error) {
     fprintf(stderr, "massspring-bench: %s: %s\n", about, error->text);
 }

@@ -4,6 +4,7 @@
 /// SPDX-License-Identifier: MIT
 #include "map/run.h"
 
+#include <massspring/massspring_tools.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

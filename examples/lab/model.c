@@ -5,6 +5,7 @@
 #include "lab/model.h"
 #include "scenes/internal.h"
 
+#include <massspring/massspring_tools.h>
 #include <stdio.h>
 #include <string.h>
 

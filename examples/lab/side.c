@@ -6,6 +6,7 @@
 #include "common/clock.h"
 #include "scenes/internal.h"
 
+#include <massspring/massspring_tools.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

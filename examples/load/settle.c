@@ -7,6 +7,7 @@
 #include "draw/network_picture.h"
 #include "scenes/internal.h"
 
+#include <massspring/massspring_tools.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

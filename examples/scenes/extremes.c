@@ -5,6 +5,7 @@
 #include "scenes/extremes.h"
 #include "scenes/internal.h"
 
+#include <massspring/massspring_tools.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
