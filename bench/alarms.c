@@ -75,7 +75,7 @@ static bool push(mspring_network *network, mspring_id particle, float speed) {
     if (mspring_network_view(network, &view) != MSPRING_OK)
         return false;
     return view.inverse_mass[view.slot_of_particle[particle]] == 0.0f ||
-           mspring_network_set_velocities(network, particle, 1, &speed, &speed) == MSPRING_OK;
+           mspring_network_set_velocities(network, particle, 1, &speed, &speed, 1) == MSPRING_OK;
 }
 
 // Let it fall, swing and come to rest, and push a particle now and then.

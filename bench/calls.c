@@ -77,11 +77,11 @@ static mspring_result set_scales(session *with) {
 }
 
 static mspring_result get_positions(session *with) {
-    return mspring_network_get_positions(with->step->network, 0, with->step->particle_count, with->x, with->y);
+    return mspring_network_get_positions(with->step->network, 0, with->step->particle_count, with->x, with->y, 1);
 }
 
 static mspring_result set_positions(session *with) {
-    return mspring_network_set_positions(with->step->network, 0, with->step->particle_count, with->x, with->y);
+    return mspring_network_set_positions(with->step->network, 0, with->step->particle_count, with->x, with->y, 1);
 }
 
 static void prepare_positions(session *with) {
@@ -92,12 +92,12 @@ static void prepare_positions(session *with) {
 
 static mspring_result get_velocities(session *with) {
     return mspring_network_get_velocities(with->step->network, 0, with->step->particle_count, with->values,
-                                          with->more_values);
+                                          with->more_values, 1);
 }
 
 static mspring_result apply_forces(session *with) {
     return mspring_network_apply_forces(with->step->network, 0, with->step->particle_count, with->values,
-                                        with->more_values);
+                                        with->more_values, 1);
 }
 
 static void prepare_forces(session *with) {

@@ -49,7 +49,7 @@ static bool compare(bench_network *network, bench_baseline *baseline, double *mo
     double *y = bench_allocate(count, sizeof *y, error);
     bool ok = x != NULL && y != NULL;
     if (ok) {
-        mspring_result result = mspring_network_get_positions(network->network, 0, count, x, y);
+        mspring_result result = mspring_network_get_positions(network->network, 0, count, x, y, 1);
         ok = result == MSPRING_OK;
         if (!ok) {
             bench_library_error(error, "reading positions", result, "");

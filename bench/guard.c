@@ -73,7 +73,7 @@ static bool start(const course *c, mspring_guard guard, walker *out, scene_error
     for (mspring_id p = 0; ok && p < mspring_network_particle_count(out->network); p++) {
         seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
         const float x = c->speed + (float)(seed >> 40) * 1e-9f, y = 0;
-        ok = mspring_network_set_velocities(out->network, p, 1, &x, &y) == MSPRING_OK;
+        ok = mspring_network_set_velocities(out->network, p, 1, &x, &y, 1) == MSPRING_OK;
     }
     out->dt = c->share * border * c->substeps;
     if (!ok)

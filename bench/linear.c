@@ -111,7 +111,7 @@ static bool add_spring(linear_system *s, mspring_network *network, uint32_t spri
 static bool fill(linear_system *s, mspring_network *network) {
     mspring_view view = {.struct_size = sizeof view};
     if (mspring_network_view(network, &view) != MSPRING_OK ||
-        mspring_network_get_positions(network, 0, s->nodes, s->x, s->y) != MSPRING_OK) {
+        mspring_network_get_positions(network, 0, s->nodes, s->x, s->y, 1) != MSPRING_OK) {
         return false;
     }
     memset(s->node, 0, 3 * (size_t)s->nodes * sizeof *s->node);

@@ -102,7 +102,7 @@ static bool explode(const frames_scene *of, mspring_network *network) {
             const double x = column - of->columns / 2.0, y = of->rows / 2.0 - row, far = hypot(x, y);
             const float vx = (float)(30 * x / (far + 1)), vy = (float)(30 * y / (far + 1));
             if (far < 6)
-                ok = ok && mspring_network_set_velocities(network, id, 1, &vx, &vy) == MSPRING_OK;
+                ok = ok && mspring_network_set_velocities(network, id, 1, &vx, &vy, 1) == MSPRING_OK;
             id++;
         }
     }

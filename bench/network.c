@@ -64,9 +64,10 @@ static bool reset(void *self, scene_error *error) {
     bench_network *network = self;
     uint32_t count = network->particle_count;
     mspring_result result =
-        mspring_network_set_positions(network->network, 0, count, network->start_x, network->start_y);
+        mspring_network_set_positions(network->network, 0, count, network->start_x, network->start_y, 1);
     if (result == MSPRING_OK) {
-        result = mspring_network_set_velocities(network->network, 0, count, network->start_vx, network->start_vy);
+        result =
+            mspring_network_set_velocities(network->network, 0, count, network->start_vx, network->start_vy, 1);
     }
     if (result != MSPRING_OK) {
         bench_library_error(error, "setting the state", result, mspring_network_error(network->network));
@@ -98,7 +99,7 @@ static bool run(void *self, uint32_t steps, scene_error *error) {
     for (uint32_t i = 0; i < steps && result == MSPRING_OK; i++) {
         if (network->held_x != NULL) {
             result = mspring_network_apply_forces(network->network, 0, network->particle_count, network->held_x,
-                                                  network->held_y);
+                                                  network->held_y, 1);
         }
         if (result == MSPRING_OK && network->saves_frames) {
             result = save_frame(network);
@@ -149,7 +150,7 @@ bool bench_network_create_with(mspring_builder *builder, mspring_simd level, uin
               (network.start_vy = bench_allocate(count, sizeof *network.start_vy, error)) != NULL &&
               set_start_velocities(&network, error);
     if (ok) {
-        result = mspring_network_get_positions(network.network, 0, count, network.start_x, network.start_y);
+        result = mspring_network_get_positions(network.network, 0, count, network.start_x, network.start_y, 1);
         if (result != MSPRING_OK) {
             bench_library_error(error, "reading positions", result, "");
             ok = false;

@@ -128,8 +128,7 @@ static bool measure_strain(session *with, const bench_options *options, const be
     return ok;
 }
 
-/// Time steps of a network that sleeps in turn with those of one that does not. Where somebody has its arrays, a
-/// step looks whether something was written to them.
+/// Time steps of a network that sleeps in turn with those of one that does not.
 static bool measure_sleep(session *with, const bench_options *options, const bench_scene *subject,
                           mspring_simd level, bool viewed, uint32_t repeat, scene_error *error) {
     bench_network asleep = {.substeps = with->step->substeps};
@@ -314,7 +313,7 @@ static bool make_parts(session *with, const bench_scene *subject, mspring_simd l
         result = mspring_network_set_inverse_mass_scales(parts->network, first, 1, &pinned);
     }
     if (result == MSPRING_OK) {
-        result = mspring_network_set_velocities(parts->network, first, 1, &none, &slowly);
+        result = mspring_network_set_velocities(parts->network, first, 1, &none, &slowly, 1);
     }
     if (result != MSPRING_OK) {
         bench_library_error(error, "making parts", result, mspring_network_error(parts->network));

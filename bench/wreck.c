@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /// Pieces: cells of so many metres, of which some have a whole square of so many in their middle.
 #define CELL 16.0
@@ -92,16 +93,9 @@ static bool list_ends(const bench_network *n, wreckage *all, scene_error *error)
     if (all->a == NULL || all->b == NULL || all->broken == NULL || all->is_broken == NULL) {
         return false;
     }
-    for (mspring_id s = 0; s < n->spring_count; s++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        if (mspring_network_get_spring(n->network, s, &info) != MSPRING_OK) {
-            abort(); // there are so many springs
-        }
-        all->a[s] = info.a;
-        all->b[s] = info.b;
-        all->is_broken[s] = false;
-    }
-    return true;
+    memset(all->is_broken, 0, n->spring_count * sizeof *all->is_broken);
+    return mspring_network_get_ends(n->network, 0, n->spring_count, MSPRING_ENDS_IDS, all->a, all->b, 1) ==
+           MSPRING_OK;
 }
 
 static bool break_all(const bench_network *network, const wreckage *all, scene_error *error) {

@@ -66,7 +66,7 @@ static bool swing(float spring_damping, double *positions) {
     bool ok = network != NULL;
     for (int i = 0; ok && i <= STEPS; i++) {
         double y = 0;
-        ok = mspring_network_get_positions(network, 1, 1, &positions[i], &y) == MSPRING_OK &&
+        ok = mspring_network_get_positions(network, 1, 1, &positions[i], &y, 1) == MSPRING_OK &&
              mspring_network_step(network, dt) == MSPRING_OK;
         if (!ok)
             fprintf(stderr, "step %d failed: %s\n", i, mspring_network_error(network));

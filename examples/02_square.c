@@ -53,8 +53,8 @@ static mspring_network *make_square(float spring_damping) {
 static bool measure_diagonal(const mspring_network *network, double *length) {
     double x[2];
     double y[2];
-    if (mspring_network_get_positions(network, CORNER, 1, &x[0], &y[0]) != MSPRING_OK ||
-        mspring_network_get_positions(network, OPPOSITE, 1, &x[1], &y[1]) != MSPRING_OK)
+    if (mspring_network_get_positions(network, CORNER, 1, &x[0], &y[0], 1) != MSPRING_OK ||
+        mspring_network_get_positions(network, OPPOSITE, 1, &x[1], &y[1], 1) != MSPRING_OK)
         return false;
     *length = hypot(x[0] - x[1], y[0] - y[1]);
     return true;
@@ -63,7 +63,7 @@ static bool measure_diagonal(const mspring_network *network, double *length) {
 static bool pull_corner(mspring_network *network) {
     const double x = SIDE - 1 + 0.6;
     const double y = SIDE - 1 + 0.6;
-    return mspring_network_set_positions(network, CORNER, 1, &x, &y) == MSPRING_OK;
+    return mspring_network_set_positions(network, CORNER, 1, &x, &y, 1) == MSPRING_OK;
 }
 
 static bool wobble(mspring_network *network, film *filmed, double *diagonals) {

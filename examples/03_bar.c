@@ -29,7 +29,7 @@ static bool run(mspring_network *network, mspring_id probe, film *filmed, double
         double x = 0;
         double y = 0;
         film_step(filmed, network);
-        if (mspring_network_get_positions(network, probe, 1, &x, &y) != MSPRING_OK ||
+        if (mspring_network_get_positions(network, probe, 1, &x, &y, 1) != MSPRING_OK ||
             mspring_network_step(network, dt) != MSPRING_OK)
             return false;
         *lowest = y < *lowest ? y : *lowest;

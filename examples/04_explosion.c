@@ -34,7 +34,7 @@ typedef struct observation {
 static bool measure_speed(const mspring_network *network, double *fastest) {
     float vx[PARTICLES];
     float vy[PARTICLES];
-    if (mspring_network_get_velocities(network, 0, PARTICLES, vx, vy) != MSPRING_OK)
+    if (mspring_network_get_velocities(network, 0, PARTICLES, vx, vy, 1) != MSPRING_OK)
         return false;
     *fastest = 0;
     for (int i = 0; i < PARTICLES; i++)
@@ -48,7 +48,7 @@ static bool keep_positions(const mspring_network *network, observation *seen) {
         return false;
     if (max_y - min_y > drawn_height || max_x - min_x > 2 * drawn_height)
         return true;
-    return mspring_network_get_positions(network, 0, PARTICLES, seen->x, seen->y) == MSPRING_OK;
+    return mspring_network_get_positions(network, 0, PARTICLES, seen->x, seen->y, 1) == MSPRING_OK;
 }
 
 // Steps until the library refuses a step, or for MOST_FRAMES.

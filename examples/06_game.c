@@ -145,6 +145,7 @@ static const double anchor_x = 80; // m
 static bool start(game *played, mspring_builder *builder, const options *asked, const mspring_tasks *tasks) {
     mspring_network_def def;
     static float strains[MOST_SPRINGS];
+    static mspring_id ends[MOST_SPRINGS];
     const float strain_of[SHIP_PARTS] = {
         [SHIP_HULL] = breaking, [SHIP_MAST] = toughness, [SHIP_ROPE] = (float)asked->rope_strain};
     played->choice = (ship_choice){.implicit = asked->implicit,
@@ -165,17 +166,16 @@ static bool start(game *played, mspring_builder *builder, const options *asked, 
     }
     played->particles = mspring_network_particle_count(played->network);
     played->springs = mspring_network_spring_count(played->network);
+    must(mspring_network_get_ends(played->network, 0, played->springs, MSPRING_ENDS_IDS, played->end, ends, 1),
+         "ends", played);
     for (mspring_id s = 0; s < played->springs; s++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        must(mspring_network_get_spring(played->network, s, &info), "spring", played);
-        played->end[s] = info.a;
-        played->made_of[s] = ship_part_of_spring(&played->vessel, info.a, info.b);
+        played->made_of[s] = ship_part_of_spring(&played->vessel, played->end[s], ends[s]);
         strains[s] = strain_of[played->made_of[s]];
     }
     must(mspring_network_set_break_strains(played->network, 0, played->springs, strains), "strains", played);
     must(mspring_network_reserve_events(played->network, EVENTS), "events", played);
     must(mspring_network_get_masses(played->network, 0, played->particles, played->dry), "masses", played);
-    must(mspring_network_get_positions(played->network, 0, played->particles, played->x, played->y), "positions",
+    must(mspring_network_get_positions(played->network, 0, played->particles, played->x, played->y, 1), "positions",
          played);
     must(add_float_hook(played), "float hook", played);
     must(make_floor(played->network), "sea floor", played);
@@ -189,7 +189,7 @@ static bool start(game *played, mspring_builder *builder, const options *asked, 
 // Throw particles away from (x, y), the nearest most.
 static void blast(game *played, double x, double y, double radius, double speed) {
     float vx[MOST], vy[MOST];
-    must(mspring_network_get_velocities(played->network, 0, played->particles, vx, vy), "velocities", played);
+    must(mspring_network_get_velocities(played->network, 0, played->particles, vx, vy, 1), "velocities", played);
     for (uint32_t i = 0; i < played->particles; i++) {
         const double dx = played->x[i] - x, dy = played->y[i] - y, distance = sqrt(dx * dx + dy * dy);
         if (distance > radius || distance == 0)
@@ -197,7 +197,7 @@ static void blast(game *played, double x, double y, double radius, double speed)
         vx[i] += (float)(speed * (1 - distance / radius) * dx / distance);
         vy[i] += (float)(speed * (1 - distance / radius) * dy / distance);
     }
-    must(mspring_network_set_velocities(played->network, 0, played->particles, vx, vy), "velocities", played);
+    must(mspring_network_set_velocities(played->network, 0, played->particles, vx, vy, 1), "velocities", played);
     books_edit(&played->accounts, played->network);
 }
 
@@ -358,10 +358,10 @@ static void let_happen(game *played, uint32_t step) {
 static void enter_step(game *played, double time) {
     memcpy(played->before_x, played->x, sizeof played->x);
     memcpy(played->before_y, played->y, sizeof played->y);
-    must(mspring_network_get_positions(played->network, 0, played->particles, played->x, played->y), "positions",
+    must(mspring_network_get_positions(played->network, 0, played->particles, played->x, played->y, 1), "positions",
          played);
     must(mspring_network_get_floor_impulses(played->network, 0, played->particles, played->impulse_x,
-                                            played->impulse_y),
+                                            played->impulse_y, 1),
          "floor", played);
     books_enter(&played->accounts, played->network,
                 &(books_step){.particles = played->particles,

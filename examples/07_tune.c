@@ -316,7 +316,7 @@ static bool throw_at_slope(mspring_network *network, uint32_t columns, uint32_t 
     bool ok = mspring_network_set_floor(network, &floor) == MSPRING_OK;
     for (uint32_t p = 0; ok && p < columns * rows; p++)
         ok = mspring_network_set_inverse_mass_scales(network, p, 1, &one) == MSPRING_OK &&
-             mspring_network_set_velocities(network, p, 1, &still, &down) == MSPRING_OK;
+             mspring_network_set_velocities(network, p, 1, &still, &down, 1) == MSPRING_OK;
     for (uint32_t s = 0; ok && s < mspring_network_spring_count(network); s++)
         ok = mspring_network_set_break_strains(network, s, 1, &strain) == MSPRING_OK;
     if (!ok)

@@ -118,7 +118,8 @@ static map_verdict take_step(const map_case *what, mspring_network *network, map
                              char text[MAP_TEXT]) {
     mspring_result result = MSPRING_OK;
     if (what->has_forces && !what->by_hook)
-        result = mspring_network_apply_forces(network, 0, what->body.particle_count, what->force_x, what->force_y);
+        result =
+            mspring_network_apply_forces(network, 0, what->body.particle_count, what->force_x, what->force_y, 1);
     if (result == MSPRING_OK)
         result = mspring_network_step(network, what->dt);
     if (result != MSPRING_OK)
@@ -206,7 +207,7 @@ static double take_watched_step(const map_case *what, mspring_network *network, 
     memcpy(from_vy, watch->vy, sizeof from_vy);
     if (mspring_network_clone(network, NULL, &twin) == MSPRING_OK &&
         mspring_network_set_floor(twin, NULL) == MSPRING_OK && mspring_network_step(twin, what->dt) == MSPRING_OK &&
-        mspring_network_get_velocities(twin, 0, watch->count, free_vx, free_vy) == MSPRING_OK) {
+        mspring_network_get_velocities(twin, 0, watch->count, free_vx, free_vy, 1) == MSPRING_OK) {
         const map_verdict verdict = take_step(what, network, watch, judge, text);
         if (verdict != MAP_GUARDED && verdict != MAP_NOT_FINITE && verdict != MAP_REJECTED)
             given = given_by_floor(watch, from_vx, from_vy, free_vx, free_vy);

@@ -123,7 +123,7 @@ static double error_of(const map_case *what, const map_watch *watch, const cours
     bool ok = network != NULL;
     for (uint32_t step = 0; step < what->steps && ok; step++) {
         ok = mspring_network_step(network, what->dt) == MSPRING_OK &&
-             mspring_network_get_positions(network, 0, watch->count, x, y) == MSPRING_OK;
+             mspring_network_get_positions(network, 0, watch->count, x, y, 1) == MSPRING_OK;
         if (ok) {
             const double off = mean_distance(watch, x, y, right->x[step], right->y[step]);
             sum += off * off;

@@ -159,9 +159,9 @@ static void add_spins(map_watch *watch) {
 /* ------------------------------------------------------------------------------------------------------- state */
 
 static bool read_state(map_watch *watch) {
-    if (mspring_network_get_positions(watch->network, 0, watch->count, watch->x, watch->y) != MSPRING_OK ||
-        mspring_network_get_velocities(watch->network, 0, watch->count, watch->vx, watch->vy) != MSPRING_OK ||
-        mspring_network_get_floor_impulses(watch->network, 0, watch->count, watch->floor_x, watch->floor_y) !=
+    if (mspring_network_get_positions(watch->network, 0, watch->count, watch->x, watch->y, 1) != MSPRING_OK ||
+        mspring_network_get_velocities(watch->network, 0, watch->count, watch->vx, watch->vy, 1) != MSPRING_OK ||
+        mspring_network_get_floor_impulses(watch->network, 0, watch->count, watch->floor_x, watch->floor_y, 1) !=
             MSPRING_OK)
         return false;
     bool all = true;

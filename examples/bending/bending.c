@@ -78,7 +78,7 @@ static bool make_network(bending_run *run) {
         return choose_solver(run);
     double x = 0;
     double y = 0;
-    if (mspring_network_get_positions(run->network, loose, 1, &x, &y) != MSPRING_OK)
+    if (mspring_network_get_positions(run->network, loose, 1, &x, &y, 1) != MSPRING_OK)
         return fail(mspring_network_error(run->network));
     fprintf(
         stderr,
@@ -201,7 +201,7 @@ static bool draw_final(const bending_run *run, const char *title, draw_error *er
     bool ok = false;
     if (!x || !y)
         snprintf(error->text, sizeof error->text, "out of memory for a picture of %u particles", count);
-    else if (mspring_network_get_positions(run->network, 0, count, x, y) != MSPRING_OK)
+    else if (mspring_network_get_positions(run->network, 0, count, x, y, 1) != MSPRING_OK)
         snprintf(error->text, sizeof error->text, "%s", mspring_network_error(run->network));
     else
         ok = draw_network(run, title, x, y, error);

@@ -16,13 +16,14 @@ static mspring_id find_root(mspring_id *parents, mspring_id particle) {
 }
 
 static bool join_sets(mspring_network *network, mspring_id *parents) {
-    for (mspring_id i = 0; i < mspring_network_spring_count(network); i++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        if (mspring_network_get_spring(network, i, &info) != MSPRING_OK)
-            return false;
-        parents[find_root(parents, info.a)] = find_root(parents, info.b);
-    }
-    return true;
+    const uint32_t count = mspring_network_spring_count(network);
+    mspring_id(*ends)[2] = malloc((count + 1) * sizeof *ends);
+    const bool ok = ends && mspring_network_get_ends(network, 0, count, MSPRING_ENDS_IDS, &ends[0][0], &ends[0][1],
+                                                     2) == MSPRING_OK;
+    for (mspring_id i = 0; ok && i < count; i++)
+        parents[find_root(parents, ends[i][0])] = find_root(parents, ends[i][1]);
+    free(ends);
+    return ok;
 }
 
 static mspring_id first_without_pin(const mspring_view *view, mspring_id *parents, bool *held) {

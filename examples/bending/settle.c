@@ -78,7 +78,7 @@ static bool measure_height(const mspring_network *network, mspring_id probe, dou
     const uint32_t count = has_probe ? 1 : mspring_network_particle_count(network);
     double *x = malloc(count * sizeof *x);
     double *y = malloc(count * sizeof *y);
-    bool ok = x && y && mspring_network_get_positions(network, has_probe ? probe : 0, count, x, y) == MSPRING_OK;
+    bool ok = x && y && mspring_network_get_positions(network, has_probe ? probe : 0, count, x, y, 1) == MSPRING_OK;
     double sum = 0;
     for (uint32_t i = 0; ok && i < count; i++)
         sum += y[i];
@@ -121,8 +121,8 @@ static bool make_step(settling *state) {
 }
 
 static void stop_motion(mspring_network *network) {
-    mspring_view view = {.struct_size = sizeof view};
-    if (mspring_network_view(network, &view) != MSPRING_OK)
+    mspring_mutable_view view = {.struct_size = sizeof view};
+    if (mspring_network_view_mutable(network, &view) != MSPRING_OK)
         return;
     memset(view.vx, 0, view.slot_count * sizeof *view.vx);
     memset(view.vy, 0, view.slot_count * sizeof *view.vy);
@@ -223,10 +223,10 @@ static bool measure_period(settling *state) {
     bool ok = x && y;
     if (!ok)
         state->end = SETTLE_NO_MEMORY;
-    ok = ok && mspring_network_get_positions(state->network, 0, count, x, y) == MSPRING_OK;
+    ok = ok && mspring_network_get_positions(state->network, 0, count, x, y, 1) == MSPRING_OK;
     for (int i = 0; ok && i < SWINGS; i++)
         ok = swing(state);
-    ok = ok && mspring_network_set_positions(state->network, 0, count, x, y) == MSPRING_OK;
+    ok = ok && mspring_network_set_positions(state->network, 0, count, x, y, 1) == MSPRING_OK;
     free(x);
     free(y);
     state->quarter = fmax(state->quarter, LEAST_QUARTER);

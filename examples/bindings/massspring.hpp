@@ -82,7 +82,7 @@ public:
     };
     point position(mspring_id particle) const {
         point p{};
-        check(mspring_network_get_positions(get(), particle, 1, &p.x, &p.y));
+        check(mspring_network_get_positions(get(), particle, 1, &p.x, &p.y, 1));
         return p;
     }
     std::uint64_t hash() const {

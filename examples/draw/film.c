@@ -79,7 +79,7 @@ void film_step(film *target, const mspring_network *network) {
     }
     uint32_t frame = target->frame_count;
     if (mspring_network_get_positions(network, 0, target->shape->particle_count, frame_of(target, target->x, frame),
-                                      frame_of(target, target->y, frame)) == MSPRING_OK)
+                                      frame_of(target, target->y, frame), 1) == MSPRING_OK)
         target->frame_count++;
 }
 

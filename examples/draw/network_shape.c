@@ -42,7 +42,7 @@ static mspring_result read_network(network_shape *made, mspring_network *network
         made->b[made->spring_count] = info.b;
         made->rest_length[made->spring_count++] = info.rest_length;
     }
-    return mspring_network_get_positions(network, 0, made->particle_count, made->x, made->y);
+    return mspring_network_get_positions(network, 0, made->particle_count, made->x, made->y, 1);
 }
 
 bool network_shape_make(network_shape *made, mspring_network *network, mspring_id probe, draw_error *error) {

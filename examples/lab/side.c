@@ -238,11 +238,14 @@ void side_step(lab_side *side, const lab_settings *settings) {
 /* ----------------------------------------------------------------------------------------------- measurements */
 
 void side_find_broken(lab_side *side) {
+    enum { AT_ONCE = 256 };
+    uint32_t flags[AT_ONCE];
     side->broken_count = 0;
     for (uint32_t i = 0; i < side->stage->spring_count; i++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        side->broken[i] = mspring_network_get_spring(side->network, i, &info) == MSPRING_OK &&
-                          (info.flags & MSPRING_SPRING_BROKEN) != 0;
+        const uint32_t left = side->stage->spring_count - i;
+        if (i % AT_ONCE == 0)
+            (void)!mspring_network_get_spring_flags(side->network, i, left < AT_ONCE ? left : AT_ONCE, flags, 1);
+        side->broken[i] = (flags[i % AT_ONCE] & MSPRING_SPRING_BROKEN) != 0;
         side->broken_count += side->broken[i];
     }
 }

@@ -49,7 +49,7 @@ bool side_pin(lab_side *side, double x, double y, double radius, bool pin) {
     for (uint32_t i = 0; i < count; i++) {
         const mspring_id particle = side->held[i];
         if (!accepted(side, mspring_network_set_inverse_mass_scales(side->network, particle, 1, &scale)) ||
-            !accepted(side, mspring_network_set_velocities(side->network, particle, 1, &still, &still)))
+            !accepted(side, mspring_network_set_velocities(side->network, particle, 1, &still, &still, 1)))
             return false;
     }
     return true;
@@ -97,7 +97,7 @@ bool side_blast(lab_side *side, double x, double y, double radius, double speed)
         const double kick = distance > 0 ? speed * (1 - distance / radius) / distance : 0;
         const float vx = (float)(side->view.vx[slot] + kick * (px - x));
         const float vy = (float)(side->view.vy[slot] + kick * (py - y));
-        if (!accepted(side, mspring_network_set_velocities(side->network, i, 1, &vx, &vy)))
+        if (!accepted(side, mspring_network_set_velocities(side->network, i, 1, &vx, &vy, 1)))
             return false;
     }
     return ok;
@@ -114,10 +114,10 @@ bool side_copy_state(lab_side *side, const lab_side *from) {
         for (uint32_t i = 0; i < springs; i++)
             if (from->broken[i])
                 list[count++] = i;
-        ok = accepted(side, mspring_network_get_positions(from->network, 0, particles, x, y)) &&
-             accepted(side, mspring_network_get_velocities(from->network, 0, particles, vx, vy)) &&
-             accepted(side, mspring_network_set_positions(side->network, 0, particles, x, y)) &&
-             accepted(side, mspring_network_set_velocities(side->network, 0, particles, vx, vy)) &&
+        ok = accepted(side, mspring_network_get_positions(from->network, 0, particles, x, y, 1)) &&
+             accepted(side, mspring_network_get_velocities(from->network, 0, particles, vx, vy, 1)) &&
+             accepted(side, mspring_network_set_positions(side->network, 0, particles, x, y, 1)) &&
+             accepted(side, mspring_network_set_velocities(side->network, 0, particles, vx, vy, 1)) &&
              break_listed(side, list, count);
         for (uint32_t i = 0; ok && i < particles; i++) {
             const float scale = side_is_pinned(from, i) ? 0 : 1;

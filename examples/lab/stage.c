@@ -288,7 +288,7 @@ static mspring_id far_from_pins(const lab_stage *made) {
 }
 
 static mspring_result read_network(lab_stage *made, const mspring_network *network) {
-    mspring_result result = mspring_network_get_positions(network, 0, made->particle_count, made->x, made->y);
+    mspring_result result = mspring_network_get_positions(network, 0, made->particle_count, made->x, made->y, 1);
     if (result == MSPRING_OK)
         result = mspring_network_get_masses(network, 0, made->particle_count, made->mass);
     for (uint32_t i = 0; result == MSPRING_OK && i < made->particle_count; i++) {

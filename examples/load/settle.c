@@ -34,7 +34,7 @@ static bool draw(const network_shape *shape, mspring_network *network, const cha
     draw_error problem = {""};
     double *x = malloc(shape->particle_count * sizeof *x);
     double *y = malloc(shape->particle_count * sizeof *y);
-    bool ok = x && y && mspring_network_get_positions(network, 0, shape->particle_count, x, y) == MSPRING_OK;
+    bool ok = x && y && mspring_network_get_positions(network, 0, shape->particle_count, x, y, 1) == MSPRING_OK;
     if (ok) {
         world_box box = world_box_add(network_shape_bounds(shape), x, y, shape->particle_count);
         double limit = network_strain_limit(shape, x, y);

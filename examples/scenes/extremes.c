@@ -197,8 +197,8 @@ typedef struct motion {
 
 static bool read_motion(const mspring_network *network, motion *now) {
     now->count = mspring_network_particle_count(network);
-    return mspring_network_get_positions(network, 0, now->count, now->x, now->y) == MSPRING_OK &&
-           mspring_network_get_velocities(network, 0, now->count, now->vx, now->vy) == MSPRING_OK;
+    return mspring_network_get_positions(network, 0, now->count, now->x, now->y, 1) == MSPRING_OK &&
+           mspring_network_get_velocities(network, 0, now->count, now->vx, now->vy, 1) == MSPRING_OK;
 }
 
 static bool is_finite(const motion *now) {
@@ -228,7 +228,7 @@ static mspring_result disturb(mspring_network *network, const maker *m) {
         now.x[i] += distance * (2 * random_unit(&seed) - 1);
         now.y[i] += distance * (2 * random_unit(&seed) - 1);
     }
-    return mspring_network_set_positions(network, 0, now.count, now.x, now.y);
+    return mspring_network_set_positions(network, 0, now.count, now.x, now.y, 1);
 }
 
 // Whether a refusal is what it should be.
@@ -346,7 +346,7 @@ static bool grows(maker *m, double h) {
     }
     if (m->what->shape == EXTREME_ROPE)
         now.vx[0] = now.vy[0] = 0; // pinned
-    grew = grew || mspring_network_set_velocities(network, 0, now.count, now.vx, now.vy) != MSPRING_OK;
+    grew = grew || mspring_network_set_velocities(network, 0, now.count, now.vx, now.vy, 1) != MSPRING_OK;
     double first = 0;
     for (int i = 0; i < TRIED_SUBSTEPS && !grew; i++) {
         grew = mspring_network_step(network, h) != MSPRING_OK;

@@ -9,15 +9,16 @@
 
 // Pairs joined already: their note is not used.
 static bool note_springs(const mspring_network *network, pair_set *joined) {
-    uint32_t count = mspring_network_spring_count(network);
-    for (mspring_id i = 0; i < count; i++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
+    const uint32_t count = mspring_network_spring_count(network);
+    mspring_id(*ends)[2] = malloc((count + 1) * sizeof *ends);
+    bool ok = ends && mspring_network_get_ends(network, 0, count, MSPRING_ENDS_IDS, &ends[0][0], &ends[0][1], 2) ==
+                          MSPRING_OK;
+    for (mspring_id i = 0; ok && i < count; i++) {
         uint64_t present = 0;
-        if (mspring_network_get_spring(network, i, &info) != MSPRING_OK ||
-            pair_set_add(joined, info.a, info.b, 0, &present) == PAIR_NO_MEMORY)
-            return false;
+        ok = pair_set_add(joined, ends[i][0], ends[i][1], 0, &present) != PAIR_NO_MEMORY;
     }
-    return true;
+    free(ends);
+    return ok;
 }
 
 // Two particles that nothing joins and that do not lie in the same place.
@@ -29,8 +30,8 @@ static bool choose_ends(const mspring_network *network, pair_set *joined, uint64
         rope->from = random_below(seed, particles);
         rope->to = random_below(seed, particles);
         double from_x, from_y, to_x, to_y;
-        if (mspring_network_get_positions(network, rope->from, 1, &from_x, &from_y) != MSPRING_OK ||
-            mspring_network_get_positions(network, rope->to, 1, &to_x, &to_y) != MSPRING_OK)
+        if (mspring_network_get_positions(network, rope->from, 1, &from_x, &from_y, 1) != MSPRING_OK ||
+            mspring_network_get_positions(network, rope->to, 1, &to_x, &to_y, 1) != MSPRING_OK)
             return scene_fail(error, "cannot read positions: %s", mspring_network_error(network));
         if (from_x == to_x && from_y == to_y)
             continue;

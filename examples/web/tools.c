@@ -141,16 +141,20 @@ mspring_result page_repair(void) {
 }
 
 mspring_result page_blast(double x, double y, double radius, double speed) {
+    mspring_mutable_view to = {.struct_size = sizeof to};
+    const mspring_result result = mspring_network_view_mutable(page.network, &to);
+    if (result != MSPRING_OK)
+        return result;
     const uint32_t count = list_near(x, y, radius);
     for (uint32_t i = 0; i < count; i++) {
-        const uint32_t slot = page.view.slot_of_particle[page.list[i]];
+        const uint32_t slot = to.slot_of_particle[page.list[i]];
         const point at = place_of(page.list[i]);
         const double distance = sqrt(square(at.x - x) + square(at.y - y));
-        if (page.view.inverse_mass[slot] == 0 || !(distance > 0) || distance > radius)
+        if (to.inverse_mass[slot] == 0 || !(distance > 0) || distance > radius)
             continue;
         const double change = speed * (1 - distance / radius) / distance;
-        page.view.vx[slot] += (float)(change * (at.x - x));
-        page.view.vy[slot] += (float)(change * (at.y - y));
+        to.vx[slot] += (float)(change * (at.x - x));
+        to.vy[slot] += (float)(change * (at.y - y));
     }
     return MSPRING_OK;
 }

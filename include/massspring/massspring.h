@@ -230,10 +230,12 @@ enum {
     /// later changes of mass or stiffness leave c as it is. A pinned particle counts with its mass. If the spring
     /// is relative, c is a fraction and follows the substep. c is at most 1e30.
     MSPRING_SPRING_DAMPING_RATIO = 1u << 1,
-    /// The spring is broken. In mspring_spring_info only.
+    /// The spring is broken. This and the next two can be read only, not set.
     MSPRING_SPRING_BROKEN = 1u << 8,
-    /// The spring is stressed (mspring_network_set_stress_strains()). In mspring_spring_info only.
-    MSPRING_SPRING_STRESSED = 1u << 9
+    /// The spring is stressed (mspring_network_set_stress_strains()).
+    MSPRING_SPRING_STRESSED = 1u << 9,
+    /// The spring has been removed. Ranges only: together with MSPRING_SPRING_BROKEN.
+    MSPRING_SPRING_REMOVED = 1u << 10
 };
 
 /// One particle. Fill with mspring_particle_def_init() first.
@@ -913,12 +915,43 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_apply_force(mspring
                                                                          mspring_id particle, float x, float y);
 
 /// Add forces to the particles first ... first + count - 1: to all or, on error, to none.
-/// @param x, y  [count], N
-/// @return as mspring_network_apply_force(); the message names the index.
+/// @param x, y    N: those on particle first + i are x[i * stride] and y[i * stride]
+/// @param stride  elements from one to the next: 1 for two arrays, 2 with y = x + 1 for one of vectors, 0 for the
+///                same on all
+/// @return as mspring_network_apply_force(); the message names the particle.
 /// @threads exclusive access to network   @allocates at the first force given to a network   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_apply_forces(mspring_network *network,
                                                                           mspring_id first, uint32_t count,
-                                                                          const float *x, const float *y);
+                                                                          const float *x, const float *y,
+                                                                          uint32_t stride);
+
+/// Add forces to listed particles, as mspring_network_apply_forces(). The forces on an id that repeats add up.
+/// @param x, y  N: those on particles[i] are x[i * stride] and y[i * stride]
+/// @threads exclusive access to network   @allocates at the first force given to a network   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_apply_forces_at(mspring_network *network,
+                                                                             const mspring_id *particles,
+                                                                             uint32_t count, const float *x,
+                                                                             const float *y, uint32_t stride);
+
+/// Change velocities by impulses (N s) at once: by impulse times inverse mass. All change or, on error, none.
+/// A pinned particle ignores its impulse. An inverse mass scale counts, as it does for forces.
+/// @param x, y, stride  as of mspring_network_apply_forces()
+/// @return MSPRING_OK; MSPRING_ERROR_ID; MSPRING_ERROR_ARGUMENT if an impulse is not finite or a velocity would not
+///         be within MSPRING_MAX_SPEED (the message names the particle); MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_apply_impulses(mspring_network *network,
+                                                                            mspring_id first, uint32_t count,
+                                                                            const float *x, const float *y,
+                                                                            uint32_t stride);
+
+/// Change velocities of listed particles by impulses, as mspring_network_apply_impulses(). The impulses on an id
+/// that repeats add up.
+/// @param x, y  N s: those on particles[i] are x[i * stride] and y[i * stride]
+/// @threads exclusive access to network   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_apply_impulses_at(mspring_network *network,
+                                                                               const mspring_id *particles,
+                                                                               uint32_t count, const float *x,
+                                                                               const float *y, uint32_t stride);
 
 /// When a hook is called. A hook with a period n (see mspring_hook_def) has the substeps of each step taken in
 /// groups of n, of which the last may be smaller, and is called once for each group: before its first substep, or
@@ -938,13 +971,14 @@ typedef struct mspring_hook_args {
     mspring_phase phase;
     uint32_t substep, substep_count; ///< 0 ... substep_count - 1: the first of its group or, in the phase after it,
                                      ///< the last; before the step 0
-    uint32_t first_slot, slot_count; ///< whole blocks, see mspring_plan
+    uint32_t first_slot, slot_count; ///< whole blocks, see mspring_plan; spare slots behind those in use are left out
     double dt;                 ///< time that the call stands for: the step's or, of a group of substeps, theirs, s
     double origin_x, origin_y; ///< world position = origin + (x, y)
     float *x, *y, *vx, *vy;    ///< m, relative to the origin; m/s
     float *force_x, *force_y;  ///< N: add to them; NULL after a substep
     const float *inverse_mass; ///< 1/kg; 0 if pinned or no particle
-    const uint32_t *particle_of_slot;
+    const uint32_t *particle_of_slot, *slot_of_particle; ///< as in mspring_view
+    const mspring_network *network;                      ///< for shared calls
     uint32_t group_count; ///< substeps in the group, 1 ... period; before the step 1
     uint32_t worker;      ///< who calls: below mspring_network_worker_count(); no two calls at a time have the same
     void *storage;        ///< this worker's, see mspring_hook_def; else NULL
@@ -1065,72 +1099,103 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_floor(mspring_n
 
 /// Copy out what momentum (N s) the floor gave to the particles first ... first + count - 1 in the last step: over
 /// its length, the mean force. 0 without a floor.
-/// @param x, y  [count]
+/// @param x, y, stride  as of mspring_network_get_positions()
 /// @return MSPRING_OK; MSPRING_ERROR_ID or MSPRING_ERROR_ARGUMENT.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_floor_impulses(const mspring_network *network,
                                                                                 mspring_id first, uint32_t count,
-                                                                                float *x, float *y);
+                                                                                float *x, float *y,
+                                                                                uint32_t stride);
 
 /* -------------------------------------------------------------------------------------------------- views */
 
-/// The state as it lies in memory: arrays by slot. The pointers stay valid, and their contents follow the
-/// steps, until the network is compacted, expanded or destroyed; origin_x and origin_y are as of the call.
-/// Positions and velocities may be written between steps; finite values only, velocities within MSPRING_MAX_SPEED.
+/// The state as it lies in memory, to read: arrays by slot. Set struct_size first.
+///
+/// The pointers stay valid, and their contents follow the steps, until layout_generation changes. origin_x and
+/// origin_y are as of the call: fill the view again after steps, which costs next to nothing.
 typedef struct mspring_view {
     uint32_t struct_size;
-    uint32_t slot_count;              ///< length of the arrays by slot; some slots hold no particle
-    uint32_t particle_count;          ///< length of slot_of_particle
-    uint32_t reserved;                ///< 0
-    double origin_x, origin_y;        ///< world position = origin + (x, y), m
-    float *x, *y;                     ///< [slot_count], m, relative to the origin
-    float *vx, *vy;                   ///< [slot_count], m/s
-    const float *inverse_mass;        ///< [slot_count], 1/kg; 0 if pinned or no particle
+    uint32_t slot_count;         ///< length of the arrays by slot; some slots hold no particle
+    uint32_t particle_count;     ///< length of slot_of_particle
+    uint32_t reserved;           ///< 0
+    uint64_t layout_generation;  ///< another number when particles or springs were added or removed, by edits or by
+                                 ///< loading a snapshot, and when the network was compacted or expanded
+    uint64_t origin_generation;  ///< another number when the origin has moved
+    double origin_x, origin_y;   ///< world position = origin + (x, y), m
+    const float *x, *y;          ///< [slot_count], m, relative to the origin
+    const float *vx, *vy;        ///< [slot_count], m/s
+    const float *inverse_mass;   ///< [slot_count], 1/kg; 0 if pinned or no particle
     const uint32_t *particle_of_slot; ///< [slot_count], particle id or MSPRING_NONE
     const uint32_t *slot_of_particle; ///< [particle_count]
 } mspring_view;
 
-/// Fill a view. Set struct_size first. Allowed in hooks.
+/// Fill a view to read. It makes no later step dearer.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_view(const mspring_network *network,
+                                                                  mspring_view *view);
+
+/// The same to write: positions and velocities may be changed until the next step. Set struct_size first.
+typedef struct mspring_mutable_view {
+    uint32_t struct_size;
+    uint32_t slot_count, particle_count, reserved; ///< as in mspring_view, as what follows
+    uint64_t layout_generation, origin_generation;
+    double origin_x, origin_y;
+    float *x, *y, *vx, *vy; ///< finite values only, velocities within MSPRING_MAX_SPEED
+    const float *inverse_mass;
+    const uint32_t *particle_of_slot, *slot_of_particle;
+} mspring_mutable_view;
+
+/// Fill a view to write. The next step looks at all particles for what was written. Before you write after that
+/// step, call this again. In a hook use its arrays.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT or MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_view(mspring_network *network, mspring_view *view);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_view_mutable(mspring_network *network,
+                                                                          mspring_mutable_view *view);
 
 /// Copy out world positions (m) of the particles first ... first + count - 1, in id order.
-/// @param x, y  [count] each
-/// @return MSPRING_OK; MSPRING_ERROR_ID if the range leaves the network; MSPRING_ERROR_ARGUMENT for NULL.
+/// @param x, y    receive those of particle first + i in x[i * stride] and y[i * stride]
+/// @param stride  elements from one to the next, at least 1: 1 for two arrays, 2 with y = x + 1 for one of points
+/// @return MSPRING_OK; MSPRING_ERROR_ID if the range leaves the network; MSPRING_ERROR_ARGUMENT for NULL or stride 0.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_positions(const mspring_network *network,
                                                                            mspring_id first, uint32_t count,
-                                                                           double *x, double *y);
+                                                                           double *x, double *y, uint32_t stride);
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_positions_float(const mspring_network *network,
                                                                                  mspring_id first, uint32_t count,
-                                                                                 float *x, float *y);
+                                                                                 float *x, float *y,
+                                                                                 uint32_t stride);
 
-/// Copy out velocities (m/s), as mspring_network_get_positions().
+/// Copy out velocities (m/s), as mspring_network_get_positions(). They have single precision.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_velocities(const mspring_network *network,
                                                                             mspring_id first, uint32_t count,
-                                                                            float *vx, float *vy);
+                                                                            float *vx, float *vy, uint32_t stride);
 
 /// Set world positions (m) of the particles first ... first + count - 1: all or, on error, none. Setting those
 /// of all particles at once also moves the local origin to them; setting a part of them leaves it where it is.
-/// @param x, y  [count], at most MSPRING_MAX_COORDINATE in absolute value and so far from the origin
+/// @param x, y    those of particle first + i are x[i * stride] and y[i * stride], at most MSPRING_MAX_COORDINATE in
+///                absolute value and so far from the origin
+/// @param stride  as of mspring_network_get_positions(), or 0: the same for all
 /// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the index),
 ///         MSPRING_ERROR_BUSY (in a hook use its arrays).
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_positions(mspring_network *network,
                                                                            mspring_id first, uint32_t count,
-                                                                           const double *x, const double *y);
+                                                                           const double *x, const double *y,
+                                                                           uint32_t stride);
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_positions_float(mspring_network *network,
                                                                                  mspring_id first, uint32_t count,
-                                                                                 const float *x, const float *y);
+                                                                                 const float *x, const float *y,
+                                                                                 uint32_t stride);
 
 /// Set velocities (m/s, within MSPRING_MAX_SPEED), as mspring_network_set_positions(). A pinned particle moves by
 /// its velocity.
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_velocities(mspring_network *network,
                                                                             mspring_id first, uint32_t count,
-                                                                            const float *vx, const float *vy);
+                                                                            const float *vx, const float *vy,
+                                                                            uint32_t stride);
 
 /// Copy out masses (kg) in id order; pinned particles have theirs too.
 /// @threads shared   @allocates never   @since 0.1
@@ -1146,20 +1211,25 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_masses(const ms
 /// none.
 
 /// Set positions (m, world coordinates) of listed particles; as mspring_network_set_positions().
-/// @param particles, x, y  [count]
+/// @param x, y  those of particles[i] are x[i * stride] and y[i * stride]
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_positions_at(mspring_network *network,
                                                                               const mspring_id *particles,
                                                                               uint32_t count, const double *x,
-                                                                              const double *y);
+                                                                              const double *y, uint32_t stride);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_positions_float_at(mspring_network *network,
+                                                                                    const mspring_id *particles,
+                                                                                    uint32_t count, const float *x,
+                                                                                    const float *y,
+                                                                                    uint32_t stride);
 
 /// Set velocities (m/s) of listed particles; as mspring_network_set_velocities().
-/// @param particles, vx, vy  [count]
+/// @param vx, vy  those of particles[i] are vx[i * stride] and vy[i * stride]
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_velocities_at(mspring_network *network,
                                                                                const mspring_id *particles,
                                                                                uint32_t count, const float *vx,
-                                                                               const float *vy);
+                                                                               const float *vy, uint32_t stride);
 
 /// Set masses (kg), as when water gets in. Stiffness and damping of springs stay what they are: relative springs go
 /// on with the masses that their particles had before, until mspring_network_renew_relative_springs(). A spring
@@ -1574,7 +1644,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_springs_across(
 typedef struct mspring_spring_info {
     uint32_t struct_size;
     uint32_t flags;  ///< MSPRING_SPRING_RELATIVE, MSPRING_SPRING_BROKEN, MSPRING_SPRING_STRESSED
-    mspring_id a, b; ///< its particles, the lower id first
+    mspring_id a, b; ///< its particles, in the order in which they were given
     float stiffness; ///< N/m in force; of a relative spring that of the last step, 0 before the first; 0 if broken
     float damping;   ///< N s/m, likewise
     float rest_length;       ///< m
@@ -1592,6 +1662,36 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_spring(const ms
                                                                         mspring_id spring,
                                                                         mspring_spring_info *info);
 
+/// What ends of springs are numbered by.
+typedef int32_t mspring_numbering;
+enum {
+    MSPRING_ENDS_IDS = 0,  ///< ids of particles
+    MSPRING_ENDS_SLOTS = 1 ///< slots, as of a view: they change with its layout_generation
+};
+
+/// Copy out the ends of the springs first ... first + count - 1, as for an index buffer to draw them.
+/// They come in the order in which they were given: of a lattice's springs the lower id first, of a rope's the end that
+/// comes first along it. A removed spring has MSPRING_NONE at both.
+/// @param a, b    receive those of spring first + i in a[i * stride] and b[i * stride]
+/// @param stride  elements from one to the next, at least 1; for pairs 2, with b = a + 1
+/// @return MSPRING_OK; MSPRING_ERROR_ID; MSPRING_ERROR_ARGUMENT for NULL, an unknown numbering or stride 0.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_ends(const mspring_network *network,
+                                                                      mspring_id first, uint32_t count,
+                                                                      mspring_numbering numbering, uint32_t *a,
+                                                                      uint32_t *b, uint32_t stride);
+
+/// Copy out the flags of the springs first ... first + count - 1: MSPRING_SPRING_RELATIVE, _BROKEN, _STRESSED and
+/// _REMOVED.
+/// @param flags   receives those of spring first + i in flags[i * stride]
+/// @param stride  elements from one to the next, at least 1
+/// @return MSPRING_OK; MSPRING_ERROR_ID or MSPRING_ERROR_ARGUMENT.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_spring_flags(const mspring_network *network,
+                                                                              mspring_id first, uint32_t count,
+                                                                              uint32_t *flags,
+                                                                              uint32_t stride);
+
 /// Strain of the springs first ... first + count - 1: (length - rest_length) / rest_length, of broken ones 0.
 /// @param strain  [count]
 /// @return MSPRING_OK; MSPRING_ERROR_ID or MSPRING_ERROR_ARGUMENT.
@@ -1603,8 +1703,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_strains(const m
 /// Length, direction and strain of all springs at once, in id order: a pass over the network in the order in which
 /// it lies in memory. Each array is filled if it is not NULL; all is 0 of springs that were removed.
 /// @param length       [spring count], m
-/// @param direction_x, direction_y  [spring count] the unit vector along the spring from the end with the lower id
-///                     to the other; (0, 0) for a spring of length 0; both or none
+/// @param direction_x, direction_y  [spring count] the unit vector along the spring from its end a to b, as given;
+///                     (0, 0) for a spring of length 0; both or none
 /// @param strain       [spring count], as mspring_network_get_strains(), to the last bit or so
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network   @allocates the first time   @since 0.1

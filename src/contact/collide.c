@@ -136,7 +136,7 @@ static bool is_asleep(const mspring_network *network, uint32_t number) {
 
 void mspringi_floor_keep(mspring_network *network, float h) {
     mspringi_floor *floor = network->floor;
-    const size_t size = mspringi_slot_count(network) * sizeof *floor->start.x;
+    const size_t size = mspringi_used_slots(network) * sizeof *floor->start.x;
     memcpy(floor->start.x, network->state.x, size);
     memcpy(floor->start.y, network->state.y, size);
     // What is clear around all strips is clear around the network.

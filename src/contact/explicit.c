@@ -168,9 +168,11 @@ typedef struct slot_range {
     size_t first, end;
 } slot_range;
 
-static slot_range loose_slots(const mspringi_topology *t) {
+static slot_range loose_slots(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
     const size_t first = (size_t)t->loose_first * MSPRINGI_WIDTH;
-    return (slot_range){first, first + ((size_t)t->loose_blocks + t->spare_blocks) * MSPRINGI_WIDTH};
+    return (slot_range){first, t->spare_blocks > 0 ? mspringi_used_slots(network)
+                                                   : first + (size_t)t->loose_blocks * MSPRINGI_WIDTH};
 }
 
 bool mspringi_floor_is_alone(const mspring_network *network, size_t slot) {
@@ -181,7 +183,7 @@ bool mspringi_floor_is_alone(const mspring_network *network, size_t slot) {
 // From the first slot on that may be alone.
 static slot_range alone_slots(const mspring_network *network) {
     const mspringi_solver *solver = network->running;
-    slot_range slots = loose_slots(&network->topology);
+    slot_range slots = loose_slots(network);
     if (solver->ops->has_alone && solver->ops->has_alone(solver->object))
         slots.first = 0;
     return slots;

@@ -259,7 +259,7 @@ static void exchange_impulses(mspringi_floor *floor) {
 // The floor goes on bearing what sleeps on it.
 static void keep_impulses(const mspring_network *network) {
     mspringi_floor *floor = network->floor;
-    for (size_t slot = 0; slot < floor->slot_count; ++slot) {
+    for (size_t slot = 0; slot < mspringi_used_slots(network); ++slot) {
         if (!mspringi_slot_is_asleep(network, slot))
             continue;
         floor->impulse.x[slot] = floor->former.x[slot];
@@ -272,7 +272,7 @@ static void begin_impulses(mspring_network *network) {
     mspringi_floor *floor = network->floor;
     exchange_impulses(floor);
     if (floor->has_impulse)
-        memset(floor->impulse.x, 0, 2 * floor->slot_count * sizeof *floor->impulse.x);
+        mspringi_field_clear(network, floor->impulse);
     floor->has_impulse = false;
     if (network->sleep.sleeping > 0 && floor->had_impulse)
         keep_impulses(network);
@@ -291,15 +291,15 @@ void mspringi_floor_take_back(mspringi_floor *floor) {
 }
 
 mspring_result mspring_network_get_floor_impulses(const mspring_network *network, mspring_id first, uint32_t count,
-                                                  float *x, float *y) {
-    if (!network || (count > 0 && (!x || !y)))
+                                                  float *x, float *y, uint32_t stride) {
+    if (!network || (count > 0 && (!x || !y)) || stride == 0)
         return MSPRING_ERROR_ARGUMENT;
     if (first > network->topology.particle_count || count > network->topology.particle_count - first)
         return MSPRING_ERROR_ID;
     for (uint32_t i = 0; i < count; ++i) {
         const uint32_t slot = network->topology.slot_of_particle[first + i];
-        x[i] = network->floor ? network->floor->impulse.x[slot] : 0.0f;
-        y[i] = network->floor ? network->floor->impulse.y[slot] : 0.0f;
+        x[(size_t)i * stride] = network->floor ? network->floor->impulse.x[slot] : 0.0f;
+        y[(size_t)i * stride] = network->floor ? network->floor->impulse.y[slot] : 0.0f;
     }
     return MSPRING_OK;
 }

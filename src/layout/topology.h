@@ -110,6 +110,7 @@ typedef struct mspringi_topology {
     uint32_t inactive_count;            ///< springs that are broken and that nothing sweeps, see network/left.c
     uint32_t *leftover_a, *leftover_b;  ///< [leftover_capacity + inactive_count] slots
     uint32_t *laid_slots, *laid_places; ///< of the spare ids, when the topology was made
+    uint32_t laid_particles;            ///< of these laid out with the others: the first ones
     mspringi_web web;
 
     mspringi_span *spans;

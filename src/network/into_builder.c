@@ -39,12 +39,9 @@ static mspring_result number_particles(mspring_builder *builder, const mspring_n
 }
 
 static void find_ends(const mspring_network *network, mspring_id spring, mspring_id *a, mspring_id *b) {
-    const mspringi_topology *t = &network->topology;
-    uint32_t base, tip;
-    mspringi_topology_ends(t, mspringi_place_of(t, spring), &base, &tip);
-    const mspring_id from = t->particle_of_slot[base], to = t->particle_of_slot[tip];
-    *a = from < to ? from : to;
-    *b = from < to ? to : from;
+    const mspringi_ends ends = mspringi_spring_ends(network, spring);
+    *a = network->topology.particle_of_slot[ends.a];
+    *b = network->topology.particle_of_slot[ends.b];
 }
 
 static uint32_t number_springs(const mspring_builder *builder, const mspring_network *network,

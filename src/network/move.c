@@ -10,6 +10,7 @@
 #include "sleep/sleep.h"
 #include "stability/border.h"
 #include "step/strain.h"
+#include "store/changed.h"
 #include "store/springs.h"
 #include "store/store.h"
 
@@ -248,6 +249,7 @@ mspring_result mspringi_move_network(mspring_network *network, mspring_job *job)
     to.memory = old.memory;
     mspringi_memory_hand_over(&job->to.memory, &to.memory);
     *network = to;
+    mspringi_changed(network, MSPRINGI_CHANGED_LAYOUT, 0);
     free_layout(&old, &network->memory);
     return MSPRING_OK;
 }

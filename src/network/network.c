@@ -85,6 +85,18 @@ mspring_result mspringi_field_reserve(mspring_network *network, mspringi_field *
     return MSPRING_OK;
 }
 
+void mspringi_field_copy(const mspring_network *network, mspringi_field from, mspringi_field to) {
+    const size_t size = mspringi_used_slots(network) * sizeof *to.x;
+    memcpy(to.x, from.x, size);
+    memcpy(to.y, from.y, size);
+}
+
+void mspringi_field_clear(const mspring_network *network, mspringi_field field) {
+    const size_t size = mspringi_used_slots(network) * sizeof *field.x;
+    memset(field.x, 0, size);
+    memset(field.y, 0, size);
+}
+
 mspring_result mspringi_carry_reserve(mspring_network *network) {
     const uint32_t rows = network->depth * mspringi_tasks_concurrency(network->tasks);
     if (network->carry && network->carry_rows >= rows)
@@ -194,6 +206,19 @@ static void fill_springs(mspring_network *network, const mspring_builder *builde
     }
 }
 
+// Springs are given with the lower id first as a rule.
+static mspring_result note_turned(mspring_network *network, const mspring_builder *builder) {
+    for (size_t s = 0; s < builder->spring_count; ++s) {
+        if (builder->springs[s].a < builder->springs[s].b)
+            continue;
+        if (!mspringi_store_reserve(network, MSPRINGI_STORE_TURNED))
+            return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for the ends of %u springs",
+                                 (unsigned)network->topology.spring_count);
+        network->turned[s / 8] |= (uint8_t)(1u << s % 8);
+    }
+    return MSPRING_OK;
+}
+
 /* -------------------------------------------------------------------------------------------------- lifecycle */
 
 // Fill a network that knows its memory and nothing else. Its message tells what failed.
@@ -230,6 +255,8 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     network->settings = settings_of(def);
     if (def->sleep_speed > 0.0f)
         result = mspringi_sleep_reserve(network);
+    if (result == MSPRING_OK)
+        result = note_turned(network, builder);
     if (result != MSPRING_OK)
         return result;
     network->guard.speed = network->guard.place = INFINITY; // are not known

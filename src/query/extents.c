@@ -18,14 +18,14 @@ static size_t plane_size(const mspring_network *network) {
     return mspringi_place_words(&network->topology) * MSPRINGI_WIDTH;
 }
 
-// Note whether the base of a spring, which lies in this place, is the end with the higher id.
-static void turn(mspring_network *network, mspringi_place place) {
-    const mspringi_topology *t = &network->topology;
+// Note whether the base of a spring is its second end.
+static void turn(mspring_network *network, mspring_id spring) {
+    const mspringi_place place = mspringi_place_of(&network->topology, spring);
     uint16_t *bits = &network->extents.reversed[place / MSPRINGI_WIDTH];
     const uint16_t bit = (uint16_t)(1u << place % MSPRINGI_WIDTH);
     uint32_t base, tip;
-    mspringi_topology_ends(t, place, &base, &tip);
-    *bits = t->particle_of_slot[base] > t->particle_of_slot[tip] ? *bits | bit : *bits & (uint16_t)~bit;
+    mspringi_topology_ends(&network->topology, place, &base, &tip);
+    *bits = mspringi_spring_ends(network, spring).b == base ? *bits | bit : *bits & (uint16_t)~bit;
 }
 
 static mspring_result reserve(mspring_network *network) {
@@ -37,13 +37,13 @@ static mspring_result reserve(mspring_network *network) {
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to measure %u springs at once",
                              (unsigned)t->spring_count);
     for (mspring_id s = 0; s < t->spring_count; ++s)
-        turn(network, t->place_of_spring[s]);
+        turn(network, s);
     return MSPRING_OK;
 }
 
 void mspringi_extents_turn(mspring_network *network, mspring_id spring) {
     if (network->extents.reversed)
-        turn(network, mspringi_place_of(&network->topology, spring));
+        turn(network, spring);
 }
 
 /* ---------------------------------------------------------------------------------------------------- computing */

@@ -125,7 +125,7 @@ mspring_result mspring_network_get_spring(const mspring_network *network, msprin
         return MSPRING_ERROR_ID;
     const mspringi_place place = mspringi_place_of(t, spring);
     const mspringi_spring_values r = mspringi_place_get(network, place);
-    const mspring_id a = t->particle_of_slot[r.base], b = t->particle_of_slot[r.tip];
+    const mspringi_ends ends = mspringi_spring_ends(network, spring);
     double rate;
     const double length = spring_length(network, &r, &rate), rest_length = (double)r.rest_length;
     const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, place);
@@ -134,11 +134,9 @@ mspring_result mspring_network_get_spring(const mspring_network *network, msprin
     const double force = length > 0.0 ? pull + MSPRINGI_LAW_DAMPING_FORCE(MSPRINGI_TIMES, damping, rate) : 0.0;
     *info = (mspring_spring_info){
         .struct_size = sizeof *info,
-        .flags = (mspringi_spring_is_relative(network, spring) ? MSPRING_SPRING_RELATIVE : 0u) |
-                 (mspringi_place_is_live(network, place) ? 0u : MSPRING_SPRING_BROKEN) |
-                 (mspringi_place_is_stressed(network, place) ? MSPRING_SPRING_STRESSED : 0u),
-        .a = a < b ? a : b,
-        .b = a < b ? b : a,
+        .flags = mspringi_spring_flags(network, spring),
+        .a = t->particle_of_slot[ends.a],
+        .b = t->particle_of_slot[ends.b],
         .stiffness = r.stiffness,
         .damping = r.damping,
         .rest_length = r.rest_length,

@@ -5,6 +5,7 @@
 
 #include "edits/particles.h"
 #include "layout/emit/spare.h"
+#include "step/origin.h"
 #include "store/changed.h"
 #include "store/sections.h"
 #include "store/springs.h"
@@ -81,8 +82,7 @@ static mspring_result settings_check(mspring_network *network, const uint8_t *fr
 static void settings_load(mspring_network *network, const uint8_t *from, size_t size) {
     (void)size;
     const settings s = read_settings(from);
-    network->origin_x = s.origin_x;
-    network->origin_y = s.origin_y;
+    mspringi_origin_set(network, s.origin_x, s.origin_y);
     network->recentre_distance = s.recentre_distance;
     network->settings.gravity_x = s.gravity_x;
     network->settings.gravity_y = s.gravity_y;
@@ -161,6 +161,7 @@ static mspring_result motion_check(mspring_network *network, const uint8_t *from
 // A low word that is too large for its coordinate counts as 0 as long as it is not used, and is 0 from here on.
 static void motion_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_get(from, network->state.x, size / sizeof(float), sizeof(float));
+    mspringi_clear_unused_slots(network);
     mspringi_drop_stale_lows(network);
     mspringi_clear_empty_slots(network);
     mspringi_changed(network, MSPRINGI_CHANGED_STATE, 0);

@@ -106,7 +106,7 @@ void mspringi_guard_put_back(mspring_network *network, const mspringi_state *bef
 static mspringi_extrema put_back(mspring_network *network) {
     mspringi_guard_put_back(network, &network->backup);
     mspringi_floor_take_back(network->floor);
-    return mspringi_guard_look(network, 0, mspringi_slot_count(network));
+    return mspringi_guard_look(network, 0, mspringi_used_slots(network));
 }
 
 /* --------------------------------------------------------------------------------------------------- the border */
@@ -239,7 +239,7 @@ static float bound_speed(const mspring_network *network, mspringi_extrema extrem
     const float bound = (guard->speed + extrema.change) * (1.0f + 1e-6f);
     return bound <= network->settings.max_speed
                ? bound
-               : mspringi_guard_look(network, 0, mspringi_slot_count(network)).speed;
+               : mspringi_guard_look(network, 0, mspringi_used_slots(network)).speed;
 }
 
 // What no coordinate is above after a step. One substep takes none further than by the speed at its end, unless
@@ -251,7 +251,7 @@ static float bound_place(const mspring_network *network, float h, float speed, m
     const float bound = larger(extrema.place, (guard->place + h * speed) * (1.0f + 1e-6f));
     return bound <= (float)MSPRING_MAX_COORDINATE
                ? bound
-               : mspringi_guard_look(network, 0, mspringi_slot_count(network)).place;
+               : mspringi_guard_look(network, 0, mspringi_used_slots(network)).place;
 }
 
 mspring_result mspringi_guard_end(mspring_network *network, const mspringi_attempt *attempt,

@@ -1,9 +1,9 @@
 /// Breaking and restoring a spring.
 #include "step/breaking.h"
 
-#include "store/springs.h"
 #include "step/ramps.h"
 #include "store/changed.h"
+#include "store/springs.h"
 
 static mspring_result fail_for_memory(mspring_network *network) {
     return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for breaking any of %u springs",

@@ -1,8 +1,6 @@
 /// Host functions that are called in the course of a step.
 #include "store/stages.h"
 
-#include <string.h>
-
 /// Fewest slots that are worth to be handed to another worker, if the host does not say.
 #define SMALLEST_RANGE 2048
 
@@ -129,7 +127,7 @@ static hook_group group_of(const mspringi_attempt *attempt, uint32_t substep, ui
 
 static void call_hook(mspring_network *network, const mspringi_attempt *attempt, const mspring_hook_def *def,
                       hook_group group, mspringi_field field) {
-    const uint32_t slot_count = (uint32_t)mspringi_slot_count(network);
+    const uint32_t slot_count = (uint32_t)mspringi_used_slots(network);
     hook_call call = {
         .def = def,
         .slot_count = slot_count,
@@ -151,6 +149,8 @@ static void call_hook(mspring_network *network, const mspringi_attempt *attempt,
                 .force_y = field.y,
                 .inverse_mass = network->inverse_mass,
                 .particle_of_slot = network->topology.particle_of_slot,
+                .slot_of_particle = network->topology.slot_of_particle,
+                .network = network,
                 .group_count = group.count,
             },
     };
@@ -186,14 +186,12 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
             call_hook(network, attempt, &network->hooks[i].def, all, field);
 }
 
-static void clear(const mspring_network *network, mspringi_field field) {
-    memset(field.x, 0, 2 * mspringi_slot_count(network) * sizeof *field.x);
-}
-
 static void add(const mspring_network *network, mspringi_field from, mspringi_field to) {
-    const size_t count = 2 * mspringi_slot_count(network);
+    const size_t count = mspringi_used_slots(network);
     for (size_t i = 0; i < count; ++i)
         to.x[i] += from.x[i];
+    for (size_t i = 0; i < count; ++i)
+        to.y[i] += from.y[i];
 }
 
 // Call the hooks that are due before this substep, and give forces.driven anew: base (x NULL: none) and the forces
@@ -209,9 +207,9 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
     if (!any)
         return driven;
     if (base.x)
-        memcpy(driven.x, base.x, 2 * mspringi_slot_count(network) * sizeof *driven.x);
+        mspringi_field_copy(network, base, driven);
     else
-        clear(network, driven);
+        mspringi_field_clear(network, driven);
     // A hook with a period has a field of its own, since its forces act on while others may be called again.
     const uint32_t left = attempt->substeps - substep;
     for (size_t i = 0; i < network->hook_count; ++i) {
@@ -223,7 +221,7 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
             continue;
         }
         if (substep % hook->def.period == 0) {
-            clear(network, hook->held);
+            mspringi_field_clear(network, hook->held);
             const uint32_t count = hook->def.period < left ? hook->def.period : left;
             call_hook(network, attempt, &hook->def, group_of(attempt, substep, count), hook->held);
         }

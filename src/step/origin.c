@@ -1,6 +1,7 @@
 /// The local origin. Single precision resolves a position the better the closer it is to the origin, and springs
 /// feel the difference of positions, so the origin goes where the network is.
 #include "step/origin.h"
+#include "store/changed.h"
 #include "store/stages.h"
 
 #include <math.h>
@@ -24,9 +25,16 @@ static double middle(double low, double high) {
     return floor(0.5 * (low + high) + 0.5);
 }
 
+void mspringi_origin_set(mspring_network *network, double x, double y) {
+    if (network->origin_x == x && network->origin_y == y)
+        return;
+    network->origin_x = x;
+    network->origin_y = y;
+    mspringi_changed(network, MSPRINGI_CHANGED_ORIGIN, 0);
+}
+
 void mspringi_origin_choose(mspring_network *network, const mspringi_box *box) {
-    network->origin_x = middle(box->min_x, box->max_x);
-    network->origin_y = middle(box->min_y, box->max_y);
+    mspringi_origin_set(network, middle(box->min_x, box->max_x), middle(box->min_y, box->max_y));
     network->recentre_distance = SMALLEST_RECENTRE_DISTANCE;
 }
 
@@ -72,8 +80,7 @@ void mspringi_origin_follow(mspring_network *network) {
         mspringi_set_x(state, slot, mspringi_x_of(state, slot) - (double)shift_x);
         mspringi_set_y(state, slot, mspringi_y_of(state, slot) - (double)shift_y);
     }
-    network->origin_x += (double)shift_x;
-    network->origin_y += (double)shift_y;
+    mspringi_origin_set(network, network->origin_x + (double)shift_x, network->origin_y + (double)shift_y);
     network->recentre_distance = SMALLEST_RECENTRE_DISTANCE;
 }
 

@@ -13,6 +13,8 @@ typedef struct mspringi_box {
 mspringi_box mspringi_box_empty(void);
 void mspringi_box_include(mspringi_box *box, double x, double y);
 
+/// Put the origin somewhere. The positions are the caller's to set anew.
+void mspringi_origin_set(mspring_network *network, double x, double y);
 /// Put the origin at the middle of the box. The positions are the caller's to set anew.
 void mspringi_origin_choose(mspring_network *network, const mspringi_box *box);
 /// Set a particle's world position.

@@ -1,8 +1,6 @@
 /// Going through the stages of a step.
 #include "store/stages.h"
 
-#include <string.h>
-
 static const mspringi_stage *const all[] = {
 #define STAGE(table) &table,
 #include "store/stages.def"
@@ -30,13 +28,12 @@ mspringi_field mspringi_stages_forces(mspring_network *network, const mspringi_a
     const mspringi_stages *stages = attempt->stages;
     const mspringi_forces *forces = &network->forces;
     const mspringi_field none = {NULL, NULL};
-    const size_t size = 2 * mspringi_slot_count(network) * sizeof *forces->base.x;
     if (!stages->give_forces)
         return forces->held_any ? forces->held : none;
     if (forces->held_any)
-        memcpy(forces->base.x, forces->held.x, size);
+        mspringi_field_copy(network, forces->held, forces->base);
     else
-        memset(forces->base.x, 0, size);
+        mspringi_field_clear(network, forces->base);
     for (size_t i = 0; i < stages->count; ++i)
         if (stages->used[i]->forces)
             stages->used[i]->forces(network, attempt, forces->base);

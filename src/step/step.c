@@ -14,21 +14,19 @@
 typedef struct copying {
     const float *from;
     float *to;
+    size_t slot_count;
 } copying;
 
 static void copy_range(void *argument, size_t first, size_t end) {
     const copying *all = argument;
-    memcpy(all->to + first, all->from + first, (end - first) * sizeof *all->to);
+    for (size_t i = 0; i < MSPRINGI_STATE_ARRAYS; ++i)
+        memcpy(all->to + i * all->slot_count + first, all->from + i * all->slot_count + first,
+               (end - first) * sizeof *all->to);
 }
 
 static void copy_state(const mspring_network *network, const mspringi_state *from, const mspringi_state *to) {
-    copying all = {from->x, to->x};
-    mspringi_tasks_run_ranges(network->tasks, MSPRINGI_STATE_ARRAYS * mspringi_slot_count(network), MSPRINGI_WIDTH,
-                              copy_range, &all);
-}
-
-static void clear_field(const mspring_network *network, mspringi_field field) {
-    memset(field.x, 0, 2 * mspringi_slot_count(network) * sizeof *field.x);
+    copying all = {from->x, to->x, mspringi_slot_count(network)};
+    mspringi_tasks_run_ranges(network->tasks, mspringi_used_slots(network), MSPRINGI_WIDTH, copy_range, &all);
 }
 
 /* -------------------------------------------------------------------------------------------------- substeps */
@@ -53,10 +51,26 @@ static void run_substeps(mspring_network *network, const mspringi_attempt *attem
 
 void mspringi_drop_stale_lows(const mspring_network *network) {
     const mspringi_state *s = &network->state;
-    for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
+    for (size_t slot = 0; slot < mspringi_used_slots(network); ++slot) {
         s->low_x[slot] = mspringi_low_of(s->x[slot], s->low_x[slot]);
         s->low_y[slot] = mspringi_low_of(s->y[slot], s->low_y[slot]);
     }
+}
+
+void mspringi_clear_unused_slots(const mspring_network *network) {
+    const size_t slots = mspringi_slot_count(network), used = mspringi_used_slots(network);
+    for (size_t i = 0; i < MSPRINGI_STATE_ARRAYS; ++i)
+        memset(network->state.x + i * slots + used, 0, (slots - used) * sizeof *network->state.x);
+}
+
+// Put in order what somebody outside may have written to.
+static void tidy(const mspring_network *network) {
+    if (!network->is_open)
+        return;
+    if (network->is_lent)
+        mspringi_clear_unused_slots(network);
+    mspringi_clear_empty_slots(network);
+    mspringi_drop_stale_lows(network);
 }
 
 // Keep the state in the backup, run all substeps, and look at what they have led to.
@@ -65,10 +79,7 @@ static mspringi_extrema run(mspring_network *network, const mspringi_attempt *at
     const bool is_cut = attempt->stages->cut_substeps;
     mspringi_extrema extrema = {0.0f, 0.0f, 0.0f};
     mspringi_field base = {NULL, NULL};
-    if (network->is_open) {
-        mspringi_clear_empty_slots(network);
-        mspringi_drop_stale_lows(network);
-    }
+    tidy(network);
     if (ops->begin)
         ops->begin(network);
     if (!is_cut) {
@@ -87,7 +98,7 @@ static mspringi_extrema run(mspring_network *network, const mspringi_attempt *at
         mspringi_clear_empty_slots(network);
     if (ops->end)
         ops->end(network);
-    return mspringi_guard_look(network, 0, mspringi_slot_count(network));
+    return mspringi_guard_look(network, 0, mspringi_used_slots(network));
 }
 
 /* ------------------------------------------------------------------------------------------------- the step */
@@ -166,8 +177,10 @@ static bool is_idle(const mspring_network *network, const mspringi_stages *stage
 // Make an attempt whose substeps are numbers, or leave everything as it is.
 static mspring_result carry_out(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_sleep_begin(network, attempt);
-    if (is_idle(network, attempt->stages))
+    if (is_idle(network, attempt->stages)) {
+        tidy(network);
         return MSPRING_OK;
+    }
     const mspringi_guard guard = network->guard;
     mspringi_stages_before_step(network, attempt);
     mspring_result result = mspringi_guard_begin(network, attempt);
@@ -292,11 +305,13 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
         mspringi_sleep_undo(network);
         return result;
     }
+    network->is_open = network->hook_count > 0;
+    network->is_lent = false;
     if (is_idle(network, &stages))
         return MSPRING_OK;
     mspringi_stages_after_step(network, &stages, dt);
     if (network->forces.held_any)
-        clear_field(network, network->forces.held);
+        mspringi_field_clear(network, network->forces.held);
     network->forces.held_any = false;
     return MSPRING_OK;
 }

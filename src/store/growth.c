@@ -53,12 +53,13 @@ static void clear_slot(const mspringi_state *s, uint32_t slot) {
 void mspringi_growth_clear_slots(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const uint8_t *marks = network->growth.particles;
-    const uint32_t first = t->reserve.first_particle, slots = t->spare_blocks * MSPRINGI_WIDTH;
-    for (uint32_t slot = t->spare_first * MSPRINGI_WIDTH, end = slot + slots; slot < end; ++slot)
+    const mspring_id first = t->reserve.first_particle;
+    const size_t end = t->spare_blocks > 0 ? mspringi_used_slots(network) : 0;
+    for (uint32_t slot = t->spare_first * MSPRINGI_WIDTH; slot < end; ++slot)
         if (t->particle_of_slot[slot] == MSPRING_NONE)
             clear_slot(&network->state, slot);
     // Where those of the spare particles were that had been laid out with the others.
-    for (uint32_t i = 0; i < mspringi_spare_particles(t); ++i)
+    for (uint32_t i = 0; i < t->laid_particles; ++i)
         if (t->particle_of_slot[t->laid_slots[i]] == MSPRING_NONE)
             clear_slot(&network->state, t->laid_slots[i]);
     for (mspring_id p = 0; (p = mspringi_find_byte(marks, MSPRINGI_GONE, p, first)) < first; ++p)

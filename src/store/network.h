@@ -99,14 +99,16 @@ typedef struct mspringi_fractions {
 /// which springs it was. Views may be written to without any counter knowing; what relative springs derive from a
 /// new substep is no edit either.
 typedef struct mspringi_edits {
-    uint64_t state;  ///< calls that set positions or velocities
-    uint64_t motion; ///< calls that set the positions of all particles at once: a new motion begins
-    uint64_t masses; ///< calls that changed inverse masses
-    uint64_t values; ///< calls that changed stiffness, damping or rest lengths
-    uint64_t growth; ///< calls that added or removed particles or springs
-    uint64_t grafts; ///< those among them in which springs were added or removed
-    uint64_t links;  ///< springs that were broken or restored, added or removed, one by one
-    uint64_t naps;   ///< times that islands fell asleep or woke
+    uint64_t state;   ///< calls that set positions or velocities
+    uint64_t motion;  ///< calls that set the positions of all particles at once: a new motion begins
+    uint64_t masses;  ///< calls that changed inverse masses
+    uint64_t values;  ///< calls that changed stiffness, damping or rest lengths
+    uint64_t growth;  ///< calls that added or removed particles or springs
+    uint64_t grafts;  ///< those among them in which springs were added or removed
+    uint64_t links;   ///< springs that were broken or restored, added or removed, one by one
+    uint64_t naps;    ///< times that islands fell asleep or woke
+    uint64_t layouts; ///< times that all slots changed
+    uint64_t origins; ///< times that the local origin moved
     mspring_id
         *link_log; ///< the last of these springs: change n, counted from 0, is at n & link_mask; NULL before any
     uint32_t link_mask;
@@ -252,7 +254,7 @@ typedef struct mspringi_incidence {
 /// What is needed to measure all springs at once; NULL as long as that has not been done.
 typedef struct mspringi_extents {
     float *scratch;     ///< [2][places] what is computed, see extents.c
-    uint16_t *reversed; ///< [place words] a bit for each place: 1 where its base is the end with the higher id
+    uint16_t *reversed; ///< [place words] a bit for each place: 1 where its base is the second end
 } mspringi_extents;
 
 /// An array that is added here goes into store/network.def.
@@ -297,10 +299,12 @@ struct mspring_network {
     float relative_h;        ///< the substep that relative springs were derived for; 0: not yet
     uint16_t *live;          ///< [places / 16] a bit for each place: 1 where a spring is, and is not broken
     mspringi_relative *kept; ///< [springs] N/m, N s/m of broken springs that are not relative; NULL before any
-    bool keeps_none;         ///< all springs were seen to be relative, and stay so
-    uint32_t depth;          ///< substeps that may be swept in one pass over the lattice rows
-    uint32_t carry_rows;     ///< depth, for each worker
-    float *carry;            ///< [carry_rows] forces on the row above, all x and then all y of each
+    uint8_t *turned;     ///< [(reserve.first_spring + 7) / 8] a bit for each spring that was given with the higher
+                         ///< id first; NULL if none was
+    bool keeps_none;     ///< all springs were seen to be relative, and stay so
+    uint32_t depth;      ///< substeps that may be swept in one pass over the lattice rows
+    uint32_t carry_rows; ///< depth, for each worker
+    float *carry;        ///< [carry_rows] forces on the row above, all x and then all y of each
     mspringi_halos halos;
 
     mspring_settings settings;
@@ -334,11 +338,21 @@ struct mspring_network {
     size_t hook_count, hook_capacity;
     uint32_t next_hook;
     mspringi_in_hook in_hook;
-    bool is_open; ///< somebody outside has the state's arrays: there was a view or a hook
+    bool is_open; ///< somebody outside may write to the state's arrays, or has done since the last step: a hook, or
+                  ///< the host through a view
+    bool is_lent; ///< the latter, so also to slots that no step uses
 };
 
 static inline size_t mspringi_slot_count(const mspring_network *network) {
     return (size_t)network->topology.block_count * MSPRINGI_WIDTH;
+}
+
+/// Slots in front of which all particles lie. In what a step reads and writes spare slots behind them hold zeros, or
+/// forces that act on nothing.
+static inline size_t mspringi_used_slots(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    return t->spare_blocks == 0 ? mspringi_slot_count(network)
+                                : t->spans[t->rows[t->row_count - 1].first_span].end_slot;
 }
 
 /// Inverse masses as a step sees them, 0 of what sleeps.
@@ -377,8 +391,11 @@ mspring_result mspringi_check_settings(const mspring_settings *settings, mspring
 /// Refuse solver definitions that mspring_network_set_solver() would.
 mspring_result mspringi_check_solver(const mspring_solver_def *def, mspringi_message *message);
 
-/// Take back what a hook, or the host through a view, has written to slots without particle.
+/// Take back what a hook, or the host through a view, has written to slots without particle, of those in use.
 void mspringi_clear_empty_slots(const mspring_network *network);
+
+/// The same of the others: spare slots behind those in use.
+void mspringi_clear_unused_slots(const mspring_network *network);
 
 /// Drop the low words that are too large for their coordinates.
 void mspringi_drop_stale_lows(const mspring_network *network);
@@ -388,6 +405,9 @@ mspring_result mspringi_carry_reserve(mspring_network *network);
 
 /// Allocate what the explicit solver has by slot and by place. On error some of it is there.
 mspring_result mspringi_layout_reserve(mspring_network *network);
+/// Copy a field, or set it to 0, in the slots in use.
+void mspringi_field_copy(const mspring_network *network, mspringi_field from, mspringi_field to);
+void mspringi_field_clear(const mspring_network *network, mspringi_field field);
 /// Allocate a field of all slots, zeroed; leaves it alone if it is there.
 mspring_result mspringi_field_reserve(mspring_network *network, mspringi_field *field);
 

@@ -57,6 +57,31 @@ mspringi_spring_values mspringi_place_get(const mspring_network *network, msprin
     return values;
 }
 
+// Whether a spring was given with the higher id first.
+static bool is_turned(const mspring_network *network, mspring_id spring) {
+    const uint32_t first_spare = network->topology.reserve.first_spring;
+    if (spring < first_spare)
+        return network->turned && network->turned[spring / 8] >> spring % 8 & 1;
+    const mspring_id *ends = network->growth.particle_of_end + 2 * (size_t)(spring - first_spare);
+    return ends[0] > ends[1];
+}
+
+mspringi_ends mspringi_spring_ends(const mspring_network *network, mspring_id spring) {
+    const mspringi_topology *t = &network->topology;
+    uint32_t base, tip;
+    mspringi_topology_ends(t, mspringi_place_of(t, spring), &base, &tip);
+    return (t->particle_of_slot[base] > t->particle_of_slot[tip]) == is_turned(network, spring)
+               ? (mspringi_ends){base, tip}
+               : (mspringi_ends){tip, base};
+}
+
+uint32_t mspringi_spring_flags(const mspring_network *network, mspring_id spring) {
+    const mspringi_place place = mspringi_place_of(&network->topology, spring);
+    return (mspringi_spring_is_relative(network, spring) ? MSPRING_SPRING_RELATIVE : 0u) |
+           (mspringi_place_is_live(network, place) ? 0u : MSPRING_SPRING_BROKEN) |
+           (mspringi_place_is_stressed(network, place) ? MSPRING_SPRING_STRESSED : 0u);
+}
+
 mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspring_id spring) {
     return mspringi_place_get(network, mspringi_place_of(&network->topology, spring));
 }

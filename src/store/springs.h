@@ -21,7 +21,16 @@ void mspringi_place_set(mspring_network *network, mspringi_place place, float st
 void mspringi_place_copy(const mspring_network *from, mspringi_place had, mspring_network *to,
                          mspringi_place place);
 
-/// Let mspring_network_get_extents() know which end of a spring has the lower id, if it has been called before.
+/// The slots of a spring's ends, in the order in which they were given.
+typedef struct mspringi_ends {
+    uint32_t a, b;
+} mspringi_ends;
+mspringi_ends mspringi_spring_ends(const mspring_network *network, mspring_id spring);
+
+/// MSPRING_SPRING_RELATIVE, _BROKEN, _STRESSED.
+uint32_t mspringi_spring_flags(const mspring_network *network, mspring_id spring);
+
+/// Let mspring_network_get_extents() know which end of a spring is the first, if it has been called before.
 void mspringi_extents_turn(mspring_network *network, mspring_id spring);
 
 /// (length - rest_length) / rest_length, now; of a broken spring 0.

@@ -93,7 +93,7 @@ int main(void) {
     for (int step = 0; step < 64; step++) {
         CALL(mspring_network_step(network, 1.0 / 64));
     }
-    CALL(mspring_network_get_positions(network, 0, 30, x, y));
+    CALL(mspring_network_get_positions(network, 0, 30, x, y, 1));
     CALL(mspring_network_state_hash(network, &hash));
     printf("hash %08lx%08lx\n", (unsigned long)(hash >> 32), (unsigned long)(hash & 0xffffffffu));
     printf("the free end is at %.6f %.6f\n", x[9], y[9]);

@@ -78,7 +78,7 @@ static void weight_on_a_spring(void **state) {
     const mspring_network_def def = support_def((float)-gravity, 4);
     mspring_network *network = support_network(builder, &def);
     const float sideways = 1;
-    check_ok(mspring_network_set_velocities(network, weight, 1, &sideways, &sideways));
+    check_ok(mspring_network_set_velocities(network, weight, 1, &sideways, &sideways, 1));
     const mspring_settle_result result = settled(network);
     // Length 2 + m g / k, down to the float's last place.
     check_near(support_position(network, weight).y, 10 - (2 + 5 * gravity / 1000), 1e-6);
@@ -402,7 +402,7 @@ static void move_to_start(mspring_network *network, const recipe *made, start ki
         default:
             fail();
         }
-        check_ok(mspring_network_set_positions(network, p, 1, &x, &y));
+        check_ok(mspring_network_set_positions(network, p, 1, &x, &y, 1));
     }
 }
 

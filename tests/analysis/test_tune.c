@@ -32,8 +32,8 @@ static reference reference_of_network(const mspring_network *network) {
     for (mspring_id p = 0; p < net.particle_count; p++) {
         reference_particle *particle = &net.particles[p];
         float mass, scale, vx, vy;
-        check_ok(mspring_network_get_positions(network, p, 1, &particle->x, &particle->y));
-        check_ok(mspring_network_get_velocities(network, p, 1, &vx, &vy));
+        check_ok(mspring_network_get_positions(network, p, 1, &particle->x, &particle->y, 1));
+        check_ok(mspring_network_get_velocities(network, p, 1, &vx, &vy, 1));
         check_ok(mspring_network_get_masses(network, p, 1, &mass));
         check_ok(mspring_network_get_inverse_mass_scales(network, p, 1, &scale));
         particle->vx = (double)vx;

@@ -106,7 +106,7 @@ static mspring_result drop(mspring_network *run, uint32_t start, void *user) {
     const uint32_t count = mspring_network_particle_count(run);
     for (mspring_id p = 0; p < count; p++) {
         const float vx = 0, vy = -8 - 0.3f * (float)start;
-        check_ok(mspring_network_set_velocities(run, p, 1, &vx, &vy));
+        check_ok(mspring_network_set_velocities(run, p, 1, &vx, &vy, 1));
     }
     return mspring_network_break_springs(run, &spring, 1);
 }
@@ -192,7 +192,7 @@ static mspring_result note_velocities(mspring_network *run, uint32_t start, void
     (void)user;
     for (mspring_id p = 0; p < mspring_network_particle_count(run); p++) {
         float vx, vy, scale;
-        check_ok(mspring_network_get_velocities(run, p, 1, &vx, &vy));
+        check_ok(mspring_network_get_velocities(run, p, 1, &vx, &vy, 1));
         check_ok(mspring_network_get_inverse_mass_scales(run, p, 1, &scale));
         if (start == 0 || scale == 0) {
             assert_true(vx == 0 && vy == 0);

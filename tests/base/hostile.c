@@ -264,28 +264,38 @@ static void add_hook(arguments *a) {
     X(mspring_tune_row_solver, "S0", make_tune_row(a), mspring_tune_row_solver(a->given, a->out[0]))               \
     X(mspring_network_apply_force, "NIXY", NOTHING, mspring_network_apply_force(a->network, a->id, a->x, a->y))    \
     X(mspring_network_apply_forces, "NRFG", NOTHING,                                                               \
-      mspring_network_apply_forces(a->network, a->first, a->count, a->f, a->g))                                    \
+      mspring_network_apply_forces(a->network, a->first, a->count, a->f, a->g, 1))                                 \
+    X(mspring_network_apply_forces_at, "NAFG", NOTHING,                                                            \
+      mspring_network_apply_forces_at(a->network, a->ids, a->count, a->f, a->g, 1))                                \
+    X(mspring_network_apply_impulses, "NRFG", NOTHING,                                                             \
+      mspring_network_apply_impulses(a->network, a->first, a->count, a->f, a->g, 1))                               \
+    X(mspring_network_apply_impulses_at, "NAFG", NOTHING,                                                          \
+      mspring_network_apply_impulses_at(a->network, a->ids, a->count, a->f, a->g, 1))                              \
+    X(mspring_network_set_positions_float_at, "NAFG", NOTHING,                                                     \
+      mspring_network_set_positions_float_at(a->network, a->ids, a->count, a->f, a->g, 1))                         \
     X(mspring_network_add_hook, "NSo", make_hook(a), mspring_network_add_hook(a->network, a->given, a->out[0]))    \
     X(mspring_network_remove_hook, "NI", add_hook(a), mspring_network_remove_hook(a->network, a->id))              \
     X(mspring_network_view, "nP", OUT_STRUCT(0, view), mspring_network_view(a->network, a->out[0]))                \
+    X(mspring_network_view_mutable, "NP", OUT_STRUCT(0, mutable_view),                                             \
+      mspring_network_view_mutable(a->network, a->out[0]))                                                         \
     X(mspring_network_get_positions, "nR01", NOTHING,                                                              \
-      mspring_network_get_positions(a->network, a->first, a->count, a->out[0], a->out[1]))                         \
+      mspring_network_get_positions(a->network, a->first, a->count, a->out[0], a->out[1], 1))                      \
     X(mspring_network_get_positions_float, "nR01", NOTHING,                                                        \
-      mspring_network_get_positions_float(a->network, a->first, a->count, a->out[0], a->out[1]))                   \
+      mspring_network_get_positions_float(a->network, a->first, a->count, a->out[0], a->out[1], 1))                \
     X(mspring_network_get_velocities, "nR01", NOTHING,                                                             \
-      mspring_network_get_velocities(a->network, a->first, a->count, a->out[0], a->out[1]))                        \
+      mspring_network_get_velocities(a->network, a->first, a->count, a->out[0], a->out[1], 1))                     \
     X(mspring_network_set_positions, "NRDE", NOTHING,                                                              \
-      mspring_network_set_positions(a->network, a->first, a->count, a->d, a->e))                                   \
+      mspring_network_set_positions(a->network, a->first, a->count, a->d, a->e, 1))                                \
     X(mspring_network_set_positions_float, "NRFG", NOTHING,                                                        \
-      mspring_network_set_positions_float(a->network, a->first, a->count, a->f, a->g))                             \
+      mspring_network_set_positions_float(a->network, a->first, a->count, a->f, a->g, 1))                          \
     X(mspring_network_set_velocities, "NRFG", NOTHING,                                                             \
-      mspring_network_set_velocities(a->network, a->first, a->count, a->f, a->g))                                  \
+      mspring_network_set_velocities(a->network, a->first, a->count, a->f, a->g, 1))                               \
     X(mspring_network_get_masses, "nR0", NOTHING,                                                                  \
       mspring_network_get_masses(a->network, a->first, a->count, a->out[0]))                                       \
     X(mspring_network_set_positions_at, "NADE", NOTHING,                                                           \
-      mspring_network_set_positions_at(a->network, a->ids, a->count, a->d, a->e))                                  \
+      mspring_network_set_positions_at(a->network, a->ids, a->count, a->d, a->e, 1))                               \
     X(mspring_network_set_velocities_at, "NAFG", NOTHING,                                                          \
-      mspring_network_set_velocities_at(a->network, a->ids, a->count, a->f, a->g))                                 \
+      mspring_network_set_velocities_at(a->network, a->ids, a->count, a->f, a->g, 1))                              \
     X(mspring_network_set_masses, "NRF", NOTHING,                                                                  \
       mspring_network_set_masses(a->network, a->first, a->count, a->f))                                            \
     X(mspring_network_set_masses_at, "NAF", NOTHING,                                                               \
@@ -354,6 +364,10 @@ static void add_hook(arguments *a) {
       mspring_network_particles_in_box(a->network, -1, -1, 1, 1, a->out[0], 8, a->out[1]))                         \
     X(mspring_network_springs_across, "nXY01", NOTHING,                                                            \
       mspring_network_springs_across(a->network, -1, -1, a->x, a->y, a->out[0], NULL, 8, a->out[1]))               \
+    X(mspring_network_get_ends, "nRK01", a->kind = MSPRING_ENDS_SLOTS,                                             \
+      mspring_network_get_ends(a->network, a->first, a->count, a->kind, a->out[0], a->out[1], sizeof(uint32_t)))   \
+    X(mspring_network_get_spring_flags, "nR0", NOTHING,                                                            \
+      mspring_network_get_spring_flags(a->network, a->first, a->count, a->out[0], sizeof(uint32_t)))               \
     X(mspring_network_get_spring, "nIP", OUT_STRUCT(0, spring_info),                                               \
       mspring_network_get_spring(a->network, a->id, a->out[0]))                                                    \
     X(mspring_network_get_strains, "nR0", NOTHING,                                                                 \
@@ -373,7 +387,7 @@ static void add_hook(arguments *a) {
       mspring_floor_def_init(a->out[0], a->size))                                                                  \
     X(mspring_network_set_floor, "Ns", make_floor(a), mspring_network_set_floor(a->network, a->given))             \
     X(mspring_network_get_floor_impulses, "nR01", NOTHING,                                                         \
-      mspring_network_get_floor_impulses(a->network, a->first, a->count, a->out[0], a->out[1]))                    \
+      mspring_network_get_floor_impulses(a->network, a->first, a->count, a->out[0], a->out[1], 1))                 \
     X(mspring_network_get_sleepers, "nR0", NOTHING,                                                                \
       mspring_network_get_sleepers(a->network, a->first, a->count, a->out[0]))                                     \
     X(mspring_network_is_asleep, "v", NOTHING, note_size(mspring_network_is_asleep(a->network)))                   \

@@ -103,7 +103,7 @@ static mspring_result apply_force(life *l) {
 
 static mspring_result apply_forces(life *l) {
     const float x[2] = {1, 2}, y[2] = {3, 4};
-    return mspring_network_apply_forces(l->network, 2, 2, x, y);
+    return mspring_network_apply_forces(l->network, 2, 2, x, y, 1);
 }
 
 static void push(const mspring_hook_args *args, void *user) {

@@ -346,10 +346,10 @@ static void no_step_allocates(void **state) {
         check_ok(mspring_network_set_solver(network, &solver));
         check_ok(support_set_gravity(network, 0, (float)-step));
         check_ok(support_set_global_damping(network, 0.1f));
-        check_ok(mspring_network_apply_forces(network, 0, 10, f, f));
-        check_ok(mspring_network_get_positions(network, 0, 10, x, y));
-        check_ok(mspring_network_set_positions(network, 0, 10, x, y));
-        check_ok(mspring_network_set_velocities(network, 0, 10, f, f));
+        check_ok(mspring_network_apply_forces(network, 0, 10, f, f, 1));
+        check_ok(mspring_network_get_positions(network, 0, 10, x, y, 1));
+        check_ok(mspring_network_set_positions(network, 0, 10, x, y, 1));
+        check_ok(mspring_network_set_velocities(network, 0, 10, f, f, 1));
         support_steps(network, 1, 0.01);
         (void)support_hash(network);
     }

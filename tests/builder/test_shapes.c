@@ -420,7 +420,7 @@ static void disc_spins_round(void **state) {
     for (mspring_id i = 0; i < mspring_network_particle_count(network); i++) {
         const support_point p = support_position(network, i);
         const float vx = (float)-(p.y + 2), vy = (float)(p.x - 7);
-        check_ok(mspring_network_set_velocities(network, i, 1, &vx, &vy));
+        check_ok(mspring_network_set_velocities(network, i, 1, &vx, &vy, 1));
     }
     check_ok(mspring_network_energy(network, &kinetic, &elastic, &unused));
     support_steps(network, 600, 1.0 / 60);

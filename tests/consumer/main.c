@@ -46,7 +46,7 @@ int main(void) {
             return failed("step", mspring_network_error(network));
         }
     }
-    if (mspring_network_get_positions(network, 0, 2, x, y) != MSPRING_OK) {
+    if (mspring_network_get_positions(network, 0, 2, x, y, 1) != MSPRING_OK) {
         return failed("positions", mspring_network_error(network));
     }
     printf("massspring %s at %s: the weight hangs at (%g, %g)\n", mspring_version_string(),

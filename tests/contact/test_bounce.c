@@ -123,8 +123,8 @@ static mspring_network *network_of(const body *b, mspring_simd level) {
 static double kept_energy(const body *b, const mspring_network *network, double h) {
     double x[MOST], y[MOST], fx[MOST] = {0}, fy[MOST] = {0}, sum = 0;
     float vx[MOST], vy[MOST];
-    check_ok(mspring_network_get_positions(network, 0, b->count, x, y));
-    check_ok(mspring_network_get_velocities(network, 0, b->count, vx, vy));
+    check_ok(mspring_network_get_positions(network, 0, b->count, x, y, 1));
+    check_ok(mspring_network_get_velocities(network, 0, b->count, vx, vy, 1));
     for (uint32_t i = 0; i < b->spring_count; i++) {
         const mspring_spring_def *s = &b->springs[i];
         const double dx = x[s->b] - x[s->a], dy = y[s->b] - y[s->a], length = hypot(dx, dy);
@@ -173,7 +173,7 @@ static mspring_floor_def floor_of_kind(uint32_t kind, uint64_t seed) {
 /// Smallest distance of any particle.
 static double above(const body *b, const mspring_network *network, const mspring_floor_def *def) {
     double x[MOST], y[MOST], least = INFINITY;
-    check_ok(mspring_network_get_positions(network, 0, b->count, x, y));
+    check_ok(mspring_network_get_positions(network, 0, b->count, x, y, 1));
     for (uint32_t i = 0; i < b->count; i++) {
         for (uint32_t p = 0; p < def->plane_count; p++) {
             const double *plane = planes + 4 * p;
@@ -420,7 +420,7 @@ static void what_begins_just_above_bounces(void **state) {
         for (double height = 0; height < 0.1; height = 2 * height + 1e-7) {
             mspring_network *network = one_particle(height, &ways[i], 1, false);
             const float vx = 0, vy = -(float)speed;
-            check_ok(mspring_network_set_velocities(network, 0, 1, &vx, &vy));
+            check_ok(mspring_network_set_velocities(network, 0, 1, &vx, &vy, 1));
             check_ok(mspring_network_step(network, dt));
             check_near(support_velocity(network, 0).y, speed, 1.5 * g * dt);
             mspring_network_destroy(network);

@@ -149,7 +149,7 @@ static const double tolerance = 2e-4;
 static double lowest(const mspring_network *network, const mspring_floor_def *def) {
     static double x[THROWN], y[THROWN];
     double least = INFINITY;
-    check_ok(mspring_network_get_positions(network, 0, mspring_network_particle_count(network), x, y));
+    check_ok(mspring_network_get_positions(network, 0, mspring_network_particle_count(network), x, y, 1));
     for (uint32_t i = 0; i < mspring_network_particle_count(network); i++)
         least = fmin(least, above(def, x[i], y[i]));
     return least;
@@ -249,7 +249,7 @@ static void friction_slows(const way *how) {
     check_near(support_position(network, 0).x, speed * speed / (2 * friction * g), 0.5 * speed * h + 1e-3);
     assert_true(fabs(support_position(network, 0).y) < 1e-6);
     float impulse_x, impulse_y;
-    check_ok(mspring_network_get_floor_impulses(network, 0, 1, &impulse_x, &impulse_y));
+    check_ok(mspring_network_get_floor_impulses(network, 0, 1, &impulse_x, &impulse_y, 1));
     check_near(impulse_y, 2 * g * dt, 1e-5); // bears its weight
     check_near(impulse_x, 0, 1e-9);
     mspring_network_destroy(network);
@@ -317,7 +317,7 @@ static void bounces_lose_height(void **state) {
     while (bounces < COUNT_OF(top)) {
         float impulse_x, impulse_y;
         check_ok(mspring_network_step(network, dt));
-        check_ok(mspring_network_get_floor_impulses(network, 0, 1, &impulse_x, &impulse_y));
+        check_ok(mspring_network_get_floor_impulses(network, 0, 1, &impulse_x, &impulse_y, 1));
         bounces += impulse_y > 0;
         if (bounces < COUNT_OF(top))
             top[bounces] = fmax(top[bounces], support_position(network, 0).y);
@@ -395,7 +395,7 @@ static mspring_network *bar(double y, uint32_t workers, mspring_simd simd) {
 static double rms_speed(const mspring_network *network) {
     static float vx[400], vy[400];
     double sum = 0;
-    check_ok(mspring_network_get_velocities(network, 0, 400, vx, vy));
+    check_ok(mspring_network_get_velocities(network, 0, 400, vx, vy, 1));
     for (uint32_t i = 0; i < 400; i++)
         sum += (double)vx[i] * vx[i] + (double)vy[i] * vy[i];
     return sqrt(sum / 400);
@@ -404,7 +404,7 @@ static double rms_speed(const mspring_network *network) {
 static double centre_x(const mspring_network *network) {
     static double x[400], y[400];
     double sum = 0;
-    check_ok(mspring_network_get_positions(network, 0, 400, x, y));
+    check_ok(mspring_network_get_positions(network, 0, 400, x, y, 1));
     for (uint32_t i = 0; i < 400; i++)
         sum += x[i];
     return sum / 400;
@@ -431,7 +431,7 @@ static void bars_lie_still(const way *how, uint32_t seconds) {
     // The floor bears the weight, but for how fast the bar still moves.
     static float impulse_x[400], impulse_y[400];
     double sum = 0;
-    check_ok(mspring_network_get_floor_impulses(network, 0, 400, impulse_x, impulse_y));
+    check_ok(mspring_network_get_floor_impulses(network, 0, 400, impulse_x, impulse_y, 1));
     for (uint32_t i = 0; i < 400; i++)
         sum += (double)impulse_y[i];
     const double weight = 400 * 73.3975 * g / 64;
@@ -467,10 +467,10 @@ static void bars_slide(const way *how) {
         vx[i] = (float)speed;
     set_way(network, how);
     check_ok(mspring_network_set_floor(network, &def));
-    check_ok(mspring_network_set_velocities(network, 0, 400, vx, vy));
+    check_ok(mspring_network_set_velocities(network, 0, 400, vx, vy, 1));
     const double start = centre_x(network);
     support_steps(network, 64, 1.0 / 64);
-    check_ok(mspring_network_get_velocities(network, 0, 400, vx, vy));
+    check_ok(mspring_network_get_velocities(network, 0, 400, vx, vy, 1));
     double mean = 0;
     for (uint32_t i = 0; i < 400; i++)
         mean += (double)vx[i] / 400;
@@ -506,7 +506,7 @@ static void contact_gives_no_energy(const way *how, double restitution, double d
     static float vx[400], vy[400];
     mspring_network *network = bar(0, 1, MSPRING_SIMD_AUTO);
     mspring_floor_def def = level_floor(0.3f, (float)restitution);
-    check_ok(mspring_network_get_positions(network, 0, 400, x, y));
+    check_ok(mspring_network_get_positions(network, 0, 400, x, y, 1));
     for (uint32_t i = 0; i < 400; i++) {
         const double along = x[i], up = y[i];
         x[i] = 0.96 * along - 0.28 * up;
@@ -515,8 +515,8 @@ static void contact_gives_no_energy(const way *how, double restitution, double d
         vy[i] = (float)(-10 + 0.5 * (x[i] - 40));
     }
     set_way(network, how);
-    check_ok(mspring_network_set_positions(network, 0, 400, x, y));
-    check_ok(mspring_network_set_velocities(network, 0, 400, vx, vy));
+    check_ok(mspring_network_set_positions(network, 0, 400, x, y, 1));
+    check_ok(mspring_network_set_velocities(network, 0, 400, vx, vy, 1));
     check_ok(mspring_network_set_floor(network, &def));
     const double whole = energy(network);
     double least = whole;
@@ -559,7 +559,7 @@ static void compaction_keeps_the_floor(void **state) {
         for (uint32_t step = 0; step < 64; step++) {
             static double x[400], y[400];
             check_ok(mspring_network_step(network, 1.0 / 64));
-            check_ok(mspring_network_get_positions(network, 0, 400, x, y));
+            check_ok(mspring_network_get_positions(network, 0, 400, x, y, 1));
             for (uint32_t i = 0; i < 400; i++)
                 assert_true(above(def, x[i], y[i]) > -tolerance);
         }
@@ -662,14 +662,14 @@ static void refused_steps_leave_impulses(void **state) {
         set_way(network, &ways[i]);
         check_ok(mspring_network_set_floor(network, &def));
         support_steps(network, 100, 1.0 / 64);
-        check_ok(mspring_network_get_floor_impulses(network, 0, 400, before, before + 400));
+        check_ok(mspring_network_get_floor_impulses(network, 0, 400, before, before + 400, 1));
         for (int p = 0; p < 400; p++) {
             sum += before[400 + p];
         }
         assert_true(sum > 0);
         check_ok(mspring_network_apply_force(network, 3, 0, 1e15f));
         check_error(mspring_network_step(network, 1.0 / 64), MSPRING_ERROR_UNSTABLE);
-        check_ok(mspring_network_get_floor_impulses(network, 0, 400, after, after + 400));
+        check_ok(mspring_network_get_floor_impulses(network, 0, 400, after, after + 400, 1));
         assert_memory_equal(before, after, sizeof before);
         mspring_network_destroy(network);
     }
@@ -752,9 +752,9 @@ static void errors_name_the_culprit(void **state) {
     refuse(network, def, MSPRING_ERROR_ARGUMENT, "NULL");
     check_error(mspring_network_set_floor(NULL, &def), MSPRING_ERROR_ARGUMENT);
     float x, y;
-    check_error(mspring_network_get_floor_impulses(network, 0, 2, &x, &y), MSPRING_ERROR_ID);
-    check_error(mspring_network_get_floor_impulses(network, 0, 1, NULL, &y), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_get_floor_impulses(NULL, 0, 0, &x, &y), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_floor_impulses(network, 0, 2, &x, &y, 1), MSPRING_ERROR_ID);
+    check_error(mspring_network_get_floor_impulses(network, 0, 1, NULL, &y, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_floor_impulses(NULL, 0, 0, &x, &y, 1), MSPRING_ERROR_ARGUMENT);
     // The floor of before is still there.
     support_steps(network, 128, 1.0 / 64);
     assert_true(support_position(network, 0).y > -tolerance);

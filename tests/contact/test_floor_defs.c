@@ -145,7 +145,7 @@ static void all_planes_hold(void **state) {
         mspring_network *network = support_network(builder, &def);
         check_ok(mspring_network_set_floor(network, &box));
         const float vx = (float)(3 * cos(turn / 2 * way)), vy = (float)(3 * sin(turn / 2 * way));
-        check_ok(mspring_network_set_velocities(network, 0, 1, &vx, &vy));
+        check_ok(mspring_network_set_velocities(network, 0, 1, &vx, &vy, 1));
         double farthest = 0;
         for (int step = 0; step < 100; step++) {
             support_steps(network, 1, 0.02);
@@ -190,24 +190,24 @@ static void impulses_are_asked_for_one_by_one(void **state) {
     const numbers level = {0, 5, 0, 1, -1, -7, 2, {0, 0}, 0, 0};
     mspring_network *network = two_particles();
     float x[2] = {7, 7}, y[2] = {7, 7};
-    check_ok(mspring_network_get_floor_impulses(network, 0, 2, x, y));
+    check_ok(mspring_network_get_floor_impulses(network, 0, 2, x, y, 1));
     assert_true(x[0] == 0 && x[1] == 0 && y[0] == 0 && y[1] == 0); // there is none
     check_ok(lay(network, &level));
     support_steps(network, 10, 0.01);
-    check_ok(mspring_network_get_floor_impulses(network, 0, 2, x, y));
+    check_ok(mspring_network_get_floor_impulses(network, 0, 2, x, y, 1));
     // They lie on it: the floor gives what gravity does.
     check_near(y[0], 9.8 * 0.01, 1e-6);
     check_near(y[1], 2 * 9.8 * 0.01, 1e-6);
     float one_x = 7, one_y = 7;
-    check_ok(mspring_network_get_floor_impulses(network, 1, 1, &one_x, &one_y));
+    check_ok(mspring_network_get_floor_impulses(network, 1, 1, &one_x, &one_y, 1));
     assert_true(one_x == 0 && one_y == y[1]);
-    check_ok(mspring_network_get_floor_impulses(network, 2, 0, NULL, NULL));
-    check_error(mspring_network_get_floor_impulses(network, 3, 0, NULL, NULL), MSPRING_ERROR_ID);
-    check_error(mspring_network_get_floor_impulses(network, 1, 2, x, y), MSPRING_ERROR_ID);
-    check_error(mspring_network_get_floor_impulses(network, 1, 1, x, NULL), MSPRING_ERROR_ARGUMENT);
+    check_ok(mspring_network_get_floor_impulses(network, 2, 0, NULL, NULL, 1));
+    check_error(mspring_network_get_floor_impulses(network, 3, 0, NULL, NULL, 1), MSPRING_ERROR_ID);
+    check_error(mspring_network_get_floor_impulses(network, 1, 2, x, y, 1), MSPRING_ERROR_ID);
+    check_error(mspring_network_get_floor_impulses(network, 1, 1, x, NULL, 1), MSPRING_ERROR_ARGUMENT);
     // Without the floor there is nothing any more that it gave.
     check_ok(mspring_network_set_floor(network, NULL));
-    check_ok(mspring_network_get_floor_impulses(network, 0, 2, x, y));
+    check_ok(mspring_network_get_floor_impulses(network, 0, 2, x, y, 1));
     assert_true(x[0] == 0 && x[1] == 0 && y[0] == 0 && y[1] == 0);
     mspring_network_destroy(network);
 }
@@ -237,7 +237,7 @@ static void impulses_are_the_change_of_momentum(void **state) {
         support_steps(network, 1, dt);
         const support_point after = support_velocity(network, 0);
         float x, y;
-        check_ok(mspring_network_get_floor_impulses(network, 0, 1, &x, &y));
+        check_ok(mspring_network_get_floor_impulses(network, 0, 1, &x, &y, 1));
         // Velocities of up to 10 m/s, rounded in each of five substeps and once more in the impulse.
         check_near(x, mass * (after.x - before.x), 2e-5);
         check_near(y, mass * (after.y - before.y + g * dt), 2e-5);
@@ -258,7 +258,7 @@ static void who_leaves_is_let_go(void **state) {
     mspring_network *network = two_particles();
     check_ok(lay(network, &rough));
     const float vx = 0.3f, vy = 0.5f;
-    check_ok(mspring_network_set_velocities(network, 0, 1, &vx, &vy));
+    check_ok(mspring_network_set_velocities(network, 0, 1, &vx, &vy, 1));
     support_steps(network, 4, 1e-7); // in which it goes less than rounding would
     assert_true(support_velocity(network, 0).x == (double)vx);
     check_near(support_velocity(network, 0).y, 0.5, 5e-6);
@@ -269,7 +269,7 @@ static void who_leaves_is_let_go(void **state) {
     check_near(support_position(network, 0).y, 5 + 0.5 * t - 9.8 * t * (t + 1e-3) / 2,
                1e-5); // floats of some metres
     float x, y;
-    check_ok(mspring_network_get_floor_impulses(network, 0, 1, &x, &y));
+    check_ok(mspring_network_get_floor_impulses(network, 0, 1, &x, &y, 1));
     assert_true(x == 0 && y == 0);
     mspring_network_destroy(network);
 }

@@ -57,7 +57,7 @@ static void what_begins_to_fall_meets_the_floor_on_its_way(void **state) {
     mspring_network *network = support_network(builder, &def);
     lay_floor(network, level, NULL, 0, 1);
     const float slow[3] = {0.05f, 0.05f, 0.05f}, none[3] = {0, 0, 0};
-    check_ok(mspring_network_set_velocities(network, 0, 3, slow, none));
+    check_ok(mspring_network_set_velocities(network, 0, 3, slow, none, 1));
     support_steps(network, 1, dt);
     // Down in sqrt(2 height / g), and up again as fast as it came. A substep is 1 ms, in which it goes 3 mm.
     const double left = dt - sqrt(2 * height / g), speed = sqrt(2 * g * height);
@@ -107,12 +107,12 @@ static void the_floor_leaves_alone_what_sleeps(void **state) {
     assert_int_equal(mspring_network_is_asleep(network), 1);
     const float kick = 0.5f;
     for (mspring_id p = 0; p < made.particle_count; p += 3 * LONG) {
-        check_ok(mspring_network_set_velocities(network, p, 1, &kick, &kick));
+        check_ok(mspring_network_set_velocities(network, p, 1, &kick, &kick, 1));
     }
     double x[STRANDS * LONG], y[STRANDS * LONG];
     uint8_t sleeps[STRANDS * LONG];
     uint32_t count = 0;
-    check_ok(mspring_network_get_positions(network, 0, STRANDS * LONG, x, y));
+    check_ok(mspring_network_get_positions(network, 0, STRANDS * LONG, x, y, 1));
     support_steps(network, 5, 1.0 / 64);
     check_ok(mspring_network_get_sleepers(network, 0, STRANDS * LONG, sleeps));
     for (mspring_id p = 0; p < STRANDS * LONG; p++) {

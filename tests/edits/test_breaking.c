@@ -183,7 +183,7 @@ static mspring_network *torn_pair(void) {
     const mspring_id spring = 0;
     const double x = 3, y = 0;
     check_ok(mspring_network_break_springs(network, &spring, 1));
-    check_ok(mspring_network_set_positions(network, 1, 1, &x, &y));
+    check_ok(mspring_network_set_positions(network, 1, 1, &x, &y, 1));
     return network;
 }
 
@@ -277,15 +277,15 @@ static void a_ramp_begins_at_the_distance_of_its_ends(void **state) {
     const double x[] = {12, 9}, y[] = {17, 21};
     for (int way = 0; way < 2; way++) {
         check_ok(mspring_network_break_springs(network, &spring, 1));
-        check_ok(mspring_network_set_positions(network, 0, 1, &x[way], &y[way]));
-        check_ok(mspring_network_set_positions(network, 1, 1, &x[1 - way], &y[1 - way]));
+        check_ok(mspring_network_set_positions(network, 0, 1, &x[way], &y[way], 1));
+        check_ok(mspring_network_set_positions(network, 1, 1, &x[1 - way], &y[1 - way], 1));
         check_ok(mspring_network_restore_springs(network, &spring, 1, 1));
         assert_true(info_of(network, 0).rest_length == 5 && info_of(network, 0).force == 0);
     }
     // Where both ends are in one place strain divides by a length all the same: a small part of the spring's own.
     check_ok(mspring_network_break_springs(network, &spring, 1));
-    check_ok(mspring_network_set_positions(network, 1, 1, &x[1], &y[1]));
-    check_ok(mspring_network_set_positions(network, 0, 1, &x[1], &y[1]));
+    check_ok(mspring_network_set_positions(network, 1, 1, &x[1], &y[1], 1));
+    check_ok(mspring_network_set_positions(network, 0, 1, &x[1], &y[1], 1));
     check_ok(mspring_network_restore_springs(network, &spring, 1, 1));
     assert_true(info_of(network, 0).rest_length > 0 && info_of(network, 0).rest_length <= 0.01f);
     assert_true(info_of(network, 0).strain == -1);
@@ -326,7 +326,7 @@ static void what_is_whole_stays_as_it_is(void **state) {
     mspring_event event;
     uint32_t count;
     check_ok(mspring_network_reserve_events(network, 8));
-    check_ok(mspring_network_set_positions(network, 1, 1, &x, &y));
+    check_ok(mspring_network_set_positions(network, 1, 1, &x, &y, 1));
     // Stretched to three times its length, it goes on pulling.
     check_ok(mspring_network_restore_springs(network, &spring, 1, 1));
     assert_true(info_of(network, 0).rest_length == 1 && info_of(network, 0).strain == 2);
@@ -380,10 +380,10 @@ static void a_refused_step_does_not_move_a_ramp(void **state) {
     support_steps(twin, 2, 0.01);
     const float before = info_of(network, 0).rest_length;
     const double far = 1e11, y = 0, back = support_position(network, 1).x;
-    check_ok(mspring_network_set_positions(network, 1, 1, &far, &y));
+    check_ok(mspring_network_set_positions(network, 1, 1, &far, &y, 1));
     check_error(mspring_network_step(network, 0.5), MSPRING_ERROR_UNSTABLE);
     assert_true(info_of(network, 0).rest_length == before);
-    check_ok(mspring_network_set_positions(network, 1, 1, &back, &y));
+    check_ok(mspring_network_set_positions(network, 1, 1, &back, &y, 1));
     support_steps(network, 10, 0.01);
     support_steps(twin, 10, 0.01);
     assert_int_equal(support_hash(network), support_hash(twin));

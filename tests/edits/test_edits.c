@@ -134,13 +134,13 @@ static void relative_springs_keep_their_stiffness_as_masses_change(void **state)
     double x[400], y[400];
     float vx[400], vy[400];
     assert_true(made.particle_count <= COUNT_OF(x));
-    check_ok(mspring_network_get_positions(later, 0, made.particle_count, x, y));
-    check_ok(mspring_network_get_velocities(later, 0, made.particle_count, vx, vy));
+    check_ok(mspring_network_get_positions(later, 0, made.particle_count, x, y, 1));
+    check_ok(mspring_network_get_velocities(later, 0, made.particle_count, vx, vy, 1));
     support_steps(later, 1, 1.0 / 64);
     check_ok(mspring_network_set_masses(later, 0, mass.count, mass.value));
     check_ok(mspring_network_renew_relative_springs(later));
-    check_ok(mspring_network_set_positions(later, 0, made.particle_count, x, y));
-    check_ok(mspring_network_set_velocities(later, 0, made.particle_count, vx, vy));
+    check_ok(mspring_network_set_positions(later, 0, made.particle_count, x, y, 1));
+    check_ok(mspring_network_set_velocities(later, 0, made.particle_count, vx, vy, 1));
     for (uint32_t p = 0; p < made.particle_count; p++) {
         made.particles[p].mass = mass.value[p];
     }
@@ -194,7 +194,7 @@ static void pins_come_and_go(void **state) {
     float scales[4];
     check_ok(mspring_network_set_inverse_mass_scales_at(network, some, 4, zeros));
     const support_point before = support_position(network, 5);
-    check_ok(mspring_network_set_velocities_at(network, some, 4, zeros, zeros));
+    check_ok(mspring_network_set_velocities_at(network, some, 4, zeros, zeros, 1));
     check_ok(mspring_network_set_masses_at(network, some, 4, mass)); // and a pinned one stays so
     support_steps(network, 20, 0.01);
     assert_true(support_position(network, 5).x == before.x && support_position(network, 5).y == before.y);
@@ -252,8 +252,8 @@ static void edited_springs_act_like_those_made_so(void **state) {
                 mspring_network *network = networks[i] = network_of(&made, MSPRING_SIMD_AUTO);
                 double x[400], y[400];
                 float vx[400], vy[400];
-                check_ok(mspring_network_get_positions(network, 0, made.particle_count, x, y));
-                check_ok(mspring_network_get_velocities(network, 0, made.particle_count, vx, vy));
+                check_ok(mspring_network_get_positions(network, 0, made.particle_count, x, y, 1));
+                check_ok(mspring_network_get_velocities(network, 0, made.particle_count, vx, vy, 1));
                 if (late) {
                     support_steps(network, 1, 1.0 / 64);
                 }
@@ -265,8 +265,8 @@ static void edited_springs_act_like_those_made_so(void **state) {
                 if (broken) {
                     check_ok(mspring_network_restore_springs(network, wanted.list, 100, 0));
                 }
-                check_ok(mspring_network_set_positions(network, 0, made.particle_count, x, y));
-                check_ok(mspring_network_set_velocities(network, 0, made.particle_count, vx, vy));
+                check_ok(mspring_network_set_positions(network, 0, made.particle_count, x, y, 1));
+                check_ok(mspring_network_set_velocities(network, 0, made.particle_count, vx, vy, 1));
             }
             for (uint32_t s = 0; s < made.spring_count; s++) {
                 memcpy((char *)&made.springs[s] + kind->offset, &wanted.value[s], sizeof(float));
@@ -312,11 +312,11 @@ static void scattered_positions_and_velocities_equal_ranges(void **state) {
     const double x[] = {0, 33.25, 4.5}, y[] = {0, 1.125, -7};
     const float vx[] = {9, 1, 2}, vy[] = {9, -3, 4};
     mspring_network *listed = network_of(&made, MSPRING_SIMD_AUTO), *ranged = network_of(&made, MSPRING_SIMD_AUTO);
-    check_ok(mspring_network_set_positions_at(listed, list, 3, x, y));
-    check_ok(mspring_network_set_velocities_at(listed, list, 3, vx, vy));
+    check_ok(mspring_network_set_positions_at(listed, list, 3, x, y, 1));
+    check_ok(mspring_network_set_velocities_at(listed, list, 3, vx, vy, 1));
     for (int i = 1; i < 3; i++) {
-        check_ok(mspring_network_set_positions(ranged, list[i], 1, x + i, y + i));
-        check_ok(mspring_network_set_velocities(ranged, list[i], 1, vx + i, vy + i));
+        check_ok(mspring_network_set_positions(ranged, list[i], 1, x + i, y + i, 1));
+        check_ok(mspring_network_set_velocities(ranged, list[i], 1, vx + i, vy + i, 1));
     }
     assert_int_equal(support_hash(listed), support_hash(ranged));
     mspring_network_destroy(listed);
@@ -368,10 +368,10 @@ static void what_is_refused_changes_nothing(void **state) {
     }
     check_error(mspring_network_set_masses(network, made.particle_count, 1, good), MSPRING_ERROR_ID);
     check_error(mspring_network_set_inverse_mass_scales(network, MSPRING_NONE, 1, good), MSPRING_ERROR_ID);
-    check_error(mspring_network_set_positions_at(network, list, 3, near, far), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_set_positions_at(network, beyond, 3, near, near), MSPRING_ERROR_ID);
-    check_error(mspring_network_set_positions_at(network, list, 3, near, NULL), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_set_velocities_at(network, list, 3, good, (const float[]){0, NAN, 0}),
+    check_error(mspring_network_set_positions_at(network, list, 3, near, far, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_positions_at(network, beyond, 3, near, near, 1), MSPRING_ERROR_ID);
+    check_error(mspring_network_set_positions_at(network, list, 3, near, NULL, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_velocities_at(network, list, 3, good, (const float[]){0, NAN, 0}, 1),
                 MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_detach_particles(network, beyond, 3), MSPRING_ERROR_ID);
     check_error(mspring_network_detach_particles(network, NULL, 3), MSPRING_ERROR_ARGUMENT);
@@ -403,7 +403,7 @@ static void edit_in_hook(const mspring_hook_args *args, void *user) {
     check_error(mspring_network_set_inverse_mass_scales_at(network, &id, 1, &one), MSPRING_ERROR_BUSY);
     check_error(mspring_network_set_stiffnesses(network, 0, 1, &one), MSPRING_ERROR_BUSY);
     check_error(mspring_network_set_rest_lengths_at(network, &id, 1, &one), MSPRING_ERROR_BUSY);
-    check_error(mspring_network_set_positions_at(network, &id, 1, &place, &place), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_set_positions_at(network, &id, 1, &place, &place, 1), MSPRING_ERROR_BUSY);
     check_error(mspring_network_break_springs(network, &id, 1), MSPRING_ERROR_BUSY);
     check_error(mspring_network_restore_springs(network, &id, 1, 1), MSPRING_ERROR_BUSY);
     check_error(mspring_network_detach_particles(network, &id, 1), MSPRING_ERROR_BUSY);

@@ -67,7 +67,7 @@ static uint32_t loose_particles(const mspring_network *network) {
 
 static support_point floor_impulse(const mspring_network *network, mspring_id particle) {
     float x = 77, y = 77;
-    check_ok(mspring_network_get_floor_impulses(network, particle, 1, &x, &y));
+    check_ok(mspring_network_get_floor_impulses(network, particle, 1, &x, &y, 1));
     return (support_point){(double)x, (double)y};
 }
 

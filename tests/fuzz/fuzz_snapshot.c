@@ -125,8 +125,8 @@ static subject make_subject(int kind) {
 static void check_finite(const subject *s) {
     double x[MOST_PARTICLES], y[MOST_PARTICLES];
     float vx[MOST_PARTICLES], vy[MOST_PARTICLES];
-    FUZZ_CHECK(mspring_network_get_positions(s->network, 0, s->particles, x, y) == MSPRING_OK);
-    FUZZ_CHECK(mspring_network_get_velocities(s->network, 0, s->particles, vx, vy) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_get_positions(s->network, 0, s->particles, x, y, 1) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_get_velocities(s->network, 0, s->particles, vx, vy, 1) == MSPRING_OK);
     for (uint32_t i = 0; i < s->particles; i++)
         FUZZ_CHECK(isfinite(x[i]) && isfinite(y[i]) && isfinite(vx[i]) && isfinite(vy[i]));
 }

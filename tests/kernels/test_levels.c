@@ -197,8 +197,8 @@ static double pulled(bool in_lattice, double length, double rest_length, double 
     level_check(network, level);
     const double x[] = {0, length}, y[] = {0, 0};
     const float vx[] = {0, speed}, vy[] = {0, 0};
-    check_ok(mspring_network_set_positions(network, 0, 2, x, y));
-    check_ok(mspring_network_set_velocities(network, 0, 2, vx, vy));
+    check_ok(mspring_network_set_positions(network, 0, 2, x, y, 1));
+    check_ok(mspring_network_set_velocities(network, 0, 2, vx, vy, 1));
     check_ok(mspring_network_step(network, 1));
     const support_point got = support_velocity(network, 0);
     assert_true(got.y == 0.0);
@@ -323,8 +323,8 @@ static void speeds_out_of_bounds(void **state) {
             def.guard = MSPRING_GUARD_BOUNDS;
             def.global_damping = 1e6f;
             mspring_network *network = recipe_network(&made, &def);
-            mspring_view view = {.struct_size = sizeof view};
-            check_ok(mspring_network_view(network, &view));
+            mspring_mutable_view view = {.struct_size = sizeof view};
+            check_ok(mspring_network_view_mutable(network, &view));
             const uint32_t slot = view.slot_of_particle[width - 1];
             view.vx[slot] = -3e38f;
             const uint64_t before = support_hash(network);

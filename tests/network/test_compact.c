@@ -339,7 +339,7 @@ static void steps_taken_for_the_explicit_solver_stay_the_same(void **state) {
     recipe_disturb(&made, 0.05, 0.5, &seed);
     for (mspring_id p = 0; p < made.particle_count; p++) {
         const mspring_particle_def *particle = &made.particles[p];
-        check_ok(mspring_network_set_positions(network, p, 1, &particle->x, &particle->y));
+        check_ok(mspring_network_set_positions(network, p, 1, &particle->x, &particle->y, 1));
     }
     size_t size;
     check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &size));

@@ -225,8 +225,8 @@ static void bad_selection_is_refused(void **state) {
     check_error(mspring_builder_add_network(builder, NULL, NULL, 0, NULL, NULL), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_builder_add_network(NULL, network, NULL, 0, NULL, NULL), MSPRING_ERROR_ARGUMENT);
     // A velocity that only a view lets in.
-    mspring_view view = {.struct_size = sizeof view};
-    check_ok(mspring_network_view(network, &view));
+    mspring_mutable_view view = {.struct_size = sizeof view};
+    check_ok(mspring_network_view_mutable(network, &view));
     view.vx[view.slot_of_particle[9]] = NAN;
     check_error(mspring_builder_add_network(builder, network, NULL, 0, NULL, NULL), MSPRING_ERROR_ARGUMENT);
     check_contains(mspring_builder_error(builder), "particle 9");

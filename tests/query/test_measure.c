@@ -37,7 +37,7 @@ static int make_moving(void **state) {
     for (mspring_id id = 0; id < m.made.particle_count; id++) {
         const float v = 1.5f;
         if (m.made.particles[id].flags != 0) {
-            check_ok(mspring_network_set_velocities(m.network, id, 1, &v, &v));
+            check_ok(mspring_network_set_velocities(m.network, id, 1, &v, &v, 1));
         }
     }
     *state = &m;
@@ -114,8 +114,8 @@ static void springs_tell_what_they_are_and_do(void **state) {
         check_ok(mspring_network_get_spring(m->network, id, &info));
         assert_int_equal(info.struct_size, sizeof info);
         assert_int_equal(info.flags, 0);
-        assert_int_equal(info.a, def->a < def->b ? def->a : def->b);
-        assert_int_equal(info.b, def->a < def->b ? def->b : def->a);
+        assert_int_equal(info.a, def->a);
+        assert_int_equal(info.b, def->b);
         assert_true(info.stiffness == def->stiffness && info.damping == def->damping);
         assert_true(info.rest_length == def->rest_length);
 
@@ -242,8 +242,8 @@ static void the_lowest_of_equal_strains_is_named(void **state) {
 
 static void the_hash_sees_every_bit_that_matters(void **state) {
     moving *m = *state;
-    mspring_view view = {.struct_size = sizeof view};
-    check_ok(mspring_network_view(m->network, &view));
+    mspring_mutable_view view = {.struct_size = sizeof view};
+    check_ok(mspring_network_view_mutable(m->network, &view));
     const uint64_t hash = support_hash(m->network);
     assert_int_equal(support_hash(m->network), hash);
     for (mspring_id id = 0; id < m->made.particle_count; id += 13) {
@@ -322,6 +322,98 @@ static void extents_are_those_of_each_spring(void **state) {
     }
 }
 
+/* --------------------------------------------------------------------------------------------- ends and flags */
+
+/// Check ends as ids, as pairs, and as slots, against those that were given.
+static void check_ends(const mspring_network *network, const recipe *made) {
+    const uint32_t count = made->spring_count;
+    mspring_view view = {.struct_size = sizeof view};
+    check_ok(mspring_network_view(network, &view));
+    uint32_t *a = malloc(count * sizeof *a), *b = malloc(count * sizeof *b), *pairs = malloc(2 * count * sizeof *a);
+    assert_true(a && b && pairs);
+    check_ok(mspring_network_get_ends(network, 0, count, MSPRING_ENDS_IDS, a, b, 1));
+    check_ok(mspring_network_get_ends(network, 0, count, MSPRING_ENDS_SLOTS, pairs, pairs + 1, 2));
+    for (mspring_id s = 0; s < count; s++) {
+        assert_int_equal(a[s], made->springs[s].a);
+        assert_int_equal(b[s], made->springs[s].b);
+        assert_int_equal(pairs[2 * s], view.slot_of_particle[a[s]]);
+        assert_int_equal(pairs[2 * s + 1], view.slot_of_particle[b[s]]);
+    }
+    // A part of them, and nothing around it.
+    b[0] = b[4] = 77;
+    check_ok(mspring_network_get_ends(network, 5, 3, MSPRING_ENDS_IDS, a, b + 1, 1));
+    assert_true(b[0] == 77 && b[4] == 77 && b[1] == made->springs[5].b && b[3] == made->springs[7].b);
+    free(a);
+    free(b);
+    free(pairs);
+}
+
+static void ends_come_as_they_were_given(void **state) {
+    (void)state;
+    for (uint64_t seed = 1; seed <= 6; seed++) {
+        uint64_t random = seed;
+        recipe made = recipe_mixed(seed);
+        if (seed % 2 == 0) {
+            recipe_shuffle(&made, &random, NULL);
+        }
+        for (mspring_id s = (mspring_id)seed % 3; s < made.spring_count; s += 1 + (mspring_id)seed) {
+            const mspring_id a = made.springs[s].a;
+            made.springs[s].a = made.springs[s].b;
+            made.springs[s].b = a;
+        }
+        mspring_network *network = recipe_network(&made, NULL), *copy = NULL;
+        check_ends(network, &made);
+        for (mspring_id s = 0; s < made.spring_count; s += 2) {
+            check_ok(mspring_network_break_springs(network, &s, 1));
+        }
+        mspring_view before = {.struct_size = sizeof before}, after = before;
+        check_ok(mspring_network_view(network, &before));
+        check_ok(mspring_network_compact(network));
+        check_ok(mspring_network_view(network, &after));
+        assert_int_not_equal(before.layout_generation, after.layout_generation);
+        check_ends(network, &made);
+        check_ok(mspring_network_clone(network, NULL, &copy));
+        check_ends(copy, &made);
+        check_ok(mspring_network_expand(network));
+        check_ends(network, &made);
+        mspring_network_destroy(network);
+        mspring_network_destroy(copy);
+        recipe_free(&made);
+    }
+}
+
+static void flags_are_those_of_each_spring(void **state) {
+    moving *m = *state;
+    const mspring_id broken = 3, removed = 4, stressed = 5;
+    const float tiny = 1e-6f;
+    uint32_t flags[2][6] = {{0}};
+    check_ok(mspring_network_set_stress_strains(m->network, stressed, 1, &tiny));
+    check_ok(mspring_network_break_springs(m->network, &broken, 1));
+    check_ok(mspring_network_remove_springs(m->network, &removed, 1));
+    check_ok(mspring_network_step(m->network, 1e-3));
+    check_ok(mspring_network_get_spring_flags(m->network, 2, 6, flags[0], 1));
+    const uint32_t expected[] = {
+        0, MSPRING_SPRING_BROKEN, MSPRING_SPRING_BROKEN | MSPRING_SPRING_REMOVED, MSPRING_SPRING_STRESSED, 0, 0};
+    assert_memory_equal(flags[0], expected, sizeof expected);
+    check_ok(mspring_network_get_spring_flags(m->network, 2, 6, flags[0], 2));
+    assert_int_equal(flags[0][4], expected[2]);
+    assert_int_equal(flags[1][0], expected[3]);
+    uint32_t a = 0, b = 0;
+    check_ok(mspring_network_get_ends(m->network, removed, 1, MSPRING_ENDS_SLOTS, &a, &b, 1));
+    assert_true(a == MSPRING_NONE && b == MSPRING_NONE);
+
+    mspring_network *network = m->network;
+    const uint32_t count = m->made.spring_count;
+    check_error(mspring_network_get_spring_flags(network, 0, 1, &a, 0), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_spring_flags(network, 0, 1, NULL, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_spring_flags(network, count, 1, &a, 1), MSPRING_ERROR_ID);
+    check_ok(mspring_network_get_spring_flags(network, count, 0, NULL, 1));
+    check_error(mspring_network_get_ends(network, 0, 1, 2, &a, &b, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_ends(network, 0, 1, MSPRING_ENDS_IDS, &a, NULL, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_ends(network, 0, 1, MSPRING_ENDS_IDS, &a, &b, 0), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_ends(network, 1, UINT32_MAX, MSPRING_ENDS_IDS, &a, &b, 1), MSPRING_ERROR_ID);
+}
+
 int main(void) {
 #define MEASURE_TEST(test) cmocka_unit_test_setup_teardown(test, make_moving, free_moving)
     const struct CMUnitTest tests[] = {
@@ -333,6 +425,8 @@ int main(void) {
         cmocka_unit_test(the_lowest_of_equal_strains_is_named),
         MEASURE_TEST(the_hash_sees_every_bit_that_matters),
         cmocka_unit_test(extents_are_those_of_each_spring),
+        cmocka_unit_test(ends_come_as_they_were_given),
+        MEASURE_TEST(flags_are_those_of_each_spring),
     };
     return cmocka_run_group_tests_name("measure", tests, NULL, NULL);
 }

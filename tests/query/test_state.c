@@ -4,9 +4,11 @@
 /// SPDX-License-Identifier: MIT
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "recipe.h"
+#include "snapshots.h"
 #include "support.h"
 
 /// A network with rows of every kind and empty slots between: a lattice with holes, a rope, loose particles.
@@ -91,13 +93,93 @@ static void views_show_the_state_and_follow_the_steps(void **state) {
 
 static void what_is_written_through_a_view_counts(void **state) {
     mspring_network *network = *state;
-    mspring_view view = {.struct_size = sizeof view};
-    check_ok(mspring_network_view(network, &view));
+    mspring_mutable_view view = {.struct_size = sizeof view};
+    check_ok(mspring_network_view_mutable(network, &view));
     uint32_t slot = view.slot_of_particle[7];
     view.x[slot] = 3.25f;
     view.vy[slot] = -2;
     assert_true(support_position(network, 7).x == view.origin_x + 3.25);
     assert_true(support_velocity(network, 7).y == -2);
+}
+
+/// Where a host keeps something by slot, it looks at two numbers to see whether that is still right.
+static void views_count_layouts_and_origins(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    for (uint32_t i = 0; i < 4; i++) {
+        support_particle(builder, i, 0, 1);
+    }
+    mspring_network_def def = support_def(0, 1);
+    def.spare_particles = 2;
+    mspring_network *network = support_network(builder, &def);
+    mspring_view first = {.struct_size = sizeof first}, next = first;
+    check_ok(mspring_network_view(network, &first));
+    support_steps(network, 3, 0.01);
+    check_ok(mspring_network_view(network, &next));
+    assert_int_equal(next.layout_generation, first.layout_generation);
+    assert_int_equal(next.origin_generation, first.origin_generation);
+
+    mspring_particle_def added;
+    mspring_id id;
+    check_ok(mspring_particle_def_init(&added, sizeof added));
+    check_ok(mspring_network_add_particles(network, &added, 1, &id));
+    check_ok(mspring_network_view(network, &first));
+    assert_int_not_equal(next.layout_generation, first.layout_generation);
+    check_ok(mspring_network_remove_particles(network, &id, 1));
+    check_ok(mspring_network_view(network, &next));
+    assert_int_not_equal(next.layout_generation, first.layout_generation);
+    assert_int_equal(next.origin_generation, first.origin_generation);
+
+    saved before = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
+    for (mspring_id p = 0; p < 4; p++) {
+        support_kick(network, p, 1000);
+    }
+    support_steps(network, 10, 0.1);
+    check_ok(mspring_network_view(network, &next));
+    assert_true(next.origin_x > 100);
+    assert_int_not_equal(next.origin_generation, first.origin_generation);
+    check_ok(mspring_network_load(network, before.bytes, before.size));
+    check_ok(mspring_network_view(network, &first));
+    assert_true(first.origin_x < 100);
+    assert_int_not_equal(next.origin_generation, first.origin_generation);
+    free(before.bytes);
+    mspring_network_destroy(network);
+}
+
+/// What is written where no particle is does no harm, whenever the step after it has something to do.
+static void writing_where_nobody_is_does_nothing(void **state) {
+    (void)state;
+    for (int asleep = 0; asleep < 2; asleep++) {
+        mspring_builder *builder = support_builder();
+        support_particle(builder, 0, 0, 1);
+        support_particle(builder, 1, 0, 1);
+        mspring_network_def def = support_def(0, 1);
+        def.sleep_speed = asleep ? 1 : 0;
+        def.sleep_time = 0;
+        def.spare_particles = 40;
+        mspring_network *network = support_network(builder, &def);
+        support_steps(network, 2, 0.01);
+        assert_int_equal(mspring_network_is_asleep(network), asleep);
+        const uint64_t before = support_hash(network);
+        mspring_mutable_view view = {.struct_size = sizeof view};
+        check_ok(mspring_network_view_mutable(network, &view));
+        for (uint32_t slot = 0; slot < view.slot_count; slot++) {
+            if (view.particle_of_slot[slot] == MSPRING_NONE) {
+                view.x[slot] = view.y[slot] = view.vx[slot] = view.vy[slot] = NAN;
+            }
+        }
+        support_steps(network, 2, 0.01);
+        assert_int_equal(mspring_network_is_asleep(network), asleep);
+        assert_int_equal(support_hash(network), before);
+        mspring_particle_def added;
+        mspring_id id;
+        check_ok(mspring_particle_def_init(&added, sizeof added));
+        check_ok(mspring_network_add_particles(network, &added, 1, &id));
+        support_kick(network, 0, 10);
+        support_steps(network, 2, 0.01);
+        assert_true(support_position(network, id).x == 0);
+        mspring_network_destroy(network);
+    }
 }
 
 static void bad_views_are_refused(void **state) {
@@ -112,6 +194,11 @@ static void bad_views_are_refused(void **state) {
     check_error(mspring_network_view(network, &view), MSPRING_ERROR_STRUCT);
     check_error(mspring_network_view(network, NULL), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_view(NULL, &view), MSPRING_ERROR_ARGUMENT);
+    mspring_mutable_view to = {.struct_size = sizeof to - 1};
+    check_error(mspring_network_view_mutable(network, &to), MSPRING_ERROR_STRUCT);
+    check_contains(mspring_network_error(network), "mspring_mutable_view");
+    check_error(mspring_network_view_mutable(network, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_view_mutable(NULL, &to), MSPRING_ERROR_ARGUMENT);
 }
 
 /* -------------------------------------------------------------------------------------------------- ranges */
@@ -124,8 +211,8 @@ static void ranges_read_and_write_in_id_order(void **state) {
     double x[MANY], y[MANY], x2[MANY], y2[MANY];
     float fx[MANY], fy[MANY], vx[MANY], vy[MANY];
     assert_true(count <= MANY);
-    check_ok(mspring_network_get_positions(network, 0, count, x, y));
-    check_ok(mspring_network_get_positions_float(network, 0, count, fx, fy));
+    check_ok(mspring_network_get_positions(network, 0, count, x, y, 1));
+    check_ok(mspring_network_get_positions_float(network, 0, count, fx, fy, 1));
     for (uint32_t i = 0; i < count; i++) {
         support_point one = support_position(network, i);
         assert_true(one.x == x[i] && one.y == y[i] && fx[i] == (float)x[i] && fy[i] == (float)y[i]);
@@ -138,9 +225,9 @@ static void ranges_read_and_write_in_id_order(void **state) {
         vx[i] = (float)i;
         vy[i] = (float)-i;
     }
-    check_ok(mspring_network_set_positions(network, 5, 10, x + 5, y + 5));
-    check_ok(mspring_network_set_velocities(network, 5, 10, vx, vy));
-    check_ok(mspring_network_get_positions(network, 0, count, x2, y2));
+    check_ok(mspring_network_set_positions(network, 5, 10, x + 5, y + 5, 1));
+    check_ok(mspring_network_set_velocities(network, 5, 10, vx, vy, 1));
+    check_ok(mspring_network_get_positions(network, 0, count, x2, y2, 1));
     assert_memory_equal(x, x2, count * sizeof *x);
     assert_memory_equal(y, y2, count * sizeof *y);
     for (mspring_id id = 5; id < 15; id++) {
@@ -154,11 +241,11 @@ static void ranges_read_and_write_in_id_order(void **state) {
         fx[i] = (float)i;
         fy[i] = (float)(count - i);
     }
-    check_ok(mspring_network_set_positions_float(network, 20, 3, fx + 20, fy + 20));
+    check_ok(mspring_network_set_positions_float(network, 20, 3, fx + 20, fy + 20, 1));
     assert_true(support_position(network, 22).x == 22 && support_position(network, 22).y == count - 22);
     assert_true(support_position(network, 23).x == x2[23]);
-    check_ok(mspring_network_get_positions(network, count, 0, x2, y2));
-    check_ok(mspring_network_set_positions(network, count, 0, x2, y2));
+    check_ok(mspring_network_get_positions(network, count, 0, x2, y2, 1));
+    check_ok(mspring_network_set_positions(network, count, 0, x2, y2, 1));
 }
 
 static void ranges_that_leave_the_network_are_refused(void **state) {
@@ -174,14 +261,14 @@ static void ranges_that_leave_the_network_are_refused(void **state) {
     for (size_t i = 0; i < COUNT_OF(bad); i++) {
         mspring_id first = bad[i].first;
         uint32_t n = bad[i].count;
-        check_error(mspring_network_get_positions(network, first, n, x, y), MSPRING_ERROR_ID);
-        check_error(mspring_network_get_positions_float(network, first, n, fx, fy), MSPRING_ERROR_ID);
-        check_error(mspring_network_get_velocities(network, first, n, fx, fy), MSPRING_ERROR_ID);
+        check_error(mspring_network_get_positions(network, first, n, x, y, 1), MSPRING_ERROR_ID);
+        check_error(mspring_network_get_positions_float(network, first, n, fx, fy, 1), MSPRING_ERROR_ID);
+        check_error(mspring_network_get_velocities(network, first, n, fx, fy, 1), MSPRING_ERROR_ID);
         check_error(mspring_network_get_masses(network, first, n, fx), MSPRING_ERROR_ID);
-        check_error(mspring_network_set_positions(network, first, n, x, y), MSPRING_ERROR_ID);
-        check_error(mspring_network_set_positions_float(network, first, n, fx, fy), MSPRING_ERROR_ID);
-        check_error(mspring_network_set_velocities(network, first, n, fx, fy), MSPRING_ERROR_ID);
-        check_error(mspring_network_apply_forces(network, first, n, fx, fy), MSPRING_ERROR_ID);
+        check_error(mspring_network_set_positions(network, first, n, x, y, 1), MSPRING_ERROR_ID);
+        check_error(mspring_network_set_positions_float(network, first, n, fx, fy, 1), MSPRING_ERROR_ID);
+        check_error(mspring_network_set_velocities(network, first, n, fx, fy, 1), MSPRING_ERROR_ID);
+        check_error(mspring_network_apply_forces(network, first, n, fx, fy, 1), MSPRING_ERROR_ID);
     }
     check_error(mspring_network_apply_force(network, count, 1, 1), MSPRING_ERROR_ID);
     check_error(mspring_network_apply_force(network, MSPRING_NONE, 1, 1), MSPRING_ERROR_ID);
@@ -194,24 +281,24 @@ static void null_arrays_are_refused(void **state) {
     double d[2] = {0, 0};
     float f[2] = {0, 0};
     const uint64_t hash = support_hash(network);
-    check_error(mspring_network_get_positions(network, 0, 2, NULL, d), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_get_positions(network, 0, 2, d, NULL), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_get_positions_float(network, 0, 2, NULL, f), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_get_velocities(network, 0, 2, f, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_positions(network, 0, 2, NULL, d, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_positions(network, 0, 2, d, NULL, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_positions_float(network, 0, 2, NULL, f, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_velocities(network, 0, 2, f, NULL, 1), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_get_masses(network, 0, 2, NULL), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_set_positions(network, 0, 2, NULL, d), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_set_positions_float(network, 0, 2, f, NULL), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_set_velocities(network, 0, 2, NULL, f), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_apply_forces(network, 0, 2, NULL, f), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_positions(network, 0, 2, NULL, d, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_positions_float(network, 0, 2, f, NULL, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_velocities(network, 0, 2, NULL, f, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_apply_forces(network, 0, 2, NULL, f, 1), MSPRING_ERROR_ARGUMENT);
 
-    check_error(mspring_network_get_positions(NULL, 0, 1, d, d), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_get_positions_float(NULL, 0, 1, f, f), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_get_velocities(NULL, 0, 1, f, f), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_positions(NULL, 0, 1, d, d, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_positions_float(NULL, 0, 1, f, f, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_velocities(NULL, 0, 1, f, f, 1), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_get_masses(NULL, 0, 1, f), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_set_positions(NULL, 0, 1, d, d), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_set_positions_float(NULL, 0, 1, f, f), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_set_velocities(NULL, 0, 1, f, f), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_apply_forces(NULL, 0, 1, f, f), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_positions(NULL, 0, 1, d, d, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_positions_float(NULL, 0, 1, f, f, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_velocities(NULL, 0, 1, f, f, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_apply_forces(NULL, 0, 1, f, f, 1), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_apply_force(NULL, 0, 1, 1), MSPRING_ERROR_ARGUMENT);
     assert_int_equal(support_hash(network), hash);
 }
@@ -228,25 +315,25 @@ static void writes_are_all_or_nothing_and_name_the_particle(void **state) {
         fx[i] = fy[i] = (float)i;
     }
     fx[97] = 1.001e15f; // too fast
-    check_error(mspring_network_set_velocities(network, 0, count, fx, fy), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_velocities(network, 0, count, fx, fy, 1), MSPRING_ERROR_ARGUMENT);
     check_contains(mspring_network_error(network), "97");
     for (size_t i = 0; i < COUNT_OF(bad); i++) {
         x[97] = bad[i];
         fx[97] = (float)bad[i];
-        check_error(mspring_network_set_positions(network, 0, count, x, y), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_set_positions(network, 0, count, x, y, 1), MSPRING_ERROR_ARGUMENT);
         check_contains(mspring_network_error(network), "97");
-        check_error(mspring_network_set_positions(network, 0, count, y, x), MSPRING_ERROR_ARGUMENT);
-        check_error(mspring_network_set_positions(network, 0, 100, x, y), MSPRING_ERROR_ARGUMENT);
-        check_error(mspring_network_set_positions_float(network, 0, count, fx, fy), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_set_positions(network, 0, count, y, x, 1), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_set_positions(network, 0, 100, x, y, 1), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_set_positions_float(network, 0, count, fx, fy, 1), MSPRING_ERROR_ARGUMENT);
         check_contains(mspring_network_error(network), "97");
-        check_error(mspring_network_set_positions_float(network, 0, 100, fy, fx), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_set_positions_float(network, 0, 100, fy, fx, 1), MSPRING_ERROR_ARGUMENT);
         if (!isfinite(bad[i])) {
-            check_error(mspring_network_set_velocities(network, 0, count, fx, fy), MSPRING_ERROR_ARGUMENT);
+            check_error(mspring_network_set_velocities(network, 0, count, fx, fy, 1), MSPRING_ERROR_ARGUMENT);
             check_contains(mspring_network_error(network), "97");
-            check_error(mspring_network_set_velocities(network, 0, count, fy, fx), MSPRING_ERROR_ARGUMENT);
-            check_error(mspring_network_apply_forces(network, 0, count, fx, fy), MSPRING_ERROR_ARGUMENT);
+            check_error(mspring_network_set_velocities(network, 0, count, fy, fx, 1), MSPRING_ERROR_ARGUMENT);
+            check_error(mspring_network_apply_forces(network, 0, count, fx, fy, 1), MSPRING_ERROR_ARGUMENT);
             check_contains(mspring_network_error(network), "97");
-            check_error(mspring_network_apply_forces(network, 0, count, fy, fx), MSPRING_ERROR_ARGUMENT);
+            check_error(mspring_network_apply_forces(network, 0, count, fy, fx, 1), MSPRING_ERROR_ARGUMENT);
             check_error(mspring_network_apply_force(network, 97, fx[97], 0), MSPRING_ERROR_ARGUMENT);
             check_error(mspring_network_apply_force(network, 97, 0, fx[97]), MSPRING_ERROR_ARGUMENT);
         }
@@ -267,12 +354,12 @@ static void setting_all_positions_moves_the_origin(void **state) {
     mspring_network *network = *state;
     const uint32_t count = mspring_network_particle_count(network);
     double x[MANY], y[MANY];
-    check_ok(mspring_network_get_positions(network, 0, count, x, y));
+    check_ok(mspring_network_get_positions(network, 0, count, x, y, 1));
     for (uint32_t i = 0; i < count; i++) {
         x[i] += 123456789.3;
         y[i] -= 987654321.7;
     }
-    check_ok(mspring_network_set_positions(network, 0, count, x, y));
+    check_ok(mspring_network_set_positions(network, 0, count, x, y, 1));
     mspring_view view = {.struct_size = sizeof view};
     check_ok(mspring_network_view(network, &view));
     for (uint32_t i = 0; i < count; i++) {
@@ -285,7 +372,7 @@ static void setting_all_positions_moves_the_origin(void **state) {
     // A part of them leaves the origin where it is, also when it goes far away.
     const double far_x[] = {x[3] + 1e6}, far_y[] = {y[3]};
     mspring_view again = {.struct_size = sizeof again};
-    check_ok(mspring_network_set_positions(network, 3, 1, far_x, far_y));
+    check_ok(mspring_network_set_positions(network, 3, 1, far_x, far_y, 1));
     check_ok(mspring_network_view(network, &again));
     assert_true(view.origin_x == again.origin_x && view.origin_y == again.origin_y);
     check_near(support_position(network, 3).x, far_x[0], 0.04); // half an ulp of 1e6 is 1/32
@@ -299,12 +386,117 @@ static void parts_may_not_go_too_far_from_the_origin(void **state) {
         x[i] = -9e11 + i;
         y[i] = i;
     }
-    check_ok(mspring_network_set_positions(network, 0, count, x, y));
+    check_ok(mspring_network_set_positions(network, 0, count, x, y, 1));
     const uint64_t hash = support_hash(network);
     const double opposite = 9e11, zero = 0; // within the world's bounds, but 1.8e12 m from the origin
-    check_error(mspring_network_set_positions(network, 4, 1, &opposite, &zero), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_positions(network, 4, 1, &opposite, &zero, 1), MSPRING_ERROR_ARGUMENT);
     check_contains(mspring_network_error(network), "4");
     assert_int_equal(support_hash(network), hash);
+}
+
+/* ------------------------------------------------------------------------------------ strides and impulses */
+
+/// Points {x, y} side by side, fields of structs, and one value for all.
+static void arrays_may_have_strides(void **state) {
+    mspring_network *network = *state;
+    const uint32_t count = 9;
+    double x[9], y[9], points[9][3];
+    float vx[9], vy[9], arrows[9][2], near_points[9][2];
+    memset(points, 0, sizeof points);
+    check_ok(mspring_network_get_positions(network, 2, count, x, y, 1));
+    check_ok(mspring_network_get_positions(network, 2, count, &points[0][0], &points[0][2], 3));
+    check_ok(mspring_network_get_positions_float(network, 2, count, &near_points[0][0], &near_points[0][1], 2));
+    check_ok(mspring_network_get_velocities(network, 2, count, vx, vy, 1));
+    check_ok(mspring_network_get_velocities(network, 2, count, &arrows[0][0], &arrows[0][1], 2));
+    for (uint32_t i = 0; i < count; i++) {
+        assert_true(points[i][0] == x[i] && points[i][1] == 0 && points[i][2] == y[i]);
+        assert_true(near_points[i][0] == (float)x[i] && near_points[i][1] == (float)y[i]);
+        assert_true(arrows[i][0] == vx[i] && arrows[i][1] == vy[i]);
+        points[i][0] += 0.25;
+        near_points[i][1] = 0.5f * (float)i;
+        arrows[i][1] = (float)i;
+    }
+    check_ok(mspring_network_set_positions(network, 2, count, &points[0][0], &points[0][2], 3));
+    check_ok(mspring_network_set_velocities(network, 2, count, &arrows[0][0], &arrows[0][1], 2));
+    for (uint32_t i = 0; i < count; i++) {
+        check_near(support_position(network, 2 + i).x, x[i] + 0.25, 1e-6);
+        assert_true(support_velocity(network, 2 + i).y == i);
+    }
+    const mspring_id list[] = {5, 3};
+    check_ok(mspring_network_set_positions_float_at(network, list, 2, &near_points[0][0], &near_points[0][1], 2));
+    check_near(support_position(network, 3).y, 0.5, 1e-6);
+    check_near(support_position(network, 5).x, x[0], 1e-6);
+    const float still = 0, force = 2;
+    check_ok(mspring_network_set_velocities_at(network, list, 2, &still, &still, 0));
+    assert_true(support_velocity(network, 5).y == 0 && support_velocity(network, 3).y == 0);
+    check_ok(mspring_network_apply_forces(network, 0, count, &force, &still, 0));
+
+    // What is read into one element is a mistake.
+    check_error(mspring_network_get_positions(network, 0, 2, x, y, 0), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_velocities(network, 0, 2, vx, vy, 0), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_positions_float(network, 0, 2, vx, vy, 0), MSPRING_ERROR_ARGUMENT);
+}
+
+/// Three particles: of 2 kg, of 4 kg that gives in by half, and a pinned one.
+static mspring_network *three_particles(void) {
+    mspring_builder *builder = support_builder();
+    support_particle(builder, 0, 0, 2);
+    support_particle(builder, 1, 0, 4);
+    support_particle(builder, 2, 0, 1);
+    mspring_network_def def = support_def(0, 1);
+    def.sleep_speed = 0.1f;
+    def.sleep_time = 0;
+    mspring_network *network = support_network(builder, &def);
+    const float scales[] = {1, 0.5f, 0};
+    check_ok(mspring_network_set_inverse_mass_scales(network, 0, 3, scales));
+    return network;
+}
+
+static void impulses_change_velocities_at_once(void **state) {
+    (void)state;
+    mspring_network *network = three_particles();
+    support_steps(network, 2, 0.01);
+    assert_int_equal(mspring_network_is_asleep(network), 1);
+    const float x[] = {1, 8, 3}, y[] = {-2, 0, 3};
+    check_ok(mspring_network_apply_impulses(network, 0, 3, x, y, 1));
+    assert_true(support_velocity(network, 0).x == 0.5 && support_velocity(network, 0).y == -1);
+    assert_true(support_velocity(network, 1).x == 1 && support_velocity(network, 1).y == 0);
+    assert_true(support_velocity(network, 2).x == 0 && support_velocity(network, 2).y == 0);
+    support_steps(network, 1, 0.5);
+    assert_int_equal(mspring_network_is_asleep(network), 0);
+    check_near(support_position(network, 0).x, 0.25, 1e-6);
+    // They add up, within a list as well, and act once.
+    const mspring_id list[] = {0, 1, 0};
+    const float pairs[] = {1, 0, 4, 4, 1, 2};
+    check_ok(mspring_network_apply_impulses_at(network, list, 3, pairs, pairs + 1, 2));
+    assert_true(support_velocity(network, 0).x == 1.5 && support_velocity(network, 0).y == 0);
+    assert_true(support_velocity(network, 1).x == 1.5 && support_velocity(network, 1).y == 0.5);
+    mspring_network_destroy(network);
+}
+
+static void bad_impulses_change_nothing(void **state) {
+    (void)state;
+    mspring_network *network = three_particles();
+    const uint64_t before = support_hash(network);
+    const float bad[][3] = {{1, NAN, 1}, {1, 1, INFINITY}, {1, 8.1e15f, 1}, {2.1e15f, 1, 1}};
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        check_error(mspring_network_apply_impulses(network, 0, 3, bad[i], bad[i], 1), MSPRING_ERROR_ARGUMENT);
+        assert_int_equal(support_hash(network), before);
+    }
+    // Two that are right alone, and not together.
+    const mspring_id list[] = {1, 0, 0};
+    const float large[] = {1, 1.5e15f, 1.5e15f};
+    check_error(mspring_network_apply_impulses_at(network, list, 3, large, large, 1), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_network_error(network), "particle 0");
+    assert_int_equal(support_hash(network), before);
+    const float forces[] = {1, 3e38f, 3e38f};
+    check_error(mspring_network_apply_forces_at(network, list, 3, forces, forces, 1), MSPRING_ERROR_ARGUMENT);
+    support_steps(network, 1, 0.01);
+    assert_int_equal(support_hash(network), before);
+    const mspring_id nobody = 3;
+    check_error(mspring_network_apply_impulses(network, 1, 3, large, large, 1), MSPRING_ERROR_ID);
+    check_error(mspring_network_apply_impulses_at(network, &nobody, 1, large, large, 1), MSPRING_ERROR_ID);
+    mspring_network_destroy(network);
 }
 
 int main(void) {
@@ -313,7 +505,12 @@ int main(void) {
         STATE_TEST(slots_and_ids_are_inverse_maps),
         STATE_TEST(views_show_the_state_and_follow_the_steps),
         STATE_TEST(what_is_written_through_a_view_counts),
+        cmocka_unit_test(views_count_layouts_and_origins),
+        cmocka_unit_test(writing_where_nobody_is_does_nothing),
         STATE_TEST(bad_views_are_refused),
+        STATE_TEST(arrays_may_have_strides),
+        cmocka_unit_test(impulses_change_velocities_at_once),
+        cmocka_unit_test(bad_impulses_change_nothing),
         STATE_TEST(ranges_read_and_write_in_id_order),
         STATE_TEST(ranges_that_leave_the_network_are_refused),
         STATE_TEST(null_arrays_are_refused),

@@ -90,8 +90,8 @@ static void check_places(const mspring_network *asleep, const mspring_network *a
         at[i] = malloc(count * sizeof *at[i]);
         assert_non_null(at[i]);
     }
-    check_ok(mspring_network_get_positions(asleep, 0, count, at[0], at[1]));
-    check_ok(mspring_network_get_positions(awake, 0, count, at[2], at[3]));
+    check_ok(mspring_network_get_positions(asleep, 0, count, at[0], at[1], 1));
+    check_ok(mspring_network_get_positions(awake, 0, count, at[2], at[3], 1));
     for (mspring_id p = 0; p < count; p++) {
         const bool still = support_sleeps(asleep, p);
         check_near(at[0][p], still ? x[p] : at[2][p], 0);
@@ -109,7 +109,7 @@ static uint32_t kick_and_compare(mspring_network *network, mspring_id particle) 
     check_ok(mspring_network_clone(network, NULL, &awake));
     double *x = malloc(count * sizeof *x), *y = malloc(count * sizeof *y);
     assert_true(x != NULL && y != NULL);
-    check_ok(mspring_network_get_positions(network, 0, count, x, y));
+    check_ok(mspring_network_get_positions(network, 0, count, x, y, 1));
     support_kick(network, particle, 3);
     support_kick(awake, particle, 3);
     uint32_t moving = 0;
@@ -346,8 +346,8 @@ static void neighbours_in_a_vector_wake_together(void **state) {
     (void)state;
     mspring_id broken;
     mspring_network *network = make_two(MSPRING_SOLVER_EXPLICIT, &broken);
-    mspring_view view = {.struct_size = sizeof view};
-    check_ok(mspring_network_view(network, &view));
+    mspring_mutable_view view = {.struct_size = sizeof view};
+    check_ok(mspring_network_view_mutable(network, &view));
     // The rope's halves hang on A and B.
     const uint32_t a = view.slot_of_particle[ROPE + 4], b = view.slot_of_particle[ROPE + 5];
     assert_int_equal(a / 16, b / 16);
@@ -720,7 +720,7 @@ static void the_floor_bears_sleepers(void **state) {
             support_steps(network, 1, DT);
         }
         const double high = 100, there = 60;
-        check_ok(mspring_network_set_positions(network, LOOSE, 1, &there, &high));
+        check_ok(mspring_network_set_positions(network, LOOSE, 1, &there, &high, 1));
         support_steps(network, 1, DT);
         float x[160], y[160];
         double sum = 0, weight = 0;
@@ -728,7 +728,7 @@ static void the_floor_bears_sleepers(void **state) {
             support_steps(network, 1, DT);
             assert_int_equal(support_sleeps(network, IN_A), 1);
             assert_int_equal(support_sleeps(network, LOOSE), 0);
-            check_ok(mspring_network_get_floor_impulses(network, 0, 160, x, y));
+            check_ok(mspring_network_get_floor_impulses(network, 0, 160, x, y, 1));
             sum = weight = 0;
             for (mspring_id p = 0; p < 160; p++) {
                 float mass;

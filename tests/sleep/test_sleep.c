@@ -101,10 +101,10 @@ static void what_moves_does_not_sleep(void **state) {
     // A pin on its way, however slow.
     network = make(&made);
     const float slow = 1e-4f, none = 0;
-    check_ok(mspring_network_set_velocities(network, 100, 1, &none, &slow));
+    check_ok(mspring_network_set_velocities(network, 100, 1, &none, &slow, 1));
     support_steps(network, 2000, DT);
     assert_int_equal(mspring_network_is_asleep(network), 0);
-    check_ok(mspring_network_set_velocities(network, 100, 1, &none, &none));
+    check_ok(mspring_network_set_velocities(network, 100, 1, &none, &none, 1));
     support_fall_asleep(network, DT);
     mspring_network_destroy(network);
     // What falls at the speed that gravity and damping leave it.
@@ -141,7 +141,7 @@ static void as_slow_as_sleep_speed_is_slow_enough(void **state) {
                 {0, -0.25f - 0x1p-24f, 0}};
     for (size_t i = 0; i < COUNT_OF(ways); i++) {
         mspring_network *network = make_flying(0.5f);
-        check_ok(mspring_network_set_velocities(network, 0, 1, &ways[i].vx, &ways[i].vy));
+        check_ok(mspring_network_set_velocities(network, 0, 1, &ways[i].vx, &ways[i].vy, 1));
         support_steps(network, 31, DT);
         assert_int_equal(mspring_network_is_asleep(network), 0);
         support_steps(network, 1, DT);
@@ -154,11 +154,11 @@ static void without_sleep_time_the_first_still_step_is_enough(void **state) {
     (void)state;
     mspring_network *network = make_flying(0);
     const float fast = 1, slow = 0.1f, none = 0;
-    check_ok(mspring_network_set_velocities(network, 0, 1, &fast, &none));
+    check_ok(mspring_network_set_velocities(network, 0, 1, &fast, &none, 1));
     support_steps(network, 10, DT);
     assert_int_equal(mspring_network_is_asleep(network), 0);
     check_near(support_position(network, 0).x, 10 * DT, 0);
-    check_ok(mspring_network_set_velocities(network, 0, 1, &slow, &none));
+    check_ok(mspring_network_set_velocities(network, 0, 1, &slow, &none, 1));
     support_steps(network, 1, DT);
     assert_int_equal(mspring_network_is_asleep(network), 1);
     mspring_network_destroy(network);
@@ -254,8 +254,8 @@ static void what_stays_the_same_wakes_nothing(void **state) {
         const float none = 0;
         check_ok(mspring_network_get_masses(network, 0, made.particle_count, mass));
         check_ok(mspring_network_set_masses(network, 0, made.particle_count, mass));
-        check_ok(mspring_network_set_positions(network, 3, 1, &at.x, &at.y));
-        check_ok(mspring_network_set_velocities(network, 3, 1, &none, &none));
+        check_ok(mspring_network_set_positions(network, 3, 1, &at.x, &at.y, 1));
+        check_ok(mspring_network_set_velocities(network, 3, 1, &none, &none, 1));
         check_ok(support_set_gravity(network, 0, -9.8f));
         check_ok(support_set_global_damping(network, (float)i));
         // 0.005 N on at least 1 kg for 0.5 s: 0.0025 m/s.
@@ -505,7 +505,7 @@ static double floor_impulse(const mspring_network *network) {
     enum { COUNT = 21 };
     float x[COUNT], y[COUNT];
     double sum = 0;
-    check_ok(mspring_network_get_floor_impulses(network, 0, COUNT, x, y));
+    check_ok(mspring_network_get_floor_impulses(network, 0, COUNT, x, y, 1));
     for (int i = 0; i < COUNT; i++) {
         sum += (double)y[i];
     }
@@ -540,11 +540,11 @@ static void it_wakes_where_it_is_put(void **state) {
     (void)state;
     mspring_network *network = make_lying(0);
     double x[21], y[21], up[21];
-    check_ok(mspring_network_get_positions(network, 0, 21, x, y));
+    check_ok(mspring_network_get_positions(network, 0, 21, x, y, 1));
     for (int i = 0; i < 21; i++) {
         up[i] = y[i] + 10;
     }
-    check_ok(mspring_network_set_positions(network, 0, 21, x, up));
+    check_ok(mspring_network_set_positions(network, 0, 21, x, up, 1));
     assert_int_equal(mspring_network_is_asleep(network), 0);
     support_fall_asleep(network, DT);
     for (mspring_id p = 0; p < 21; p++) {
@@ -627,7 +627,7 @@ static mspring_network *two_weights_after_a_refusal(void) {
     const support_point at = support_position(network, 1);
     change_shift(network, 1, MSPRING_NONE);
     try_a_step(network);
-    check_ok(mspring_network_set_positions(network, 1, 1, &at.x, &at.y));
+    check_ok(mspring_network_set_positions(network, 1, 1, &at.x, &at.y, 1));
     return network;
 }
 
@@ -706,7 +706,7 @@ static void another_relax_fraction_wakes_it(void **state) {
     }
     check_ok(support_set_relax_fraction(network, 0));
     const float kick = 20;
-    check_ok(mspring_network_set_velocities(network, 50, 1, &kick, &kick));
+    check_ok(mspring_network_set_velocities(network, 50, 1, &kick, &kick, 1));
     support_fall_asleep(network, DT);
     mspring_event events[1000];
     uint32_t events_read;

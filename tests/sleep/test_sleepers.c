@@ -220,14 +220,14 @@ static uint64_t loose_session(mspring_simd level, uint32_t workers, uint32_t sub
     assert_int_equal(support_sleeps(network, IN_A), 0);
     print = print * 31 + support_hash(network);
 
-    check_ok(mspring_network_get_positions(network, first, LOOSE, x, y));
+    check_ok(mspring_network_get_positions(network, first, LOOSE, x, y, 1));
     support_kick(network, pushed, 3);
     for (int frame = 0; frame < 10; frame++) {
         support_kick(network, IN_A, 1);
         support_steps(network, 1, DT);
     }
     check_ok(mspring_network_get_sleepers(network, first, LOOSE, asleep));
-    check_ok(mspring_network_get_positions(network, first, LOOSE, to_x, to_y));
+    check_ok(mspring_network_get_positions(network, first, LOOSE, to_x, to_y, 1));
     for (uint32_t i = 0; i < LOOSE; i++) {
         const bool is_pushed = first + i == pushed;
         assert_int_equal(asleep[i], !is_pushed);

@@ -389,7 +389,7 @@ static mspring_network *half_asleep(void) {
         support_steps(network, 1, 0.01);
     }
     const float kick = 0.1f;
-    check_ok(mspring_network_set_velocities(network, 20, 1, &kick, &kick));
+    check_ok(mspring_network_set_velocities(network, 20, 1, &kick, &kick, 1));
     uint8_t asleep = 1;
     uint64_t size = 0, first = 0;
     for (int i = 0; i < 200; i++) { // until it is slow, which makes the snapshot longer

@@ -252,7 +252,7 @@ static void settings_may_be_all_that_they_can_be(void **state) {
         for (mspring_solver kind = MSPRING_SOLVER_EXPLICIT; kind <= MSPRING_SOLVER_DIRECT; kind++) {
             mspring_network *network = extreme_network(&sets[i], kind), *other = extreme_network(&usual, kind);
             const double x = MSPRING_MAX_COORDINATE - 3, y = 1 - MSPRING_MAX_COORDINATE;
-            check_ok(mspring_network_set_positions(network, 0, 1, &x, &y)); // it is elsewhere in the other
+            check_ok(mspring_network_set_positions(network, 0, 1, &x, &y, 1)); // it is elsewhere in the other
             if (sets[i].substeps == 1) {
                 support_steps(network, 1, 0.01); // the guard knows the damping of its last look, too
             }
@@ -374,7 +374,7 @@ static void loading_leaves_no_events_and_no_rounding_mode(void **state) {
     const float strain = 1e-3f, fast = 20;
     check_ok(mspring_network_reserve_events(network, 10));
     check_ok(mspring_network_set_break_strains(network, 0, 1, &strain));
-    check_ok(mspring_network_set_velocities(network, 0, 1, &fast, &fast));
+    check_ok(mspring_network_set_velocities(network, 0, 1, &fast, &fast, 1));
     support_steps(network, 3, 0.01);
     const int mode = fegetround();
     assert_int_equal(fesetround(FE_UPWARD), 0);
@@ -390,7 +390,7 @@ static void loading_leaves_no_events_and_no_rounding_mode(void **state) {
     assert_int_equal(count, 0);
     // They were there.
     check_ok(mspring_network_set_break_strains(network, 0, 1, &strain));
-    check_ok(mspring_network_set_velocities(network, 0, 1, &fast, &fast));
+    check_ok(mspring_network_set_velocities(network, 0, 1, &fast, &fast, 1));
     support_steps(network, 3, 0.01);
     check_ok(mspring_network_read_events(network, &event, 1, &count, NULL));
     assert_int_equal(count, 1);

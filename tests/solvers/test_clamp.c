@@ -157,7 +157,7 @@ static void particles_in_one_place_have_no_direction(void **state) {
     def.guard = MSPRING_GUARD_CLAMP;
     mspring_network *network = support_network(builder, &def);
     const double x[4] = {2, 2, 2, 2}, y[4] = {0, 0, 0, 0};
-    check_ok(mspring_network_set_positions(network, 0, 4, x, y));
+    check_ok(mspring_network_set_positions(network, 0, 4, x, y, 1));
     support_steps(network, 100, DT);
     for (mspring_id p = 0; p < 4; p++) {
         check_near(support_position(network, p).x, 2, 0);
@@ -165,7 +165,7 @@ static void particles_in_one_place_have_no_direction(void **state) {
     }
     // A nudge, and they find their distances.
     const float nudge = 1e-3f;
-    check_ok(mspring_network_set_velocities(network, a, 1, &nudge, &nudge));
+    check_ok(mspring_network_set_velocities(network, a, 1, &nudge, &nudge, 1));
     support_steps(network, 2000, DT);
     const support_point at_a = support_position(network, a), at_b = support_position(network, b);
     check_near(hypot(at_b.x - 2, at_b.y), 1, 1e-3);

@@ -65,8 +65,8 @@ typedef struct sight {
 } sight;
 
 static void look(const mspring_network *network, sight *out) {
-    check_ok(mspring_network_get_positions(network, 0, PARTICLES, out->x, out->y));
-    check_ok(mspring_network_get_velocities(network, 0, PARTICLES, out->vx, out->vy));
+    check_ok(mspring_network_get_positions(network, 0, PARTICLES, out->x, out->y, 1));
+    check_ok(mspring_network_get_velocities(network, 0, PARTICLES, out->vx, out->vy, 1));
     check_ok(mspring_network_get_sleepers(network, 0, PARTICLES, out->sleeps));
 }
 

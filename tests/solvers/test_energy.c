@@ -138,7 +138,8 @@ static void check_treatment(const treatment *t, mspring_solver solver, mspring_i
     }
     mspring_network *network = start(&made, solver, integrator, MSPRING_GUARD_GROWTH);
     const float none = 0;
-    check_ok(mspring_network_set_velocities(network, end, 1, t->pin_speed > 0 ? &t->pin_speed : &none, &t->throw));
+    check_ok(
+        mspring_network_set_velocities(network, end, 1, t->pin_speed > 0 ? &t->pin_speed : &none, &t->throw, 1));
     for (int step = 0; step < 128; step++) {
         const mspring_id middle = 10;
         if (t->cut && step == 64) {

@@ -144,7 +144,7 @@ static void it_lies_on_a_floor_and_sleeps(void **state) {
     assert_int_equal(made.particle_count, COUNT_OF(y));
     check_ok(mspring_network_wake(network));
     support_steps(network, 1, DT);
-    check_ok(mspring_network_get_floor_impulses(network, 0, COUNT_OF(y), x, y));
+    check_ok(mspring_network_get_floor_impulses(network, 0, COUNT_OF(y), x, y, 1));
     for (size_t i = 0; i < COUNT_OF(y); i++) {
         sum += (double)y[i];
     }

@@ -94,7 +94,7 @@ static void the_floor_gives_what_momentum_lacks(void **state) {
             float fx[COLUMNS * ROWS], fy[COLUMNS * ROWS];
             double to_x = 0, to_y = 0, scale = MASS * COLUMNS * ROWS * g * dt;
             support_steps(network, 1, dt);
-            check_ok(mspring_network_get_floor_impulses(network, 0, COLUMNS * ROWS, fx, fy));
+            check_ok(mspring_network_get_floor_impulses(network, 0, COLUMNS * ROWS, fx, fy, 1));
             py -= MASS * COLUMNS * ROWS * g * dt;
             for (mspring_id p = 0; p < made.particle_count; p++) {
                 const support_point v = support_velocity(network, p);

@@ -52,7 +52,7 @@ static double oscillator_error(mspring_integrator integrator, double stiffness, 
     def.global_damping = (float)rate;
     mspring_network *network = support_network(builder, &def);
     const double x = out, y = 0;
-    check_ok(mspring_network_set_positions(network, ball, 1, &x, &y));
+    check_ok(mspring_network_set_positions(network, ball, 1, &x, &y, 1));
     use_implicit(network, integrator, 0);
     support_steps(network, steps, 1.0 / steps);
     // x'' + 2 a x' + w0^2 x = 0 from rest at 0.25 m.
@@ -149,7 +149,7 @@ static void free_flight_is_exact(void **state) {
         mspring_network *network = support_network(builder, &def);
         use_implicit(network, integrators[i], 0);
         const float vx[] = {2, -1}, vy[] = {4, 0.5f};
-        check_ok(mspring_network_set_velocities(network, 0, 2, vx, vy));
+        check_ok(mspring_network_set_velocities(network, 0, 2, vx, vy, 1));
         support_steps(network, 64, 1.0 / 64);
         // v is linear in time, and every method gets that. Position: the Euler step at the start, or all of them,
         // add g h^2 / 2 each.
@@ -173,7 +173,7 @@ static void global_damping_slows_free_flight(void **state) {
         mspring_network *network = support_network(builder, &def);
         use_implicit(network, integrators[i], 0);
         const float vx = 2, vy = 0;
-        check_ok(mspring_network_set_velocities(network, 0, 1, &vx, &vy));
+        check_ok(mspring_network_set_velocities(network, 0, 1, &vx, &vy, 1));
         support_steps(network, 256, 1.0 / 256);
         // The error in the rate is b h / 2 for implicit Euler and (b h)^2 / 3 for BDF2: 0.6 % or 0.005 % of 3/s.
         const double tolerance = integrators[i] == MSPRING_INTEGRATOR_EULER ? 0.02 : 0.0006;
@@ -362,8 +362,8 @@ static void setting_all_positions_begins_a_new_motion(void **state) {
             x[id] = made.particles[id].x;
             y[id] = made.particles[id].y;
         }
-        check_ok(mspring_network_set_positions(network, 0, made.particle_count, x, y));
-        check_ok(mspring_network_set_velocities(network, 0, made.particle_count, v, v));
+        check_ok(mspring_network_set_positions(network, 0, made.particle_count, x, y, 1));
+        check_ok(mspring_network_set_velocities(network, 0, made.particle_count, v, v, 1));
         support_steps(network, 10, 1.0 / 64);
         support_steps(fresh, 10, 1.0 / 64);
         assert_int_equal(support_hash(network), support_hash(fresh));

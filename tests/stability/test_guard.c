@@ -114,7 +114,7 @@ static void a_spring_that_was_none_is_named(void **state) {
     support_steps(network, 1, 0.01);
     const float stiff = 1e5f, vx = 0.01f, vy = 0;
     check_ok(mspring_network_set_stiffnesses(network, 0, 1, &stiff));
-    check_ok(mspring_network_set_velocities(network, 0, 1, &vx, &vy));
+    check_ok(mspring_network_set_velocities(network, 0, 1, &vx, &vy, 1));
     mspring_result result = MSPRING_OK;
     for (int step = 0; step < 100 && result == MSPRING_OK; step++) {
         result = mspring_network_step(network, 0.01);
@@ -161,7 +161,7 @@ static void the_refusal_tells_where_to(void **state) {
     def.max_speed = 100;
     mspring_network *network = support_network(builder, &def);
     const float vx = 120, vy = -20;
-    check_ok(mspring_network_set_velocities(network, 0, 1, &vx, &vy));
+    check_ok(mspring_network_set_velocities(network, 0, 1, &vx, &vy, 1));
     check_error(mspring_network_step(network, 0.5), MSPRING_ERROR_UNSTABLE);
     check_contains(mspring_network_error(network), "to (1060, 490) m at (120, -20) m/s");
     mspring_network_destroy(network);
@@ -253,9 +253,9 @@ static void reckoning_lets_nothing_out(void **state) {
                 const float vy = (float)support_random_between(&seed, -2e10, 2e10);
                 for (size_t one = 0; one < 2; one++) {
                     if (step % 2 == 0) {
-                        check_ok(mspring_network_set_positions(both[one], p, 1, &x, &y));
+                        check_ok(mspring_network_set_positions(both[one], p, 1, &x, &y, 1));
                     }
-                    check_ok(mspring_network_set_velocities(both[one], p, 1, &vx, &vy));
+                    check_ok(mspring_network_set_velocities(both[one], p, 1, &vx, &vy, 1));
                 }
             }
             const mspring_result expected = mspring_network_step(both[1], 1);
@@ -294,7 +294,7 @@ static void what_wakes_far_out_is_seen(void **state) {
     }
     assert_int_equal(mspring_network_is_asleep(network), 1);
     const float fast = 2e3f;
-    check_ok(mspring_network_set_velocities(network, 7, 1, &fast, &fast));
+    check_ok(mspring_network_set_velocities(network, 7, 1, &fast, &fast, 1));
     support_steps(network, 3, 1);
     const mspring_id end = 25 + 39;
     const uint64_t before = support_hash(network);
@@ -560,7 +560,7 @@ static void what_is_stable_is_never_refused(void **state) {
             if (step % 100 == 0) {
                 const uint32_t one = (uint32_t)(support_random(&seed) % made.particle_count);
                 const float v = (float)support_random_between(&seed, -speed, speed);
-                check_ok(mspring_network_set_velocities(network, one, 1, &v, &v));
+                check_ok(mspring_network_set_velocities(network, one, 1, &v, &v, 1));
             }
             mspring_result result = mspring_network_step(network, 0.9 * now * def.substeps);
             if (result != MSPRING_OK) {

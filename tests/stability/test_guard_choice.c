@@ -71,9 +71,9 @@ static void what_is_written_is_put_back(void **state) {
     const float rates[] = {0, 1e5f}; // of which the second would hide speeds by the end of the step
     for (size_t i = 0; i < 4 * COUNT_OF(values) * COUNT_OF(rates); i++) {
         mspring_network *network = make(1, MSPRING_SOLVER_EXPLICIT, MSPRING_GUARD_CLAMP_BOUNDS, 2);
-        mspring_view view = {.struct_size = sizeof view};
+        mspring_mutable_view view = {.struct_size = sizeof view};
         check_ok(support_set_global_damping(network, rates[i / 4 / COUNT_OF(values)]));
-        check_ok(mspring_network_view(network, &view));
+        check_ok(mspring_network_view_mutable(network, &view));
         float *const arrays[] = {view.x, view.y, view.vx, view.vy};
         arrays[i % 4][view.slot_of_particle[7]] = values[i / 4 % COUNT_OF(values)];
         for (int step = 0; step < 5; step++) {

@@ -167,10 +167,10 @@ static void relative_springs_equal_the_formula(void **state) {
         float vx[400], vy[400];
         const uint32_t count = relative.particle_count;
         assert_true(count <= COUNT_OF(x));
-        check_ok(mspring_network_get_positions(network, 0, count, x, y));
-        check_ok(mspring_network_get_velocities(network, 0, count, vx, vy));
-        check_ok(mspring_network_set_positions(twin, 0, count, x, y));
-        check_ok(mspring_network_set_velocities(twin, 0, count, vx, vy));
+        check_ok(mspring_network_get_positions(network, 0, count, x, y, 1));
+        check_ok(mspring_network_get_velocities(network, 0, count, vx, vy, 1));
+        check_ok(mspring_network_set_positions(twin, 0, count, x, y, 1));
+        check_ok(mspring_network_set_velocities(twin, 0, count, vx, vy, 1));
         support_steps(network, 50, 2 * h[i]);
         support_steps(twin, 50, 2 * h[i]);
         for (uint32_t spring = 0; spring < relative.spring_count; spring++) {

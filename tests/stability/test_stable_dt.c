@@ -336,7 +336,7 @@ static void whatever_happens_to_its_shape(void **state) {
         x[i] = support_random_between(&seed, 0, 3);
         y[i] = support_random_between(&seed, 0, 3);
     }
-    check_ok(mspring_network_set_positions(network, 0, count, x, y));
+    check_ok(mspring_network_set_positions(network, 0, count, x, y, 1));
     double kinetic = 0, elastic = 0, first = 0;
     check_ok(mspring_network_energy(network, &kinetic, &elastic, NULL));
     first = kinetic + elastic;

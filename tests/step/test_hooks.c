@@ -4,9 +4,11 @@
 /// SPDX-License-Identifier: MIT
 #include <math.h>
 #include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "recipe.h"
+#include "snapshots.h"
 #include "support.h"
 
 /// A network with rows of every kind, leftover springs and empty slots.
@@ -74,6 +76,8 @@ static void record(const mspring_hook_args *args, void *user) {
     assert_ptr_equal(args->vy, to->view.vy);
     assert_ptr_equal(args->inverse_mass, to->view.inverse_mass);
     assert_ptr_equal(args->particle_of_slot, to->view.particle_of_slot);
+    assert_ptr_equal(args->slot_of_particle, to->view.slot_of_particle);
+    assert_int_equal(mspring_network_particle_count(args->network), to->view.particle_count);
     assert_true(args->origin_x == to->view.origin_x && args->origin_y == to->view.origin_y);
 
     assert_true(args->slot_count > 0 && args->first_slot < to->view.slot_count &&
@@ -147,7 +151,7 @@ static void forces_of_hooks_equal_forces_of_the_host(void **state) {
         puller forces = {x, y};
         check_ok(support_add_hook(hooked, phases[i], pull, &forces, NULL));
         for (int step = 0; step < 25; step++) {
-            check_ok(mspring_network_apply_forces(hosted, 0, count, x, y));
+            check_ok(mspring_network_apply_forces(hosted, 0, count, x, y, 1));
             check_ok(mspring_network_step(hosted, 0.02));
             check_ok(mspring_network_step(hooked, 0.02));
         }
@@ -386,12 +390,12 @@ static void call_from_inside(const mspring_hook_args *args, void *user) {
     check_error(support_set_gravity(network, 0, 0), MSPRING_ERROR_BUSY);
     check_error(support_set_global_damping(network, 1), MSPRING_ERROR_BUSY);
     check_error(mspring_network_apply_force(network, 0, 1, 1), MSPRING_ERROR_BUSY);
-    check_error(mspring_network_apply_forces(network, 0, 2, f, f), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_apply_forces(network, 0, 2, f, f, 1), MSPRING_ERROR_BUSY);
     check_error(support_add_hook(network, args->phase, call_from_inside, user, &number), MSPRING_ERROR_BUSY);
     check_error(mspring_network_remove_hook(network, 0), MSPRING_ERROR_BUSY);
-    check_error(mspring_network_set_positions(network, 0, 2, d, d), MSPRING_ERROR_BUSY);
-    check_error(mspring_network_set_positions_float(network, 0, 2, f, f), MSPRING_ERROR_BUSY);
-    check_error(mspring_network_set_velocities(network, 0, 2, f, f), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_set_positions(network, 0, 2, d, d, 1), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_set_positions_float(network, 0, 2, f, f, 1), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_set_velocities(network, 0, 2, f, f, 1), MSPRING_ERROR_BUSY);
     assert_int_equal(number, 4711);
 
     // What is marked shared works.
@@ -404,8 +408,8 @@ static void call_from_inside(const mspring_hook_args *args, void *user) {
     check_ok(mspring_network_view(network, &view));
     check_ok(mspring_network_plan(network, &plan));
     check_ok(mspring_network_get_spring(network, 0, &info));
-    check_ok(mspring_network_get_positions(network, 0, 2, d, d));
-    check_ok(mspring_network_get_velocities(network, 0, 2, f, f));
+    check_ok(mspring_network_get_positions(network, 0, 2, d, d, 1));
+    check_ok(mspring_network_get_velocities(network, 0, 2, f, f, 1));
     check_ok(mspring_network_get_masses(network, 0, 2, f));
     check_ok(mspring_network_get_strains(network, 0, 2, f));
     check_ok(mspring_network_energy(network, &energy, NULL, NULL));
@@ -496,6 +500,89 @@ static void bad_hooks_are_refused(void **state) {
     mspring_network_destroy(network);
 }
 
+/* ------------------------------------------------------------------------------------------- spare slots */
+
+/// Drives all that it is given, whether a particle is there or not, and notes how much that is.
+static void drive(const mspring_hook_args *args, void *user) {
+    uint32_t *slots = user;
+    *slots = args->slot_count;
+    for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
+        args->force_x[slot] += 1 + 0.25f * (float)(slot % 3);
+    }
+}
+
+static mspring_network *network_with_spare(uint32_t spare) {
+    recipe made = recipe_mixed(4);
+    mspring_network_def def = support_def(-9.8f, 4);
+    def.spare_particles = spare;
+    mspring_network *network = recipe_network(&made, &def);
+    double min_x, min_y, max_x, max_y;
+    check_ok(mspring_network_bounds(network, &min_x, &min_y, &max_x, &max_y));
+    const double plane[4] = {0, min_y - 0.01, 0, 1};
+    mspring_floor_def ground;
+    check_ok(mspring_floor_def_init(&ground, sizeof ground));
+    ground.planes = plane;
+    ground.plane_count = 1;
+    check_ok(mspring_network_set_floor(network, &ground));
+    recipe_free(&made);
+    return network;
+}
+
+static void add_some(mspring_network *network) {
+    mspring_particle_def added[40];
+    mspring_id ids[COUNT_OF(added)];
+    for (size_t i = 0; i < COUNT_OF(added); i++) {
+        check_ok(mspring_particle_def_init(&added[i], sizeof added[i]));
+        added[i].x = 0.5 * (double)i;
+        added[i].y = 20;
+    }
+    check_ok(mspring_network_add_particles(network, added, COUNT_OF(added), ids));
+    check_ok(mspring_network_remove_particles(network, ids + 20, 20));
+}
+
+/// Spare particles that are not in use: no hook sees their slots, and no bit is another one, however many there
+/// are.
+static void spare_slots_make_no_difference(void **state) {
+    (void)state;
+    enum { NETWORKS = 2, STAGES = 6 };
+    const uint32_t spare[NETWORKS] = {128, 5000};
+    uint64_t hashes[NETWORKS][STAGES];
+    uint32_t slots[NETWORKS][2] = {{0}};
+    for (int i = 0; i < NETWORKS; i++) {
+        mspring_network *network = network_with_spare(spare[i]);
+        check_ok(support_add_hook(network, MSPRING_PHASE_BEFORE_STEP, drive, &slots[i][0], NULL));
+        check_ok(support_add_hook(network, MSPRING_PHASE_BEFORE_SUBSTEP, drive, &slots[i][1], NULL));
+        support_steps(network, 5, 0.004);
+        hashes[i][0] = support_hash(network);
+        saved before = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
+        add_some(network);
+        support_steps(network, 5, 0.004);
+        hashes[i][1] = support_hash(network);
+        // A step that is refused.
+        const float fast = 1e14f, none = 0;
+        check_ok(mspring_network_set_velocities(network, 3, 1, &fast, &none, 1));
+        hashes[i][2] = support_hash(network);
+        check_error(mspring_network_step(network, 0.004), MSPRING_ERROR_UNSTABLE);
+        assert_int_equal(support_hash(network), hashes[i][2]);
+        check_ok(mspring_network_load(network, before.bytes, before.size));
+        assert_int_equal(support_hash(network), hashes[i][0]);
+        add_some(network);
+        support_steps(network, 5, 0.004);
+        hashes[i][3] = support_hash(network);
+        assert_int_equal(hashes[i][3], hashes[i][1]);
+        check_ok(mspring_network_compact(network));
+        support_steps(network, 5, 0.004);
+        hashes[i][4] = support_hash(network);
+        add_some(network);
+        support_steps(network, 5, 0.004);
+        hashes[i][5] = support_hash(network);
+        free(before.bytes);
+        mspring_network_destroy(network);
+    }
+    assert_memory_equal(hashes[0], hashes[1], sizeof hashes[0]);
+    assert_memory_equal(slots[0], slots[1], sizeof slots[0]);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(hooks_are_called_in_order_for_every_particle),
@@ -508,6 +595,7 @@ int main(void) {
         cmocka_unit_test(exclusive_calls_from_inside_are_refused),
         cmocka_unit_test(removed_hooks_are_not_called),
         cmocka_unit_test(bad_hooks_are_refused),
+        cmocka_unit_test(spare_slots_make_no_difference),
     };
     return cmocka_run_group_tests_name("hooks", tests, NULL, NULL);
 }

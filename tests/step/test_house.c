@@ -23,13 +23,13 @@ static mspring_network *pendulum(mspring_solver solver) {
     def.solver = solver;
     mspring_network *network = support_network(builder, &def);
     const double x = 1.5, y = 0;
-    check_ok(mspring_network_set_positions(network, mass, 1, &x, &y));
+    check_ok(mspring_network_set_positions(network, mass, 1, &x, &y, 1));
     return network;
 }
 
 static double x_of(const mspring_network *network, mspring_id particle) {
     double x, y;
-    check_ok(mspring_network_get_positions(network, particle, 1, &x, &y));
+    check_ok(mspring_network_get_positions(network, particle, 1, &x, &y, 1));
     return x;
 }
 
@@ -87,12 +87,12 @@ static void check_wind(mspring_solver solver, uint32_t substeps) {
     check_ok(mspringi_field_reserve(network, &network->forces.base));
     float vx, vy;
     support_steps(network, 4, DT);
-    check_ok(mspring_network_get_velocities(network, free, 1, &vx, &vy));
+    check_ok(mspring_network_get_velocities(network, free, 1, &vx, &vy, 1));
     assert_true(vx == 0);
     house_wind_force = 3;
     support_steps(network, 8, DT);
     house_wind_force = 0;
-    check_ok(mspring_network_get_velocities(network, free, 1, &vx, &vy));
+    check_ok(mspring_network_get_velocities(network, free, 1, &vx, &vy, 1));
     check_near((double)vx, 3.0 / 2 * 8 * DT, 1e-6);
     mspring_network_destroy(network);
 }

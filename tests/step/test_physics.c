@@ -284,7 +284,7 @@ static void pinned_particles_keep_their_velocity(void **state) {
 
     // 0.5 m/s in substeps of 1/256 s: exact in binary. Gravity, springs and global damping do not touch it.
     const float vx[] = {0.5f, 0}, vy[] = {0, -0.25f};
-    check_ok(mspring_network_set_velocities(network, 0, 2, vx, vy));
+    check_ok(mspring_network_set_velocities(network, 0, 2, vx, vy, 1));
     support_steps(network, 128, 1.0 / 64);
     assert_true(support_position(network, 0).x == 1 && support_position(network, 0).y == 0);
     assert_true(support_position(network, 1).x == 2 && support_position(network, 1).y == -0.5);
@@ -318,7 +318,7 @@ static void particles_in_one_place_exert_no_force(void **state) {
         mspring_network_def def = support_def(0, 1);
         mspring_network *network = recipe_network(&made, &def);
         support_point to = support_position(network, a);
-        check_ok(mspring_network_set_positions(network, b, 1, &to.x, &to.y));
+        check_ok(mspring_network_set_positions(network, b, 1, &to.x, &to.y, 1));
         mspring_id spring = 0;
         mspring_spring_info info = {.struct_size = sizeof info};
         do {
@@ -356,7 +356,7 @@ static void what_is_damped_comes_to_rest(void **state) {
             vx[i] = damped ? 1 : 1e-40f;
             vy[i] = damped ? -3 : -1e-44f;
         }
-        check_ok(mspring_network_set_velocities(network, 0, 40, vx, vy));
+        check_ok(mspring_network_set_velocities(network, 0, 40, vx, vy, 1));
         for (int step = 0; step < 200; step++) {
             support_steps(network, 1, 0.01);
             for (mspring_id id = 0; id < 40; id++) {

@@ -131,7 +131,7 @@ static void slow_motion_does_not_stand_still(void **state) {
         support_point before[64];
         for (mspring_id p = 0; p < made.particle_count; p++) {
             before[p] = support_position(network, p);
-            check_ok(mspring_network_set_velocities(network, p, 1, &vx, &vy));
+            check_ok(mspring_network_set_velocities(network, p, 1, &vx, &vy, 1));
         }
         support_steps(network, 64, 1.0 / 64);
         for (mspring_id p = 0; p < made.particle_count; p++) {
@@ -158,14 +158,14 @@ static void positions_are_read_as_they_were_set(void **state) {
         x[i] = support_random_between(&seed, -1e3, 1e3);
         y[i] = support_random_between(&seed, -1e3, 1e3);
     }
-    check_ok(mspring_network_set_positions(network, 0, 30, x, y));
-    check_ok(mspring_network_get_positions(network, 0, 30, read_x, read_y));
+    check_ok(mspring_network_set_positions(network, 0, 30, x, y, 1));
+    check_ok(mspring_network_get_positions(network, 0, 30, read_x, read_y, 1));
     for (int i = 0; i < 30; i++) {
         check_near(read_x[i], x[i], 2e3 * 0x1p-48); // two words of 24 bits each
         check_near(read_y[i], y[i], 2e3 * 0x1p-48);
     }
     const uint64_t hash = support_hash(network);
-    check_ok(mspring_network_set_positions(network, 0, 30, read_x, read_y));
+    check_ok(mspring_network_set_positions(network, 0, 30, read_x, read_y, 1));
     assert_int_equal(support_hash(network), hash);
     mspring_network_destroy(network);
     recipe_free(&made);
@@ -225,9 +225,9 @@ static void what_is_written_to_a_view_counts(void **state) {
     recipe_lattice(&made, 3, 3, 0, 0, 1, &weightless, &seed);
     mspring_network *network = network_of(&made, MSPRING_SOLVER_EXPLICIT, 1);
     const double far_x = 1e9 + 10.0 / 3, far_y = -1e9 - 10.0 / 7;
-    check_ok(mspring_network_set_positions(network, 4, 1, &far_x, &far_y));
-    mspring_view view = {.struct_size = sizeof view};
-    check_ok(mspring_network_view(network, &view));
+    check_ok(mspring_network_set_positions(network, 4, 1, &far_x, &far_y, 1));
+    mspring_mutable_view view = {.struct_size = sizeof view};
+    check_ok(mspring_network_view_mutable(network, &view));
     const uint32_t slot = view.slot_of_particle[4];
     check_near(support_position(network, 4).x, far_x, 1e-5);
     view.x[slot] = 0.25f;
@@ -252,7 +252,7 @@ static void a_moving_origin_rounds_nothing(void **state) {
     const float vx = 128, vy = -32;
     for (mspring_id p = 0; p < 64; p++) {
         before[p] = support_position(network, p);
-        check_ok(mspring_network_set_velocities(network, p, 1, &vx, &vy));
+        check_ok(mspring_network_set_velocities(network, p, 1, &vx, &vy, 1));
     }
     support_steps(network, 640, 1.0 / 64);
     mspring_view view = {.struct_size = sizeof view};

@@ -24,7 +24,7 @@ static void bad_dt_is_refused(void **state) {
     (void)state;
     mspring_network *network = particles(3, 4, 1e6f);
     const float vx[] = {1, 2, 3}, vy[] = {0, 0, 0};
-    check_ok(mspring_network_set_velocities(network, 0, 3, vx, vy));
+    check_ok(mspring_network_set_velocities(network, 0, 3, vx, vy, 1));
     const uint64_t hash = support_hash(network);
     // The last ones: a substep that is a denormal number, that is nothing, and that is infinite as a float.
     const double bad[] = {0.0, -0.0, -0.01, NAN, INFINITY, -INFINITY, (double)FLT_MIN, 1e-40, 1e-300, 1e40, 1e300};
@@ -70,8 +70,8 @@ static void forces_add_up(void **state) {
         x[i] = 8.0f * (float)i;
         y[i] = 16;
     }
-    check_ok(mspring_network_apply_forces(network, 5, 10, x, y));
-    check_ok(mspring_network_apply_forces(network, 10, 10, x, y));
+    check_ok(mspring_network_apply_forces(network, 5, 10, x, y, 1));
+    check_ok(mspring_network_apply_forces(network, 10, 10, x, y, 1));
     check_ok(mspring_network_apply_force(network, 10, 80, 0));
     check_ok(mspring_network_step(network, 0.25));
     for (mspring_id id = 0; id < 20; id++) {
@@ -138,7 +138,7 @@ static void a_step_out_of_bounds_is_taken_back(void **state) {
         vx[i] = 1;
         vy[i] = 0.25f * (float)(i % 8);
     }
-    check_ok(mspring_network_set_velocities(network, 0, 50, vx, vy));
+    check_ok(mspring_network_set_velocities(network, 0, 50, vx, vy, 1));
     check_ok(mspring_network_step(network, 0.125));
     const uint64_t hash = support_hash(network);
     const support_point before = support_position(network, 37);
@@ -207,8 +207,8 @@ static void what_is_not_finite_in_a_view_is_noticed(void **state) {
     for (size_t i = 0; i < COUNT_OF(bad); i++) {
         for (int array = 0; array < 4; array++) {
             mspring_network *network = particles(40, 1, 1e6f);
-            mspring_view view = {.struct_size = sizeof view};
-            check_ok(mspring_network_view(network, &view));
+            mspring_mutable_view view = {.struct_size = sizeof view};
+            check_ok(mspring_network_view_mutable(network, &view));
             float *const arrays[] = {view.x, view.y, view.vx, view.vy};
             arrays[array][view.slot_of_particle[33]] = bad[i];
             check_error(mspring_network_step(network, 0.01), MSPRING_ERROR_UNSTABLE);
@@ -224,9 +224,9 @@ static void the_speed_limit_is_one(void **state) {
     (void)state;
     mspring_network *network = particles(1, 1, 10);
     const float limit = 10, zero = 0, above = nextafterf(10, 11);
-    check_ok(mspring_network_set_velocities(network, 0, 1, &limit, &zero));
+    check_ok(mspring_network_set_velocities(network, 0, 1, &limit, &zero, 1));
     check_ok(mspring_network_step(network, 0.1));
-    check_ok(mspring_network_set_velocities(network, 0, 1, &zero, &above));
+    check_ok(mspring_network_set_velocities(network, 0, 1, &zero, &above, 1));
     check_error(mspring_network_step(network, 0.1), MSPRING_ERROR_UNSTABLE);
     mspring_network_destroy(network);
 }
@@ -237,12 +237,12 @@ static void forces_whose_sum_is_not_finite_are_refused(void **state) {
     (void)state;
     mspring_network *network = particles(3, 1, 1e15f);
     const float x[] = {1, 3e38f, 1}, y[] = {0, 0, 0};
-    check_ok(mspring_network_apply_forces(network, 0, 3, x, y));
-    check_error(mspring_network_apply_forces(network, 0, 3, x, y), MSPRING_ERROR_ARGUMENT);
+    check_ok(mspring_network_apply_forces(network, 0, 3, x, y, 1));
+    check_error(mspring_network_apply_forces(network, 0, 3, x, y, 1), MSPRING_ERROR_ARGUMENT);
     check_contains(mspring_network_error(network), "particle 1");
     // None of the second forces acts, and what acts can be taken back.
     const float back[] = {0, -3e38f, 0};
-    check_ok(mspring_network_apply_forces(network, 0, 3, back, y));
+    check_ok(mspring_network_apply_forces(network, 0, 3, back, y, 1));
     check_ok(mspring_network_step(network, 1));
     assert_true(support_velocity(network, 0).x == 0.5 && support_velocity(network, 1).x == 0);
     mspring_network_destroy(network);
@@ -288,7 +288,7 @@ static void the_error_names_who_flew_first(void **state) {
     mspring_network_def def = support_def(0, 1);
     mspring_network *network = support_network(builder, &def);
     const float x[] = {0, 0, 0, 0.5f}, zero[] = {0, 0, 0, 0};
-    check_ok(mspring_network_set_velocities(network, 0, 4, x, zero));
+    check_ok(mspring_network_set_velocities(network, 0, 4, x, zero, 1));
     mspring_result result = MSPRING_OK;
     for (int step = 0; step < 100 && result == MSPRING_OK; step++) {
         result = mspring_network_step(network, 0.1);

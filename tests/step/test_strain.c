@@ -288,7 +288,7 @@ static void what_is_at_its_threshold_stays(void **state) {
                 {0.25, MSPRING_SPRING_STRESSED, MSPRING_NONE},
                 {0.25 - little, MSPRING_SPRING_BROKEN, MSPRING_EVENT_BROKEN}};
     for (size_t i = 0; i < COUNT_OF(ways); i++) {
-        check_ok(mspring_network_set_positions(network, 1, 1, &ways[i].length, &y));
+        check_ok(mspring_network_set_positions(network, 1, 1, &ways[i].length, &y, 1));
         support_steps(network, 1, 0.01);
         mspring_spring_info info = {.struct_size = sizeof info};
         check_ok(mspring_network_get_spring(network, 0, &info));
@@ -320,7 +320,7 @@ static void thresholds_do_not_take_each_others_place(void **state) {
     const double far = -0.625, y = 0; // a strain of 0.625
     check_ok(mspring_network_set_break_strains(network, 0, 1, &limit));
     check_ok(mspring_network_set_stress_strains(network, 1, 1, &stress)); // the first of its kind
-    check_ok(mspring_network_set_positions(network, 0, 1, &far, &y));
+    check_ok(mspring_network_set_positions(network, 0, 1, &far, &y, 1));
     check_ok(mspring_network_step(network, 0.01));
     assert_int_equal(read_all(network, events), 1);
     assert_true(events[0].kind == MSPRING_EVENT_BROKEN && events[0].id == 0);

@@ -51,8 +51,8 @@ static uint64_t run(const recipe *made, const edits *which, bool afterwards) {
     mspring_network *network = recipe_network(made, &def);
     static double x[WIDTH * HEIGHT], y[WIDTH * HEIGHT];
     static float vx[WIDTH * HEIGHT], vy[WIDTH * HEIGHT];
-    check_ok(mspring_network_get_positions(network, 0, made->particle_count, x, y));
-    check_ok(mspring_network_get_velocities(network, 0, made->particle_count, vx, vy));
+    check_ok(mspring_network_get_positions(network, 0, made->particle_count, x, y, 1));
+    check_ok(mspring_network_get_velocities(network, 0, made->particle_count, vx, vy, 1));
     if (!afterwards) {
         edit(network, which);
     }
@@ -65,8 +65,8 @@ static uint64_t run(const recipe *made, const edits *which, bool afterwards) {
         // A single spring's block leaves the others, even if it is theirs that they read.
         assert_true(shared_blocks(network) + 1 >= shared || which->first + which->step < made->spring_count);
     }
-    check_ok(mspring_network_set_positions(network, 0, made->particle_count, x, y));
-    check_ok(mspring_network_set_velocities(network, 0, made->particle_count, vx, vy));
+    check_ok(mspring_network_set_positions(network, 0, made->particle_count, x, y, 1));
+    check_ok(mspring_network_set_velocities(network, 0, made->particle_count, vx, vy, 1));
     for (int i = 0; i < 4; i++) {
         check_ok(mspring_network_step(network, 1.0 / 64));
     }

@@ -14,19 +14,19 @@ void change_shift(mspring_network *network, mspring_id particle, mspring_id spri
     (void)spring;
     const support_point at = support_position(network, particle);
     const double x = at.x + 0.01;
-    check_ok(mspring_network_set_positions(network, particle, 1, &x, &at.y));
+    check_ok(mspring_network_set_positions(network, particle, 1, &x, &at.y, 1));
 }
 
 static void kick(mspring_network *network, mspring_id particle, mspring_id spring) {
     (void)spring;
     const float vx = 1, vy = 0.3f;
-    check_ok(mspring_network_set_velocities(network, particle, 1, &vx, &vy));
+    check_ok(mspring_network_set_velocities(network, particle, 1, &vx, &vy, 1));
 }
 
 void change_write_view(mspring_network *network, mspring_id particle, mspring_id spring) {
     (void)spring;
-    mspring_view view = {.struct_size = sizeof view};
-    check_ok(mspring_network_view(network, &view));
+    mspring_mutable_view view = {.struct_size = sizeof view};
+    check_ok(mspring_network_view_mutable(network, &view));
     view.y[view.slot_of_particle[particle]] += 0.01f;
 }
 

@@ -184,7 +184,7 @@ void support_fall_asleep(mspring_network *network, double dt) {
 
 void support_kick(mspring_network *network, mspring_id particle, float speed) {
     const float along = 0.3f * speed;
-    check_ok(mspring_network_set_velocities(network, particle, 1, &speed, &along));
+    check_ok(mspring_network_set_velocities(network, particle, 1, &speed, &along, 1));
 }
 
 mspring_result support_add_hook(mspring_network *network, mspring_phase phase, mspring_hook_fn fn, void *user,
@@ -218,13 +218,13 @@ void support_compact(mspring_network *network, uint32_t functions, mspring_job *
 
 support_point support_position(const mspring_network *network, mspring_id particle) {
     support_point point = {0, 0};
-    check_ok(mspring_network_get_positions(network, particle, 1, &point.x, &point.y));
+    check_ok(mspring_network_get_positions(network, particle, 1, &point.x, &point.y, 1));
     return point;
 }
 
 support_point support_velocity(const mspring_network *network, mspring_id particle) {
     float vx = 0, vy = 0;
-    check_ok(mspring_network_get_velocities(network, particle, 1, &vx, &vy));
+    check_ok(mspring_network_get_velocities(network, particle, 1, &vx, &vy, 1));
     return (support_point){vx, vy};
 }
 

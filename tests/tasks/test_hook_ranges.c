@@ -213,12 +213,12 @@ static void call_from_inside(const mspring_hook_args *args, void *user) {
     caller *inside = user;
     double x, y, energy;
     uint64_t hash;
-    bool good = mspring_network_get_positions(inside->network, args->worker, 1, &x, &y) == MSPRING_OK &&
+    bool good = mspring_network_get_positions(inside->network, args->worker, 1, &x, &y, 1) == MSPRING_OK &&
                 mspring_network_energy(inside->network, &energy, NULL, NULL) == MSPRING_OK &&
                 mspring_network_state_hash(inside->network, &hash) == MSPRING_OK;
     good = good && mspring_network_step(inside->network, 0.01) == MSPRING_ERROR_BUSY &&
            support_set_gravity(inside->network, 0, 0) == MSPRING_ERROR_BUSY &&
-           mspring_network_set_positions(inside->network, 0, 1, &x, &y) == MSPRING_ERROR_BUSY;
+           mspring_network_set_positions(inside->network, 0, 1, &x, &y, 1) == MSPRING_ERROR_BUSY;
     atomic_fetch_add(&inside->calls, 1);
     atomic_fetch_add(&inside->wrong, !good);
 }

@@ -247,7 +247,8 @@ static void pieces_sleep_in_layers(void **state) {
         mspring_id moving = 0;
         for (mspring_id p = 0; p < 40; p++) {
             moving = p * 997;
-            check_ok(mspring_network_set_velocities_at(network, &moving, 1, &(float){1}, &(float){(float)(p % 3)}));
+            check_ok(
+                mspring_network_set_velocities_at(network, &moving, 1, &(float){1}, &(float){(float)(p % 3)}, 1));
         }
         support_steps(network, 8, 1.0 / 64);
         assert_true(network->sleep.sleeping > 0 && network->sleep.sleeping < network->sleep.count);

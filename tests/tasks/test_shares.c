@@ -211,7 +211,7 @@ static bool run_beside_sleeper(int depth, float sleep_speed, uint32_t worker_cou
         support_kick(network, p, 1 + (float)(p % 7));
     support_steps(network, 8, 0.01);
     assert_true(support_sleeps(network, count) == (sleep_speed > 0) && !support_sleeps(network, 0));
-    check_ok(mspring_network_get_positions(network, 0, count, x, y));
+    check_ok(mspring_network_get_positions(network, 0, count, x, y, 1));
     const bool shared = has_used_halos(network);
     mspring_network_destroy(network);
     return shared;

@@ -17,6 +17,7 @@ static bool lengthen(uint32_t **array, size_t old_count, size_t count, mspringi_
 
 static bool note_layout(mspringi_topology *t, mspringi_memory *memory) {
     const uint32_t particles = mspringi_spare_particles(t), springs = mspringi_spare_springs(t);
+    t->laid_particles = t->particle_count - t->reserve.first_particle;
     t->laid_slots = mspringi_alloc(memory, particles, sizeof *t->laid_slots);
     t->laid_places = mspringi_alloc(memory, springs, sizeof *t->laid_places);
     if (!t->laid_slots || !t->laid_places)

@@ -17,7 +17,7 @@ static void substeps(mspring_network *network, void *object, float h, mspringi_f
 }
 
 void mspringi_explicit_end(mspring_network *network) {
-    mspringi_flush_to_zero(network, 0, mspringi_slot_count(network));
+    mspringi_flush_to_zero(network, 0, mspringi_used_slots(network));
 }
 
 static void restore(mspring_network *network, void *object) {

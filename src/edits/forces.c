@@ -1,0 +1,130 @@
+/// Forces for the next step, and impulses, which change velocities at once.
+///
+/// What is given adds up, where a list names a particle twice as well. So the sums are made in the backup, which is
+/// free between steps, and taken from there once all of them are right.
+#include <math.h>
+
+#include "base/cpu.h"
+#include "store/changed.h"
+#include "store/network.h"
+#include "store/selection.h"
+
+typedef struct pushes {
+    const float *x, *y;
+    uint32_t stride;
+} pushes;
+
+// What a call adds to: forces, or velocities times what a particle gives in to an impulse.
+typedef struct target {
+    mspringi_field sum;
+    const float *inverse_mass; ///< NULL: forces
+} target;
+
+static mspring_result fail(mspring_network *network, const target *to, mspring_id particle, float x, float y) {
+    return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                         to->inverse_mass
+                             ? "particle %u: an impulse of (%g, %g) N s is not finite, or takes it above 1e15 m/s"
+                             : "particle %u: force (%g, %g) N is not finite, or not with what acts already",
+                         (unsigned)particle, (double)x, (double)y);
+}
+
+static bool is_right(const target *to, float x, float y) {
+    return to->inverse_mass ? mspringi_is_speed(x) && mspringi_is_speed(y) : isfinite(x) && isfinite(y);
+}
+
+// A product of two floats is exact in double precision, so it does not matter whether it is fused with the sum.
+static float plus(float sum, float push, double factor) {
+    return (float)((double)sum + (double)push * factor);
+}
+
+static MSPRINGI_NOINLINE mspring_result add(mspring_network *network, const mspringi_selection *at,
+                                            const pushes *given, const target *to) {
+    const mspringi_field made = {network->backup.vx, network->backup.vy};
+    const uint32_t *slots = network->topology.slot_of_particle;
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const uint32_t slot = slots[mspringi_selected(at, i)];
+        made.x[slot] = to->sum.x[slot];
+        made.y[slot] = to->sum.y[slot];
+    }
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const mspring_id particle = mspringi_selected(at, i);
+        const uint32_t slot = slots[particle];
+        if (!mspringi_particle_exists(network, particle))
+            continue;
+        const float x = given->x[(size_t)i * given->stride], y = given->y[(size_t)i * given->stride];
+        const double factor = to->inverse_mass ? (double)to->inverse_mass[slot] : 1.0;
+        made.x[slot] = plus(made.x[slot], x, factor);
+        made.y[slot] = plus(made.y[slot], y, factor);
+        if (!is_right(to, made.x[slot], made.y[slot]))
+            return fail(network, to, particle, x, y);
+    }
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const uint32_t slot = slots[mspringi_selected(at, i)];
+        if (!mspringi_particle_exists(network, mspringi_selected(at, i)))
+            continue;
+        to->sum.x[slot] = made.x[slot];
+        to->sum.y[slot] = made.y[slot];
+    }
+    return MSPRING_OK;
+}
+
+static mspring_result add_rounding_to_nearest(mspring_network *network, const mspringi_selection *at,
+                                              const pushes *given, const target *to) {
+    const mspringi_fp_state before = mspringi_fp_enter();
+    const mspring_result result = add(network, at, given, to);
+    mspringi_fp_leave(before);
+    return result;
+}
+
+/* ------------------------------------------------------------------------------------------------------- forces */
+
+static mspring_result apply_forces(mspring_network *network, const mspringi_selection *at, const pushes *given) {
+    mspring_result result = mspringi_field_reserve(network, &network->forces.held);
+    if (result == MSPRING_OK)
+        result = add_rounding_to_nearest(network, at, given, &(target){.sum = network->forces.held});
+    if (result == MSPRING_OK)
+        network->forces.held_any = network->forces.held_any || at->count > 0;
+    return result;
+}
+
+mspring_result mspring_network_apply_forces(mspring_network *network, mspring_id first, uint32_t count,
+                                            const float *x, const float *y, uint32_t stride) {
+    mspringi_selection at;
+    mspring_result result = mspringi_select_range(network, MSPRINGI_PARTICLES, first, count, x, y, &at);
+    return result == MSPRING_OK ? apply_forces(network, &at, &(pushes){x, y, stride}) : result;
+}
+
+mspring_result mspring_network_apply_forces_at(mspring_network *network, const mspring_id *particles,
+                                               uint32_t count, const float *x, const float *y, uint32_t stride) {
+    mspringi_selection at;
+    mspring_result result = mspringi_select_list(network, MSPRINGI_PARTICLES, particles, count, x, y, &at);
+    return result == MSPRING_OK ? apply_forces(network, &at, &(pushes){x, y, stride}) : result;
+}
+
+mspring_result mspring_network_apply_force(mspring_network *network, mspring_id particle, float x, float y) {
+    return mspring_network_apply_forces_at(network, &particle, 1, &x, &y, 1);
+}
+
+/* ----------------------------------------------------------------------------------------------------- impulses */
+
+static mspring_result apply_impulses(mspring_network *network, const mspringi_selection *at, const pushes *given) {
+    const target velocities = {{network->state.vx, network->state.vy}, network->inverse_mass};
+    const mspring_result result = add_rounding_to_nearest(network, at, given, &velocities);
+    if (result == MSPRING_OK)
+        mspringi_changed(network, MSPRINGI_CHANGED_STATE, 0);
+    return result;
+}
+
+mspring_result mspring_network_apply_impulses(mspring_network *network, mspring_id first, uint32_t count,
+                                              const float *x, const float *y, uint32_t stride) {
+    mspringi_selection at;
+    mspring_result result = mspringi_select_range(network, MSPRINGI_PARTICLES, first, count, x, y, &at);
+    return result == MSPRING_OK ? apply_impulses(network, &at, &(pushes){x, y, stride}) : result;
+}
+
+mspring_result mspring_network_apply_impulses_at(mspring_network *network, const mspring_id *particles,
+                                                 uint32_t count, const float *x, const float *y, uint32_t stride) {
+    mspringi_selection at;
+    mspring_result result = mspringi_select_list(network, MSPRINGI_PARTICLES, particles, count, x, y, &at);
+    return result == MSPRING_OK ? apply_impulses(network, &at, &(pushes){x, y, stride}) : result;
+}
