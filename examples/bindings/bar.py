@@ -42,7 +42,8 @@ FUNCTIONS = {  # name: result, arguments
     "network_get_settings": (c_int32, [c_void_p, POINTER(Settings)]),
     "network_set_settings": (c_int32, [c_void_p, POINTER(Settings)]),
     "network_step": (c_int32, [c_void_p, c_double]),
-    "network_get_positions": (c_int32, [c_void_p, c_uint32, c_uint32, POINTER(c_double), POINTER(c_double)]),
+    "network_get_positions": (c_int32, [c_void_p, c_uint32, c_uint32, POINTER(c_double), POINTER(c_double),
+                                        c_uint32]),
     "network_state_hash": (c_int32, [c_void_p, POINTER(c_uint64)]),
 }
 
@@ -67,7 +68,7 @@ class Library:
 
 def height_of(library, network, particle):
     x, y = c_double(), c_double()
-    library.network_get_positions(network, particle, 1, byref(x), byref(y))
+    library.network_get_positions(network, particle, 1, byref(x), byref(y), 1)
     return y.value
 
 

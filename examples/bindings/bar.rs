@@ -61,7 +61,9 @@ extern "C" {
     fn mspring_network_get_settings(network: *const c_void, settings: *mut Settings) -> i32;
     fn mspring_network_set_settings(network: *mut c_void, settings: *const Settings) -> i32;
     fn mspring_network_step(network: *mut c_void, dt: f64) -> i32;
-    fn mspring_network_get_positions(network: *const c_void, first: u32, count: u32, x: *mut f64, y: *mut f64) -> i32;
+    fn mspring_network_get_positions(
+        network: *const c_void, first: u32, count: u32, x: *mut f64, y: *mut f64, stride: u32,
+    ) -> i32;
     fn mspring_network_state_hash(network: *const c_void, hash: *mut u64) -> i32;
 }
 
@@ -107,7 +109,7 @@ impl Network {
 
     fn height_of(&self, particle: u32) -> Result<f64, String> {
         let (mut x, mut y) = (0.0, 0.0);
-        check(unsafe { mspring_network_get_positions(self.0, particle, 1, &mut x, &mut y) })?;
+        check(unsafe { mspring_network_get_positions(self.0, particle, 1, &mut x, &mut y, 1) })?;
         Ok(y)
     }
 }
