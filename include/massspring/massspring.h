@@ -736,8 +736,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_create(mspring_buil
 ///
 /// Adds particles with position, velocity, mass and pin, and the springs between them that are not broken. Springs
 /// have rest length, stiffness and damping of now (nominal ones, fractions if relative). A spring on a ramp keeps the
-/// rest length that it has now. Not added: settings, solver, floor, hooks, forces and events. An inverse mass scale
-/// becomes 1, or a pin if it is 0. Both kinds of id keep their order.
+/// rest length that it has now. Not added: break and stress strains, settings, solver, floor, hooks, forces, events.
+/// An inverse mass scale becomes 1, or a pin if it is 0. Both kinds of id keep their order.
 ///
 /// A network that is created from the builder starts where the other is, but for the rounding of positions: its local
 /// origin may be another. If the other has not moved since it was created from the same particles and springs, both
