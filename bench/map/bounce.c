@@ -26,7 +26,7 @@ static bool is_level(const map_case *what) {
 }
 
 static bool is_judged(const map_case *what) {
-    return what->shape == MAP_LOOSE && what->has_floor;
+    return what->shape == MAP_LOOSE && what->has_floor && what->network.global_damping == 0;
 }
 
 /// Whether energy is kept: all of it or, with friction on a level floor, that of the motion across it.

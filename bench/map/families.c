@@ -199,6 +199,9 @@ static void draw_drop(map_case *drawn, uint64_t *seed) {
     draw_global_damping(drawn, seed);
 }
 
+/// From here on bounces are damped.
+enum { DAMPED_BOUNCES = 16000 };
+
 static void draw_bounce(map_case *drawn, uint64_t *seed) {
     begin(drawn, seed);
     const map_stuff stuff = {1, 1, 0, 100, 1};
@@ -220,6 +223,8 @@ static void draw_bounce(map_case *drawn, uint64_t *seed) {
     // A hundred bounces of the lowest.
     const double period = 2 * sqrt(2 * height / 9.8);
     drawn->steps = (uint32_t)fmin(20000, fmax(100, 110 * period / drawn->dt));
+    if (drawn->index >= DAMPED_BOUNCES)
+        drawn->network.global_damping = (float)map_decades(seed, 0.1, 10);
 }
 
 static void draw_hang(map_case *drawn, uint64_t *seed) {
@@ -313,7 +318,7 @@ static void draw_substeps(map_case *drawn, uint64_t *seed) {
 
 static const family families[MAP_FAMILIES] = {
     {"blast", 60000, draw_blast}, {"hit", 45000, draw_hit},       {"spin", 20000, draw_spin},
-    {"drop", 60000, draw_drop},   {"bounce", 16000, draw_bounce}, {"hang", 30000, draw_hang},
+    {"drop", 60000, draw_drop},   {"bounce", 18000, draw_bounce}, {"hang", 30000, draw_hang},
     {"wreck", 20000, draw_wreck}, {"far", 16000, draw_far},       {"substeps", 3000, draw_substeps},
 };
 

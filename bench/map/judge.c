@@ -51,15 +51,15 @@ void map_judge_broken(map_judge *judge, double elastic_before) {
 
 /* ------------------------------------------------------------------------------------------------------ energy */
 
-// What loose particles that lie on a floor show too much after explicit substeps: they have no velocity across it,
-// and not that of half a substep ago, with which w would be 0.
+// What loose particles show too much after explicit substeps: those that lie on a floor have no velocity across it,
+// and those that global damping stops have none, but not that of half a substep ago, with which w would be 0.
 static double shown_at_rest(const map_watch *watch) {
     const map_case *what = watch->what;
     const double speed =
         0.5 * watch->substep * hypot((double)what->network.gravity_x, (double)what->network.gravity_y);
     double sum = 0;
     for (uint32_t i = 0; i < watch->count && what->solver.solver == MSPRING_SOLVER_EXPLICIT; i++)
-        if ((watch->floor_x[i] != 0 || watch->floor_y[i] != 0) &&
+        if ((watch->floor_x[i] != 0 || watch->floor_y[i] != 0 || what->network.global_damping > 0) &&
             watch->components[watch->component[i]].particle_count == 1 && !isinf(watch->mass[i]))
             sum += 0.5 * watch->mass[i] * speed * speed;
     return sum;

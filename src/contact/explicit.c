@@ -50,7 +50,7 @@ static void bounce_slot(const mspring_network *network, const mspringi_ground *g
     const double from_vx = (double)g->from_vx[slot], from_vy = (double)g->from_vy[slot];
     mspringi_going p =
         mspringi_going_from((double)g->x[slot], (double)g->y[slot], (double)g->vx[slot], (double)g->vy[slot],
-                            from_vx, from_vy, g->h, g->restitution, g->per_length);
+                            from_vx, from_vy, g->undamped, g->h, g->restitution, g->per_length);
     if (mspringi_floor_bounce(network->floor, g->h, from_vx, from_vy, &p))
         put(network, slot, p.x + g->h * p.vx, p.y + g->h * p.vy, p.vx, p.vy);
 }
@@ -60,14 +60,19 @@ static void fly_slot(const mspring_network *network, const mspringi_ground *g, s
         .friction = g->friction, .restitution = g->restitution, .h = g->h, .skew = 0.5 * g->h};
     mspringi_flyer p =
         mspringi_flyer_from((double)g->x[slot], (double)g->y[slot], (double)g->vx[slot], (double)g->vy[slot],
-                            (double)g->from_vx[slot], (double)g->from_vy[slot], g->h);
+                            (double)g->from_vx[slot], (double)g->from_vy[slot], g->undamped, g->h);
     double vx, vy;
     if (mspringi_floor_fly(network->floor, &how, &p, &vx, &vy))
         put(network, slot, p.x, p.y, vx, vy);
 }
 
+/// Least that global damping may leave of a velocity in a substep, for what forces did to be seen in it.
+static const double least_decay = 1e-12;
+
 static mspringi_ground ground_of(const mspring_network *network, const mspringi_bounds *clear, float h) {
     const mspringi_floor *floor = network->floor;
+    const double decay = (double)mspringi_decay(network->settings.global_damping, h);
+    const bool is_seen = decay >= least_decay;
     return (mspringi_ground){
         .lines = floor->lines,
         .line_count = floor->plane_count,
@@ -86,8 +91,9 @@ static mspringi_ground ground_of(const mspring_network *network, const mspringi_
         .y = network->state.y,
         .vx = network->state.vx,
         .vy = network->state.vy,
-        .from_vx = floor->before.vx,
-        .from_vy = floor->before.vy,
+        .from_vx = is_seen ? floor->before.vx : network->state.vx,
+        .from_vy = is_seen ? floor->before.vy : network->state.vy,
+        .undamped = is_seen ? 1.0 / decay : 1.0,
         .impulse_x = floor->impulse.x,
         .impulse_y = floor->impulse.y,
         .inverse_mass = network->inverse_mass,
@@ -147,6 +153,7 @@ static void touch_strip(const mspring_network *network, uint32_t number, float h
     mspringi_ground ground = ground_of(network, &network->floor->clearances[number].clear, h);
     ground.from_vx = ground.vx;
     ground.from_vy = ground.vy;
+    ground.undamped = 1.0;
     const mspringi_row *first = &t->rows[strip->first_row], *last = first + strip->row_count - 1;
     bool any = touch_spans(network, &ground, first->kind == MSPRINGI_ROW_LOOSE, &t->spans[first->first_span],
                            last->first_span + last->span_count - first->first_span);
@@ -227,14 +234,15 @@ static gliding glide(const mspring_network *network, float h) {
 static void fly_free(const mspring_network *network, size_t slot, const gliding *g, double ax, double ay) {
     const mspringi_state *s = &network->state;
     const double h = g->how.h, vx = g->before * (double)s->vx[slot], vy = g->before * (double)s->vy[slot];
-    double to_vx = g->within * (vx + h * ax), to_vy = g->within * (vy + h * ay);
+    const double undamped_vx = vx + h * ax, undamped_vy = vy + h * ay;
+    double to_vx = g->within * undamped_vx, to_vy = g->within * undamped_vy;
     mspringi_flyer p = {.left = h};
     p.x = (double)s->x[slot] + (double)s->low_x[slot];
     p.y = (double)s->y[slot] + (double)s->low_y[slot];
-    p.wx = g->how.skew > 0.0 ? 0.5 * (vx + to_vx) : vx;
-    p.wy = g->how.skew > 0.0 ? 0.5 * (vy + to_vy) : vy;
-    p.ax = (to_vx - vx) / h;
-    p.ay = (to_vy - vy) / h;
+    p.wx = g->how.skew > 0.0 ? mspringi_in_step(vx, undamped_vx, to_vx) : vx;
+    p.wy = g->how.skew > 0.0 ? mspringi_in_step(vy, undamped_vy, to_vy) : vy;
+    p.ax = (undamped_vx - vx) / h;
+    p.ay = (undamped_vy - vy) / h;
     s->vx[slot] = (float)(g->after * to_vx);
     s->vy[slot] = (float)(g->after * to_vy);
     const bool acts = mspringi_floor_fly(network->floor, &g->how, &p, &to_vx, &to_vy);

@@ -62,12 +62,12 @@ static void load_touching(const mspringi_ground *g, size_t slot, touching *restr
     const float *restrict x = g->x + slot, *restrict y = g->y + slot;
     const float *restrict vx = g->vx + slot, *restrict vy = g->vy + slot;
     const float *restrict from_vx = g->from_vx + slot, *restrict from_vy = g->from_vy + slot;
-    const double h = g->h, restitution = g->restitution, per_length = g->per_length;
+    const double h = g->h, undamped = g->undamped, restitution = g->restitution, per_length = g->per_length;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const mspringi_going p =
             mspringi_going_from((double)x[i], (double)y[i], (double)vx[i], (double)vy[i], (double)from_vx[i],
-                                (double)from_vy[i], h, restitution, per_length);
+                                (double)from_vy[i], undamped, h, restitution, per_length);
         b->x[i] = p.x;
         b->y[i] = p.y;
         b->vx[i] = p.vx;

@@ -25,11 +25,11 @@ static void load_flying(const mspringi_ground *g, size_t slot, flying *restrict 
     const float *restrict x = g->x + slot, *restrict y = g->y + slot;
     const float *restrict vx = g->vx + slot, *restrict vy = g->vy + slot;
     const float *restrict from_vx = g->from_vx + slot, *restrict from_vy = g->from_vy + slot;
-    const double h = g->h;
+    const double h = g->h, undamped = g->undamped;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const mspringi_flyer p = mspringi_flyer_from((double)x[i], (double)y[i], (double)vx[i], (double)vy[i],
-                                                     (double)from_vx[i], (double)from_vy[i], h);
+                                                     (double)from_vx[i], (double)from_vy[i], undamped, h);
         b->x[i] = p.x;
         b->y[i] = p.y;
         b->wx[i] = p.wx;

@@ -157,6 +157,7 @@ typedef struct mspringi_ground {
     mspringi_bounds clear; ///< particles in here are left alone
     float *x, *y, *vx, *vy;
     const float *from_vx, *from_vy; ///< before the substep
+    double undamped;                ///< times a velocity: what it would be without global damping in the substep
     float *impulse_x, *impulse_y;
     const float *inverse_mass, *free_mass;
 } mspringi_ground;

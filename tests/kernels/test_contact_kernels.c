@@ -108,7 +108,8 @@ static block make_block(const mspringi_floor *floor, double h) {
     return made;
 }
 
-static mspringi_ground ground_of(const mspringi_floor *floor, block *b, double h, mspringi_bounds clear) {
+static mspringi_ground ground_of(const mspringi_floor *floor, block *b, double h, double undamped,
+                                 mspringi_bounds clear) {
     return (mspringi_ground){.lines = floor->lines,
                              .line_count = floor->plane_count,
                              .height_count = floor->heights.count,
@@ -128,6 +129,7 @@ static mspringi_ground ground_of(const mspringi_floor *floor, block *b, double h
                              .vy = b->vy,
                              .from_vx = b->from_vx,
                              .from_vy = b->from_vy,
+                             .undamped = undamped,
                              .impulse_x = b->impulse_x,
                              .impulse_y = b->impulse_y,
                              .inverse_mass = b->inverse_mass,
@@ -148,7 +150,7 @@ static void put(block *b, uint32_t i, double x, double y, double vx, double vy) 
 static void bounce(const mspringi_floor *floor, const mspringi_ground *g, block *b, uint32_t i) {
     const double from_vx = (double)b->from_vx[i], from_vy = (double)b->from_vy[i];
     mspringi_going p = mspringi_going_from((double)b->x[i], (double)b->y[i], (double)b->vx[i], (double)b->vy[i],
-                                           from_vx, from_vy, g->h, floor->restitution, g->per_length);
+                                           from_vx, from_vy, g->undamped, g->h, floor->restitution, g->per_length);
     if (mspringi_floor_bounce(floor, g->h, from_vx, from_vy, &p)) {
         put(b, i, p.x + g->h * p.vx, p.y + g->h * p.vy, p.vx, p.vy);
     }
@@ -158,7 +160,7 @@ static void fly(const mspringi_floor *floor, const mspringi_ground *g, block *b,
     const mspringi_turning how = {
         .friction = floor->friction, .restitution = floor->restitution, .h = g->h, .skew = 0.5 * g->h};
     mspringi_flyer p = mspringi_flyer_from((double)b->x[i], (double)b->y[i], (double)b->vx[i], (double)b->vy[i],
-                                           (double)b->from_vx[i], (double)b->from_vy[i], g->h);
+                                           (double)b->from_vx[i], (double)b->from_vy[i], g->undamped, g->h);
     double vx, vy;
     if (mspringi_floor_fly(floor, &how, &p, &vx, &vy)) {
         put(b, i, p.x, p.y, vx, vy);
@@ -186,7 +188,7 @@ static void check_kernel(uint32_t planes, bool has_heights, bool is_loose) {
         const mspringi_bounds clear = {-20, 20, n % 3 == 0 ? 0.2f : 20.0f, 20};
         const block before = make_block(&floor, h);
         block found = before;
-        const mspringi_ground ground = ground_of(&floor, &found, h, clear);
+        const mspringi_ground ground = ground_of(&floor, &found, h, n % 4 == 0 ? 1.25 : 1.0, clear);
         const uint32_t left = is_loose ? kernels->fly_past(&ground, 0) : kernels->touch(&ground, 0);
         for (uint32_t i = 0; i < W; i++) {
             block expected = before;
