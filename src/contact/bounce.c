@@ -87,16 +87,28 @@ static bool turn(const mspringi_floor *floor, double h, double allowed, mspringi
     return any > 0.0;
 }
 
+// No faster, in step, than before. (What has risen by rounding and lands again comes out of it by rounding faster:
+// turned back for that, whole bodies stopped that slid down a slope.)
+static void slow_down(double most, mspringi_going *p) {
+    const double square = mspringi_going_square(p);
+    if (!(square > most * MSPRINGI_NO_LARGER))
+        return;
+    const double keep = sqrt(most / square);
+    p->vx = p->half_x + keep * (p->vx - p->half_x);
+    p->vy = p->half_y + keep * (p->vy - p->half_y);
+}
+
 bool mspringi_floor_bounce(const mspringi_floor *floor, double h, double from_vx, double from_vy,
                            mspringi_going *p) {
-    const double slop = mspringi_floor_slop(p->x, p->y), most = mspringi_going_square(p) * MSPRINGI_NO_LARGER;
+    const double slop = mspringi_floor_slop(p->x, p->y), most = mspringi_going_square(p);
     const bool ends_inside = mspringi_floor_distance(floor, p->x + h * p->vx, p->y + h * p->vy) < 0.0;
-    bool acts = ends_inside && mspringi_floor_put_outside(floor, &p->x, &p->y);
-    const bool was_inside = acts;
+    const bool was_inside = ends_inside && mspringi_floor_put_outside(floor, &p->x, &p->y);
+    bool acts = was_inside;
     for (int round = 0; round < ROUNDS && turn(floor, h, round == 0 ? 0.0 : slop, p); ++round)
         acts = true;
-    if (!acts || ((was_inside || mspringi_going_square(p) <= most) &&
-                  is_free_way(floor, p->x, p->y, p->x + h * p->vx, p->y + h * p->vy)))
+    if (acts && !was_inside)
+        slow_down(most, p);
+    if (!acts || is_free_way(floor, p->x, p->y, p->x + h * p->vx, p->y + h * p->vy))
         return acts;
     // A corner that leads nowhere: back to where it came from, which takes and gives no energy, or no further.
     p->vx = -from_vx;

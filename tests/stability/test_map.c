@@ -108,6 +108,7 @@ static void what_was_at_fault_holds(void **state) {
         uint32_t index;
     } cases[] = {
         {MAP_DROP, 10033},   // violent, while the floor gives nothing
+        {MAP_DROP, 8417},    // rounding had what slid down a slope turned back
         {MAP_DROP, 53803},   // a loose particle, strongly damped, between implicit substeps
         {MAP_WRECK, 5410},   // particles whose springs all broke were lifted up slopes
         {MAP_WRECK, 17667},  // and lost momentum where iterations end early
