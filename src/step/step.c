@@ -98,6 +98,8 @@ static mspringi_extrema run(mspring_network *network, const mspringi_attempt *at
         mspringi_clear_empty_slots(network);
     if (ops->end)
         ops->end(network);
+    if (!ops->has_border) // the explicit solver sweeps rows, others all slots
+        mspringi_clear_unused_slots(network);
     return mspringi_guard_look(network, 0, mspringi_used_slots(network));
 }
 
@@ -140,6 +142,7 @@ static void go_back(mspring_network *network, const mspringi_attempt *attempt) {
     if (solver->ops->restore)
         solver->ops->restore(network, solver->object);
     mspringi_stages_take_back(network, attempt);
+    mspringi_clear_unused_slots(network);
     mspringi_clear_empty_slots(network);
 }
 

@@ -327,7 +327,7 @@ static mspring_result write_view(mspring_network *network, const call *c) {
     const uint32_t slot = view.slot_of_particle[c->particle];
     if (fabsf(c->a) < 1e9f)
         view.vy[slot] = c->a;
-    if (slot + 1 < view.slot_count && view.particle_of_slot[slot + 1] == MSPRING_NONE)
+    if (fabsf(c->b) < 1e9f && slot + 1 < view.slot_count && view.particle_of_slot[slot + 1] == MSPRING_NONE)
         view.x[slot + 1] = c->b;
     return MSPRING_OK;
 }
