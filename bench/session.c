@@ -224,16 +224,24 @@ static bool change_layout(mspring_network *network, mspring_layout layout, doubl
 /// Compact a network several times.
 /// @param all      [COMPACTIONS] how long each took, sorted
 /// @param longest  [COMPACTIONS] and its longest frame, likewise
-static bool compact_again(mspring_network *network, double *all, double *longest, scene_error *error) {
+/// @param back     likewise of the way back; may be NULL
+static bool compact_again(mspring_network *network, double *all, double *longest, double *back,
+                          scene_error *error) {
     for (uint32_t i = 0; i < COMPACTIONS; i++) {
-        double back[2];
-        if (!change_layout(network, MSPRING_LAYOUT_WHOLE, &back[0], &back[1], error) ||
+        double whole[2];
+        if (!change_layout(network, MSPRING_LAYOUT_WHOLE, &whole[0], &whole[1], error) ||
             !change_layout(network, MSPRING_LAYOUT_COMPACT, &all[i], &longest[i], error)) {
             return false;
+        }
+        if (back) {
+            back[i] = whole[1];
         }
     }
     bench_median(all, COMPACTIONS); // sorts
     bench_median(longest, COMPACTIONS);
+    if (back) {
+        bench_median(back, COMPACTIONS);
+    }
     return true;
 }
 
@@ -242,6 +250,33 @@ static void print_compaction(session *with, const bench_options *options, const 
     const uint32_t middle = COMPACTIONS / 2;
     print_row(options, subject, with->step, "  to compact it", all[0], all[middle], step);
     print_row(options, subject, with->step, "  the longest frame of that", longest[0], longest[middle], step);
+}
+
+/// Time the compaction of a wreck and the way back with another solver.
+static bool compact_solver(session *with, const bench_options *options, const bench_scene *subject,
+                           const bench_network *wreck, mspring_solver solver, double step, scene_error *error) {
+    const char *const name = solver == MSPRING_SOLVER_DIRECT ? "direct" : "implicit";
+    double all[COMPACTIONS], longest[COMPACTIONS], back[COMPACTIONS];
+    char text[64];
+    mspring_solver_def def;
+    mspring_result result = mspring_solver_def_init(&def, sizeof def);
+    def.solver = solver;
+    if (result == MSPRING_OK) {
+        result = mspring_network_set_solver(wreck->network, &def);
+    }
+    if (result != MSPRING_OK) {
+        bench_library_error(error, "changing the solver", result, mspring_network_error(wreck->network));
+        return false;
+    }
+    if (!compact_again(wreck->network, all, longest, back, error)) {
+        return false;
+    }
+    snprintf(text, sizeof text, "  with the %s solver", name);
+    print_row(options, subject, with->step, text, all[0], all[COMPACTIONS / 2], step);
+    print_row(options, subject, with->step, "  the longest frame of that", longest[0], longest[COMPACTIONS / 2],
+              step);
+    print_row(options, subject, with->step, "  and of the way back", back[0], back[COMPACTIONS / 2], step);
+    return true;
 }
 
 /// Time steps of a wreck in turn with those of the whole: as it is after the breaks, and compact; and the
@@ -261,12 +296,14 @@ static bool measure_wreck(session *with, const bench_options *options, const ben
         snprintf(text, sizeof text, "%s", bench_wreck_name(kind));
         print_row(options, subject, with->step, text, of_wreck[0], of_wreck[repeat / 2], times[0]);
     }
-    ok = ok && compact_again(wreck.network, seconds, pieces, error) &&
+    ok = ok && compact_again(wreck.network, seconds, pieces, NULL, error) &&
          measure_steps(&whole, &broken, repeat, times, error);
     if (ok) {
         snprintf(text, sizeof text, "%s, compact", bench_wreck_name(kind));
         print_row(options, subject, with->step, text, of_wreck[0], of_wreck[repeat / 2], times[0]);
         print_compaction(with, options, subject, seconds, pieces, times[0]);
+        ok = compact_solver(with, options, subject, &wreck, MSPRING_SOLVER_IMPLICIT, times[0], error) &&
+             compact_solver(with, options, subject, &wreck, MSPRING_SOLVER_DIRECT, times[0], error);
     }
     bench_network_free(&wreck);
     return ok;
@@ -400,7 +437,7 @@ static bool measure_added(session *with, const bench_options *options, const ben
         print_row(options, subject, with->step, text, made[0], median, times[0]);
         print_row(options, subject, with->step, "  a step with these", of_added[0], of_added[repeat / 2], times[0]);
     }
-    ok = ok && compact_again(added.network, all, longest, error) &&
+    ok = ok && compact_again(added.network, all, longest, NULL, error) &&
          measure_steps(&before, &after, repeat, times, error);
     if (ok) {
         print_row(options, subject, with->step, "  a step with these, compact", of_added[0], of_added[repeat / 2],

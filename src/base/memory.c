@@ -102,13 +102,22 @@ static char *contents_of(const block *of) {
     return (char *)of + MSPRINGI_ALIGNMENT;
 }
 
-void *mspringi_alloc(mspringi_memory *memory, size_t count, size_t size) {
+// Whole units, so that every block ends where the next may begin. 0: too many.
+static size_t size_of(size_t count, size_t size) {
     if (size != 0 && count > (SIZE_MAX - 2 * MSPRINGI_ALIGNMENT) / size)
-        return NULL;
-    // Whole units, so that every block ends where the next may begin.
-    const size_t total = (count * size + 2 * MSPRINGI_ALIGNMENT - 1) / MSPRINGI_ALIGNMENT * MSPRINGI_ALIGNMENT;
-    const block *taken = take(memory, total);
-    return taken ? memset(contents_of(taken), 0, total - MSPRINGI_ALIGNMENT) : NULL;
+        return 0;
+    return (count * size + 2 * MSPRINGI_ALIGNMENT - 1) / MSPRINGI_ALIGNMENT * MSPRINGI_ALIGNMENT;
+}
+
+void *mspringi_alloc_unset(mspringi_memory *memory, size_t count, size_t size) {
+    const size_t total = size_of(count, size);
+    const block *taken = total > 0 ? take(memory, total) : NULL;
+    return taken ? contents_of(taken) : NULL;
+}
+
+void *mspringi_alloc(mspringi_memory *memory, size_t count, size_t size) {
+    void *taken = mspringi_alloc_unset(memory, count, size);
+    return taken ? memset(taken, 0, size_of(count, size) - MSPRINGI_ALIGNMENT) : NULL;
 }
 
 void *mspringi_memory_duplicate(mspringi_memory *memory, const void *contents) {

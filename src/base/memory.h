@@ -30,6 +30,9 @@ mspring_result mspringi_memory_init(mspringi_memory *memory, const mspring_alloc
 /// a block too, so that NULL always means failure.
 void *mspringi_alloc(mspringi_memory *memory, size_t count, size_t size);
 
+/// The same, but nothing is set: for much memory that is set in pieces.
+void *mspringi_alloc_unset(mspringi_memory *memory, size_t count, size_t size);
+
 /// A copy of a block of any memory, or NULL. NULL is allowed.
 void *mspringi_memory_duplicate(mspringi_memory *memory, const void *contents);
 

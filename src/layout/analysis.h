@@ -163,7 +163,7 @@ typedef struct mspringi_homes {
 } mspringi_homes;
 
 /// Find them, in this order; all that they are given must stay. attach goes through the members of grids,
-/// join_springs through springs, try_skews through skews up to MSPRINGI_LONGEST_SKEW.
+/// join_springs through springs; try_skews is called until it returns true.
 mspring_result mspringi_homes_begin(mspringi_homes *homes, const mspringi_graph *graph, const mspringi_grids *grids,
                                     const mspringi_strands *strands, mspringi_memory *memory,
                                     mspringi_message *message);
@@ -172,7 +172,7 @@ mspring_result mspringi_homes_prepare(mspringi_homes *homes, uint32_t workers, m
                                       mspringi_message *message);
 void mspringi_homes_join_springs(mspringi_homes *homes, uint32_t first, uint32_t end);
 void mspringi_homes_judge(mspringi_homes *homes);
-void mspringi_homes_try_skews(mspringi_homes *homes, uint32_t first, uint32_t end);
+bool mspringi_homes_try_skews(mspringi_homes *homes);
 void mspringi_homes_end(mspringi_homes *homes, mspringi_memory *memory);
 void mspringi_homes_destroy(mspringi_homes *homes, mspringi_memory *memory);
 

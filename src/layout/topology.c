@@ -223,8 +223,8 @@ static mspring_result judge_homes(mspringi_assembly *a) {
     return MSPRING_OK;
 }
 
-static mspring_result try_skews(mspringi_assembly *a, uint32_t first, uint32_t end) {
-    mspringi_homes_try_skews(&a->homes, first, end);
+static mspring_result try_skews(mspringi_assembly *a) {
+    a->cursor.again = !mspringi_homes_try_skews(&a->homes);
     return MSPRING_OK;
 }
 
@@ -291,81 +291,63 @@ static uint32_t members_of(const mspringi_assembly *a) {
     return a->grids.member_count;
 }
 
-static uint32_t skews_of(const mspringi_assembly *a) {
-    (void)a;
-    return MSPRINGI_LONGEST_SKEW;
-}
-
 static uint32_t web_springs_of(const mspringi_assembly *a) {
     return a->weaving.count;
 }
 
-/// A function that is called once, or with one range of so many things after the other.
-typedef struct layout_pass {
-    mspring_result (*once)(mspringi_assembly *a);
-    mspring_result (*part)(mspringi_assembly *a, uint32_t first, uint32_t end);
-    uint32_t (*count)(const mspringi_assembly *a);
-    uint32_t most;
-} layout_pass;
-
-#define ONCE(function)                                                                                             \
-    { function, NULL, NULL, 0 }
-#define EACH(function, count, most)                                                                                \
-    { NULL, function, count, most }
+MSPRINGI_PASSES(layout, mspringi_assembly)
 #define SEARCH                                                                                                     \
-    EACH(flood_grids, flood_steps_of, 4000), ONCE(begin_judging),                                                  \
-        EACH(count_grid_springs, candidate_members_of, 8000), EACH(judge_grids, candidates_of, 64),                \
-        ONCE(end_search)
+    MSPRINGI_EACH(flood_grids, flood_steps_of, 4000), MSPRINGI_ONCE(begin_judging),                                \
+        MSPRINGI_EACH(count_grid_springs, candidate_members_of, 8000),                                             \
+        MSPRINGI_EACH(judge_grids, candidates_of, 64), MSPRINGI_ONCE(end_search)
 
 static const layout_pass layout_passes[] = {
-    ONCE(make_graph),
-    ONCE(begin_herds),
-    EACH(explore_trees, particles_of, 16000),
-    ONCE(reserve_herds),
-    EACH(compare_trees, particles_of, 4000),
-    ONCE(fill_herds),
-    ONCE(find_strands),
-    ONCE(begin_grids),
+    MSPRINGI_ONCE(make_graph),
+    MSPRINGI_ONCE(begin_herds),
+    MSPRINGI_EACH(explore_trees, particles_of, 16000),
+    MSPRINGI_ONCE(reserve_herds),
+    MSPRINGI_EACH(compare_trees, particles_of, 4000),
+    MSPRINGI_ONCE(fill_herds),
+    MSPRINGI_ONCE(find_strands),
+    MSPRINGI_ONCE(begin_grids),
     SEARCH,
     SEARCH,
     SEARCH,
-    EACH(survey_sheets, springs_of, 32000),
-    ONCE(begin_sheets),
-    EACH(join_sheets, springs_of, 32000),
-    EACH(count_sheet_springs, springs_of, 16000),
-    ONCE(give_up_sheets),
-    EACH(shelve_grids, narrow_grids_of, 64),
-    ONCE(begin_homes),
-    EACH(attach_homes, members_of, 8000),
-    ONCE(prepare_homes),
-    EACH(join_homes, springs_of, 32000),
-    ONCE(judge_homes),
-    EACH(try_skews, skews_of, 1),
-    ONCE(settle_ropes),
-    ONCE(list_web),
-    ONCE(sort_web),
-    ONCE(find_layers),
-    ONCE(order_web),
-    ONCE(mspringi_assembly_begin_blocks),
-    EACH(mspringi_assembly_number_blocks, members_of, 8000),
-    ONCE(mspringi_assembly_number_the_rest),
-    ONCE(mspringi_assembly_reserve_maps),
-    EACH(assign_slots, particles_of, 16000),
-    ONCE(assign_other_slots),
-    ONCE(mspringi_assembly_begin_places),
-    EACH(assign_places, springs_of, 16000),
-    ONCE(mspringi_assembly_note_ends),
-    ONCE(mspringi_assembly_begin_rows),
-    ONCE(mspringi_assembly_append_lattice_rows),
-    ONCE(mspringi_assembly_append_other_rows),
-    ONCE(trim_spans),
-    ONCE(mspringi_assembly_make_strips),
-    ONCE(begin_web),
-    ONCE(lay_rungs),
-    EACH(fill_web, web_springs_of, 16000),
+    MSPRINGI_EACH(survey_sheets, springs_of, 32000),
+    MSPRINGI_ONCE(begin_sheets),
+    MSPRINGI_EACH(join_sheets, springs_of, 32000),
+    MSPRINGI_EACH(count_sheet_springs, springs_of, 16000),
+    MSPRINGI_ONCE(give_up_sheets),
+    MSPRINGI_EACH(shelve_grids, narrow_grids_of, 64),
+    MSPRINGI_ONCE(begin_homes),
+    MSPRINGI_EACH(attach_homes, members_of, 8000),
+    MSPRINGI_ONCE(prepare_homes),
+    MSPRINGI_EACH(join_homes, springs_of, 32000),
+    MSPRINGI_ONCE(judge_homes),
+    MSPRINGI_ONCE(try_skews),
+    MSPRINGI_ONCE(settle_ropes),
+    MSPRINGI_ONCE(list_web),
+    MSPRINGI_ONCE(sort_web),
+    MSPRINGI_ONCE(find_layers),
+    MSPRINGI_ONCE(order_web),
+    MSPRINGI_ONCE(mspringi_assembly_begin_blocks),
+    MSPRINGI_EACH(mspringi_assembly_number_blocks, members_of, 8000),
+    MSPRINGI_ONCE(mspringi_assembly_number_the_rest),
+    MSPRINGI_ONCE(mspringi_assembly_reserve_maps),
+    MSPRINGI_EACH(assign_slots, particles_of, 16000),
+    MSPRINGI_ONCE(assign_other_slots),
+    MSPRINGI_ONCE(mspringi_assembly_begin_places),
+    MSPRINGI_EACH(assign_places, springs_of, 16000),
+    MSPRINGI_ONCE(mspringi_assembly_note_ends),
+    MSPRINGI_ONCE(mspringi_assembly_begin_rows),
+    MSPRINGI_ONCE(mspringi_assembly_append_lattice_rows),
+    MSPRINGI_ONCE(mspringi_assembly_append_other_rows),
+    MSPRINGI_ONCE(trim_spans),
+    MSPRINGI_ONCE(mspringi_assembly_make_strips),
+    MSPRINGI_ONCE(begin_web),
+    MSPRINGI_ONCE(lay_rungs),
+    MSPRINGI_EACH(fill_web, web_springs_of, 16000),
 };
-
-#define LAYOUT_PASSES (sizeof layout_passes / sizeof layout_passes[0])
 
 mspring_result mspringi_topology_begin(const mspring_builder *builder, const mspringi_reserve *reserve,
                                        bool is_checked, bool has_herds, uint32_t workers, uint32_t lanes,
@@ -391,22 +373,8 @@ mspring_result mspringi_topology_begin(const mspring_builder *builder, const msp
 }
 
 mspring_result mspringi_topology_run(mspringi_assembly *a, bool *is_done) {
-    const layout_pass *next = &layout_passes[a->pass];
-    const uint32_t count = next->part ? next->count(a) : 0, left = count - a->at;
-    mspring_result result = MSPRING_OK;
-    MSPRINGI_ASSERT(a->pass < LAYOUT_PASSES);
-    if (next->once) {
-        result = next->once(a);
-    } else if (left > 0) {
-        const uint32_t first = a->at;
-        a->at += left < next->most ? left : next->most;
-        result = next->part(a, first, a->at);
-    }
-    if (a->at == count) {
-        a->pass++;
-        a->at = 0;
-    }
-    *is_done = a->pass == LAYOUT_PASSES;
+    const mspring_result result = layout_run(a, layout_passes, &a->cursor);
+    *is_done = a->cursor.pass == MSPRINGI_PASS_COUNT(layout_passes);
     return result;
 }
 

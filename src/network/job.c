@@ -81,7 +81,7 @@ static bool copy_arrays(mspring_job *job, const mspring_network *network) {
 }
 
 static void ask_for_solver(mspringi_job_solver *asked, const mspringi_solver *solver, uint32_t tile_size) {
-    if (!solver->ops || !solver->ops->remake)
+    if (!solver->ops || !solver->ops->create)
         return;
     solver->ops->get_def(solver->object, &asked->def);
     asked->tile_size = tile_size;
@@ -178,75 +178,47 @@ static uint32_t rows_of(const mspring_job *job) {
     return mspringi_job_first(job)->lattice_rows;
 }
 
-/// A function that is called once, or with one range of so many things after the other.
-typedef struct job_pass {
-    mspring_result (*once)(mspring_job *);
-    mspring_result (*part)(mspring_job *, uint32_t first, uint32_t end);
-    uint32_t (*count)(const mspring_job *);
-    uint32_t most;
-} job_pass;
-
-#define ONCE(function)                                                                                             \
-    { function, NULL, NULL, 0 }
-#define EACH(function, count, most)                                                                                \
-    { NULL, function, count, most }
+MSPRINGI_PASSES(job, mspring_job)
 #define MOVE                                                                                                       \
-    ONCE(mspringi_move_begin), EACH(mspringi_move_note_rests, springs_of, 16000),                                  \
-        ONCE(mspringi_move_reserve_springs), EACH(mspringi_move_copy_springs, springs_of, 16000),                  \
-        ONCE(mspringi_move_reserve_others), ONCE(mspringi_move_make_solver), ONCE(mspringi_move_make_fallback)
+    MSPRINGI_ONCE(mspringi_move_begin), MSPRINGI_EACH(mspringi_move_note_rests, springs_of, 16000),                \
+        MSPRINGI_ONCE(mspringi_move_reserve_springs),                                                              \
+        MSPRINGI_EACH(mspringi_move_copy_springs, springs_of, 16000), MSPRINGI_ONCE(mspringi_move_reserve_others), \
+        MSPRINGI_ONCE(mspringi_move_make_solver), MSPRINGI_ONCE(mspringi_move_make_fallback)
 
 static const job_pass compact_passes[] = {
-    ONCE(mspringi_left_begin),
-    EACH(mspringi_left_look, springs_of, 64000),
-    ONCE(mspringi_left_reserve),
-    EACH(mspringi_left_place_on_diagonal, particles_of, 64000),
-    EACH(mspringi_left_place_in_grids, rows_of, 64),
-    EACH(mspringi_left_list, springs_of, 32000),
-    ONCE(mspringi_left_begin_layout),
-    ONCE(mspringi_left_lay_out),
-    ONCE(mspringi_left_finish_layout),
-    EACH(mspringi_left_number_places, springs_of, 64000),
-    EACH(mspringi_left_note_ends, springs_of, 32000),
-    ONCE(mspringi_left_keep_spare),
-    EACH(mspringi_left_fingerprint_slots, particles_of, 64000),
-    EACH(mspringi_left_fingerprint_places, springs_of, 64000),
+    MSPRINGI_ONCE(mspringi_left_begin),
+    MSPRINGI_EACH(mspringi_left_look, springs_of, 64000),
+    MSPRINGI_ONCE(mspringi_left_reserve),
+    MSPRINGI_EACH(mspringi_left_place_on_diagonal, particles_of, 64000),
+    MSPRINGI_EACH(mspringi_left_place_in_grids, rows_of, 64),
+    MSPRINGI_EACH(mspringi_left_list, springs_of, 32000),
+    MSPRINGI_ONCE(mspringi_left_begin_layout),
+    MSPRINGI_ONCE(mspringi_left_lay_out),
+    MSPRINGI_ONCE(mspringi_left_finish_layout),
+    MSPRINGI_EACH(mspringi_left_number_places, springs_of, 64000),
+    MSPRINGI_EACH(mspringi_left_note_ends, springs_of, 32000),
+    MSPRINGI_ONCE(mspringi_left_keep_spare),
+    MSPRINGI_EACH(mspringi_left_fingerprint_slots, particles_of, 64000),
+    MSPRINGI_EACH(mspringi_left_fingerprint_places, springs_of, 64000),
     MOVE,
 };
 
-static const job_pass whole_passes[] = {ONCE(take_whole), MOVE};
+static const job_pass whole_passes[] = {MSPRINGI_ONCE(take_whole), MOVE};
 
 static uint32_t pass_count(const mspring_job *job) {
-    return job->layout == MSPRING_LAYOUT_WHOLE ? sizeof whole_passes / sizeof whole_passes[0]
-                                               : sizeof compact_passes / sizeof compact_passes[0];
+    return job->layout == MSPRING_LAYOUT_WHOLE ? MSPRINGI_PASS_COUNT(whole_passes)
+                                               : MSPRINGI_PASS_COUNT(compact_passes);
 }
 
 static bool is_done(const mspring_job *job) {
-    return job->is_needless || job->pass == pass_count(job);
-}
-
-static mspring_result run_next(mspring_job *job) {
-    const job_pass *next = (job->layout == MSPRING_LAYOUT_WHOLE ? whole_passes : compact_passes) + job->pass;
-    const uint32_t count = next->part ? next->count(job) : 0, left = count - job->at;
-    mspring_result result = MSPRING_OK;
-    job->is_halfway = false;
-    if (next->once) {
-        result = next->once(job);
-    } else if (left > 0) {
-        const uint32_t first = job->at;
-        job->at += left < next->most ? left : next->most;
-        result = next->part(job, first, job->at);
-    }
-    if (job->at == count && !job->is_halfway) {
-        job->pass++;
-        job->at = 0;
-    }
-    return result;
+    return job->is_needless || job->cursor.pass == pass_count(job);
 }
 
 static MSPRINGI_NOINLINE mspring_result run(mspring_job *job, uint32_t at_most) {
+    const job_pass *list = job->layout == MSPRING_LAYOUT_WHOLE ? whole_passes : compact_passes;
     mspring_result result = MSPRING_OK;
     for (uint32_t n = 0; result == MSPRING_OK && !is_done(job) && (at_most == 0 || n < at_most); ++n)
-        result = run_next(job);
+        result = job_run(job, list, &job->cursor);
     job->is_spent = result != MSPRING_OK;
     job->failure = result;
     return result;
@@ -263,7 +235,7 @@ mspring_result mspring_job_run(mspring_job *job, uint32_t at_most, uint32_t *lef
     mspring_result result = run(job, at_most);
     mspringi_fp_leave(before);
     if (result == MSPRING_OK && left)
-        *left = is_done(job) ? 0 : pass_count(job) - job->pass;
+        *left = is_done(job) ? 0 : pass_count(job) - job->cursor.pass;
     return result;
 }
 

@@ -13,6 +13,7 @@
 #ifndef MSPRINGI_JOB_H
 #define MSPRINGI_JOB_H
 
+#include "base/passes.h"
 #include "store/network.h"
 #include "store/rests.h"
 
@@ -37,8 +38,7 @@ struct mspring_job {
     mspringi_job_solver solvers[2]; ///< the chosen one and the fallback
     uint32_t workers;
     uint64_t links, growth; ///< edits.links and edits.growth
-    uint32_t pass, at;      ///< of the list in job.c, the one that is under way, and how far it has come
-    bool is_halfway;        ///< the layout's own list
+    mspringi_cursor cursor; ///< in the list in job.c
 
     // left.c
     bool has_work;               ///< some spring that is swept is broken, or one was added that the layout lacks
@@ -74,7 +74,7 @@ mspring_result mspringi_job_no_memory(mspring_job *job);
 mspring_network mspringi_move_shell(const mspring_network *network);
 
 /* left.c: a topology of the springs that are left, in this order. Ranges are of springs, but for particles and, in
- * place_in_grids, lattice rows. lay_out says in is_halfway that it is to be called again. */
+ * place_in_grids, lattice rows. */
 mspring_result mspringi_left_begin(mspring_job *job);
 mspring_result mspringi_left_look(mspring_job *job, uint32_t first, uint32_t end);
 mspring_result mspringi_left_reserve(mspring_job *job);

@@ -108,7 +108,7 @@ mspring_result mspringi_left_begin_layout(mspring_job *job) {
 mspring_result mspringi_left_lay_out(mspring_job *job) {
     bool is_done;
     mspring_result result = mspringi_topology_run(job->assembly, &is_done);
-    job->is_halfway = !is_done;
+    job->cursor.again = !is_done;
     return result;
 }
 

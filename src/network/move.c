@@ -98,9 +98,16 @@ mspring_result mspringi_move_reserve_others(mspring_job *job) {
 }
 
 static mspring_result make_solver(mspring_job *job, mspringi_solver *made, const mspringi_job_solver *asked) {
-    return made->ops && made->ops->remake
-               ? made->ops->remake(&job->to, &asked->def, asked->tile_size, &made->object)
-               : MSPRING_OK;
+    bool is_done = !made->ops || !made->ops->build || !made->object;
+    mspring_result result = MSPRING_OK;
+    if (!made->object && made->ops && made->ops->create) {
+        result = made->ops->create(&job->to, &asked->def, asked->tile_size, &made->object);
+        is_done = !made->ops->build;
+    } else if (!is_done) {
+        result = made->ops->build(made->object, &is_done);
+    }
+    job->cursor.again = !is_done;
+    return result;
 }
 
 mspring_result mspringi_move_make_solver(mspring_job *job) {
@@ -118,7 +125,7 @@ static mspring_result adopt_solver(mspring_network *to, mspringi_solver *solver,
     mspring_solver_def def;
     mspringi_solver unused = *made;
     *solver = (mspringi_solver){ops, NULL};
-    if (ops && ops->remake)
+    if (ops && ops->create)
         ops->get_def(had->object, &def);
     if (made->object && made->ops == ops && (!ops->fits || ops->fits(made->object, &def))) {
         solver->object = made->object;
@@ -128,7 +135,7 @@ static mspring_result adopt_solver(mspring_network *to, mspringi_solver *solver,
     }
     if (made->object)
         mspringi_solver_destroy(&unused, &to->memory);
-    return ops && ops->remake ? ops->remake(to, &def, tile_size, &solver->object) : MSPRING_OK;
+    return ops && ops->create ? mspringi_solver_make(solver, to, &def, tile_size) : MSPRING_OK;
 }
 
 static mspring_result make_hooks(mspring_network *to, const mspring_network *from) {

@@ -55,13 +55,11 @@ static mspring_result change_solver(mspring_network *network, const mspring_solv
             made.ops->adjust(network->solver.object, def);
         return MSPRING_OK;
     }
-    if (made.ops->create) {
-        const mspringi_fp_state before = mspringi_fp_enter();
-        mspring_result result = made.ops->create(network, def, &made.object);
-        mspringi_fp_leave(before);
-        if (result != MSPRING_OK)
-            return result;
-    }
+    const mspringi_fp_state before = mspringi_fp_enter();
+    mspring_result result = mspringi_solver_make(&made, network, def, 0);
+    mspringi_fp_leave(before);
+    if (result != MSPRING_OK)
+        return result;
     mspringi_solver_destroy(&network->solver, &network->memory);
     network->solver = made;
     return MSPRING_OK;

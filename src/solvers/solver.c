@@ -12,6 +12,17 @@ const mspringi_solver_ops *mspringi_solver_ops_of(mspring_solver name) {
     return NULL;
 }
 
+mspring_result mspringi_solver_make(mspringi_solver *solver, mspring_network *network,
+                                    const mspring_solver_def *def, uint32_t tile_size) {
+    const mspringi_solver_ops *ops = solver->ops;
+    mspring_result result = ops->create ? ops->create(network, def, tile_size, &solver->object) : MSPRING_OK;
+    for (bool is_done = !ops->build; result == MSPRING_OK && !is_done;)
+        result = ops->build(solver->object, &is_done);
+    if (result != MSPRING_OK && solver->object)
+        mspringi_solver_destroy(solver, &network->memory);
+    return result;
+}
+
 void mspringi_solver_destroy(mspringi_solver *solver, mspringi_memory *memory) {
     if (solver->ops && solver->ops->destroy)
         solver->ops->destroy(solver->object, memory);

@@ -54,10 +54,15 @@ struct mspringi_solver_ops {
     bool has_herds;      ///< sweeps small trees in herds
     bool can_add;        ///< springs may be added
 
-    // Life. create: for a network that is otherwise complete; on failure there is nothing to free. fits: whether it
-    // can go on with this definition; then adjust is all there is to do. relocate: lead pointers of a copy into the
-    // copy of the network. reserve: what the workers need that there are now.
-    mspring_result (*create)(mspring_network *network, const mspring_solver_def *def, void **object);
+    // Life. create: for a network that is otherwise complete, or of which there are the layout and what springs and
+    // masses are, which may be on another thread; tile_size is for one whose tiles go by plan, 0: by that of the
+    // layout; on failure there is nothing to free. build: the next of the short functions that make it, until it is
+    // done; on failure it can only be destroyed. fits: whether it can go on with this definition; then adjust is
+    // all there is to do. relocate: lead pointers of a copy into the copy of the network. reserve: what the workers
+    // need that there are now.
+    mspring_result (*create)(mspring_network *network, const mspring_solver_def *def, uint32_t tile_size,
+                             void **object);
+    mspring_result (*build)(void *object, bool *is_done);
     bool (*fits)(const void *object, const mspring_solver_def *def);
     void (*adjust)(void *object, const mspring_solver_def *def);
     void (*destroy)(void *object, mspringi_memory *memory);
@@ -65,11 +70,9 @@ struct mspringi_solver_ops {
                      const mspringi_memory *to);
     mspring_result (*reserve)(void *object, mspring_network *network);
 
-    // Another layout of the same network, in two halves. get_def: as it was asked for. remake: one of that kind,
-    // from what the new layout and its springs are, which may be on another thread; tile_size is for one whose
-    // tiles go by plan, 0: by that of the new layout. take_over: what it knows of the motion.
+    // Another layout of the same network. get_def: as it was asked for, which one that has create also needs.
+    // take_over: what it knows of the motion.
     void (*get_def)(const void *object, mspring_solver_def *def);
-    mspring_result (*remake)(mspring_network *to, const mspring_solver_def *def, uint32_t tile_size, void **object);
     void (*take_over)(const mspring_network *to, void *object, const mspring_network *from, const void *had);
     mspringi_solver_basis (*get_basis)(const void *object);
     void (*set_basis)(void *object, const mspring_network *network, const mspringi_solver_basis *basis);
@@ -120,6 +123,9 @@ extern const mspringi_solver mspringi_clamped;
 /// It keeps nothing from step to step. In implicit.c.
 mspring_result mspringi_fallback_reserve(mspring_network *network, uint32_t tile_size);
 
+/// Make the object of a solver whose table is set, in one go. On failure there is none.
+mspring_result mspringi_solver_make(mspringi_solver *solver, mspring_network *network,
+                                    const mspring_solver_def *def, uint32_t tile_size);
 void mspringi_solver_destroy(mspringi_solver *solver, mspringi_memory *memory);
 void mspringi_solver_forget(const mspringi_solver *solver);
 mspringi_solver_basis mspringi_solver_get_basis(const mspringi_solver *solver);

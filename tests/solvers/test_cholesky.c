@@ -567,10 +567,13 @@ static void check_count(const problem *p) {
     mspringi_message message;
     mspringi_adjacency adjacency;
     mspringi_tree tree = {0};
-    mspringi_elimination_cost cost;
+    double most = 1e9;
     const mspringi_cholesky_graph graph = graph_of(p);
     check_ok(mspringi_memory_init(&memory, NULL, &message));
-    check_ok(mspringi_adjacency_create(&adjacency, &graph, &memory, &message));
+    check_ok(mspringi_adjacency_begin(&adjacency, &graph, &memory, &message));
+    mspringi_adjacency_count(&adjacency, &graph, 0, graph.edge_count);
+    mspringi_adjacency_add_up(&adjacency);
+    mspringi_adjacency_list(&adjacency, &graph, 0, graph.edge_count);
     check_ok(mspringi_tree_create(&tree, adjacency.size, &memory, &message));
     uint32_t *order = mspringi_alloc(&memory, 2 * (size_t)adjacency.size, sizeof *order);
     assert_non_null(order);
@@ -578,9 +581,12 @@ static void check_count(const problem *p) {
         for (uint32_t i = 0; i < adjacency.size; i++) {
             order[i] = way == 0 ? i : adjacency.size - 1 - i;
         }
-        assert_true(mspringi_tree_find(&tree, &adjacency, order, 0, adjacency.size, 1e9, &cost));
-        assert_true(cost.blocks ==
-                    mspringi_tree_count(&tree, &adjacency, order, 0, adjacency.size, order + adjacency.size));
+        mspringi_tree_begin(&tree, order, 0, adjacency.size, 1e9);
+        while (!mspringi_tree_run(&tree, &adjacency, &most)) {
+            assert_true(most > 0);
+        }
+        assert_true(tree.fits && tree.cost.blocks == mspringi_tree_count(&tree, &adjacency, order, 0,
+                                                                         adjacency.size, order + adjacency.size));
     }
     mspringi_free_all(&memory);
 }

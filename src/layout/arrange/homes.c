@@ -24,6 +24,9 @@
 /// threads that share nothing do, and with 8, 12 and 16 to 0.9.
 #define STRIPS_PER_WORKER 12
 
+/// Particles that are spread from in one go.
+#define SPREAD_AT_ONCE 4000
+
 /// Whether the rows of a component can be swept together.
 enum { FIT, UNFIT_FOR_SKEW, UNFIT };
 
@@ -43,6 +46,7 @@ typedef struct mspringi_homes_finder {
     uint32_t *queue; ///< [strips] first particle of each strip, MSPRING_NONE at the end
     uint32_t *next;  ///< [particles] next particle of the same strip
     uint32_t strip;  ///< the one that is spread from: those above it have been
+    bool is_spreading, is_upside_down, fits;
     bool is_found;
 } finder;
 
@@ -133,6 +137,7 @@ static void begin_spreading(finder *f, uint32_t *bounds, bool upside_down) {
     const mspringi_grids *grids = f->grids;
     const mspringi_homes *homes = f->homes;
     const uint32_t strips = strip_count(homes);
+    f->queue[0] = MSPRING_NONE; // also if there is no strip
     memset(f->queue, 0xff, strips * sizeof *f->queue);
     memset(bounds, 0xff, f->graph->builder->particle_count * sizeof *bounds);
     for (uint32_t m = 0; m < grids->member_count; ++m) {
@@ -165,20 +170,20 @@ static bool spread_from(finder *f, uint32_t p, uint32_t *bounds) {
     return fits;
 }
 
-// Spread from the attached particles along leftover springs. Bounds of particles that are not reached are
-// MSPRING_NONE. A component in which a lattice particle would have to be higher than it is becomes unfit. Strips
-// above f->strip are done; particles are put into queues of lower ones, or of the lowest.
-static bool spread(finder *f, uint32_t *bounds, bool upside_down) {
-    bool fits = true;
-    begin_spreading(f, bounds, upside_down);
-    for (f->strip = strip_count(f->homes); f->strip > 0;) {
-        f->strip--;
-        for (uint32_t p; (p = f->queue[f->strip]) != MSPRING_NONE;) {
-            f->queue[f->strip] = f->next[p];
-            fits = spread_from(f, p, bounds) && fits;
-        }
+// Spread from the attached particles along leftover springs, from so many at most. Bounds of particles that are not
+// reached are MSPRING_NONE. A component in which a lattice particle would have to be higher than it is becomes
+// unfit. Strips above f->strip are done; particles are put into queues of lower ones, or of the lowest.
+static void spread(finder *f, uint32_t *bounds, uint32_t most) {
+    for (uint32_t n = 0; n < most; ++n) {
+        while (f->queue[f->strip] == MSPRING_NONE && f->strip > 0)
+            f->strip--;
+        const uint32_t p = f->queue[f->strip];
+        f->is_spreading = p != MSPRING_NONE;
+        if (!f->is_spreading)
+            return;
+        f->queue[f->strip] = f->next[p];
+        f->fits = spread_from(f, p, bounds) && f->fits;
     }
-    return fits;
 }
 
 // Halfway between both bounds.
@@ -201,12 +206,25 @@ static void relent(const finder *f) {
     f->homes->skew += !is_longest;
 }
 
+// Go on with trying a skew: downwards, then upside down, then the verdict.
 static void try_skew(finder *f) {
-    number_rows(f);
-    f->is_found = spread(f, f->low, false) && spread(f, f->homes->home, true);
+    uint32_t *const bounds = f->is_upside_down ? f->homes->home : f->low;
+    if (!f->is_spreading) {
+        if (!f->is_upside_down)
+            number_rows(f);
+        f->fits = f->is_spreading = true;
+        f->strip = strip_count(f->homes) > 0 ? strip_count(f->homes) - 1 : 0;
+        begin_spreading(f, bounds, f->is_upside_down);
+        return;
+    }
+    spread(f, bounds, SPREAD_AT_ONCE);
+    if (f->is_spreading)
+        return;
+    f->is_found = f->fits && f->is_upside_down;
+    f->is_upside_down = f->fits && !f->is_upside_down;
     if (f->is_found)
         combine(f);
-    else
+    else if (!f->is_upside_down)
         relent(f);
 }
 
@@ -297,11 +315,10 @@ static void free_finder(finder *f, mspringi_memory *memory) {
 }
 
 // At the longest skew each try leaves out a component at least.
-void mspringi_homes_try_skews(mspringi_homes *homes, uint32_t first, uint32_t end) {
-    finder *f = homes->finder;
-    for (uint32_t skew = first + 1; skew <= end; ++skew)
-        while (!f->is_found && homes->skew == skew)
-            try_skew(f);
+bool mspringi_homes_try_skews(mspringi_homes *homes) {
+    if (!homes->finder->is_found)
+        try_skew(homes->finder);
+    return homes->finder->is_found;
 }
 
 void mspringi_homes_end(mspringi_homes *homes, mspringi_memory *memory) {

@@ -5,6 +5,7 @@
 #ifndef MSPRINGI_ASSEMBLY_H
 #define MSPRINGI_ASSEMBLY_H
 
+#include "base/passes.h"
 #include "layout/arrange/ropes.h"
 
 /// A block of a grid on its way to a number: row, then column block.
@@ -48,9 +49,9 @@ struct mspringi_assembly {
     uint32_t herd_row;           ///< number of the row of herds, if there are any
     uint32_t home_blocks;        ///< blocks of the web that have been given to rows
     size_t row_capacity, span_capacity;
-    bool is_checked;       ///< no two springs join the same particles
-    bool has_herds;        ///< small trees may stand in herds
-    uint32_t pass, at;     ///< of layout_passes, the one that is under way, and how far it has come
+    bool is_checked; ///< no two springs join the same particles
+    bool has_herds;  ///< small trees may stand in herds
+    mspringi_cursor cursor;
     uint32_t loose;        ///< the next loose slot
     uint32_t web_place;    ///< of the web's last particle so far
     uint32_t homed_blocks; ///< blocks of the web's particles with a home

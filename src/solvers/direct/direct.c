@@ -24,49 +24,10 @@
 
 /* ------------------------------------------------------------------------------------------------------- graph */
 
-// Positions as a hint for the order: by layout alone, as the order has to be the same for all networks that are
-// made alike, wherever their particles are by now. What is in no grid is where a neighbour is.
-static void place_slots(const mspring_network *network, const mspringi_direct *direct, double *x, double *y,
-                        bool *is_placed) {
-    enum { PASSES = 4 };
-    const mspringi_topology *t = &network->topology;
-    for (uint32_t r = 0; r < t->lattice_rows; ++r) {
-        const mspringi_row *row = &t->rows[r];
-        for (uint32_t s = row->first_span; s < row->first_span + row->span_count; ++s) {
-            const mspringi_span *span = &t->spans[s];
-            for (uint32_t slot = span->first_slot; slot < span->end_slot; ++slot) {
-                x[slot] = (double)((int64_t)slot + span->carry);
-                y[slot] = (double)r;
-                is_placed[slot] = true;
-            }
-        }
-    }
-    const uint32_t count = direct->place_count;
-    for (uint32_t pass = 0; pass < PASSES; ++pass) {
-        for (uint32_t i = 0; i < count; ++i) {
-            const uint32_t place = pass % 2 == 0 ? i : count - 1 - i;
-            const uint32_t a = direct->end_a[place], b = direct->end_b[place];
-            const uint32_t from = is_placed[a] ? a : b, to = is_placed[a] ? b : a;
-            if (is_placed[from] && !is_placed[to]) {
-                x[to] = x[from];
-                y[to] = y[from];
-                is_placed[to] = true;
-            }
-        }
-    }
-}
+/// Times that positions are handed on to neighbours, in one direction of the places and then in the other.
+#define PLACING_PASSES 4
 
-static void list_ends(const mspring_network *network, mspringi_direct *direct) {
-    const mspringi_topology *t = &network->topology;
-    const uint32_t nowhere = (uint32_t)mspringi_slot_count(network);
-    for (uint32_t place = 0; place < direct->place_count; ++place)
-        direct->end_a[place] = direct->end_b[place] = nowhere;
-    for (mspring_id spring = 0; spring < t->spring_count; ++spring) {
-        const mspringi_place place = t->place_of_spring[spring];
-        if (!mspringi_place_is_inactive(t, place) && mspringi_spring_exists(network, spring))
-            mspringi_topology_ends(t, place, &direct->end_a[place], &direct->end_b[place]);
-    }
-}
+typedef mspringi_direct_making making;
 
 static size_t block_count(const mspringi_direct *direct) {
     return ((size_t)direct->place_count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
@@ -93,12 +54,6 @@ static mspringi_edge_block find_edge_block(const mspringi_direct *direct, size_t
     return found;
 }
 
-static void find_edge_blocks(const mspring_network *network, mspringi_direct *direct) {
-    const uint32_t slots = (uint32_t)mspringi_slot_count(network);
-    for (size_t block = 0; block < block_count(direct); ++block)
-        direct->edge_blocks[block] = find_edge_block(direct, block, slots);
-}
-
 // Slots without springs are absent, and so is the one behind the last, the end of places without spring.
 static void list_absent(const mspring_network *network, const mspringi_direct *direct, bool *absent) {
     const size_t slots = mspringi_slot_count(network);
@@ -109,33 +64,6 @@ static void list_absent(const mspring_network *network, const mspringi_direct *d
     absent[slots] = true;
 }
 
-static mspring_result make_plan(mspringi_direct *direct, mspring_network *network) {
-    mspringi_memory *memory = &network->memory;
-    const size_t nodes = mspringi_slot_count(network) + 1;
-    double *x = mspringi_alloc(memory, 2 * nodes, sizeof *x);
-    bool *absent = mspringi_alloc(memory, nodes, sizeof *absent);
-    bool *is_placed = mspringi_alloc(memory, nodes, sizeof *is_placed);
-    mspring_result result = MSPRING_ERROR_MEMORY;
-    if (x && absent && is_placed) {
-        const mspringi_cholesky_graph graph = {.node_count = (uint32_t)nodes,
-                                               .edge_count = direct->place_count,
-                                               .edge_a = direct->end_a,
-                                               .edge_b = direct->end_b,
-                                               .absent = absent,
-                                               .x = x,
-                                               .y = x + nodes,
-                                               .most_numbers = MOST_NUMBERS};
-        list_absent(network, direct, absent);
-        is_placed[nodes - 1] = false;
-        place_slots(network, direct, x, x + nodes, is_placed);
-        result = mspringi_cholesky_plan_create(&direct->plan, &graph, memory, &network->message);
-    }
-    mspringi_free(memory, x);
-    mspringi_free(memory, absent);
-    mspringi_free(memory, is_placed);
-    return result;
-}
-
 /* ------------------------------------------------------------------------------------------------------ memory */
 
 static mspring_result reserve(mspringi_direct *d, mspring_network *network) {
@@ -143,9 +71,10 @@ static mspring_result reserve(mspringi_direct *d, mspring_network *network) {
     const mspring_simd level = network->kernels->level;
     const size_t places = d->place_count, nodes = mspringi_slot_count(network) + 1;
     const size_t whole = block_count(d) * MSPRINGI_WIDTH, all_nodes = nodes + MSPRINGI_WIDTH;
-    d->edges.xx = mspringi_alloc(memory, 3 * places, sizeof *d->edges.xx);
-    d->edges_twice.xx = mspringi_alloc(memory, 3 * whole, sizeof *d->edges_twice.xx);
-    d->nodes_twice.xx = mspringi_alloc(memory, 3 * all_nodes, sizeof *d->nodes_twice.xx);
+    // Where no spring is, nothing of these is read; all else is set in each substep.
+    d->edges.xx = mspringi_alloc_unset(memory, 3 * places, sizeof *d->edges.xx);
+    d->edges_twice.xx = mspringi_alloc_unset(memory, 3 * whole, sizeof *d->edges_twice.xx);
+    d->nodes_twice.xx = mspringi_alloc_unset(memory, 3 * all_nodes, sizeof *d->nodes_twice.xx);
     d->solution = mspringi_alloc(memory, 2 * nodes, sizeof *d->solution);
     if (!d->edges.xx || !d->edges_twice.xx || !d->nodes_twice.xx || !d->solution)
         return MSPRING_ERROR_MEMORY;
@@ -161,33 +90,186 @@ static mspring_result reserve(mspringi_direct *d, mspring_network *network) {
                : result;
 }
 
-mspring_result mspringi_direct_create(mspringi_direct *direct, mspring_network *network) {
-    const mspringi_topology *t = &network->topology;
-    *direct = (mspringi_direct){.place_count = t->chain_places + t->leftover_count};
-    direct->end_a = mspringi_alloc(&network->memory, direct->place_count, sizeof *direct->end_a);
-    direct->end_b = mspringi_alloc(&network->memory, direct->place_count, sizeof *direct->end_b);
-    direct->edge_blocks = mspringi_alloc(&network->memory, block_count(direct), sizeof *direct->edge_blocks);
-    mspring_result result = MSPRING_ERROR_MEMORY;
-    if (direct->end_a && direct->end_b && direct->edge_blocks) {
-        list_ends(network, direct);
-        find_edge_blocks(network, direct);
-        result = make_plan(direct, network);
+/* ---------------------------------------------------------------------------------------------------- the list */
+
+static mspring_result no_memory(const making *m) {
+    return mspringi_fail(&m->network->message, MSPRING_ERROR_MEMORY,
+                         "no memory for a direct solver of %u particles",
+                         (unsigned)m->network->topology.particle_count);
+}
+
+static mspring_result begin_places(making *m) {
+    const mspringi_topology *t = &m->network->topology;
+    mspringi_memory *memory = &m->network->memory;
+    mspringi_direct *d = m->direct;
+    const size_t nodes = mspringi_slot_count(m->network) + 1;
+    *d = (mspringi_direct){.place_count = t->chain_places + t->leftover_count};
+    d->end_a = mspringi_alloc(memory, d->place_count, sizeof *d->end_a);
+    d->end_b = mspringi_alloc(memory, d->place_count, sizeof *d->end_b);
+    d->edge_blocks = mspringi_alloc(memory, block_count(d), sizeof *d->edge_blocks);
+    m->x = mspringi_alloc(memory, 2 * nodes, sizeof *m->x);
+    m->absent = mspringi_alloc(memory, nodes, sizeof *m->absent);
+    m->is_placed = mspringi_alloc(memory, nodes, sizeof *m->is_placed);
+    if (!d->end_a || !d->end_b || !d->edge_blocks || !m->x || !m->absent || !m->is_placed)
+        return no_memory(m);
+    for (uint32_t place = 0; place < d->place_count; ++place)
+        d->end_a[place] = d->end_b[place] = (uint32_t)nodes - 1;
+    return MSPRING_OK;
+}
+
+static mspring_result list_ends(making *m, uint32_t first, uint32_t end) {
+    const mspringi_topology *t = &m->network->topology;
+    for (mspring_id spring = first; spring < end; ++spring) {
+        const mspringi_place place = t->place_of_spring[spring];
+        if (!mspringi_place_is_inactive(t, place) && mspringi_spring_exists(m->network, spring))
+            mspringi_topology_ends(t, place, &m->direct->end_a[place], &m->direct->end_b[place]);
     }
-    if (result == MSPRING_OK)
-        result = reserve(direct, network);
-    if (result == MSPRING_OK)
-        return result;
-    const double numbers = direct->plan.predicted_numbers, bytes = sizeof(float) + sizeof(double);
-    mspringi_direct_destroy(direct, &network->memory);
-    if (result == MSPRING_ERROR_LIMIT)
-        return mspringi_fail(
-            &network->message, result,
-            "the direct solver's factor for %u particles and %u springs would take at least %.3g numbers "
-            "(%.3g GB), more than %.3g (%.3g GB): take the implicit solver",
-            (unsigned)t->particle_count, (unsigned)t->spring_count, numbers, 1e-9 * bytes * numbers, MOST_NUMBERS,
-            1e-9 * bytes * MOST_NUMBERS);
-    return mspringi_fail(&network->message, result, "no memory for a direct solver of %u particles",
-                         (unsigned)t->particle_count);
+    return MSPRING_OK;
+}
+
+static mspring_result find_edge_blocks(making *m, uint32_t first, uint32_t end) {
+    const uint32_t slots = (uint32_t)mspringi_slot_count(m->network);
+    for (size_t block = first; block < end; ++block)
+        m->direct->edge_blocks[block] = find_edge_block(m->direct, block, slots);
+    return MSPRING_OK;
+}
+
+// Positions as a hint for the order: by layout alone, as the order has to be the same for all networks that are
+// made alike, wherever their particles are by now. What is in no grid is where a neighbour is.
+static mspring_result place_rows(making *m) {
+    const mspringi_topology *t = &m->network->topology;
+    double *const x = m->x, *const y = m->x + mspringi_slot_count(m->network) + 1;
+    list_absent(m->network, m->direct, m->absent);
+    for (uint32_t r = 0; r < t->lattice_rows; ++r) {
+        const mspringi_row *row = &t->rows[r];
+        for (uint32_t s = row->first_span; s < row->first_span + row->span_count; ++s) {
+            const mspringi_span *span = &t->spans[s];
+            for (uint32_t slot = span->first_slot; slot < span->end_slot; ++slot) {
+                x[slot] = (double)((int64_t)slot + span->carry);
+                y[slot] = (double)r;
+                m->is_placed[slot] = true;
+            }
+        }
+    }
+    return MSPRING_OK;
+}
+
+static mspring_result place_others(making *m, uint32_t first, uint32_t end) {
+    const mspringi_direct *d = m->direct;
+    double *const x = m->x, *const y = m->x + mspringi_slot_count(m->network) + 1;
+    for (uint32_t i = first; i < end; ++i) {
+        const uint32_t pass = i / d->place_count, at = i % d->place_count;
+        const uint32_t place = pass % 2 == 0 ? at : d->place_count - 1 - at;
+        const uint32_t a = d->end_a[place], b = d->end_b[place];
+        const uint32_t from = m->is_placed[a] ? a : b, to = m->is_placed[a] ? b : a;
+        if (m->is_placed[from] && !m->is_placed[to]) {
+            x[to] = x[from];
+            y[to] = y[from];
+            m->is_placed[to] = true;
+        }
+    }
+    return MSPRING_OK;
+}
+
+static mspring_result begin_plan(making *m) {
+    const size_t nodes = mspringi_slot_count(m->network) + 1;
+    m->graph = (mspringi_cholesky_graph){.node_count = (uint32_t)nodes,
+                                         .edge_count = m->direct->place_count,
+                                         .edge_a = m->direct->end_a,
+                                         .edge_b = m->direct->end_b,
+                                         .absent = m->absent,
+                                         .x = m->x,
+                                         .y = m->x + nodes,
+                                         .most_numbers = MOST_NUMBERS};
+    return mspringi_cholesky_plan_begin(&m->direct->plan, &m->graph, &m->network->memory, &m->network->message,
+                                        &m->planning);
+}
+
+static mspring_result refuse(const making *m) {
+    const mspringi_topology *t = &m->network->topology;
+    const double numbers = m->direct->plan.predicted_numbers, bytes = sizeof(float) + sizeof(double);
+    return mspringi_fail(
+        &m->network->message, MSPRING_ERROR_LIMIT,
+        "the direct solver's factor for %u particles and %u springs would take at least %.3g numbers "
+        "(%.3g GB), more than %.3g (%.3g GB): take the implicit solver",
+        (unsigned)t->particle_count, (unsigned)t->spring_count, numbers, 1e-9 * bytes * numbers, MOST_NUMBERS,
+        1e-9 * bytes * MOST_NUMBERS);
+}
+
+static mspring_result run_plan(making *m) {
+    bool is_done;
+    const mspring_result result = mspringi_cholesky_plan_run(m->planning, &is_done);
+    m->cursor.again = !is_done;
+    return result == MSPRING_ERROR_LIMIT ? refuse(m) : result == MSPRING_ERROR_MEMORY ? no_memory(m) : result;
+}
+
+static mspring_result reserve_factor(making *m) {
+    return reserve(m->direct, m->network) == MSPRING_OK ? MSPRING_OK : no_memory(m);
+}
+
+// Have the system give the memory of the factor that is used first, in pieces: the first substep would take longer.
+// Few networks ever use the other.
+#define PIECE 1024
+
+static mspring_result clear_single(making *m, uint32_t first, uint32_t end) {
+    const size_t values = m->direct->plan.panel_reals, begin = (size_t)first * PIECE;
+    const size_t count = (size_t)(end - first) * PIECE;
+    if (begin < values)
+        memset(m->direct->single.panels + begin, 0,
+               (count < values - begin ? count : values - begin) * sizeof(float));
+    return MSPRING_OK;
+}
+
+static uint32_t pieces_of(const making *m) {
+    return (uint32_t)(m->direct->plan.panel_reals / PIECE + 1);
+}
+
+static uint32_t springs_of(const making *m) {
+    return m->network->topology.spring_count;
+}
+
+static uint32_t placings_of(const making *m) {
+    return PLACING_PASSES * m->direct->place_count;
+}
+
+static uint32_t blocks_of(const making *m) {
+    return (uint32_t)block_count(m->direct);
+}
+
+MSPRINGI_PASSES(direct, making)
+static const direct_pass direct_passes[] = {
+    MSPRINGI_ONCE(begin_places),
+    MSPRINGI_EACH(list_ends, springs_of, 32000),
+    MSPRINGI_EACH(find_edge_blocks, blocks_of, 4000),
+    MSPRINGI_ONCE(place_rows),
+    MSPRINGI_EACH(place_others, placings_of, 128000),
+    MSPRINGI_ONCE(begin_plan),
+    MSPRINGI_ONCE(run_plan),
+    MSPRINGI_ONCE(reserve_factor),
+    MSPRINGI_EACH(clear_single, pieces_of, 256),
+};
+
+void mspringi_direct_begin(making *m, mspringi_direct *direct, mspring_network *network) {
+    *m = (making){.network = network, .direct = direct};
+}
+
+mspring_result mspringi_direct_make(making *m, bool *is_done) {
+    const mspring_result result = direct_run(m, direct_passes, &m->cursor);
+    *is_done = m->cursor.pass == MSPRINGI_PASS_COUNT(direct_passes);
+    if (*is_done)
+        mspringi_direct_end(m);
+    return result;
+}
+
+void mspringi_direct_end(making *m) {
+    if (!m->network)
+        return;
+    mspringi_memory *memory = &m->network->memory;
+    mspringi_cholesky_plan_end(m->planning, memory);
+    mspringi_free(memory, m->x);
+    mspringi_free(memory, m->absent);
+    mspringi_free(memory, m->is_placed);
+    *m = (making){0};
 }
 
 #define ARRAY(member) MSPRINGI_COLUMN(mspringi_direct, member, MSPRINGI_ARRAY)

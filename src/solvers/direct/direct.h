@@ -13,6 +13,7 @@
 #ifndef MSPRINGI_DIRECT_H
 #define MSPRINGI_DIRECT_H
 
+#include "base/passes.h"
 #include "solvers/sparse/cholesky.h"
 #include "store/network.h"
 
@@ -35,9 +36,23 @@ typedef struct mspringi_direct {
     double *solution;                   ///< [slots + 1] x, then y
 } mspringi_direct;
 
-/// Analyse the network's springs and reserve memory for their factor.
+/// One that is being made.
+typedef struct mspringi_direct_making {
+    mspring_network *network;
+    mspringi_direct *direct;
+    mspringi_cursor cursor;
+    mspringi_cholesky_graph graph;
+    double *x; ///< [2 * nodes] x, then y
+    bool *absent, *is_placed;
+    mspringi_cholesky_planning *planning;
+} mspringi_direct_making;
+
+/// Analyse the network's springs and reserve memory for their factor: begin, then make until it is done, then end,
+/// on failure too.
 /// @return MSPRING_OK; MSPRING_ERROR_MEMORY; MSPRING_ERROR_LIMIT if the factor would be too large.
-mspring_result mspringi_direct_create(mspringi_direct *direct, mspring_network *network);
+void mspringi_direct_begin(mspringi_direct_making *making, mspringi_direct *direct, mspring_network *network);
+mspring_result mspringi_direct_make(mspringi_direct_making *making, bool *is_done);
+void mspringi_direct_end(mspringi_direct_making *making);
 extern const mspringi_columns mspringi_direct_columns;
 void mspringi_direct_destroy(mspringi_direct *direct, mspringi_memory *memory);
 

@@ -112,6 +112,8 @@ typedef struct mspringi_budget {
 } mspringi_budget;
 
 mspring_result mspringi_budget_create(mspringi_budget *budget, mspring_network *network);
+/// Set a range of the accounts to zero, of which there are slots / 2 + 1: all are to be, after it was made.
+void mspringi_budget_clear(const mspringi_budget *budget, uint32_t first, uint32_t end);
 extern const mspringi_columns mspringi_budget_columns;
 void mspringi_budget_destroy(mspringi_budget *budget, mspringi_memory *memory);
 

@@ -1,56 +1,54 @@
 /// Numbering cells so that the envelope of the coarse matrix is narrow.
 #include "solvers/implicit/cells.h"
 
-/// Which cells springs join: repeated as often as there are springs between them.
-typedef struct cell_graph {
-    uint32_t count;
-    uint32_t *first;     ///< [count + 2]
-    uint32_t *neighbour; ///< [2 * springs between cells]
-} cell_graph;
-
-static bool ends_of(const mspringi_cells *cells, const mspring_network *network, mspringi_place place, uint32_t *a,
-                    uint32_t *b) {
-    const mspringi_topology *t = &network->topology;
+// The cells that a spring joins, if it joins two.
+static bool ends_of(const mspringi_cutting *g, mspring_id spring, uint32_t *a, uint32_t *b) {
+    const mspringi_topology *t = &g->network->topology;
+    const mspringi_place place = t->place_of_spring[spring];
     if (!mspringi_place_is_woven(t, place))
         return false;
     mspringi_topology_ends(t, place, a, b);
-    *a = cells->of_slot[*a];
-    *b = cells->of_slot[*b];
+    *a = g->cells->of_slot[*a];
+    *b = g->cells->of_slot[*b];
     return *a != *b;
 }
 
-static bool make_graph(cell_graph *graph, const mspringi_cells *cells, const mspring_network *network,
-                       mspringi_memory *memory) {
-    const uint32_t springs = network->topology.spring_count;
-    uint32_t a, b, total = 0;
-    graph->count = cells->count;
-    graph->first = mspringi_alloc(memory, (size_t)graph->count + 2, sizeof *graph->first);
-    if (!graph->first)
-        return false;
-    for (mspring_id s = 0; s < springs; ++s) {
-        if (!ends_of(cells, network, network->topology.place_of_spring[s], &a, &b))
+// Neighbours are repeated as often as there are springs to them.
+bool mspringi_cells_begin_order(mspringi_cutting *g) {
+    g->first = mspringi_alloc(g->memory, (size_t)g->cells->count + 2, sizeof *g->first);
+    return g->first != NULL;
+}
+
+void mspringi_cells_count_neighbours(mspringi_cutting *g, uint32_t first, uint32_t end) {
+    for (mspring_id s = first; s < end; ++s) {
+        uint32_t a, b;
+        if (!ends_of(g, s, &a, &b))
             continue;
-        graph->first[a + 2]++;
-        graph->first[b + 2]++;
-        total += 2;
+        g->first[a + 2]++;
+        g->first[b + 2]++;
     }
-    graph->neighbour = mspringi_alloc(memory, total, sizeof *graph->neighbour);
-    if (!graph->neighbour)
-        return false;
-    for (uint32_t i = 2; i < graph->count + 2; ++i)
-        graph->first[i] += graph->first[i - 1];
-    for (mspring_id s = 0; s < springs; ++s) {
-        if (!ends_of(cells, network, network->topology.place_of_spring[s], &a, &b))
+}
+
+bool mspringi_cells_add_up(mspringi_cutting *g) {
+    for (uint32_t i = 2; i < g->cells->count + 2; ++i)
+        g->first[i] += g->first[i - 1];
+    g->neighbour = mspringi_alloc(g->memory, g->first[g->cells->count + 1], sizeof *g->neighbour);
+    return g->neighbour != NULL;
+}
+
+void mspringi_cells_list_neighbours(mspringi_cutting *g, uint32_t first, uint32_t end) {
+    for (mspring_id s = first; s < end; ++s) {
+        uint32_t a, b;
+        if (!ends_of(g, s, &a, &b))
             continue;
-        graph->neighbour[graph->first[a + 1]++] = b;
-        graph->neighbour[graph->first[b + 1]++] = a;
+        g->neighbour[g->first[a + 1]++] = b;
+        g->neighbour[g->first[b + 1]++] = a;
     }
-    return true;
 }
 
 // Breadth first from a cell, over those that are not marked with stamp; appends to order and returns its new end.
-static uint32_t spread(const cell_graph *graph, uint32_t from, uint32_t *order, uint32_t begin, uint32_t *mark,
-                       uint32_t stamp) {
+static uint32_t spread(const mspringi_cutting *graph, uint32_t from, uint32_t *order, uint32_t begin,
+                       uint32_t *mark, uint32_t stamp) {
     uint32_t end = begin;
     order[end++] = from;
     mark[from] = stamp;
@@ -66,12 +64,12 @@ static uint32_t spread(const cell_graph *graph, uint32_t from, uint32_t *order, 
     return end;
 }
 
-bool mspringi_cells_order(mspringi_cells *cells, const mspring_network *network, mspringi_memory *memory) {
-    const uint32_t slots = (uint32_t)mspringi_slot_count(network);
-    cell_graph graph = {0};
-    uint32_t *order = mspringi_alloc(memory, cells->count, sizeof *order);
-    uint32_t *mark = mspringi_alloc(memory, cells->count, sizeof *mark);
-    const bool ok = make_graph(&graph, cells, network, memory) && order && mark;
+bool mspringi_cells_order(mspringi_cutting *g) {
+    mspringi_cells *cells = g->cells;
+    const uint32_t slots = (uint32_t)mspringi_slot_count(g->network);
+    uint32_t *order = mspringi_alloc(g->memory, cells->count, sizeof *order);
+    uint32_t *mark = mspringi_alloc(g->memory, cells->count, sizeof *mark);
+    const bool ok = order && mark;
     uint32_t end = 0;
     for (uint32_t c = 0; ok && c < cells->count; ++c) {
         if (mark[c] != 0)
@@ -79,17 +77,15 @@ bool mspringi_cells_order(mspringi_cells *cells, const mspring_network *network,
         // Start from a cell at one end: the last that a first and a second pass find.
         uint32_t from = c;
         for (uint32_t stamp = 1; stamp <= 2; ++stamp)
-            from = order[spread(&graph, from, order, end, mark, stamp) - 1];
-        end = spread(&graph, from, order, end, mark, 3);
+            from = order[spread(g, from, order, end, mark, stamp) - 1];
+        end = spread(g, from, order, end, mark, 3);
     }
     for (uint32_t i = 0; ok && i < cells->count; ++i)
         mark[order[i]] = i;
     for (uint32_t slot = 0; ok && slot < slots; ++slot)
         if (cells->of_slot[slot] != MSPRING_NONE)
             cells->of_slot[slot] = mark[cells->of_slot[slot]];
-    mspringi_free(memory, graph.first);
-    mspringi_free(memory, graph.neighbour);
-    mspringi_free(memory, order);
-    mspringi_free(memory, mark);
+    mspringi_free(g->memory, order);
+    mspringi_free(g->memory, mark);
     return ok;
 }

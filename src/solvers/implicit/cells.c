@@ -7,13 +7,12 @@
 /// Grids of at most this many rows are cut across only.
 #define SLENDER_ROWS 10
 
-/// What is needed while a network is cut.
-typedef struct cutting {
-    const mspring_network *network;
-    mspringi_memory *memory;
-    mspringi_cells *cells;
-    bool *is_for_none; ///< [slots] no particle is there, nor was one that has been removed
-} cutting;
+typedef mspringi_cutting cutting;
+
+static mspring_result no_memory(const cutting *g) {
+    return mspringi_fail(g->message, MSPRING_ERROR_MEMORY, "no memory to cut %u particles into cells",
+                         (unsigned)g->network->topology.particle_count);
+}
 
 uint32_t mspringi_factors_of_place(mspringi_place place) {
     return place / MSPRINGI_WIDTH * (MSPRINGI_FACTORS * MSPRINGI_WIDTH) + place % MSPRINGI_WIDTH;
@@ -77,71 +76,99 @@ static void cut_chains(cutting *g, uint32_t size) {
     g->cells->count += (count + size - 1) / size;
 }
 
-/// Springs by slot, for the slots of the web.
-typedef struct incidence {
-    uint32_t *first;     ///< [slots + 1]
-    uint32_t *neighbour; ///< slots
-} incidence;
+/* ---------------------------------------------------------------------------------------------------- the web */
 
-static bool list_neighbours(incidence *in, const cutting *g) {
-    const mspringi_topology *t = &g->network->topology;
-    const size_t slots = mspringi_slot_count(g->network);
-    in->first = mspringi_alloc(g->memory, slots + 2, sizeof *in->first);
-    in->neighbour = mspringi_alloc(g->memory, (size_t)2 * t->woven_count, sizeof *in->neighbour);
-    if (!in->first || !in->neighbour)
-        return false;
-    for (uint32_t i = 0; i < t->woven_count; ++i) {
-        in->first[t->leftover_a[i] + 2]++;
-        in->first[t->leftover_b[i] + 2]++;
-    }
-    for (size_t slot = 2; slot < slots + 2; ++slot)
-        in->first[slot] += in->first[slot - 1];
-    for (uint32_t i = 0; i < t->woven_count; ++i) {
-        in->neighbour[in->first[t->leftover_a[i] + 1]++] = t->leftover_b[i];
-        in->neighbour[in->first[t->leftover_b[i] + 1]++] = t->leftover_a[i];
-    }
-    return true;
+static uint32_t web_slots_of(const cutting *g) {
+    return g->network->topology.web_blocks * MSPRINGI_WIDTH;
 }
 
-// Grow neighbourhoods of at most size * size / 2 particles, breadth first, from the first slot that is in none.
-// Where springs lead anywhere, the last of them are crumbs, each with springs to many others, and their coarse
-// matrix is full: of the largest size they are swept up into cells as large as the others.
-static bool cut_web(cutting *g, uint32_t size) {
+static uint32_t web_springs_of(const cutting *g) {
+    return web_slots_of(g) > 0 ? g->network->topology.woven_count : 0;
+}
+
+static uint32_t most_in_cell(const cutting *g) {
+    return g->cells->size * g->cells->size / 2;
+}
+
+static mspring_result begin_web(cutting *g) {
+    const size_t slots = mspringi_slot_count(g->network);
+    if (web_slots_of(g) == 0)
+        return MSPRING_OK;
+    g->first = mspringi_alloc(g->memory, slots + 2, sizeof *g->first);
+    g->neighbour = mspringi_alloc(g->memory, (size_t)2 * web_springs_of(g), sizeof *g->neighbour);
+    g->queue = mspringi_alloc(g->memory, most_in_cell(g), sizeof *g->queue);
+    return g->first && g->neighbour && g->queue ? MSPRING_OK : no_memory(g);
+}
+
+static mspring_result count_web(cutting *g, uint32_t first, uint32_t end) {
     const mspringi_topology *t = &g->network->topology;
-    const uint32_t first = t->web_first * MSPRINGI_WIDTH, end = first + t->web_blocks * MSPRINGI_WIDTH;
-    const uint32_t most = size * size / 2;
-    if (first == end)
-        return true;
-    const bool sweeps_up = size == MSPRINGI_LARGEST_TILE_SIZE;
-    incidence in = {NULL, NULL};
-    uint32_t count = 0; // in the cell that grows
-    uint32_t *queue = mspringi_alloc(g->memory, most, sizeof *queue);
-    const bool ok = list_neighbours(&in, g) && queue;
-    for (uint32_t seed = first; ok && seed < end; ++seed) {
-        if (g->is_for_none[seed] || g->cells->of_slot[seed] != MSPRING_NONE)
-            continue;
-        if (count == most || !sweeps_up) {
-            g->cells->count += count > 0;
-            count = 0;
-        }
-        uint32_t i = count;
-        queue[count++] = seed;
-        g->cells->of_slot[seed] = g->cells->count;
-        for (; i < count; ++i) {
-            for (uint32_t n = in.first[queue[i]]; n < in.first[queue[i] + 1] && count < most; ++n) {
-                const uint32_t slot = in.neighbour[n];
-                if (slot < first || slot >= end || g->is_for_none[slot] || g->cells->of_slot[slot] != MSPRING_NONE)
-                    continue;
-                g->cells->of_slot[slot] = g->cells->count;
-                queue[count++] = slot;
-            }
+    for (uint32_t i = first; i < end; ++i) {
+        g->first[t->leftover_a[i] + 2]++;
+        g->first[t->leftover_b[i] + 2]++;
+    }
+    return MSPRING_OK;
+}
+
+static mspring_result add_up_web(cutting *g) {
+    for (size_t slot = 2; g->first && slot < mspringi_slot_count(g->network) + 2; ++slot)
+        g->first[slot] += g->first[slot - 1];
+    return MSPRING_OK;
+}
+
+static mspring_result list_web(cutting *g, uint32_t first, uint32_t end) {
+    const mspringi_topology *t = &g->network->topology;
+    for (uint32_t i = first; i < end; ++i) {
+        g->neighbour[g->first[t->leftover_a[i] + 1]++] = t->leftover_b[i];
+        g->neighbour[g->first[t->leftover_b[i] + 1]++] = t->leftover_a[i];
+    }
+    return MSPRING_OK;
+}
+
+static bool is_free_for_cell(const cutting *g, uint32_t slot) {
+    return !g->is_for_none[slot] && g->cells->of_slot[slot] == MSPRING_NONE;
+}
+
+// Let the last cell grow breadth first from a slot.
+static void grow_cell(cutting *g, uint32_t seed, uint32_t most) {
+    const mspringi_topology *t = &g->network->topology;
+    const uint32_t web = t->web_first * MSPRINGI_WIDTH, web_end = web + web_slots_of(g);
+    uint32_t i = g->grown;
+    g->queue[g->grown++] = seed;
+    g->cells->of_slot[seed] = g->cells->count;
+    for (; i < g->grown; ++i) {
+        for (uint32_t n = g->first[g->queue[i]]; n < g->first[g->queue[i] + 1] && g->grown < most; ++n) {
+            const uint32_t slot = g->neighbour[n];
+            if (slot < web || slot >= web_end || !is_free_for_cell(g, slot))
+                continue;
+            g->cells->of_slot[slot] = g->cells->count;
+            g->queue[g->grown++] = slot;
         }
     }
-    g->cells->count += count > 0;
-    mspringi_free(g->memory, in.first);
-    mspringi_free(g->memory, in.neighbour);
-    mspringi_free(g->memory, queue);
-    return ok;
+}
+
+// Grow neighbourhoods of at most size * size / 2 particles, from the first slot that is in none. Where springs lead
+// anywhere, the last of them are crumbs, each with springs to many others, and their coarse matrix is full: of the
+// largest size they are swept up into cells as large as the others.
+static mspring_result grow_cells(cutting *g, uint32_t first, uint32_t end) {
+    const uint32_t web = g->network->topology.web_first * MSPRINGI_WIDTH, most = most_in_cell(g);
+    const bool sweeps_up = g->cells->size == MSPRINGI_LARGEST_TILE_SIZE;
+    for (uint32_t seed = web + first; seed < web + end; ++seed) {
+        if (!is_free_for_cell(g, seed))
+            continue;
+        if (g->grown == most || !sweeps_up) {
+            g->cells->count += g->grown > 0;
+            g->grown = 0;
+        }
+        grow_cell(g, seed, most);
+    }
+    return MSPRING_OK;
+}
+
+static void free_lists(cutting *g) {
+    mspringi_free(g->memory, g->first);
+    mspringi_free(g->memory, g->neighbour);
+    mspringi_free(g->memory, g->queue);
+    g->first = g->neighbour = g->queue = NULL;
 }
 
 // Where springs may be added, each block of loose and spare particles is a cell, whose particles are in tiles while
@@ -200,37 +227,61 @@ static bool list_slots(cutting *g) {
     return true;
 }
 
-// List the springs inside cells, and count those between them.
-static bool list_inner(cutting *g) {
-    mspringi_cells *cells = g->cells;
+static uint32_t springs_of(const cutting *g) {
+    return g->network->topology.spring_count;
+}
+
+// The slots of a spring's ends; false if it is in no cell.
+static bool find_ends(const cutting *g, mspring_id spring, uint32_t *a, uint32_t *b) {
     const mspringi_topology *t = &g->network->topology;
-    uint32_t a, b;
-    cells->first_inner = mspringi_alloc(g->memory, (size_t)cells->count + 2, sizeof *cells->first_inner);
-    if (!cells->first_inner)
+    const mspringi_place place = t->place_of_spring[spring];
+    if (!mspringi_place_is_woven(t, place))
         return false;
-    for (int pass = 0; pass < 2; ++pass) { // first count, then fill
-        for (mspring_id s = 0; s < t->spring_count; ++s) {
-            const mspringi_place place = t->place_of_spring[s];
-            if (!mspringi_place_is_woven(t, place))
-                continue;
-            mspringi_topology_ends(t, place, &a, &b);
-            const uint32_t cell = cells->of_slot[a];
-            if (cell != cells->of_slot[b])
-                cells->joint_count += pass == 0;
-            else if (pass == 0)
-                cells->first_inner[cell + 2]++;
-            else
-                cells->inner[cells->first_inner[cell + 1]++] = s;
-        }
-        if (pass == 0) {
-            for (uint32_t i = 2; i < cells->count + 2; ++i)
-                cells->first_inner[i] += cells->first_inner[i - 1];
-            cells->inner = mspringi_alloc(g->memory, cells->first_inner[cells->count + 1], sizeof *cells->inner);
-            if (!cells->inner)
-                return false;
-        }
-    }
+    mspringi_topology_ends(t, place, a, b);
     return true;
+}
+
+static mspring_result count_inner(cutting *g, uint32_t first, uint32_t end) {
+    mspringi_cells *cells = g->cells;
+    for (mspring_id s = first; s < end; ++s) {
+        uint32_t a, b;
+        if (!find_ends(g, s, &a, &b))
+            continue;
+        if (cells->of_slot[a] != cells->of_slot[b])
+            cells->joint_count++;
+        else
+            cells->first_inner[cells->of_slot[a] + 2]++;
+    }
+    return MSPRING_OK;
+}
+
+static mspring_result reserve_springs(cutting *g) {
+    mspringi_cells *cells = g->cells;
+    for (uint32_t i = 2; i < cells->count + 2; ++i)
+        cells->first_inner[i] += cells->first_inner[i - 1];
+    cells->inner = mspringi_alloc(g->memory, cells->first_inner[cells->count + 1], sizeof *cells->inner);
+    cells->joints = mspringi_alloc(g->memory, cells->joint_count, sizeof *cells->joints);
+    return cells->inner && cells->joints ? MSPRING_OK : no_memory(g);
+}
+
+// List the springs inside cells, and those between them.
+static mspring_result list_springs(cutting *g, uint32_t first, uint32_t end) {
+    mspringi_cells *cells = g->cells;
+    for (mspring_id s = first; s < end; ++s) {
+        uint32_t a, b;
+        if (!find_ends(g, s, &a, &b))
+            continue;
+        if (cells->of_slot[a] == cells->of_slot[b]) {
+            cells->inner[cells->first_inner[cells->of_slot[a] + 1]++] = s;
+            continue;
+        }
+        const bool a_later = cells->of_slot[a] > cells->of_slot[b];
+        cells->joints[g->listed++] =
+            (mspringi_joint){.slot = a_later ? a : b,
+                             .other_slot = a_later ? b : a,
+                             .factors = mspringi_factors_of_place(g->network->topology.place_of_spring[s])};
+    }
+    return MSPRING_OK;
 }
 
 // One pass of a stable counting sort of joints, by the cell of one of the ends.
@@ -246,26 +297,12 @@ static void sort_joints(const mspringi_cells *cells, const mspringi_joint *from,
         to[first[cells->of_slot[by_other ? from[j].other_slot : from[j].slot]]++] = from[j];
 }
 
-static bool list_joints(cutting *g) {
+static mspring_result sort_all_joints(cutting *g) {
     mspringi_cells *cells = g->cells;
-    const mspringi_topology *t = &g->network->topology;
-    cells->joints = mspringi_alloc(g->memory, cells->joint_count, sizeof *cells->joints);
     mspringi_joint *scratch = mspringi_alloc(g->memory, cells->joint_count, sizeof *scratch);
-    uint32_t *first = mspringi_alloc(g->memory, (size_t)cells->count + 2, sizeof *first);
-    const bool ok = cells->joints && scratch && first;
-    uint32_t count = 0, a, b;
-    for (mspring_id s = 0; ok && s < t->spring_count; ++s) {
-        const mspringi_place place = t->place_of_spring[s];
-        if (!mspringi_place_is_woven(t, place))
-            continue;
-        mspringi_topology_ends(t, place, &a, &b);
-        if (cells->of_slot[a] == cells->of_slot[b])
-            continue;
-        const bool a_later = cells->of_slot[a] > cells->of_slot[b];
-        cells->joints[count++] = (mspringi_joint){
-            .slot = a_later ? a : b, .other_slot = a_later ? b : a, .factors = mspringi_factors_of_place(place)};
-    }
-    if (ok) {
+    uint32_t *first = cells->first_joint =
+        mspringi_alloc(g->memory, (size_t)cells->count + 2, sizeof *cells->first_joint);
+    if (scratch && first) {
         sort_joints(cells, cells->joints, scratch, first, true);
         sort_joints(cells, scratch, cells->joints, first, false);
         // Each is at the end of its cell's now, which is where the next one's begin.
@@ -273,16 +310,15 @@ static bool list_joints(cutting *g) {
             first[cell] = first[cell - 1];
         first[0] = 0;
     }
-    cells->first_joint = first;
     mspringi_free(g->memory, scratch);
-    return ok;
+    return scratch && first ? MSPRING_OK : no_memory(g);
 }
 
-static bool find_lowest(cutting *g) {
+static mspring_result find_lowest(cutting *g) {
     mspringi_cells *cells = g->cells;
     cells->lowest = mspringi_alloc(g->memory, cells->count, sizeof *cells->lowest);
     if (!cells->lowest)
-        return false;
+        return no_memory(g);
     for (uint32_t c = 0; c < cells->count; ++c)
         cells->lowest[c] = c;
     for (uint32_t j = 0; j < cells->joint_count; ++j) {
@@ -290,7 +326,7 @@ static bool find_lowest(cutting *g) {
         const uint32_t other = cells->of_slot[cells->joints[j].other_slot];
         cells->lowest[cell] = other < cells->lowest[cell] ? other : cells->lowest[cell];
     }
-    return true;
+    return MSPRING_OK;
 }
 
 /* ---------------------------------------------------------------------------------------------------- the whole */
@@ -304,33 +340,87 @@ static bool find_empty(cutting *g) {
     return g->is_for_none != NULL;
 }
 
-static bool cut(cutting *g, uint32_t size) {
+static mspring_result begin(cutting *g) {
     const size_t slots = mspringi_slot_count(g->network);
     g->cells->of_slot = mspringi_alloc(g->memory, slots, sizeof *g->cells->of_slot);
     if (!g->cells->of_slot || !find_empty(g))
-        return false;
+        return no_memory(g);
     for (size_t slot = 0; slot < slots; ++slot)
         g->cells->of_slot[slot] = MSPRING_NONE;
-    cut_grids(g, size);
-    cut_chains(g, size);
-    if (!cut_web(g, size))
-        return false;
-    cut_loose(g);
-    return drop_empty_cells(g) && mspringi_cells_order(g->cells, g->network, g->memory) && list_slots(g) &&
-           list_inner(g) && list_joints(g) && find_lowest(g);
+    cut_grids(g, g->cells->size);
+    cut_chains(g, g->cells->size);
+    return MSPRING_OK;
 }
 
-mspring_result mspringi_cells_create(mspringi_cells *cells, const mspring_network *network, uint32_t size,
-                                     mspringi_memory *memory, mspringi_message *message) {
+static mspring_result end_web(cutting *g) {
+    g->cells->count += g->grown > 0;
+    free_lists(g);
+    cut_loose(g);
+    return drop_empty_cells(g) && mspringi_cells_begin_order(g) ? MSPRING_OK : no_memory(g);
+}
+
+static mspring_result count_neighbours(cutting *g, uint32_t first, uint32_t end) {
+    mspringi_cells_count_neighbours(g, first, end);
+    return MSPRING_OK;
+}
+
+static mspring_result add_up(cutting *g) {
+    return mspringi_cells_add_up(g) ? MSPRING_OK : no_memory(g);
+}
+
+static mspring_result list_neighbours(cutting *g, uint32_t first, uint32_t end) {
+    mspringi_cells_list_neighbours(g, first, end);
+    return MSPRING_OK;
+}
+
+static mspring_result order(cutting *g) {
+    const bool ok = mspringi_cells_order(g);
+    free_lists(g);
+    return ok ? MSPRING_OK : no_memory(g);
+}
+
+static mspring_result list_all_slots(cutting *g) {
+    g->cells->first_inner = mspringi_alloc(g->memory, (size_t)g->cells->count + 2, sizeof *g->cells->first_inner);
+    return g->cells->first_inner && list_slots(g) ? MSPRING_OK : no_memory(g);
+}
+
+MSPRINGI_PASSES(cells, mspringi_cutting)
+static const cells_pass cells_passes[] = {
+    MSPRINGI_ONCE(begin),
+    MSPRINGI_ONCE(begin_web),
+    MSPRINGI_EACH(count_web, web_springs_of, 64000),
+    MSPRINGI_ONCE(add_up_web),
+    MSPRINGI_EACH(list_web, web_springs_of, 32000),
+    MSPRINGI_EACH(grow_cells, web_slots_of, 1000),
+    MSPRINGI_ONCE(end_web),
+    MSPRINGI_EACH(count_neighbours, springs_of, 32000),
+    MSPRINGI_ONCE(add_up),
+    MSPRINGI_EACH(list_neighbours, springs_of, 32000),
+    MSPRINGI_ONCE(order),
+    MSPRINGI_ONCE(list_all_slots),
+    MSPRINGI_EACH(count_inner, springs_of, 32000),
+    MSPRINGI_ONCE(reserve_springs),
+    MSPRINGI_EACH(list_springs, springs_of, 32000),
+    MSPRINGI_ONCE(sort_all_joints),
+    MSPRINGI_ONCE(find_lowest),
+};
+
+void mspringi_cells_begin(mspringi_cutting *g, mspringi_cells *cells, const mspring_network *network, uint32_t size,
+                          mspringi_memory *memory, mspringi_message *message) {
     *cells = (mspringi_cells){.size = size};
-    cutting g = {.network = network, .memory = memory, .cells = cells};
-    const bool is_cut = cut(&g, size);
-    mspringi_free(memory, g.is_for_none);
-    if (is_cut)
-        return MSPRING_OK;
-    mspringi_cells_destroy(cells, memory);
-    return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to cut %u particles into cells",
-                         (unsigned)network->topology.particle_count);
+    *g = (mspringi_cutting){.network = network, .memory = memory, .message = message, .cells = cells};
+}
+
+mspring_result mspringi_cells_run(mspringi_cutting *g, bool *is_done) {
+    const mspring_result result = cells_run(g, cells_passes, &g->cursor);
+    *is_done = g->cursor.pass == MSPRINGI_PASS_COUNT(cells_passes);
+    return result;
+}
+
+void mspringi_cells_end(mspringi_cutting *g) {
+    free_lists(g);
+    mspringi_free(g->memory, g->is_for_none);
+    g->is_for_none = NULL;
 }
 
 #define ARRAY(member) MSPRINGI_COLUMN(mspringi_cells, member, MSPRINGI_ARRAY)

@@ -10,6 +10,7 @@
 #ifndef MSPRINGI_CELLS_H
 #define MSPRINGI_CELLS_H
 
+#include "base/passes.h"
 #include "store/network.h"
 
 /// A spring between two cells, or between a particle of a cell and one of its pinned ones.
@@ -36,17 +37,38 @@ typedef struct mspringi_cells {
     uint32_t *lowest;      ///< [count] lowest of a cell and its neighbours
 } mspringi_cells;
 
-/// Cut a network into cells of size x size particles, numbered so that neighbours have near numbers.
-mspring_result mspringi_cells_create(mspringi_cells *cells, const mspring_network *network, uint32_t size,
-                                     mspringi_memory *memory, mspringi_message *message);
+/// What is needed while a network is cut.
+typedef struct mspringi_cutting {
+    const mspring_network *network;
+    mspringi_memory *memory;
+    mspringi_message *message;
+    mspringi_cells *cells;
+    mspringi_cursor cursor;
+    bool *is_for_none;           ///< [slots] no particle is there, nor was one that has been removed
+    uint32_t *first, *neighbour; ///< of the slots of the web, then of cells
+    uint32_t *queue, grown;      ///< [grown] slots of the cell that grows
+    uint32_t listed;             ///< joints
+} mspringi_cutting;
+
+/// Cut a network into cells of size x size particles, numbered so that neighbours have near numbers: begin, then
+/// run until it is done, then end, on failure too.
+void mspringi_cells_begin(mspringi_cutting *cutting, mspringi_cells *cells, const mspring_network *network,
+                          uint32_t size, mspringi_memory *memory, mspringi_message *message);
+mspring_result mspringi_cells_run(mspringi_cutting *cutting, bool *is_done);
+void mspringi_cells_end(mspringi_cutting *cutting);
 extern const mspringi_columns mspringi_cells_columns;
 void mspringi_cells_destroy(mspringi_cells *cells, mspringi_memory *memory);
 
 /// Where the factors of a spring begin: lattice, chain and leftover records one behind the other.
 uint32_t mspringi_factors_of_place(mspringi_place place);
 
-/// Give the cells, as of_slot has them, numbers that are near for neighbours (Cuthill and McKee 1969).
+/// Give the cells, as of_slot has them, numbers that are near for neighbours (Cuthill and McKee 1969), in this
+/// order. Ranges are of springs.
 /// @return false: no memory
-bool mspringi_cells_order(mspringi_cells *cells, const mspring_network *network, mspringi_memory *memory);
+bool mspringi_cells_begin_order(mspringi_cutting *cutting);
+void mspringi_cells_count_neighbours(mspringi_cutting *cutting, uint32_t first, uint32_t end);
+bool mspringi_cells_add_up(mspringi_cutting *cutting);
+void mspringi_cells_list_neighbours(mspringi_cutting *cutting, uint32_t first, uint32_t end);
+bool mspringi_cells_order(mspringi_cutting *cutting);
 
 #endif

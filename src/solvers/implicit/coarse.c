@@ -49,9 +49,11 @@ mspring_result mspringi_coarse_create(mspringi_coarse *coarse, const mspringi_ti
     coarse->first = mspringi_alloc(memory, tiles->capacity, sizeof *coarse->first);
     coarse->row = mspringi_alloc(memory, tiles->capacity, sizeof *coarse->row);
     coarse->restricted = mspringi_alloc(memory, tiles->capacity, sizeof *coarse->restricted);
-    coarse->values = mspringi_alloc(memory, tiles->value_capacity, sizeof *coarse->values);
-    coarse->kept = mspringi_alloc(memory, tiles->value_capacity, sizeof *coarse->kept);
-    coarse->far_turns = mspringi_alloc(memory, tiles->value_capacity / BLOCK_VALUES + 1, sizeof *coarse->far_turns);
+    // Most of these are room for what tiles may become; they are set where they are used.
+    coarse->values = mspringi_alloc_unset(memory, tiles->value_capacity, sizeof *coarse->values);
+    coarse->kept = mspringi_alloc_unset(memory, tiles->value_capacity, sizeof *coarse->kept);
+    coarse->far_turns =
+        mspringi_alloc_unset(memory, tiles->value_capacity / BLOCK_VALUES + 1, sizeof *coarse->far_turns);
     if (coarse->first && coarse->row && coarse->restricted && coarse->values && coarse->kept && coarse->far_turns) {
         mspringi_coarse_shape(coarse, tiles);
         return MSPRING_OK;

@@ -9,7 +9,7 @@ mspring_result mspringi_budget_create(mspringi_budget *budget, mspring_network *
     mspringi_memory *memory = &network->memory;
     const size_t slots = mspringi_slot_count(network), blocks = network->topology.block_count;
     *budget = (mspringi_budget){0};
-    budget->accounts = mspringi_alloc(memory, slots / 2 + 1, sizeof *budget->accounts);
+    budget->accounts = mspringi_alloc_unset(memory, slots / 2 + 1, sizeof *budget->accounts);
     budget->of_slot = mspringi_alloc(memory, slots, sizeof *budget->of_slot);
     budget->of_block = mspringi_alloc(memory, blocks, sizeof *budget->of_block);
     budget->of_springs = mspringi_alloc(memory, blocks, sizeof *budget->of_springs);
@@ -26,6 +26,10 @@ mspring_result mspringi_budget_create(mspringi_budget *budget, mspring_network *
     }
     budget->impulse.y = budget->impulse.x + slots;
     return MSPRING_OK;
+}
+
+void mspringi_budget_clear(const mspringi_budget *budget, uint32_t first, uint32_t end) {
+    memset(budget->accounts + first, 0, (end - first) * sizeof *budget->accounts);
 }
 
 #define ARRAY(member) MSPRINGI_COLUMN(mspringi_budget, member, MSPRINGI_ARRAY)

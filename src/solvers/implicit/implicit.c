@@ -17,6 +17,16 @@
 
 /* ----------------------------------------------------------------------------------------------------- creation */
 
+/// An implicit solver that is being made.
+typedef struct mspringi_implicit_making {
+    mspring_network *network;
+    mspringi_implicit *made;
+    mspringi_cursor cursor;
+    uint32_t tile_size; ///< asked for; 0: by plan
+    mspringi_tiling tiling;
+    mspringi_direct_making direct;
+} making;
+
 static bool reserve_field(mspringi_memory *memory, mspringi_field *field, size_t slots) {
     field->x = mspringi_alloc(memory, 2 * slots, sizeof *field->x);
     if (field->x)
@@ -46,11 +56,25 @@ static double choose_scale(const mspring_network *network) {
     return ldexp(1.0, -exponent);
 }
 
-static mspring_result allocate(mspringi_implicit *n, mspring_network *network) {
+static mspring_result no_memory(mspring_network *network) {
+    return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                         "no memory for an implicit solver of %u particles",
+                         (unsigned)network->topology.particle_count);
+}
+
+static mspring_result begin(making *m) {
+    m->made->scale = choose_scale(m->network);
+    m->made->seen = m->network->edits;
+    return mspringi_panels_create(&m->made->panels, &m->network->topology, &m->network->memory,
+                                  &m->network->message);
+}
+
+static mspring_result allocate(making *m) {
+    mspringi_implicit *n = m->made;
+    mspring_network *network = m->network;
     mspringi_memory *memory = &network->memory;
     const mspringi_topology *t = &network->topology;
     const size_t slots = mspringi_slot_count(network);
-    const size_t leftover = ((size_t)t->leftover_capacity + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
     const bool two = n->integrator == MSPRING_INTEGRATOR_BDF2;
     const size_t loose = ((size_t)t->loose_blocks + t->spare_blocks) * MSPRINGI_WIDTH;
     if (t->leftover_capacity > t->woven_count) {
@@ -59,23 +83,60 @@ static mspring_result allocate(mspringi_implicit *n, mspring_network *network) {
             return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for added springs");
     }
     n->history_size = (two ? 4 : 2) * slots;
-    n->factors = mspringi_alloc(memory, (t->chain_places + leftover) * MSPRINGI_FACTORS, sizeof *n->factors);
     n->x = mspringi_alloc(memory, 2 * slots, sizeof *n->x);
     n->mass = mspringi_alloc(memory, slots, sizeof *n->mass);
     n->diagonal = mspringi_alloc(memory, 3 * slots, sizeof *n->diagonal);
     n->sums = mspringi_alloc(memory, slots / MSPRINGI_CHUNK + 1, sizeof *n->sums);
-    if (!reserve_history(memory, &n->history, slots, two) || !reserve_history(memory, &n->backup, slots, two) ||
-        !reserve_history(memory, &n->previous, slots, two) || !reserve_field(memory, &n->velocity, slots) ||
-        !reserve_field(memory, &n->residual, slots) || !reserve_field(memory, &n->displacement, slots) ||
-        !reserve_field(memory, &n->product, slots) || !reserve_field(memory, &n->scaled, slots) || !n->factors ||
-        !n->x || !n->mass || !n->diagonal || !n->sums)
-        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
-                             "no memory for an implicit solver of %u particles", (unsigned)t->particle_count);
+    return n->x && n->mass && n->diagonal && n->sums ? MSPRING_OK : no_memory(network);
+}
+
+static mspring_result allocate_history(making *m) {
+    mspringi_implicit *n = m->made;
+    mspringi_memory *memory = &m->network->memory;
+    const size_t slots = mspringi_slot_count(m->network);
+    const bool two = n->integrator == MSPRING_INTEGRATOR_BDF2;
+    return reserve_history(memory, &n->history, slots, two) && reserve_history(memory, &n->backup, slots, two) &&
+                   reserve_history(memory, &n->previous, slots, two)
+               ? MSPRING_OK
+               : no_memory(m->network);
+}
+
+static mspring_result allocate_fields(making *m) {
+    mspringi_implicit *n = m->made;
+    mspringi_memory *memory = &m->network->memory;
+    const size_t slots = mspringi_slot_count(m->network);
+    return reserve_field(memory, &n->velocity, slots) && reserve_field(memory, &n->residual, slots) &&
+                   reserve_field(memory, &n->displacement, slots) && reserve_field(memory, &n->product, slots) &&
+                   reserve_field(memory, &n->scaled, slots)
+               ? MSPRING_OK
+               : no_memory(m->network);
+}
+
+static mspring_result make_budget(making *m) {
+    return mspringi_budget_create(&m->made->budget, m->network);
+}
+
+static mspring_result clear_budget(making *m, uint32_t first, uint32_t end) {
+    mspringi_budget_clear(&m->made->budget, first, end);
     return MSPRING_OK;
 }
 
+static uint32_t accounts_of(const making *m) {
+    return (uint32_t)(mspringi_slot_count(m->network) / 2 + 1);
+}
+
+static mspring_result allocate_factors(making *m) {
+    const mspringi_topology *t = &m->network->topology;
+    const size_t leftover = ((size_t)t->leftover_capacity + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+    m->made->factors = mspringi_alloc(&m->network->memory, (t->chain_places + leftover) * MSPRINGI_FACTORS,
+                                      sizeof *m->made->factors);
+    return m->made->factors ? MSPRING_OK : no_memory(m->network);
+}
+
 // What conjugate gradients need besides.
-static mspring_result allocate_iterate(mspringi_implicit *n, mspring_network *network) {
+static mspring_result allocate_iterate(making *m) {
+    mspringi_implicit *n = m->made;
+    mspring_network *network = m->network;
     mspringi_memory *memory = &network->memory;
     const size_t slots = mspringi_slot_count(network);
     n->flights = mspringi_alloc(memory, n->tiles.capacity, sizeof *n->flights);
@@ -165,29 +226,54 @@ static mspring_result check_coarse(const mspringi_implicit *n, mspring_network *
                          (unsigned)n->tiles.cells.size, (unsigned)n->tiles.count, cost, MOST_COARSE_COST);
 }
 
-// Cut into tiles of the size asked for or else, beginning at the default, of the first whose coarse matrix is cheap
-// to factor.
-static mspring_result cut_tiles(mspringi_implicit *n, mspring_network *network, uint32_t asked) {
-    const double most = COARSE_COST_PER_SLOT * (double)mspringi_slot_count(network);
-    uint32_t size = asked > 0 ? asked : MSPRINGI_LEAST_TILE_SIZE;
-    for (;;) {
-        mspring_result result =
-            mspringi_tiles_create(&n->tiles, network, size, &network->memory, &network->message);
-        if (result != MSPRING_OK || asked > 0 || size >= MSPRINGI_LARGEST_TILE_SIZE ||
-            mspringi_coarse_cost(&n->tiles) <= most)
-            return result;
-        mspringi_tiles_destroy(&n->tiles, &network->memory);
-        size *= 2;
-    }
+static void begin_tiles(making *m, uint32_t size) {
+    mspring_network *network = m->network;
+    mspringi_tiles_begin(&m->tiling, &m->made->tiles, network, size, &network->memory, &network->message);
 }
 
-static mspring_result make_two_level(mspringi_implicit *n, mspring_network *network) {
-    mspring_result result = cut_tiles(n, network, n->tile_size);
-    if (result == MSPRING_OK)
-        result = check_coarse(n, network);
-    if (result == MSPRING_OK)
-        result = mspringi_coarse_create(&n->coarse, &n->tiles, &network->memory, &network->message);
-    return result == MSPRING_OK ? allocate_iterate(n, network) : result;
+static mspring_result choose_tiles(making *m) {
+    begin_tiles(m, m->tile_size > 0 ? m->tile_size : MSPRINGI_LEAST_TILE_SIZE);
+    return MSPRING_OK;
+}
+
+// Cut into tiles of the size asked for or else, beginning at the default, of the first whose coarse matrix is cheap
+// to factor.
+static mspring_result cut_tiles(making *m) {
+    mspringi_tiles *tiles = &m->made->tiles;
+    const double most = COARSE_COST_PER_SLOT * (double)mspringi_slot_count(m->network);
+    const uint32_t size = tiles->cells.size;
+    bool is_done;
+    mspring_result result = mspringi_tiles_run(&m->tiling, &is_done);
+    m->cursor.again = true;
+    if (result != MSPRING_OK || !is_done)
+        return result;
+    mspringi_tiles_end(&m->tiling);
+    m->cursor.again = m->tile_size == 0 && size < MSPRINGI_LARGEST_TILE_SIZE && mspringi_coarse_cost(tiles) > most;
+    if (m->cursor.again) {
+        mspringi_tiles_destroy(tiles, &m->network->memory);
+        begin_tiles(m, 2 * size);
+    }
+    return MSPRING_OK;
+}
+
+static mspring_result make_coarse(making *m) {
+    mspringi_implicit *n = m->made;
+    mspring_network *network = m->network;
+    const mspring_result result = check_coarse(n, network);
+    return result == MSPRING_OK ? mspringi_coarse_create(&n->coarse, &n->tiles, &network->memory, &network->message)
+                                : result;
+}
+
+static mspring_result begin_direct(making *m) {
+    mspringi_direct_begin(&m->direct, &m->made->direct, m->network);
+    return MSPRING_OK;
+}
+
+static mspring_result make_direct(making *m) {
+    bool is_done;
+    const mspring_result result = mspringi_direct_make(&m->direct, &is_done);
+    m->cursor.again = !is_done;
+    return result;
 }
 
 // Mark the loose slots that are in tiles or, with the direct solver, that springs had been added to when it was
@@ -206,33 +292,73 @@ static void find_solved(mspringi_implicit *n, const mspring_network *network) {
     }
 }
 
-mspring_result mspringi_implicit_create(mspring_network *network, const mspring_solver_def *def,
-                                        mspringi_implicit **implicit) {
+static mspring_result finish(making *m) {
+    const mspring_result result = mspringi_implicit_reserve(m->made, m->network);
+    if (result == MSPRING_OK) {
+        wire(m->made, m->network);
+        find_solved(m->made, m->network);
+    }
+    return result;
+}
+
+static void end_making(mspringi_implicit *n, mspringi_memory *memory) {
+    if (!n->making)
+        return;
+    mspringi_tiles_end(&n->making->tiling);
+    mspringi_direct_end(&n->making->direct);
+    mspringi_free(memory, n->making);
+    n->making = NULL;
+}
+
+MSPRINGI_PASSES(implicit, making)
+#define COMMON                                                                                                     \
+    MSPRINGI_ONCE(begin), MSPRINGI_ONCE(allocate), MSPRINGI_ONCE(allocate_factors),                                \
+        MSPRINGI_ONCE(allocate_history), MSPRINGI_ONCE(allocate_fields), MSPRINGI_ONCE(make_budget),               \
+        MSPRINGI_EACH(clear_budget, accounts_of, 2000)
+static const implicit_pass two_level_passes[] = {
+    COMMON,
+    MSPRINGI_ONCE(choose_tiles),
+    MSPRINGI_ONCE(cut_tiles),
+    MSPRINGI_ONCE(make_coarse),
+    MSPRINGI_ONCE(allocate_iterate),
+    MSPRINGI_ONCE(finish),
+};
+static const implicit_pass direct_passes[] = {
+    COMMON,
+    MSPRINGI_ONCE(begin_direct),
+    MSPRINGI_ONCE(make_direct),
+    MSPRINGI_ONCE(finish),
+};
+
+mspring_result mspringi_implicit_begin(mspring_network *network, const mspring_solver_def *def, uint32_t tile_size,
+                                       mspringi_implicit **begun) {
     mspringi_implicit *n = mspringi_alloc(&network->memory, 1, sizeof *n);
-    if (!n)
+    making *m = mspringi_alloc(&network->memory, 1, sizeof *m);
+    if (!n || !m) {
+        mspringi_free(&network->memory, n);
+        mspringi_free(&network->memory, m);
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for an implicit solver");
+    }
+    *m = (making){.network = network, .made = n, .tile_size = def->tile_size > 0 ? def->tile_size : tile_size};
+    m->tiling.memory = m->tiling.cutting.memory = &network->memory;
+    n->making = m;
     n->tile_size = def->tile_size;
     n->integrator = def->integrator;
     n->is_direct = def->solver == MSPRING_SOLVER_DIRECT;
-    n->scale = choose_scale(network);
-    n->seen = network->edits;
     mspringi_implicit_adjust(n, def);
-    mspring_result result = allocate(n, network);
-    if (result == MSPRING_OK)
-        result = mspringi_panels_create(&n->panels, &network->topology, &network->memory, &network->message);
-    if (result == MSPRING_OK)
-        result = mspringi_budget_create(&n->budget, network);
-    if (result == MSPRING_OK)
-        result = n->is_direct ? mspringi_direct_create(&n->direct, network) : make_two_level(n, network);
-    if (result == MSPRING_OK)
-        result = mspringi_implicit_reserve(n, network);
-    if (result == MSPRING_OK) {
-        wire(n, network);
-        find_solved(n, network);
-        *implicit = n;
-    } else {
-        mspringi_implicit_destroy(n, &network->memory);
-    }
+    *begun = n;
+    return MSPRING_OK;
+}
+
+mspring_result mspringi_implicit_make(mspringi_implicit *n, bool *is_done) {
+    making *m = n->making;
+    mspring_network *network = m->network;
+    const uint32_t count =
+        n->is_direct ? MSPRINGI_PASS_COUNT(direct_passes) : MSPRINGI_PASS_COUNT(two_level_passes);
+    const mspring_result result = implicit_run(m, n->is_direct ? direct_passes : two_level_passes, &m->cursor);
+    *is_done = m->cursor.pass == count;
+    if (result == MSPRING_OK && *is_done)
+        end_making(n, &network->memory);
     return result;
 }
 
@@ -243,20 +369,17 @@ void mspringi_implicit_adjust(mspringi_implicit *n, const mspring_solver_def *de
 }
 
 mspring_result mspringi_fallback_reserve(mspring_network *network, uint32_t tile_size) {
-    mspringi_implicit *made = NULL;
+    mspringi_solver made = {&mspringi_implicit_ops, NULL};
     if (network->fallback.object)
         return MSPRING_OK;
     mspring_solver_def def;
     (void)mspring_solver_def_init(&def, sizeof def);
     def.solver = MSPRING_SOLVER_IMPLICIT;
     def.integrator = MSPRING_INTEGRATOR_EULER;
-    def.tile_size = tile_size;
-    mspring_result result = mspringi_implicit_create(network, &def, &made);
-    if (result != MSPRING_OK)
-        return result;
-    made->tile_size = 0; // its tiles go by plan
-    network->fallback = (mspringi_solver){&mspringi_implicit_ops, made};
-    return MSPRING_OK;
+    mspring_result result = mspringi_solver_make(&made, network, &def, tile_size);
+    if (result == MSPRING_OK)
+        network->fallback = made;
+    return result;
 }
 
 #define ARRAY(member) MSPRINGI_COLUMN(mspringi_implicit, member, MSPRINGI_ARRAY)
@@ -274,6 +397,7 @@ static const mspringi_columns columns = MSPRINGI_COLUMNS(list);
 void mspringi_implicit_destroy(mspringi_implicit *n, mspringi_memory *memory) {
     if (!n)
         return;
+    end_making(n, memory);
     mspringi_direct_destroy(&n->direct, memory);
     mspringi_panels_destroy(&n->panels, memory);
     mspringi_budget_destroy(&n->budget, memory);

@@ -78,8 +78,9 @@ typedef struct mspringi_implicit {
     bool is_piece;                      ///< it is a half of one that got energy from nowhere, or of such a half
     mspringi_system system;
     mspringi_iterate iterate;
-    mspringi_edits seen; ///< the edits that it has followed
-    uint64_t rested;     ///< edits.naps for which what sleeps is at rest in all that is kept by slot
+    mspringi_edits seen;                     ///< the edits that it has followed
+    struct mspringi_implicit_making *making; ///< NULL: it is complete
+    uint64_t rested; ///< edits.naps for which what sleeps is at rest in all that is kept by slot
 
     mspringi_budget budget;
     mspringi_panels panels;
@@ -95,9 +96,10 @@ static inline mspringi_implicit *mspringi_implicit_of(const mspring_network *net
     return network->running->object;
 }
 
-/// Make an implicit solver for a network that is otherwise complete. On failure there is nothing to free.
-mspring_result mspringi_implicit_create(mspring_network *network, const mspring_solver_def *def,
-                                        mspringi_implicit **implicit);
+/// Make an implicit solver, as the operations create and build of store/solver.h.
+mspring_result mspringi_implicit_begin(mspring_network *network, const mspring_solver_def *def, uint32_t tile_size,
+                                       mspringi_implicit **begun);
+mspring_result mspringi_implicit_make(mspringi_implicit *implicit, bool *is_done);
 void mspringi_implicit_adjust(mspringi_implicit *implicit, const mspring_solver_def *def);
 void mspringi_implicit_destroy(mspringi_implicit *implicit, mspringi_memory *memory);
 /// Have a copied solver's pointers lead into the copy of its network.

@@ -2,11 +2,16 @@
 #include "contact/floor.h"
 #include "solvers/implicit/implicit.h"
 
-static mspring_result create(mspring_network *network, const mspring_solver_def *def, void **object) {
+static mspring_result create(mspring_network *network, const mspring_solver_def *def, uint32_t tile_size,
+                             void **object) {
     mspringi_implicit *made = NULL;
-    mspring_result result = mspringi_implicit_create(network, def, &made);
+    mspring_result result = mspringi_implicit_begin(network, def, tile_size, &made);
     *object = made;
     return result;
+}
+
+static mspring_result build(void *object, bool *is_done) {
+    return mspringi_implicit_make(object, is_done);
 }
 
 static bool fits(const void *object, const mspring_solver_def *def) {
@@ -41,18 +46,6 @@ static void get_def(const void *object, mspring_solver_def *def) {
     def->iterations = n->iterations;
     def->tile_size = n->tile_size;
     def->coarse_period = n->coarse_period;
-}
-
-static mspring_result remake(mspring_network *to, const mspring_solver_def *asked, uint32_t tile_size,
-                             void **object) {
-    mspringi_implicit *made = NULL;
-    mspring_solver_def def = *asked;
-    def.tile_size = asked->tile_size > 0 ? asked->tile_size : tile_size;
-    mspring_result result = mspringi_implicit_create(to, &def, &made);
-    if (result == MSPRING_OK)
-        made->tile_size = asked->tile_size;
-    *object = made;
-    return result;
 }
 
 static mspringi_solver_basis get_basis(const void *object) {
@@ -186,8 +179,8 @@ static void load(mspring_network *network, void *object, const uint8_t *from, si
 }
 
 #define BOTH                                                                                                       \
-    .takes_one = true, .create = create, .fits = fits, .adjust = adjust, .destroy = destroy, .relocate = relocate, \
-    .reserve = reserve, .get_def = get_def, .remake = remake, .take_over = take_over, .get_basis = get_basis,      \
+    .takes_one = true, .create = create, .build = build, .fits = fits, .adjust = adjust, .destroy = destroy,       \
+    .relocate = relocate, .reserve = reserve, .get_def = get_def, .take_over = take_over, .get_basis = get_basis,  \
     .set_basis = set_basis, .substeps = substeps, .keep = keep, .restore = restore, .forget = forget,              \
     .clear_slot = clear_slot, .rest_slot = rest_slot, .clear_spring = clear_spring, .new_floor = new_floor,        \
     .is_alone = is_alone, .has_alone = has_alone, .describe = describe, .size = size, .save = save,                \

@@ -114,14 +114,15 @@ static uint32_t number_cell(mspringi_tiles *tiles, const mspring_network *networ
     return first + 1;
 }
 
-// Number the tiles of all cells, in the order of the cells.
-static void number_tiles(mspringi_tiles *tiles, const mspring_network *network, uint32_t most) {
-    tiles->count = 0;
-    for (uint32_t cell = 0; cell < tiles->cells.count; ++cell) {
+// Number the tiles of a range of cells, in the order of the cells, behind those of the cells before.
+static void number_tiles(mspringi_tiles *tiles, const mspring_network *network, uint32_t first, uint32_t end,
+                         uint32_t most) {
+    tiles->count = first == 0 ? 0 : tiles->first_of_cell[first];
+    for (uint32_t cell = first; cell < end; ++cell) {
         tiles->first_of_cell[cell] = tiles->count;
         tiles->count = number_cell(tiles, network, cell, tiles->count, most);
     }
-    tiles->first_of_cell[tiles->cells.count] = tiles->count;
+    tiles->first_of_cell[end] = tiles->count;
 }
 
 size_t mspringi_tiles_coarse_values(const mspringi_tiles *tiles) {
@@ -182,12 +183,12 @@ static void sort_parts(mspringi_tiles *tiles, size_t slots) {
     first[groups] = count;
 }
 
-static void list_parts(mspringi_tiles *tiles, size_t slots) {
-    uint32_t part = 0;
-    for (uint32_t cell = 0; cell < tiles->cells.count; ++cell)
+// Those of a range of cells, behind those of the cells before.
+static void list_parts(mspringi_tiles *tiles, uint32_t first, uint32_t end) {
+    uint32_t part = first == 0 ? 0 : tiles->first_part[tiles->first_of_cell[first]];
+    for (uint32_t cell = first; cell < end; ++cell)
         part = list_cell_parts(tiles, cell, part);
-    tiles->first_part[tiles->count] = part;
-    sort_parts(tiles, slots);
+    tiles->first_part[tiles->first_of_cell[end]] = part;
 }
 
 // Note a spring if just one of its ends is pinned, as far as there is room.
@@ -215,23 +216,33 @@ static void add_grafted(mspringi_tiles *tiles, const mspring_network *network, m
     tiles->anchors[tiles->anchor_count++] = (mspringi_joint){.slot = b, .other_slot = a, .factors = factors};
 }
 
-// List the springs to pinned particles, inside cells and between them, and those that were added.
-static void list_anchors(mspringi_tiles *tiles, const mspring_network *network) {
-    const mspringi_cells *cells = &tiles->cells;
+// Springs to pinned particles inside cells.
+static void add_inner_anchors(mspringi_tiles *tiles, const mspring_network *network, uint32_t first, uint32_t end) {
     const mspringi_topology *t = &network->topology;
-    tiles->anchor_count = 0;
-    for (uint32_t i = 0; i < cells->first_inner[cells->count]; ++i) {
-        const mspringi_place place = mspringi_place_of(t, cells->inner[i]);
+    for (uint32_t i = first; i < end; ++i) {
+        const mspringi_place place = mspringi_place_of(t, tiles->cells.inner[i]);
         uint32_t a, b;
         mspringi_topology_ends(t, place, &a, &b);
         if (!mspringi_place_is_woven(t, place))
             continue;
         add_anchor(tiles, network, a, b, mspringi_factors_of_place(place));
     }
+}
+
+// Those between cells, and springs that were added.
+static void add_other_anchors(mspringi_tiles *tiles, const mspring_network *network) {
+    const mspringi_cells *cells = &tiles->cells;
+    const mspringi_topology *t = &network->topology;
     for (const mspringi_joint *joint = cells->joints; joint < cells->joints + cells->joint_count; ++joint)
         add_anchor(tiles, network, joint->slot, joint->other_slot, joint->factors);
     for (mspring_id s = t->reserve.first_spring; s < t->spring_count; ++s)
         add_grafted(tiles, network, s);
+}
+
+static void list_anchors(mspringi_tiles *tiles, const mspring_network *network) {
+    tiles->anchor_count = 0;
+    add_inner_anchors(tiles, network, 0, tiles->cells.first_inner[tiles->cells.count]);
+    add_other_anchors(tiles, network);
 }
 
 /* ------------------------------------------------------------------------------------------------------- edits */
@@ -278,6 +289,12 @@ static bool fits(const mspringi_tiles *tiles) {
     return tiles->count <= tiles->capacity && mspringi_tiles_coarse_values(tiles) <= tiles->value_capacity;
 }
 
+// If the tiles are too many, the most that a cell may be cut into next; else 0. With a tile to a cell they always
+// fit.
+static uint32_t next_most(const mspringi_tiles *tiles, uint32_t most) {
+    return fits(tiles) ? 0 : most > 16 ? 16 : most / 4;
+}
+
 // Look again at the dirty cells. Everything else is a matter of counting.
 static void renew(mspringi_tiles *tiles, const mspring_network *network) {
     for (uint32_t i = 0; i < tiles->dirty_count; ++i) {
@@ -285,13 +302,10 @@ static void renew(mspringi_tiles *tiles, const mspring_network *network) {
         tiles->is_dirty[tiles->dirty[i]] = 0;
     }
     tiles->dirty_count = 0;
-    // With a tile to a cell they always fit.
-    uint32_t most = UINT32_MAX;
-    do {
-        number_tiles(tiles, network, most);
-        most = most > 16 ? 16 : most / 4;
-    } while (!fits(tiles) && most > 0);
-    list_parts(tiles, mspringi_slot_count(network));
+    for (uint32_t most = UINT32_MAX; most > 0; most = next_most(tiles, most))
+        number_tiles(tiles, network, 0, tiles->cells.count, most);
+    list_parts(tiles, 0, tiles->cells.count);
+    sort_parts(tiles, mspringi_slot_count(network));
 }
 
 bool mspringi_tiles_are_outdated(const mspringi_tiles *tiles, const mspring_network *network,
@@ -321,20 +335,6 @@ void mspringi_tiles_follow(mspringi_tiles *tiles, const mspring_network *network
 
 /* ---------------------------------------------------------------------------------------------------- the whole */
 
-// As if each body were at least about as large as a spring.
-static float choose_turn_inertia(const mspring_network *network) {
-    double sum = 0.0;
-    uint32_t count = 0;
-    for (mspring_id s = 0; s < network->topology.spring_count; ++s) {
-        if (!mspringi_spring_exists(network, s))
-            continue;
-        sum += (double)mspringi_spring_get(network, s).rest_length;
-        ++count;
-    }
-    const double mean = count > 0 ? sum / (double)count : 1.0;
-    return (float)(0.02 * mean * mean);
-}
-
 // Everything that edits do not change.
 static void take_fingerprint(mspringi_tiles *tiles, size_t slots) {
     tiles->fingerprint = mspringi_mix_floats(MSPRINGI_MIX_START, tiles->turn_inertia, 0.0f);
@@ -342,7 +342,22 @@ static void take_fingerprint(mspringi_tiles *tiles, size_t slots) {
         tiles->fingerprint = mspringi_mix(tiles->fingerprint, tiles->cells.of_slot[slot]);
 }
 
-static bool find_tiles(mspringi_tiles *tiles, const mspring_network *network, mspringi_memory *memory) {
+static mspring_result no_memory(const mspringi_tiling *m) {
+    return mspringi_fail(m->message, MSPRING_ERROR_MEMORY, "no memory to cut %u particles into tiles",
+                         (unsigned)m->network->topology.particle_count);
+}
+
+static mspring_result cut_cells(mspringi_tiling *m) {
+    bool is_done;
+    const mspring_result result = mspringi_cells_run(&m->cutting, &is_done);
+    m->cursor.again = !is_done;
+    return result;
+}
+
+static mspring_result reserve(mspringi_tiling *m) {
+    mspringi_tiles *tiles = m->tiles;
+    const mspring_network *network = m->network;
+    mspringi_memory *memory = m->memory;
     const size_t slots = mspringi_slot_count(network), cells = tiles->cells.count;
     tiles->capacity = 2 * (uint32_t)cells + SPARE_TILES;
     tiles->value_capacity = 4 * values_of_cells(&tiles->cells) + SPARE_VALUES;
@@ -361,27 +376,117 @@ static bool find_tiles(mspringi_tiles *tiles, const mspring_network *network, ms
     tiles->anchors = mspringi_alloc(memory, tiles->anchor_capacity, sizeof *tiles->anchors);
     if (!tiles->of_slot || !tiles->parent || !tiles->first_of_cell || !tiles->dirty || !tiles->is_dirty ||
         !tiles->parts || !tiles->parts_by_slot || !tiles->first_by_slot || !tiles->first_part || !tiles->anchors)
-        return false;
+        return no_memory(m);
     for (size_t slot = 0; slot < slots; ++slot)
         tiles->of_slot[slot] = MSPRING_NONE;
-    for (uint32_t cell = 0; cell < cells; ++cell)
-        mark_dirty(tiles, cell);
-    list_anchors(tiles, network);
-    renew(tiles, network);
-    tiles->turn_inertia = choose_turn_inertia(network);
-    take_fingerprint(tiles, slots);
-    return true;
+    return MSPRING_OK;
 }
 
-mspring_result mspringi_tiles_create(mspringi_tiles *tiles, const mspring_network *network, uint32_t size,
-                                     mspringi_memory *memory, mspringi_message *message) {
+static mspring_result list_inner_anchors(mspringi_tiling *m, uint32_t first, uint32_t end) {
+    add_inner_anchors(m->tiles, m->network, first, end);
+    return MSPRING_OK;
+}
+
+static mspring_result list_other_anchors(mspringi_tiling *m) {
+    add_other_anchors(m->tiles, m->network);
+    return MSPRING_OK;
+}
+
+// The first cell whose list of slots begins there or behind.
+static uint32_t cell_from(const mspringi_cells *cells, uint32_t at) {
+    if (at >= cells->first_slot[cells->count])
+        return cells->count;
+    const uint32_t cell = cells->of_slot[cells->slots[at]];
+    return cells->first_slot[cell] < at ? cell + 1 : cell;
+}
+
+static mspring_result find_all_components(mspringi_tiling *m, uint32_t first, uint32_t end) {
+    const uint32_t end_cell = cell_from(&m->tiles->cells, end);
+    for (uint32_t cell = cell_from(&m->tiles->cells, first); cell < end_cell; ++cell)
+        find_components(m->tiles, m->network, cell);
+    return MSPRING_OK;
+}
+
+static mspring_result number_some(mspringi_tiling *m, uint32_t first, uint32_t end) {
+    const mspringi_cells *cells = &m->tiles->cells;
+    number_tiles(m->tiles, m->network, cell_from(cells, first), cell_from(cells, end), m->most);
+    return MSPRING_OK;
+}
+
+// If they do not fit, they are numbered again.
+static mspring_result judge_number(mspringi_tiling *m) {
+    m->most = next_most(m->tiles, m->most);
+    m->cursor.again = m->most > 0;
+    m->cursor.pass -= m->cursor.again;
+    return MSPRING_OK;
+}
+
+static mspring_result list_all_parts(mspringi_tiling *m, uint32_t first, uint32_t end) {
+    list_parts(m->tiles, cell_from(&m->tiles->cells, first), cell_from(&m->tiles->cells, end));
+    return MSPRING_OK;
+}
+
+static mspring_result add_lengths(mspringi_tiling *m, uint32_t first, uint32_t end) {
+    for (mspring_id s = first; s < end; ++s) {
+        if (!mspringi_spring_exists(m->network, s))
+            continue;
+        m->length += (double)mspringi_spring_get(m->network, s).rest_length;
+        m->counted++;
+    }
+    return MSPRING_OK;
+}
+
+// Each body turns as if it were at least about as large as a spring.
+static mspring_result finish(mspringi_tiling *m) {
+    const size_t slots = mspringi_slot_count(m->network);
+    const double mean = m->counted > 0 ? m->length / (double)m->counted : 1.0;
+    sort_parts(m->tiles, slots);
+    mspringi_tiles_set_inertia(m->tiles, (float)(0.02 * mean * mean), slots);
+    return MSPRING_OK;
+}
+
+static uint32_t inner_of(const mspringi_tiling *m) {
+    return m->tiles->cells.first_inner[m->tiles->cells.count];
+}
+
+static uint32_t slots_of(const mspringi_tiling *m) {
+    return m->tiles->cells.first_slot[m->tiles->cells.count];
+}
+
+static uint32_t springs_of(const mspringi_tiling *m) {
+    return m->network->topology.spring_count;
+}
+
+MSPRINGI_PASSES(tiles, mspringi_tiling)
+static const tiles_pass tiles_passes[] = {
+    MSPRINGI_ONCE(cut_cells),
+    MSPRINGI_ONCE(reserve),
+    MSPRINGI_EACH(list_inner_anchors, inner_of, 32000),
+    MSPRINGI_ONCE(list_other_anchors),
+    MSPRINGI_EACH(find_all_components, slots_of, 8000),
+    MSPRINGI_EACH(number_some, slots_of, 8000),
+    MSPRINGI_ONCE(judge_number),
+    MSPRINGI_EACH(list_all_parts, slots_of, 16000),
+    MSPRINGI_EACH(add_lengths, springs_of, 32000),
+    MSPRINGI_ONCE(finish),
+};
+
+void mspringi_tiles_begin(mspringi_tiling *m, mspringi_tiles *tiles, const mspring_network *network, uint32_t size,
+                          mspringi_memory *memory, mspringi_message *message) {
     *tiles = (mspringi_tiles){0};
-    mspring_result result = mspringi_cells_create(&tiles->cells, network, size, memory, message);
-    if (result != MSPRING_OK || find_tiles(tiles, network, memory))
-        return result;
-    mspringi_tiles_destroy(tiles, memory);
-    return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to cut %u particles into tiles",
-                         (unsigned)network->topology.particle_count);
+    *m = (mspringi_tiling){
+        .network = network, .memory = memory, .message = message, .tiles = tiles, .most = UINT32_MAX};
+    mspringi_cells_begin(&m->cutting, &tiles->cells, network, size, memory, message);
+}
+
+mspring_result mspringi_tiles_run(mspringi_tiling *m, bool *is_done) {
+    const mspring_result result = tiles_run(m, tiles_passes, &m->cursor);
+    *is_done = m->cursor.pass == MSPRINGI_PASS_COUNT(tiles_passes);
+    return result;
+}
+
+void mspringi_tiles_end(mspringi_tiling *m) {
+    mspringi_cells_end(&m->cutting);
 }
 
 void mspringi_tiles_set_inertia(mspringi_tiles *tiles, float turn_inertia, size_t slots) {

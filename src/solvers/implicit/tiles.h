@@ -32,8 +32,24 @@ typedef struct mspringi_tiles {
     uint64_t fingerprint; ///< hash of all this
 } mspringi_tiles;
 
-mspring_result mspringi_tiles_create(mspringi_tiles *tiles, const mspring_network *network, uint32_t size,
-                                     mspringi_memory *memory, mspringi_message *message);
+/// Tiles that are being made.
+typedef struct mspringi_tiling {
+    const mspring_network *network;
+    mspringi_memory *memory;
+    mspringi_message *message;
+    mspringi_tiles *tiles;
+    mspringi_cursor cursor;
+    mspringi_cutting cutting;
+    double length; ///< of so many springs at rest
+    uint32_t counted;
+    uint32_t most; ///< tiles that a cell may be cut into
+} mspringi_tiling;
+
+/// Make tiles in cells of that size: begin, then run until it is done, then end, on failure too.
+void mspringi_tiles_begin(mspringi_tiling *tiling, mspringi_tiles *tiles, const mspring_network *network,
+                          uint32_t size, mspringi_memory *memory, mspringi_message *message);
+mspring_result mspringi_tiles_run(mspringi_tiling *tiling, bool *is_done);
+void mspringi_tiles_end(mspringi_tiling *tiling);
 /// Have the bodies turn as hard as those of other tiles of the same network, in which rest lengths may have been
 /// others.
 void mspringi_tiles_set_inertia(mspringi_tiles *tiles, float turn_inertia, size_t slots);

@@ -8,20 +8,22 @@
 /// Groups behind its own that a column of MSPRINGI_PAD rows can reach.
 #define MOST_REACH (MSPRINGI_PAD / MSPRINGI_BAND_COLUMNS - 1)
 
-/// What the choice of an order needs on the way.
-typedef struct choosing {
-    const mspringi_adjacency *adjacency;
-    uint32_t *sorted;         ///< [size] another order
-    uint32_t *place;          ///< [size] by number
-    uint64_t *keys, *scratch; ///< [size]
-} choosing;
+/// Nodes that are looked at in one go, about.
+#define NODES_AT_ONCE 10000
 
-// Groups that the nodes first ... end - 1 of an order reach behind their own.
+typedef mspringi_band_choice choosing;
+
+static mspring_result no_memory(const choosing *c, mspringi_message *message) {
+    return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the plan of a matrix of %u nodes",
+                         (unsigned)c->adjacency->size);
+}
+
+// Groups that the nodes first ... end - 1 of an order reach behind their own, or more than twice as many as can be.
 static uint32_t reach_of(const choosing *c, const uint32_t *order, uint32_t first, uint32_t end) {
     uint32_t reach = 0;
     for (uint32_t place = first; place < end; ++place)
         c->place[order[place]] = place;
-    for (uint32_t place = first; place < end; ++place) {
+    for (uint32_t place = first; place < end && reach <= 2 * MOST_REACH; ++place) {
         const uint32_t node = order[place];
         for (uint32_t i = c->adjacency->first[node]; i < c->adjacency->first[node + 1]; ++i) {
             const uint32_t other = c->place[c->adjacency->neighbour[i]];
@@ -92,38 +94,49 @@ static void sort_by_levels(const choosing *c, uint32_t *nodes, const uint32_t *o
     (void)search_from(c, nodes, count - farthest, order, count);
 }
 
-// Let a component be ordered along its longer side, or by levels, if it reaches less far so than in order.
-static uint32_t choose(const choosing *c, uint32_t *order, uint32_t first, uint32_t end,
-                       const mspringi_cholesky_graph *graph) {
-    const uint32_t count = end - first;
-    const uint32_t reach = reach_of(c, order, first, end);
-    if (reach <= 1 || !graph->x || !graph->y)
-        return reach;
-    memcpy(c->sorted + first, order + first, count * sizeof *order);
-    const double width = sort_by(c, c->sorted + first, count, graph->x);
-    const double height = sort_by(c, c->sorted + first, count, graph->y);
-    if (width >= height)
-        (void)sort_by(c, c->sorted + first, count, graph->x);
-    uint32_t other = reach_of(c, c->sorted, first, end);
-    // Where a node has many neighbours, no order would do.
-    if (other > MOST_REACH && reach > MOST_REACH && reach <= 2 * MOST_REACH) {
-        sort_by_levels(c, c->sorted + first, order + first, count);
-        other = reach_of(c, c->sorted, first, end);
+// Keep the other order, if it reaches less far.
+static void end_component(choosing *c) {
+    const uint32_t first = c->sweep->first[c->component], end = c->sweep->first[c->component + 1];
+    if (c->other < c->own) {
+        memcpy(c->order + first, c->sorted + first, (end - first) * sizeof *c->order);
+        c->own = c->other;
     }
-    if (other >= reach)
-        return reach;
-    memcpy(order + first, c->sorted + first, count * sizeof *order);
-    return other;
+    c->reach = c->own > c->reach ? c->own : c->reach;
+    c->component++;
+    c->stage = 0;
 }
 
-static uint32_t choose_all(const choosing *c, uint32_t *order, const mspringi_sweep_order *sweep,
-                           const mspringi_cholesky_graph *graph) {
-    uint32_t reach = 0;
-    for (uint32_t component = 0; component < sweep->component_count && reach <= MOST_REACH; ++component) {
-        const uint32_t own = choose(c, order, sweep->first[component], sweep->first[component + 1], graph);
-        reach = own > reach ? own : reach;
+// Let a component be ordered along its longer side, or by levels, if it reaches less far so than in order. One
+// stage of that.
+static void choose(choosing *c, const mspringi_cholesky_graph *graph) {
+    const uint32_t first = c->sweep->first[c->component], end = c->sweep->first[c->component + 1];
+    uint32_t *const sorted = c->sorted + first;
+    switch (c->stage++) {
+    case 0:
+        c->own = c->other = reach_of(c, c->order, first, end);
+        if (c->own <= 1 || !graph->x || !graph->y)
+            end_component(c);
+        return;
+    case 1:
+        memcpy(sorted, c->order + first, (end - first) * sizeof *c->order);
+        c->width = sort_by(c, sorted, end - first, graph->x);
+        return;
+    case 2:
+        c->height = sort_by(c, sorted, end - first, graph->y);
+        return;
+    case 3:
+        if (c->width >= c->height)
+            (void)sort_by(c, sorted, end - first, graph->x);
+        c->other = reach_of(c, c->sorted, first, end);
+        return;
+    default:
+        // Where a node has many neighbours, no order would do.
+        if (c->other > MOST_REACH && c->own > MOST_REACH && c->own <= 2 * MOST_REACH) {
+            sort_by_levels(c, sorted, c->order + first, end - first);
+            c->other = reach_of(c, c->sorted, first, end);
+        }
+        end_component(c);
     }
-    return reach;
 }
 
 // The edges by the group of their first node, and where each begins.
@@ -185,27 +198,41 @@ static bool fill(mspringi_cholesky_plan *plan, const mspringi_cholesky_graph *gr
     return ok;
 }
 
-mspring_result mspringi_band_create(mspringi_cholesky_plan *plan, const mspringi_sweep_order *sweep,
-                                    const mspringi_adjacency *adjacency, const mspringi_cholesky_graph *graph,
-                                    mspringi_memory *memory, mspringi_message *message) {
+mspring_result mspringi_band_reserve(choosing *c, const mspringi_sweep_order *sweep,
+                                     const mspringi_adjacency *adjacency, mspringi_memory *memory,
+                                     mspringi_message *message) {
     const size_t size = adjacency->size;
-    uint32_t *order = mspringi_alloc(memory, 3 * size, sizeof *order);
-    uint64_t *keys = mspringi_alloc(memory, 2 * size, sizeof *keys);
-    bool ok = order && keys;
-    if (ok && size > 0) {
-        const choosing c = {.adjacency = adjacency,
-                            .sorted = order + size,
-                            .place = order + 2 * size,
-                            .keys = keys,
-                            .scratch = keys + size};
-        memcpy(order, sweep->order, size * sizeof *order);
-        const uint32_t reach = choose_all(&c, order, sweep, graph);
-        if (reach <= MOST_REACH)
-            ok = fill(plan, graph, adjacency, order, reach, memory);
+    *c = (choosing){.adjacency = adjacency, .sweep = sweep};
+    c->order = mspringi_alloc(memory, 3 * size, sizeof *c->order);
+    c->keys = mspringi_alloc(memory, 2 * size, sizeof *c->keys);
+    if (!c->order || !c->keys)
+        return no_memory(c, message);
+    c->sorted = c->order + size;
+    c->place = c->order + 2 * size;
+    c->scratch = c->keys + size;
+    memcpy(c->order, sweep->order, size * sizeof *c->order);
+    return MSPRING_OK;
+}
+
+bool mspringi_band_choose(choosing *c, const mspringi_cholesky_graph *graph) {
+    for (uint32_t nodes = 0; nodes < NODES_AT_ONCE;) {
+        if (c->component == c->sweep->component_count || c->reach > MOST_REACH)
+            return true;
+        nodes += c->sweep->first[c->component + 1] - c->sweep->first[c->component];
+        choose(c, graph);
     }
-    mspringi_free(memory, order);
-    mspringi_free(memory, keys);
-    return ok ? MSPRING_OK
-              : mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the plan of a matrix of %u nodes",
-                              (unsigned)size);
+    return false;
+}
+
+mspring_result mspringi_band_make(choosing *c, mspringi_cholesky_plan *plan, const mspringi_cholesky_graph *graph,
+                                  mspringi_memory *memory, mspringi_message *message) {
+    const bool ok = c->adjacency->size == 0 || c->reach > MOST_REACH ||
+                    fill(plan, graph, c->adjacency, c->order, c->reach, memory);
+    return ok ? MSPRING_OK : no_memory(c, message);
+}
+
+void mspringi_band_destroy(choosing *c, mspringi_memory *memory) {
+    mspringi_free(memory, c->order);
+    mspringi_free(memory, c->keys);
+    *c = (choosing){0};
 }

@@ -1,6 +1,8 @@
 /// The memory of a factor, and the way to the kernels of its level.
 #include "solvers/sparse/cholesky.h"
 
+#include <string.h>
+
 #include "solvers/sparse/kernels.h"
 #include "solvers/sparse/plan.h"
 
@@ -24,34 +26,38 @@ const mspringi_cholesky_kernels *mspringi_cholesky_kernels_of(mspring_simd level
                                                      const mspringi_cholesky_plan *plan, mspring_simd level,       \
                                                      mspringi_memory *memory, mspringi_message *message) {         \
         const size_t size = mspringi_pad(2 * (size_t)plan->size) + MSPRINGI_PAD;                                   \
+        const size_t first = plan->update_reals[0] + MSPRINGI_PAD, second = plan->update_reals[1] + MSPRINGI_PAD;  \
+        const size_t panels = plan->panel_reals + MSPRINGI_PAD;                                                    \
+        const size_t others = 3 * size + plan->scaled_reals + plan->vector_reals;                                  \
+        real *at = mspringi_alloc_unset(memory, panels + first + second + others, sizeof(real));                   \
+        if (!at)                                                                                                   \
+            return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for a factor of %zu numbers",           \
+                                 plan->panel_reals);                                                               \
         *factor = (mspringi_cholesky_##real){                                                                      \
             .plan = plan,                                                                                          \
             .kernels = mspringi_cholesky_kernels_of(level),                                                        \
-            .panels = mspringi_alloc(memory, plan->panel_reals + MSPRINGI_PAD, sizeof(real)),                      \
-            .reciprocal = mspringi_alloc(memory, size, sizeof(real)),                                              \
-            .updates = {mspringi_alloc(memory, plan->update_reals[0] + MSPRINGI_PAD, sizeof(real)),                \
-                        mspringi_alloc(memory, plan->update_reals[1] + MSPRINGI_PAD, sizeof(real))},               \
-            .scaled = mspringi_alloc(memory, plan->scaled_reals, sizeof(real)),                                    \
-            .vector = mspringi_alloc(memory, 2 * size, sizeof(real)),                                              \
-            .part = mspringi_alloc(memory, plan->vector_reals, sizeof(real)),                                      \
+            .panels = at,                                                                                          \
+            .updates = {at + panels, at + panels + first},                                                         \
+            .reciprocal = at + panels + first + second,                                                            \
         };                                                                                                         \
-        if (factor->panels && factor->reciprocal && factor->updates[0] && factor->updates[1] && factor->scaled &&  \
-            factor->vector && factor->part)                                                                        \
-            return MSPRING_OK;                                                                                     \
-        mspringi_cholesky_##real##_destroy(factor, memory);                                                        \
-        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for a factor of %zu numbers",               \
-                             plan->panel_reals);                                                                   \
+        factor->vector = factor->reciprocal + size;                                                                \
+        factor->scaled = factor->vector + 2 * size;                                                                \
+        factor->part = factor->scaled + plan->scaled_reals;                                                        \
+        memset(factor->updates[0] - MSPRINGI_PAD, 0, MSPRINGI_PAD * sizeof(real));                                 \
+        memset(factor->updates[1] - MSPRINGI_PAD, 0, MSPRINGI_PAD * sizeof(real));                                 \
+        memset(factor->reciprocal - MSPRINGI_PAD, 0, (MSPRINGI_PAD + others) * sizeof(real));                      \
+        return MSPRING_OK;                                                                                         \
     }                                                                                                              \
                                                                                                                    \
     static const mspringi_column columns_##real[] = {                                                              \
         MSPRINGI_COLUMN(mspringi_cholesky_##real, plan, MSPRINGI_VIEW),                                            \
         MSPRINGI_COLUMN(mspringi_cholesky_##real, panels, MSPRINGI_ARRAY),                                         \
-        MSPRINGI_COLUMN(mspringi_cholesky_##real, reciprocal, MSPRINGI_ARRAY),                                     \
-        MSPRINGI_COLUMN(mspringi_cholesky_##real, updates[0], MSPRINGI_ARRAY),                                     \
-        MSPRINGI_COLUMN(mspringi_cholesky_##real, updates[1], MSPRINGI_ARRAY),                                     \
-        MSPRINGI_COLUMN(mspringi_cholesky_##real, scaled, MSPRINGI_ARRAY),                                         \
-        MSPRINGI_COLUMN(mspringi_cholesky_##real, vector, MSPRINGI_ARRAY),                                         \
-        MSPRINGI_COLUMN(mspringi_cholesky_##real, part, MSPRINGI_ARRAY),                                           \
+        MSPRINGI_COLUMN(mspringi_cholesky_##real, reciprocal, MSPRINGI_VIEW),                                      \
+        MSPRINGI_COLUMN(mspringi_cholesky_##real, updates[0], MSPRINGI_VIEW),                                      \
+        MSPRINGI_COLUMN(mspringi_cholesky_##real, updates[1], MSPRINGI_VIEW),                                      \
+        MSPRINGI_COLUMN(mspringi_cholesky_##real, scaled, MSPRINGI_VIEW),                                          \
+        MSPRINGI_COLUMN(mspringi_cholesky_##real, vector, MSPRINGI_VIEW),                                          \
+        MSPRINGI_COLUMN(mspringi_cholesky_##real, part, MSPRINGI_VIEW),                                            \
     };                                                                                                             \
     const mspringi_columns mspringi_cholesky_##real##_columns = MSPRINGI_COLUMNS(columns_##real);                  \
                                                                                                                    \

@@ -39,6 +39,7 @@ typedef struct mspringi_cholesky_graph {
     double most_numbers;             ///< that the factor may take; 0: 2^31
 } mspringi_cholesky_graph;
 
+typedef struct mspringi_cholesky_planning mspringi_cholesky_planning;
 typedef struct mspringi_front mspringi_front;
 typedef struct mspringi_cholesky_entry mspringi_cholesky_entry;
 typedef struct mspringi_front_run mspringi_front_run;
@@ -70,6 +71,13 @@ typedef struct mspringi_cholesky_plan {
 ///         the plan is as it was, zero, but for predicted_numbers.
 mspring_result mspringi_cholesky_plan_create(mspringi_cholesky_plan *plan, const mspringi_cholesky_graph *graph,
                                              mspringi_memory *memory, mspringi_message *message);
+/// The same as a list of short functions: begin, then run until it is done, then end, on failure too. The graph
+/// must stay until then. NULL may be ended.
+mspring_result mspringi_cholesky_plan_begin(mspringi_cholesky_plan *plan, const mspringi_cholesky_graph *graph,
+                                            mspringi_memory *memory, mspringi_message *message,
+                                            mspringi_cholesky_planning **begun);
+mspring_result mspringi_cholesky_plan_run(mspringi_cholesky_planning *begun, bool *is_done);
+void mspringi_cholesky_plan_end(mspringi_cholesky_planning *begun, mspringi_memory *memory);
 extern const mspringi_columns mspringi_cholesky_plan_columns;
 void mspringi_cholesky_plan_destroy(mspringi_cholesky_plan *plan, mspringi_memory *memory);
 
@@ -86,7 +94,7 @@ typedef struct mspringi_cholesky_kernels mspringi_cholesky_kernels;
     typedef struct mspringi_cholesky_##real {                                                                      \
         const mspringi_cholesky_plan *plan;                                                                        \
         const mspringi_cholesky_kernels *kernels;                                                                  \
-        real *panels;     /**< L, front after front */                                                             \
+        real *panels;     /**< L, front after front; the others lie behind it */                                   \
         real *reciprocal; /**< [2 size] of D */                                                                    \
         real *updates[2]; /**< stacks of update matrices of fronts at even and at odd depth */                     \
         real *scaled;     /**< L D of the present front */                                                         \
@@ -94,7 +102,8 @@ typedef struct mspringi_cholesky_kernels mspringi_cholesky_kernels;
         real *part;       /**< the part of a vector that the present front sees */                                 \
     } mspringi_cholesky_##real;                                                                                    \
                                                                                                                    \
-    /** Reserve all memory. The plan must outlive the factor. On failure the factor is as it was: zero. */         \
+    /** Reserve all memory; panels and updates are only touched by a factorisation, which sets them. The plan */   \
+    /** must outlive the factor. On failure the factor is as it was: zero. */                                      \
     mspring_result mspringi_cholesky_##real##_create(mspringi_cholesky_##real *factor,                             \
                                                      const mspringi_cholesky_plan *plan, mspring_simd level,       \
                                                      mspringi_memory *memory, mspringi_message *message);          \

@@ -12,21 +12,11 @@
 /// Sets of at most this many nodes are not cut. The tree's supernodes are merged afterwards, so small is right.
 #define SMALLEST_SET 3
 
-/// What the recursion works on. A set of nodes is a segment of by_x and the same segment of by_y, which hold the
-/// same nodes; its order goes into the same segment of order.
-typedef struct dissection {
-    const mspringi_adjacency *adjacency;
-    double *x, *y;         ///< [size] by number, NULL: unknown
-    uint32_t *order;       ///< [size]
-    uint32_t *by_x, *by_y; ///< [size] sorted by coordinate
-    uint32_t *region;      ///< [size] which set a node is in; 0: already in a cut
-    uint32_t *scratch;     ///< [size]
-    uint32_t region_count;
-} dissection;
+/// Nodes of sets that are cut in one go, about.
+#define NODES_AT_ONCE 16000
 
-typedef struct segment {
-    uint32_t first, end, region;
-} segment;
+typedef mspringi_dissection dissection;
+typedef mspringi_segment segment;
 
 /// A cut: numbers of the two halves' regions, and how many nodes lie along it.
 typedef struct cut {
@@ -141,7 +131,7 @@ static cut choose_cut(dissection *d, segment set, bool *by_y_along) {
     return make_cut(d, set, d->scratch, count / 2);
 }
 
-/* -------------------------------------------------------------------------------------------------- recursion */
+/* ------------------------------------------------------------------------------------------------- set by set */
 
 // Stable: those of the left region first, then the right, then the rest.
 static void part(uint32_t *nodes, uint32_t count, const dissection *d, const cut *at, uint32_t *scratch) {
@@ -154,12 +144,25 @@ static void part(uint32_t *nodes, uint32_t count, const dissection *d, const cut
     memcpy(nodes, scratch, count * sizeof *nodes);
 }
 
-static void dissect(dissection *d, segment set) {
+// Have a set wait, if it holds any node.
+static bool put_aside(dissection *d, mspringi_memory *memory, segment set) {
+    void *waiting = d->waiting;
+    if (set.first == set.end)
+        return true;
+    if (!mspringi_grow(memory, &waiting, &d->waiting_capacity, d->waiting_count + 1, sizeof *d->waiting))
+        return false;
+    d->waiting = waiting;
+    d->waiting[d->waiting_count++] = set;
+    return true;
+}
+
+// Cut a set; its halves wait, the left one on top. False: no memory.
+static bool dissect(dissection *d, mspringi_memory *memory, segment set) {
     const uint32_t count = set.end - set.first;
     uint32_t *by_x = d->by_x + set.first, *by_y = d->by_y + set.first, *order = d->order + set.first;
     if (count <= SMALLEST_SET) {
         memcpy(order, by_x, count * sizeof *order);
-        return;
+        return true;
     }
     bool by_y_along;
     const cut at = choose_cut(d, set, &by_y_along);
@@ -175,8 +178,8 @@ static void dissect(dissection *d, segment set) {
     part(by_y, count, d, &at, d->scratch);
     const uint32_t left = at.left_count - (at.along_side == at.left ? along : 0);
     memcpy(order + count - along, (by_y_along ? by_y : by_x) + count - along, along * sizeof *order);
-    dissect(d, (segment){set.first, set.first + left, at.left});
-    dissect(d, (segment){set.first + left, set.end - along, at.right});
+    return put_aside(d, memory, (segment){set.first + left, set.end - along, at.right}) &&
+           put_aside(d, memory, (segment){set.first, set.first + left, at.left});
 }
 
 /* -------------------------------------------------------------------------------------------------- preparation */
@@ -196,50 +199,75 @@ static void sort_by(uint32_t *nodes, uint32_t count, const double *coordinate, u
         nodes[i] = (uint32_t)keys[i];
 }
 
-static void dissect_component(dissection *d, uint32_t first, uint32_t end, uint64_t *keys, uint64_t *scratch) {
-    if (d->x) {
-        sort_by(d->by_x + first, end - first, d->x, keys, scratch);
-        sort_by(d->by_y + first, end - first, d->y, keys, scratch);
+// Begin with the next component: sort its nodes by x, or by y and have it wait.
+static bool begin_component(dissection *d, mspringi_memory *memory) {
+    const uint32_t first = d->sweep->first[d->component], end = d->sweep->first[d->component + 1];
+    if (d->x && !d->is_sorted) {
+        sort_by(d->by_x + first, end - first, d->x, d->keys, d->keys + d->adjacency->size);
+        d->is_sorted = true;
+        return true;
     }
+    if (d->x)
+        sort_by(d->by_y + first, end - first, d->y, d->keys, d->keys + d->adjacency->size);
+    d->is_sorted = false;
     const uint32_t region = ++d->region_count;
     for (uint32_t i = first; i < end; ++i)
         d->region[d->by_x[i]] = region;
-    dissect(d, (segment){first, end, region});
+    d->component++;
+    return put_aside(d, memory, (segment){first, end, region});
 }
 
-mspring_result mspringi_dissect(uint32_t *order, const mspringi_sweep_order *sweep,
-                                const mspringi_adjacency *adjacency, const mspringi_cholesky_graph *graph,
-                                mspringi_memory *memory, mspringi_message *message) {
+static mspring_result no_memory(const mspringi_adjacency *adjacency, mspringi_message *message) {
+    return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to order %u nodes", (unsigned)adjacency->size);
+}
+
+mspring_result mspringi_dissection_run(dissection *d, mspringi_memory *memory, mspringi_message *message,
+                                       bool *is_done) {
+    bool ok = true;
+    for (uint32_t nodes = 0; ok && nodes < NODES_AT_ONCE;) {
+        *is_done = d->waiting_count == 0 && d->component == d->sweep->component_count;
+        if (*is_done)
+            return MSPRING_OK;
+        if (d->waiting_count == 0) {
+            nodes += d->sweep->first[d->component + 1] - d->sweep->first[d->component];
+            ok = begin_component(d, memory);
+            continue;
+        }
+        const segment set = d->waiting[--d->waiting_count];
+        nodes += set.end - set.first;
+        ok = dissect(d, memory, set);
+    }
+    return ok ? MSPRING_OK : no_memory(d->adjacency, message);
+}
+
+mspring_result mspringi_dissection_reserve(dissection *d, uint32_t *order, const mspringi_sweep_order *sweep,
+                                           const mspringi_adjacency *adjacency,
+                                           const mspringi_cholesky_graph *graph, mspringi_memory *memory,
+                                           mspringi_message *message) {
     const size_t size = adjacency->size;
     const bool placed = graph->x && graph->y;
-    dissection d = {.adjacency = adjacency, .order = order};
-    d.by_x = mspringi_alloc(memory, size, sizeof *d.by_x);
-    d.by_y = mspringi_alloc(memory, size, sizeof *d.by_y);
-    d.region = mspringi_alloc(memory, size, sizeof *d.region);
-    d.scratch = mspringi_alloc(memory, size, sizeof *d.scratch);
-    double *positions = mspringi_alloc(memory, placed ? 2 * size : 0, sizeof *positions);
-    uint64_t *keys = mspringi_alloc(memory, placed ? 2 * size : 0, sizeof *keys);
-    const bool ok = d.by_x && d.by_y && d.region && d.scratch && positions && keys;
-    if (ok) {
-        if (placed) {
-            d.x = positions;
-            d.y = positions + size;
-            for (size_t i = 0; i < size; ++i) {
-                d.x[i] = graph->x[adjacency->node[i]];
-                d.y[i] = graph->y[adjacency->node[i]];
-            }
-        }
-        memcpy(d.by_x, sweep->order, size * sizeof *d.by_x);
-        memcpy(d.by_y, sweep->order, size * sizeof *d.by_y);
-        for (uint32_t component = 0; component < sweep->component_count; ++component)
-            dissect_component(&d, sweep->first[component], sweep->first[component + 1], keys, keys + size);
+    *d = (dissection){.adjacency = adjacency, .sweep = sweep, .order = order};
+    d->by_x = mspringi_alloc(memory, size, sizeof *d->by_x);
+    d->by_y = mspringi_alloc(memory, size, sizeof *d->by_y);
+    d->region = mspringi_alloc(memory, size, sizeof *d->region);
+    d->scratch = mspringi_alloc(memory, size, sizeof *d->scratch);
+    d->keys = mspringi_alloc(memory, placed ? 2 * size : 0, sizeof *d->keys);
+    d->x = placed ? mspringi_alloc(memory, 2 * size, sizeof *d->x) : NULL;
+    if (!d->by_x || !d->by_y || !d->region || !d->scratch || !d->keys || (placed && !d->x))
+        return no_memory(adjacency, message);
+    d->y = placed ? d->x + size : NULL;
+    for (size_t i = 0; placed && i < size; ++i) {
+        d->x[i] = graph->x[adjacency->node[i]];
+        d->y[i] = graph->y[adjacency->node[i]];
     }
-    mspringi_free(memory, d.by_x);
-    mspringi_free(memory, d.by_y);
-    mspringi_free(memory, d.region);
-    mspringi_free(memory, d.scratch);
-    mspringi_free(memory, positions);
-    mspringi_free(memory, keys);
-    return ok ? MSPRING_OK
-              : mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to order %u nodes", (unsigned)size);
+    memcpy(d->by_x, sweep->order, size * sizeof *d->by_x);
+    memcpy(d->by_y, sweep->order, size * sizeof *d->by_y);
+    return MSPRING_OK;
+}
+
+void mspringi_dissection_destroy(dissection *d, mspringi_memory *memory) {
+    void *const blocks[] = {d->by_x, d->by_y, d->region, d->scratch, d->keys, d->x, d->waiting};
+    for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; ++i)
+        mspringi_free(memory, blocks[i]);
+    *d = (dissection){0};
 }

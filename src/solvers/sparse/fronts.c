@@ -1,17 +1,7 @@
 /// From supernodes to fronts: their order, borders, places in memory, and the way of each number into them.
 #include "solvers/sparse/plan.h"
 
-/// What the making of fronts needs on the way.
-typedef struct making {
-    mspringi_cholesky_plan *plan;
-    mspringi_tree *tree;
-    const mspringi_adjacency *adjacency;
-    const mspringi_cholesky_graph *graph;
-    uint32_t *front_of; ///< [size] by place in the final order
-    uint32_t *parent;   ///< [front_count] or MSPRING_NONE
-    uint32_t *filled;   ///< [front_count] scratch
-    uint32_t *place_of; ///< [node_count] of the graph; MSPRING_NONE if absent
-} making;
+typedef mspringi_fronts_making making;
 
 /* --------------------------------------------------------------------------------------------- order of fronts */
 
@@ -48,7 +38,7 @@ static void resolve(mspringi_tree *tree, uint32_t size) {
         tree->into[place] = tree->into[tree->into[place]];
 }
 
-static void fill_fronts(making *m, const uint32_t *order) {
+static void fill_fronts(making *m) {
     mspringi_cholesky_plan *plan = m->plan;
     const mspringi_tree *tree = m->tree;
     for (uint32_t last = 0; last < plan->size; ++last) {
@@ -72,7 +62,7 @@ static void fill_fronts(making *m, const uint32_t *order) {
     // Within a front the pivots keep the order that they had.
     for (uint32_t place = 0; place < plan->size; ++place) {
         const uint32_t f = tree->mark[tree->into[place]], to = m->filled[f]++;
-        plan->order[to] = m->adjacency->node[order[place]];
+        plan->order[to] = m->adjacency->node[m->tree_order[place]];
         m->front_of[to] = f;
     }
     for (uint32_t node = 0; node < m->graph->node_count; ++node)
@@ -100,16 +90,16 @@ static void fill_children(making *m) {
 
 // The rows of L, from the first place to the last, so that every border comes out sorted: from each earlier
 // neighbour's front up through the parents.
-static void fill_borders(making *m, const uint32_t *number) {
+void mspringi_fronts_fill_borders(making *m, uint32_t first, uint32_t end) {
     mspringi_cholesky_plan *plan = m->plan;
     const mspringi_adjacency *adjacency = m->adjacency;
     uint32_t *mark = m->tree->mark;
-    for (uint32_t f = 0; f < plan->front_count; ++f) {
+    for (uint32_t f = 0; first == 0 && f < plan->front_count; ++f) {
         m->filled[f] = plan->fronts[f].first_border;
         mark[f] = MSPRING_NONE;
     }
-    for (uint32_t place = 0; place < plan->size; ++place) {
-        const uint32_t own = m->front_of[place], node = number[plan->order[place]];
+    for (uint32_t place = first; place < end; ++place) {
+        const uint32_t own = m->front_of[place], node = adjacency->number[plan->order[place]];
         for (uint32_t i = adjacency->first[node]; i < adjacency->first[node + 1]; ++i) {
             const uint32_t other = m->place_of[adjacency->node[adjacency->neighbour[i]]];
             for (uint32_t f = m->front_of[other]; other < place && f != own && mark[f] != place; f = m->parent[f]) {
@@ -156,20 +146,18 @@ static uint32_t find_runs(const mspringi_cholesky_plan *plan, const mspringi_fro
     return count;
 }
 
-static uint32_t count_runs(making *m) {
-    uint32_t count = 0;
-    for (uint32_t f = 0; f < m->plan->front_count; ++f) {
+void mspringi_fronts_count_runs(making *m, uint32_t first, uint32_t end) {
+    for (uint32_t f = first; f < end; ++f) {
         mspringi_front *front = &m->plan->fronts[f];
-        front->first_run = count;
+        front->first_run = m->run_count;
         if (m->parent[f] != MSPRING_NONE)
             front->run_count = find_runs(m->plan, front, &m->plan->fronts[m->parent[f]], NULL);
-        count += front->run_count;
+        m->run_count += front->run_count;
     }
-    return count;
 }
 
-static void fill_runs(making *m) {
-    for (uint32_t f = 0; f < m->plan->front_count; ++f) {
+void mspringi_fronts_fill_runs(making *m, uint32_t first, uint32_t end) {
+    for (uint32_t f = first; f < end; ++f) {
         const mspringi_front *front = &m->plan->fronts[f];
         if (m->parent[f] != MSPRING_NONE)
             find_runs(m->plan, front, &m->plan->fronts[m->parent[f]], m->plan->runs + front->first_run);
@@ -191,33 +179,44 @@ static edge_places find_edge(const making *m, uint32_t edge) {
     return (edge_places){m->front_of[column], column, a < b ? b : a};
 }
 
-// Two bins a front: edges among its pivots, and edges to its border.
-static void fill_entries(making *m) {
+// Two bins a front: edges among its pivots, and edges to its border. Where the next of an edge's bin goes, or how
+// many there are.
+static uint32_t *bin_of(const making *m, const edge_places *places) {
+    mspringi_front *front = &m->plan->fronts[places->front];
+    return m->front_of[places->row] == places->front ? &front->border_entry : &front->end_entry;
+}
+
+void mspringi_fronts_count_entries(making *m, uint32_t first, uint32_t end) {
+    for (uint32_t edge = first; edge < end; ++edge) {
+        const edge_places places = find_edge(m, edge);
+        if (places.front != MSPRING_NONE)
+            ++*bin_of(m, &places);
+    }
+}
+
+// The counts become the places of the first.
+void mspringi_fronts_place_entries(making *m) {
+    for (uint32_t f = 0, end = 0; f < m->plan->front_count; ++f) {
+        mspringi_front *front = &m->plan->fronts[f];
+        const uint32_t among = front->border_entry, across = front->end_entry;
+        front->first_entry = front->border_entry = end;
+        front->end_entry = end + among;
+        end += among + across;
+    }
+}
+
+void mspringi_fronts_fill_entries(making *m, uint32_t first, uint32_t end) {
     mspringi_cholesky_plan *plan = m->plan;
-    for (uint32_t pass = 0; pass < 2; ++pass) {
-        for (uint32_t edge = 0; edge < m->graph->edge_count; ++edge) {
-            const edge_places places = find_edge(m, edge);
-            if (places.front == MSPRING_NONE)
-                continue;
-            mspringi_front *front = &plan->fronts[places.front];
-            const bool is_pivot = m->front_of[places.row] == places.front;
-            uint32_t *next = is_pivot ? &front->border_entry : &front->end_entry;
-            if (pass == 1) {
-                const size_t column = 2 * (size_t)(places.column - front->first_pivot);
-                const size_t rows = is_pivot ? mspringi_pivot_rows(front) : mspringi_border_rows(front);
-                const size_t row = 2 * (size_t)find_in(plan, front, places.row, 0);
-                plan->entries[*next] = (mspringi_cholesky_entry){edge, (uint32_t)(column * rows + row)};
-            }
-            ++*next;
-        }
-        // The counts become the places of the first.
-        for (uint32_t f = 0, end = 0; f < plan->front_count && pass == 0; ++f) {
-            mspringi_front *front = &plan->fronts[f];
-            const uint32_t among = front->border_entry, across = front->end_entry;
-            front->first_entry = front->border_entry = end;
-            front->end_entry = end + among;
-            end += among + across;
-        }
+    for (uint32_t edge = first; edge < end; ++edge) {
+        const edge_places places = find_edge(m, edge);
+        if (places.front == MSPRING_NONE)
+            continue;
+        const mspringi_front *front = &plan->fronts[places.front];
+        uint32_t *next = bin_of(m, &places);
+        const size_t column = 2 * (size_t)(places.column - front->first_pivot);
+        const size_t rows = next == &front->border_entry ? mspringi_pivot_rows(front) : mspringi_border_rows(front);
+        const size_t row = 2 * (size_t)find_in(plan, front, places.row, 0);
+        plan->entries[(*next)++] = (mspringi_cholesky_entry){edge, (uint32_t)(column * rows + row)};
     }
 }
 
@@ -229,7 +228,7 @@ static size_t larger(size_t a, size_t b) {
 
 // Update matrices lie on two stacks, by the parity of their front's depth: while a front adds up its children's,
 // its own is at the top of the other stack.
-static void lay_out(making *m) {
+void mspringi_fronts_lay_out(making *m) {
     mspringi_cholesky_plan *plan = m->plan;
     size_t top[2] = {0, 0};
     for (uint32_t f = plan->front_count; f-- > 0;)
@@ -254,9 +253,14 @@ static void lay_out(making *m) {
 
 /* ------------------------------------------------------------------------------------------------------ making */
 
-static mspring_result make(making *m, const uint32_t *order, mspringi_memory *memory) {
+static mspring_result no_memory(const making *m, mspringi_message *message) {
+    return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the plan of a matrix of %u nodes",
+                         (unsigned)m->plan->size);
+}
+
+mspring_result mspringi_fronts_reserve(making *m, mspringi_memory *memory, mspringi_message *message) {
     mspringi_cholesky_plan *plan = m->plan;
-    const size_t nodes = m->graph->node_count, size = plan->size;
+    const size_t nodes = m->graph->node_count, size = plan->size = m->adjacency->size;
     resolve(m->tree, plan->size);
     plan->front_count = number_fronts(m->tree, plan->size);
     plan->order = mspringi_alloc(memory, size, sizeof *plan->order);
@@ -267,44 +271,30 @@ static mspring_result make(making *m, const uint32_t *order, mspringi_memory *me
     m->parent = mspringi_alloc(memory, plan->front_count, sizeof *m->parent);
     m->filled = mspringi_alloc(memory, plan->front_count, sizeof *m->filled);
     m->place_of = mspringi_alloc(memory, nodes, sizeof *m->place_of);
-    uint32_t *number = mspringi_alloc(memory, nodes, sizeof *number);
-    bool ok = plan->order && plan->fronts && plan->children && plan->entries && m->front_of && m->parent &&
-              m->filled && m->place_of && number;
-    if (ok) {
-        for (uint32_t i = 0; i < plan->size; ++i)
-            number[m->adjacency->node[i]] = i;
-        fill_fronts(m, order);
-        fill_children(m);
-        const mspringi_front *last = plan->front_count > 0 ? &plan->fronts[plan->front_count - 1] : NULL;
-        plan->border = mspringi_alloc(memory, last ? (size_t)last->first_border + last->border_count : 0,
-                                      sizeof *plan->border);
-        ok = plan->border != NULL;
-    }
-    if (ok) {
-        fill_borders(m, number);
-        plan->runs = mspringi_alloc(memory, count_runs(m), sizeof *plan->runs);
-        ok = plan->runs != NULL;
-    }
-    if (ok) {
-        fill_runs(m);
-        fill_entries(m);
-        lay_out(m);
-    }
-    mspringi_free(memory, number);
-    return ok ? MSPRING_OK : MSPRING_ERROR_MEMORY;
+    return plan->order && plan->fronts && plan->children && plan->entries && m->front_of && m->parent &&
+                   m->filled && m->place_of
+               ? MSPRING_OK
+               : no_memory(m, message);
 }
 
-mspring_result mspringi_fronts_create(mspringi_cholesky_plan *plan, mspringi_tree *tree,
-                                      const mspringi_adjacency *adjacency, const mspringi_cholesky_graph *graph,
-                                      const uint32_t *order, mspringi_memory *memory, mspringi_message *message) {
-    making m = {.plan = plan, .tree = tree, .adjacency = adjacency, .graph = graph};
-    plan->size = adjacency->size;
-    const mspring_result result = make(&m, order, memory);
-    mspringi_free(memory, m.front_of);
-    mspringi_free(memory, m.parent);
-    mspringi_free(memory, m.filled);
-    mspringi_free(memory, m.place_of);
-    return result == MSPRING_OK ? result
-                                : mspringi_fail(message, result, "no memory for the plan of a matrix of %u nodes",
-                                                (unsigned)plan->size);
+mspring_result mspringi_fronts_fill(making *m, mspringi_memory *memory, mspringi_message *message) {
+    mspringi_cholesky_plan *plan = m->plan;
+    fill_fronts(m);
+    fill_children(m);
+    const mspringi_front *last = plan->front_count > 0 ? &plan->fronts[plan->front_count - 1] : NULL;
+    plan->border =
+        mspringi_alloc(memory, last ? (size_t)last->first_border + last->border_count : 0, sizeof *plan->border);
+    return plan->border ? MSPRING_OK : no_memory(m, message);
+}
+
+mspring_result mspringi_fronts_reserve_runs(making *m, mspringi_memory *memory, mspringi_message *message) {
+    m->plan->runs = mspringi_alloc(memory, m->run_count, sizeof *m->plan->runs);
+    return m->plan->runs ? MSPRING_OK : no_memory(m, message);
+}
+
+void mspringi_fronts_destroy(making *m, mspringi_memory *memory) {
+    mspringi_free(memory, m->front_of);
+    mspringi_free(memory, m->parent);
+    mspringi_free(memory, m->filled);
+    mspringi_free(memory, m->place_of);
 }

@@ -5,41 +5,41 @@
 /// Searches for a node further out, each from the far end of the one before.
 #define SEARCHES 4
 
-/// A breadth-first search: the nodes reached so far are order[first] ... order[end - 1].
-typedef struct search {
-    const mspringi_adjacency *adjacency;
-    uint32_t *order;
-    uint32_t *stamp; ///< [size] of the search that reached a node
-    uint32_t first, end;
-    uint32_t level_count, last_level; ///< where the last level begins
-} search;
+/// Nodes that are looked at in one go.
+#define NODES_AT_ONCE 10000
 
-static void run(search *s, uint32_t start, uint32_t stamp) {
-    const mspringi_adjacency *adjacency = s->adjacency;
-    s->end = s->first;
+typedef mspringi_sweep_order search;
+
+static void begin_search(search *s, uint32_t start) {
+    s->end = s->done = s->level_end = s->begin;
     s->order[s->end++] = start;
-    s->stamp[start] = stamp;
+    s->stamp[start] = ++s->stamps;
     s->level_count = 0;
-    for (uint32_t level = s->first; level < s->end;) {
-        const uint32_t level_end = s->end;
-        s->last_level = level;
-        s->level_count++;
-        for (; level < level_end; ++level) {
-            const uint32_t node = s->order[level];
-            for (uint32_t i = adjacency->first[node]; i < adjacency->first[node + 1]; ++i) {
-                const uint32_t other = adjacency->neighbour[i];
-                if (s->stamp[other] == stamp)
-                    continue;
-                s->stamp[other] = stamp;
-                s->order[s->end++] = other;
-            }
+}
+
+// Returns whether the search has come to its end.
+static bool go_on(search *s, const mspringi_adjacency *adjacency, uint32_t *left) {
+    for (; s->done<s->end && * left> 0; --*left) {
+        if (s->done == s->level_end) {
+            s->last_level = s->done;
+            s->level_end = s->end;
+            s->level_count++;
+        }
+        const uint32_t node = s->order[s->done++];
+        for (uint32_t i = adjacency->first[node]; i < adjacency->first[node + 1]; ++i) {
+            const uint32_t other = adjacency->neighbour[i];
+            if (s->stamp[other] == s->stamps)
+                continue;
+            s->stamp[other] = s->stamps;
+            s->order[s->end++] = other;
         }
     }
+    return s->done == s->end;
 }
 
 // The node of the last level with fewest neighbours: a corner rather than the middle of a side.
-static uint32_t far_end(const search *s) {
-    const uint32_t *first = s->adjacency->first;
+static uint32_t far_end(const search *s, const mspringi_adjacency *adjacency) {
+    const uint32_t *first = adjacency->first;
     uint32_t best = s->order[s->last_level];
     for (uint32_t i = s->last_level + 1; i < s->end; ++i) {
         const uint32_t node = s->order[i];
@@ -57,44 +57,55 @@ static void reverse(uint32_t *values, uint32_t count) {
     }
 }
 
-static void find_all(mspringi_sweep_order *sweep, search *s) {
-    uint32_t stamp = 0;
-    for (uint32_t start = 0; start < s->adjacency->size; ++start) {
-        if (s->stamp[start] != 0)
-            continue;
-        sweep->first[sweep->component_count++] = s->first;
-        uint32_t levels = 0, from = start;
-        run(s, from, ++stamp);
-        for (int i = 0; i < SEARCHES && s->level_count > levels; ++i) {
-            levels = s->level_count;
-            from = far_end(s);
-            run(s, from, ++stamp);
-        }
-        reverse(s->order + s->first, s->end - s->first);
-        s->first = s->end;
-    }
-    sweep->first[sweep->component_count] = s->first;
+// Begin with the next component. False: there is none.
+static bool begin_component(search *s, uint32_t size) {
+    while (s->start < size && s->stamp[s->start] != 0)
+        ++s->start;
+    s->first[s->component_count] = s->begin;
+    if (s->start == size)
+        return false;
+    s->component_count++;
+    s->levels = s->searches = 0;
+    s->is_searching = true;
+    begin_search(s, s->start);
+    return true;
 }
 
-mspring_result mspringi_sweep_order_find(mspringi_sweep_order *sweep, const mspringi_adjacency *adjacency,
-                                         mspringi_memory *memory, mspringi_message *message) {
+bool mspringi_sweep_order_run(mspringi_sweep_order *s, const mspringi_adjacency *adjacency) {
+    for (uint32_t left = NODES_AT_ONCE; left > 0;) {
+        if (!s->is_searching && !begin_component(s, adjacency->size))
+            return true;
+        if (!go_on(s, adjacency, &left))
+            return false;
+        if (s->searches < SEARCHES && s->level_count > s->levels) {
+            s->levels = s->level_count;
+            s->searches++;
+            begin_search(s, far_end(s, adjacency));
+            continue;
+        }
+        reverse(s->order + s->begin, s->end - s->begin);
+        s->begin = s->end;
+        s->is_searching = false;
+    }
+    return false;
+}
+
+mspring_result mspringi_sweep_order_reserve(mspringi_sweep_order *sweep, const mspringi_adjacency *adjacency,
+                                            mspringi_memory *memory, mspringi_message *message) {
     const size_t size = adjacency->size;
     *sweep = (mspringi_sweep_order){
         .order = mspringi_alloc(memory, size, sizeof *sweep->order),
         .first = mspringi_alloc(memory, size + 1, sizeof *sweep->first),
+        .stamp = mspringi_alloc(memory, size, sizeof *sweep->stamp),
     };
-    search s = {.adjacency = adjacency, .order = sweep->order};
-    s.stamp = mspringi_alloc(memory, size, sizeof *s.stamp);
-    const bool ok = sweep->order && sweep->first && s.stamp;
-    if (ok)
-        find_all(sweep, &s);
-    mspringi_free(memory, s.stamp);
-    return ok ? MSPRING_OK
-              : mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to order %u nodes",
-                              (unsigned)adjacency->size);
+    return sweep->order && sweep->first && sweep->stamp
+               ? MSPRING_OK
+               : mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to order %u nodes",
+                               (unsigned)adjacency->size);
 }
 
 void mspringi_sweep_order_destroy(mspringi_sweep_order *sweep, mspringi_memory *memory) {
     mspringi_free(memory, sweep->order);
     mspringi_free(memory, sweep->first);
+    mspringi_free(memory, sweep->stamp);
 }

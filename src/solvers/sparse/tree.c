@@ -33,33 +33,25 @@ void mspringi_tree_destroy(mspringi_tree *tree, mspringi_memory *memory) {
 /* ------------------------------------------------------------------------------------------------ columns of L */
 
 // A node's row of L is a subtree: from each earlier neighbour up until the node, or a place seen before, is
-// reached. The top of such a path that has no parent yet gets the node as its own.
-static bool find_columns(mspringi_tree *tree, const mspringi_adjacency *adjacency, const uint32_t *order,
-                         uint32_t first, uint32_t end, double most_blocks, double *blocks) {
-    for (uint32_t place = first; place < end; ++place)
-        tree->place[order[place]] = place;
-    *blocks = 0.0;
-    for (uint32_t place = first; place < end; ++place) {
-        const uint32_t node = order[place];
-        tree->parent[place] = MSPRING_NONE;
-        tree->below[place] = 0;
-        tree->mark[place] = place;
-        *blocks += 1.0;
-        for (uint32_t i = adjacency->first[node]; i < adjacency->first[node + 1]; ++i) {
-            uint32_t column = tree->place[adjacency->neighbour[i]];
-            while (column < place && tree->mark[column] != place) {
-                tree->mark[column] = place;
-                tree->below[column]++;
-                *blocks += 1.0;
-                if (tree->parent[column] == MSPRING_NONE)
-                    tree->parent[column] = place;
-                column = tree->parent[column];
-            }
+// reached. The top of such a path that has no parent yet gets the node as its own. Returns the blocks of the row.
+static double find_row(mspringi_tree *tree, const mspringi_adjacency *adjacency, uint32_t place) {
+    const uint32_t node = tree->order[place];
+    uint32_t blocks = 1;
+    tree->parent[place] = MSPRING_NONE;
+    tree->below[place] = 0;
+    tree->mark[place] = place;
+    for (uint32_t i = adjacency->first[node]; i < adjacency->first[node + 1]; ++i) {
+        uint32_t column = tree->place[adjacency->neighbour[i]];
+        while (column < place && tree->mark[column] != place) {
+            tree->mark[column] = place;
+            tree->below[column]++;
+            ++blocks;
+            if (tree->parent[column] == MSPRING_NONE)
+                tree->parent[column] = place;
+            column = tree->parent[column];
         }
-        if (*blocks > most_blocks)
-            return false;
     }
-    return true;
+    return (double)blocks;
 }
 
 /* -------------------------------------------------------------------------------------------------- supernodes */
@@ -142,18 +134,44 @@ static void merge_pass(mspringi_tree *tree, uint32_t first, uint32_t end, uint32
     }
 }
 
-bool mspringi_tree_find(mspringi_tree *tree, const mspringi_adjacency *adjacency, const uint32_t *order,
-                        uint32_t first, uint32_t end, double most_blocks, mspringi_elimination_cost *cost) {
-    if (!find_columns(tree, adjacency, order, first, end, most_blocks, &cost->blocks))
+void mspringi_tree_begin(mspringi_tree *tree, const uint32_t *order, uint32_t first, uint32_t end,
+                         double most_blocks) {
+    tree->order = order;
+    tree->first = tree->at = first;
+    tree->end = end;
+    tree->most_blocks = most_blocks;
+    tree->most_pivots = 1;
+    tree->fits = true;
+    tree->cost = (mspringi_elimination_cost){0};
+    for (uint32_t place = first; place < end; ++place)
+        tree->place[order[place]] = place;
+}
+
+// Small supernodes are merged first, so that a long chain of them ends up in equal parts and not as one.
+bool mspringi_tree_run(mspringi_tree *tree, const mspringi_adjacency *adjacency, double *left) {
+    const uint32_t first = tree->first, end = tree->end;
+    for (; tree->at<end && * left> 0.0; ++tree->at) {
+        const double blocks = find_row(tree, adjacency, tree->at);
+        tree->cost.blocks += blocks;
+        *left -= blocks;
+        tree->fits = tree->cost.blocks <= tree->most_blocks;
+        if (!tree->fits)
+            return true;
+    }
+    if (tree->at < end || *left <= 0.0)
         return false;
-    find_supernodes(tree, first, end);
-    link_children(tree, first, end);
-    // Small ones first, so that a long chain of them ends up in equal parts and not as one.
-    for (uint32_t most_pivots = 2; most_pivots <= 1024; most_pivots *= 2)
-        merge_pass(tree, first, end, most_pivots);
-    cost->cycles = 0.0;
+    *left -= (double)(end - first);
+    if (tree->most_pivots == 1) {
+        find_supernodes(tree, first, end);
+        link_children(tree, first, end);
+    } else {
+        merge_pass(tree, first, end, tree->most_pivots);
+    }
+    tree->most_pivots *= 2;
+    if (tree->most_pivots <= 1024)
+        return false;
     for (uint32_t place = first; place < end; ++place)
         if (tree->into[place] == place)
-            cost->cycles += supernode_cycles(tree, place);
+            tree->cost.cycles += supernode_cycles(tree, place);
     return true;
 }

@@ -9,9 +9,11 @@ typedef struct euler {
     double *forces; ///< [2][slots]
 } euler;
 
-static mspring_result create(mspring_network *network, const mspring_solver_def *def, void **object) {
+static mspring_result create(mspring_network *network, const mspring_solver_def *def, uint32_t tile_size,
+                             void **object) {
     euler *made = mspringi_alloc(&network->memory, 1, sizeof *made);
     (void)def;
+    (void)tile_size;
     if (made)
         made->forces = mspringi_alloc(&network->memory, 2 * mspringi_slot_count(network), sizeof *made->forces);
     if (!made || !made->forces) {
@@ -25,12 +27,6 @@ static mspring_result create(mspring_network *network, const mspring_solver_def 
 static void get_def(const void *object, mspring_solver_def *def) {
     (void)object;
     (void)def; // nothing but the kind
-}
-
-static mspring_result remake(mspring_network *to, const mspring_solver_def *def, uint32_t tile_size,
-                             void **object) {
-    (void)tile_size;
-    return create(to, def, object);
 }
 
 static void destroy(void *object, mspringi_memory *memory) {
@@ -96,7 +92,6 @@ static bool is_alone(const mspring_network *network, const void *object, size_t 
 const mspringi_solver_ops house_euler_ops = {
     .create = create,
     .get_def = get_def,
-    .remake = remake,
     .destroy = destroy,
     .relocate = relocate,
     .substeps = substeps,
