@@ -55,7 +55,8 @@ static mspring_network *make_spring(float spring_damping) {
     if (result == MSPRING_OK)
         result = mspring_network_create(builder, &def, &network);
     if (result != MSPRING_OK)
-        fprintf(stderr, "cannot make the spring: %s\n", mspring_builder_error(builder));
+        fprintf(stderr, "cannot make the spring: %s: %s\n", mspring_result_string(result),
+                mspring_builder_error(builder));
     mspring_builder_destroy(builder);
     return network;
 }
@@ -66,10 +67,13 @@ static bool swing(float spring_damping, double *positions) {
     bool ok = network != NULL;
     for (int i = 0; ok && i <= STEPS; i++) {
         double y = 0;
-        ok = mspring_network_get_positions(network, 1, 1, &positions[i], &y, 1) == MSPRING_OK &&
-             mspring_network_step(network, dt) == MSPRING_OK;
+        mspring_result result = mspring_network_get_positions(network, 1, 1, &positions[i], &y, 1);
+        if (result == MSPRING_OK)
+            result = mspring_network_step(network, dt);
+        ok = result == MSPRING_OK;
         if (!ok)
-            fprintf(stderr, "step %d failed: %s\n", i, mspring_network_error(network));
+            fprintf(stderr, "step %d failed: %s: %s\n", i, mspring_result_string(result),
+                    mspring_network_error(network));
     }
     mspring_network_destroy(network);
     return ok;

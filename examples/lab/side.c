@@ -46,6 +46,7 @@ bool side_set_solver(lab_side *side, const lab_solver *solver) {
     if (!accepted(side, mspring_network_set_solver(side->network, &def)))
         return false;
     side->solver = *solver;
+    side->substeps = solver->substeps ? solver->substeps : 1;
     side->complaint[0] = 0;
     side_start_measuring_time(side);
     return true;
@@ -225,6 +226,9 @@ void side_step(lab_side *side, const lab_settings *settings) {
     if (!accepted(side, result))
         return;
     side->complaint[0] = 0;
+    mspring_step_info info = {.struct_size = sizeof info};
+    if (mspring_network_get_step_info(side->network, &info) == MSPRING_OK)
+        side->substeps = info.substeps;
     side->last_dt = settings->dt;
     side->steps++;
     // The origin may have moved along.
@@ -275,7 +279,7 @@ double side_spring_stiffness(const lab_side *side, const lab_settings *settings,
         return nominal;
     const double a = stage->mass[stage->a[spring]] * settings->mass;
     const double b = stage->mass[stage->b[spring]] * settings->mass;
-    const double substep = side->last_dt / mspring_network_substeps(side->network);
+    const double substep = side->last_dt / side->substeps;
     return substep > 0 ? nominal * a * b / ((a + b) * substep * substep) : 0;
 }
 

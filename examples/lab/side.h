@@ -48,6 +48,7 @@ typedef struct lab_side {
     uint32_t held_count;
     double pull_x, pull_y; ///< how far they are pulled from there
     double last_dt;
+    uint32_t substeps; ///< of the last step; before the first, of the next, or 1 where the library chooses
     uint64_t steps, timed_steps;
 } lab_side;
 

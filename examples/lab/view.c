@@ -206,7 +206,7 @@ bool view_begin(lab_view *view, const lab_model *model) {
 
 static void describe_solver(const lab_side *side, char *text, size_t size) {
     static const char *const integrators[] = {"ga0", "bdf2", "Euler"};
-    const uint32_t substeps = mspring_network_substeps(side->network);
+    const uint32_t substeps = side->substeps;
     if (side->solver.solver == MSPRING_SOLVER_EXPLICIT)
         snprintf(text, size, "%u substep%s%s", substeps, substeps == 1 ? "" : "s",
                  side->solver.substeps ? "" : ", chosen by the library");

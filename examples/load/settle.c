@@ -131,10 +131,12 @@ static bool let_down(mspring_network *network, const char *name, const settle_re
     const double spent = clock_seconds() - began;
     const box last = bounds_of(network);
     float strain = 0;
+    mspring_step_info info = {.struct_size = sizeof info};
+    (void)!mspring_network_get_step_info(network, &info);
     const bool measured = mspring_network_max_strain(network, &strain, NULL) == MSPRING_OK;
     printf("%-10s %u substeps, %d frames of 1/64 s, %.3g ms each: top %.4g m lower, %.4g m wider, kinetic energy "
            "%.3g J (most %.3g), strain %.3g\n",
-           name, mspring_network_substeps(network), frames, 1e3 * spent / frames, first.top - last.top,
+           name, info.substeps, frames, 1e3 * spent / frames, first.top - last.top,
            (last.right - last.left) - (first.right - first.left), energy, most_energy, measured ? strain : NAN);
     const double size = fmax(first.right - first.left, first.top - first.bottom);
     if (!(last.right - last.left <= burst * size && last.top - last.bottom <= burst * size))

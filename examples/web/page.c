@@ -363,7 +363,8 @@ uint32_t page_changes(void) {
 }
 
 uint32_t page_substeps(void) {
-    return mspring_network_substeps(page.network);
+    mspring_step_info info = {.struct_size = sizeof info};
+    return mspring_network_get_step_info(page.network, &info) == MSPRING_OK ? info.substeps : 0;
 }
 
 const char *page_level(void) {

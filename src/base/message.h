@@ -13,6 +13,11 @@ typedef struct mspringi_message {
     char text[256];
 } mspringi_message;
 
+/// At the entry of a call.
+static inline void mspringi_message_clear(mspringi_message *message) {
+    message->text[0] = 0;
+}
+
 /// Write the message, cut to fit, and return result.
 mspring_result mspringi_fail(mspringi_message *message, mspring_result result, const char *format, ...)
     MSPRINGI_PRINTF(3, 4);

@@ -184,6 +184,9 @@ static mspring_result check_spring(mspring_builder *builder, size_t index, const
     mspring_result result = mspringi_check_spring_def(message, index, def);
     if (result != MSPRING_OK)
         return result;
+    if (def->a == MSPRING_NONE || def->b == MSPRING_NONE)
+        return mspringi_fail(message, MSPRING_ERROR_ID, "spring %zu: its particle %s is not set (MSPRING_NONE)",
+                             index, def->a == MSPRING_NONE ? "a" : "b");
     if (def->a >= builder->particle_count || def->b >= builder->particle_count)
         return mspringi_fail(message, MSPRING_ERROR_ID,
                              "spring %zu joins particles %u and %u, but there are only %zu particles", index,
@@ -217,6 +220,7 @@ mspring_result mspring_builder_add_particles(mspring_builder *builder, const msp
                                              size_t count, mspring_id *first_id) {
     if (!builder)
         return MSPRING_ERROR_ARGUMENT;
+    mspringi_message_clear(&builder->message);
     if (!defs && count > 0)
         return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "particle definitions are NULL");
     const size_t before = builder->particle_count;
@@ -265,6 +269,7 @@ mspring_result mspring_builder_add_springs(mspring_builder *builder, const mspri
                                            mspring_id *first_id) {
     if (!builder)
         return MSPRING_ERROR_ARGUMENT;
+    mspringi_message_clear(&builder->message);
     const mspringi_fp_state before = mspringi_fp_enter();
     mspring_result result = add_springs(builder, defs, count, first_id);
     mspringi_fp_leave(before);

@@ -225,6 +225,7 @@ mspring_result mspring_builder_add_lattice(mspring_builder *builder, const mspri
                                            mspring_id *cell_ids) {
     if (!builder)
         return MSPRING_ERROR_ARGUMENT;
+    mspringi_message_clear(&builder->message);
     const mspringi_fp_state before = mspringi_fp_enter();
     mspring_result result = add_lattice(builder, def, cell_ids);
     mspringi_fp_leave(before);

@@ -257,6 +257,7 @@ mspring_result mspring_builder_add_mesh(mspring_builder *builder, const mspring_
                                         mspring_id *first_particle, mspring_id *first_spring) {
     if (!builder)
         return MSPRING_ERROR_ARGUMENT;
+    mspringi_message_clear(&builder->message);
     const mspring_id particle = (mspring_id)builder->particle_count, spring = (mspring_id)builder->spring_count;
     const mspringi_fp_state before = mspringi_fp_enter();
     mspring_result result = add_mesh(builder, def);

@@ -11,6 +11,9 @@ static mspring_result check_rope(mspring_builder *builder, const mspring_rope_de
         mspringi_check_struct(message, "mspring_rope_def", def->struct_size, sizeof *def, sizeof *def);
     if (result != MSPRING_OK)
         return result;
+    if (def->from == MSPRING_NONE || def->to == MSPRING_NONE)
+        return mspringi_fail(message, MSPRING_ERROR_ID, "rope: its end %s is not set (MSPRING_NONE)",
+                             def->from == MSPRING_NONE ? "from" : "to");
     if (def->from >= builder->particle_count || def->to >= builder->particle_count)
         return mspringi_fail(message, MSPRING_ERROR_ID,
                              "rope from particle %u to %u, but there are only %zu particles", (unsigned)def->from,
@@ -89,6 +92,7 @@ mspring_result mspring_builder_add_rope(mspring_builder *builder, const mspring_
                                         mspring_id *particles, uint32_t capacity, mspring_id *first_spring) {
     if (!builder)
         return MSPRING_ERROR_ARGUMENT;
+    mspringi_message_clear(&builder->message);
     const mspringi_fp_state before = mspringi_fp_enter();
     mspring_result result = add_rope(builder, def, particles, capacity, first_spring);
     mspringi_fp_leave(before);

@@ -128,6 +128,7 @@ static bool copy_floor(mspringi_floor *to, const mspring_floor_def *def, mspring
     to->plane_count = def->plane_count;
     for (uint32_t i = 0; i < def->plane_count; ++i) {
         const double *plane = def->planes + 4 * (size_t)i;
+        memcpy(to->given[i], plane, sizeof to->given[i]);
         const double length = sqrt(plane[2] * plane[2] + plane[3] * plane[3]);
         to->planes[i] = (mspringi_half_plane){plane[0], plane[1], plane[2] / length, plane[3] / length};
     }
@@ -224,11 +225,50 @@ static MSPRINGI_NOINLINE mspringi_floor *make_floor(mspring_network *network, co
 
 /* ------------------------------------------------------------------------------------------------- the setting */
 
+static mspring_floor_def def_of(const mspringi_floor *floor) {
+    mspring_floor_def def;
+    (void)mspring_floor_def_init(&def, sizeof def);
+    if (!floor)
+        return def;
+    def.plane_count = floor->plane_count;
+    def.planes = floor->plane_count > 0 ? floor->given[0] : NULL;
+    def.heights_x = floor->heights.x;
+    def.heights_y = floor->heights.y;
+    def.spacing = floor->heights.spacing;
+    def.heights = floor->heights.count > 0 ? floor->heights.heights : NULL;
+    def.height_count = floor->heights.count;
+    def.friction = (float)floor->friction;
+    def.restitution = (float)floor->restitution;
+    return def;
+}
+
+mspring_result mspring_network_get_floor(const mspring_network *network, mspring_floor_def *def) {
+    if (!network || !def)
+        return MSPRING_ERROR_ARGUMENT;
+    if (def->struct_size != sizeof *def)
+        return MSPRING_ERROR_STRUCT;
+    *def = def_of(network->floor);
+    return MSPRING_OK;
+}
+
+// Whether a floor is the one that there is.
+static bool is_same(const mspringi_floor *floor, const mspring_floor_def *b) {
+    if (!floor || !b)
+        return !floor && !b;
+    const mspring_floor_def a = def_of(floor);
+    return a.plane_count == b->plane_count && a.height_count == b->height_count && a.friction == b->friction &&
+           a.restitution == b->restitution &&
+           (a.plane_count == 0 || memcmp(a.planes, b->planes, a.plane_count * sizeof floor->given[0]) == 0) &&
+           (a.height_count == 0 ||
+            (a.heights_x == b->heights_x && a.heights_y == b->heights_y && a.spacing == b->spacing &&
+             memcmp(a.heights, b->heights, a.height_count * sizeof *a.heights) == 0));
+}
+
 mspring_result mspring_network_set_floor(mspring_network *network, const mspring_floor_def *def) {
     mspring_result result = mspringi_enter(network);
     if (result == MSPRING_OK && def)
         result = check_floor(def, &network->message);
-    if (result != MSPRING_OK)
+    if (result != MSPRING_OK || is_same(network->floor, def))
         return result;
     mspringi_floor *made = NULL;
     if (def) {

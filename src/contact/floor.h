@@ -54,6 +54,7 @@ typedef struct mspringi_contact {
 
 typedef struct mspringi_floor {
     mspringi_half_plane planes[MSPRING_MAX_PLANES];
+    double given[MSPRING_MAX_PLANES][4];     ///< the same, as the host gave them
     mspringi_line lines[MSPRING_MAX_PLANES]; ///< the same, local
     uint32_t plane_count;
     mspringi_heights heights;

@@ -138,6 +138,10 @@ static mspring_id other_end(const mspring_network *network, mspring_id spring, m
 
 static mspring_result check_ends(mspring_network *network, mspring_id id, const mspring_spring_def *def) {
     const mspring_id ends[] = {def->a, def->b};
+    if (def->a == MSPRING_NONE || def->b == MSPRING_NONE)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ID,
+                             "spring %u: its particle %s is not set (MSPRING_NONE)", (unsigned)id,
+                             def->a == MSPRING_NONE ? "a" : "b");
     for (int i = 0; i < 2; ++i)
         if (ends[i] >= network->topology.particle_count || !mspringi_particle_exists(network, ends[i]))
             return mspringi_fail(&network->message, MSPRING_ERROR_ID, "spring %u: there is no particle %u",

@@ -32,6 +32,7 @@ mspring_result mspringi_enter(mspring_network *network) {
     if (network->in_hook == MSPRINGI_IN_HOOK)
         return mspringi_fail(&network->message, MSPRING_ERROR_BUSY,
                              "called from inside a hook, where only functions marked as shared are allowed");
+    mspringi_message_clear(&network->message);
     return MSPRING_OK;
 }
 
@@ -260,6 +261,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     if (result != MSPRING_OK)
         return result;
     network->guard.speed = network->guard.place = INFINITY; // are not known
+    network->steps.outcome = mspringi_outcome_none();
     fill_particles(network, builder);
     fill_springs(network, builder);
     for (mspring_id p = network->topology.particle_count; p < network->topology.reserve.particle_end; ++p)
@@ -288,6 +290,7 @@ mspring_result mspring_network_create(mspring_builder *builder, const mspring_ne
     if (!builder)
         return MSPRING_ERROR_ARGUMENT;
     mspringi_message *message = &builder->message;
+    mspringi_message_clear(message);
     if (!network)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the place for the network is NULL");
     if (!def) {

@@ -1,5 +1,6 @@
 /// What may change between steps: the solver, and the settings.
 #include <math.h>
+#include <string.h>
 
 #include "base/cpu.h"
 #include "sleep/sleep.h"
@@ -47,6 +48,26 @@ mspring_result mspringi_check_solver(const mspring_solver_def *def, mspringi_mes
     return def->solver != MSPRING_SOLVER_EXPLICIT ? check_implicit(def, message) : MSPRING_OK;
 }
 
+static mspring_solver_def def_of(const mspring_network *network) {
+    const mspringi_solver *solver = &network->solver;
+    mspring_solver_def def;
+    (void)mspring_solver_def_init(&def, sizeof def);
+    if (solver->ops->get_def)
+        solver->ops->get_def(solver->object, &def);
+    def.substeps = network->auto_substeps ? MSPRING_SUBSTEPS_AUTO : network->substeps;
+    def.max_substeps = network->max_substeps;
+    return def;
+}
+
+mspring_result mspring_network_get_solver(const mspring_network *network, mspring_solver_def *def) {
+    if (!network || !def)
+        return MSPRING_ERROR_ARGUMENT;
+    if (def->struct_size != sizeof *def)
+        return MSPRING_ERROR_STRUCT;
+    *def = def_of(network);
+    return MSPRING_OK;
+}
+
 // Exchange the solver for that of the definition, or have it go on with other settings.
 static mspring_result change_solver(mspring_network *network, const mspring_solver_def *def) {
     mspringi_solver made = {mspringi_solver_ops_of(def->solver), NULL};
@@ -69,13 +90,20 @@ mspring_result mspring_network_set_solver(mspring_network *network, const msprin
     mspring_result result = mspringi_enter(network);
     if (result == MSPRING_OK)
         result = mspringi_check_solver(def, &network->message);
-    if (result == MSPRING_OK)
-        result = change_solver(network, def);
     if (result != MSPRING_OK)
         return result;
+    const mspring_solver_def before = def_of(network);
+    const void *object = network->solver.object;
+    result = change_solver(network, def);
+    if (result != MSPRING_OK)
+        return result;
+    const mspring_solver_def now = def_of(network);
+    const bool is_same = object == network->solver.object && memcmp(&before, &now, sizeof now) == 0;
+    if (is_same && def->substeps == now.substeps && def->max_substeps == now.max_substeps)
+        return MSPRING_OK;
     mspringi_changed(network, MSPRINGI_CHANGED_SOLVER, 0);
     const bool automatic = def->substeps == MSPRING_SUBSTEPS_AUTO;
-    network->auto_substeps = automatic && network->solver.ops->picks_substeps;
+    network->auto_substeps = automatic;
     network->substeps = automatic ? 1 : def->substeps;
     network->max_substeps = def->max_substeps;
     network->guard.fallback_steps = 0;
@@ -158,12 +186,4 @@ mspring_result mspring_network_set_settings(mspring_network *network, const mspr
     if (settings->sleep_speed != old.sleep_speed || settings->sleep_time != old.sleep_time)
         mspringi_changed(network, MSPRINGI_CHANGED_SLEEP, 0);
     return MSPRING_OK;
-}
-
-uint32_t mspring_network_substeps(const mspring_network *network) {
-    return network ? network->substeps : 0;
-}
-
-uint64_t mspring_network_fallback_count(const mspring_network *network) {
-    return network ? network->fallback_count : 0;
 }

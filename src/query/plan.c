@@ -1,4 +1,6 @@
-/// What a network says of itself: its sizes, its error, and how it was laid out.
+/// What a network says of itself: its sizes, its error, its last step, and how it was laid out.
+#include <math.h>
+
 #include "store/growth.h"
 #include "store/network.h"
 
@@ -24,6 +26,39 @@ uint32_t mspring_network_worker_count(const mspring_network *network) {
 
 size_t mspring_network_memory_used(const mspring_network *network) {
     return network ? network->memory.used + network->tasks_memory.used : 0;
+}
+
+static double largest_speed(const mspring_network *network) {
+    const mspringi_state *s = &network->state;
+    double largest = 0.0;
+    for (mspring_id p = 0; p < network->topology.particle_count; ++p) {
+        const uint32_t slot = network->topology.slot_of_particle[p];
+        const double vx = (double)s->vx[slot], vy = (double)s->vy[slot], square = vx * vx + vy * vy;
+        if (square > largest && mspringi_particle_exists(network, p))
+            largest = square;
+    }
+    return sqrt(largest);
+}
+
+mspring_result mspring_network_get_step_info(const mspring_network *network, mspring_step_info *info) {
+    if (!network || !info)
+        return MSPRING_ERROR_ARGUMENT;
+    if (info->struct_size != sizeof *info)
+        return MSPRING_ERROR_STRUCT;
+    const mspringi_steps *steps = &network->steps;
+    *info = (mspring_step_info){
+        .struct_size = sizeof *info,
+        .result = steps->result,
+        .particle = steps->outcome.particle,
+        .spring = steps->outcome.spring,
+        .flags = steps->outcome.flags,
+        .substeps = steps->substeps,
+        .step_count = steps->count,
+        .fallback_count = steps->fallback_count,
+        .time = steps->time,
+        .largest_speed = largest_speed(network),
+    };
+    return MSPRING_OK;
 }
 
 mspring_result mspring_network_plan(const mspring_network *network, mspring_plan *plan) {

@@ -1,4 +1,4 @@
-/// Settings, motion, masses and forces in a snapshot.
+/// Settings, steps so far, motion, masses and forces in a snapshot.
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -73,7 +73,7 @@ static mspring_result settings_check(mspring_network *network, const uint8_t *fr
         return mspringi_section_fail(network, section, "max_speed is %g m/s, the relax fraction %g",
                                      (double)s.max_speed, (double)s.relax);
     if (s.substeps < 1 || s.substeps > MSPRING_MAX_SUBSTEPS || s.max_substeps < 1 ||
-        s.max_substeps > MSPRING_MAX_SUBSTEPS || s.auto_substeps > network->solver.ops->picks_substeps)
+        s.max_substeps > MSPRING_MAX_SUBSTEPS || s.auto_substeps > 1)
         return mspringi_section_fail(network, section, "substeps is %u, max_substeps %u", (unsigned)s.substeps,
                                      (unsigned)s.max_substeps);
     return MSPRING_OK;
@@ -97,6 +97,57 @@ static void settings_load(mspring_network *network, const uint8_t *from, size_t 
 
 const mspringi_section mspringi_section_settings = {"sett",        "settings",     false,        settings_size,
                                                     settings_save, settings_check, settings_load};
+
+/* ---------------------------------------------------------------------------------------------- steps so far */
+
+#define STEPS_BYTES ((size_t)28)
+
+static size_t steps_size(const mspring_network *network) {
+    (void)network;
+    return STEPS_BYTES;
+}
+
+static void steps_save(const mspring_network *network, mspringi_writer *to) {
+    const mspringi_steps *steps = &network->steps;
+    const uint64_t counts[] = {steps->count, steps->fallback_count};
+    mspringi_put(to, counts, 2, sizeof counts[0]);
+    mspringi_put(to, &steps->time, 1, sizeof steps->time);
+    mspringi_put(to, &steps->substeps, 1, sizeof steps->substeps);
+}
+
+static mspringi_steps read_steps(const uint8_t *from) {
+    mspringi_steps steps = {.result = MSPRING_OK, .outcome = mspringi_outcome_none()};
+    from = mspringi_get(from, &steps.count, 1, sizeof steps.count);
+    from = mspringi_get(from, &steps.fallback_count, 1, sizeof steps.fallback_count);
+    from = mspringi_get(from, &steps.time, 1, sizeof steps.time);
+    mspringi_get(from, &steps.substeps, 1, sizeof steps.substeps);
+    return steps;
+}
+
+static mspring_result steps_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_section *section = &mspringi_section_steps;
+    mspring_result result = mspringi_section_check_size(network, section, size, STEPS_BYTES);
+    if (result != MSPRING_OK)
+        return result;
+    const mspringi_steps steps = read_steps(from);
+    const bool has_stepped = steps.count > 0;
+    if (!(steps.time >= 0.0 && steps.time <= DBL_MAX) || (steps.time > 0.0) != has_stepped ||
+        (steps.substeps > 0) != has_stepped || steps.substeps > MSPRING_MAX_SUBSTEPS ||
+        steps.fallback_count > steps.count)
+        return mspringi_section_fail(network, section,
+                                     "there were %llu, %llu by the fallback, of %u substeps, in %g s",
+                                     (unsigned long long)steps.count, (unsigned long long)steps.fallback_count,
+                                     (unsigned)steps.substeps, steps.time);
+    return MSPRING_OK;
+}
+
+static void steps_load(mspring_network *network, const uint8_t *from, size_t size) {
+    (void)size;
+    network->steps = read_steps(from);
+}
+
+const mspringi_section mspringi_section_steps = {"step",     "steps",     false,     steps_size,
+                                                 steps_save, steps_check, steps_load};
 
 /* ------------------------------------------------------------------------------------------------ whole arrays */
 

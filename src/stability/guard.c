@@ -61,18 +61,17 @@ static mspring_result check_bounds(mspring_network *network, const mspringi_atte
     const uint32_t slot = t->slot_of_particle[named];
     const double x = network->origin_x + (double)s->x[slot], y = network->origin_y + (double)s->y[slot];
     const double vx = (double)s->vx[slot], vy = (double)s->vy[slot];
-    const char *cure = "take a shorter step, more substeps or less stiffness";
+    const char *cure = "Use a shorter dt, more substeps or lower stiffness.";
+    network->outcome.particle = named;
     if (!isfinite(x + y + vx + vy))
-        return mspringi_fail(
-            &network->message, MSPRING_ERROR_UNSTABLE,
-            "a step of %g s (substeps: %u) would throw particle %u, perhaps with others, out of the "
-            "range of numbers: %s",
-            attempt->dt, (unsigned)attempt->substeps, (unsigned)named, cure);
-    return mspringi_fail(
-        &network->message, MSPRING_ERROR_UNSTABLE,
-        "a step of %g s (substeps: %u) would throw particle %u, perhaps with others, to (%g, %g) m "
-        "at (%g, %g) m/s: %s",
-        attempt->dt, (unsigned)attempt->substeps, (unsigned)named, x, y, vx, vy, cure);
+        return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
+                             "unstable: substeps of %g s throw particle %u out of the range of numbers. %s",
+                             (double)attempt->h, (unsigned)named, cure);
+    return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
+                         "unstable: substeps of %g s throw particle %u to (%g, %g) m at (%g, %g) m/s, at most %g. "
+                         "%s",
+                         (double)attempt->h, (unsigned)named, x, y, vx, vy, (double)network->settings.max_speed,
+                         cure);
 }
 
 static float between(float value, float most) {
@@ -100,6 +99,7 @@ void mspringi_guard_put_back(mspring_network *network, const mspringi_state *bef
         s->vy[slot] = between(s->vy[slot], network->settings.max_speed);
     }
     mspringi_solver_forget(&network->solver);
+    network->outcome.flags |= MSPRING_STEP_PUT_BACK;
 }
 
 // The same at the end of a step.
@@ -120,12 +120,13 @@ static mspring_result explain_border(mspring_network *network, const mspringi_at
     const float at_base = network->inverse_mass[base], at_tip = network->inverse_mass[tip];
     const mspring_id a = t->particle_of_slot[base], b = t->particle_of_slot[tip];
     const mspring_id moved = at_base > at_tip || (at_base == at_tip && a < b) ? a : b;
-    return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
-                         "a step of %g s (substeps: %u): motion would turn round and grow in each, as %g s are too "
-                         "long for springs and masses in this shape, as for spring %u at particle %u: take a "
-                         "shorter step, more substeps or less stiffness",
-                         attempt->dt, (unsigned)attempt->substeps, (double)attempt->h, (unsigned)spring,
-                         (unsigned)moved);
+    network->outcome.spring = spring;
+    network->outcome.particle = moved;
+    return mspringi_fail(
+        &network->message, MSPRING_ERROR_UNSTABLE,
+        "unstable: the substep of %g s exceeds the stability limit (spring %u, particle %u). Use a "
+        "shorter dt, more substeps or lower stiffness.",
+        (double)attempt->h, (unsigned)spring, (unsigned)moved);
 }
 
 // Iterations that a search may take: so many that they take no longer than half of the step's substeps, unless the

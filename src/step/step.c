@@ -125,11 +125,11 @@ static mspring_result choose_substeps(mspring_network *network, double dt) {
         substeps = network->max_substeps;
     if (substeps > network->max_substeps) {
         const mspring_id tightest = mspringi_tightest_spring(network, dt / (double)network->max_substeps);
-        return mspringi_fail(
-            &network->message, MSPRING_ERROR_UNSTABLE,
-            "a step of %g s needs substeps of at most %g s, as spring %u is that stiff or damped for "
-            "its masses: more than max_substeps, which is %u",
-            dt, limit, (unsigned)tightest, (unsigned)network->max_substeps);
+        network->outcome.spring = tightest;
+        return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
+                             "unstable: a step of %g s needs substeps of at most %g s (spring %u), which are more "
+                             "than max_substeps, %u. Use a shorter dt, a larger max_substeps or lower stiffness.",
+                             dt, limit, (unsigned)tightest, (unsigned)network->max_substeps);
     }
     network->substeps = substeps;
     return MSPRING_OK;
@@ -164,10 +164,13 @@ static mspring_result check_given_speeds(mspring_network *network, double dt) {
     for (mspring_id p = 0; p < network->topology.particle_count; ++p) {
         const uint32_t slot = network->topology.slot_of_particle[p];
         if (mspringi_particle_exists(network, p) &&
-            !(fabsf(s->vx[slot]) <= (float)MSPRING_MAX_SPEED && fabsf(s->vy[slot]) <= (float)MSPRING_MAX_SPEED))
+            !(fabsf(s->vx[slot]) <= (float)MSPRING_MAX_SPEED && fabsf(s->vy[slot]) <= (float)MSPRING_MAX_SPEED)) {
+            network->outcome.particle = p;
             return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
-                                 "particle %u has been given a velocity of (%g, %g) m/s: at most 1e15 is allowed",
+                                 "unstable: a view or hook gave particle %u a velocity of (%g, %g) m/s. Write at "
+                                 "most 1e15 m/s.",
                                  (unsigned)p, (double)s->vx[slot], (double)s->vy[slot]);
+        }
     }
     return MSPRING_OK;
 }
@@ -241,7 +244,7 @@ static const mspringi_solver *fallback_of(const mspring_network *network) {
 // motion begins after it, has a history then.
 static mspring_result attempt_otherwise(mspring_network *network, const request *asked,
                                         const mspringi_solver *fallback) {
-    const uint32_t own = network->auto_substeps ? network->max_substeps : network->substeps;
+    const uint32_t own = mspringi_picks_substeps(network) ? network->max_substeps : network->substeps;
     const bool takes_one = fallback->ops->takes_one;
     mspringi_solver_forget(fallback);
     const mspring_result result = attempt(network, asked, fallback, takes_one ? 1 : own);
@@ -262,12 +265,14 @@ static mspring_result fall_back(mspring_network *network, const request *asked, 
     if (took_it)
         network->guard.h = 0.0f; // before the solver is asked again, it is looked whether it can be
     network->guard.fallback_steps = !took_it ? fallback_steps : fallback_steps > 0 ? fallback_steps - 1 : next;
-    network->fallback_count += took_it;
+    if (took_it)
+        network->outcome.flags |= fallback->ops->takes_one ? MSPRING_STEP_FALLBACK : MSPRING_STEP_CLAMPED;
     return result;
 }
 
 static mspring_result attempt_as_chosen(mspring_network *network, const request *asked) {
-    const mspring_result result = network->auto_substeps ? choose_substeps(network, asked->dt) : MSPRING_OK;
+    const mspring_result result =
+        mspringi_picks_substeps(network) ? choose_substeps(network, asked->dt) : MSPRING_OK;
     return result == MSPRING_OK ? attempt(network, asked, &network->solver, network->substeps) : result;
 }
 
@@ -284,6 +289,7 @@ static mspring_result take_step(mspring_network *network, const request *asked) 
         const uint32_t twice = 2 * network->substeps;
         network->substeps = twice < network->max_substeps ? twice : network->max_substeps;
         result = attempt(network, asked, &network->solver, network->substeps);
+        network->outcome.flags |= MSPRING_STEP_RETRIED;
     }
     return result;
 }
@@ -310,8 +316,10 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
     }
     network->is_open = network->hook_count > 0;
     network->is_lent = false;
-    if (is_idle(network, &stages))
+    if (is_idle(network, &stages)) {
+        network->outcome.flags |= MSPRING_STEP_ASLEEP;
         return MSPRING_OK;
+    }
     mspringi_stages_after_step(network, &stages, dt);
     if (network->forces.held_any)
         mspringi_field_clear(network, network->forces.held);
@@ -319,16 +327,36 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
     return MSPRING_OK;
 }
 
+// Note what came of a step.
+static void note(mspring_network *network, double dt, mspring_result result) {
+    mspringi_steps *steps = &network->steps;
+    const uint32_t flags = network->outcome.flags;
+    steps->result = result;
+    steps->outcome = network->outcome;
+    if (result != MSPRING_OK) {
+        steps->outcome.flags = 0;
+        return;
+    }
+    steps->substeps = flags & MSPRING_STEP_FALLBACK ? 1 : network->substeps;
+    steps->count++;
+    steps->fallback_count += (flags & (MSPRING_STEP_FALLBACK | MSPRING_STEP_CLAMPED)) != 0;
+    steps->time += dt;
+    mspringi_message_clear(&network->message); // of what was tried first
+}
+
 mspring_result mspring_network_step(mspring_network *network, double dt) {
     mspring_result result = mspringi_enter(network);
-    if (result == MSPRING_OK)
-        result = mspringi_tasks_follow(network->tasks, &network->message);
     if (result != MSPRING_OK)
         return result;
-    const size_t used = network->memory.used;
-    const mspringi_fp_state before = mspringi_fp_enter();
-    result = step(network, dt);
-    mspringi_fp_leave(before);
-    MSPRINGI_ASSERT(network->memory.used == used); // a step allocates nothing
+    network->outcome = mspringi_outcome_none();
+    result = mspringi_tasks_follow(network->tasks, &network->message);
+    if (result == MSPRING_OK) {
+        const size_t used = network->memory.used;
+        const mspringi_fp_state before = mspringi_fp_enter();
+        result = step(network, dt);
+        mspringi_fp_leave(before);
+        MSPRINGI_ASSERT(network->memory.used == used); // a step allocates nothing
+    }
+    note(network, dt, result);
     return result;
 }

@@ -153,6 +153,25 @@ typedef struct mspringi_strain {
     bool breaks, stresses;     ///< a threshold of this kind has been finite: there is something to save
 } mspringi_strain;
 
+/// What came of a step beside its result: see mspring_step_info.
+typedef struct mspringi_outcome {
+    mspring_id particle, spring; ///< to blame
+    uint32_t flags;
+} mspringi_outcome;
+
+/// The last step, and how many there have been.
+typedef struct mspringi_steps {
+    mspring_result result;
+    mspringi_outcome outcome;
+    uint32_t substeps; ///< of the last that succeeded
+    uint64_t count, fallback_count;
+    double time; ///< s
+} mspringi_steps;
+
+static inline mspringi_outcome mspringi_outcome_none(void) {
+    return (mspringi_outcome){.particle = MSPRING_NONE, .spring = MSPRING_NONE};
+}
+
 /// What the guard knows from step to step.
 typedef struct mspringi_guard {
     float h, global_damping; ///< the border was looked at for these; h is 0 at first
@@ -308,13 +327,14 @@ struct mspring_network {
     mspringi_halos halos;
 
     mspring_settings settings;
-    uint32_t substeps; ///< of the last step or, unless auto_substeps, of the next
+    mspringi_steps steps;
+    mspringi_outcome outcome; ///< of the step that is being made
+    uint32_t substeps;        ///< of the last step or, unless auto_substeps, of the next
     uint32_t max_substeps;
-    bool auto_substeps;
+    bool auto_substeps;             ///< each step chooses them, if its solver can
     mspringi_solver solver;         ///< the one that the host chose
     mspringi_solver fallback;       ///< takes steps for the explicit one; none before MSPRING_GUARD_IMPLICIT
     const mspringi_solver *running; ///< the one that takes the step that is being made; else NULL
-    uint64_t fallback_count;        ///< steps that it has taken
     struct mspringi_floor *floor;   ///< NULL: there is none
     mspringi_guard guard;
     float *looks;    ///< [5][slots] weights of the guard's bound, and room; NULL if it never looks at the border
@@ -384,6 +404,11 @@ mspring_result mspringi_enter(mspring_network *network);
 /// Refuse ranges of ids that leave the network.
 mspring_result mspringi_check_range(mspring_network *network, const char *what, mspring_id first, uint32_t count,
                                     uint32_t total);
+
+/// Whether the next step chooses its substeps.
+static inline bool mspringi_picks_substeps(const mspring_network *network) {
+    return network->auto_substeps && network->solver.ops->picks_substeps;
+}
 
 /// Refuse settings that mspring_network_set_settings() would.
 mspring_result mspringi_check_settings(const mspring_settings *settings, mspringi_message *message);

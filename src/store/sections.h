@@ -29,6 +29,7 @@ typedef struct mspringi_section {
 
 // In state.c.
 extern const mspringi_section mspringi_section_settings;
+extern const mspringi_section mspringi_section_steps;
 extern const mspringi_section mspringi_section_motion;
 extern const mspringi_section mspringi_section_masses;
 extern const mspringi_section mspringi_section_forces;

@@ -36,7 +36,10 @@ mspring_result mspringi_select_list(mspring_network *network, mspringi_kind kind
     if (result == MSPRING_OK)
         result = check_arrays(network, count, list, list);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
-        if (list[i] >= total_of(network, kind))
+        if (list[i] == MSPRING_NONE)
+            result = mspringi_fail(&network->message, MSPRING_ERROR_ID,
+                                   "index %u of the list: MSPRING_NONE is no %s", (unsigned)i, names[kind]);
+        else if (list[i] >= total_of(network, kind))
             result = mspringi_fail(&network->message, MSPRING_ERROR_ID,
                                    "index %u of the list: there is no %s %u, only %u", (unsigned)i, names[kind],
                                    (unsigned)list[i], (unsigned)total_of(network, kind));

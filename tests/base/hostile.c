@@ -237,8 +237,11 @@ static void add_hook(arguments *a) {
     X(mspring_network_error, "v", NOTHING, note_text(mspring_network_error(a->network)))                           \
     X(mspring_network_particle_count, "v", NOTHING, note_size(mspring_network_particle_count(a->network)))         \
     X(mspring_network_spring_count, "v", NOTHING, note_size(mspring_network_spring_count(a->network)))             \
-    X(mspring_network_substeps, "v", NOTHING, note_size(mspring_network_substeps(a->network)))                     \
-    X(mspring_network_fallback_count, "v", NOTHING, note_size((size_t)mspring_network_fallback_count(a->network))) \
+    X(mspring_network_get_step_info, "nP", OUT_STRUCT(0, step_info),                                               \
+      mspring_network_get_step_info(a->network, a->out[0]))                                                        \
+    X(mspring_network_get_solver, "nP", OUT_STRUCT(0, solver_def),                                                 \
+      mspring_network_get_solver(a->network, a->out[0]))                                                           \
+    X(mspring_network_get_floor, "nP", OUT_STRUCT(0, floor_def), mspring_network_get_floor(a->network, a->out[0])) \
     X(mspring_network_simd_level, "v", NOTHING, note_size((size_t)mspring_network_simd_level(a->network)))         \
     X(mspring_network_worker_count, "v", NOTHING, note_size(mspring_network_worker_count(a->network)))             \
     X(mspring_network_memory_used, "v", NOTHING, note_size(mspring_network_memory_used(a->network)))               \

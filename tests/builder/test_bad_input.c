@@ -198,10 +198,10 @@ static spring_case *bad_springs(size_t *count) {
     BAD(rest_length, -2, MSPRING_ERROR_ARGUMENT, "rest length");
     BAD(rest_length, 4.1e12f, MSPRING_ERROR_ARGUMENT, "rest length");
     BAD(flags, MSPRING_SPRING_DAMPING_RATIO << 1, MSPRING_ERROR_ARGUMENT, "flags");
-    BAD(b, 2, MSPRING_ERROR_ARGUMENT, "particle 2");     // to itself
-    BAD(b, 10, MSPRING_ERROR_ID, "10");                  // to nowhere
-    BAD(a, 12345, MSPRING_ERROR_ID, "12345");            // from nowhere
-    BAD(a, MSPRING_NONE, MSPRING_ERROR_ID, "particles"); // the default
+    BAD(b, 2, MSPRING_ERROR_ARGUMENT, "particle 2");   // to itself
+    BAD(b, 10, MSPRING_ERROR_ID, "10");                // to nowhere
+    BAD(a, 12345, MSPRING_ERROR_ID, "12345");          // from nowhere
+    BAD(a, MSPRING_NONE, MSPRING_ERROR_ID, "not set"); // the default
     BAD(struct_size, 4, MSPRING_ERROR_STRUCT, "mspring_spring_def");
     BAD(struct_size, sizeof good + 4, MSPRING_ERROR_STRUCT, "mspring_spring_def");
     BAD(a, 8, MSPRING_ERROR_ARGUMENT, "8 and 9"); // the distance of two particles in the same place
@@ -407,7 +407,7 @@ static void bad_rope_is_refused(void **state) {
     REFUSED(to, 2, MSPRING_ERROR_ARGUMENT, "particle 2");
     REFUSED(to, 10, MSPRING_ERROR_ID, "10");
     REFUSED(from, 77777, MSPRING_ERROR_ID, "77777");
-    REFUSED(from, MSPRING_NONE, MSPRING_ERROR_ID, "particles");
+    REFUSED(from, MSPRING_NONE, MSPRING_ERROR_ID, "not set");
     REFUSED(struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_rope_def");
     REFUSED(struct_size, sizeof good + 4, MSPRING_ERROR_STRUCT, "mspring_rope_def");
 #undef REFUSED

@@ -153,8 +153,8 @@ static uint64_t look_of(const mspring_network *network) {
     uint64_t look = hash_of(network);
     const uint32_t particles = mspring_network_particle_count(network),
                    springs = mspring_network_spring_count(network);
-    const uint64_t numbers[] = {particles, springs, mspring_network_substeps(network),
-                                mspring_network_is_asleep(network), mspring_network_fallback_count(network)};
+    const uint64_t numbers[] = {particles, springs, support_substeps(network), mspring_network_is_asleep(network),
+                                support_fallback_count(network)};
     mix(&look, numbers, sizeof numbers);
     for (mspring_id p = 0; p < particles; p++) {
         uint8_t asleep;
@@ -197,7 +197,7 @@ static void check_answers(twins *all, const mspring_result results[TWINS]) {
     for (int i = 0; i < TWINS; i++) {
         FUZZ_CHECK(results[i] == results[0]);
         FUZZ_CHECK(hash_of(all->of[i]) == hash_of(all->of[0]));
-        FUZZ_CHECK(mspring_network_substeps(all->of[i]) == mspring_network_substeps(all->of[0]));
+        FUZZ_CHECK(support_substeps(all->of[i]) == support_substeps(all->of[0]));
     }
     const uint64_t look = look_of(all->of[0]);
     FUZZ_CHECK(look_of(all->of[1 + look % (TWINS - 1)]) == look); // now this one, now that

@@ -234,12 +234,115 @@ static void hooks_may_only_read_them(void **state) {
     mspring_network_destroy(hooked);
 }
 
+/* ------------------------------------------------------------------------------------------- solver and floor */
+
+/// What was set is read. Setting that again changes no bit, and wakes nobody.
+static void the_solver_is_read_and_set_again(void **state) {
+    (void)state;
+    const mspring_solver_def solvers[] = {
+        {.solver = MSPRING_SOLVER_EXPLICIT, .substeps = 8, .max_substeps = 77},
+        {.solver = MSPRING_SOLVER_EXPLICIT, .substeps = MSPRING_SUBSTEPS_AUTO, .max_substeps = 500},
+        {.solver = MSPRING_SOLVER_IMPLICIT,
+         .substeps = 2,
+         .max_substeps = 9,
+         .integrator = MSPRING_INTEGRATOR_BDF2,
+         .iterations = 12,
+         .tile_size = 16,
+         .coarse_period = 3},
+        {.solver = MSPRING_SOLVER_IMPLICIT, .substeps = MSPRING_SUBSTEPS_AUTO, .max_substeps = 1},
+        {.solver = MSPRING_SOLVER_DIRECT,
+         .substeps = 1,
+         .max_substeps = 1000,
+         .integrator = MSPRING_INTEGRATOR_EULER},
+    };
+    for (size_t i = 0; i < COUNT_OF(solvers); i++) {
+        mspring_network *network = make(0.01f), *twin = make(0.01f);
+        mspring_solver_def def = solvers[i];
+        def.struct_size = sizeof def;
+        check_ok(mspring_network_set_solver(network, &def));
+        check_ok(mspring_network_set_solver(twin, &def));
+        for (int step = 0; step < 100; step++) {
+            const mspring_solver_def now = support_solver(network);
+            assert_int_equal(now.solver, def.solver);
+            assert_int_equal(now.substeps, def.substeps);
+            assert_int_equal(now.max_substeps, def.max_substeps);
+            assert_int_equal(now.integrator, def.integrator);
+            assert_true(now.iterations == def.iterations || def.iterations == 0);
+            assert_int_equal(now.tile_size, def.tile_size);
+            assert_true(now.coarse_period == def.coarse_period || def.coarse_period == 0);
+            check_ok(mspring_network_set_solver(network, step % 2 ? &now : &def));
+            support_steps(network, 1, DT);
+            support_steps(twin, 1, DT);
+            assert_int_equal(support_hash(network), support_hash(twin));
+        }
+        support_fall_asleep(network, DT);
+        check_ok(mspring_network_set_solver(network, &def));
+        assert_int_equal(mspring_network_is_asleep(network), 1);
+        mspring_network_destroy(network);
+        mspring_network_destroy(twin);
+    }
+}
+
+static void the_floor_is_read_and_set_again(void **state) {
+    (void)state;
+    const double planes[2][4] = {{0, -15, 0.1, 3}, {-30, 0, 2, 0}};
+    const float heights[] = {0, 1, -0.5f, 2};
+    mspring_network *network = make(0.01f), *twin = make(0.01f), *clone = NULL;
+    mspring_floor_def now = {.struct_size = sizeof now}, def;
+    check_ok(mspring_network_get_floor(network, &now));
+    assert_int_equal(now.plane_count + now.height_count, 0);
+    check_ok(mspring_floor_def_init(&def, sizeof def));
+    def.planes = planes[0];
+    def.plane_count = 2;
+    def.heights = heights;
+    def.height_count = 4;
+    def.heights_x = -5;
+    def.heights_y = -18;
+    def.spacing = 7;
+    def.friction = 0.3f;
+    def.restitution = 0.1f;
+    check_ok(mspring_network_set_floor(network, &def));
+    check_ok(mspring_network_set_floor(twin, &def));
+    for (int step = 0; step < 200; step++) {
+        check_ok(mspring_network_get_floor(network, &now));
+        assert_memory_equal(now.planes, planes, sizeof planes);
+        assert_memory_equal(now.heights, heights, sizeof heights);
+        check_near(now.friction, 0.3f, 0);
+        check_ok(mspring_network_set_floor(network, &now));
+        support_steps(network, 1, DT);
+        support_steps(twin, 1, DT);
+        assert_int_equal(support_hash(network), support_hash(twin));
+    }
+    support_fall_asleep(network, DT);
+    check_ok(mspring_network_set_floor(network, &def));
+    assert_int_equal(mspring_network_is_asleep(network), 1);
+    check_ok(mspring_network_get_floor(network, &now));
+    now.friction = 0.5f; // with the network's own heights
+    check_ok(mspring_network_set_floor(network, &now));
+    assert_int_equal(mspring_network_is_asleep(network), 0);
+    check_ok(mspring_network_clone(network, NULL, &clone));
+    mspring_network_destroy(network);
+    check_ok(mspring_network_get_floor(clone, &now));
+    assert_memory_equal(now.heights, heights, sizeof heights);
+    assert_memory_equal(now.planes, planes, sizeof planes);
+    check_ok(mspring_network_set_floor(clone, NULL));
+    check_ok(mspring_network_get_floor(clone, &now));
+    assert_null(now.planes);
+    mspring_network_destroy(clone);
+    mspring_network_destroy(twin);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_was_set_is_read),          cmocka_unit_test(snapshots_and_clones_have_them),
-        cmocka_unit_test(one_bad_value_refuses_all),     cmocka_unit_test(no_memory_changes_nothing),
-        cmocka_unit_test(the_same_settings_wake_nobody), cmocka_unit_test(sleep_can_be_switched),
+        cmocka_unit_test(what_was_set_is_read),
+        cmocka_unit_test(snapshots_and_clones_have_them),
+        cmocka_unit_test(one_bad_value_refuses_all),
+        cmocka_unit_test(no_memory_changes_nothing),
+        cmocka_unit_test(the_same_settings_wake_nobody),
+        cmocka_unit_test(sleep_can_be_switched),
         cmocka_unit_test(hooks_may_only_read_them),
+        cmocka_unit_test(the_solver_is_read_and_set_again),
+        cmocka_unit_test(the_floor_is_read_and_set_again),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -99,7 +99,7 @@ static void what_is_awake_moves_as_if_nothing_slept(void **state) {
         support_kick(network, kicked[i], 3);
         support_kick(awake, kicked[i], 3);
         look(network, &before);
-        const uint64_t clamped = mspring_network_fallback_count(network);
+        const uint64_t clamped = support_fallback_count(network);
         for (uint32_t step = 0; step < 10; step++) {
             check_ok(mspring_network_wake(awake));
             support_steps(network, 1, DT);
@@ -116,7 +116,7 @@ static void what_is_awake_moves_as_if_nothing_slept(void **state) {
             }
             assert_int_equal(after.sleeps[kicked[i]], 0);
         }
-        assert_int_equal(mspring_network_fallback_count(network), clamped + 10);
+        assert_int_equal(support_fallback_count(network), clamped + 10);
         mspring_network_destroy(awake);
     }
     mspring_network_destroy(network);
@@ -161,12 +161,12 @@ typedef struct played {
 
 static void play_step(mspring_network *network, double dt, played *out) {
     static sight before, after;
-    const uint64_t clamped = mspring_network_fallback_count(network);
+    const uint64_t clamped = support_fallback_count(network);
     const bool is_idle = mspring_network_is_asleep(network);
     look(network, &before);
     support_steps(network, 1, dt);
     look(network, &after);
-    const bool is_clamped = mspring_network_fallback_count(network) > clamped;
+    const bool is_clamped = support_fallback_count(network) > clamped;
     out->clamped += is_clamped;
     out->plain += !is_clamped && !is_idle;
     out->asleep += check_sleepers(&before, &after);

@@ -91,7 +91,7 @@ static void snapshots_have_the_solver_as_it_was_made(void **state) {
     size_t size;
     void *snapshot = save(network, &size);
     support_steps(network, 5, DT);
-    assert_int_equal(mspring_network_fallback_count(network), 5);
+    assert_int_equal(support_fallback_count(network), 5);
     const uint64_t expected = support_hash(network);
     // In one whose solver follows from edited springs, has yet to be made, or has been made for others.
     for (size_t i = 0; i < 2 * COUNT_OF(guards); i++) {
@@ -136,7 +136,7 @@ static void it_lies_on_a_floor_and_sleeps(void **state) {
         assert_true(lowest_of(network) > -1 - 1e-4); // some last places of 24 m
     }
     assert_true(mspring_network_is_asleep(network));
-    assert_int_equal(mspring_network_fallback_count(network), step);
+    assert_int_equal(support_fallback_count(network), step);
     // What it fell through is all the energy that there can be.
     assert_true(most < 1.001 * made.particle_count * 9.8);
     float x[192], y[192];
@@ -154,10 +154,10 @@ static void it_lies_on_a_floor_and_sleeps(void **state) {
         check_ok(mspring_network_step(network, DT));
     }
     assert_true(mspring_network_is_asleep(network));
-    const uint64_t count = mspring_network_fallback_count(network), hash = support_hash(network);
+    const uint64_t count = support_fallback_count(network), hash = support_hash(network);
     check_error(mspring_network_step(network, -1), MSPRING_ERROR_ARGUMENT);
     support_steps(network, 40, DT);
-    assert_int_equal(mspring_network_fallback_count(network), count);
+    assert_int_equal(support_fallback_count(network), count);
     assert_int_equal(support_hash(network), hash);
     mspring_network_destroy(network);
     recipe_free(&made);
@@ -198,7 +198,7 @@ static void forces_act_once(void **state) {
             }
             check_ok(mspring_network_step(network, DT));
         }
-        assert_int_equal(mspring_network_fallback_count(network), steps);
+        assert_int_equal(support_fallback_count(network), steps);
         assert_int_equal(one.calls, steps); // what is refused beforehand calls none
         double px = 0, py = 0;
         check_ok(mspring_network_momentum(network, &px, &py, NULL));
@@ -237,7 +237,7 @@ static void events_are_told_once(void **state) {
         } while (count > 0);
     }
     assert_true(broken > 5);
-    const uint64_t fallen_back = mspring_network_fallback_count(network);
+    const uint64_t fallen_back = support_fallback_count(network);
     assert_true(fallen_back > 0);
     assert_true(fallen_back < 300);
     for (mspring_id s = 0; s < made.spring_count; s++) {
@@ -304,7 +304,7 @@ static uint64_t play(mspring_simd level, uint32_t workers, uint64_t *fallen_back
             free(snapshot);
         }
     }
-    *fallen_back = mspring_network_fallback_count(network);
+    *fallen_back = support_fallback_count(network);
     hash ^= support_hash(network);
     mspring_network_destroy(network);
     recipe_free(&made);

@@ -134,6 +134,26 @@ mspring_network *support_network(mspring_builder *builder, const mspring_network
     return network;
 }
 
+mspring_step_info support_step_info(const mspring_network *network) {
+    mspring_step_info info = {.struct_size = sizeof info};
+    check_ok(mspring_network_get_step_info(network, &info));
+    return info;
+}
+
+uint32_t support_substeps(const mspring_network *network) {
+    return support_step_info(network).substeps;
+}
+
+uint64_t support_fallback_count(const mspring_network *network) {
+    return support_step_info(network).fallback_count;
+}
+
+mspring_solver_def support_solver(const mspring_network *network) {
+    mspring_solver_def def = {.struct_size = sizeof def};
+    check_ok(mspring_network_get_solver(network, &def));
+    return def;
+}
+
 mspring_settings support_settings(const mspring_network *network) {
     mspring_settings settings = {.struct_size = sizeof settings};
     check_ok(mspring_network_get_settings(network, &settings));

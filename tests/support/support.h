@@ -106,6 +106,11 @@ void support_compact(mspring_network *network, uint32_t functions, mspring_job *
 
 /* -------------------------------------------------------------------------------------- reading a network */
 
+mspring_step_info support_step_info(const mspring_network *network);
+uint32_t support_substeps(const mspring_network *network);
+uint64_t support_fallback_count(const mspring_network *network);
+mspring_solver_def support_solver(const mspring_network *network);
+
 typedef struct support_point {
     double x, y;
 } support_point;

@@ -363,9 +363,12 @@ mspring_result mspringi_implicit_make(mspringi_implicit *n, bool *is_done) {
 }
 
 void mspringi_implicit_adjust(mspringi_implicit *n, const mspring_solver_def *def) {
-    n->iterations = !n->is_direct && def->iterations > 0 ? def->iterations : DEFAULT_ITERATIONS;
-    n->coarse_period = !n->is_direct && def->coarse_period > 0 ? def->coarse_period : 1;
-    n->age = 0;
+    const uint32_t iterations = !n->is_direct && def->iterations > 0 ? def->iterations : DEFAULT_ITERATIONS;
+    const uint32_t coarse_period = !n->is_direct && def->coarse_period > 0 ? def->coarse_period : 1;
+    if (iterations != n->iterations || coarse_period != n->coarse_period)
+        n->age = 0;
+    n->iterations = iterations;
+    n->coarse_period = coarse_period;
 }
 
 mspring_result mspringi_fallback_reserve(mspring_network *network, uint32_t tile_size) {

@@ -406,7 +406,7 @@ enum {
 #define MSPRING_MAX_SUBSTEPS 1000000
 
 /// substeps for "as few as are stable in whatever shape the network may get into" (see
-/// mspring_network_stable_dt()), chosen at every step. mspring_network_substeps() says how many they were. For the
+/// mspring_network_stable_dt()), chosen at every step. mspring_step_info says how many they were. For the
 /// implicit and the direct solver 1.
 #define MSPRING_SUBSTEPS_AUTO UINT32_MAX
 
@@ -491,7 +491,7 @@ enum {
     /// As MSPRING_GUARD_GROWTH, but have the implicit solver take a step that would be refused, in one substep of
     /// implicit Euler, and the 15 after it, before the explicit one is tried again: slower (29 to 42 explicit
     /// substeps each) and softened, but at nearly any stiffness. Hooks are called again. Its memory is reserved
-    /// with the network. mspring_network_fallback_count() says how often that was.
+    /// with the network. mspring_step_info says how often that was.
     MSPRING_GUARD_IMPLICIT = 3,
     /// As MSPRING_GUARD_GROWTH, but take a step that would be refused with strain rates clamped and, unless the
     /// solver is an implicit one, the 15 after it: in as many substeps (with MSPRING_SUBSTEPS_AUTO max_substeps),
@@ -505,7 +505,7 @@ enum {
     /// about any shape does not grow, however stiff, damped or unequal springs and masses are; momentum is
     /// conserved but for rounding, angular momentum only about. A step that ends out of bounds all the same is
     /// refused. Works on one thread, at 30 to 160 explicit substeps for each substep; needs no memory. Hooks are
-    /// called again. mspring_network_fallback_count() says how often that was.
+    /// called again. mspring_step_info says how often that was.
     MSPRING_GUARD_CLAMP = 4,
     /// Look at nothing, and put back what ends out of bounds, instead of refusing the step. A speed becomes
     /// max_speed at most, a local coordinate MSPRING_MAX_COORDINATE. A particle with a number that is not finite
@@ -623,8 +623,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_create(const msprin
 /// @threads exclusive access to builder   @allocates never   @since 0.1
 MSPRING_API void mspring_builder_destroy(mspring_builder *builder);
 
-/// What was wrong with the last call on this builder that failed, naming the culprit; "" if none has failed.
-/// Belongs to the builder, valid until the next call on it. NULL gives "".
+/// What was wrong with the last call on this builder, naming the culprit; "" if that call succeeded. Belongs to the
+/// builder, valid until the next call on it. NULL gives "". Print the result's name first: mspring_result_string().
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API const char *mspring_builder_error(const mspring_builder *builder);
 
@@ -799,8 +799,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_clone(const mspring
                                                                    const mspring_clone_def *def,
                                                                    mspring_network **clone);
 
-/// What was wrong with the last call on this network that failed; as mspring_builder_error(). Functions marked
-/// shared report by their result alone, so that several threads may call them.
+/// What was wrong with the last call on this network that needs exclusive access; as mspring_builder_error().
+/// Functions marked shared report by their result alone, so that several threads may call them: they leave this text
+/// as it is. So does a call from inside a concurrent hook.
 /// @threads shared   @allocates never   @since 0.1
 MSPRING_API const char *mspring_network_error(const mspring_network *network);
 
@@ -809,7 +810,8 @@ MSPRING_API const char *mspring_network_error(const mspring_network *network);
 MSPRING_API uint32_t mspring_network_particle_count(const mspring_network *network);
 MSPRING_API uint32_t mspring_network_spring_count(const mspring_network *network);
 
-/// Choose how the following steps are made. The state goes on from where it is.
+/// Choose how the following steps are made. The state goes on from where it is. The solver that there is, with the
+/// settings that it has, changes nothing and wakes nobody.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY or MSPRING_ERROR_BUSY;
 ///         MSPRING_ERROR_LIMIT if the direct solver's factor would take over 2^27 numbers, or the implicit one's
 ///         tiles, of the size asked for, are so tied to each other that factoring their matrix would take over 2^34
@@ -818,6 +820,15 @@ MSPRING_API uint32_t mspring_network_spring_count(const mspring_network *network
 ///         iterations or coarse_period differ from the one of before   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_solver(mspring_network *network,
                                                                         const mspring_solver_def *def);
+
+/// Read the solver and its settings, as they were set: to set them again changes nothing. Set struct_size first.
+///
+/// After steps with MSPRING_GUARD_RETRY, substeps is the number that the next step begins with. Numbers that were
+/// left to the library as 0 may come back as the ones in use. What a solver does not use has its default.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_solver(const mspring_network *network,
+                                                                        mspring_solver_def *def);
 
 /// Read the settings that the next step uses. Set struct_size first.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
@@ -847,8 +858,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_settings(msprin
 ///
 /// A step that would end with a coordinate or speed that is not finite or out of bounds (MSPRING_MAX_COORDINATE,
 /// mspring_settings.max_speed), or in which the scheme itself makes motion grow (mspring_guard), is taken back:
-/// the state is the one of before the step, bit for bit, forces given for it are still there, and the error message
-/// names a particle. Take a shorter dt, more substeps or a lower stiffness.
+/// the state is the one of before the step, bit for bit, and forces given for it are still there. The error message
+/// and mspring_step_info name a particle or a spring. Use a shorter dt, more substeps or a lower stiffness.
 /// @param dt  seconds, finite, > 0, and long enough that dt / substeps is a normal float
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_UNSTABLE, MSPRING_ERROR_BUSY; in a child of fork()
 ///         MSPRING_ERROR_THREAD if a worker cannot be started again.
@@ -895,15 +906,37 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_sleepers(const 
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_wake(mspring_network *network);
 
-/// Number of substeps of the last step, or of the one to come before the first; with MSPRING_SUBSTEPS_AUTO 1 before
-/// the first. NULL gives 0.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_API uint32_t mspring_network_substeps(const mspring_network *network);
+/// How a step was made: flags of mspring_step_info.
+enum {
+    MSPRING_STEP_FALLBACK = 1u << 0, ///< the implicit solver took it, in one substep (MSPRING_GUARD_IMPLICIT)
+    MSPRING_STEP_CLAMPED = 1u << 1,  ///< strain rates were clamped (MSPRING_GUARD_CLAMP)
+    MSPRING_STEP_PUT_BACK = 1u << 2, ///< particles were put back into the bounds (MSPRING_GUARD_CLAMP_BOUNDS)
+    MSPRING_STEP_RETRIED = 1u << 3,  ///< it took more substeps than were set (MSPRING_GUARD_RETRY)
+    MSPRING_STEP_ASLEEP = 1u << 4    ///< all of the network slept: nothing was computed
+};
 
-/// Number of steps so far that the implicit solver took for the explicit one (MSPRING_GUARD_IMPLICIT), or that were
-/// taken with strain rates clamped (MSPRING_GUARD_CLAMP). NULL: 0.
+/// What the last step did, and all steps so far. Set struct_size first.
+typedef struct mspring_step_info {
+    uint32_t struct_size;
+    mspring_result result; ///< of the last step; MSPRING_OK before the first
+    mspring_id particle;   ///< why the last step was rejected, or would have been without its guard: the particle,
+    mspring_id spring;     ///< and the spring. MSPRING_NONE for what is not to blame
+    uint32_t flags;        ///< of the last step: MSPRING_STEP_FALLBACK and so on
+    uint32_t substeps;     ///< of the last step that succeeded; 0 before
+    uint64_t step_count;   ///< steps that have succeeded
+    uint64_t fallback_count; ///< of these with MSPRING_STEP_FALLBACK or MSPRING_STEP_CLAMPED
+    double time;             ///< simulated time of these, s
+    double largest_speed;    ///< of a particle now, m/s
+} mspring_step_info;
+
+/// Read what the last step did. Takes a pass over the velocities.
+///
+/// Snapshots and clones have step_count, fallback_count, time and substeps. After loading one, result, particle,
+/// spring and flags are those of a new network. In hooks they are of the step before.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
 /// @threads shared   @allocates never   @since 0.1
-MSPRING_API uint64_t mspring_network_fallback_count(const mspring_network *network);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_step_info(const mspring_network *network,
+                                                                           mspring_step_info *info);
 
 /* --------------------------------------------------------------------------------------- forces and hooks */
 
@@ -1096,6 +1129,14 @@ MSPRING_API mspring_result mspring_floor_def_init(mspring_floor_def *def, size_t
 /// @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_floor(mspring_network *network,
                                                                        const mspring_floor_def *def);
+
+/// Read the floor as it was set: to set it again changes nothing. Set struct_size first. Without a floor plane_count
+/// and height_count are 0. planes and heights are the network's own copies: they are valid until the floor is set
+/// again or the network is destroyed.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_floor(const mspring_network *network,
+                                                                       mspring_floor_def *def);
 
 /// Copy out what momentum (N s) the floor gave to the particles first ... first + count - 1 in the last step: over
 /// its length, the mean force. 0 without a floor.
