@@ -19,7 +19,7 @@ static bool fill_particles(const bench_network *from, bench_baseline *baseline, 
         return false;
     }
     if (result == MSPRING_OK) {
-        result = mspring_network_get_masses(from->network, 0, count, mass);
+        result = mspring_network_get(from->network, MSPRING_MASS, 0, count, mass, 1);
     }
     if (result == MSPRING_OK) {
         baseline->origin_x = view.origin_x;

@@ -61,7 +61,7 @@ static void prepare_masses(session *with) {
 }
 
 static mspring_result set_masses(session *with) {
-    return mspring_network_set_masses(with->step->network, 0, with->step->particle_count, with->values);
+    return mspring_network_set(with->step->network, MSPRING_MASS, 0, with->step->particle_count, with->values, 1);
 }
 
 static void prepare_scales(session *with) {
@@ -72,8 +72,8 @@ static void prepare_scales(session *with) {
 }
 
 static mspring_result set_scales(session *with) {
-    return mspring_network_set_inverse_mass_scales(with->step->network, 0, with->step->particle_count,
-                                                   with->values);
+    return mspring_network_set(with->step->network, MSPRING_INVERSE_MASS_SCALE, 0, with->step->particle_count,
+                               with->values, 1);
 }
 
 static mspring_result get_positions(session *with) {
@@ -127,13 +127,30 @@ static void prepare_broken(session *with) {
 }
 
 static mspring_result set_stiffnesses(session *with) {
-    return mspring_network_set_stiffnesses_at(with->step->network, with->list, with->burst, with->values);
+    return mspring_network_set_at(with->step->network, MSPRING_STIFFNESS, with->list, with->burst, with->values, 1);
 }
 
 static void prepare_stiffnesses(session *with) {
     for (uint32_t i = 0; i < with->burst; i++) {
         with->values[i] = 0.5f;
     }
+}
+
+static mspring_result set_all_stiffnesses(session *with) {
+    return mspring_network_set(with->step->network, MSPRING_STIFFNESS, 0, with->step->spring_count,
+                               with->by_spring[0], 1);
+}
+
+static void prepare_all_stiffnesses(session *with) {
+    with->calls++;
+    for (uint32_t i = 0; i < with->step->spring_count; i++) {
+        with->by_spring[0][i] = 0.5f - 0.001f * (float)((i + with->calls) % 16);
+    }
+}
+
+static void prepare_same_stiffnesses(session *with) {
+    prepare_all_stiffnesses(with);
+    (void)!set_all_stiffnesses(with);
 }
 
 static mspring_result update_components(session *with) {
@@ -160,6 +177,17 @@ static mspring_result measure_components(session *with) {
 
 static mspring_result measure_strains(session *with) {
     return mspring_network_get_extents(with->step->network, NULL, NULL, NULL, with->by_spring[0]);
+}
+
+static mspring_result get_strains(session *with) {
+    return mspring_network_get(with->step->network, MSPRING_STRAIN, 0, with->step->spring_count, with->by_spring[0],
+                               1);
+}
+
+static mspring_result find_largest_strain(session *with) {
+    float strain;
+    mspring_id spring;
+    return mspring_network_max_strain(with->step->network, &strain, &spring);
 }
 
 static mspring_result measure_extents(session *with) {
@@ -200,14 +228,18 @@ const session_call session_calls[] = {
     {"all masses", prepare_masses, set_masses},
     {"all scales of inverse mass", prepare_scales, set_scales},
     {"stiffness of 1,000 springs", prepare_stiffnesses, set_stiffnesses},
+    {"stiffness of all springs", prepare_all_stiffnesses, set_all_stiffnesses},
+    {"  unchanged", prepare_same_stiffnesses, set_all_stiffnesses},
     {"break 1,000 springs", prepare_whole, break_burst},
     {"restore 1,000 springs", prepare_broken, session_restore},
     {"restore 1,000 with a ramp", prepare_broken, restore_ramped},
     {"components after that", prepare_burst, update_components},
     {"components after 20 springs", prepare_few, update_components},
     {"mass, centre of a component", no_preparation, measure_components},
-    {"strain of all springs", no_preparation, measure_strains},
-    {"and length and direction", no_preparation, measure_extents},
+    {"strain of all springs", no_preparation, get_strains},
+    {"largest strain", no_preparation, find_largest_strain},
+    {"strain of all, extents", no_preparation, measure_strains},
+    {"  and length and direction", no_preparation, measure_extents},
     {"hash of the state", no_preparation, hash},
     {"save a frame", no_preparation, save_frame},
     {"load a frame", prepare_frame, load_frame},

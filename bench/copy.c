@@ -12,7 +12,7 @@ static mspring_result add_particles(const bench_network *from, mspring_builder *
     view.struct_size = sizeof view;
     mspring_result result = mspring_network_view(from->network, &view);
     if (result == MSPRING_OK) {
-        result = mspring_network_get_masses(from->network, 0, from->particle_count, mass);
+        result = mspring_network_get(from->network, MSPRING_MASS, 0, from->particle_count, mass, 1);
     }
     for (uint32_t i = 0; result == MSPRING_OK && i < from->particle_count; i++) {
         result = mspring_particle_def_init(&defs[i], sizeof *defs);

@@ -89,10 +89,10 @@ static bool create_watched(const bench_scene *subject, mspring_simd level, bool 
     }
     mspring_result result = mspring_network_reserve_events(out->network, SESSION_BURST);
     if (result == MSPRING_OK) {
-        result = mspring_network_set_break_strains(out->network, 0, out->spring_count, with->values);
+        result = mspring_network_set(out->network, MSPRING_BREAK_STRAIN, 0, out->spring_count, with->values, 1);
     }
     if (result == MSPRING_OK && stress) {
-        result = mspring_network_set_stress_strains(out->network, 0, out->spring_count, with->values);
+        result = mspring_network_set(out->network, MSPRING_STRESS_STRAIN, 0, out->spring_count, with->values, 1);
     }
     if (result != MSPRING_OK) {
         bench_library_error(error, "watching strain", result, mspring_network_error(out->network));
@@ -347,7 +347,7 @@ static bool make_parts(session *with, const bench_scene *subject, mspring_simd l
         result = mspring_network_compact(parts->network);
     }
     if (result == MSPRING_OK) {
-        result = mspring_network_set_inverse_mass_scales(parts->network, first, 1, &pinned);
+        result = mspring_network_set(parts->network, MSPRING_INVERSE_MASS_SCALE, first, 1, &pinned, 1);
     }
     if (result == MSPRING_OK) {
         result = mspring_network_set_velocities(parts->network, first, 1, &none, &slowly, 1);

@@ -172,9 +172,11 @@ static bool start(game *played, mspring_builder *builder, const options *asked, 
         played->made_of[s] = ship_part_of_spring(&played->vessel, played->end[s], ends[s]);
         strains[s] = strain_of[played->made_of[s]];
     }
-    must(mspring_network_set_break_strains(played->network, 0, played->springs, strains), "strains", played);
+    must(mspring_network_set(played->network, MSPRING_BREAK_STRAIN, 0, played->springs, strains, 1), "strains",
+         played);
     must(mspring_network_reserve_events(played->network, EVENTS), "events", played);
-    must(mspring_network_get_masses(played->network, 0, played->particles, played->dry), "masses", played);
+    must(mspring_network_get(played->network, MSPRING_MASS, 0, played->particles, played->dry, 1), "masses",
+         played);
     must(mspring_network_get_positions(played->network, 0, played->particles, played->x, played->y, 1), "positions",
          played);
     must(add_float_hook(played), "float hook", played);
@@ -226,7 +228,8 @@ static void brace(game *played) {
     const float strains[SHIP_BRACES] = {toughness, toughness};
     must(ship_braces(&played->vessel, &played->choice, defs), "braces", played);
     must(mspring_network_add_springs(played->network, defs, SHIP_BRACES, ids), "braces", played);
-    must(mspring_network_set_break_strains_at(played->network, ids, SHIP_BRACES, strains), "braces", played);
+    must(mspring_network_set_at(played->network, MSPRING_BREAK_STRAIN, ids, SHIP_BRACES, strains, 1), "braces",
+         played);
     for (int i = 0; i < SHIP_BRACES; i++) {
         played->end[ids[i]] = defs[i].a;
         played->made_of[ids[i]] = ship_part_of_spring(&played->vessel, defs[i].a, defs[i].b);
@@ -281,7 +284,8 @@ static void take_water(game *played, double time) {
     }
     for (uint32_t i = 0; i < played->particles; i++)
         played->wet[i] = played->dry[i] + (float)water_of(played, i);
-    must(mspring_network_set_masses(played->network, 0, played->particles, played->wet), "masses", played);
+    must(mspring_network_set(played->network, MSPRING_MASS, 0, played->particles, played->wet, 1), "masses",
+         played);
     books_edit(&played->accounts, played->network);
 }
 

@@ -266,7 +266,7 @@ static bool make_stiffer(mspring_network *network) {
         if (mspring_network_get_spring(network, s, &info) != MSPRING_OK)
             return false;
         const float stiffness = 4 * info.nominal_stiffness;
-        if (mspring_network_set_stiffnesses(network, s, 1, &stiffness) != MSPRING_OK)
+        if (mspring_network_set(network, MSPRING_STIFFNESS, s, 1, &stiffness, 1) != MSPRING_OK)
             return false;
     }
     return true;
@@ -315,10 +315,10 @@ static bool throw_at_slope(mspring_network *network, uint32_t columns, uint32_t 
     floor.planes = slope, floor.plane_count = 1, floor.friction = 0.3f, floor.restitution = 0.2f;
     bool ok = mspring_network_set_floor(network, &floor) == MSPRING_OK;
     for (uint32_t p = 0; ok && p < columns * rows; p++)
-        ok = mspring_network_set_inverse_mass_scales(network, p, 1, &one) == MSPRING_OK &&
+        ok = mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, p, 1, &one, 1) == MSPRING_OK &&
              mspring_network_set_velocities(network, p, 1, &still, &down, 1) == MSPRING_OK;
     for (uint32_t s = 0; ok && s < mspring_network_spring_count(network); s++)
-        ok = mspring_network_set_break_strains(network, s, 1, &strain) == MSPRING_OK;
+        ok = mspring_network_set(network, MSPRING_BREAK_STRAIN, s, 1, &strain, 1) == MSPRING_OK;
     if (!ok)
         fprintf(stderr, "cannot throw the lattice: %s\n", mspring_network_error(network));
     return ok;

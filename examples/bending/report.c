@@ -45,7 +45,7 @@ bool report_measure(mspring_network *network, const scene *measured, double subs
     *measures =
         (spring_measures){.least_stiffness = INFINITY, .least_fraction = INFINITY, .strained = MSPRING_NONE};
     float *masses = malloc(particles * sizeof *masses);
-    bool ok = masses && mspring_network_get_masses(network, 0, particles, masses) == MSPRING_OK &&
+    bool ok = masses && mspring_network_get(network, MSPRING_MASS, 0, particles, masses, 1) == MSPRING_OK &&
               mspring_network_max_strain(network, NULL, &measures->strained) == MSPRING_OK &&
               measure_springs(network, measured, masses, substep, measures);
     free(masses);

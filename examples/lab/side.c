@@ -74,7 +74,8 @@ static mspring_result set_masses(lab_side *side, double factor) {
     float *values = scaled(side->stage->mass, side->stage->particle_count, factor);
     if (!values)
         return MSPRING_ERROR_MEMORY;
-    mspring_result result = mspring_network_set_masses(side->network, 0, side->stage->particle_count, values);
+    mspring_result result =
+        mspring_network_set(side->network, MSPRING_MASS, 0, side->stage->particle_count, values, 1);
     free(values);
     if (result == MSPRING_OK && side->stage->relative)
         result = mspring_network_renew_relative_springs(side->network);
@@ -84,7 +85,7 @@ static mspring_result set_masses(lab_side *side, double factor) {
 static mspring_result set_stiffnesses(lab_side *side, double factor) {
     float *values = scaled(side->stage->stiffness, side->stage->spring_count, factor);
     const mspring_result result =
-        values ? mspring_network_set_stiffnesses(side->network, 0, side->stage->spring_count, values)
+        values ? mspring_network_set(side->network, MSPRING_STIFFNESS, 0, side->stage->spring_count, values, 1)
                : MSPRING_ERROR_MEMORY;
     free(values);
     return result;
@@ -93,7 +94,7 @@ static mspring_result set_stiffnesses(lab_side *side, double factor) {
 static mspring_result set_dampings(lab_side *side, double factor) {
     float *values = scaled(side->stage->damping, side->stage->spring_count, factor);
     const mspring_result result =
-        values ? mspring_network_set_dampings(side->network, 0, side->stage->spring_count, values)
+        values ? mspring_network_set(side->network, MSPRING_DAMPING, 0, side->stage->spring_count, values, 1)
                : MSPRING_ERROR_MEMORY;
     free(values);
     return result;
@@ -109,7 +110,7 @@ static mspring_result set_breaking(lab_side *side, bool breaking) {
         const float strain = given ? given[i] : usual_break_strain;
         values[i] = breaking && strain > 0 ? strain : INFINITY;
     }
-    const mspring_result result = mspring_network_set_break_strains(side->network, 0, count, values);
+    const mspring_result result = mspring_network_set(side->network, MSPRING_BREAK_STRAIN, 0, count, values, 1);
     free(values);
     return result;
 }

@@ -48,7 +48,8 @@ bool side_pin(lab_side *side, double x, double y, double radius, bool pin) {
     const float scale = pin ? 0 : 1, still = 0;
     for (uint32_t i = 0; i < count; i++) {
         const mspring_id particle = side->held[i];
-        if (!accepted(side, mspring_network_set_inverse_mass_scales(side->network, particle, 1, &scale)) ||
+        if (!accepted(side,
+                      mspring_network_set(side->network, MSPRING_INVERSE_MASS_SCALE, particle, 1, &scale, 1)) ||
             !accepted(side, mspring_network_set_velocities(side->network, particle, 1, &still, &still, 1)))
             return false;
     }
@@ -122,7 +123,8 @@ bool side_copy_state(lab_side *side, const lab_side *from) {
         for (uint32_t i = 0; ok && i < particles; i++) {
             const float scale = side_is_pinned(from, i) ? 0 : 1;
             if (side_is_pinned(from, i) != side_is_pinned(side, i))
-                ok = accepted(side, mspring_network_set_inverse_mass_scales(side->network, i, 1, &scale));
+                ok =
+                    accepted(side, mspring_network_set(side->network, MSPRING_INVERSE_MASS_SCALE, i, 1, &scale, 1));
         }
         ok = ok && accepted(side, mspring_network_view(side->network, &side->view));
     }

@@ -290,10 +290,10 @@ static mspring_id far_from_pins(const lab_stage *made) {
 static mspring_result read_network(lab_stage *made, const mspring_network *network) {
     mspring_result result = mspring_network_get_positions(network, 0, made->particle_count, made->x, made->y, 1);
     if (result == MSPRING_OK)
-        result = mspring_network_get_masses(network, 0, made->particle_count, made->mass);
+        result = mspring_network_get(network, MSPRING_MASS, 0, made->particle_count, made->mass, 1);
     for (uint32_t i = 0; result == MSPRING_OK && i < made->particle_count; i++) {
         float scale = 1;
-        result = mspring_network_get_inverse_mass_scales(network, i, 1, &scale);
+        result = mspring_network_get(network, MSPRING_INVERSE_MASS_SCALE, i, 1, &scale, 1);
         made->pinned[i] = scale == 0;
     }
     for (uint32_t i = 0; result == MSPRING_OK && i < made->spring_count; i++) {

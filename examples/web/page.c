@@ -311,13 +311,13 @@ mspring_result page_set_damping(float rate) {
 mspring_result page_set_stiffness(float factor) {
     for (uint32_t i = 0; i < page.spring_count; i++)
         page.values[i] = factor * page.base_stiffness[i];
-    return done(mspring_network_set_stiffnesses(page.network, 0, page.spring_count, page.values));
+    return done(mspring_network_set(page.network, MSPRING_STIFFNESS, 0, page.spring_count, page.values, 1));
 }
 
 mspring_result page_set_breaking(uint32_t on) {
     for (uint32_t i = 0; i < page.spring_count; i++)
         page.values[i] = on && page.break_strain[i] > 0 ? page.break_strain[i] : __builtin_inff();
-    return done(mspring_network_set_break_strains(page.network, 0, page.spring_count, page.values));
+    return done(mspring_network_set(page.network, MSPRING_BREAK_STRAIN, 0, page.spring_count, page.values, 1));
 }
 
 /* -------------------------------------------------------------------------------------------------- looking */

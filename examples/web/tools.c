@@ -114,7 +114,7 @@ mspring_result page_pin(double x, double y, double radius) {
     }
     for (uint32_t i = 0; i < count; i++) {
         const mspring_result result =
-            mspring_network_set_inverse_mass_scales(page.network, page.list[i], 1, &scale);
+            mspring_network_set(page.network, MSPRING_INVERSE_MASS_SCALE, page.list[i], 1, &scale, 1);
         if (result != MSPRING_OK)
             return result;
     }

@@ -232,7 +232,7 @@ enum {
     MSPRING_SPRING_DAMPING_RATIO = 1u << 1,
     /// The spring is broken. This and the next two can be read only, not set.
     MSPRING_SPRING_BROKEN = 1u << 8,
-    /// The spring is stressed (mspring_network_set_stress_strains()).
+    /// The spring is stressed (MSPRING_STRESS_STRAIN).
     MSPRING_SPRING_STRESSED = 1u << 9,
     /// The spring has been removed. Ranges only: together with MSPRING_SPRING_BROKEN.
     MSPRING_SPRING_REMOVED = 1u << 10
@@ -1238,11 +1238,94 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_velocities(mspr
                                                                             const float *vx, const float *vy,
                                                                             uint32_t stride);
 
-/// Copy out masses (kg) in id order; pinned particles have theirs too.
+/* --------------------------------------------------------------------------------------------- properties */
+
+/// Relax strain for "relax_fraction (mspring_settings) of the stress strain".
+#define MSPRING_RELAX_STRAIN_DEFAULT (-1.0f)
+
+/// A property: one float of each particle, or of each spring. mspring_network_set() writes it, mspring_network_get()
+/// reads it. The allocation named is that of the first call that changes such a value.
+typedef int32_t mspring_property;
+enum {
+    /// Of a particle, kg, 1e-30 to 1e30, for cargo or water that gets in. A pinned particle keeps its mass. Relative
+    /// springs go on with the masses of before until mspring_network_renew_relative_springs().
+    /// Allocates if the network has relative springs.
+    MSPRING_MASS = 0,
+    /// Of a particle, no unit, 0 or 1e-6 to 1, for pins and particles that forces shall move less. It scales the
+    /// response to forces, not to gravity: 1 is normal, 0 is pinned. Energy and momentum count the mass alone.
+    /// Allocates at the first scale that is neither 0 nor 1.
+    MSPRING_INVERSE_MASS_SCALE = 1,
+    /// Nominal stiffness of a spring, N/m, 0 to 1e30; of a relative spring its fraction. A broken spring has the new
+    /// one when it is restored. Allocates for a relative spring: networks keep fractions once that many springs share.
+    MSPRING_STIFFNESS = 2,
+    /// Nominal damping of a spring, N s/m, 0 to 1e30; of a relative spring its fraction. Values above 0 need room:
+    /// some spring was made with damping, or the network with MSPRING_NETWORK_RESERVE_DAMPING.
+    /// Allocates as MSPRING_STIFFNESS.
+    MSPRING_DAMPING = 3,
+    /// Rest length of a spring, m, > 0 and at most 4e12, for muscles and winches. Writing it ends a ramp of the
+    /// spring. Allocates for a spring of a lattice: lattices keep rest lengths once that many springs share.
+    MSPRING_REST_LENGTH = 4,
+    /// Break strain of a spring, no unit, > 0; INFINITY, the default, for never. If the spring's absolute strain is
+    /// over it at the end of a step, the spring breaks. Nothing breaks in the middle of a step. Substeps too long to
+    /// follow a blow change the strains. Allocates.
+    MSPRING_BREAK_STRAIN = 5,
+    /// Stress strain of a spring, no unit, > 0; INFINITY, the default, for never. If the spring's absolute strain is
+    /// over it at the end of a step, the spring is stressed until it relaxes (MSPRING_EVENT_STRESSED). Allocates.
+    MSPRING_STRESS_STRAIN = 6,
+    /// Relax strain of a spring, no unit, >= 0. A stressed spring relaxes at the end of a step if its absolute strain
+    /// is below both its relax strain and its stress strain (MSPRING_EVENT_RELAXED). 0: it stays stressed.
+    /// MSPRING_RELAX_STRAIN_DEFAULT, the default: relax_fraction (mspring_settings) of its stress strain.
+    /// Allocates.
+    MSPRING_RELAX_STRAIN = 7,
+    /// Strain of a spring, no unit: (length - rest_length) / rest_length, 0 if it is broken. Read only.
+    MSPRING_STRAIN = 8,
+    /// Length of a spring, m. Read only.
+    MSPRING_LENGTH = 9,
+    /// Force along a spring, N, with the share of its damper: > 0 pulls its ends together. Read only.
+    MSPRING_FORCE = 10
+};
+
+/// Set a property of the particles or springs first ... first + count - 1.
+/// A call sets all values or, on error, none. Ids that were removed are left out. A value that is there already
+/// costs a comparison: it wakes nothing, allocates nothing, and is no edit to snapshots.
+/// @param values  that of id first + i is values[i * stride]
+/// @param stride  floats from one value to the next: 1 for an array, more for a field of structs, 0 for one value
+///                for all
+/// @return MSPRING_OK; MSPRING_ERROR_ID; MSPRING_ERROR_ARGUMENT for NULL, a property that is unknown or read only,
+///         or a value out of range (the message names property, id and value); MSPRING_ERROR_MEMORY,
+///         MSPRING_ERROR_BUSY.
+/// @threads exclusive access to network   @allocates as the property says   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set(mspring_network *network,
+                                                                 mspring_property property, mspring_id first,
+                                                                 uint32_t count, const float *values,
+                                                                 uint32_t stride);
+
+/// Set a property of listed particles or springs, as mspring_network_set().
+/// @param ids     [count]; an id may repeat: its last value counts. One that was removed is MSPRING_ERROR_ID.
+/// @param values  that of ids[i] is values[i * stride]
+/// @threads exclusive access to network   @allocates as the property says   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_at(mspring_network *network,
+                                                                    mspring_property property,
+                                                                    const mspring_id *ids, uint32_t count,
+                                                                    const float *values, uint32_t stride);
+
+/// Read a property of the particles or springs first ... first + count - 1.
+/// @param values  receives that of id first + i in values[i * stride]; 0 for what was removed
+/// @param stride  floats from one value to the next, at least 1; what lies between is left alone
+/// @return MSPRING_OK; MSPRING_ERROR_ID; MSPRING_ERROR_ARGUMENT for NULL, an unknown property or stride 0.
 /// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_masses(const mspring_network *network,
-                                                                        mspring_id first, uint32_t count,
-                                                                        float *mass);
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get(const mspring_network *network,
+                                                                 mspring_property property, mspring_id first,
+                                                                 uint32_t count, float *values, uint32_t stride);
+
+/// Read a property of listed particles or springs, as mspring_network_get().
+/// @param ids     [count]; one that was removed is MSPRING_ERROR_ID
+/// @param values  receives that of ids[i] in values[i * stride]
+/// @threads shared   @allocates never   @since 0.1
+MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_at(const mspring_network *network,
+                                                                    mspring_property property,
+                                                                    const mspring_id *ids, uint32_t count,
+                                                                    float *values, uint32_t stride);
 
 /* -------------------------------------------------------------------------------------------------- edits */
 
@@ -1272,87 +1355,10 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_velocities_at(m
                                                                                uint32_t count, const float *vx,
                                                                                const float *vy, uint32_t stride);
 
-/// Set masses (kg), as when water gets in. Stiffness and damping of springs stay what they are: relative springs go
-/// on with the masses that their particles had before, until mspring_network_renew_relative_springs(). A spring
-/// that is stable with some masses is stable with larger ones.
-/// @param mass  [count], 1e-30 to 1e30
-/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the particle),
-///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates at the first call on a network with relative springs
-/// @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_masses(mspring_network *network, mspring_id first,
-                                                                        uint32_t count, const float *mass);
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_masses_at(mspring_network *network,
-                                                                           const mspring_id *particles,
-                                                                           uint32_t count, const float *mass);
-
 /// Derive relative springs from the masses that their particles have now. Takes a pass over all springs.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_renew_relative_springs(mspring_network *network);
-
-/// Set how much particles give in to forces: 1 as their mass has it (the default), 0 not at all (they are pinned),
-/// between as if they were heavier by one over this; gravity accelerates them all the same. It stays as masses
-/// change, and is no part of the mass that energy and momentum count with.
-/// @param scale  [count], 0 or 1e-6 to 1
-/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the particle),
-///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates at the first scale that is neither 0 nor 1   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_inverse_mass_scales(mspring_network *network,
-                                                                                     mspring_id first,
-                                                                                     uint32_t count,
-                                                                                     const float *scale);
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_inverse_mass_scales_at(mspring_network *network,
-                                                                                        const mspring_id *particles,
-                                                                                        uint32_t count,
-                                                                                        const float *scale);
-
-/// Copy out scales of inverse masses in id order; 0: pinned.
-/// @param scale  [count]
-/// @return MSPRING_OK; MSPRING_ERROR_ID or MSPRING_ERROR_ARGUMENT.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_inverse_mass_scales(const mspring_network *network,
-                                                                                     mspring_id first,
-                                                                                     uint32_t count, float *scale);
-
-/// Set nominal stiffness: N/m, of relative springs the fraction. A broken spring stays broken and has the new
-/// stiffness when it is restored. Before the first call that gives a relative spring another fraction, a network
-/// keeps fractions once that many springs share.
-/// @param stiffness  [count], 0 to 1e30
-/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the spring), MSPRING_ERROR_BUSY,
-///         MSPRING_ERROR_MEMORY.
-/// @threads exclusive access to network   @allocates at the first other fraction of a relative spring   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_stiffnesses(mspring_network *network,
-                                                                             mspring_id first, uint32_t count,
-                                                                             const float *stiffness);
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_stiffnesses_at(mspring_network *network,
-                                                                                const mspring_id *springs,
-                                                                                uint32_t count,
-                                                                                const float *stiffness);
-
-/// Set nominal damping: N s/m, of relative springs the fraction; as mspring_network_set_stiffnesses(). A network
-/// whose springs were all made without damping has no room for any (MSPRING_ERROR_ARGUMENT), unless it was created
-/// with MSPRING_NETWORK_RESERVE_DAMPING.
-/// @param damping  [count], 0 to 1e30
-/// @threads exclusive access to network   @allocates at the first other fraction of a relative spring   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_dampings(mspring_network *network,
-                                                                          mspring_id first, uint32_t count,
-                                                                          const float *damping);
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_dampings_at(mspring_network *network,
-                                                                             const mspring_id *springs,
-                                                                             uint32_t count, const float *damping);
-
-/// Set rest lengths (m); as mspring_network_set_stiffnesses(). Ends a ramp of the spring.
-/// Before the first such call, lattices keep rest lengths once that many springs share.
-/// @param rest_length  [count], > 0 and at most 4e12
-/// @threads exclusive access to network   @allocates at the first rest length or ramp in a network   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_rest_lengths(mspring_network *network,
-                                                                              mspring_id first, uint32_t count,
-                                                                              const float *rest_length);
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_rest_lengths_at(mspring_network *network,
-                                                                                 const mspring_id *springs,
-                                                                                 uint32_t count,
-                                                                                 const float *rest_length);
 
 /// Break springs: from now on they exert nothing, until they are restored. Their ids, rest lengths and nominal
 /// stiffness and damping stay. One that is broken already stays so.
@@ -1495,44 +1501,13 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_expand(mspring_netw
 
 /* ------------------------------------------------------------------------------------- strain and events */
 
-/// Have springs break by themselves: one whose absolute strain, |length - rest_length| / rest_length, is over its
-/// break strain at the end of a step is broken then. It is the strain that decides, whatever the stiffness, the
-/// substeps or the solver; but substeps too long to follow a blow, above all single implicit ones, make other
-/// strains of it. Nothing breaks, and nobody is called, in the middle of a step.
-/// @param strain  [count], > 0; INFINITY, the default, for never
-/// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the spring),
-///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates at the first threshold of break or stress in a network
-/// @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_break_strains(mspring_network *network,
-                                                                               mspring_id first, uint32_t count,
-                                                                               const float *strain);
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_break_strains_at(mspring_network *network,
-                                                                                  const mspring_id *springs,
-                                                                                  uint32_t count,
-                                                                                  const float *strain);
-
-/// Have springs watched: one whose absolute strain is over its stress strain at the end of a step is stressed from
-/// then on, until at the end of some step the strain is below relax_fraction (mspring_settings) of that. See
-/// MSPRING_EVENT_STRESSED.
-/// @param strain  [count], > 0; INFINITY, the default, for never
-/// @return as mspring_network_set_break_strains()
-/// @threads exclusive access to network   @allocates at the first threshold of stress in a network   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_stress_strains(mspring_network *network,
-                                                                                mspring_id first, uint32_t count,
-                                                                                const float *strain);
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_stress_strains_at(mspring_network *network,
-                                                                                   const mspring_id *springs,
-                                                                                   uint32_t count,
-                                                                                   const float *strain);
-
 /// What an event tells.
 typedef int32_t mspring_event_kind;
 enum {
     MSPRING_EVENT_BROKEN = 0, ///< spring id broke: at the end of a step, by its strain; or in an edit, with strain
                               ///< 0 and, if that was a detachment, the particle detached in other
     MSPRING_EVENT_STRESSED = 1, ///< the strain of spring id rose over its stress strain
-    MSPRING_EVENT_RELAXED = 2,  ///< and fell below relax_fraction of it
+    MSPRING_EVENT_RELAXED = 2,  ///< and fell below its relax strain
     MSPRING_EVENT_RESTORED = 3, ///< spring id was restored
     MSPRING_EVENT_DETACHED = 4, ///< particle id was detached; after the events of its springs
     MSPRING_EVENT_SPLIT =
@@ -1733,20 +1708,12 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_spring_flags(co
                                                                               uint32_t *flags,
                                                                               uint32_t stride);
 
-/// Strain of the springs first ... first + count - 1: (length - rest_length) / rest_length, of broken ones 0.
-/// @param strain  [count]
-/// @return MSPRING_OK; MSPRING_ERROR_ID or MSPRING_ERROR_ARGUMENT.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_strains(const mspring_network *network,
-                                                                         mspring_id first, uint32_t count,
-                                                                         float *strain);
-
 /// Length, direction and strain of all springs at once, in id order: a pass over the network in the order in which
 /// it lies in memory. Each array is filled if it is not NULL; all is 0 of springs that were removed.
 /// @param length       [spring count], m
 /// @param direction_x, direction_y  [spring count] the unit vector along the spring from its end a to b, as given;
 ///                     (0, 0) for a spring of length 0; both or none
-/// @param strain       [spring count], as mspring_network_get_strains(), to the last bit or so
+/// @param strain       [spring count], as MSPRING_STRAIN, to the last bit or so
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network   @allocates the first time   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_extents(mspring_network *network, float *length,

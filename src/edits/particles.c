@@ -4,34 +4,11 @@
 #include <string.h>
 
 #include "base/cpu.h"
+#include "edits/values.h"
 #include "store/changed.h"
-#include "store/selection.h"
 #include "store/springs.h"
 
-static float scale_of(const mspring_network *network, mspring_id particle) {
-    if (network->inverse_mass_scale)
-        return network->inverse_mass_scale[particle];
-    return network->inverse_mass[network->topology.slot_of_particle[particle]] > 0.0f ? 1.0f : 0.0f;
-}
-
 /* ------------------------------------------------------------------------------------------------------ masses */
-
-static mspring_result check_masses(mspring_network *network, const mspringi_selection *at, const float *mass) {
-    bool all = true;
-    for (uint32_t i = 0; i < at->count; ++i)
-        all = all & mspringi_is_mass(mass[i]);
-    if (all)
-        return MSPRING_OK;
-    uint32_t i = 0;
-    while (i < at->count &&
-           (mspringi_is_mass(mass[i]) || !mspringi_particle_exists(network, mspringi_selected(at, i))))
-        ++i;
-    if (i == at->count)
-        return MSPRING_OK;
-    return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                         "particle %u: mass is %g kg, it must be 1e-30 to 1e30", (unsigned)mspringi_selected(at, i),
-                         (double)mass[i]);
-}
 
 mspring_result mspringi_reserve_spring_masses(mspring_network *network) {
     if (!network->fractions.values || network->spring_mass)
@@ -45,47 +22,44 @@ mspring_result mspringi_reserve_spring_masses(mspring_network *network) {
     return MSPRING_OK;
 }
 
+// Index of the first mass that is another than the particle has.
+static uint32_t first_other_mass(const mspring_network *network, const mspringi_selection *at,
+                                 const mspringi_values *values) {
+    uint32_t i = 0;
+    while (i < at->count && (network->mass[mspringi_selected(at, i)] == mspringi_value_of(values, i) ||
+                             !mspringi_particle_exists(network, mspringi_selected(at, i))))
+        ++i;
+    return i;
+}
+
 static MSPRINGI_NOINLINE void store_masses(mspring_network *network, const mspringi_selection *at,
-                                           const float *mass) {
-    for (uint32_t i = 0; i < at->count; ++i) {
+                                           const mspringi_values *values, uint32_t i) {
+    for (; i < at->count; ++i) {
         const mspring_id particle = mspringi_selected(at, i);
+        const float mass = mspringi_value_of(values, i);
         if (!mspringi_particle_exists(network, particle))
             continue;
         float *inverse_mass = &network->inverse_mass[network->topology.slot_of_particle[particle]];
-        network->mass[particle] = mass[i];
+        network->mass[particle] = mass;
         if (network->inverse_mass_scale)
-            *inverse_mass = network->inverse_mass_scale[particle] / mass[i];
+            *inverse_mass = network->inverse_mass_scale[particle] / mass;
         else if (*inverse_mass > 0.0f)
-            *inverse_mass = 1.0f / mass[i];
+            *inverse_mass = 1.0f / mass;
     }
 }
 
-static mspring_result set_masses(mspring_network *network, const mspringi_selection *at, const float *mass) {
-    mspring_result result = check_masses(network, at, mass);
-    if (result == MSPRING_OK)
-        result = mspringi_reserve_spring_masses(network);
+static mspring_result set_masses(mspring_network *network, const mspringi_selection *at,
+                                 const mspringi_values *values) {
+    const uint32_t first = first_other_mass(network, at, values);
+    if (first == at->count)
+        return MSPRING_OK;
+    mspring_result result = mspringi_reserve_spring_masses(network);
     if (result != MSPRING_OK)
         return result;
-    const mspringi_fp_state before = mspringi_fp_enter();
-    store_masses(network, at, mass);
-    mspringi_fp_leave(before);
+    store_masses(network, at, values, first);
     network->is_reweighed = network->spring_mass != NULL;
     mspringi_changed(network, MSPRINGI_CHANGED_MASSES, 0);
     return MSPRING_OK;
-}
-
-mspring_result mspring_network_set_masses(mspring_network *network, mspring_id first, uint32_t count,
-                                          const float *mass) {
-    mspringi_selection at;
-    mspring_result result = mspringi_select_range(network, MSPRINGI_PARTICLES, first, count, mass, mass, &at);
-    return result == MSPRING_OK ? set_masses(network, &at, mass) : result;
-}
-
-mspring_result mspring_network_set_masses_at(mspring_network *network, const mspring_id *particles, uint32_t count,
-                                             const float *mass) {
-    mspringi_selection at;
-    mspring_result result = mspringi_select_list(network, MSPRINGI_PARTICLES, particles, count, mass, mass, &at);
-    return result == MSPRING_OK ? set_masses(network, &at, mass) : result;
 }
 
 mspring_result mspring_network_renew_relative_springs(mspring_network *network) {
@@ -102,19 +76,6 @@ mspring_result mspring_network_renew_relative_springs(mspring_network *network) 
 
 /* ------------------------------------------------------------------------------------------------------ scales */
 
-static mspring_result check_scales(mspring_network *network, const mspringi_selection *at, const float *scale,
-                                   bool *fractional) {
-    *fractional = false;
-    for (uint32_t i = 0; i < at->count; ++i) {
-        if (!mspringi_is_inverse_mass_scale(scale[i]))
-            return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                                 "particle %u: scale of inverse mass is %g, it must be 0 or 1e-6 to 1",
-                                 (unsigned)mspringi_selected(at, i), (double)scale[i]);
-        *fractional = *fractional || (scale[i] > 0.0f && scale[i] < 1.0f);
-    }
-    return MSPRING_OK;
-}
-
 mspring_result mspringi_reserve_inverse_mass_scales(mspring_network *network) {
     if (network->inverse_mass_scale)
         return MSPRING_OK;
@@ -124,60 +85,59 @@ mspring_result mspringi_reserve_inverse_mass_scales(mspring_network *network) {
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for scales of inverse mass of %u particles", (unsigned)count);
     for (mspring_id p = 0; p < count; ++p)
-        scales[p] = scale_of(network, p);
+        scales[p] = mspringi_particle_property(network, MSPRING_INVERSE_MASS_SCALE, p);
     network->inverse_mass_scale = scales;
     return MSPRING_OK;
 }
 
-static MSPRINGI_NOINLINE void store_scales(mspring_network *network, const mspringi_selection *at,
-                                           const float *scale) {
+static bool is_fractional(float scale) {
+    return scale > 0.0f && scale < 1.0f;
+}
+
+// Index of the first scale that is another than the particle has, and whether one needs room for scales.
+static uint32_t first_other_scale(const mspring_network *network, const mspringi_selection *at,
+                                  const mspringi_values *values, bool *fractional) {
+    uint32_t first = at->count;
+    *fractional = false;
     for (uint32_t i = 0; i < at->count; ++i) {
         const mspring_id particle = mspringi_selected(at, i);
+        const float scale = mspringi_value_of(values, i);
+        if (!mspringi_particle_exists(network, particle) ||
+            mspringi_particle_property(network, MSPRING_INVERSE_MASS_SCALE, particle) == scale)
+            continue;
+        first = first < i ? first : i;
+        *fractional = *fractional || is_fractional(scale);
+    }
+    return first;
+}
+
+static MSPRINGI_NOINLINE void store_scales(mspring_network *network, const mspringi_selection *at,
+                                           const mspringi_values *values, uint32_t i) {
+    for (; i < at->count; ++i) {
+        const mspring_id particle = mspringi_selected(at, i);
+        const float scale = mspringi_value_of(values, i);
         if (!mspringi_particle_exists(network, particle))
             continue;
         if (network->inverse_mass_scale)
-            network->inverse_mass_scale[particle] = scale[i];
-        network->inverse_mass[network->topology.slot_of_particle[particle]] = scale[i] / network->mass[particle];
-        network->is_scaled = network->is_scaled || (scale[i] > 0.0f && scale[i] < 1.0f);
+            network->inverse_mass_scale[particle] = scale;
+        network->inverse_mass[network->topology.slot_of_particle[particle]] = scale / network->mass[particle];
+        network->is_scaled = network->is_scaled || is_fractional(scale);
     }
 }
 
-static mspring_result set_scales(mspring_network *network, const mspringi_selection *at, const float *scale) {
+static mspring_result set_scales(mspring_network *network, const mspringi_selection *at,
+                                 const mspringi_values *values) {
     bool fractional;
-    mspring_result result = check_scales(network, at, scale, &fractional);
-    if (result == MSPRING_OK && fractional)
-        result = mspringi_reserve_inverse_mass_scales(network);
-    if (result != MSPRING_OK)
+    const uint32_t first = first_other_scale(network, at, values, &fractional);
+    mspring_result result = fractional ? mspringi_reserve_inverse_mass_scales(network) : MSPRING_OK;
+    if (result != MSPRING_OK || first == at->count)
         return result;
-    const mspringi_fp_state before = mspringi_fp_enter();
-    store_scales(network, at, scale);
-    mspringi_fp_leave(before);
+    store_scales(network, at, values, first);
     mspringi_changed(network, MSPRINGI_CHANGED_MASSES, 0);
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_set_inverse_mass_scales(mspring_network *network, mspring_id first, uint32_t count,
-                                                       const float *scale) {
-    mspringi_selection at;
-    mspring_result result = mspringi_select_range(network, MSPRINGI_PARTICLES, first, count, scale, scale, &at);
-    return result == MSPRING_OK ? set_scales(network, &at, scale) : result;
-}
-
-mspring_result mspring_network_set_inverse_mass_scales_at(mspring_network *network, const mspring_id *particles,
-                                                          uint32_t count, const float *scale) {
-    mspringi_selection at;
-    mspring_result result = mspringi_select_list(network, MSPRINGI_PARTICLES, particles, count, scale, scale, &at);
-    return result == MSPRING_OK ? set_scales(network, &at, scale) : result;
-}
-
-mspring_result mspring_network_get_inverse_mass_scales(const mspring_network *network, mspring_id first,
-                                                       uint32_t count, float *scale) {
-    if (!network || (count > 0 && !scale))
-        return MSPRING_ERROR_ARGUMENT;
-    const uint32_t total = network->topology.particle_count;
-    if (first > total || count > total - first)
-        return MSPRING_ERROR_ID;
-    for (uint32_t i = 0; i < count; ++i)
-        scale[i] = scale_of(network, first + i);
-    return MSPRING_OK;
+mspring_result mspringi_set_particle_values(mspring_network *network, const mspringi_selection *at,
+                                            const mspringi_values *values) {
+    return values->property == MSPRING_MASS ? set_masses(network, at, values) : set_scales(network, at, values);
 }

@@ -1,13 +1,27 @@
 /// @file values.h
-/// What springs may be like.
+/// Setting what particles and springs have one float of each: by whom mspring_network_set() is done.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_VALUES_H
 #define MSPRINGI_VALUES_H
 
-#include "kernels/kernels.h"
+#include "store/properties.h"
 
-/// Whether a spring may have this stiffness, damping or rest length.
-bool mspringi_is_spring_value(mspringi_part part, float value);
+/// Values that a property allows, one for each of a selection, or with stride 0 one for all.
+typedef struct mspringi_values {
+    mspring_property property;
+    const float *first;
+    size_t stride; ///< floats from one to the next
+} mspringi_values;
+
+static inline float mspringi_value_of(const mspringi_values *values, uint32_t i) {
+    return values->first[i * values->stride];
+}
+
+/// Set them of particles (particles.c) or springs (springs.c). What has its value already is left alone.
+mspring_result mspringi_set_particle_values(mspring_network *network, const mspringi_selection *at,
+                                            const mspringi_values *values);
+mspring_result mspringi_set_spring_values(mspring_network *network, const mspringi_selection *at,
+                                          const mspringi_values *values);
 
 #endif

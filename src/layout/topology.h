@@ -191,6 +191,18 @@ void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory
 extern const mspringi_columns mspringi_topology_columns;
 void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *memory);
 
+/// The two slots that the spring in a place of a lattice joins, in the sense of its direction.
+static inline void mspringi_lattice_ends(const mspringi_topology *topology, mspringi_place place, uint32_t *base,
+                                         uint32_t *tip) {
+    const uint32_t block = place / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH), lane = place % MSPRINGI_WIDTH;
+    const uint32_t direction = place / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS;
+    const uint32_t here = (topology->lattice_first + block) * MSPRINGI_WIDTH + lane;
+    const uint32_t up = topology->up_of_block[block] * MSPRINGI_WIDTH + lane;
+    *base = direction == MSPRINGI_SOUTH_EAST ? up : here;
+    *tip = ((direction == MSPRINGI_NORTH) | (direction == MSPRINGI_NORTH_EAST) ? up : here) +
+           (direction != MSPRINGI_NORTH);
+}
+
 /// The two slots that a spring joins; where the place has a direction, base and tip in its sense.
 void mspringi_topology_ends(const mspringi_topology *topology, mspringi_place place, uint32_t *base, uint32_t *tip);
 

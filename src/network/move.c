@@ -46,11 +46,7 @@ mspring_result mspringi_move_reserve_springs(mspring_job *job) {
                                         &to->message);
     if (result == MSPRING_OK && job->from.rests.shared_count == 0)
         result = mspringi_rests_separate(to);
-    if (result == MSPRING_OK && job->from.strain.break_strain)
-        result = mspringi_strain_reserve_layout(to);
-    if (result == MSPRING_OK && job->from.strain.stress_strain)
-        result = mspringi_strain_reserve_stress(to);
-    return result;
+    return result == MSPRING_OK ? mspringi_strain_match_layout(to, &job->from) : result;
 }
 
 // Copy all that there is of a spring, from its place here to its place there, whatever is there.
@@ -161,10 +157,8 @@ static mspring_result make_others(mspring_network *to, const mspring_network *fr
     mspring_result result = MSPRING_OK;
     if (to->rests.shared_count > 0 && from->rests.shared_count == 0)
         result = mspringi_rests_separate(to);
-    if (result == MSPRING_OK && from->strain.break_strain)
-        result = mspringi_strain_reserve_layout(to);
-    if (result == MSPRING_OK && from->strain.stress_strain)
-        result = mspringi_strain_reserve_stress(to);
+    if (result == MSPRING_OK)
+        result = mspringi_strain_match_layout(to, from);
     if (result == MSPRING_OK && from->looks)
         result = mspringi_border_reserve(to);
     if (result == MSPRING_OK && !mspringi_store_match_layout(to, from))

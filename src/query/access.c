@@ -55,14 +55,6 @@ mspring_result mspring_network_get_velocities(const mspring_network *network, ms
     return result;
 }
 
-mspring_result mspring_network_get_masses(const mspring_network *network, mspring_id first, uint32_t count,
-                                          float *mass) {
-    mspring_result result = check_get(network, first, count, mass, mass, 1);
-    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
-        mass[i] = network->mass[first + i];
-    return result;
-}
-
 /* --------------------------------------------------------------------------------------------- set positions */
 
 // Positions in either precision: exactly one of the two pairs of arrays is there.

@@ -2,7 +2,11 @@
 #include <math.h>
 
 #include "kernels/spring_law.h"
+#include "query/measure.h"
 #include "store/springs.h"
+
+/// Springs that are measured at once.
+#define PIECE 512u
 
 static bool is_pinned(const mspring_network *network, mspring_id particle) {
     return network->inverse_mass[network->topology.slot_of_particle[particle]] == 0.0f;
@@ -20,14 +24,32 @@ static double spring_length(const mspring_network *network, const mspringi_sprin
     return length;
 }
 
-float mspringi_spring_strain(const mspring_network *network, mspring_id spring) {
-    const mspringi_place place = mspringi_place_of(&network->topology, spring);
+float mspringi_place_length(const mspring_network *network, mspringi_place place) {
+    const mspringi_spring_values r = mspringi_place_get(network, place);
+    double rate;
+    return (float)spring_length(network, &r, &rate);
+}
+
+float mspringi_place_strain(const mspring_network *network, mspringi_place place) {
     if (!mspringi_place_is_live(network, place))
         return 0.0f;
     const mspringi_spring_values r = mspringi_place_get(network, place);
     const double rest_length = (double)r.rest_length;
     double rate;
     return (float)((spring_length(network, &r, &rate) - rest_length) / rest_length);
+}
+
+float mspringi_spring_strain(const mspring_network *network, mspring_id spring) {
+    return mspringi_place_strain(network, mspringi_place_of(&network->topology, spring));
+}
+
+float mspringi_spring_force(const mspring_network *network, mspring_id spring) {
+    const mspringi_spring_values r = mspringi_spring_get(network, spring);
+    const double stiffness = (double)r.stiffness, damping = (double)r.damping;
+    double rate;
+    const double length = spring_length(network, &r, &rate), stretch = length - (double)r.rest_length;
+    const double pull = MSPRINGI_LAW_FORCE(MSPRINGI_TIMES, stiffness, stretch);
+    return length > 0.0 ? (float)(pull + MSPRINGI_LAW_DAMPING_FORCE(MSPRINGI_TIMES, damping, rate)) : 0.0f;
 }
 
 mspring_result mspring_network_energy(const mspring_network *network, double *kinetic, double *elastic,
@@ -126,12 +148,7 @@ mspring_result mspring_network_get_spring(const mspring_network *network, msprin
     const mspringi_place place = mspringi_place_of(t, spring);
     const mspringi_spring_values r = mspringi_place_get(network, place);
     const mspringi_ends ends = mspringi_spring_ends(network, spring);
-    double rate;
-    const double length = spring_length(network, &r, &rate), rest_length = (double)r.rest_length;
     const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, place);
-    const double stiffness = (double)r.stiffness, damping = (double)r.damping;
-    const double pull = MSPRINGI_LAW_FORCE(MSPRINGI_TIMES, stiffness, length - rest_length);
-    const double force = length > 0.0 ? pull + MSPRINGI_LAW_DAMPING_FORCE(MSPRINGI_TIMES, damping, rate) : 0.0;
     *info = (mspring_spring_info){
         .struct_size = sizeof *info,
         .flags = mspringi_spring_flags(network, spring),
@@ -140,38 +157,32 @@ mspring_result mspring_network_get_spring(const mspring_network *network, msprin
         .stiffness = r.stiffness,
         .damping = r.damping,
         .rest_length = r.rest_length,
-        .length = (float)length,
-        .strain = mspringi_spring_strain(network, spring),
-        .force = (float)force,
+        .length = mspringi_place_length(network, place),
+        .strain = mspringi_place_strain(network, place),
+        .force = mspringi_spring_force(network, spring),
         .nominal_stiffness = nominal.stiffness,
         .nominal_damping = nominal.damping,
     };
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_get_strains(const mspring_network *network, mspring_id first, uint32_t count,
-                                           float *strain) {
-    if (!network || (count > 0 && !strain))
-        return MSPRING_ERROR_ARGUMENT;
-    const uint32_t total = network->topology.spring_count;
-    if (first > total || count > total - first)
-        return MSPRING_ERROR_ID;
-    for (uint32_t i = 0; i < count; ++i)
-        strain[i] = mspringi_spring_strain(network, first + i);
-    return MSPRING_OK;
-}
-
 mspring_result mspring_network_max_strain(const mspring_network *network, float *strain, mspring_id *spring) {
     if (!network)
         return MSPRING_ERROR_ARGUMENT;
+    const uint32_t springs = network->topology.spring_count;
     float largest = 0.0f;
-    mspring_id where = MSPRING_NONE;
-    for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
-        const float size = fabsf(mspringi_spring_strain(network, i));
-        if (where == MSPRING_NONE || size > largest) {
-            largest = size;
-            where = i;
-        }
+    mspring_id where = springs > 0 ? 0 : MSPRING_NONE;
+    for (mspring_id first = 0; first < springs; first += PIECE) {
+        float strains[PIECE], most = 0.0f;
+        const uint32_t count = springs - first < PIECE ? springs - first : PIECE;
+        mspringi_measure_strains(network, first, count, strains, 1);
+        for (uint32_t i = 0; i < count; ++i)
+            most = fabsf(strains[i]) > most ? fabsf(strains[i]) : most;
+        for (uint32_t i = 0; most > largest && i < count; ++i)
+            if (fabsf(strains[i]) > largest) {
+                largest = fabsf(strains[i]);
+                where = first + i;
+            }
     }
     if (strain)
         *strain = largest;

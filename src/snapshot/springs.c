@@ -2,11 +2,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "edits/values.h"
 #include "step/breaking.h"
 #include "step/ramps.h"
 #include "step/strain.h"
 #include "store/changed.h"
+#include "store/properties.h"
 #include "store/rests.h"
 #include "store/sections.h"
 #include "store/springs.h"
@@ -171,20 +171,22 @@ static void thresholds_save(const mspring_network *network, const float *thresho
 }
 
 static mspring_result thresholds_check(mspring_network *network, const mspringi_section *section,
-                                       const uint8_t *from, size_t size) {
+                                       mspring_property property, const uint8_t *from, size_t size) {
     const uint32_t springs = network->topology.reserve.spring_end;
     mspring_result result = mspringi_section_check_size(network, section, size, springs * sizeof(float));
-    for (mspring_id s = 0; result == MSPRING_OK && s < springs; ++s)
-        if (!(mspringi_float_at(from, s) > 0.0f))
-            result = mspringi_section_fail(network, section, "spring %u has %g", (unsigned)s,
-                                           (double)mspringi_float_at(from, s));
-    return result;
+    for (mspring_id s = 0; result == MSPRING_OK && s < springs; ++s) {
+        const float value = mspringi_float_at(from, s);
+        if (!mspringi_are_allowed(property, &value, 1, 1))
+            result = mspringi_section_fail(network, section, "spring %u has %g", (unsigned)s, (double)value);
+    }
+    return result == MSPRING_OK ? mspringi_strain_reserve_for(network, property) : result;
 }
 
-static void thresholds_load(mspring_network *network, bool stress, const uint8_t *from, size_t size) {
+static void thresholds_load(mspring_network *network, mspring_property property, const uint8_t *from, size_t size) {
+    const float none = property == MSPRING_RELAX_STRAIN ? MSPRING_RELAX_STRAIN_DEFAULT : INFINITY;
     for (mspring_id s = 0; s < network->topology.reserve.spring_end; ++s)
-        mspringi_strain_store(network, network->topology.place_of_spring[s], stress,
-                              size > 0 ? mspringi_float_at(from, s) : INFINITY);
+        mspringi_strain_store(network, network->topology.place_of_spring[s], property,
+                              size > 0 ? mspringi_float_at(from, s) : none);
 }
 
 static size_t break_strains_size(const mspring_network *network) {
@@ -196,15 +198,14 @@ static void break_strains_save(const mspring_network *network, mspringi_writer *
 }
 
 static mspring_result break_strains_check(mspring_network *network, const uint8_t *from, size_t size) {
-    mspring_result result =
-        size > 0 ? thresholds_check(network, &mspringi_section_break_strains, from, size) : MSPRING_OK;
-    return result == MSPRING_OK && size > 0 ? mspringi_strain_reserve(network) : result;
+    return size > 0 ? thresholds_check(network, &mspringi_section_break_strains, MSPRING_BREAK_STRAIN, from, size)
+                    : MSPRING_OK;
 }
 
 static void break_strains_load(mspring_network *network, const uint8_t *from, size_t size) {
     network->strain.breaks = size > 0;
     if (network->strain.break_strain)
-        thresholds_load(network, false, from, size);
+        thresholds_load(network, MSPRING_BREAK_STRAIN, from, size);
 }
 
 const mspringi_section mspringi_section_break_strains = {
@@ -219,17 +220,14 @@ static void stress_strains_save(const mspring_network *network, mspringi_writer 
 }
 
 static mspring_result stress_strains_check(mspring_network *network, const uint8_t *from, size_t size) {
-    mspring_result result =
-        size > 0 ? thresholds_check(network, &mspringi_section_stress_strains, from, size) : MSPRING_OK;
-    if (result == MSPRING_OK && size > 0)
-        result = mspringi_strain_reserve(network);
-    return result == MSPRING_OK && size > 0 ? mspringi_strain_reserve_stress(network) : result;
+    return size > 0 ? thresholds_check(network, &mspringi_section_stress_strains, MSPRING_STRESS_STRAIN, from, size)
+                    : MSPRING_OK;
 }
 
 static void stress_strains_load(mspring_network *network, const uint8_t *from, size_t size) {
     network->strain.stresses = size > 0;
     if (network->strain.stress_strain)
-        thresholds_load(network, true, from, size);
+        thresholds_load(network, MSPRING_STRESS_STRAIN, from, size);
 }
 
 const mspringi_section mspringi_section_stress_strains = {"strs",
@@ -239,6 +237,28 @@ const mspringi_section mspringi_section_stress_strains = {"strs",
                                                           stress_strains_save,
                                                           stress_strains_check,
                                                           stress_strains_load};
+
+static size_t relax_strains_size(const mspring_network *network) {
+    return thresholds_size(network, network->strain.relaxes);
+}
+
+static void relax_strains_save(const mspring_network *network, mspringi_writer *to) {
+    thresholds_save(network, network->strain.relax_strain, to);
+}
+
+static mspring_result relax_strains_check(mspring_network *network, const uint8_t *from, size_t size) {
+    return size > 0 ? thresholds_check(network, &mspringi_section_relax_strains, MSPRING_RELAX_STRAIN, from, size)
+                    : MSPRING_OK;
+}
+
+static void relax_strains_load(mspring_network *network, const uint8_t *from, size_t size) {
+    network->strain.relaxes = size > 0;
+    if (network->strain.relax_strain)
+        thresholds_load(network, MSPRING_RELAX_STRAIN, from, size);
+}
+
+const mspringi_section mspringi_section_relax_strains = {
+    "rlxs", "relax strains", true, relax_strains_size, relax_strains_save, relax_strains_check, relax_strains_load};
 
 /* --------------------------------------------------------------------------------------------------- stressed */
 

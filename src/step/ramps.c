@@ -38,6 +38,14 @@ void mspringi_ramp_begin(mspring_network *network, mspring_id spring, double sec
     mspringi_place_set_rest_length(network, mspringi_place_of(&network->topology, spring), (float)ramp.from);
 }
 
+bool mspringi_has_ramp(const mspring_network *network, mspring_id spring) {
+    const mspringi_ramps *ramps = &network->ramps;
+    for (size_t i = 0; i < ramps->count; ++i)
+        if (ramps->list[i].spring == spring)
+            return true;
+    return false;
+}
+
 void mspringi_ramp_drop(mspring_network *network, mspring_id spring) {
     mspringi_ramps *ramps = &network->ramps;
     for (size_t i = 0; i < ramps->count; ++i) {

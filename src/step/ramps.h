@@ -19,6 +19,7 @@ mspring_result mspringi_ramps_reserve(mspring_network *network, size_t count);
 /// Begin a ramp of a live spring from its present length; after mspringi_ramps_reserve().
 void mspringi_ramp_begin(mspring_network *network, mspring_id spring, double seconds);
 
+bool mspringi_has_ramp(const mspring_network *network, mspring_id spring);
 /// End a spring's ramp, if it has one, at its own rest length.
 void mspringi_ramp_drop(mspring_network *network, mspring_id spring);
 

@@ -9,7 +9,6 @@
 #include "store/changed.h"
 #include "store/events.h"
 #include "store/growth.h"
-#include "store/selection.h"
 #include "store/springs.h"
 #include "store/stages.h"
 #include "store/store.h"
@@ -70,6 +69,13 @@ static bool next_swept(const mspring_network *network, uint32_t base, uint32_t c
     return *first < count;
 }
 
+// The stretch below which a stressed spring relaxes.
+static float relaxes_at(const mspring_network *network, mspringi_place place, float rest_length, float stress_at) {
+    const mspringi_strain *strain = &network->strain;
+    const float own = strain->relax_strain ? strain->relax_strain[place] : MSPRING_RELAX_STRAIN_DEFAULT;
+    return own >= 0.0f ? fminf(own * rest_length, stress_at) : stress_at * network->settings.relax_fraction;
+}
+
 // Break, stress or relax the spring in this place, if it is time for that.
 static void look_at(mspring_network *network, mspringi_place place) {
     const mspringi_topology *t = &network->topology;
@@ -83,7 +89,7 @@ static void look_at(mspring_network *network, mspringi_place place) {
         event.kind = MSPRING_EVENT_BROKEN;
     else if (!is_stressed && stretch > stress_at)
         event.kind = MSPRING_EVENT_STRESSED;
-    else if (is_stressed && stress_at * network->settings.relax_fraction > stretch)
+    else if (is_stressed && relaxes_at(network, place, values.rest_length, stress_at) > stretch)
         event.kind = MSPRING_EVENT_RELAXED;
     else
         return;
@@ -133,10 +139,10 @@ static void compare(mspring_network *network, double dt) {
 
 /* -------------------------------------------------------------------------------------------------- thresholds */
 
-static void set_infinite(const mspring_network *network, float *thresholds) {
+static void fill(const mspring_network *network, float *thresholds, float value) {
     const size_t count = mspringi_place_words(&network->topology) * MSPRINGI_WIDTH;
     for (size_t place = 0; place < count; ++place)
-        thresholds[place] = INFINITY;
+        thresholds[place] = value;
 }
 
 mspring_result mspringi_strain_reserve(mspring_network *network) {
@@ -160,7 +166,7 @@ mspring_result mspringi_strain_reserve_layout(mspring_network *network) {
     if (!mspringi_store_reserve(network, MSPRINGI_STORE_STRAIN))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to watch the strain of %u springs",
                              (unsigned)network->topology.spring_count);
-    set_infinite(network, strain->break_strain);
+    fill(network, strain->break_strain, INFINITY);
     return MSPRING_OK;
 }
 
@@ -172,25 +178,60 @@ mspring_result mspringi_strain_reserve_stress(mspring_network *network) {
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for the stress strains of %u springs",
                              (unsigned)network->topology.spring_count);
-    set_infinite(network, strain->stress_strain);
+    fill(network, strain->stress_strain, INFINITY);
     memcpy(strain->least, strain->break_strain,
            mspringi_place_words(&network->topology) * MSPRINGI_WIDTH * sizeof *strain->least);
     mspringi_changed(network, MSPRINGI_CHANGED_PLACES, 0);
     return MSPRING_OK;
 }
 
-void mspringi_strain_store(mspring_network *network, mspringi_place place, bool stress, float value) {
+mspring_result mspringi_strain_reserve_relax(mspring_network *network) {
+    const mspringi_strain *strain = &network->strain;
+    if (strain->relax_strain)
+        return MSPRING_OK;
+    if (!mspringi_store_reserve(network, MSPRINGI_STORE_RELAX))
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                             "no memory for the relax strains of %u springs",
+                             (unsigned)network->topology.spring_count);
+    fill(network, strain->relax_strain, MSPRING_RELAX_STRAIN_DEFAULT);
+    mspringi_changed(network, MSPRINGI_CHANGED_PLACES, 0);
+    return MSPRING_OK;
+}
+
+mspring_result mspringi_strain_reserve_for(mspring_network *network, mspring_property property) {
+    if (property == MSPRING_RELAX_STRAIN)
+        return mspringi_strain_reserve_relax(network);
+    mspring_result result = mspringi_strain_reserve(network);
+    return result == MSPRING_OK && property == MSPRING_STRESS_STRAIN ? mspringi_strain_reserve_stress(network)
+                                                                     : result;
+}
+
+mspring_result mspringi_strain_match_layout(mspring_network *to, const mspring_network *from) {
+    mspring_result result = from->strain.break_strain ? mspringi_strain_reserve_layout(to) : MSPRING_OK;
+    if (result == MSPRING_OK && from->strain.stress_strain)
+        result = mspringi_strain_reserve_stress(to);
+    return result == MSPRING_OK && from->strain.relax_strain ? mspringi_strain_reserve_relax(to) : result;
+}
+
+void mspringi_strain_store(mspring_network *network, mspringi_place place, mspring_property property, float value) {
     mspringi_strain *strain = &network->strain;
-    MSPRINGI_ASSERT(strain->break_strain && (strain->stress_strain || !stress));
-    if (stress)
-        strain->stress_strain[place] = value;
-    else
-        strain->break_strain[place] = value;
-    strain->stresses = strain->stresses || (stress && value < INFINITY);
-    strain->breaks = strain->breaks || (!stress && value < INFINITY);
-    if (strain->stress_strain)
-        // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): its callers have looked for it
-        strain->least[place] = fminf(strain->break_strain[place], strain->stress_strain[place]);
+    if (property == MSPRING_RELAX_STRAIN) {
+        MSPRINGI_ASSERT(strain->relax_strain);
+        strain->relax_strain[place] = value;
+        strain->relaxes = strain->relaxes || value != MSPRING_RELAX_STRAIN_DEFAULT;
+    } else {
+        const bool stress = property == MSPRING_STRESS_STRAIN;
+        MSPRINGI_ASSERT(strain->break_strain && (strain->stress_strain || !stress));
+        if (stress)
+            strain->stress_strain[place] = value;
+        else
+            strain->break_strain[place] = value;
+        strain->stresses = strain->stresses || (stress && value < INFINITY);
+        strain->breaks = strain->breaks || (!stress && value < INFINITY);
+        if (strain->stress_strain)
+            // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): its callers have looked for it
+            strain->least[place] = fminf(strain->break_strain[place], strain->stress_strain[place]);
+    }
     mspringi_changed(network, MSPRINGI_CHANGED_PLACE, place);
 }
 
@@ -200,65 +241,11 @@ void mspringi_strain_forget(mspring_network *network, mspring_id spring) {
     if (strain->stressed)
         strain->stressed[place / MSPRINGI_WIDTH] &= (uint16_t) ~(1u << place % MSPRINGI_WIDTH);
     if (strain->break_strain)
-        mspringi_strain_store(network, place, false, INFINITY);
+        mspringi_strain_store(network, place, MSPRING_BREAK_STRAIN, INFINITY);
     if (strain->stress_strain)
-        mspringi_strain_store(network, place, true, INFINITY);
-}
-
-static mspring_result set_thresholds(mspring_network *network, bool stress, const mspringi_selection *at,
-                                     const float *strain) {
-    for (uint32_t i = 0; i < at->count; ++i)
-        if (!(strain[i] > 0.0f))
-            return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                                 "spring %u: %s strain is %g, it must be > 0", (unsigned)mspringi_selected(at, i),
-                                 stress ? "stress" : "break", (double)strain[i]);
-    mspring_result result = at->count > 0 ? mspringi_strain_reserve(network) : MSPRING_OK;
-    if (result == MSPRING_OK && stress && at->count > 0)
-        result = mspringi_strain_reserve_stress(network);
-    for (uint32_t i = 0; result == MSPRING_OK && i < at->count; ++i) {
-        const mspring_id spring = mspringi_selected(at, i);
-        if (!mspringi_spring_exists(network, spring))
-            continue;
-        mspringi_fingerprint(network, stress ? MSPRINGI_EDIT_STRESS_STRAIN : MSPRINGI_EDIT_BREAK_STRAIN, spring);
-        mspringi_fingerprint_floats(network, strain[i], 0.0f);
-        mspringi_strain_store(network, mspringi_place_of(&network->topology, spring), stress, strain[i]);
-        mspringi_changed(network, MSPRINGI_CHANGED_SPRING, spring);
-    }
-    return result;
-}
-
-static mspring_result set_range(mspring_network *network, bool stress, mspring_id first, uint32_t count,
-                                const float *strain) {
-    mspringi_selection at;
-    mspring_result result = mspringi_select_range(network, MSPRINGI_SPRINGS, first, count, strain, strain, &at);
-    return result == MSPRING_OK ? set_thresholds(network, stress, &at, strain) : result;
-}
-
-static mspring_result set_list(mspring_network *network, bool stress, const mspring_id *springs, uint32_t count,
-                               const float *strain) {
-    mspringi_selection at;
-    mspring_result result = mspringi_select_list(network, MSPRINGI_SPRINGS, springs, count, strain, strain, &at);
-    return result == MSPRING_OK ? set_thresholds(network, stress, &at, strain) : result;
-}
-
-mspring_result mspring_network_set_break_strains(mspring_network *network, mspring_id first, uint32_t count,
-                                                 const float *strain) {
-    return set_range(network, false, first, count, strain);
-}
-
-mspring_result mspring_network_set_break_strains_at(mspring_network *network, const mspring_id *springs,
-                                                    uint32_t count, const float *strain) {
-    return set_list(network, false, springs, count, strain);
-}
-
-mspring_result mspring_network_set_stress_strains(mspring_network *network, mspring_id first, uint32_t count,
-                                                  const float *strain) {
-    return set_range(network, true, first, count, strain);
-}
-
-mspring_result mspring_network_set_stress_strains_at(mspring_network *network, const mspring_id *springs,
-                                                     uint32_t count, const float *strain) {
-    return set_list(network, true, springs, count, strain);
+        mspringi_strain_store(network, place, MSPRING_STRESS_STRAIN, INFINITY);
+    if (strain->relax_strain)
+        mspringi_strain_store(network, place, MSPRING_RELAX_STRAIN, MSPRING_RELAX_STRAIN_DEFAULT);
 }
 
 static bool is_used(const mspring_network *network) {

@@ -12,9 +12,14 @@ mspring_result mspringi_strain_reserve(mspring_network *network);
 /// The part of it that lies by place.
 mspring_result mspringi_strain_reserve_layout(mspring_network *network);
 mspring_result mspringi_strain_reserve_stress(mspring_network *network);
+mspring_result mspringi_strain_reserve_relax(mspring_network *network);
+/// What these thresholds need: MSPRING_BREAK_STRAIN, MSPRING_STRESS_STRAIN or MSPRING_RELAX_STRAIN.
+mspring_result mspringi_strain_reserve_for(mspring_network *network, mspring_property property);
+/// What lies by place in another network.
+mspring_result mspringi_strain_match_layout(mspring_network *to, const mspring_network *from);
 
-/// Set what a spring breaks or is stressed at; after these.
-void mspringi_strain_store(mspring_network *network, mspringi_place place, bool stress, float value);
+/// Set one of these of a spring; after that.
+void mspringi_strain_store(mspring_network *network, mspringi_place place, mspring_property property, float value);
 
 /// Let nothing happen to a spring by its strain.
 void mspringi_strain_forget(mspring_network *network, mspring_id spring);

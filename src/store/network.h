@@ -147,10 +147,12 @@ typedef struct mspringi_events {
 /// What springs break and are stressed at, by place; NULL as long as none does.
 typedef struct mspringi_strain {
     float *break_strain, *stress_strain;
+    float *relax_strain;       ///< MSPRING_RELAX_STRAIN_DEFAULT: the usual fraction of its stress strain
     float *least;              ///< the smaller of the two; NULL as long as break_strain is alone
     uint16_t *stressed;        ///< [places / MSPRINGI_WIDTH] a bit for each place
     mspringi_strain_hit *hits; ///< [places / MSPRINGI_WIDTH] for the pass to write to
     bool breaks, stresses;     ///< a threshold of this kind has been finite: there is something to save
+    bool relaxes;              ///< so with a relax strain that is not the default
 } mspringi_strain;
 
 /// What came of a step beside its result: see mspring_step_info.
@@ -367,8 +369,8 @@ static inline size_t mspringi_slot_count(const mspring_network *network) {
     return (size_t)network->topology.block_count * MSPRINGI_WIDTH;
 }
 
-/// Slots in front of which all particles lie. In what a step reads and writes spare slots behind them hold zeros, or
-/// forces that act on nothing.
+/// Slots in front of which all particles lie. In what a step reads and writes spare slots behind them hold zeros,
+/// or forces that act on nothing.
 static inline size_t mspringi_used_slots(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     return t->spare_blocks == 0 ? mspringi_slot_count(network)

@@ -120,8 +120,3 @@ mspring_result mspringi_rests_separate(mspring_network *network) {
     mspringi_changed(network, MSPRINGI_CHANGED_PLACES, 0);
     return MSPRING_OK;
 }
-
-float *mspringi_rests_at(const mspringi_rests *rests, mspringi_place place) {
-    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a place of a lattice has a block
-    return rests->lengths + (size_t)rests->of_block[place / BLOCK_PLACES] * BLOCK_PLACES + place % BLOCK_PLACES;
-}

@@ -32,6 +32,10 @@ static inline bool mspringi_rests_are_shared(const mspringi_rests *rests, msprin
 }
 
 /// The rest length at a lattice place.
-float *mspringi_rests_at(const mspringi_rests *rests, mspringi_place place);
+static inline float *mspringi_rests_at(const mspringi_rests *rests, mspringi_place place) {
+    const size_t block_places = (size_t)MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a place of a lattice has a block
+    return rests->lengths + rests->of_block[place / block_places] * block_places + place % block_places;
+}
 
 #endif

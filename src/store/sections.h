@@ -52,6 +52,7 @@ extern const mspringi_section mspringi_section_broken;
 extern const mspringi_section mspringi_section_values;
 extern const mspringi_section mspringi_section_break_strains;
 extern const mspringi_section mspringi_section_stress_strains;
+extern const mspringi_section mspringi_section_relax_strains;
 extern const mspringi_section mspringi_section_stressed;
 extern const mspringi_section mspringi_section_ramps;
 

@@ -131,12 +131,11 @@ static mspringi_relative derive(const mspring_network *network, const mspringi_s
                                 mspringi_relative fractions) {
     const mspringi_topology *t = &network->topology;
     const float *mass = mspringi_spring_masses(network);
-    const double ma = (double)mass[t->particle_of_slot[values->base]];
-    const double mb = (double)mass[t->particle_of_slot[values->tip]];
-    const double reduced_mass = 1.0 / (1.0 / ma + 1.0 / mb);
-    const double rate = network->relative_h > 0.0f ? 1.0 / (double)network->relative_h : 0.0;
-    return (mspringi_relative){(float)((double)fractions.stiffness * reduced_mass * rate * rate),
-                               (float)((double)fractions.damping * reduced_mass * rate)};
+    const double reduced_mass = mspringi_reduced_mass((double)mass[t->particle_of_slot[values->base]],
+                                                      (double)mass[t->particle_of_slot[values->tip]]);
+    const double rate = mspringi_relative_rate(network);
+    return (mspringi_relative){mspringi_derived_stiffness(fractions.stiffness, reduced_mass, rate),
+                               mspringi_derived_damping(fractions.damping, reduced_mass, rate)};
 }
 
 mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, mspring_id spring,

@@ -58,6 +58,21 @@ static inline const float *mspringi_spring_masses(const mspring_network *network
     return network->spring_mass ? network->spring_mass : network->mass;
 }
 
+/// What follows from the fractions of a relative spring whose ends have these masses, for the substep of which rate
+/// is the inverse.
+static inline double mspringi_reduced_mass(double a, double b) {
+    return 1.0 / (1.0 / a + 1.0 / b);
+}
+static inline double mspringi_relative_rate(const mspring_network *network) {
+    return network->relative_h > 0.0f ? 1.0 / (double)network->relative_h : 0.0;
+}
+static inline float mspringi_derived_stiffness(float fraction, double reduced_mass, double rate) {
+    return (float)((double)fraction * reduced_mass * rate * rate);
+}
+static inline float mspringi_derived_damping(float fraction, double reduced_mass, double rate) {
+    return (float)((double)fraction * reduced_mass * rate);
+}
+
 /// Stiffness and damping that a spring, which lies in this place, has while it is not broken; fractions if it is
 /// relative.
 mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, mspring_id spring,

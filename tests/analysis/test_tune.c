@@ -34,8 +34,8 @@ static reference reference_of_network(const mspring_network *network) {
         float mass, scale, vx, vy;
         check_ok(mspring_network_get_positions(network, p, 1, &particle->x, &particle->y, 1));
         check_ok(mspring_network_get_velocities(network, p, 1, &vx, &vy, 1));
-        check_ok(mspring_network_get_masses(network, p, 1, &mass));
-        check_ok(mspring_network_get_inverse_mass_scales(network, p, 1, &scale));
+        check_ok(mspring_network_get(network, MSPRING_MASS, p, 1, &mass, 1));
+        check_ok(mspring_network_get(network, MSPRING_INVERSE_MASS_SCALE, p, 1, &scale, 1));
         particle->vx = (double)vx;
         particle->vy = (double)vy;
         particle->mass = (double)mass;

@@ -32,7 +32,8 @@ static void nothing_happens_to_the_network(void **state) {
         check_ok(mspring_network_reserve_events(both[i], 100));
         check_ok(mspring_network_break_springs(both[i], &first, 1));
         check_ok(mspring_network_restore_springs(both[i], &first, 1, 0.1));
-        check_ok(mspring_network_set_break_strains(both[i], 0, mspring_network_spring_count(both[i]), strains));
+        check_ok(mspring_network_set(both[i], MSPRING_BREAK_STRAIN, 0, mspring_network_spring_count(both[i]),
+                                     strains, 1));
         check_ok(mspring_network_apply_force(both[i], 17, 1000, 500));
     }
     const size_t used = mspring_network_memory_used(network);

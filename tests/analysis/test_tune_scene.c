@@ -33,7 +33,7 @@ static mspring_network *falling_lattice(const mspring_network_def *how) {
     for (uint32_t s = 0; s < count; s++) {
         strains[s] = 0.01f;
     }
-    check_ok(mspring_network_set_break_strains(network, 0, count, strains));
+    check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, count, strains, 1));
     free(strains);
     recipe_free(&made);
     return network;
@@ -193,7 +193,7 @@ static mspring_result note_velocities(mspring_network *run, uint32_t start, void
     for (mspring_id p = 0; p < mspring_network_particle_count(run); p++) {
         float vx, vy, scale;
         check_ok(mspring_network_get_velocities(run, p, 1, &vx, &vy, 1));
-        check_ok(mspring_network_get_inverse_mass_scales(run, p, 1, &scale));
+        check_ok(mspring_network_get(run, MSPRING_INVERSE_MASS_SCALE, p, 1, &scale, 1));
         if (start == 0 || scale == 0) {
             assert_true(vx == 0 && vy == 0);
         } else {

@@ -181,6 +181,19 @@ static void add_hook(arguments *a) {
     check_ok(support_add_hook(a->network, MSPRING_PHASE_BEFORE_STEP, no_hook, NULL, &a->id));
 }
 
+/// Setting and reading a property, whose values are refused where floats is F: name is what follows in the table's.
+#define PROPERTY(X, name, property, floats)                                                                        \
+    X(mspring_network_set##name, "NKR" floats, a->kind = property,                                                 \
+      mspring_network_set(a->network, a->kind, a->first, a->count, a->f, 1))                                       \
+    X(mspring_network_set_at##name, "NKA" floats, a->kind = property,                                              \
+      mspring_network_set_at(a->network, a->kind, a->ids, a->count, a->f, 1))                                      \
+    MEASURED(X, name, property)
+#define MEASURED(X, name, property)                                                                                \
+    X(mspring_network_get##name, "nKR0", a->kind = property,                                                       \
+      mspring_network_get(a->network, a->kind, a->first, a->count, a->out[0], 1))                                  \
+    X(mspring_network_get_at##name, "nKA0", a->kind = property,                                                    \
+      mspring_network_get_at(a->network, a->kind, a->ids, a->count, a->out[0], 1))
+
 /// Name, kinds of arguments, what makes the struct given, the call.
 #define FUNCTIONS(X)                                                                                               \
     X(mspring_version, "", NOTHING, note_size(mspring_version()))                                                  \
@@ -227,9 +240,9 @@ static void add_hook(arguments *a) {
       mspring_builder_add_mesh(a->builder, a->given, a->out[0], a->out[1]))                                        \
     X(mspring_builder_add_disc, "BSWo", FILL(disc_def),                                                            \
       mspring_builder_add_disc(a->builder, a->given, a->out[0], a->out[1]))                                        \
-    X(mspring_material_preset, "Z0KT", (a->size = sizeof(mspring_material), a->kind = MSPRING_PRESET_WOOD),          \
+    X(mspring_material_preset, "Z0KT", (a->size = sizeof(mspring_material), a->kind = MSPRING_PRESET_WOOD),        \
       mspring_material_preset(a->out[0], a->size, a->kind, 1, a->dt))                                              \
-    X(mspring_builder_add_network, "Bno", NOTHING,                                                                  \
+    X(mspring_builder_add_network, "Bno", NOTHING,                                                                 \
       mspring_builder_add_network(a->builder, a->network, NULL, 0, a->out[0], a->out[1]))                          \
     X(mspring_network_create, "Bs0", FILL(network_def), create_network(a))                                         \
     X(mspring_network_destroy, "", NOTHING, destroy_nothing())                                                     \
@@ -293,35 +306,22 @@ static void add_hook(arguments *a) {
       mspring_network_set_positions_float(a->network, a->first, a->count, a->f, a->g, 1))                          \
     X(mspring_network_set_velocities, "NRFG", NOTHING,                                                             \
       mspring_network_set_velocities(a->network, a->first, a->count, a->f, a->g, 1))                               \
-    X(mspring_network_get_masses, "nR0", NOTHING,                                                                  \
-      mspring_network_get_masses(a->network, a->first, a->count, a->out[0]))                                       \
     X(mspring_network_set_positions_at, "NADE", NOTHING,                                                           \
       mspring_network_set_positions_at(a->network, a->ids, a->count, a->d, a->e, 1))                               \
     X(mspring_network_set_velocities_at, "NAFG", NOTHING,                                                          \
       mspring_network_set_velocities_at(a->network, a->ids, a->count, a->f, a->g, 1))                              \
-    X(mspring_network_set_masses, "NRF", NOTHING,                                                                  \
-      mspring_network_set_masses(a->network, a->first, a->count, a->f))                                            \
-    X(mspring_network_set_masses_at, "NAF", NOTHING,                                                               \
-      mspring_network_set_masses_at(a->network, a->ids, a->count, a->f))                                           \
+    PROPERTY(X, , MSPRING_MASS, "F")                                                                               \
+    PROPERTY(X, _inverse_mass_scale, MSPRING_INVERSE_MASS_SCALE, "F")                                              \
+    PROPERTY(X, _stiffness, MSPRING_STIFFNESS, "F")                                                                \
+    PROPERTY(X, _damping, MSPRING_DAMPING, "F")                                                                    \
+    PROPERTY(X, _rest_length, MSPRING_REST_LENGTH, "F")                                                            \
+    PROPERTY(X, _break_strain, MSPRING_BREAK_STRAIN, "f")                                                          \
+    PROPERTY(X, _stress_strain, MSPRING_STRESS_STRAIN, "f")                                                        \
+    PROPERTY(X, _relax_strain, MSPRING_RELAX_STRAIN, "f")                                                          \
+    MEASURED(X, _strain, MSPRING_STRAIN)                                                                           \
+    MEASURED(X, _length, MSPRING_LENGTH)                                                                           \
+    MEASURED(X, _force, MSPRING_FORCE)                                                                             \
     X(mspring_network_renew_relative_springs, "N", NOTHING, mspring_network_renew_relative_springs(a->network))    \
-    X(mspring_network_set_inverse_mass_scales, "NRF", NOTHING,                                                     \
-      mspring_network_set_inverse_mass_scales(a->network, a->first, a->count, a->f))                               \
-    X(mspring_network_set_inverse_mass_scales_at, "NAF", NOTHING,                                                  \
-      mspring_network_set_inverse_mass_scales_at(a->network, a->ids, a->count, a->f))                              \
-    X(mspring_network_get_inverse_mass_scales, "nR0", NOTHING,                                                     \
-      mspring_network_get_inverse_mass_scales(a->network, a->first, a->count, a->out[0]))                          \
-    X(mspring_network_set_stiffnesses, "NRF", NOTHING,                                                             \
-      mspring_network_set_stiffnesses(a->network, a->first, a->count, a->f))                                       \
-    X(mspring_network_set_stiffnesses_at, "NAF", NOTHING,                                                          \
-      mspring_network_set_stiffnesses_at(a->network, a->ids, a->count, a->f))                                      \
-    X(mspring_network_set_dampings, "NRF", NOTHING,                                                                \
-      mspring_network_set_dampings(a->network, a->first, a->count, a->f))                                          \
-    X(mspring_network_set_dampings_at, "NAF", NOTHING,                                                             \
-      mspring_network_set_dampings_at(a->network, a->ids, a->count, a->f))                                         \
-    X(mspring_network_set_rest_lengths, "NRF", NOTHING,                                                            \
-      mspring_network_set_rest_lengths(a->network, a->first, a->count, a->f))                                      \
-    X(mspring_network_set_rest_lengths_at, "NAF", NOTHING,                                                         \
-      mspring_network_set_rest_lengths_at(a->network, a->ids, a->count, a->f))                                     \
     X(mspring_network_break_springs, "NA", NOTHING, mspring_network_break_springs(a->network, a->ids, a->count))   \
     X(mspring_network_restore_springs, "NAJ", NOTHING,                                                             \
       mspring_network_restore_springs(a->network, a->ids, a->count, a->ramp))                                      \
@@ -337,14 +337,6 @@ static void add_hook(arguments *a) {
       mspring_network_remove_particles(a->network, a->ids, a->count))                                              \
     X(mspring_network_remove_springs, "NA", NOTHING, mspring_network_remove_springs(a->network, a->ids, a->count)) \
     X(mspring_network_recycle, "N", NOTHING, mspring_network_recycle(a->network))                                  \
-    X(mspring_network_set_break_strains, "NRf", NOTHING,                                                           \
-      mspring_network_set_break_strains(a->network, a->first, a->count, a->f))                                     \
-    X(mspring_network_set_break_strains_at, "NAf", NOTHING,                                                        \
-      mspring_network_set_break_strains_at(a->network, a->ids, a->count, a->f))                                    \
-    X(mspring_network_set_stress_strains, "NRf", NOTHING,                                                          \
-      mspring_network_set_stress_strains(a->network, a->first, a->count, a->f))                                    \
-    X(mspring_network_set_stress_strains_at, "NAf", NOTHING,                                                       \
-      mspring_network_set_stress_strains_at(a->network, a->ids, a->count, a->f))                                   \
     X(mspring_network_reserve_events, "N", NOTHING, mspring_network_reserve_events(a->network, 100))               \
     X(mspring_network_read_events, "N01", NOTHING,                                                                 \
       mspring_network_read_events(a->network, a->out[0], 8, a->out[1], a->out[2]))                                 \
@@ -373,8 +365,6 @@ static void add_hook(arguments *a) {
       mspring_network_get_spring_flags(a->network, a->first, a->count, a->out[0], sizeof(uint32_t)))               \
     X(mspring_network_get_spring, "nIP", OUT_STRUCT(0, spring_info),                                               \
       mspring_network_get_spring(a->network, a->id, a->out[0]))                                                    \
-    X(mspring_network_get_strains, "nR0", NOTHING,                                                                 \
-      mspring_network_get_strains(a->network, a->first, a->count, a->out[0]))                                      \
     X(mspring_network_get_extents, "No", NOTHING,                                                                  \
       mspring_network_get_extents(a->network, a->out[0], NULL, NULL, a->out[1]))                                   \
     X(mspring_network_max_strain, "no", NOTHING, mspring_network_max_strain(a->network, a->out[0], a->out[1]))     \

@@ -145,17 +145,17 @@ static mspring_result suggest_substeps(life *l) {
 
 static mspring_result set_masses(life *l) {
     const float masses[3] = {3, 4, 5};
-    return mspring_network_set_masses(l->network, 1, 3, masses);
+    return mspring_network_set(l->network, MSPRING_MASS, 1, 3, masses, 1);
 }
 
 static mspring_result set_scales(life *l) {
     const float scales[2] = {0.5f, 0};
-    return mspring_network_set_inverse_mass_scales(l->network, 4, 2, scales);
+    return mspring_network_set(l->network, MSPRING_INVERSE_MASS_SCALE, 4, 2, scales, 1);
 }
 
 static mspring_result set_rest_lengths(life *l) {
     const float lengths[2] = {1.01f, 1.02f};
-    return mspring_network_set_rest_lengths(l->network, 5, 2, lengths);
+    return mspring_network_set(l->network, MSPRING_REST_LENGTH, 5, 2, lengths, 1);
 }
 
 static mspring_result break_springs(life *l) {
@@ -199,12 +199,12 @@ static mspring_result remove_springs(life *l) {
 
 static mspring_result set_break_strains(life *l) {
     const float strains[2] = {0.4f, 0.5f};
-    return mspring_network_set_break_strains(l->network, 3, 2, strains);
+    return mspring_network_set(l->network, MSPRING_BREAK_STRAIN, 3, 2, strains, 1);
 }
 
 static mspring_result set_stress_strains(life *l) {
     const float strains[2] = {0.1f, 0.2f};
-    return mspring_network_set_stress_strains(l->network, 3, 2, strains);
+    return mspring_network_set(l->network, MSPRING_STRESS_STRAIN, 3, 2, strains, 1);
 }
 
 static mspring_result reserve_events(life *l) {

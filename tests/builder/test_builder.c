@@ -57,7 +57,7 @@ static void bulk_adds_return_the_first_id(void **state) {
 
     mspring_network *network = support_network(builder, NULL);
     float masses[42];
-    check_ok(mspring_network_get_masses(network, 0, 42, masses));
+    check_ok(mspring_network_get(network, MSPRING_MASS, 0, 42, masses, 1));
     for (size_t i = 0; i < COUNT_OF(particles); i++) {
         assert_true(masses[1 + i] == particles[i].mass);
         assert_true(support_position(network, 1 + (mspring_id)i).x == particles[i].x);
@@ -143,7 +143,7 @@ static void lattice_ids_and_springs_follow_the_cells(void **state) {
     mspring_network *network = support_network(builder, NULL);
     mspring_view view = {.struct_size = sizeof view};
     float masses[8];
-    check_ok(mspring_network_get_masses(network, 0, 8, masses));
+    check_ok(mspring_network_get(network, MSPRING_MASS, 0, 8, masses, 1));
     check_ok(mspring_network_view(network, &view));
     const uint16_t *material_of = &cells[0][0];
     for (size_t row = 0; row < 3; row++) {
@@ -261,7 +261,7 @@ static void rope_runs_evenly_from_end_to_end(void **state) {
 
     mspring_network *network = support_network(builder, NULL);
     float masses[6];
-    check_ok(mspring_network_get_masses(network, 0, 6, masses));
+    check_ok(mspring_network_get(network, MSPRING_MASS, 0, 6, masses, 1));
     const mspring_id along[] = {from, 2, 3, 4, 5, to};
     for (size_t i = 0; i < 6; i++) {
         support_point p = support_position(network, along[i]);

@@ -245,7 +245,7 @@ static void edges_become_one_spring_each(void **state) {
         check_near(info.stiffness, 10 * areas[i] / squares[i], 1e-5);
     }
     float mass[6];
-    check_ok(mspring_network_get_masses(network, 0, 6, mass));
+    check_ok(mspring_network_get(network, MSPRING_MASS, 0, 6, mass, 1));
     for (int i = 0; i < 5; i++)
         check_near(mass[1 + i], masses[i], 1e-6);
     mspring_network_destroy(network);
@@ -394,7 +394,7 @@ static void disc_has_rings_of_short_springs(void **state) {
                 check_near(p.x, 7 + r * cos(angle), 1e-6);
                 check_near(p.y, -2 + r * sin(angle), 1e-6);
                 float mass;
-                check_ok(mspring_network_get_masses(network, id, 1, &mass));
+                check_ok(mspring_network_get(network, MSPRING_MASS, id, 1, &mass, 1));
                 area += mass / 5;
             }
         }

@@ -178,7 +178,7 @@ static void heights_are_above_heights_y(void **state) {
     check_ok(mspring_network_set_floor(network, &def));
     // The first slides down the slope in the middle at last, unless it is held; the other one lies on level ground.
     const float held = 0;
-    check_ok(mspring_network_set_inverse_mass_scales(network, 0, 1, &held));
+    check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, 0, 1, &held, 1));
     support_steps(network, 200, 0.01);
     check_near(support_position(network, 1).y, 2.75, 1e-5); // of floats of some metres
     assert_true(support_position(network, 1).x == 1);

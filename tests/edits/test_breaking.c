@@ -155,7 +155,7 @@ static void a_cut_rope_falls_in_two(void **state) {
     assert_true(info.stiffness == 0 && info.force == 0 && info.strain == 0 && info.length > 1);
     assert_true(info.nominal_stiffness == 1e4f && info.rest_length == 0.5f);
     float strain = 1;
-    check_ok(mspring_network_get_strains(network, last, 1, &strain));
+    check_ok(mspring_network_get(network, MSPRING_STRAIN, last, 1, &strain, 1));
     assert_true(strain == 0);
     mspring_id most;
     check_ok(mspring_network_max_strain(network, &strain, &most));
@@ -233,7 +233,7 @@ static void a_ramp_is_even_and_ends(void **state) {
         if (way == 0) {
             check_ok(mspring_network_break_springs(network, &spring, 1));
         } else if (way == 1) {
-            check_ok(mspring_network_set_rest_lengths(network, 0, 1, &length));
+            check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, 0, 1, &length, 1));
         } else {
             support_steps(network, 100, 0.01);
         }
@@ -363,8 +363,8 @@ static void lists_of_none_take_no_memory(void **state) {
     check_ok(mspring_network_detach_particles(network, NULL, 0));
     check_ok(mspring_network_remove_springs(network, NULL, 0));
     check_ok(mspring_network_remove_particles(network, NULL, 0));
-    check_ok(mspring_network_set_break_strains_at(network, NULL, 0, NULL));
-    check_ok(mspring_network_set_stress_strains(network, 5, 0, NULL));
+    check_ok(mspring_network_set_at(network, MSPRING_BREAK_STRAIN, NULL, 0, NULL, 1));
+    check_ok(mspring_network_set(network, MSPRING_STRESS_STRAIN, 5, 0, NULL, 1));
     assert_true(mspring_network_memory_used(network) == before);
     mspring_network_destroy(network);
     recipe_free(&made);

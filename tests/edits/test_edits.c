@@ -94,14 +94,14 @@ static void edited_masses_count_like_those_made_so(void **state) {
         values mass = random_values(made.particle_count, 1, 5, 3);
         mspring_network *ranged = network_of(&made, levels[i]), *listed = network_of(&made, levels[i]);
         const uint32_t half = mass.count / 2;
-        check_ok(mspring_network_set_masses(ranged, 0, half, mass.value));
-        check_ok(mspring_network_set_masses(ranged, half, mass.count - half, mass.value + half));
-        check_ok(mspring_network_set_masses_at(listed, mass.list, mass.count, mass.value_of_listed));
+        check_ok(mspring_network_set(ranged, MSPRING_MASS, 0, half, mass.value, 1));
+        check_ok(mspring_network_set(ranged, MSPRING_MASS, half, mass.count - half, mass.value + half, 1));
+        check_ok(mspring_network_set_at(listed, MSPRING_MASS, mass.list, mass.count, mass.value_of_listed, 1));
         for (uint32_t p = 0; p < made.particle_count; p++) {
             made.particles[p].mass = mass.value[p];
         }
         float seen[2];
-        check_ok(mspring_network_get_masses(listed, 7, 2, seen));
+        check_ok(mspring_network_get(listed, MSPRING_MASS, 7, 2, seen, 1));
         assert_memory_equal(seen, mass.value + 7, sizeof seen);
         check_same_motion(ranged, listed, network_of(&made, levels[i]));
         free_values(&mass);
@@ -114,7 +114,7 @@ static void relative_springs_keep_their_stiffness_as_masses_change(void **state)
     recipe made = mixed_recipe(MSPRING_SPRING_RELATIVE, 1);
     values mass = random_values(made.particle_count, 1, 5, 4);
     mspring_network *edited = network_of(&made, MSPRING_SIMD_AUTO), *early = network_of(&made, MSPRING_SIMD_AUTO);
-    check_ok(mspring_network_set_masses(edited, 0, mass.count, mass.value));
+    check_ok(mspring_network_set(edited, MSPRING_MASS, 0, mass.count, mass.value, 1));
     support_steps(edited, 1, 1.0 / 64);
     support_steps(early, 1, 1.0 / 64);
     for (mspring_id s = 0; s < made.spring_count; s++) {
@@ -128,7 +128,7 @@ static void relative_springs_keep_their_stiffness_as_masses_change(void **state)
 
     // Renewed, they are as if they had been made with these masses; before the first step and after one.
     mspring_network *renewed = network_of(&made, MSPRING_SIMD_AUTO), *later = network_of(&made, MSPRING_SIMD_AUTO);
-    check_ok(mspring_network_set_masses(renewed, 0, mass.count, mass.value));
+    check_ok(mspring_network_set(renewed, MSPRING_MASS, 0, mass.count, mass.value, 1));
     check_ok(mspring_network_renew_relative_springs(renewed));
     check_ok(mspring_network_renew_relative_springs(later)); // nothing to do
     double x[400], y[400];
@@ -137,7 +137,7 @@ static void relative_springs_keep_their_stiffness_as_masses_change(void **state)
     check_ok(mspring_network_get_positions(later, 0, made.particle_count, x, y, 1));
     check_ok(mspring_network_get_velocities(later, 0, made.particle_count, vx, vy, 1));
     support_steps(later, 1, 1.0 / 64);
-    check_ok(mspring_network_set_masses(later, 0, mass.count, mass.value));
+    check_ok(mspring_network_set(later, MSPRING_MASS, 0, mass.count, mass.value, 1));
     check_ok(mspring_network_renew_relative_springs(later));
     check_ok(mspring_network_set_positions(later, 0, made.particle_count, x, y, 1));
     check_ok(mspring_network_set_velocities(later, 0, made.particle_count, vx, vy, 1));
@@ -161,12 +161,13 @@ static void scales_of_inverse_mass_make_particles_heavier(void **state) {
         scale.value_of_listed[i] = scale.value[scale.list[i]];
     }
     mspring_network *ranged = network_of(&made, MSPRING_SIMD_AUTO), *listed = network_of(&made, MSPRING_SIMD_AUTO);
-    check_ok(mspring_network_set_inverse_mass_scales(ranged, 0, scale.count, scale.value));
-    check_ok(mspring_network_set_inverse_mass_scales_at(listed, scale.list, scale.count, scale.value_of_listed));
+    check_ok(mspring_network_set(ranged, MSPRING_INVERSE_MASS_SCALE, 0, scale.count, scale.value, 1));
+    check_ok(mspring_network_set_at(listed, MSPRING_INVERSE_MASS_SCALE, scale.list, scale.count,
+                                    scale.value_of_listed, 1));
     // Masses change, scales stay.
     values mass = random_values(made.particle_count, 1, 5, 6);
-    check_ok(mspring_network_set_masses(ranged, 0, mass.count, mass.value));
-    check_ok(mspring_network_set_masses_at(listed, mass.list, mass.count, mass.value_of_listed));
+    check_ok(mspring_network_set(ranged, MSPRING_MASS, 0, mass.count, mass.value, 1));
+    check_ok(mspring_network_set_at(listed, MSPRING_MASS, mass.list, mass.count, mass.value_of_listed, 1));
     for (uint32_t p = 0; p < made.particle_count; p++) {
         const float s = scale.value[p];
         made.particles[p].flags = s == 0 ? MSPRING_PARTICLE_PINNED : 0;
@@ -174,7 +175,7 @@ static void scales_of_inverse_mass_make_particles_heavier(void **state) {
     }
     float *seen = malloc(scale.count * sizeof *seen);
     assert_non_null(seen);
-    check_ok(mspring_network_get_inverse_mass_scales(ranged, 0, scale.count, seen));
+    check_ok(mspring_network_get(ranged, MSPRING_INVERSE_MASS_SCALE, 0, scale.count, seen, 1));
     assert_memory_equal(seen, scale.value, scale.count * sizeof *seen);
     free(seen);
     mspring_network *twin = network_of(&made, MSPRING_SIMD_AUTO);
@@ -192,14 +193,14 @@ static void pins_come_and_go(void **state) {
     const mspring_id some[] = {0, 5, 9, made.particle_count - 1};
     const float zeros[4] = {0}, ones[4] = {1, 1, 1, 1}, mass[4] = {3, 3, 3, 3};
     float scales[4];
-    check_ok(mspring_network_set_inverse_mass_scales_at(network, some, 4, zeros));
+    check_ok(mspring_network_set_at(network, MSPRING_INVERSE_MASS_SCALE, some, 4, zeros, 1));
     const support_point before = support_position(network, 5);
     check_ok(mspring_network_set_velocities_at(network, some, 4, zeros, zeros, 1));
-    check_ok(mspring_network_set_masses_at(network, some, 4, mass)); // and a pinned one stays so
+    check_ok(mspring_network_set_at(network, MSPRING_MASS, some, 4, mass, 1)); // and a pinned one stays so
     support_steps(network, 20, 0.01);
     assert_true(support_position(network, 5).x == before.x && support_position(network, 5).y == before.y);
-    check_ok(mspring_network_set_inverse_mass_scales_at(network, some, 4, ones));
-    check_ok(mspring_network_get_inverse_mass_scales(network, 5, 4, scales));
+    check_ok(mspring_network_set_at(network, MSPRING_INVERSE_MASS_SCALE, some, 4, ones, 1));
+    check_ok(mspring_network_get(network, MSPRING_INVERSE_MASS_SCALE, 5, 4, scales, 1));
     assert_memory_equal(scales, ones, sizeof ones);
     support_steps(network, 1, 0.01);
     assert_true(support_position(network, 5).y != before.y);
@@ -208,33 +209,17 @@ static void pins_come_and_go(void **state) {
     recipe_free(&made);
 }
 
-typedef mspring_result set_range_fn(mspring_network *, mspring_id, uint32_t, const float *);
-typedef mspring_result set_list_fn(mspring_network *, const mspring_id *, uint32_t, const float *);
-
 /// What can be set of springs, and where it is in their definitions.
 typedef struct spring_part {
-    set_range_fn *set_range;
-    set_list_fn *set_list;
+    mspring_property property;
     size_t offset;
     double low[2], high[2]; ///< absolute, relative
 } spring_part;
 
 static const spring_part spring_parts[] = {
-    {mspring_network_set_stiffnesses,
-     mspring_network_set_stiffnesses_at,
-     offsetof(mspring_spring_def, stiffness),
-     {200, 0.05},
-     {900, 0.2}},
-    {mspring_network_set_dampings,
-     mspring_network_set_dampings_at,
-     offsetof(mspring_spring_def, damping),
-     {0, 0},
-     {5, 0.05}},
-    {mspring_network_set_rest_lengths,
-     mspring_network_set_rest_lengths_at,
-     offsetof(mspring_spring_def, rest_length),
-     {0.9, 0.9},
-     {1.1, 1.1}},
+    {MSPRING_STIFFNESS, offsetof(mspring_spring_def, stiffness), {200, 0.05}, {900, 0.2}},
+    {MSPRING_DAMPING, offsetof(mspring_spring_def, damping), {0, 0}, {5, 0.05}},
+    {MSPRING_REST_LENGTH, offsetof(mspring_spring_def, rest_length), {0.9, 0.9}, {1.1, 1.1}},
 };
 
 static void edited_springs_act_like_those_made_so(void **state) {
@@ -260,8 +245,9 @@ static void edited_springs_act_like_those_made_so(void **state) {
                 if (broken) {
                     check_ok(mspring_network_break_springs(network, wanted.list, 100));
                 }
-                check_ok(i == 0 ? kind->set_range(network, 0, wanted.count, wanted.value)
-                                : kind->set_list(network, wanted.list, wanted.count, wanted.value_of_listed));
+                check_ok(i == 0 ? mspring_network_set(network, kind->property, 0, wanted.count, wanted.value, 1)
+                                : mspring_network_set_at(network, kind->property, wanted.list, wanted.count,
+                                                         wanted.value_of_listed, 1));
                 if (broken) {
                     check_ok(mspring_network_restore_springs(network, wanted.list, 100, 0));
                 }
@@ -283,15 +269,15 @@ static void damping_needs_room(void **state) {
     recipe made = mixed_recipe(0, 0);
     const float some = 3, none = 0;
     mspring_network *network = network_of(&made, MSPRING_SIMD_AUTO);
-    check_error(mspring_network_set_dampings(network, 4, 1, &some), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set(network, MSPRING_DAMPING, 4, 1, &some, 1), MSPRING_ERROR_ARGUMENT);
     check_contains(mspring_network_error(network), "MSPRING_NETWORK_RESERVE_DAMPING");
-    check_ok(mspring_network_set_dampings(network, 4, 1, &none));
+    check_ok(mspring_network_set(network, MSPRING_DAMPING, 4, 1, &none, 1));
     mspring_network_destroy(network);
 
     mspring_network_def def = support_def(-9.8f, 4);
     def.flags = MSPRING_NETWORK_RESERVE_DAMPING;
     network = recipe_network(&made, &def);
-    check_ok(mspring_network_set_dampings(network, 4, 1, &some));
+    check_ok(mspring_network_set(network, MSPRING_DAMPING, 4, 1, &some, 1));
     mspring_spring_info info = {.struct_size = sizeof info};
     check_ok(mspring_network_get_spring(network, 4, &info));
     assert_true(info.damping == 3 && info.nominal_damping == 3);
@@ -337,37 +323,41 @@ static void what_is_refused_changes_nothing(void **state) {
     const float bad_values[] = {-1, 1e31f, NAN, INFINITY}, bad_lengths[] = {0, -1, 5e12f, NAN, INFINITY};
     for (size_t i = 0; i < COUNT_OF(bad_masses); i++) {
         const float mass[] = {2, bad_masses[i], 2};
-        check_error(mspring_network_set_masses(network, 5, 3, mass), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_set(network, MSPRING_MASS, 5, 3, mass, 1), MSPRING_ERROR_ARGUMENT);
         check_contains(mspring_network_error(network), "particle 6");
-        check_error(mspring_network_set_masses_at(network, list, 3, mass), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_set_at(network, MSPRING_MASS, list, 3, mass, 1), MSPRING_ERROR_ARGUMENT);
         check_contains(mspring_network_error(network), "particle 2");
     }
     for (size_t i = 0; i < COUNT_OF(bad_scales); i++) {
         const float scale[] = {0.5f, bad_scales[i], 0};
-        check_error(mspring_network_set_inverse_mass_scales(network, 5, 3, scale), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, 5, 3, scale, 1),
+                    MSPRING_ERROR_ARGUMENT);
         check_contains(mspring_network_error(network), "particle 6");
-        check_error(mspring_network_set_inverse_mass_scales_at(network, list, 3, scale), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_set_at(network, MSPRING_INVERSE_MASS_SCALE, list, 3, scale, 1),
+                    MSPRING_ERROR_ARGUMENT);
     }
     for (size_t part = 0; part < COUNT_OF(spring_parts); part++) {
         const spring_part *kind = &spring_parts[part];
         const bool length = kind->offset == offsetof(mspring_spring_def, rest_length);
         for (size_t i = 0; i < (length ? COUNT_OF(bad_lengths) : COUNT_OF(bad_values)); i++) {
             const float value[] = {2, length ? bad_lengths[i] : bad_values[i], 2};
-            check_error(kind->set_range(network, 5, 3, value), MSPRING_ERROR_ARGUMENT);
+            check_error(mspring_network_set(network, kind->property, 5, 3, value, 1), MSPRING_ERROR_ARGUMENT);
             check_contains(mspring_network_error(network), "spring 6");
-            check_error(kind->set_list(network, list, 3, value), MSPRING_ERROR_ARGUMENT);
+            check_error(mspring_network_set_at(network, kind->property, list, 3, value, 1), MSPRING_ERROR_ARGUMENT);
             check_contains(mspring_network_error(network), "spring 2");
         }
-        check_error(kind->set_range(network, made.spring_count - 2, 3, good), MSPRING_ERROR_ID);
-        check_error(kind->set_list(network, beyond, 3, good), MSPRING_ERROR_ID);
+        check_error(mspring_network_set(network, kind->property, made.spring_count - 2, 3, good, 1),
+                    MSPRING_ERROR_ID);
+        check_error(mspring_network_set_at(network, kind->property, beyond, 3, good, 1), MSPRING_ERROR_ID);
         check_contains(mspring_network_error(network), "index 1");
-        check_error(kind->set_range(network, 0, 3, NULL), MSPRING_ERROR_ARGUMENT);
-        check_error(kind->set_list(network, NULL, 3, good), MSPRING_ERROR_ARGUMENT);
-        check_error(kind->set_range(NULL, 0, 0, good), MSPRING_ERROR_ARGUMENT);
-        check_ok(kind->set_list(network, NULL, 0, NULL));
+        check_error(mspring_network_set(network, kind->property, 0, 3, NULL, 1), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_set_at(network, kind->property, NULL, 3, good, 1), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_set(NULL, kind->property, 0, 0, good, 1), MSPRING_ERROR_ARGUMENT);
+        check_ok(mspring_network_set_at(network, kind->property, NULL, 0, NULL, 1));
     }
-    check_error(mspring_network_set_masses(network, made.particle_count, 1, good), MSPRING_ERROR_ID);
-    check_error(mspring_network_set_inverse_mass_scales(network, MSPRING_NONE, 1, good), MSPRING_ERROR_ID);
+    check_error(mspring_network_set(network, MSPRING_MASS, made.particle_count, 1, good, 1), MSPRING_ERROR_ID);
+    check_error(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, MSPRING_NONE, 1, good, 1),
+                MSPRING_ERROR_ID);
     check_error(mspring_network_set_positions_at(network, list, 3, near, far, 1), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_set_positions_at(network, beyond, 3, near, near, 1), MSPRING_ERROR_ID);
     check_error(mspring_network_set_positions_at(network, list, 3, near, NULL, 1), MSPRING_ERROR_ARGUMENT);
@@ -381,8 +371,9 @@ static void what_is_refused_changes_nothing(void **state) {
         check_contains(mspring_network_error(network), "ramp");
     }
     float scale;
-    check_error(mspring_network_get_inverse_mass_scales(network, made.particle_count, 1, &scale), MSPRING_ERROR_ID);
-    check_error(mspring_network_get_inverse_mass_scales(network, 0, 1, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get(network, MSPRING_INVERSE_MASS_SCALE, made.particle_count, 1, &scale, 1),
+                MSPRING_ERROR_ID);
+    check_error(mspring_network_get(network, MSPRING_INVERSE_MASS_SCALE, 0, 1, NULL, 1), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_renew_relative_springs(NULL), MSPRING_ERROR_ARGUMENT);
 
     support_steps(network, 10, 0.01);
@@ -399,10 +390,10 @@ static void edit_in_hook(const mspring_hook_args *args, void *user) {
     const float one = 1;
     const double place = 0;
     (void)args;
-    check_error(mspring_network_set_masses(network, 0, 1, &one), MSPRING_ERROR_BUSY);
-    check_error(mspring_network_set_inverse_mass_scales_at(network, &id, 1, &one), MSPRING_ERROR_BUSY);
-    check_error(mspring_network_set_stiffnesses(network, 0, 1, &one), MSPRING_ERROR_BUSY);
-    check_error(mspring_network_set_rest_lengths_at(network, &id, 1, &one), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_set(network, MSPRING_MASS, 0, 1, &one, 1), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_set_at(network, MSPRING_INVERSE_MASS_SCALE, &id, 1, &one, 1), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_set(network, MSPRING_STIFFNESS, 0, 1, &one, 1), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_set_at(network, MSPRING_REST_LENGTH, &id, 1, &one, 1), MSPRING_ERROR_BUSY);
     check_error(mspring_network_set_positions_at(network, &id, 1, &place, &place, 1), MSPRING_ERROR_BUSY);
     check_error(mspring_network_break_springs(network, &id, 1), MSPRING_ERROR_BUSY);
     check_error(mspring_network_restore_springs(network, &id, 1, 1), MSPRING_ERROR_BUSY);
@@ -426,9 +417,9 @@ static mspring_result edit_number(mspring_network *network, int number) {
     const float half[] = {0.5f, 0.5f}, mass[] = {2, 3};
     switch (number) {
     case 0:
-        return mspring_network_set_masses_at(network, ids, 2, mass);
+        return mspring_network_set_at(network, MSPRING_MASS, ids, 2, mass, 1);
     case 1:
-        return mspring_network_set_inverse_mass_scales_at(network, ids, 2, half);
+        return mspring_network_set_at(network, MSPRING_INVERSE_MASS_SCALE, ids, 2, half, 1);
     case 2:
         return mspring_network_detach_particles(network, ids, 2);
     default:
@@ -490,9 +481,9 @@ static void rounding_mode_of_the_host_does_not_matter(void **state) {
         assert_int_equal(fesetround(modes[i]), 0);
         const volatile float one = 1, little = 1e-10f;
         const volatile float above = one + little, below = one - little;
-        check_ok(mspring_network_set_masses(network, 0, mass.count, mass.value));
-        check_ok(mspring_network_set_inverse_mass_scales_at(network, ids, 2, third));
-        check_ok(mspring_network_set_stiffnesses_at(network, ids, 2, third));
+        check_ok(mspring_network_set(network, MSPRING_MASS, 0, mass.count, mass.value, 1));
+        check_ok(mspring_network_set_at(network, MSPRING_INVERSE_MASS_SCALE, ids, 2, third, 1));
+        check_ok(mspring_network_set_at(network, MSPRING_STIFFNESS, ids, 2, third, 1));
         check_ok(mspring_network_break_springs(network, ids, 2));
         check_ok(mspring_network_restore_springs(network, ids, 2, 0.3));
         check_ok(mspring_network_renew_relative_springs(network));

@@ -358,12 +358,12 @@ static void ranges_leave_out_what_is_gone(void **state) {
         x[p] += 100;
     }
     x[5] = NAN;
-    check_ok(mspring_network_set_masses(network, 0, count, mass));
+    check_ok(mspring_network_set(network, MSPRING_MASS, 0, count, mass, 1));
     check_ok(mspring_network_set_positions(network, 0, count, x, y, 1));
     check_near(support_position(network, 6).x, x[6], 1e-5);
     mass[6] = 0;
-    check_error(mspring_network_set_masses(network, 0, count, mass), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_set_masses_at(network, gone, 2, mass), MSPRING_ERROR_ID);
+    check_error(mspring_network_set(network, MSPRING_MASS, 0, count, mass, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_at(network, MSPRING_MASS, gone, 2, mass, 1), MSPRING_ERROR_ID);
     check_error(mspring_network_apply_force(network, 5, 1, 1), MSPRING_ERROR_ID);
     check_error(mspring_network_detach_particles(network, gone, 1), MSPRING_ERROR_ID);
     double box[4];
@@ -461,7 +461,7 @@ static void components_events_and_strain_know_of_it(void **state) {
     assert_true(events[1].kind == MSPRING_EVENT_JOINED && events[1].id == added && events[1].other == 0);
 
     const float strain = 0.5f, far = 30;
-    check_ok(mspring_network_set_break_strains(network, ids[1], 1, &strain));
+    check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, ids[1], 1, &strain, 1));
     const float y = 0;
     check_ok(mspring_network_set_positions_float(network, 2, 1, &far, &y, 1));
     check_ok(mspring_network_step(network, 1e-3));
@@ -520,8 +520,8 @@ static void what_takes_a_springs_place_inherits_no_threshold(void **state) {
     }
     check_ok(mspring_network_add_springs(network, springs, 2, ids));
     const float stress[] = {0.5f, 0.5f}, limit[] = {2, 2}; // both are strained by 1
-    check_ok(mspring_network_set_stress_strains(network, ids[0], 2, stress));
-    check_ok(mspring_network_set_break_strains(network, ids[0], 2, limit));
+    check_ok(mspring_network_set(network, MSPRING_STRESS_STRAIN, ids[0], 2, stress, 1));
+    check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, ids[0], 2, limit, 1));
     support_steps(network, 1, 0.01);
     check_ok(mspring_network_read_events(network, events, 10, &count, NULL));
     assert_int_equal(count, 2);

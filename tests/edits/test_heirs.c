@@ -73,7 +73,7 @@ static support_point floor_impulse(const mspring_network *network, mspring_id pa
 
 static float scale_of(const mspring_network *network, mspring_id particle) {
     float scale = 77;
-    check_ok(mspring_network_get_inverse_mass_scales(network, particle, 1, &scale));
+    check_ok(mspring_network_get(network, MSPRING_INVERSE_MASS_SCALE, particle, 1, &scale, 1));
     return scale;
 }
 
@@ -84,7 +84,7 @@ static mspring_id let_one_live(mspring_network *network, const variant *of) {
     assert_int_equal(loose_particles(network), 0);
     const mspring_id id = add(network, 20, -9.99, 5, -3);
     assert_int_equal(loose_particles(network), 1);
-    check_ok(mspring_network_set_inverse_mass_scales(network, id, 1, &half));
+    check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, id, 1, &half, 1));
     support_steps(network, 10, 0.01);
     assert_int_equal(support_fallback_count(network) > 0, of->guard == MSPRING_GUARD_IMPLICIT);
     assert_int_equal(floor_impulse(network, id).y > 0, of->has_floor);

@@ -160,8 +160,8 @@ static uint64_t look_of(const mspring_network *network) {
         uint8_t asleep;
         float mass[2], impulse[2];
         FUZZ_CHECK(mspring_network_get_sleepers(network, p, 1, &asleep) == MSPRING_OK);
-        FUZZ_CHECK(mspring_network_get_masses(network, p, 1, &mass[0]) == MSPRING_OK);
-        FUZZ_CHECK(mspring_network_get_inverse_mass_scales(network, p, 1, &mass[1]) == MSPRING_OK);
+        FUZZ_CHECK(mspring_network_get(network, MSPRING_MASS, p, 1, &mass[0], 1) == MSPRING_OK);
+        FUZZ_CHECK(mspring_network_get(network, MSPRING_INVERSE_MASS_SCALE, p, 1, &mass[1], 1) == MSPRING_OK);
         FUZZ_CHECK(mspring_network_get_floor_impulses(network, p, 1, &impulse[0], &impulse[1], 1) == MSPRING_OK);
         mix(&look, &asleep, sizeof asleep);
         mix(&look, mass, sizeof mass);
@@ -339,7 +339,7 @@ static mspring_result make_call(mspring_network *network, const call *c) {
     double now = 0, any_shape = 0;
     mspring_solver_def solver;
     uint32_t number = 0;
-    switch (c->kind % 44) {
+    switch (c->kind % 46) {
     case 0:
         return mspring_network_apply_force(network, c->particle, c->a, c->b);
     case 1:
@@ -353,15 +353,15 @@ static mspring_result make_call(mspring_network *network, const call *c) {
     case 5:
         return mspring_network_restore_springs(network, &c->spring, 1, c->a > 0 ? 0.01 : 0.0);
     case 6:
-        return mspring_network_set_masses(network, c->particle, c->count, pair);
+        return mspring_network_set(network, MSPRING_MASS, c->particle, c->count, pair, 1);
     case 7:
-        return mspring_network_set_inverse_mass_scales(network, c->particle, c->count, pair);
+        return mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, c->particle, c->count, pair, 1);
     case 8:
-        return mspring_network_set_stiffnesses(network, c->spring, c->count, pair);
+        return mspring_network_set(network, MSPRING_STIFFNESS, c->spring, c->count, pair, 1);
     case 9:
-        return mspring_network_set_dampings(network, c->spring, c->count, pair);
+        return mspring_network_set(network, MSPRING_DAMPING, c->spring, c->count, pair, 1);
     case 10:
-        return mspring_network_set_rest_lengths(network, c->spring, c->count, pair);
+        return mspring_network_set(network, MSPRING_REST_LENGTH, c->spring, c->count, pair, 1);
     case 11:
         return support_set_gravity(network, c->a, c->b);
     case 12:
@@ -377,8 +377,14 @@ static mspring_result make_call(mspring_network *network, const call *c) {
         solver.max_substeps = 64;
         solver.solver = c->solver;
         return mspring_network_set_solver(network, &solver);
+    case 44: // one value for all, or what is no stride of the array's
+        return mspring_network_set(network, (int32_t)(c->particle % 12), c->spring, c->count, pair, 0);
+    case 45: {
+        const mspring_id list[2] = {c->spring, c->particle};
+        return mspring_network_set_at(network, (int32_t)(c->particle % 12), list, 2, pair, 1);
+    }
     case 15:
-        return mspring_network_set_break_strains(network, c->spring, c->count, pair);
+        return mspring_network_set(network, MSPRING_BREAK_STRAIN, c->spring, c->count, pair, 1);
     case 16:
         return mspring_network_update_components(network, &number, NULL);
     case 17:
@@ -392,7 +398,7 @@ static mspring_result make_call(mspring_network *network, const call *c) {
     case 21:
         return mspring_network_detach_particles(network, &c->particle, 1);
     case 22:
-        return mspring_network_set_stress_strains(network, c->spring, c->count, pair);
+        return mspring_network_set(network, MSPRING_STRESS_STRAIN, c->spring, c->count, pair, 1);
     case 23:
         return settle(network);
     case 24:

@@ -83,14 +83,14 @@ static void edit(mspring_network *network, int kind) {
     const bool implicit = kind & 2;
     const float strains[2] = {0.5f, 0.7f}, lower[2] = {0.2f, 0.3f}, mass = 3, scale = 0.5f;
     const mspring_id broken[2] = {1, 4};
-    FUZZ_CHECK(mspring_network_set_break_strains(network, 2, 2, strains) == MSPRING_OK);
-    FUZZ_CHECK(mspring_network_set_stress_strains(network, 2, 2, lower) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_set(network, MSPRING_BREAK_STRAIN, 2, 2, strains, 1) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_set(network, MSPRING_STRESS_STRAIN, 2, 2, lower, 1) == MSPRING_OK);
     FUZZ_CHECK(mspring_network_break_springs(network, broken, 2) == MSPRING_OK);
     FUZZ_CHECK(mspring_network_step(network, 0.01) == MSPRING_OK);
     FUZZ_CHECK(mspring_network_restore_springs(network, broken, 1, 1.0) == MSPRING_OK);
-    FUZZ_CHECK(mspring_network_set_masses(network, 3, 1, &mass) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_set(network, MSPRING_MASS, 3, 1, &mass, 1) == MSPRING_OK);
     if (!implicit)
-        FUZZ_CHECK(mspring_network_set_inverse_mass_scales(network, 5, 1, &scale) == MSPRING_OK);
+        FUZZ_CHECK(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, 5, 1, &scale, 1) == MSPRING_OK);
     if (kind % 3 == 0)
         add_and_remove(network);
     FUZZ_CHECK(mspring_network_apply_force(network, 6, 3, -2) == MSPRING_OK);

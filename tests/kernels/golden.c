@@ -210,7 +210,7 @@ static void push_and_change_solver(mspring_network *network, uint32_t step) {
 static void push_and_solve_directly(mspring_network *network, uint32_t step) {
     push_and_use(network, step, MSPRING_SOLVER_DIRECT);
     const float stiffness = step / 10 % 4 != 3 && step % 2 == 1 ? 1e9f : 1e3f;
-    check_ok(mspring_network_set_stiffnesses(network, 7, 1, &stiffness));
+    check_ok(mspring_network_set(network, MSPRING_STIFFNESS, 7, 1, &stiffness, 1));
 }
 
 const golden_scene golden_scenes[] = {

@@ -343,13 +343,13 @@ static void edit(mspring_network *network, uint32_t spring_count, uint64_t *seed
         support_kick(network, p, some);
         break;
     case 7:
-        check_ok(mspring_network_set_masses_at(network, &p, 1, &some));
+        check_ok(mspring_network_set_at(network, MSPRING_MASS, &p, 1, &some, 1));
         break;
     case 8:
-        check_ok(mspring_network_set_inverse_mass_scales_at(network, &p, 1, &none));
+        check_ok(mspring_network_set_at(network, MSPRING_INVERSE_MASS_SCALE, &p, 1, &none, 1));
         break;
     case 9:
-        check_ok(mspring_network_set_stiffnesses_at(network, &s, 1, &(float){100.0f * some}));
+        check_ok(mspring_network_set_at(network, MSPRING_STIFFNESS, &s, 1, &(float){100.0f * some}, 1));
         break;
     case 10:
         check_ok(mspring_network_apply_force(network, p, 30.0f * some, 20));
@@ -398,7 +398,7 @@ static void live_as(recipe *made, way with, uint64_t seed, uint64_t *hashes) {
     }
     const float brittle = 0.5f;
     for (mspring_id s = 0; s < made->spring_count; s += 7) {
-        check_ok(mspring_network_set_break_strains_at(network, &s, 1, &brittle));
+        check_ok(mspring_network_set_at(network, MSPRING_BREAK_STRAIN, &s, 1, &brittle, 1));
     }
     for (int step = 0; step < LIFE_STEPS; step++) {
         for (uint64_t i = support_random(&seed) % LIFE_EDITS; i > 0; i--) {

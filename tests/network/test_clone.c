@@ -66,11 +66,11 @@ static void use_everything(mspring_network *network) {
     for (uint32_t i = 0; i < springs; i++) {
         values[i] = i % 7 == 0 ? INFINITY : 0.05f + 0.01f * (float)(i % 5);
     }
-    check_ok(mspring_network_set_break_strains(network, 0, springs, values));
+    check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, springs, values, 1));
     for (uint32_t i = 0; i < springs; i++) {
         values[i] = 0.01f;
     }
-    check_ok(mspring_network_set_stress_strains(network, 0, springs, values));
+    check_ok(mspring_network_set(network, MSPRING_STRESS_STRAIN, 0, springs, values, 1));
     check_ok(mspring_network_reserve_events(network, 64));
     check_ok(mspring_network_update_components(network, NULL, NULL));
     check_ok(mspring_network_get_extents(network, values, NULL, NULL, NULL));
@@ -99,8 +99,8 @@ static void run_frame(mspring_network *network, uint32_t frame) {
         check_ok(mspring_network_restore_springs(network, whole, 1, 0.5));
     }
     const float mass = 1 + 0.1f * (float)(frame % 10), scale = frame % 2 == 0 ? 0.5f : 1;
-    check_ok(mspring_network_set_masses(network, frame % particles, 1, &mass));
-    check_ok(mspring_network_set_inverse_mass_scales(network, frame * 3 % particles, 1, &scale));
+    check_ok(mspring_network_set(network, MSPRING_MASS, frame % particles, 1, &mass, 1));
+    check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, frame * 3 % particles, 1, &scale, 1));
     check_ok(mspring_network_apply_force(network, frame * 11 % particles, 30, 5));
     check_ok(mspring_network_step(network, frame % 6 == 5 ? 0.013 : 0.01));
 }

@@ -37,7 +37,7 @@ static void nothing_changes_but_the_plan(void **state) {
     for (wreck kind = 0; kind < WRECKS; kind++) {
         mspring_network *network = wrecks_network(&made, MSPRING_SIMD_AUTO, 1);
         const float scale = 0.5f;
-        check_ok(mspring_network_set_inverse_mass_scales(network, 7, 1, &scale));
+        check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, 7, 1, &scale, 1));
         support_steps(network, 2, 1.0 / 64);
         wrecks_make(network, &made, kind);
         const uint32_t before = wrecks_swept(network);
@@ -226,9 +226,9 @@ static void springs_that_are_left_out_can_be_edited_and_restored(void **state) {
             }
             const mspring_id id = 17;
             const float stiffness = 0.07f, rest_length = 1.1f, damping = 0.02f;
-            check_ok(mspring_network_set_stiffnesses_at(both[i], &id, 1, &stiffness));
-            check_ok(mspring_network_set_dampings_at(both[i], &id, 1, &damping));
-            check_ok(mspring_network_set_rest_lengths_at(both[i], &id, 1, &rest_length));
+            check_ok(mspring_network_set_at(both[i], MSPRING_STIFFNESS, &id, 1, &stiffness, 1));
+            check_ok(mspring_network_set_at(both[i], MSPRING_DAMPING, &id, 1, &damping, 1));
+            check_ok(mspring_network_set_at(both[i], MSPRING_REST_LENGTH, &id, 1, &rest_length, 1));
             const mspring_id back[] = {id, 18, 300, 4};
             check_ok(mspring_network_restore_springs(both[i], back, 4, 0.2));
             support_steps(both[i], 5, 1.0 / 64);
@@ -253,11 +253,11 @@ static void strains_are_watched_as_before(void **state) {
     }
     for (int compacted = 0; compacted < 2; compacted++) {
         mspring_network *network = wrecks_network(&made, MSPRING_SIMD_AUTO, 1);
-        check_ok(mspring_network_set_stress_strains(network, 0, made.spring_count, strain));
+        check_ok(mspring_network_set(network, MSPRING_STRESS_STRAIN, 0, made.spring_count, strain, 1));
         for (mspring_id s = 0; s < made.spring_count; s++) {
             strain[s] *= 2;
         }
-        check_ok(mspring_network_set_break_strains(network, 0, made.spring_count, strain));
+        check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, made.spring_count, strain, 1));
         for (mspring_id s = 0; s < made.spring_count; s++) {
             strain[s] /= 2;
         }
@@ -351,7 +351,7 @@ static void steps_taken_for_the_explicit_solver_stay_the_same(void **state) {
     const uint64_t hash = support_hash(network);
     for (mspring_id s = 0; s < made.spring_count; s++) {
         const float rest_length = 3;
-        check_ok(mspring_network_set_rest_lengths(network, s, 1, &rest_length));
+        check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, s, 1, &rest_length, 1));
     }
     check_ok(mspring_network_break_springs(network, &some, 1));
     compact(network);
@@ -435,7 +435,7 @@ static void every_failure_leaves_the_network_as_it_was(void **state) {
         bool compacting_failed, expanding_failed;
         mspring_network *network = recipe_network(&made, &def);
         wrecks_set_up(network, 3);
-        check_ok(mspring_network_set_stress_strains(network, 0, made.spring_count, strain));
+        check_ok(mspring_network_set(network, MSPRING_STRESS_STRAIN, 0, made.spring_count, strain, 1));
         check_ok(mspring_network_update_components(network, NULL, NULL));
         wrecks_make(network, &made, TORN);
         support_steps(network, 1, 1.0 / 64);

@@ -71,25 +71,25 @@ static void change_something(mspring_network *const both[2], uint64_t *seed, sav
         mspring_network *n = both[i];
         switch (what) {
         case 0:
-            check_ok(mspring_network_set_stiffnesses_at(n, list, 20, values));
+            check_ok(mspring_network_set_at(n, MSPRING_STIFFNESS, list, 20, values, 1));
             break;
         case 1:
-            check_ok(mspring_network_set_dampings_at(n, list, 20, values));
+            check_ok(mspring_network_set_at(n, MSPRING_DAMPING, list, 20, values, 1));
             break;
         case 2: // from the first on, rest lengths are not shared any more
             for (int j = 0; j < 20 && i == 0; j++) {
                 values[j] += 0.9f;
             }
-            check_ok(mspring_network_set_rest_lengths_at(n, list, 20, values));
+            check_ok(mspring_network_set_at(n, MSPRING_REST_LENGTH, list, 20, values, 1));
             break;
         case 3: // likewise thresholds
             for (int j = 0; j < 20 && i == 0; j++) {
                 values[j] += 5;
             }
-            check_ok(mspring_network_set_break_strains_at(n, list, 20, values));
+            check_ok(mspring_network_set_at(n, MSPRING_BREAK_STRAIN, list, 20, values, 1));
             break;
         case 4:
-            check_ok(mspring_network_set_stress_strains_at(n, list, 20, values));
+            check_ok(mspring_network_set_at(n, MSPRING_STRESS_STRAIN, list, 20, values, 1));
             break;
         case 5: // at once, so that none of them is one that was broken before
             check_ok(mspring_network_break_springs(n, list, 20));

@@ -80,10 +80,10 @@ static void edits_are_taken_over(void **state) {
     mspring_particle_def particle;
     mspring_id added;
     check_ok(mspring_network_break_springs(network, broken, 2));
-    check_ok(mspring_network_set_masses(network, 5, 1, &mass));
-    check_ok(mspring_network_set_stiffnesses(network, 20, 1, &stiffness));
-    check_ok(mspring_network_set_rest_lengths(network, 21, 1, &rest));
-    check_ok(mspring_network_set_inverse_mass_scales(network, 6, 2, scale));
+    check_ok(mspring_network_set(network, MSPRING_MASS, 5, 1, &mass, 1));
+    check_ok(mspring_network_set(network, MSPRING_STIFFNESS, 20, 1, &stiffness, 1));
+    check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, 21, 1, &rest, 1));
+    check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, 6, 2, scale, 1));
     check_ok(mspring_network_remove_particles(network, &gone, 1));
     check_ok(mspring_particle_def_init(&particle, sizeof particle));
     particle.x = -30, particle.vx = 2, particle.flags = MSPRING_PARTICLE_PINNED;
@@ -105,10 +105,10 @@ static void edits_are_taken_over(void **state) {
         }
         assert_int_equal(particle_ids[i], next++);
         float had, has, had_scale, has_scale;
-        check_ok(mspring_network_get_masses(network, i, 1, &had));
-        check_ok(mspring_network_get_masses(copy, particle_ids[i], 1, &has));
-        check_ok(mspring_network_get_inverse_mass_scales(network, i, 1, &had_scale));
-        check_ok(mspring_network_get_inverse_mass_scales(copy, particle_ids[i], 1, &has_scale));
+        check_ok(mspring_network_get(network, MSPRING_MASS, i, 1, &had, 1));
+        check_ok(mspring_network_get(copy, MSPRING_MASS, particle_ids[i], 1, &has, 1));
+        check_ok(mspring_network_get(network, MSPRING_INVERSE_MASS_SCALE, i, 1, &had_scale, 1));
+        check_ok(mspring_network_get(copy, MSPRING_INVERSE_MASS_SCALE, particle_ids[i], 1, &has_scale, 1));
         assert_true(has == had && has_scale == (had_scale > 0 ? 1 : 0));
         const support_point v = support_velocity(network, i), w = support_velocity(copy, particle_ids[i]);
         assert_true(v.x == w.x && v.y == w.y);

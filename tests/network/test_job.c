@@ -54,12 +54,12 @@ static void live(mspring_network *network, uint32_t frame) {
     const mspring_id list[] = {frame * 31 + 1, frame * 57 + 2};
     const float stiffness[] = {0.15f, 0.12f}, lengths[] = {1.05f, 0.95f};
     mspring_network *clone = NULL;
-    check_ok(mspring_network_set_stiffnesses_at(network, list, 2, stiffness));
+    check_ok(mspring_network_set_at(network, MSPRING_STIFFNESS, list, 2, stiffness, 1));
     check_ok(mspring_network_break_springs(network, list, 1));
     if (frame == 2) { // rest lengths are not shared any more
-        check_ok(mspring_network_set_rest_lengths_at(network, list + 1, 1, lengths));
+        check_ok(mspring_network_set_at(network, MSPRING_REST_LENGTH, list + 1, 1, lengths, 1));
     }
-    check_ok(mspring_network_set_break_strains_at(network, list, 2, (const float[]){9, 8}));
+    check_ok(mspring_network_set_at(network, MSPRING_BREAK_STRAIN, list, 2, (const float[]){9, 8}, 1));
     support_steps(network, 1, 1.0 / 64);
     check_ok(mspring_network_clone(network, NULL, &clone));
     mspring_network_destroy(clone);

@@ -85,7 +85,7 @@ static void views_show_the_state_and_follow_the_steps(void **state) {
         assert_true((float)(p.x - after.origin_x) == after.x[slot]);
         assert_true((float)(p.y - after.origin_y) == after.y[slot]);
         assert_true(v.x == (double)after.vx[slot] && v.y == (double)after.vy[slot]);
-        check_ok(mspring_network_get_masses(network, id, 1, &mass));
+        check_ok(mspring_network_get(network, MSPRING_MASS, id, 1, &mass, 1));
         assert_true(after.inverse_mass[slot] == 0 || after.inverse_mass[slot] == 1.0f / mass);
         assert_true(mass >= 1 && mass <= 2); // the pinned ones have theirs, too
     }
@@ -264,7 +264,7 @@ static void ranges_that_leave_the_network_are_refused(void **state) {
         check_error(mspring_network_get_positions(network, first, n, x, y, 1), MSPRING_ERROR_ID);
         check_error(mspring_network_get_positions_float(network, first, n, fx, fy, 1), MSPRING_ERROR_ID);
         check_error(mspring_network_get_velocities(network, first, n, fx, fy, 1), MSPRING_ERROR_ID);
-        check_error(mspring_network_get_masses(network, first, n, fx), MSPRING_ERROR_ID);
+        check_error(mspring_network_get(network, MSPRING_MASS, first, n, fx, 1), MSPRING_ERROR_ID);
         check_error(mspring_network_set_positions(network, first, n, x, y, 1), MSPRING_ERROR_ID);
         check_error(mspring_network_set_positions_float(network, first, n, fx, fy, 1), MSPRING_ERROR_ID);
         check_error(mspring_network_set_velocities(network, first, n, fx, fy, 1), MSPRING_ERROR_ID);
@@ -285,7 +285,7 @@ static void null_arrays_are_refused(void **state) {
     check_error(mspring_network_get_positions(network, 0, 2, d, NULL, 1), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_get_positions_float(network, 0, 2, NULL, f, 1), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_get_velocities(network, 0, 2, f, NULL, 1), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_get_masses(network, 0, 2, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get(network, MSPRING_MASS, 0, 2, NULL, 1), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_set_positions(network, 0, 2, NULL, d, 1), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_set_positions_float(network, 0, 2, f, NULL, 1), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_set_velocities(network, 0, 2, NULL, f, 1), MSPRING_ERROR_ARGUMENT);
@@ -294,7 +294,7 @@ static void null_arrays_are_refused(void **state) {
     check_error(mspring_network_get_positions(NULL, 0, 1, d, d, 1), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_get_positions_float(NULL, 0, 1, f, f, 1), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_get_velocities(NULL, 0, 1, f, f, 1), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_get_masses(NULL, 0, 1, f), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get(NULL, MSPRING_MASS, 0, 1, f, 1), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_set_positions(NULL, 0, 1, d, d, 1), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_set_positions_float(NULL, 0, 1, f, f, 1), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_set_velocities(NULL, 0, 1, f, f, 1), MSPRING_ERROR_ARGUMENT);
@@ -448,7 +448,7 @@ static mspring_network *three_particles(void) {
     def.sleep_time = 0;
     mspring_network *network = support_network(builder, &def);
     const float scales[] = {1, 0.5f, 0};
-    check_ok(mspring_network_set_inverse_mass_scales(network, 0, 3, scales));
+    check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, 0, 3, scales, 1));
     return network;
 }
 

@@ -247,7 +247,7 @@ static void to_others_sleepers_are_pinned(void **state) {
         for (mspring_id p = 0; p < particles; p++) {
             const double y = support_position(network, p).y;
             if (y > CUT - 0.5 && y < SECOND_CUT - 0.5) {
-                check_ok(mspring_network_set_inverse_mass_scales(pinned, p, 1, &none));
+                check_ok(mspring_network_set(pinned, MSPRING_INVERSE_MASS_SCALE, p, 1, &none, 1));
             }
         }
         mspring_network *const both[] = {network, pinned};
@@ -447,7 +447,7 @@ static void masses_of_what_is_awake_count_at_once(void **state) {
             if (step == 0) {
                 support_kick(both[i], IN_B, 4);
             } else if (step == 4) {
-                check_ok(mspring_network_set_masses(both[i], IN_B, 1, &heavy));
+                check_ok(mspring_network_set(both[i], MSPRING_MASS, IN_B, 1, &heavy, 1));
             }
         }
         check_ok(mspring_network_wake(awake));
@@ -576,14 +576,14 @@ static void forces_and_masses_are_those_of_before(void **state) {
     mspring_id broken;
     mspring_network *network = make_two(MSPRING_SOLVER_EXPLICIT, &broken);
     const float none = 0, mass = 5;
-    check_ok(mspring_network_set_inverse_mass_scales(network, 0, 1, &none)); // A's corner is held
+    check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, 0, 1, &none, 1)); // A's corner is held
     for (int i = 0; i < 3000 && !mspring_network_is_asleep(network); i++) {
         check_ok(mspring_network_apply_force(network, IN_A, 10, 0));
         support_steps(network, 1, DT);
     }
     assert_int_equal(mspring_network_is_asleep(network), 1);
     check_ok(mspring_network_compact(network));
-    check_ok(mspring_network_set_masses(network, IN_B, 1, &mass));
+    check_ok(mspring_network_set(network, MSPRING_MASS, IN_B, 1, &mass, 1));
     check_ok(mspring_network_apply_force(network, IN_A, 10, 0));
     support_steps(network, 1, DT);
     assert_int_equal(support_sleeps(network, IN_A), 1);
@@ -671,8 +671,8 @@ static void events_are_those_of_what_is_awake(void **state) {
     check_ok(mspring_network_reserve_events(network, 1000));
     for (mspring_id s = 0; s < springs; s++) {
         const float stress = 0.02f, breaking = 0.3f;
-        check_ok(mspring_network_set_stress_strains(network, s, 1, &stress));
-        check_ok(mspring_network_set_break_strains(network, s, 1, &breaking));
+        check_ok(mspring_network_set(network, MSPRING_STRESS_STRAIN, s, 1, &stress, 1));
+        check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, s, 1, &breaking, 1));
     }
     support_fall_asleep(network, DT);
     check_ok(mspring_network_clone(network, NULL, &awake));
@@ -732,7 +732,7 @@ static void the_floor_bears_sleepers(void **state) {
             sum = weight = 0;
             for (mspring_id p = 0; p < 160; p++) {
                 float mass;
-                check_ok(mspring_network_get_masses(network, p, 1, &mass));
+                check_ok(mspring_network_get(network, MSPRING_MASS, p, 1, &mass, 1));
                 sum += (double)y[p];
                 weight += 9.8 * DT * (double)mass;
             }

@@ -169,7 +169,7 @@ static void without_sleep_time_the_first_still_step_is_enough(void **state) {
 /// Changes of the network as a whole, and of its pin.
 static void let_go(mspring_network *network) {
     const float scale = 1;
-    check_ok(mspring_network_set_inverse_mass_scales(network, 100, 1, &scale));
+    check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, 100, 1, &scale, 1));
 }
 static void tilt(mspring_network *network) {
     check_ok(support_set_gravity(network, 1, -9.8f));
@@ -252,8 +252,8 @@ static void what_stays_the_same_wakes_nothing(void **state) {
     for (int i = 0; i < 20; i++) {
         const support_point at = support_position(network, 3);
         const float none = 0;
-        check_ok(mspring_network_get_masses(network, 0, made.particle_count, mass));
-        check_ok(mspring_network_set_masses(network, 0, made.particle_count, mass));
+        check_ok(mspring_network_get(network, MSPRING_MASS, 0, made.particle_count, mass, 1));
+        check_ok(mspring_network_set(network, MSPRING_MASS, 0, made.particle_count, mass, 1));
         check_ok(mspring_network_set_positions(network, 3, 1, &at.x, &at.y, 1));
         check_ok(mspring_network_set_velocities(network, 3, 1, &none, &none, 1));
         check_ok(support_set_gravity(network, 0, -9.8f));
@@ -702,7 +702,7 @@ static void another_relax_fraction_wakes_it(void **state) {
     check_ok(mspring_network_reserve_events(network, 1000));
     for (mspring_id s = 0; s < count; s++) {
         const float strain = 0.01f;
-        check_ok(mspring_network_set_stress_strains(network, s, 1, &strain));
+        check_ok(mspring_network_set(network, MSPRING_STRESS_STRAIN, s, 1, &strain, 1));
     }
     check_ok(support_set_relax_fraction(network, 0));
     const float kick = 20;

@@ -247,7 +247,7 @@ static void foreign_snapshots_are_refused(void **state) {
     saved frame = snapshots_save(network, MSPRING_SNAPSHOT_FRAME),
           all = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
     const float stiffness = 60;
-    check_ok(mspring_network_set_stiffnesses(network, 1, 1, &stiffness));
+    check_ok(mspring_network_set(network, MSPRING_STIFFNESS, 1, 1, &stiffness, 1));
     const uint64_t edited = snapshots_look_at(network);
     check_error(mspring_network_load(network, frame.bytes, frame.size), MSPRING_ERROR_SNAPSHOT);
     assert_int_equal(snapshots_look_at(network), edited);

@@ -275,19 +275,19 @@ static void frames_are_of_networks_edited_alike(void **state) {
             check_ok(mspring_network_recycle(network));
             break;
         case BREAK:
-            check_ok(mspring_network_set_break_strains(network, id, 1, value));
+            check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, id, 1, value, 1));
             break;
         case STRESS:
-            check_ok(mspring_network_set_stress_strains(network, id, 1, value));
+            check_ok(mspring_network_set(network, MSPRING_STRESS_STRAIN, id, 1, value, 1));
             break;
         case STIFFNESS:
-            check_ok(mspring_network_set_stiffnesses(network, id, 1, value));
+            check_ok(mspring_network_set(network, MSPRING_STIFFNESS, id, 1, value, 1));
             break;
         case DAMPING:
-            check_ok(mspring_network_set_dampings(network, id, 1, value));
+            check_ok(mspring_network_set(network, MSPRING_DAMPING, id, 1, value, 1));
             break;
         case LENGTH:
-            check_ok(mspring_network_set_rest_lengths(network, id, 1, value));
+            check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, id, 1, value, 1));
             break;
         default:
             break;

@@ -347,22 +347,23 @@ static void a_version_has_one_format(void **state) {
     mspring_network *network = support_network(builder, &def);
     const float strain = 1, scale = 0.5f;
     const mspring_id spring = 0;
-    check_ok(mspring_network_set_break_strains(network, 0, 1, &strain));
-    check_ok(mspring_network_set_stress_strains(network, 0, 1, &strain));
-    check_ok(mspring_network_set_inverse_mass_scales(network, b, 1, &scale));
+    check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, 1, &strain, 1));
+    check_ok(mspring_network_set(network, MSPRING_STRESS_STRAIN, 0, 1, &strain, 1));
+    check_ok(mspring_network_set(network, MSPRING_RELAX_STRAIN, 0, 1, &strain, 1));
+    check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, b, 1, &scale, 1));
     check_ok(mspring_network_break_springs(network, &spring, 1));
     check_ok(mspring_network_restore_springs(network, &spring, 1, 9));
     check_ok(mspring_network_apply_force(network, b, 1, 2));
     char text[400];
     describe(network, text, sizeof text);
     assert_string_equal(text,
-                        "7: grow 23 sett 56 step 28 moti 24/slot mass 28 forc 8/slot brok 4 valu 24 brks 8 strs 8 "
-                        "stsd 4 ramp 32 slee 20 guar 56");
+                        "8: grow 23 sett 56 step 28 moti 24/slot mass 28 forc 8/slot brok 4 valu 24 brks 8 strs 8 "
+                        "rlxs 8 stsd 4 ramp 32 slee 20 guar 56");
     snapshots_use_solver(network, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, 1);
     check_ok(mspring_network_step(network, 0.01));
     describe(network, text, sizeof text);
     assert_string_equal(
-        text, "7: grow 23 sett 56 step 28 moti 24/slot mass 28 brok 4 valu 24 brks 8 strs 8 stsd 4 ramp 32 "
+        text, "8: grow 23 sett 56 step 28 moti 24/slot mass 28 brok 4 valu 24 brks 8 strs 8 rlxs 8 stsd 4 ramp 32 "
               "slee 20 impl 1320 guar 56");
     mspring_network_destroy(network);
 }
@@ -375,7 +376,7 @@ static void loading_leaves_no_events_and_no_rounding_mode(void **state) {
     saved before = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
     const float strain = 1e-3f, fast = 20;
     check_ok(mspring_network_reserve_events(network, 10));
-    check_ok(mspring_network_set_break_strains(network, 0, 1, &strain));
+    check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, 1, &strain, 1));
     check_ok(mspring_network_set_velocities(network, 0, 1, &fast, &fast, 1));
     support_steps(network, 3, 0.01);
     const int mode = fegetround();
@@ -391,7 +392,7 @@ static void loading_leaves_no_events_and_no_rounding_mode(void **state) {
     check_ok(mspring_network_read_events(network, &event, 1, &count, NULL));
     assert_int_equal(count, 0);
     // They were there.
-    check_ok(mspring_network_set_break_strains(network, 0, 1, &strain));
+    check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, 1, &strain, 1));
     check_ok(mspring_network_set_velocities(network, 0, 1, &fast, &fast, 1));
     support_steps(network, 3, 0.01);
     check_ok(mspring_network_read_events(network, &event, 1, &count, NULL));

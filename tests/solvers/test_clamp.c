@@ -253,7 +253,7 @@ static uint64_t play(const recipe *made, playing how, uint64_t *clamped) {
     }
     const float strain = 0.3f;
     for (mspring_id s = 0; s < made->spring_count; s++) {
-        check_ok(mspring_network_set_break_strains(network, s, 1, &strain));
+        check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, s, 1, &strain, 1));
     }
     for (uint32_t step = 0; step < 300; step++) {
         check_ok(mspring_network_step(network, DT));

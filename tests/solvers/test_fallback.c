@@ -52,7 +52,7 @@ static void *save(const mspring_network *network, size_t *size) {
 
 static void set_all_rest_lengths(mspring_network *network, float rest_length) {
     for (mspring_id s = 0; s < mspring_network_spring_count(network); s++) {
-        check_ok(mspring_network_set_rest_lengths(network, s, 1, &rest_length));
+        check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, s, 1, &rest_length, 1));
     }
 }
 
@@ -218,7 +218,7 @@ static void events_are_told_once(void **state) {
     check_ok(mspring_network_reserve_events(network, 4096));
     const float strain = 0.3f;
     for (mspring_id s = 0; s < made.spring_count; s++) {
-        check_ok(mspring_network_set_break_strains(network, s, 1, &strain));
+        check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, s, 1, &strain, 1));
     }
     uint8_t *told = calloc(made.spring_count, 1);
     assert_non_null(told);
@@ -277,7 +277,7 @@ static uint64_t play(mspring_simd level, uint32_t workers, uint64_t *fallen_back
     check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, nudge, NULL, NULL));
     const float strain = 0.3f;
     for (mspring_id s = 0; s < made.spring_count; s++) {
-        check_ok(mspring_network_set_break_strains(network, s, 1, &strain));
+        check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, s, 1, &strain, 1));
     }
     uint64_t hash = 0;
     for (uint32_t step = 0; step < 400; step++) {

@@ -84,7 +84,7 @@ static void the_refusal_names_the_spring(void **state) {
             mspring_network *network = recipe_network(&made, &def);
             double now = 0;
             const float stiff = 1e7f;
-            check_ok(mspring_network_set_stiffnesses(network, s, 1, &stiff));
+            check_ok(mspring_network_set(network, MSPRING_STIFFNESS, s, 1, &stiff, 1));
             check_ok(mspring_network_stable_dt(network, &now, NULL));
             const uint64_t before = support_hash(network);
             check_error(mspring_network_step(network, 1.1 * now), MSPRING_ERROR_UNSTABLE);
@@ -113,7 +113,7 @@ static void a_spring_that_was_none_is_named(void **state) {
     mspring_network *network = recipe_network(&made, &def);
     support_steps(network, 1, 0.01);
     const float stiff = 1e5f, vx = 0.01f, vy = 0;
-    check_ok(mspring_network_set_stiffnesses(network, 0, 1, &stiff));
+    check_ok(mspring_network_set(network, MSPRING_STIFFNESS, 0, 1, &stiff, 1));
     check_ok(mspring_network_set_velocities(network, 0, 1, &vx, &vy, 1));
     mspring_result result = MSPRING_OK;
     for (int step = 0; step < 100 && result == MSPRING_OK; step++) {
@@ -426,9 +426,9 @@ static void edit_pair(mspring_network *network, int edit) {
     check_ok(mspring_spring_def_init(&spring, sizeof spring));
     spring.a = 1, spring.b = 2, spring.stiffness = stiffness, spring.rest_length = 1;
     if (edit == STIFFER) {
-        check_ok(mspring_network_set_stiffnesses(network, 0, 1, &stiffness));
+        check_ok(mspring_network_set(network, MSPRING_STIFFNESS, 0, 1, &stiffness, 1));
     } else if (edit == LIGHTER) {
-        check_ok(mspring_network_set_masses(network, 0, 1, &mass));
+        check_ok(mspring_network_set(network, MSPRING_MASS, 0, 1, &mass, 1));
     } else {
         check_ok(mspring_network_add_springs(network, &spring, 1, &id));
     }

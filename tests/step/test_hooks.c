@@ -410,8 +410,8 @@ static void call_from_inside(const mspring_hook_args *args, void *user) {
     check_ok(mspring_network_get_spring(network, 0, &info));
     check_ok(mspring_network_get_positions(network, 0, 2, d, d, 1));
     check_ok(mspring_network_get_velocities(network, 0, 2, f, f, 1));
-    check_ok(mspring_network_get_masses(network, 0, 2, f));
-    check_ok(mspring_network_get_strains(network, 0, 2, f));
+    check_ok(mspring_network_get(network, MSPRING_MASS, 0, 2, f, 1));
+    check_ok(mspring_network_get(network, MSPRING_STRAIN, 0, 2, f, 1));
     check_ok(mspring_network_energy(network, &energy, NULL, NULL));
     check_ok(mspring_network_momentum(network, &energy, NULL, NULL));
     check_ok(mspring_network_max_strain(network, NULL, &spring));

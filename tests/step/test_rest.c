@@ -111,7 +111,7 @@ static rope loaded_rope(bool implicit) {
     for (int i = 0; i < SEGMENTS; i++) {
         strains[i] = 0.55f;
     }
-    check_ok(mspring_network_set_break_strains(made.network, made.first_spring, SEGMENTS, strains));
+    check_ok(mspring_network_set(made.network, MSPRING_BREAK_STRAIN, made.first_spring, SEGMENTS, strains, 1));
     check_ok(mspring_network_reserve_events(made.network, 100));
     return made;
 }
@@ -169,7 +169,7 @@ static void check_repaired(bool implicit) {
     mspring_event events[100];
     uint32_t count;
     // The weight is held while the rope is cut and, two seconds later, repaired; then it is let go.
-    check_ok(mspring_network_set_inverse_mass_scales(made.network, made.weight, 1, &held));
+    check_ok(mspring_network_set(made.network, MSPRING_INVERSE_MASS_SCALE, made.weight, 1, &held, 1));
     check_ok(mspring_network_break_springs(made.network, &cut, 1));
     // A breath of wind, or the lower half would stand on its end.
     check_ok(support_set_gravity(made.network, 0.5f, -9.8f));
@@ -181,7 +181,7 @@ static void check_repaired(bool implicit) {
     check_ok(mspring_network_read_events(made.network, events, 100, &count, NULL));
     check_ok(mspring_network_restore_springs(made.network, &cut, 1, 5));
     const double repaired = most_vibration(&made, 10);
-    check_ok(mspring_network_set_inverse_mass_scales(made.network, made.weight, 1, &free));
+    check_ok(mspring_network_set(made.network, MSPRING_INVERSE_MASS_SCALE, made.weight, 1, &free, 1));
     const double at_first = most_vibration(&made, 5), later = most_vibration(&made, 40);
     const double last = most_vibration(&made, 5);
     // Measured: the loop is pulled tight like a whip, 74 m/s; then 38, 19 and, at last, 0.04. Implicit, where

@@ -108,8 +108,8 @@ static void springs_break_and_are_stressed_by_the_rules(void **state) {
         recipe made = lively_recipe();
         thresholds at = random_thresholds(made.spring_count);
         mspring_network *network = network_of(&made, levels[i]);
-        check_ok(mspring_network_set_break_strains(network, 0, made.spring_count, at.break_strain));
-        check_ok(mspring_network_set_stress_strains(network, 0, made.spring_count, at.stress_strain));
+        check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, made.spring_count, at.break_strain, 1));
+        check_ok(mspring_network_set(network, MSPRING_STRESS_STRAIN, 0, made.spring_count, at.stress_strain, 1));
         check_ok(support_set_relax_fraction(network, 0.6f));
         condition *conditions = calloc(made.spring_count, sizeof *conditions);
         mspring_event *events = malloc(CAPACITY * sizeof *events);
@@ -180,8 +180,8 @@ static void every_level_has_the_same_events(void **state) {
     uint64_t first_hash = 0;
     for (uint32_t i = 0; i < level_count; i++) {
         mspring_network *network = network_of(&made, levels[i]);
-        check_ok(mspring_network_set_break_strains(network, 0, made.spring_count, at.break_strain));
-        check_ok(mspring_network_set_stress_strains(network, 0, made.spring_count, at.stress_strain));
+        check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, made.spring_count, at.break_strain, 1));
+        check_ok(mspring_network_set(network, MSPRING_STRESS_STRAIN, 0, made.spring_count, at.stress_strain, 1));
         support_steps(network, 40, 1.0 / 64);
         mspring_event *into = i == 0 ? first : events;
         const uint32_t count = read_all(network, into);
@@ -207,8 +207,8 @@ static void thresholds_out_of_reach_change_nothing(void **state) {
         at.break_strain[s] = s % 2 == 0 ? 1e30f : INFINITY;
     }
     mspring_network *watched = network_of(&made, MSPRING_SIMD_AUTO), *plain = network_of(&made, MSPRING_SIMD_AUTO);
-    check_ok(mspring_network_set_break_strains(watched, 0, made.spring_count, at.break_strain));
-    check_ok(mspring_network_set_stress_strains(watched, 0, made.spring_count, at.stress_strain));
+    check_ok(mspring_network_set(watched, MSPRING_BREAK_STRAIN, 0, made.spring_count, at.break_strain, 1));
+    check_ok(mspring_network_set(watched, MSPRING_STRESS_STRAIN, 0, made.spring_count, at.stress_strain, 1));
     support_steps(watched, 30, 1.0 / 64);
     support_steps(plain, 30, 1.0 / 64);
     assert_int_equal(support_hash(watched), support_hash(plain));
@@ -237,7 +237,7 @@ static void a_swinging_weight_stresses_once_a_period(void **state) {
     (void)state;
     mspring_network *network = swinging_weight();
     const float stress = 0.15f;
-    check_ok(mspring_network_set_stress_strains(network, 0, 1, &stress));
+    check_ok(mspring_network_set(network, MSPRING_STRESS_STRAIN, 0, 1, &stress, 1));
     check_ok(support_set_relax_fraction(network, 0.5f));
     mspring_event events[CAPACITY];
     support_steps(network, 314, 0.01); // five periods
@@ -251,7 +251,7 @@ static void a_swinging_weight_stresses_once_a_period(void **state) {
     // Never to be stressed any more: it relaxes.
     support_steps(network, 30, 0.01);
     const float never = INFINITY;
-    check_ok(mspring_network_set_stress_strains(network, 0, 1, &never));
+    check_ok(mspring_network_set(network, MSPRING_STRESS_STRAIN, 0, 1, &never, 1));
     support_steps(network, 1, 0.01);
     mspring_spring_info info = {.struct_size = sizeof info};
     check_ok(mspring_network_get_spring(network, 0, &info));
@@ -270,8 +270,8 @@ static void what_is_at_its_threshold_stays(void **state) {
     mspring_network *network = support_network(builder, &def);
     check_ok(mspring_network_reserve_events(network, CAPACITY));
     const float stress = 0.5f, limit = 0.75f;
-    check_ok(mspring_network_set_stress_strains(network, 0, 1, &stress));
-    check_ok(mspring_network_set_break_strains(network, 0, 1, &limit));
+    check_ok(mspring_network_set(network, MSPRING_STRESS_STRAIN, 0, 1, &stress, 1));
+    check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, 1, &limit, 1));
     check_ok(support_set_relax_fraction(network, 0.5f));
     const double little = 0x1p-20, y = 0;
     const struct {
@@ -318,8 +318,8 @@ static void thresholds_do_not_take_each_others_place(void **state) {
     check_ok(mspring_network_reserve_events(network, CAPACITY));
     const float limit = 0.5f, stress = 0.25f;
     const double far = -0.625, y = 0; // a strain of 0.625
-    check_ok(mspring_network_set_break_strains(network, 0, 1, &limit));
-    check_ok(mspring_network_set_stress_strains(network, 1, 1, &stress)); // the first of its kind
+    check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, 1, &limit, 1));
+    check_ok(mspring_network_set(network, MSPRING_STRESS_STRAIN, 1, 1, &stress, 1)); // the first of its kind
     check_ok(mspring_network_set_positions(network, 0, 1, &far, &y, 1));
     check_ok(mspring_network_step(network, 0.01));
     assert_int_equal(read_all(network, events), 1);
@@ -333,10 +333,10 @@ static void a_weight_too_heavy_breaks_its_spring_and_falls(void **state) {
     const float limit = 0.19f, higher = 0.2f;
     const mspring_id spring = 0;
     mspring_event events[CAPACITY];
-    check_ok(mspring_network_set_break_strains_at(network, &spring, 1, &higher));
+    check_ok(mspring_network_set_at(network, MSPRING_BREAK_STRAIN, &spring, 1, &higher, 1));
     support_steps(network, 200, 0.01);
     assert_int_equal(read_all(network, events), 0);
-    check_ok(mspring_network_set_break_strains_at(network, &spring, 1, &limit));
+    check_ok(mspring_network_set_at(network, MSPRING_BREAK_STRAIN, &spring, 1, &limit, 1));
     support_steps(network, 200, 0.01);
     assert_int_equal(read_all(network, events), 1);
     assert_int_equal(events[0].kind, MSPRING_EVENT_BROKEN);
@@ -373,15 +373,15 @@ static bool watch_while_compacting(uint32_t pieces, bool breaks_before) {
     }
     mspring_job *job = NULL;
     if (breaks_before) {
-        check_ok(mspring_network_set_break_strains(network, 0, made.spring_count, at.break_strain));
+        check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, made.spring_count, at.break_strain, 1));
     }
     support_compact(network, pieces, &job);
     const bool is_left = job != NULL;
     if (!breaks_before) {
-        check_ok(mspring_network_set_break_strains(network, 0, made.spring_count, at.break_strain));
+        check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, made.spring_count, at.break_strain, 1));
         support_compact(network, 1, &job);
     }
-    check_ok(mspring_network_set_stress_strains(network, 0, made.spring_count, at.stress_strain));
+    check_ok(mspring_network_set(network, MSPRING_STRESS_STRAIN, 0, made.spring_count, at.stress_strain, 1));
     while (job) {
         support_compact(network, 0, &job);
     }
@@ -436,7 +436,7 @@ static uint32_t broken_by_a_blow(mspring_solver solver, uint32_t substeps, bool 
     for (mspring_id s = 0; s < made.spring_count; s++) {
         limits[s] = 0.1f;
     }
-    check_ok(mspring_network_set_break_strains(network, 0, made.spring_count, limits));
+    check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, made.spring_count, limits, 1));
     support_steps(network, 64, 1.0 / 64);
     uint32_t broken = 0;
     for (mspring_id s = 0; s < made.spring_count; s++) {
@@ -607,19 +607,22 @@ static void bad_thresholds_are_refused(void **state) {
     const float bad[] = {0, -1, NAN, -INFINITY}, good[] = {1, 1, 1};
     for (size_t i = 0; i < COUNT_OF(bad); i++) {
         const float strain[] = {0.001f, bad[i], 0.001f};
-        check_error(mspring_network_set_break_strains(network, 5, 3, strain), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_set(network, MSPRING_BREAK_STRAIN, 5, 3, strain, 1), MSPRING_ERROR_ARGUMENT);
         check_contains(mspring_network_error(network), "spring 6");
-        check_error(mspring_network_set_break_strains_at(network, list, 3, strain), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_set_at(network, MSPRING_BREAK_STRAIN, list, 3, strain, 1),
+                    MSPRING_ERROR_ARGUMENT);
         check_contains(mspring_network_error(network), "spring 2: break");
-        check_error(mspring_network_set_stress_strains(network, 5, 3, strain), MSPRING_ERROR_ARGUMENT);
-        check_error(mspring_network_set_stress_strains_at(network, list, 3, strain), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_set(network, MSPRING_STRESS_STRAIN, 5, 3, strain, 1), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_set_at(network, MSPRING_STRESS_STRAIN, list, 3, strain, 1),
+                    MSPRING_ERROR_ARGUMENT);
         check_contains(mspring_network_error(network), "spring 2: stress");
     }
-    check_error(mspring_network_set_break_strains(network, made.spring_count, 1, good), MSPRING_ERROR_ID);
-    check_error(mspring_network_set_break_strains_at(network, beyond, 3, good), MSPRING_ERROR_ID);
-    check_error(mspring_network_set_stress_strains(network, 0, 1, NULL), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_set_stress_strains_at(network, NULL, 1, good), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_set_break_strains(NULL, 0, 1, good), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set(network, MSPRING_BREAK_STRAIN, made.spring_count, 1, good, 1),
+                MSPRING_ERROR_ID);
+    check_error(mspring_network_set_at(network, MSPRING_BREAK_STRAIN, beyond, 3, good, 1), MSPRING_ERROR_ID);
+    check_error(mspring_network_set(network, MSPRING_STRESS_STRAIN, 0, 1, NULL, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_at(network, MSPRING_STRESS_STRAIN, NULL, 1, good, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set(NULL, MSPRING_BREAK_STRAIN, 0, 1, good, 1), MSPRING_ERROR_ARGUMENT);
     const float fractions[] = {-0.1f, 1.1f, NAN};
     for (size_t i = 0; i < COUNT_OF(fractions); i++) {
         check_error(support_set_relax_fraction(network, fractions[i]), MSPRING_ERROR_ARGUMENT);
@@ -657,11 +660,11 @@ static void watching_survives_every_failure_and_steps_allocate_nothing(void **st
         for (int call = 0; call < 3; call++) {
             for (int again = 0; again < 2; again++) {
                 const size_t used = mspring_network_memory_used(network);
-                mspring_result result =
-                    call == 0 ? mspring_network_reserve_events(network, CAPACITY)
-                    : call == 1
-                        ? mspring_network_set_break_strains(network, 0, made.spring_count, at.break_strain)
-                        : mspring_network_set_stress_strains(network, 0, made.spring_count, at.stress_strain);
+                mspring_result result = call == 0   ? mspring_network_reserve_events(network, CAPACITY)
+                                        : call == 1 ? mspring_network_set(network, MSPRING_BREAK_STRAIN, 0,
+                                                                          made.spring_count, at.break_strain, 1)
+                                                    : mspring_network_set(network, MSPRING_STRESS_STRAIN, 0,
+                                                                          made.spring_count, at.stress_strain, 1);
                 if (result == MSPRING_OK) {
                     break;
                 }

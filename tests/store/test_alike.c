@@ -25,8 +25,8 @@ static void edit(mspring_network *network, const edits *which) {
         if (which->breaks) {
             check_ok(mspring_network_break_springs(network, &s, 1));
         } else {
-            check_ok(mspring_network_set_stiffnesses(network, s, 1, &which->stiffness));
-            check_ok(mspring_network_set_dampings(network, s, 1, &which->damping));
+            check_ok(mspring_network_set(network, MSPRING_STIFFNESS, s, 1, &which->stiffness, 1));
+            check_ok(mspring_network_set(network, MSPRING_DAMPING, s, 1, &which->damping, 1));
         }
     }
 }

@@ -210,7 +210,7 @@ static void a_bar_cut_in_two_is_two_and_joined_again_one(void **state) {
     const double x = 10000 - 20, y = -3000 + 10;
     const float held = 0;
     check_ok(mspring_network_set_positions(network, 0, 1, &x, &y, 1));
-    check_ok(mspring_network_set_inverse_mass_scales(network, 0, 1, &held));
+    check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, 0, 1, &held, 1));
     check_ok(mspring_network_get_components(network, 0, 1, parts)); // the first alone
     assert_true(parts[0].head == 0 && parts[0].mass == 40 && parts[1].mass == 180);
     check_near(parts[0].x, 10003.5 - 20.0 / 40, 1e-9);

@@ -41,7 +41,8 @@ static void rest_lengths_are_those_given(void **state) {
     const mspring_id edited[] = {100, made.spring_count - 1};
     for (size_t i = 0; i < COUNT_OF(edited); i++) {
         made.springs[edited[i]].rest_length = 0.5f;
-        check_ok(mspring_network_set_rest_lengths(network, edited[i], 1, &made.springs[edited[i]].rest_length));
+        check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, edited[i], 1,
+                                     &made.springs[edited[i]].rest_length, 1));
         check_rest_lengths(network, &made);
     }
     mspring_network_destroy(network);
@@ -63,7 +64,7 @@ static void shared_rest_lengths_take_no_memory(void **state) {
         used[regular] = mspring_network_memory_used(network);
         if (regular) {
             const float rest_length = 1.5f;
-            check_ok(mspring_network_set_rest_lengths(network, 3, 1, &rest_length));
+            check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, 3, 1, &rest_length, 1));
             // Now each has its own.
             assert_true(mspring_network_memory_used(network) >= used[1] + (size_t)160 * 100 * 15);
         }
@@ -83,11 +84,12 @@ static void an_edit_without_memory_changes_nothing(void **state) {
     mspring_network *network = recipe_network(&made, &def);
     const float rest_length = 0.5f;
     watched.fail_at = watched.calls + 1;
-    assert_int_equal(mspring_network_set_rest_lengths(network, 7, 1, &rest_length), MSPRING_ERROR_MEMORY);
+    assert_int_equal(mspring_network_set(network, MSPRING_REST_LENGTH, 7, 1, &rest_length, 1),
+                     MSPRING_ERROR_MEMORY);
     assert_string_not_equal(mspring_network_error(network), "");
     check_rest_lengths(network, &made);
     watched.fail_at = 0;
-    check_ok(mspring_network_set_rest_lengths(network, 7, 1, &rest_length));
+    check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, 7, 1, &rest_length, 1));
     mspring_network_destroy(network);
     check_watched_clean(&watched);
     recipe_free(&made);

@@ -33,25 +33,25 @@ void change_write_view(mspring_network *network, mspring_id particle, mspring_id
 void change_fill(mspring_network *network, mspring_id particle, mspring_id spring) {
     (void)spring;
     const float mass = 5;
-    check_ok(mspring_network_set_masses(network, particle, 1, &mass));
+    check_ok(mspring_network_set(network, MSPRING_MASS, particle, 1, &mass, 1));
 }
 
 static void pin(mspring_network *network, mspring_id particle, mspring_id spring) {
     (void)spring;
     const float scale = 0;
-    check_ok(mspring_network_set_inverse_mass_scales(network, particle, 1, &scale));
+    check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, particle, 1, &scale, 1));
 }
 
 static void soften(mspring_network *network, mspring_id particle, mspring_id spring) {
     (void)particle;
     const float stiffness = 500;
-    check_ok(mspring_network_set_stiffnesses(network, spring, 1, &stiffness));
+    check_ok(mspring_network_set(network, MSPRING_STIFFNESS, spring, 1, &stiffness, 1));
 }
 
 static void lengthen(mspring_network *network, mspring_id particle, mspring_id spring) {
     (void)particle;
     const float rest_length = 1.1f;
-    check_ok(mspring_network_set_rest_lengths(network, spring, 1, &rest_length));
+    check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, spring, 1, &rest_length, 1));
 }
 
 void change_break(mspring_network *network, mspring_id particle, mspring_id spring) {
@@ -67,7 +67,7 @@ static void detach(mspring_network *network, mspring_id particle, mspring_id spr
 static void watch(mspring_network *network, mspring_id particle, mspring_id spring) {
     (void)particle;
     const float strain = 0.5f;
-    check_ok(mspring_network_set_break_strains(network, spring, 1, &strain));
+    check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, spring, 1, &strain, 1));
 }
 
 const change changes[CHANGE_COUNT] = {

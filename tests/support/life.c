@@ -209,8 +209,8 @@ static void edit(life *it) {
     }
     it->mass[p] = (float)support_random_between(&it->seed, 1, 3);
     it->springs[s].def.stiffness = (float)support_random_between(&it->seed, 20, 60);
-    check_ok(mspring_network_set_masses_at(it->network, &p, 1, &it->mass[p]));
-    check_ok(mspring_network_set_stiffnesses_at(it->network, &s, 1, &it->springs[s].def.stiffness));
+    check_ok(mspring_network_set_at(it->network, MSPRING_MASS, &p, 1, &it->mass[p], 1));
+    check_ok(mspring_network_set_at(it->network, MSPRING_STIFFNESS, &s, 1, &it->springs[s].def.stiffness, 1));
 }
 
 void life_do_something(life *it) {
@@ -281,8 +281,8 @@ void life_check(const life *it) {
         float mass, scale;
         there += it->has_particle[p];
         assert_int_equal(mspring_network_has_particle(it->network, p), it->has_particle[p]);
-        check_ok(mspring_network_get_masses(it->network, p, 1, &mass));
-        check_ok(mspring_network_get_inverse_mass_scales(it->network, p, 1, &scale));
+        check_ok(mspring_network_get(it->network, MSPRING_MASS, p, 1, &mass, 1));
+        check_ok(mspring_network_get(it->network, MSPRING_INVERSE_MASS_SCALE, p, 1, &scale, 1));
         if (it->has_particle[p]) {
             assert_true(mass == it->mass[p] && scale == (it->is_pinned[p] ? 0.0f : 1.0f));
         }

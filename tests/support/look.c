@@ -27,7 +27,7 @@ look look_at(mspring_network *network) {
     check_ok(mspring_network_momentum(network, &seen.momentum[0], &seen.momentum[1], &seen.momentum[2]));
     check_ok(mspring_network_get_extents(network, seen.by_spring[0], seen.by_spring[1], seen.by_spring[2],
                                          seen.by_spring[3]));
-    check_ok(mspring_network_get_inverse_mass_scales(network, 0, particles, seen.scale));
+    check_ok(mspring_network_get(network, MSPRING_INVERSE_MASS_SCALE, 0, particles, seen.scale, 1));
     check_ok(mspring_network_update_components(network, &seen.component_count, NULL));
     check_ok(mspring_network_get_component_numbers(network, 0, particles, seen.component));
     return seen;

@@ -64,15 +64,15 @@ void snapshots_set_up(mspring_network *network) {
     for (uint32_t i = 0; i < springs; i++) {
         values[i] = i % 7 == 0 ? INFINITY : 0.05f + 0.01f * (float)(i % 5);
     }
-    check_ok(mspring_network_set_break_strains(network, 0, springs, values));
+    check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, springs, values, 1));
     for (uint32_t i = 0; i < springs; i++) {
         values[i] = 0.01f;
     }
-    check_ok(mspring_network_set_stress_strains(network, 0, springs, values));
+    check_ok(mspring_network_set(network, MSPRING_STRESS_STRAIN, 0, springs, values, 1));
     check_ok(support_set_relax_fraction(network, 0.7f));
     const float rest_length = 1.03f;
     const mspring_id spring = 3;
-    check_ok(mspring_network_set_rest_lengths_at(network, &spring, 1, &rest_length));
+    check_ok(mspring_network_set_at(network, MSPRING_REST_LENGTH, &spring, 1, &rest_length, 1));
 }
 
 void snapshots_run_frame(mspring_network *network, uint32_t frame) {
@@ -86,11 +86,11 @@ void snapshots_run_frame(mspring_network *network, uint32_t frame) {
     }
     if (frame % 4 == 2) {
         const float mass = 1 + 0.1f * (float)(frame % 10);
-        check_ok(mspring_network_set_masses(network, frame % particles, 1, &mass));
+        check_ok(mspring_network_set(network, MSPRING_MASS, frame % particles, 1, &mass, 1));
     }
     if (frame % 5 == 3) {
         const float scale = frame % 2 == 0 ? 0.5f : 1;
-        check_ok(mspring_network_set_inverse_mass_scales(network, frame * 3 % particles, 1, &scale));
+        check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, frame * 3 % particles, 1, &scale, 1));
     }
     check_ok(support_set_gravity(network, 0.1f * (float)(frame % 3), -9.8f));
     check_ok(mspring_network_apply_force(network, frame * 11 % particles, 30, 5));
@@ -106,9 +106,9 @@ uint64_t snapshots_look_at(const mspring_network *network) {
     const uint32_t particles = mspring_network_particle_count(network);
     uint64_t sum = support_hash(network);
     check_ok(mspring_network_energy(network, &energy[0], &energy[1], &energy[2]));
-    check_ok(mspring_network_get_strains(network, 0, springs, strain));
-    check_ok(mspring_network_get_masses(network, 0, particles, mass));
-    check_ok(mspring_network_get_inverse_mass_scales(network, 0, particles, scale));
+    check_ok(mspring_network_get(network, MSPRING_STRAIN, 0, springs, strain, 1));
+    check_ok(mspring_network_get(network, MSPRING_MASS, 0, particles, mass, 1));
+    check_ok(mspring_network_get(network, MSPRING_INVERSE_MASS_SCALE, 0, particles, scale, 1));
     const void *const parts[] = {energy, strain, mass, scale};
     const size_t sizes[] = {sizeof energy, springs * sizeof *strain, particles * sizeof *mass,
                             particles * sizeof *scale};

@@ -1,0 +1,305 @@
+/// Setting stiffness, damping, rest lengths and thresholds of springs.
+///
+/// Most springs of most networks lie in lattices: their values are compared, and set, where they lie. A spring that
+/// has its value already costs that comparison.
+#include "store/springs.h"
+#include "base/cpu.h"
+#include "base/mix.h"
+#include "edits/values.h"
+#include "step/ramps.h"
+#include "step/strain.h"
+#include "store/alike.h"
+#include "store/changed.h"
+#include "store/rests.h"
+
+/* --------------------------------------------------------------------------------------------------- comparing */
+
+// Where the values of the springs lie that can be compared without looking further, by place.
+typedef struct plane {
+    float *values;      ///< of place p at p % WIDTH + p / WIDTH * WIDTH * planes
+    uint32_t planes;    ///< 1 or 2
+    mspringi_place end; ///< of the places that it has; 0: none
+} plane;
+
+static inline float *in_plane(const plane *from, mspringi_place place) {
+    return &from->values[place + (size_t)(from->planes - 1) * (place & ~(mspringi_place)(MSPRINGI_WIDTH - 1))];
+}
+
+// The thresholds of all springs, or NULL.
+static float *thresholds_of(const mspring_network *network, mspring_property property) {
+    const mspringi_strain *strain = &network->strain;
+    return property == MSPRING_BREAK_STRAIN    ? strain->break_strain
+           : property == MSPRING_STRESS_STRAIN ? strain->stress_strain
+           : property == MSPRING_RELAX_STRAIN  ? strain->relax_strain
+                                               : NULL;
+}
+
+// Thresholds lie by place, and so do rest lengths of lattices once they are not shared. Of lattices stiffness and
+// damping do, too.
+static plane plane_of(const mspring_network *network, mspring_property property) {
+    const mspringi_topology *t = &network->topology;
+    const uint32_t planes = network->parts - 1;
+    float *thresholds = thresholds_of(network, property);
+    if (thresholds)
+        return (plane){thresholds, 1, (mspringi_place)(mspringi_place_words(t) * MSPRINGI_WIDTH)};
+    if (property == MSPRING_STIFFNESS)
+        return (plane){network->lattice_springs, planes, t->lattice_places};
+    if (property == MSPRING_DAMPING && planes > 1)
+        return (plane){network->lattice_springs + MSPRINGI_WIDTH, planes, t->lattice_places};
+    if (property == MSPRING_REST_LENGTH && network->rests.shared_count == 0 && network->ramps.count == 0)
+        return (plane){network->rests.lengths, 1, t->lattice_places};
+    return (plane){NULL, 1, 0};
+}
+
+// Whether a spring is to get another value than it has. A ramp has to be ended.
+static bool differs(const mspring_network *network, mspring_property property, mspring_id spring, float value) {
+    return mspringi_spring_exists(network, spring) &&
+           (mspringi_spring_property(network, property, spring) != value ||
+            (property == MSPRING_REST_LENGTH && mspringi_has_ramp(network, spring)));
+}
+
+// Index of the first, from one on, that is not known to be in a plane already. (A broken spring has 0 in its
+// record, so that value tells nothing.)
+static inline uint32_t skip_equal(const mspringi_place *places, plane known, const float *values, size_t stride,
+                                  uint32_t i, uint32_t count) {
+    while (i < count && places[i] < known.end) {
+        const float value = values[i * stride];
+        if (*in_plane(&known, places[i]) != value || value == 0.0f)
+            break;
+        ++i;
+    }
+    return i;
+}
+
+// The same of rest lengths that many springs share.
+static inline uint32_t skip_equal_rests(const mspring_network *network, const mspringi_place *places,
+                                        const float *values, size_t stride, uint32_t i, uint32_t count) {
+    const mspringi_rests rests = network->rests;
+    const mspringi_place end = network->topology.lattice_places;
+    while (i < count && places[i] < end && *mspringi_rests_at(&rests, places[i]) == values[i * stride])
+        ++i;
+    return i;
+}
+
+// The same of fractions: springs that are relative and have theirs.
+static inline uint32_t skip_equal_fractions(const mspringi_fractions *fractions, mspring_id first, bool is_damping,
+                                            const float *values, size_t stride, uint32_t i, uint32_t count) {
+    for (; i < count; ++i) {
+        const mspringi_relative had = mspringi_fractions_of(fractions, first + i);
+        if (!(had.stiffness >= 0.0f) || (is_damping ? had.damping : had.stiffness) != values[i * stride])
+            break;
+    }
+    return i;
+}
+
+// Index of the first spring, from one on, that is to get another value than it has.
+static uint32_t next_other(const mspring_network *network, const mspringi_selection *at,
+                           const mspringi_values *values, uint32_t i) {
+    const mspringi_place *places = network->topology.place_of_spring + at->first;
+    const plane known = plane_of(network, values->property);
+    const bool is_damping = values->property == MSPRING_DAMPING;
+    const bool has_fractions = network->fractions.values && (is_damping || values->property == MSPRING_STIFFNESS);
+    const bool has_shared_rests =
+        values->property == MSPRING_REST_LENGTH && network->rests.shared_count > 0 && network->ramps.count == 0;
+    for (; i < at->count; ++i) {
+        if (!at->list && has_shared_rests)
+            i = skip_equal_rests(network, places, values->first, values->stride, i, at->count);
+        else if (!at->list && has_fractions)
+            i = skip_equal_fractions(&network->fractions, at->first, is_damping, values->first, values->stride, i,
+                                     at->count);
+        else if (!at->list && known.planes == 1)
+            i = skip_equal(places, (plane){known.values, 1, known.end}, values->first, values->stride, i,
+                           at->count);
+        else if (!at->list)
+            i = skip_equal(places, known, values->first, values->stride, i, at->count);
+        if (i == at->count ||
+            differs(network, values->property, mspringi_selected(at, i), mspringi_value_of(values, i)))
+            break;
+    }
+    return i;
+}
+
+/* ----------------------------------------------------------------------------------------------------- setting */
+
+static uint32_t edit_of(mspring_property property) {
+    switch (property) {
+    case MSPRING_STIFFNESS:
+        return MSPRINGI_EDIT_PARTS + MSPRINGI_STIFFNESS;
+    case MSPRING_DAMPING:
+        return MSPRINGI_EDIT_PARTS + MSPRINGI_DAMPING;
+    case MSPRING_REST_LENGTH:
+        return MSPRINGI_EDIT_PARTS + MSPRINGI_REST_LENGTH;
+    case MSPRING_BREAK_STRAIN:
+        return MSPRINGI_EDIT_BREAK_STRAIN;
+    case MSPRING_STRESS_STRAIN:
+        return MSPRINGI_EDIT_STRESS_STRAIN;
+    default:
+        return MSPRINGI_EDIT_RELAX_STRAIN;
+    }
+}
+
+static mspring_result check_room_for_damping(mspring_network *network, const mspringi_selection *at,
+                                             const mspringi_values *values) {
+    for (uint32_t i = 0; network->parts <= MSPRINGI_DAMPING && i < at->count; ++i)
+        if (mspringi_value_of(values, i) > 0.0f && mspringi_spring_exists(network, mspringi_selected(at, i)))
+            return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                                 "spring %u: damping is %g, but the network was created without room for any "
+                                 "(MSPRING_NETWORK_RESERVE_DAMPING)",
+                                 (unsigned)mspringi_selected(at, i), (double)mspringi_value_of(values, i));
+    return MSPRING_OK;
+}
+
+// Whether another value of a spring ends that many springs share one.
+static bool ends_sharing(const mspring_network *network, mspring_property property, mspring_id spring) {
+    const mspringi_topology *t = &network->topology;
+    if (property == MSPRING_REST_LENGTH)
+        return mspringi_place_of(t, spring) < t->lattice_places;
+    return mspringi_spring_is_relative(network, spring);
+}
+
+// Allocate what it takes to set values, of which that of index i is the first that is another than there was.
+static mspring_result reserve(mspring_network *network, const mspringi_selection *at, const mspringi_values *values,
+                              uint32_t i) {
+    const mspring_property property = values->property;
+    const bool is_rest_length = property == MSPRING_REST_LENGTH;
+    if (!is_rest_length && property != MSPRING_STIFFNESS && property != MSPRING_DAMPING)
+        return mspringi_strain_reserve_for(network, property);
+    if (is_rest_length ? network->rests.shared_count == 0 : !network->fractions.of_spring)
+        return MSPRING_OK;
+    while (i < at->count && !ends_sharing(network, property, mspringi_selected(at, i)))
+        i = next_other(network, at, values, i + 1);
+    if (i >= at->count)
+        return MSPRING_OK;
+    return is_rest_length ? mspringi_rests_separate(network) : mspringi_fractions_separate(network);
+}
+
+static MSPRINGI_NOINLINE void set_one(mspring_network *network, mspring_property property, mspring_id spring,
+                                      mspringi_place place, float value) {
+    mspringi_relative nominal;
+    switch (property) {
+    case MSPRING_STIFFNESS:
+    case MSPRING_DAMPING:
+        nominal = mspringi_spring_get_nominal(network, spring, place);
+        *(property == MSPRING_STIFFNESS ? &nominal.stiffness : &nominal.damping) = value;
+        mspringi_spring_set_nominal(network, spring, place, nominal);
+        break;
+    case MSPRING_REST_LENGTH:
+        mspringi_ramp_drop(network, spring);
+        mspringi_place_set_rest_length(network, place, value);
+        break;
+    default:
+        mspringi_strain_store(network, place, property, value);
+    }
+}
+
+// What a value adds to the hash of a call's edits: of each by itself, as a chain of them takes as long as the rest.
+static inline uint64_t trace(uint32_t i, mspring_id spring, float value) {
+    return mspringi_mix_floats(mspringi_mix(MSPRINGI_MIX_START, (uint64_t)i << 32 | spring), value, 0.0f);
+}
+
+// What it takes to set a spring of a lattice where it lies.
+typedef struct lattice_setter {
+    plane records;
+    const float *mass; ///< that relative springs go by
+    double rate;
+    bool is_damping, has_relative;
+} lattice_setter;
+
+static lattice_setter lattice_setter_of(const mspring_network *network, mspring_property property) {
+    return (lattice_setter){.records = plane_of(network, property),
+                            .mass = mspringi_spring_masses(network),
+                            .rate = mspringi_relative_rate(network),
+                            .is_damping = property == MSPRING_DAMPING,
+                            .has_relative = network->fractions.values != NULL};
+}
+
+// Set stiffness or damping of a spring that is live, in a lattice. False: it had that.
+static inline bool set_in_lattice(mspring_network *network, const lattice_setter *with, mspring_id spring,
+                                  mspringi_place place, float value) {
+    const mspringi_topology *t = &network->topology;
+    float *record = in_plane(&with->records, place), in_force = value;
+    bool is_relative = with->has_relative && mspringi_spring_is_relative(network, spring);
+    if (!is_relative && *record == value)
+        return false;
+    if (is_relative) {
+        mspringi_relative fractions = mspringi_fractions_of(&network->fractions, spring);
+        float *had = with->is_damping ? &fractions.damping : &fractions.stiffness;
+        if (*had == value)
+            return false;
+        *had = value;
+        mspringi_fractions_set(&network->fractions, spring, fractions);
+        uint32_t base, tip;
+        mspringi_lattice_ends(t, place, &base, &tip);
+        const double reduced_mass = mspringi_reduced_mass((double)with->mass[t->particle_of_slot[base]],
+                                                          (double)with->mass[t->particle_of_slot[tip]]);
+        in_force = with->is_damping ? mspringi_derived_damping(value, reduced_mass, with->rate)
+                                    : mspringi_derived_stiffness(value, reduced_mass, with->rate);
+    }
+    mspringi_alike_part(network, place);
+    *record = in_force;
+    mspringi_changed(network, MSPRINGI_CHANGED_PLACE, place);
+    return true;
+}
+
+// Set a rest length or threshold in its plane. False: it had that.
+static inline bool set_in_plane(mspring_network *network, const plane *known, mspring_property property,
+                                mspringi_place place, float value) {
+    float *had = in_plane(known, place);
+    if (*had == value)
+        return false;
+    if (property != MSPRING_REST_LENGTH) {
+        mspringi_strain_store(network, place, property, value);
+        return true;
+    }
+    *had = value;
+    mspringi_changed(network, MSPRINGI_CHANGED_PLACE, place);
+    return true;
+}
+
+// Set those that differ, from index i on.
+static MSPRINGI_NOINLINE void set_others(mspring_network *network, const mspringi_selection *at,
+                                         const mspringi_values *values, uint32_t i) {
+    const mspringi_place *places = network->topology.place_of_spring;
+    const mspring_property property = values->property;
+    const bool may_sleep = network->sleep.count > 0;
+    const bool is_part = property == MSPRING_STIFFNESS || property == MSPRING_DAMPING;
+    const lattice_setter lattice = lattice_setter_of(network, property);
+    uint64_t traces = 0;
+    for (; i < at->count; ++i) {
+        const mspring_id spring = mspringi_selected(at, i);
+        const mspringi_place place = places[spring];
+        const float value = mspringi_value_of(values, i);
+        bool is_new;
+        if (place < lattice.records.end && is_part && mspringi_place_is_live(network, place)) {
+            is_new = set_in_lattice(network, &lattice, spring, place, value);
+        } else if (place < lattice.records.end && !is_part && mspringi_spring_exists(network, spring)) {
+            is_new = set_in_plane(network, &lattice.records, property, place, value);
+        } else {
+            is_new = differs(network, property, spring, value);
+            if (is_new)
+                set_one(network, property, spring, place, value);
+        }
+        if (!is_new)
+            continue;
+        traces += trace(i, spring, value);
+        if (may_sleep)
+            mspringi_changed(network, MSPRINGI_CHANGED_SPRING, spring);
+    }
+    mspringi_fingerprint(network, edit_of(property), at->count);
+    network->parameter_fingerprint = mspringi_mix(network->parameter_fingerprint, traces);
+    if (is_part || property == MSPRING_REST_LENGTH)
+        mspringi_changed(network, MSPRINGI_CHANGED_SPRING_VALUES, 0);
+}
+
+mspring_result mspringi_set_spring_values(mspring_network *network, const mspringi_selection *at,
+                                          const mspringi_values *values) {
+    mspring_result result =
+        values->property == MSPRING_DAMPING ? check_room_for_damping(network, at, values) : MSPRING_OK;
+    const uint32_t first = result == MSPRING_OK ? next_other(network, at, values, 0) : at->count;
+    if (first >= at->count)
+        return result;
+    result = reserve(network, at, values, first);
+    if (result == MSPRING_OK)
+        set_others(network, at, values, first);
+    return result;
+}

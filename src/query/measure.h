@@ -1,0 +1,21 @@
+/// @file measure.h
+/// What springs do now, one by one and in the order of their ids.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_MEASURE_H
+#define MSPRINGI_MEASURE_H
+
+#include "store/network.h"
+
+/// Length and strain of the spring in a place; of a broken one the strain is 0.
+float mspringi_place_length(const mspring_network *network, mspringi_place place);
+float mspringi_place_strain(const mspring_network *network, mspringi_place place);
+
+/// The force along a spring: > 0 pulls its ends together.
+float mspringi_spring_force(const mspring_network *network, mspring_id spring);
+
+/// The strains of the springs first ... first + count - 1, stride floats apart.
+void mspringi_measure_strains(const mspring_network *network, mspring_id first, uint32_t count, float *out,
+                              size_t stride);
+
+#endif

@@ -1,0 +1,146 @@
+/// Reading properties of particles and springs.
+///
+/// Strains and lengths are computed for sixteen places that follow each other, once each: ids that follow each
+/// other lie in few such words, of which a small cache has the last ones.
+#include <math.h>
+
+#include "base/cpu.h"
+#include "query/measure.h"
+#include "store/properties.h"
+#include "store/rests.h"
+#include "store/springs.h"
+
+/* ---------------------------------------------------------------------------------------- strains and lengths */
+
+// The same as mspringi_place_length() and mspringi_place_strain() to the last bit or so, of springs that follow
+// each other. Most lie in lattices. Low words are differences of what is near to each other, so single precision is
+// enough.
+static inline float low_of(float coordinate, float low, bool may_be_stale) {
+    return may_be_stale ? mspringi_low_of(coordinate, low) : low;
+}
+
+static inline void measure_range(const mspring_network *network, const mspringi_place *places, uint32_t count,
+                                 mspring_property property, bool may_be_stale, float *out, size_t stride) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_state s = network->state;
+    const mspringi_rests rests = network->rests;
+    const uint16_t *live = network->live;
+    for (uint32_t i = 0; i < count; ++i) {
+        const mspringi_place place = places[i];
+        uint32_t base, tip;
+        if (place >= t->lattice_places) {
+            out[i * stride] = property == MSPRING_STRAIN ? mspringi_place_strain(network, place)
+                                                         : mspringi_place_length(network, place);
+            continue;
+        }
+        mspringi_lattice_ends(t, place, &base, &tip);
+        const float dx = (s.x[tip] - s.x[base]) + (low_of(s.x[tip], s.low_x[tip], may_be_stale) -
+                                                   low_of(s.x[base], s.low_x[base], may_be_stale));
+        const float dy = (s.y[tip] - s.y[base]) + (low_of(s.y[tip], s.low_y[tip], may_be_stale) -
+                                                   low_of(s.y[base], s.low_y[base], may_be_stale));
+        float value = sqrtf(dx * dx + dy * dy);
+        if (property == MSPRING_STRAIN) {
+            const float rest_length = *mspringi_rests_at(&rests, place);
+            const bool is_live = live[place / MSPRINGI_WIDTH] >> place % MSPRINGI_WIDTH & 1;
+            value = is_live ? (value - rest_length) / rest_length : 0.0f;
+        }
+        out[i * stride] = value;
+    }
+}
+
+// Loops of their own for the usual stride, and for low words that are of what is there: nobody can have written to
+// it.
+static inline void measure_all(const mspring_network *network, mspring_id first, uint32_t count,
+                               mspring_property property, float *out, size_t stride) {
+    const mspringi_place *places = network->topology.place_of_spring + first;
+    if (stride == 1 && !network->is_open)
+        measure_range(network, places, count, property, false, out, 1);
+    else
+        measure_range(network, places, count, property, true, out, stride);
+}
+
+void mspringi_measure_strains(const mspring_network *network, mspring_id first, uint32_t count, float *out,
+                              size_t stride) {
+    measure_all(network, first, count, MSPRING_STRAIN, out, stride);
+}
+
+/* ------------------------------------------------------------------------------------------------------ reading */
+
+static float value_of(const mspring_network *network, mspring_property property, mspring_id id) {
+    switch (property) {
+    case MSPRING_MASS:
+    case MSPRING_INVERSE_MASS_SCALE:
+        return mspringi_particle_property(network, property, id);
+    case MSPRING_STRAIN:
+        return mspringi_spring_strain(network, id);
+    case MSPRING_LENGTH:
+        return mspringi_place_length(network, mspringi_place_of(&network->topology, id));
+    case MSPRING_FORCE:
+        return mspringi_spring_force(network, id);
+    default:
+        return mspringi_spring_property(network, property, id);
+    }
+}
+
+static bool exists(const mspring_network *network, mspringi_kind kind, mspring_id id) {
+    return kind == MSPRINGI_PARTICLES ? mspringi_particle_exists(network, id) : mspringi_spring_exists(network, id);
+}
+
+// What was removed has 0.
+static void leave_out_what_is_gone(const mspring_network *network, mspringi_kind kind, mspring_id first,
+                                   uint32_t count, float *out, size_t stride) {
+    for (uint32_t i = 0; network->growth.particles && i < count; ++i)
+        if (!exists(network, kind, first + i))
+            out[i * stride] = 0.0f;
+}
+
+static mspring_result check(const mspring_network *network, mspring_property property, uint32_t count,
+                            const float *values, uint32_t stride) {
+    return network && mspringi_property_of(property) && (count == 0 || (values && stride > 0))
+               ? MSPRING_OK
+               : MSPRING_ERROR_ARGUMENT;
+}
+
+static uint32_t total_of(const mspring_network *network, mspringi_kind kind) {
+    return kind == MSPRINGI_PARTICLES ? network->topology.particle_count : network->topology.spring_count;
+}
+
+static MSPRINGI_NOINLINE void get_range(const mspring_network *network, mspring_property property, mspring_id first,
+                                        uint32_t count, float *values, size_t stride) {
+    if (property == MSPRING_STRAIN)
+        mspringi_measure_strains(network, first, count, values, stride);
+    else if (property == MSPRING_LENGTH)
+        measure_all(network, first, count, MSPRING_LENGTH, values, stride);
+    else
+        for (uint32_t i = 0; i < count; ++i)
+            values[i * stride] = value_of(network, property, first + i);
+    leave_out_what_is_gone(network, mspringi_property_of(property)->kind, first, count, values, stride);
+}
+
+mspring_result mspring_network_get(const mspring_network *network, mspring_property property, mspring_id first,
+                                   uint32_t count, float *values, uint32_t stride) {
+    mspring_result result = check(network, property, count, values, stride);
+    if (result != MSPRING_OK)
+        return result;
+    const uint32_t total = total_of(network, mspringi_property_of(property)->kind);
+    if (first > total || count > total - first)
+        return MSPRING_ERROR_ID;
+    get_range(network, property, first, count, values, stride);
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_get_at(const mspring_network *network, mspring_property property,
+                                      const mspring_id *ids, uint32_t count, float *values, uint32_t stride) {
+    mspring_result result = check(network, property, count, values, stride);
+    if (result != MSPRING_OK || count == 0)
+        return result;
+    if (!ids)
+        return MSPRING_ERROR_ARGUMENT;
+    const mspringi_kind kind = mspringi_property_of(property)->kind;
+    for (uint32_t i = 0; i < count; ++i)
+        if (ids[i] >= total_of(network, kind) || !exists(network, kind, ids[i]))
+            return MSPRING_ERROR_ID;
+    for (uint32_t i = 0; i < count; ++i)
+        values[(size_t)i * stride] = value_of(network, property, ids[i]);
+    return MSPRING_OK;
+}

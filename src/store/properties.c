@@ -1,0 +1,91 @@
+#include "store/properties.h"
+
+#include <math.h>
+
+#include "store/springs.h"
+
+static const mspringi_property list[] = {
+    [MSPRING_MASS] = {"mass", " kg", "1e-30 to 1e30", MSPRINGI_PARTICLES, true},
+    [MSPRING_INVERSE_MASS_SCALE] = {"scale of inverse mass", "", "0 or 1e-6 to 1", MSPRINGI_PARTICLES, true},
+    [MSPRING_STIFFNESS] = {"stiffness", "", "0 to 1e30", MSPRINGI_SPRINGS, true},
+    [MSPRING_DAMPING] = {"damping", "", "0 to 1e30", MSPRINGI_SPRINGS, true},
+    [MSPRING_REST_LENGTH] = {"rest length", " m", "> 0 and at most 4e12", MSPRINGI_SPRINGS, true},
+    [MSPRING_BREAK_STRAIN] = {"break strain", "", "> 0", MSPRINGI_SPRINGS, true},
+    [MSPRING_STRESS_STRAIN] = {"stress strain", "", "> 0", MSPRINGI_SPRINGS, true},
+    [MSPRING_RELAX_STRAIN] = {"relax strain", "", ">= 0 or MSPRING_RELAX_STRAIN_DEFAULT", MSPRINGI_SPRINGS, true},
+    [MSPRING_STRAIN] = {"strain", "", "", MSPRINGI_SPRINGS, false},
+    [MSPRING_LENGTH] = {"length", " m", "", MSPRINGI_SPRINGS, false},
+    [MSPRING_FORCE] = {"force", " N", "", MSPRINGI_SPRINGS, false},
+};
+
+const mspringi_property *mspringi_property_of(mspring_property property) {
+    return property >= 0 && (size_t)property < sizeof list / sizeof list[0] ? &list[property] : NULL;
+}
+
+/* ------------------------------------------------------------------------------------------------------- checks */
+
+// A loop for each test, without branches, so that several values are tested at once.
+#define ALL(test)                                                                                                  \
+    {                                                                                                              \
+        uint32_t others = 0;                                                                                       \
+        if (stride == 1)                                                                                           \
+            for (uint32_t i = 0; i < count; ++i)                                                                   \
+                others |= !(test(values[i]));                                                                      \
+        else                                                                                                       \
+            for (uint32_t i = 0; i < last; ++i)                                                                    \
+                others |= !(test(values[i * stride]));                                                             \
+        return others == 0;                                                                                        \
+    }
+#define IS_REST_LENGTH(value) mspringi_is_spring_value(MSPRINGI_REST_LENGTH, value)
+#define IS_COEFFICIENT(value) mspringi_is_spring_value(MSPRINGI_STIFFNESS, value)
+
+bool mspringi_are_allowed(mspring_property property, const float *values, uint32_t count, size_t stride) {
+    const uint32_t last = stride == 0 && count > 0 ? 1 : count;
+    switch (property) {
+    case MSPRING_MASS:
+        ALL(mspringi_is_mass)
+    case MSPRING_INVERSE_MASS_SCALE:
+        ALL(mspringi_is_inverse_mass_scale)
+    case MSPRING_STIFFNESS:
+    case MSPRING_DAMPING:
+        ALL(IS_COEFFICIENT)
+    case MSPRING_REST_LENGTH:
+        ALL(IS_REST_LENGTH)
+    case MSPRING_BREAK_STRAIN:
+    case MSPRING_STRESS_STRAIN:
+        ALL(mspringi_is_threshold)
+    case MSPRING_RELAX_STRAIN:
+        ALL(mspringi_is_relax_strain)
+    default:
+        return false;
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------- values */
+
+float mspringi_particle_property(const mspring_network *network, mspring_property property, mspring_id particle) {
+    if (property == MSPRING_MASS)
+        return network->mass[particle];
+    if (network->inverse_mass_scale)
+        return network->inverse_mass_scale[particle];
+    return network->inverse_mass[network->topology.slot_of_particle[particle]] > 0.0f ? 1.0f : 0.0f;
+}
+
+float mspringi_spring_property(const mspring_network *network, mspring_property property, mspring_id spring) {
+    const mspringi_place place = mspringi_place_of(&network->topology, spring);
+    const mspringi_strain *strain = &network->strain;
+    switch (property) {
+    case MSPRING_STIFFNESS:
+        return mspringi_spring_get_nominal(network, spring, place).stiffness;
+    case MSPRING_DAMPING:
+        return mspringi_spring_get_nominal(network, spring, place).damping;
+    case MSPRING_REST_LENGTH:
+        return mspringi_place_get(network, place).rest_length;
+    case MSPRING_BREAK_STRAIN:
+        return strain->break_strain ? strain->break_strain[place] : INFINITY;
+    case MSPRING_STRESS_STRAIN:
+        return strain->stress_strain ? strain->stress_strain[place] : INFINITY;
+    default:
+        return strain->relax_strain ? strain->relax_strain[place] : MSPRING_RELAX_STRAIN_DEFAULT;
+    }
+}
