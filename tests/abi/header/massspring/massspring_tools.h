@@ -404,7 +404,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_job_begin(mspring_network *
                                                                mspring_job **job);
 
 /// Run the next parts of a job.
-/// The last part makes the implicit or the direct solver, if the network has one, and may be the longest.
+/// Some parts make the solver. For a network of 200,000 springs the longest part takes one to two milliseconds.
 /// @param at_most  number of parts to run; 0 for all
 /// @param left     receives an estimate of the parts left, which never rises; 0: it can be finished; may be NULL
 /// @return MSPRING_OK; MSPRING_ERROR_MEMORY or MSPRING_ERROR_LIMIT, after which the job can only be destroyed;
@@ -415,6 +415,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_job_run(mspring_job *job, u
 /// Move the network to the plan of a job.
 /// Slots change, and views end. Afterwards the job can only be destroyed, unless the result is MSPRING_ERROR_BUSY
 /// or MSPRING_ERROR_ARGUMENT.
+/// With the direct solver it takes some milliseconds to free the memory of the old factor.
 /// @return MSPRING_OK, also if there was nothing to do; MSPRING_ERROR_OUTDATED if since begin particles or springs
 ///         were added or removed, a spring was restored that the plan leaves out, or the plan has changed
 ///         otherwise: begin another job; MSPRING_ERROR_BUSY inside a hook, or if the job has not been run to its
