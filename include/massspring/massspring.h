@@ -104,10 +104,12 @@ MSPRING_API const char *mspring_version_string(void);
 
 /// What a build of the library has beside what all have.
 enum {
-    MSPRING_FEATURE_THREADS = 1u << 0, ///< networks may have several workers; without, they have one
-    MSPRING_FEATURE_HOSTED = 1u << 1,  ///< there is a default allocator, and the environment variable MSPRING_SIMD is
-                                       ///< read
-    MSPRING_FEATURE_SHARED = 1u << 2   ///< this is the shared library
+    MSPRING_FEATURE_THREADS = 1u << 0,  ///< networks may have several workers; without, they have one
+    MSPRING_FEATURE_HOSTED = 1u << 1,   ///< there is a default allocator, and the environment variable MSPRING_SIMD
+                                        ///< is read
+    MSPRING_FEATURE_SHARED = 1u << 2,   ///< this is the shared library
+    MSPRING_FEATURE_IMPLICIT = 1u << 3, ///< there are MSPRING_SOLVER_IMPLICIT and MSPRING_GUARD_IMPLICIT
+    MSPRING_FEATURE_DIRECT = 1u << 4    ///< there is MSPRING_SOLVER_DIRECT
 };
 
 /// Features of the library that runs: bits of MSPRING_FEATURE_. (When compiling, MSPRING_VERSION tells what the
@@ -812,7 +814,8 @@ MSPRING_API uint32_t mspring_network_spring_count(const mspring_network *network
 
 /// Choose how the following steps are made. The state goes on from where it is. The solver that there is, with the
 /// settings that it has, changes nothing and wakes nobody.
-/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY or MSPRING_ERROR_BUSY;
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, also for a solver that this build lacks (see mspring_features());
+///         MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY or MSPRING_ERROR_BUSY;
 ///         MSPRING_ERROR_LIMIT if the direct solver's factor would take over 2^27 numbers, or the implicit one's
 ///         tiles, of the size asked for, are so tied to each other that factoring their matrix would take over 2^34
 ///         multiply-adds (the message says how many there would be). On error the solver is the one of before.
@@ -845,8 +848,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_settings(const 
 ///
 /// A value that is what it was changes nothing. Another gravity, sleep_speed, sleep_time or relax_fraction wakes
 /// all islands. After another guard, the next step looks at the border of stability, if that guard does so at all.
-/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT (the message names the field and its value), MSPRING_ERROR_STRUCT,
-///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT (the message names the field and its value), also for a guard whose
+///         solver this build lacks; MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network
 /// @allocates what a guard or sleep needs, the first time that the network has it   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_settings(mspring_network *network,

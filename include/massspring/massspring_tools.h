@@ -255,6 +255,7 @@ MSPRING_API mspring_result mspring_tune_def_init(mspring_tune_def *def, size_t s
 ///   implicit  BDF2 with 4, 8 and 15 iterations and GA0 with 8, each in one, two and four substeps
 ///   direct    BDF2 and GA0, each in one and two substeps; up to 20000 particles
 ///
+/// Solvers that this build lacks are left out.
 /// @param dt        seconds, finite, > 0
 /// @param settings  [capacity]; may be NULL with capacity 0, to ask for the count
 /// @param count     receives the number of settings, even if it is larger than capacity

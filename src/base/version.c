@@ -22,5 +22,11 @@ uint32_t mspring_features(void) {
 #if defined(MSPRING_BUILD_SHARED)
     features |= MSPRING_FEATURE_SHARED;
 #endif
+#if !defined(MSPRINGI_WITHOUT_IMPLICIT)
+    features |= MSPRING_FEATURE_IMPLICIT;
+#endif
+#if !defined(MSPRINGI_WITHOUT_IMPLICIT) && !defined(MSPRINGI_WITHOUT_DIRECT)
+    features |= MSPRING_FEATURE_DIRECT;
+#endif
     return features;
 }

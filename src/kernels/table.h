@@ -12,12 +12,7 @@
 #include "kernels/extrema.h"
 #include "kernels/flight.h"
 #include "kernels/strain.h"
-#include "kernels/system_assemble.h"
-#include "kernels/system_double.h"
-#include "kernels/system_energy.h"
-#include "kernels/system_iterate.h"
-#include "kernels/system_motion.h"
-#include "kernels/system_multiply.h"
+#include "kernels/system_table.h"
 
 static inline mspringi_variant variant_found(const mspringi_sweep *sweep) {
     const mspringi_variant damped = sweep->parts > MSPRINGI_DAMPING ? MSPRINGI_DAMPED : 0;
@@ -106,29 +101,5 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .image_lattice = image_lattice,
     .image_chain = image_chain,
     .checksum = take_checksum,
-    .system = {.weigh = weigh,
-               .aim_tile = aim_tile,
-               .fly = fly,
-               .predict = predict,
-               .assemble_lattice = {assemble_lattice_plain, assemble_lattice_damped},
-               .assemble_chain = {assemble_chain_plain, assemble_chain_damped},
-               .hand_on_forces = {hand_on_forces_plain, hand_on_forces_damped},
-               .add_outside = add_outside,
-               .invert = invert,
-               .multiply_lattice = multiply_lattice,
-               .multiply_chain = multiply_chain,
-               .hand_on_product = hand_on_product,
-               .advance = advance,
-               .inertia_of_tile = inertia_of_tile,
-               .restrict_to_tile = restrict_to_tile,
-               .turn = {[MSPRINGI_TURN_BODIES] = turn_bodies,
-                        [MSPRINGI_TURN_AFRESH] = turn_afresh,
-                        [MSPRINGI_TURN_FURTHER] = turn_further},
-               .land = {[MSPRINGI_REMEMBER_NOTHING] = land_nothing,
-                        [MSPRINGI_REMEMBER_CHANGE] = land_change,
-                        [MSPRINGI_REMEMBER_ACCELERATION] = land_acceleration,
-                        [MSPRINGI_REMEMBER_BOTH] = land_both},
-               .moments = sum_moments,
-               .elastic = sum_elastic,
-               .add_edges = add_edges},
+    .system = MSPRINGI_SYSTEM_TABLE,
 };

@@ -36,8 +36,9 @@ mspring_result mspringi_check_solver(const mspring_solver_def *def, mspringi_mes
         mspringi_check_struct(message, "mspring_solver_def", def->struct_size, sizeof *def, sizeof *def);
     if (result != MSPRING_OK)
         return result;
-    if (!mspringi_solver_ops_of(def->solver))
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "solver is %d, which is none", (int)def->solver);
+    result = mspringi_solver_check_name(def->solver, message);
+    if (result != MSPRING_OK)
+        return result;
     const bool automatic = def->substeps == MSPRING_SUBSTEPS_AUTO;
     if (!automatic && (def->substeps < 1 || def->substeps > MSPRING_MAX_SUBSTEPS))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "substeps is %u, it must be 1 to %u",

@@ -12,6 +12,16 @@ const mspringi_solver_ops *mspringi_solver_ops_of(mspring_solver name) {
     return NULL;
 }
 
+mspring_result mspringi_solver_check_name(mspring_solver name, mspringi_message *message) {
+    if (mspringi_solver_ops_of(name))
+        return MSPRING_OK;
+    if (name == MSPRING_SOLVER_IMPLICIT || name == MSPRING_SOLVER_DIRECT)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "this build of the library has no %s solver (MASSSPRING_SOLVERS)",
+                             name == MSPRING_SOLVER_IMPLICIT ? "implicit" : "direct");
+    return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "solver is %d, which is none", (int)name);
+}
+
 mspring_result mspringi_solver_make(mspringi_solver *solver, mspring_network *network,
                                     const mspring_solver_def *def, uint32_t tile_size) {
     const mspringi_solver_ops *ops = solver->ops;
@@ -44,6 +54,23 @@ void mspringi_solver_take_over(const mspring_network *to, const mspringi_solver 
                                const mspringi_solver *had) {
     if (had->ops && had->ops->take_over)
         had->ops->take_over(to, made->object, from, had->object);
+}
+
+mspring_result mspringi_fallback_reserve(mspring_network *network, uint32_t tile_size) {
+    mspringi_solver made = {mspringi_solver_ops_of(MSPRING_SOLVER_IMPLICIT), NULL};
+    mspring_solver_def def;
+    if (network->fallback.object)
+        return MSPRING_OK;
+    mspring_result result = mspringi_solver_check_name(MSPRING_SOLVER_IMPLICIT, &network->message);
+    if (result != MSPRING_OK)
+        return result;
+    (void)mspring_solver_def_init(&def, sizeof def);
+    def.solver = MSPRING_SOLVER_IMPLICIT;
+    def.integrator = MSPRING_INTEGRATOR_EULER;
+    result = mspringi_solver_make(&made, network, &def, tile_size);
+    if (result == MSPRING_OK)
+        network->fallback = made;
+    return result;
 }
 
 /* ------------------------------------------------------------------------------------------------------- both */

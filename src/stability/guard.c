@@ -156,9 +156,10 @@ static mspring_result look_at_border(mspring_network *network, const mspringi_at
 /* --------------------------------------------------------------------------------------------------- the steps */
 
 mspring_result mspringi_guard_check(mspring_guard policy, mspringi_message *message) {
-    return policy >= MSPRING_GUARD_GROWTH && policy <= MSPRING_GUARD_CLAMP_BOUNDS
-               ? MSPRING_OK
-               : mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "guard is %d, which is none", (int)policy);
+    if (policy < MSPRING_GUARD_GROWTH || policy > MSPRING_GUARD_CLAMP_BOUNDS)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "guard is %d, which is none", (int)policy);
+    return policy == MSPRING_GUARD_IMPLICIT ? mspringi_solver_check_name(MSPRING_SOLVER_IMPLICIT, message)
+                                            : MSPRING_OK;
 }
 
 bool mspringi_guard_looks(mspring_guard policy) {

@@ -113,14 +113,17 @@ struct mspringi_solver_ops {
 #include "store/solvers.def"
 #undef SOLVER
 
-/// The table of the solver that the host names, or NULL: it is none.
+/// The table of the solver that the host names, or NULL: it is none, or this build leaves it out.
 const mspringi_solver_ops *mspringi_solver_ops_of(mspring_solver name);
+
+/// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT if there is no such table
+mspring_result mspringi_solver_check_name(mspring_solver name, mspringi_message *message);
 
 /// Strain rates clamped (solvers/clamped/clamp.c). It can only be a fallback.
 extern const mspringi_solver mspringi_clamped;
 
 /// Make the solver that takes steps for the explicit one, if it is not there, with tiles of that size (0: by plan).
-/// It keeps nothing from step to step. In implicit.c.
+/// It keeps nothing from step to step.
 mspring_result mspringi_fallback_reserve(mspring_network *network, uint32_t tile_size);
 
 /// Make the object of a solver whose table is set, in one go. On failure there is none.

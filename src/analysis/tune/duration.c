@@ -118,7 +118,8 @@ mspring_result mspringi_tune_choose_duration(mspringi_tuning *tuning) {
     (void)mspring_solver_def_init(&solver, sizeof solver);
     solver.solver = MSPRING_SOLVER_IMPLICIT;
     tuning->step_count = MSPRINGI_TUNE_LEAST_STEPS;
-    result = mspring_network_set_solver(clone, &solver);
+    const bool has_implicit = mspringi_solver_ops_of(MSPRING_SOLVER_IMPLICIT) != NULL;
+    result = has_implicit ? mspring_network_set_solver(clone, &solver) : MSPRING_ERROR_LIMIT;
     if (result == MSPRING_OK) {
         const double most = fmin(affordable, MSPRINGI_TUNE_MOST_STEPS);
         const uint32_t steps = run_one_period(tuning, clone, most);

@@ -274,19 +274,26 @@ void mspringi_direct_end(making *m) {
 
 #define ARRAY(member) MSPRINGI_COLUMN(mspringi_direct, member, MSPRINGI_ARRAY)
 #define VIEW(member) MSPRINGI_COLUMN(mspringi_direct, member, MSPRINGI_VIEW)
-static const mspringi_column columns[] = {
+static const mspringi_column list[] = {
     ARRAY(end_a),         ARRAY(end_b),          ARRAY(edge_blocks),   ARRAY(edges.xx),      VIEW(edges.xy),
     VIEW(edges.yy),       ARRAY(edges_twice.xx), VIEW(edges_twice.xy), VIEW(edges_twice.yy), ARRAY(nodes_twice.xx),
     VIEW(nodes_twice.xy), VIEW(nodes_twice.yy),  ARRAY(solution),
 };
-const mspringi_columns mspringi_direct_columns = MSPRINGI_COLUMNS(columns);
+static const mspringi_columns columns = MSPRINGI_COLUMNS(list);
 
 void mspringi_direct_destroy(mspringi_direct *direct, mspringi_memory *memory) {
     mspringi_cholesky_float_destroy(&direct->single, memory);
     mspringi_cholesky_double_destroy(&direct->twice, memory);
     mspringi_cholesky_plan_destroy(&direct->plan, memory);
-    mspringi_columns_free(mspringi_direct_columns, direct, memory);
+    mspringi_columns_free(columns, direct, memory);
     *direct = (mspringi_direct){0};
+}
+
+void mspringi_direct_relocate(mspringi_direct *direct, const mspringi_memory *from, const mspringi_memory *to) {
+    mspringi_columns_relocate(columns, direct, from, to);
+    mspringi_columns_relocate(mspringi_cholesky_plan_columns, &direct->plan, from, to);
+    mspringi_columns_relocate(mspringi_cholesky_float_columns, &direct->single, from, to);
+    mspringi_columns_relocate(mspringi_cholesky_double_columns, &direct->twice, from, to);
 }
 
 /* ------------------------------------------------------------------------------------------- single precision */

@@ -47,16 +47,43 @@ typedef struct mspringi_direct_making {
     mspringi_cholesky_planning *planning;
 } mspringi_direct_making;
 
+#if !defined(MSPRINGI_WITHOUT_DIRECT)
 /// Analyse the network's springs and reserve memory for their factor: begin, then make until it is done, then end,
 /// on failure too.
 /// @return MSPRING_OK; MSPRING_ERROR_MEMORY; MSPRING_ERROR_LIMIT if the factor would be too large.
 void mspringi_direct_begin(mspringi_direct_making *making, mspringi_direct *direct, mspring_network *network);
 mspring_result mspringi_direct_make(mspringi_direct_making *making, bool *is_done);
 void mspringi_direct_end(mspringi_direct_making *making);
-extern const mspringi_columns mspringi_direct_columns;
 void mspringi_direct_destroy(mspringi_direct *direct, mspringi_memory *memory);
+void mspringi_direct_relocate(mspringi_direct *direct, const mspringi_memory *from, const mspringi_memory *to);
 
 /// Solve the system that mspringi_assemble() has left in the network's implicit solver.
 void mspringi_direct_solve(mspring_network *network);
+#else // no table of solvers leads here
+static inline void mspringi_direct_begin(mspringi_direct_making *making, mspringi_direct *direct,
+                                         mspring_network *network) {
+    *making = (mspringi_direct_making){.network = network, .direct = direct};
+}
+static inline mspring_result mspringi_direct_make(mspringi_direct_making *making, bool *is_done) {
+    *is_done = true;
+    return mspringi_solver_check_name(MSPRING_SOLVER_DIRECT, &making->network->message);
+}
+static inline void mspringi_direct_end(mspringi_direct_making *making) {
+    (void)making;
+}
+static inline void mspringi_direct_destroy(mspringi_direct *direct, mspringi_memory *memory) {
+    (void)direct;
+    (void)memory;
+}
+static inline void mspringi_direct_relocate(mspringi_direct *direct, const mspringi_memory *from,
+                                            const mspringi_memory *to) {
+    (void)direct;
+    (void)from;
+    (void)to;
+}
+static inline void mspringi_direct_solve(mspring_network *network) {
+    (void)network;
+}
+#endif
 
 #endif

@@ -371,20 +371,6 @@ void mspringi_implicit_adjust(mspringi_implicit *n, const mspring_solver_def *de
     n->coarse_period = coarse_period;
 }
 
-mspring_result mspringi_fallback_reserve(mspring_network *network, uint32_t tile_size) {
-    mspringi_solver made = {&mspringi_implicit_ops, NULL};
-    if (network->fallback.object)
-        return MSPRING_OK;
-    mspring_solver_def def;
-    (void)mspring_solver_def_init(&def, sizeof def);
-    def.solver = MSPRING_SOLVER_IMPLICIT;
-    def.integrator = MSPRING_INTEGRATOR_EULER;
-    mspring_result result = mspringi_solver_make(&made, network, &def, tile_size);
-    if (result == MSPRING_OK)
-        network->fallback = made;
-    return result;
-}
-
 #define ARRAY(member) MSPRINGI_COLUMN(mspringi_implicit, member, MSPRINGI_ARRAY)
 #define VIEW(member) MSPRINGI_COLUMN(mspringi_implicit, member, MSPRINGI_VIEW)
 #define FIELD(member) ARRAY(member.x), VIEW(member.y)
@@ -418,10 +404,7 @@ void mspringi_implicit_relocate(mspringi_implicit *n, const mspring_network *net
     mspringi_columns_relocate(mspringi_cells_columns, &n->tiles.cells, from, to);
     mspringi_columns_relocate(mspringi_tiles_columns, &n->tiles, from, to);
     mspringi_columns_relocate(mspringi_coarse_columns, &n->coarse, from, to);
-    mspringi_columns_relocate(mspringi_direct_columns, &n->direct, from, to);
-    mspringi_columns_relocate(mspringi_cholesky_plan_columns, &n->direct.plan, from, to);
-    mspringi_columns_relocate(mspringi_cholesky_float_columns, &n->direct.single, from, to);
-    mspringi_columns_relocate(mspringi_cholesky_double_columns, &n->direct.twice, from, to);
+    mspringi_direct_relocate(&n->direct, from, to);
     wire(n, network);
 }
 

@@ -1,0 +1,37 @@
+/// @file system_table.h
+/// The part of an instruction set's table that is for the implicit solver, or nothing if the build leaves that out.
+///
+/// SPDX-License-Identifier: MIT
+
+#if defined(MSPRINGI_WITHOUT_IMPLICIT)
+#define MSPRINGI_SYSTEM_TABLE                                                                                      \
+    { 0 }
+#else
+
+#include "kernels/system_assemble.h"
+#include "kernels/system_double.h"
+#include "kernels/system_energy.h"
+#include "kernels/system_iterate.h"
+#include "kernels/system_motion.h"
+#include "kernels/system_multiply.h"
+
+#define MSPRINGI_SYSTEM_TABLE                                                                                      \
+    {                                                                                                              \
+        .weigh = weigh, .aim_tile = aim_tile, .fly = fly, .predict = predict,                                      \
+        .assemble_lattice = {assemble_lattice_plain, assemble_lattice_damped},                                     \
+        .assemble_chain = {assemble_chain_plain, assemble_chain_damped},                                           \
+        .hand_on_forces = {hand_on_forces_plain, hand_on_forces_damped}, .add_outside = add_outside,               \
+        .invert = invert, .multiply_lattice = multiply_lattice, .multiply_chain = multiply_chain,                  \
+        .hand_on_product = hand_on_product, .advance = advance, .inertia_of_tile = inertia_of_tile,                \
+        .restrict_to_tile = restrict_to_tile,                                                                      \
+        .turn = {[MSPRINGI_TURN_BODIES] = turn_bodies,                                                             \
+                 [MSPRINGI_TURN_AFRESH] = turn_afresh,                                                             \
+                 [MSPRINGI_TURN_FURTHER] = turn_further},                                                          \
+        .land = {[MSPRINGI_REMEMBER_NOTHING] = land_nothing,                                                       \
+                 [MSPRINGI_REMEMBER_CHANGE] = land_change,                                                         \
+                 [MSPRINGI_REMEMBER_ACCELERATION] = land_acceleration,                                             \
+                 [MSPRINGI_REMEMBER_BOTH] = land_both},                                                            \
+        .moments = sum_moments, .elastic = sum_elastic, .add_edges = add_edges                                     \
+    }
+
+#endif
