@@ -25,6 +25,14 @@ mspring_simd level_from_arguments(int argc, char **argv) {
     exit(2);
 }
 
+mspring_simd level_lowest(void) {
+    mspring_simd level = MSPRING_SIMD_SCALAR;
+    while (!mspring_simd_available(level)) {
+        level++;
+    }
+    return level;
+}
+
 void level_check(const mspring_network *network, mspring_simd level) {
     assert_string_equal(mspring_simd_name(mspring_network_simd_level(network)), mspring_simd_name(level));
 }

@@ -15,6 +15,9 @@
 /// for.
 mspring_simd level_from_arguments(int argc, char **argv);
 
+/// The level that others are compared with: the scalar one or, in a build without it, the lowest.
+mspring_simd level_lowest(void);
+
 /// The kernels of a network are those of the level: a test that asked for AVX2 and got SSE2 would test nothing.
 void level_check(const mspring_network *network, mspring_simd level);
 
