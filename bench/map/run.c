@@ -240,6 +240,15 @@ static bool gains_by_itself(const map_case *run) {
     return ok && judge.growth > 1e-2;
 }
 
+// Whether a case keeps its energy with substeps of a quarter.
+static bool holds_with_shorter(const map_case *run) {
+    map_case finer = *run;
+    finer.dt /= 4;
+    finer.steps *= 4;
+    finer.break_at = run->break_at > 0 ? (run->break_at - 1) * 4 + 1 : 0;
+    return growth_of(&finer) <= 1e-2;
+}
+
 // What explicit substeps keep is a sum for small motion alone. In violent motion near the border it grows without
 // any floor as well, by anything: how much differs by a factor of ten from one start to another of the same energy,
 // so that no free swing tells how much a case may gain. But the floor must have given nothing of it.
@@ -247,7 +256,7 @@ static map_verdict judge_gain(const map_case *run, const map_judge *judge) {
     if (run->solver.solver != MSPRING_SOLVER_EXPLICIT || judge->quickest <= calm_way)
         return MAP_GAINED;
     if (run->share <= calm_share)
-        return growth_of(run) <= calm_growth ? MAP_VIOLENT : MAP_GAINED;
+        return growth_of(run) <= calm_growth || holds_with_shorter(run) ? MAP_VIOLENT : MAP_GAINED;
     return !run->has_floor || gains_by_itself(run) ? MAP_VIOLENT : MAP_GAINED;
 }
 
