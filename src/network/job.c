@@ -15,7 +15,7 @@ mspring_result mspringi_job_no_memory(mspring_job *job) {
 
 void mspringi_job_follow(const mspring_network *network, mspringi_place place) {
     mspring_job *job = network->job;
-    if (!job || job->is_needless) // it has copied nothing
+    if (!job || !job->changed) // it was begun with nothing to do (run writes is_needless, on any thread)
         return;
     job->changed[place / MSPRINGI_WIDTH] |= (uint16_t)(1u << place % MSPRINGI_WIDTH);
     job->has_changed = true;
