@@ -199,7 +199,7 @@ static inline void mspringi_lattice_ends(const mspringi_topology *topology, mspr
     const uint32_t here = (topology->lattice_first + block) * MSPRINGI_WIDTH + lane;
     const uint32_t up = topology->up_of_block[block] * MSPRINGI_WIDTH + lane;
     *base = direction == MSPRINGI_SOUTH_EAST ? up : here;
-    *tip = ((direction == MSPRINGI_NORTH) | (direction == MSPRINGI_NORTH_EAST) ? up : here) +
+    *tip = (((direction == MSPRINGI_NORTH) | (direction == MSPRINGI_NORTH_EAST)) ? up : here) +
            (direction != MSPRINGI_NORTH);
 }
 
