@@ -189,76 +189,28 @@ static void thresholds_load(mspring_network *network, mspring_property property,
                               size > 0 ? mspringi_float_at(from, s) : none);
 }
 
-static size_t break_strains_size(const mspring_network *network) {
-    return thresholds_size(network, network->strain.breaks);
-}
+// A section of thresholds of one kind: none if no spring has ever had one.
+#define THRESHOLDS(name, tag, words, property, array, has_any)                                                     \
+    static size_t name##_size(const mspring_network *network) {                                                    \
+        return thresholds_size(network, network->strain.has_any);                                                  \
+    }                                                                                                              \
+    static void name##_save(const mspring_network *network, mspringi_writer *to) {                                 \
+        thresholds_save(network, network->strain.array, to);                                                       \
+    }                                                                                                              \
+    static mspring_result name##_check(mspring_network *network, const uint8_t *from, size_t size) {               \
+        return size > 0 ? thresholds_check(network, &mspringi_section_##name, property, from, size) : MSPRING_OK;  \
+    }                                                                                                              \
+    static void name##_load(mspring_network *network, const uint8_t *from, size_t size) {                          \
+        network->strain.has_any = size > 0;                                                                        \
+        if (network->strain.array)                                                                                 \
+            thresholds_load(network, property, from, size);                                                        \
+    }                                                                                                              \
+    const mspringi_section mspringi_section_##name = {tag,         words,        true,       name##_size,          \
+                                                      name##_save, name##_check, name##_load}
 
-static void break_strains_save(const mspring_network *network, mspringi_writer *to) {
-    thresholds_save(network, network->strain.break_strain, to);
-}
-
-static mspring_result break_strains_check(mspring_network *network, const uint8_t *from, size_t size) {
-    return size > 0 ? thresholds_check(network, &mspringi_section_break_strains, MSPRING_BREAK_STRAIN, from, size)
-                    : MSPRING_OK;
-}
-
-static void break_strains_load(mspring_network *network, const uint8_t *from, size_t size) {
-    network->strain.breaks = size > 0;
-    if (network->strain.break_strain)
-        thresholds_load(network, MSPRING_BREAK_STRAIN, from, size);
-}
-
-const mspringi_section mspringi_section_break_strains = {
-    "brks", "break strains", true, break_strains_size, break_strains_save, break_strains_check, break_strains_load};
-
-static size_t stress_strains_size(const mspring_network *network) {
-    return thresholds_size(network, network->strain.stresses);
-}
-
-static void stress_strains_save(const mspring_network *network, mspringi_writer *to) {
-    thresholds_save(network, network->strain.stress_strain, to);
-}
-
-static mspring_result stress_strains_check(mspring_network *network, const uint8_t *from, size_t size) {
-    return size > 0 ? thresholds_check(network, &mspringi_section_stress_strains, MSPRING_STRESS_STRAIN, from, size)
-                    : MSPRING_OK;
-}
-
-static void stress_strains_load(mspring_network *network, const uint8_t *from, size_t size) {
-    network->strain.stresses = size > 0;
-    if (network->strain.stress_strain)
-        thresholds_load(network, MSPRING_STRESS_STRAIN, from, size);
-}
-
-const mspringi_section mspringi_section_stress_strains = {"strs",
-                                                          "stress strains",
-                                                          true,
-                                                          stress_strains_size,
-                                                          stress_strains_save,
-                                                          stress_strains_check,
-                                                          stress_strains_load};
-
-static size_t relax_strains_size(const mspring_network *network) {
-    return thresholds_size(network, network->strain.relaxes);
-}
-
-static void relax_strains_save(const mspring_network *network, mspringi_writer *to) {
-    thresholds_save(network, network->strain.relax_strain, to);
-}
-
-static mspring_result relax_strains_check(mspring_network *network, const uint8_t *from, size_t size) {
-    return size > 0 ? thresholds_check(network, &mspringi_section_relax_strains, MSPRING_RELAX_STRAIN, from, size)
-                    : MSPRING_OK;
-}
-
-static void relax_strains_load(mspring_network *network, const uint8_t *from, size_t size) {
-    network->strain.relaxes = size > 0;
-    if (network->strain.relax_strain)
-        thresholds_load(network, MSPRING_RELAX_STRAIN, from, size);
-}
-
-const mspringi_section mspringi_section_relax_strains = {
-    "rlxs", "relax strains", true, relax_strains_size, relax_strains_save, relax_strains_check, relax_strains_load};
+THRESHOLDS(break_strains, "brks", "break strains", MSPRING_BREAK_STRAIN, break_strain, breaks);
+THRESHOLDS(stress_strains, "strs", "stress strains", MSPRING_STRESS_STRAIN, stress_strain, stresses);
+THRESHOLDS(relax_strains, "rlxs", "relax strains", MSPRING_RELAX_STRAIN, relax_strain, relaxes);
 
 /* --------------------------------------------------------------------------------------------------- stressed */
 
