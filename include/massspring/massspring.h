@@ -1243,6 +1243,10 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_velocities(mspr
 
 /* --------------------------------------------------------------------------------------------- properties */
 
+/// Break or stress strain for "never": the largest float. INFINITY and all above this mean the same, and are read as
+/// this. Use it in programs that are compiled with -ffinite-math-only.
+#define MSPRING_NEVER 3.40282346638528859812e+38f
+
 /// Relax strain for "relax_fraction (mspring_settings) of the stress strain".
 #define MSPRING_RELAX_STRAIN_DEFAULT (-1.0f)
 
@@ -1268,11 +1272,11 @@ enum {
     /// Rest length of a spring, m, > 0 and at most 4e12, for muscles and winches. Writing it ends a ramp of the
     /// spring. Allocates for a spring of a lattice: lattices keep rest lengths once that many springs share.
     MSPRING_REST_LENGTH = 4,
-    /// Break strain of a spring, no unit, > 0; INFINITY, the default, for never. If the spring's absolute strain is
+    /// Break strain of a spring, no unit, > 0; MSPRING_NEVER is the default. If the spring's absolute strain is
     /// over it at the end of a step, the spring breaks. Nothing breaks in the middle of a step. Substeps too long to
     /// follow a blow change the strains. Allocates.
     MSPRING_BREAK_STRAIN = 5,
-    /// Stress strain of a spring, no unit, > 0; INFINITY, the default, for never. If the spring's absolute strain is
+    /// Stress strain of a spring, no unit, > 0; MSPRING_NEVER is the default. If the spring's absolute strain is
     /// over it at the end of a step, the spring is stressed until it relaxes (MSPRING_EVENT_STRESSED). Allocates.
     MSPRING_STRESS_STRAIN = 6,
     /// Relax strain of a spring, no unit, >= 0. A stressed spring relaxes at the end of a step if its absolute strain

@@ -63,7 +63,7 @@ static bool differs(const mspring_network *network, mspring_property property, m
 static inline uint32_t skip_equal(const mspringi_place *places, plane known, const float *values, size_t stride,
                                   uint32_t i, uint32_t count) {
     while (i < count && places[i] < known.end) {
-        const float value = values[i * stride];
+        const float value = mspringi_kept_value(values[i * stride]);
         if (*in_plane(&known, places[i]) != value || value == 0.0f)
             break;
         ++i;

@@ -15,7 +15,7 @@ typedef struct mspringi_values {
 } mspringi_values;
 
 static inline float mspringi_value_of(const mspringi_values *values, uint32_t i) {
-    return values->first[i * values->stride];
+    return mspringi_kept_value(values->first[i * values->stride]);
 }
 
 /// Set them of particles (particles.c) or springs (springs.c). What has its value already is left alone.

@@ -78,7 +78,7 @@ static float value_of(const mspring_network *network, mspring_property property,
     case MSPRING_FORCE:
         return mspringi_spring_force(network, id);
     default:
-        return mspringi_spring_property(network, property, id);
+        return mspringi_read_value(mspringi_spring_property(network, property, id));
     }
 }
 

@@ -5,6 +5,8 @@
 #ifndef MSPRINGI_PROPERTIES_H
 #define MSPRINGI_PROPERTIES_H
 
+#include <math.h>
+
 #include "store/selection.h"
 
 #define MSPRINGI_SMALLEST_MASS 1e-30f
@@ -29,6 +31,15 @@ static inline bool mspringi_is_threshold(float strain) {
 }
 static inline bool mspringi_is_relax_strain(float strain) {
     return (strain >= 0.0f) | (strain == MSPRING_RELAX_STRAIN_DEFAULT);
+}
+
+/// A threshold as networks keep it, and as the host reads it. Times a rest length, INFINITY alone is above all
+/// stretches. No other property may have such values, so these two may be used for all.
+static inline float mspringi_kept_value(float given) {
+    return given >= MSPRING_NEVER ? INFINITY : given;
+}
+static inline float mspringi_read_value(float kept) {
+    return kept > MSPRING_NEVER ? MSPRING_NEVER : kept;
 }
 
 typedef struct mspringi_property {

@@ -102,6 +102,34 @@ static void what_is_set_can_be_read(void **state) {
     }
 }
 
+/// INFINITY and all from MSPRING_NEVER on are one value: it is read as that, and to set one for another is no edit.
+static void never_is_one_value(void **state) {
+    (void)state;
+    recipe made = mixed_recipe(0);
+    mspring_network_def def = support_def(-9.8f, 4);
+    mspring_network *network = recipe_network(&made, &def);
+    const float never[] = {MSPRING_NEVER, INFINITY}, some = 0.5f;
+    const uint32_t count = mspring_network_spring_count(network);
+    static float read[MOST];
+    for (mspring_property p = MSPRING_BREAK_STRAIN; p <= MSPRING_STRESS_STRAIN; p++) {
+        check_ok(mspring_network_get(network, p, 0, count, read, 1));
+        assert_true(read[0] == MSPRING_NEVER && read[count - 1] == MSPRING_NEVER);
+        check_ok(mspring_network_set(network, p, 0, 1, &some, 1));
+        for (size_t i = 0; i < COUNT_OF(never); i++) {
+            check_ok(mspring_network_set(network, p, 0, count, &never[i], 0));
+            check_ok(mspring_network_get(network, p, 0, count, read, 1));
+            assert_true(read[0] == MSPRING_NEVER && read[count - 1] == MSPRING_NEVER);
+            uint8_t frame[1 << 16];
+            size_t size;
+            check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_FRAME, frame, sizeof frame, &size));
+            check_ok(mspring_network_set(network, p, 0, count, &never[1 - i], 0));
+            check_ok(mspring_network_load(network, frame, size)); // a frame is refused after edits
+        }
+    }
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
 static void measured_ones_are_those_of_each_spring(void **state) {
     (void)state;
     recipe made = mixed_recipe(0);
@@ -346,6 +374,7 @@ static void springs_relax_at_strains_of_their_own(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_set_can_be_read),
+        cmocka_unit_test(never_is_one_value),
         cmocka_unit_test(measured_ones_are_those_of_each_spring),
         cmocka_unit_test(what_is_there_is_left_alone),
         cmocka_unit_test(a_ramp_ends_even_at_the_length_that_it_has),
