@@ -15,6 +15,9 @@ struct Material {
     mass: f32,
     stiffness: f32,
     damping: f32,
+    break_strain: f32,
+    stress_strain: f32,
+    relax_strain: f32,
 }
 
 #[repr(C)]

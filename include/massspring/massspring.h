@@ -252,6 +252,13 @@ typedef struct mspring_particle_def {
 /// rest_length for "the distance at which the two particles are added".
 #define MSPRING_REST_LENGTH_DISTANCE (-1.0f)
 
+/// Break or stress strain for "never": the largest float. INFINITY means the same, and is read as this. Use it in
+/// programs that are compiled with -ffinite-math-only.
+#define MSPRING_NEVER 3.40282346638528859812e+38f
+
+/// Relax strain for "relax_fraction (mspring_settings) of the stress strain".
+#define MSPRING_RELAX_STRAIN_DEFAULT (-1.0f)
+
 /// One spring. Fill with mspring_spring_def_init() first.
 typedef struct mspring_spring_def {
     uint32_t struct_size;
@@ -260,6 +267,9 @@ typedef struct mspring_spring_def {
     float stiffness;   ///< N/m (or a fraction, see MSPRING_SPRING_RELATIVE), 0 to 1e30; default 0
     float damping;     ///< N s/m (or a fraction, or a ratio), 0 to 1e30; default 0
     float rest_length; ///< m, > 0 and at most 4e12, or MSPRING_REST_LENGTH_DISTANCE, the default
+    float break_strain;  ///< as MSPRING_BREAK_STRAIN; default MSPRING_NEVER
+    float stress_strain; ///< as MSPRING_STRESS_STRAIN; default MSPRING_NEVER
+    float relax_strain;  ///< as MSPRING_RELAX_STRAIN; default MSPRING_RELAX_STRAIN_DEFAULT
 } mspring_spring_def;
 
 /// What a lattice cell is made of. Fill with mspring_material_init() first.
@@ -270,6 +280,9 @@ typedef struct mspring_material {
     float mass;              ///< kg per cell, 1e-30 to 1e30; default 1
     float stiffness;         ///< as in mspring_spring_def
     float damping;           ///< as in mspring_spring_def
+    float break_strain;      ///< this and what follows: as in mspring_spring_def, with the same defaults
+    float stress_strain;
+    float relax_strain;
 } mspring_material;
 
 /// Materials that mspring_material_preset() knows.
@@ -286,7 +299,8 @@ enum {
 
 /// A grid of cells, as an image gives it: every cell that is not empty becomes a particle, every pair of
 /// neighbours (8 to a cell) is joined by a spring at its rest length. The spring's stiffness and damping are
-/// the means of its two materials'. Fill with mspring_lattice_def_init() first.
+/// the means of its two materials'. Its break strain is the lower one of the two. It has stress and relax strain of the
+/// material with the lower stress strain. Fill with mspring_lattice_def_init() first.
 ///
 /// Cloth has three kinds of spring. Structural springs join the 4 neighbours in rows and columns. Shear springs join
 /// the diagonal ones. Bend springs join cells two apart in a row or column, if the cell between is not empty. Shear
@@ -316,6 +330,9 @@ typedef struct mspring_rope_def {
     float stiffness;        ///< of each spring, as in mspring_spring_def
     float damping;          ///< of each spring
     float slack;            ///< rest length of the whole over the distance of its ends, 0.001 to 1000; default 1
+    float break_strain;     ///< this and what follows: of each spring, as in mspring_spring_def
+    float stress_strain;
+    float relax_strain;
 } mspring_rope_def;
 
 /// A mesh of triangles: each vertex becomes a particle, each edge one spring at rest, whichever triangles share it.
@@ -337,6 +354,10 @@ typedef struct mspring_mesh_def {
     float stiffness;           ///< of each spring, as in mspring_spring_def; default 0
     float young_modulus;       ///< N/m: Young's modulus times thickness, at most 1e30; default 0: stiffness counts
     float damping;             ///< of each spring, as in mspring_spring_def; default 0
+    float break_strain;        ///< this and the next two: of each spring, as in mspring_spring_def
+    float stress_strain;
+    float relax_strain;
+    uint32_t reserved; ///< 0
 } mspring_mesh_def;
 
 /// A disc: a mesh of rings around a particle in the centre. Ring i has 6 i particles. No spring is shorter than the
@@ -353,6 +374,10 @@ typedef struct mspring_disc_def {
     float stiffness;
     float young_modulus;
     float damping;
+    float break_strain;
+    float stress_strain;
+    float relax_strain;
+    uint32_t reserved; ///< 0
 } mspring_disc_def;
 
 /// How a network is evolved.
@@ -738,7 +763,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_create(mspring_buil
 ///
 /// Adds particles with position, velocity, mass and pin, and the springs between them that are not broken. Springs
 /// have rest length, stiffness and damping of now (nominal ones, fractions if relative). A spring on a ramp keeps the
-/// rest length that it has now. Not added: break and stress strains, settings, solver, floor, hooks, forces, events.
+/// rest length that it has now. Break, stress and relax strains are taken over. Not added: whether a spring is stressed,
+/// settings, solver, floor, hooks, forces, events.
 /// An inverse mass scale becomes 1, or a pin if it is 0. Both kinds of id keep their order.
 ///
 /// A network that is created from the builder starts where the other is, but for the rounding of positions: its local
@@ -1243,13 +1269,6 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_velocities(mspr
 
 /* --------------------------------------------------------------------------------------------- properties */
 
-/// Break or stress strain for "never": the largest float. INFINITY and all above this mean the same, and are read as
-/// this. Use it in programs that are compiled with -ffinite-math-only.
-#define MSPRING_NEVER 3.40282346638528859812e+38f
-
-/// Relax strain for "relax_fraction (mspring_settings) of the stress strain".
-#define MSPRING_RELAX_STRAIN_DEFAULT (-1.0f)
-
 /// A property: one float of each particle, or of each spring. mspring_network_set() writes it, mspring_network_get()
 /// reads it. The allocation named is that of the first call that changes such a value.
 typedef int32_t mspring_property;
@@ -1437,8 +1456,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_add_particles(mspri
 /// @param ids   [count], receives their ids: the lowest that are free
 /// @return as mspring_network_add_particles(); MSPRING_ERROR_ID for a particle that does not exist;
 ///         MSPRING_ERROR_DUPLICATE if the two are joined by a spring already, broken or not; MSPRING_ERROR_ARGUMENT
-///         with the direct solver, which has to be chosen anew after springs were added.
-/// @threads exclusive access to network   @allocates never   @since 0.1
+///         with the direct solver, which has to be chosen anew after springs were added; MSPRING_ERROR_MEMORY.
+/// @threads exclusive access to network   @allocates if a spring has a break, stress or relax strain of its own, at the
+///          first such strain in a network   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_add_springs(mspring_network *network,
                                                                          const mspring_spring_def *defs,
                                                                          uint32_t count, mspring_id *ids);

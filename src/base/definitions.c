@@ -4,6 +4,10 @@
 
 #include <massspring/massspring_tools.h>
 
+// Springs neither break nor are stressed.
+#define NO_LIMITS                                                                                                  \
+    .break_strain = MSPRING_NEVER, .stress_strain = MSPRING_NEVER, .relax_strain = MSPRING_RELAX_STRAIN_DEFAULT
+
 // Copy the defaults into a struct of the size that its header gives it. This is the first version of every struct,
 // so there is one size.
 static mspring_result fill(void *def, size_t size, const void *defaults, size_t known) {
@@ -24,12 +28,13 @@ mspring_result mspring_spring_def_init(mspring_spring_def *def, size_t size) {
     const mspring_spring_def defaults = {.struct_size = sizeof defaults,
                                          .a = MSPRING_NONE,
                                          .b = MSPRING_NONE,
-                                         .rest_length = MSPRING_REST_LENGTH_DISTANCE};
+                                         .rest_length = MSPRING_REST_LENGTH_DISTANCE,
+                                         NO_LIMITS};
     return fill(def, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_material_init(mspring_material *material, size_t size) {
-    const mspring_material defaults = {.struct_size = sizeof defaults, .mass = 1.0f};
+    const mspring_material defaults = {.struct_size = sizeof defaults, .mass = 1.0f, NO_LIMITS};
     return fill(material, size, &defaults, sizeof defaults);
 }
 
@@ -44,18 +49,19 @@ mspring_result mspring_rope_def_init(mspring_rope_def *def, size_t size) {
                                        .to = MSPRING_NONE,
                                        .segment_count = 1,
                                        .mass = 1.0f,
-                                       .slack = 1.0f};
+                                       .slack = 1.0f,
+                                       NO_LIMITS};
     return fill(def, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_mesh_def_init(mspring_mesh_def *def, size_t size) {
-    const mspring_mesh_def defaults = {.struct_size = sizeof defaults, .area_density = 1.0f};
+    const mspring_mesh_def defaults = {.struct_size = sizeof defaults, .area_density = 1.0f, NO_LIMITS};
     return fill(def, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_disc_def_init(mspring_disc_def *def, size_t size) {
     const mspring_disc_def defaults = {
-        .struct_size = sizeof defaults, .ring_count = 1, .radius = 1.0, .area_density = 1.0f};
+        .struct_size = sizeof defaults, .ring_count = 1, .radius = 1.0, .area_density = 1.0f, NO_LIMITS};
     return fill(def, size, &defaults, sizeof defaults);
 }
 

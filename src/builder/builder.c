@@ -31,6 +31,7 @@ void mspring_builder_destroy(mspring_builder *builder) {
     mspringi_memory memory = builder->memory;
     mspringi_free(&memory, builder->particles);
     mspringi_free(&memory, builder->springs);
+    mspringi_free(&memory, builder->limits);
     mspringi_free(&memory, builder);
 }
 
@@ -155,7 +156,9 @@ mspring_result mspringi_check_spring_values(mspringi_message *message, size_t in
     if (def->a == def->b)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "spring %zu joins particle %u to itself", index,
                              (unsigned)def->a);
-    return mspringi_check_coefficients(message, "spring", index, def->stiffness, def->damping, def->flags);
+    mspring_result result =
+        mspringi_check_coefficients(message, "spring", index, def->stiffness, def->damping, def->flags);
+    return result == MSPRING_OK ? mspringi_check_limits(message, "spring", index, MSPRINGI_LIMITS_OF(def)) : result;
 }
 
 mspring_result mspringi_find_rest_length(mspringi_message *message, size_t index, const mspring_spring_def *def,
@@ -214,6 +217,7 @@ static void append_spring(mspring_builder *builder, const mspring_spring_def *de
         .damping = mspringi_find_damping(def->stiffness, def->damping, def->flags, mass_a, mass_b),
         .rest_length = rest_length,
         .flags = def->flags & MSPRING_SPRING_RELATIVE};
+    mspringi_builder_put_limits(builder, builder->spring_count - 1, MSPRINGI_LIMITS_OF(def));
 }
 
 mspring_result mspring_builder_add_particles(mspring_builder *builder, const mspring_particle_def *defs,
@@ -254,12 +258,14 @@ static MSPRINGI_NOINLINE mspring_result add_springs(mspring_builder *builder, co
         float rest_length = 0.0f;
         result = check_spring(builder, before + i, &defs[i], &rest_length);
         if (result == MSPRING_OK)
+            result = mspringi_builder_reserve_limits(builder, count - i, MSPRINGI_LIMITS_OF(&defs[i]));
+        if (result == MSPRING_OK)
             append_spring(builder, &defs[i], rest_length);
         else if (count > 1)
             result = name_definition(builder, result, i);
     }
     if (result != MSPRING_OK)
-        builder->spring_count = before;
+        mspringi_builder_cut_springs(builder, before);
     else if (first_id)
         *first_id = (mspring_id)before;
     return result;

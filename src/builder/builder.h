@@ -23,6 +23,13 @@ typedef struct mspringi_spring {
     uint32_t flags;
 } mspringi_spring;
 
+/// The strains at which something happens to a spring, as its definition gives them.
+typedef struct mspringi_limits {
+    float break_strain, stress_strain, relax_strain;
+} mspringi_limits;
+
+#define MSPRINGI_LIMITS_OF(def) ((mspringi_limits){(def)->break_strain, (def)->stress_strain, (def)->relax_strain})
+
 struct mspring_builder {
     mspringi_memory memory;
     mspringi_message message;
@@ -30,6 +37,8 @@ struct mspring_builder {
     mspringi_spring *springs;
     size_t particle_count, particle_capacity;
     size_t spring_count, spring_capacity;
+    mspringi_limits *limits; ///< [limit_count] of the first springs; those behind them have none
+    size_t limit_count, limit_capacity;
 };
 
 /// Whether a component of a velocity is in range. Faster ones overflow where a rate of strain is computed: for the
@@ -51,9 +60,27 @@ static inline bool mspringi_is_coordinate(double value) {
     return value >= -MSPRING_MAX_COORDINATE && value <= MSPRING_MAX_COORDINATE;
 }
 
+/// Whether a spring may have this break or stress strain, and this relax strain.
+static inline bool mspringi_is_threshold(float strain) {
+    return strain > 0.0f;
+}
+static inline bool mspringi_is_relax_strain(float strain) {
+    return (strain >= 0.0f) | (strain == MSPRING_RELAX_STRAIN_DEFAULT);
+}
+
 /// Make room for count more.
 mspring_result mspringi_builder_reserve_particles(mspring_builder *builder, size_t count);
 mspring_result mspringi_builder_reserve_springs(mspring_builder *builder, size_t count);
+
+/// Limits of springs (limits.c). Refuse those that no spring may have, as the functions below do with other values.
+mspring_result mspringi_check_limits(mspringi_message *message, const char *what, size_t index,
+                                     mspringi_limits limits);
+bool mspringi_has_limits(mspringi_limits limits);
+/// Make room for those of count springs more, if these are any; give them to all springs from one on.
+mspring_result mspringi_builder_reserve_limits(mspring_builder *builder, size_t count, mspringi_limits limits);
+void mspringi_builder_put_limits(mspring_builder *builder, size_t first, mspringi_limits limits);
+/// Forget the springs from one on.
+void mspringi_builder_cut_springs(mspring_builder *builder, size_t count);
 
 /// Refuse values that no particle or spring may have. what and index are for the message.
 mspring_result mspringi_check_mass(mspringi_message *message, const char *what, size_t index, float mass);

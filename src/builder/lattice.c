@@ -19,6 +19,8 @@ static mspring_result check_materials(mspring_builder *builder, const mspring_la
         if (result == MSPRING_OK)
             result = mspringi_check_coefficients(&builder->message, "material", i, material->stiffness,
                                                  material->damping, material->spring_flags);
+        if (result == MSPRING_OK)
+            result = mspringi_check_limits(message, "material", i, MSPRINGI_LIMITS_OF(material));
         if (result != MSPRING_OK)
             return result;
         if (material->particle_flags & ~(uint32_t)MSPRING_PARTICLE_PINNED)
@@ -113,6 +115,21 @@ static mspring_result check_lattice(mspring_builder *builder, const mspring_latt
     return MSPRING_OK;
 }
 
+// The limits of springs between two materials: those of the weaker one.
+static mspringi_limits join_limits(const mspring_material *a, const mspring_material *b) {
+    const mspring_material *stressed = b->stress_strain < a->stress_strain ? b : a;
+    return (mspringi_limits){b->break_strain < a->break_strain ? b->break_strain : a->break_strain,
+                             stressed->stress_strain, stressed->relax_strain};
+}
+
+// Make room for the limits of springs, if any of the materials has some.
+static mspring_result reserve_limits(mspring_builder *builder, const mspring_lattice_def *def, size_t springs) {
+    mspring_result result = MSPRING_OK;
+    for (uint32_t i = 0; result == MSPRING_OK && i < def->material_count; ++i)
+        result = mspringi_builder_reserve_limits(builder, springs, MSPRINGI_LIMITS_OF(&def->materials[i]));
+    return result;
+}
+
 typedef enum join { STRUCTURAL, SHEAR, BEND } join;
 
 // The ids of a lattice's particles are dense in cell order, so those of two rows are enough to join them.
@@ -132,6 +149,7 @@ static void join_cells(mspring_builder *builder, const mspring_lattice_def *def,
                           .damping = mspringi_find_damping(stiffness, damping, flags, ma->mass, mb->mass),
                           .rest_length = (float)(def->spacing * cells[kind]),
                           .flags = flags & MSPRING_SPRING_RELATIVE};
+    mspringi_builder_put_limits(builder, builder->spring_count - 1, join_limits(ma, mb));
 }
 
 static void append_lattice(mspring_builder *builder, const mspring_lattice_def *def, mspring_id *cell_ids) {
@@ -212,6 +230,8 @@ static MSPRINGI_NOINLINE mspring_result add_lattice(mspring_builder *builder, co
         result = mspringi_builder_reserve_particles(builder, particles);
     if (result == MSPRING_OK)
         result = mspringi_builder_reserve_springs(builder, springs);
+    if (result == MSPRING_OK)
+        result = reserve_limits(builder, def, springs);
     if (result != MSPRING_OK)
         return result;
     const mspring_id first_id = (mspring_id)builder->particle_count;

@@ -74,7 +74,11 @@ static mspring_result check_values(mspringi_message *message, const mspring_mesh
         return mspringi_fail(
             message, MSPRING_ERROR_ARGUMENT, "mesh has a young_modulus of %g N/m and %s: give one of them",
             (double)def->young_modulus, def->stiffness != 0.0f ? "a stiffness, too" : "relative springs");
-    return mspringi_check_coefficients(message, "mesh spring", 0, def->stiffness, def->damping, def->spring_flags);
+    mspring_result result =
+        mspringi_check_coefficients(message, "mesh spring", 0, def->stiffness, def->damping, def->spring_flags);
+    if (result == MSPRING_OK)
+        result = mspringi_check_limits(message, "mesh spring", 0, MSPRINGI_LIMITS_OF(def));
+    return result == MSPRING_OK ? mspringi_check_reserved(message, "mspring_mesh_def", def->reserved) : result;
 }
 
 static mspring_result check_triangle(mspringi_message *message, const mspring_mesh_def *def, uint32_t triangle,
@@ -210,9 +214,12 @@ static mspring_result append_edge(mspring_builder *builder, const mspring_mesh_d
 
 static mspring_result append_mesh(mspring_builder *builder, const mspring_mesh_def *def, const mesh_work *work) {
     const size_t particles = builder->particle_count, springs = builder->spring_count;
+    const size_t edges = find_edges(def, work);
     mspring_result result = mspringi_builder_reserve_particles(builder, def->vertex_count);
     if (result == MSPRING_OK)
-        result = mspringi_builder_reserve_springs(builder, find_edges(def, work));
+        result = mspringi_builder_reserve_springs(builder, edges);
+    if (result == MSPRING_OK)
+        result = mspringi_builder_reserve_limits(builder, edges, MSPRINGI_LIMITS_OF(def));
     if (result != MSPRING_OK)
         return result;
     measure_areas(def, work);
@@ -224,7 +231,9 @@ static mspring_result append_mesh(mspring_builder *builder, const mspring_mesh_d
             result = append_edge(builder, def, work, (mspring_id)particles, side);
     if (result != MSPRING_OK) {
         builder->particle_count = particles;
-        builder->spring_count = springs;
+        mspringi_builder_cut_springs(builder, springs);
+    } else {
+        mspringi_builder_put_limits(builder, springs, MSPRINGI_LIMITS_OF(def));
     }
     return result;
 }

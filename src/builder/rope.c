@@ -27,6 +27,8 @@ static mspring_result check_rope(mspring_builder *builder, const mspring_rope_de
     if (result == MSPRING_OK)
         result = mspringi_check_coefficients(&builder->message, "rope from particle", def->from, def->stiffness,
                                              def->damping, def->spring_flags);
+    if (result == MSPRING_OK)
+        result = mspringi_check_limits(message, "rope from particle", def->from, MSPRINGI_LIMITS_OF(def));
     if (result != MSPRING_OK)
         return result;
     if (!mspringi_in_range(def->slack, 0.001f, 1000.0f))
@@ -58,6 +60,8 @@ static MSPRINGI_NOINLINE mspring_result add_rope(mspring_builder *builder, const
         result = mspringi_builder_reserve_particles(builder, def->segment_count - 1);
     if (result == MSPRING_OK)
         result = mspringi_builder_reserve_springs(builder, def->segment_count);
+    if (result == MSPRING_OK)
+        result = mspringi_builder_reserve_limits(builder, def->segment_count, MSPRINGI_LIMITS_OF(def));
     if (result != MSPRING_OK)
         return result;
 
@@ -81,6 +85,7 @@ static MSPRINGI_NOINLINE mspring_result add_rope(mspring_builder *builder, const
             .rest_length = segment_length,
             .flags = def->spring_flags & MSPRING_SPRING_RELATIVE};
     }
+    mspringi_builder_put_limits(builder, spring, MSPRINGI_LIMITS_OF(def));
     for (uint32_t i = 0; i < capacity && i <= segments; ++i)
         particles[i] = i == 0 ? def->from : i == segments ? def->to : inner + i - 1;
     if (first_spring)

@@ -220,6 +220,7 @@ static void put_spring(mspring_network *network, mspring_id s, const mspring_spr
     mspringi_spring_come_live(network, s);
     mspringi_spring_set_nominal(network, s, place, (mspringi_relative){def->stiffness, damping});
     mspringi_strain_forget(network, s);
+    mspringi_strain_put_limits(network, s, MSPRINGI_LIMITS_OF(def));
     mspringi_extents_turn(network, s);
     mspringi_fingerprint(network, relative ? MSPRINGI_EDIT_ADDED_RELATIVE : MSPRINGI_EDIT_ADDED_SPRING, s);
     mspringi_fingerprint(network, def->a, def->b);
@@ -243,9 +244,11 @@ static MSPRINGI_NOINLINE mspring_result add_springs(mspring_network *network, co
         if (result != MSPRING_OK)
             break;
     }
+    if (result != MSPRING_OK && count > 1)
+        result = name_definition(network, result, linked);
+    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
+        result = mspringi_strain_reserve_limits(network, MSPRINGI_LIMITS_OF(&defs[i]));
     if (result != MSPRING_OK) {
-        if (count > 1)
-            result = name_definition(network, result, linked);
         for (id = g->lowest_spring; linked > 0; --linked, ++id) {
             id = find_spare(g->springs, id, reserve->spring_end);
             mspringi_growth_unlink(network, id);

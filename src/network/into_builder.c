@@ -1,6 +1,7 @@
 /// What a network holds, put into a builder: to store it, to join it to others, to split it.
 #include "base/cpu.h"
 #include "builder/builder.h"
+#include "store/properties.h"
 #include "store/springs.h"
 
 // Ids in the builder by those in the network; MSPRING_NONE for what is left out.
@@ -84,10 +85,17 @@ static mspring_result append_particle(mspring_builder *builder, const mspring_ne
     return MSPRING_OK;
 }
 
+static mspringi_limits limits_of(const mspring_network *network, mspring_id s) {
+    return (mspringi_limits){mspringi_spring_property(network, MSPRING_BREAK_STRAIN, s),
+                             mspringi_spring_property(network, MSPRING_STRESS_STRAIN, s),
+                             mspringi_spring_property(network, MSPRING_RELAX_STRAIN, s)};
+}
+
 static void append_spring(mspring_builder *builder, const mspring_network *network, const id_maps *maps,
                           mspring_id s) {
     const mspringi_place place = mspringi_place_of(&network->topology, s);
     const mspringi_relative nominal = mspringi_spring_get_nominal(network, s, place);
+    const mspringi_limits limits = limits_of(network, s);
     mspring_id a, b;
     find_ends(network, s, &a, &b);
     builder->springs[builder->spring_count++] = (mspringi_spring){
@@ -98,6 +106,17 @@ static void append_spring(mspring_builder *builder, const mspring_network *netwo
         .rest_length = mspringi_place_get(network, place).rest_length,
         .flags = mspringi_spring_is_relative(network, s) ? MSPRING_SPRING_RELATIVE : 0,
     };
+    mspringi_builder_put_limits(builder, builder->spring_count - 1, limits);
+}
+
+// Make room for the limits of the springs that are added, if one of them has any.
+static mspring_result reserve_limits(mspring_builder *builder, const mspring_network *network, const id_maps *maps,
+                                     uint32_t added) {
+    mspring_result result = MSPRING_OK;
+    for (mspring_id s = 0; result == MSPRING_OK && s < network->topology.spring_count; ++s)
+        if (maps->springs[s] != MSPRING_NONE)
+            result = mspringi_builder_reserve_limits(builder, added, limits_of(network, s));
+    return result;
 }
 
 static mspring_result append(mspring_builder *builder, const mspring_network *network, const id_maps *maps) {
@@ -127,8 +146,11 @@ static MSPRINGI_NOINLINE mspring_result add_network(mspring_builder *builder, co
         result = number_particles(builder, network, particles, count, maps->particles, &added);
     if (result == MSPRING_OK)
         result = mspringi_builder_reserve_particles(builder, added);
+    const uint32_t springs = result == MSPRING_OK ? number_springs(builder, network, maps) : 0;
     if (result == MSPRING_OK)
-        result = mspringi_builder_reserve_springs(builder, number_springs(builder, network, maps));
+        result = mspringi_builder_reserve_springs(builder, springs);
+    if (result == MSPRING_OK)
+        result = reserve_limits(builder, network, maps, springs);
     return result == MSPRING_OK ? append(builder, network, maps) : result;
 }
 

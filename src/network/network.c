@@ -12,6 +12,7 @@
 #include "stability/border.h"
 #include "stability/guard.h"
 #include "step/origin.h"
+#include "step/strain.h"
 #include "store/alike.h"
 #include "store/fractions.h"
 #include "store/growth.h"
@@ -220,6 +221,16 @@ static mspring_result note_turned(mspring_network *network, const mspring_builde
     return MSPRING_OK;
 }
 
+// Give springs the strains at which something happens to them.
+static mspring_result set_limits(mspring_network *network, const mspring_builder *builder) {
+    mspring_result result = MSPRING_OK;
+    for (size_t s = 0; result == MSPRING_OK && s < builder->limit_count; ++s)
+        result = mspringi_strain_reserve_limits(network, builder->limits[s]);
+    for (size_t s = 0; result == MSPRING_OK && s < builder->limit_count; ++s)
+        mspringi_strain_put_limits(network, (mspring_id)s, builder->limits[s]);
+    return result;
+}
+
 /* -------------------------------------------------------------------------------------------------- lifecycle */
 
 // Fill a network that knows its memory and nothing else. Its message tells what failed.
@@ -278,6 +289,8 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     result = mspring_network_set_solver(network, &solver);
     if (result == MSPRING_OK)
         result = mspringi_guard_reserve(network, def->guard);
+    if (result == MSPRING_OK)
+        result = set_limits(network, builder);
     if (result == MSPRING_OK && network->looks && network->solver.ops->has_border)
         mspringi_border_learn(network);
     return result;

@@ -9,6 +9,7 @@
 #include "store/changed.h"
 #include "store/events.h"
 #include "store/growth.h"
+#include "store/properties.h"
 #include "store/springs.h"
 #include "store/stages.h"
 #include "store/store.h"
@@ -246,6 +247,32 @@ void mspringi_strain_forget(mspring_network *network, mspring_id spring) {
         mspringi_strain_store(network, place, MSPRING_STRESS_STRAIN, INFINITY);
     if (strain->relax_strain)
         mspringi_strain_store(network, place, MSPRING_RELAX_STRAIN, MSPRING_RELAX_STRAIN_DEFAULT);
+}
+
+mspring_result mspringi_strain_reserve_limits(mspring_network *network, mspringi_limits limits) {
+    mspring_result result = MSPRING_OK;
+    if (limits.break_strain < MSPRING_NEVER)
+        result = mspringi_strain_reserve_for(network, MSPRING_BREAK_STRAIN);
+    if (result == MSPRING_OK && limits.stress_strain < MSPRING_NEVER)
+        result = mspringi_strain_reserve_for(network, MSPRING_STRESS_STRAIN);
+    if (result == MSPRING_OK && limits.relax_strain != MSPRING_RELAX_STRAIN_DEFAULT)
+        result = mspringi_strain_reserve_for(network, MSPRING_RELAX_STRAIN);
+    return result;
+}
+
+void mspringi_strain_put_limits(mspring_network *network, mspring_id spring, mspringi_limits limits) {
+    const mspringi_place place = mspringi_place_of(&network->topology, spring);
+    if (!mspringi_has_limits(limits))
+        return;
+    if (limits.break_strain < MSPRING_NEVER)
+        mspringi_strain_store(network, place, MSPRING_BREAK_STRAIN, limits.break_strain);
+    if (limits.stress_strain < MSPRING_NEVER)
+        mspringi_strain_store(network, place, MSPRING_STRESS_STRAIN, limits.stress_strain);
+    if (limits.relax_strain != MSPRING_RELAX_STRAIN_DEFAULT)
+        mspringi_strain_store(network, place, MSPRING_RELAX_STRAIN, mspringi_kept_value(limits.relax_strain));
+    mspringi_fingerprint_floats(network, mspringi_read_value(limits.break_strain),
+                                mspringi_read_value(limits.stress_strain));
+    mspringi_fingerprint_floats(network, limits.relax_strain, 0.0f);
 }
 
 static bool is_used(const mspring_network *network) {

@@ -5,6 +5,7 @@
 #ifndef MSPRINGI_EDITS_STRAIN_H
 #define MSPRINGI_EDITS_STRAIN_H
 
+#include "builder/builder.h"
 #include "store/network.h"
 
 /// Allocate what thresholds and the pass need, if it is not there yet; break_strain is there when all of it is.
@@ -20,6 +21,11 @@ mspring_result mspringi_strain_match_layout(mspring_network *to, const mspring_n
 
 /// Set one of these of a spring; after that.
 void mspringi_strain_store(mspring_network *network, mspringi_place place, mspring_property property, float value);
+
+/// Allocate what it takes to give a spring the strains at which something happens to it, as its definition has
+/// them; give them to one of which nothing is known yet.
+mspring_result mspringi_strain_reserve_limits(mspring_network *network, mspringi_limits limits);
+void mspringi_strain_put_limits(mspring_network *network, mspring_id spring, mspringi_limits limits);
 
 /// Let nothing happen to a spring by its strain.
 void mspringi_strain_forget(mspring_network *network, mspring_id spring);

@@ -7,6 +7,7 @@
 
 #include <math.h>
 
+#include "builder/builder.h"
 #include "store/selection.h"
 
 #define MSPRINGI_SMALLEST_MASS 1e-30f
@@ -24,13 +25,6 @@ static inline bool mspringi_is_inverse_mass_scale(float scale) {
 /// Whether a spring may have this stiffness, damping or rest length.
 static inline bool mspringi_is_spring_value(mspringi_part part, float value) {
     return part == MSPRINGI_REST_LENGTH ? (value > 0.0f) & (value <= 4e12f) : (value >= 0.0f) & (value <= 1e30f);
-}
-/// The same of the strain at which it breaks or is stressed, and of that at which it relaxes.
-static inline bool mspringi_is_threshold(float strain) {
-    return strain > 0.0f;
-}
-static inline bool mspringi_is_relax_strain(float strain) {
-    return (strain >= 0.0f) | (strain == MSPRING_RELAX_STRAIN_DEFAULT);
 }
 
 /// A threshold as networks keep it, and as the host reads it. Times a rest length, INFINITY alone is above all

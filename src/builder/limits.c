@@ -1,0 +1,54 @@
+/// Strains at which springs break, are stressed and relax. Most builders have none: then nothing is kept of them.
+#include "builder/builder.h"
+
+static const mspringi_limits none = {MSPRING_NEVER, MSPRING_NEVER, MSPRING_RELAX_STRAIN_DEFAULT};
+
+mspring_result mspringi_check_limits(mspringi_message *message, const char *what, size_t index,
+                                     mspringi_limits limits) {
+    const struct {
+        const char *name, *range;
+        float value;
+        bool is_good;
+    } all[] = {
+        {"break strain", "> 0", limits.break_strain, mspringi_is_threshold(limits.break_strain)},
+        {"stress strain", "> 0", limits.stress_strain, mspringi_is_threshold(limits.stress_strain)},
+        {"relax strain", ">= 0 or MSPRING_RELAX_STRAIN_DEFAULT", limits.relax_strain,
+         mspringi_is_relax_strain(limits.relax_strain)},
+    };
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; ++i)
+        if (!all[i].is_good)
+            return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s %zu: %s is %g, it must be %s", what, index,
+                                 all[i].name, (double)all[i].value, all[i].range);
+    return MSPRING_OK;
+}
+
+bool mspringi_has_limits(mspringi_limits limits) {
+    return limits.break_strain < MSPRING_NEVER || limits.stress_strain < MSPRING_NEVER ||
+           limits.relax_strain != MSPRING_RELAX_STRAIN_DEFAULT;
+}
+
+mspring_result mspringi_builder_reserve_limits(mspring_builder *builder, size_t count, mspringi_limits limits) {
+    if (!mspringi_has_limits(limits))
+        return MSPRING_OK;
+    void *grown = builder->limits;
+    const bool is_grown = mspringi_grow(&builder->memory, &grown, &builder->limit_capacity,
+                                        builder->spring_count + count, sizeof *builder->limits);
+    builder->limits = grown;
+    return is_grown ? MSPRING_OK
+                    : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY,
+                                    "no memory for the break strains of %zu springs more", count);
+}
+
+void mspringi_builder_put_limits(mspring_builder *builder, size_t first, mspringi_limits limits) {
+    if (!mspringi_has_limits(limits))
+        return;
+    while (builder->limit_count < first)
+        builder->limits[builder->limit_count++] = none;
+    while (builder->limit_count < builder->spring_count)
+        builder->limits[builder->limit_count++] = limits;
+}
+
+void mspringi_builder_cut_springs(mspring_builder *builder, size_t count) {
+    builder->spring_count = count;
+    builder->limit_count = builder->limit_count < count ? builder->limit_count : count;
+}
