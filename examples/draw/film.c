@@ -22,18 +22,23 @@ enum {
 static const size_t most_bytes = (size_t)1 << 29;
 
 bool film_start(film *made, const network_shape *shape, draw_error *error) {
-    size_t frame_bytes = 2 * shape->particle_count * sizeof(double);
-    size_t fitting = most_bytes / frame_bytes;
+    size_t particles = shape->particle_count * sizeof(double);
+    size_t springs = ((size_t)shape->spring_count + 1) * sizeof(uint32_t);
+    size_t fitting = most_bytes / (2 * particles + springs);
     memset(made, 0, sizeof *made);
     made->shape = shape;
     made->interval = 1;
+    made->probe = shape->probe;
+    made->most_height = FRAME_HEIGHT;
     // Even, so that dropping every second frame keeps the distance to the next one.
     made->frame_capacity = fitting < MOST_FRAMES ? (uint32_t)fitting & ~1u : MOST_FRAMES;
     if (made->frame_capacity >= LEAST_FRAMES) {
-        made->x = malloc(made->frame_capacity * (frame_bytes / 2));
-        made->y = malloc(made->frame_capacity * (frame_bytes / 2));
+        made->x = malloc(made->frame_capacity * particles);
+        made->y = malloc(made->frame_capacity * particles);
+        made->flags = malloc(made->frame_capacity * springs);
+        made->probes = malloc(made->frame_capacity * sizeof *made->probes);
     }
-    if (made->x && made->y)
+    if (made->x && made->y && made->flags && made->probes)
         return true;
     film_free(made);
     snprintf(error->text, sizeof error->text, "no memory for an animation of %u particles: leave it out",
@@ -44,11 +49,17 @@ bool film_start(film *made, const network_shape *shape, draw_error *error) {
 void film_free(film *unwanted) {
     free(unwanted->x);
     free(unwanted->y);
+    free(unwanted->flags);
+    free(unwanted->probes);
     memset(unwanted, 0, sizeof *unwanted);
 }
 
 static double *frame_of(const film *source, double *positions, uint32_t frame) {
     return positions + (size_t)frame * source->shape->particle_count;
+}
+
+static uint32_t *flags_of(const film *source, uint32_t frame) {
+    return source->flags + (size_t)frame * source->shape->spring_count;
 }
 
 const double *film_last_x(const film *source) {
@@ -64,6 +75,8 @@ static void drop_every_second(film *target) {
     for (uint32_t i = 1; i < target->frame_count / 2; i++) {
         memcpy(frame_of(target, target->x, i), frame_of(target, target->x, 2 * i), size);
         memcpy(frame_of(target, target->y, i), frame_of(target, target->y, 2 * i), size);
+        memcpy(flags_of(target, i), flags_of(target, 2 * i), target->shape->spring_count * sizeof(uint32_t));
+        target->probes[i] = target->probes[2 * i];
     }
     target->frame_count /= 2;
     target->interval *= 2;
@@ -77,17 +90,30 @@ void film_step(film *target, const mspring_network *network) {
         if ((target->step - 1) % target->interval != 0)
             return;
     }
+    const network_shape *shape = target->shape;
     uint32_t frame = target->frame_count;
-    if (mspring_network_get_positions(network, 0, target->shape->particle_count, frame_of(target, target->x, frame),
-                                      frame_of(target, target->y, frame), 1) == MSPRING_OK)
-        target->frame_count++;
+    if (mspring_network_get_positions(network, 0, shape->particle_count, frame_of(target, target->x, frame),
+                                      frame_of(target, target->y, frame), 1) != MSPRING_OK ||
+        mspring_network_get_spring_flags(network, 0, shape->spring_count, flags_of(target, frame), 1) != MSPRING_OK)
+        return;
+    target->probes[frame] = target->probe;
+    target->frame_count++;
+}
+
+// What the network is like in a frame.
+static network_shape shape_in(const film *source, uint32_t frame) {
+    network_shape shape = *source->shape;
+    shape.flags = flags_of(source, frame);
+    shape.probe = source->probes[frame];
+    return shape;
 }
 
 static bool draw_frame(canvas *made, const film *source, const network_view *view, uint32_t frame,
                        const char *title, draw_error *error) {
     figure drawing;
+    network_shape shape = shape_in(source, frame);
     figure_start(&drawing, view->width, view->height, 0xffffff);
-    network_picture_draw(&drawing, source->shape, view, frame_of(source, source->x, frame),
+    network_picture_draw(&drawing, &shape, view, frame_of(source, source->x, frame),
                          frame_of(source, source->y, frame), title);
     bool ok = canvas_from_figure(made, &drawing, error);
     figure_free(&drawing);
@@ -112,15 +138,15 @@ static bool choose_colours(palette *made, const film *source, const network_view
 }
 
 static network_view choose_view(const film *source) {
-    const network_shape *shape = source->shape;
-    world_box box = network_shape_bounds(shape);
+    world_box box = network_shape_bounds(source->shape);
     for (uint32_t i = 0; i < source->frame_count; i++)
         box = world_box_add(box, frame_of(source, source->x, i), frame_of(source, source->y, i),
-                            shape->particle_count);
-    uint32_t last = source->frame_count - 1;
-    double limit =
-        network_strain_limit(shape, frame_of(source, source->x, last), frame_of(source, source->y, last));
-    return network_view_fit(shape, box, FRAME_WIDTH, FRAME_HEIGHT, limit);
+                            source->shape->particle_count);
+    network_shape last = shape_in(source, source->frame_count - 1);
+    double limit = source->strain_limit;
+    if (!(limit > 0))
+        limit = network_strain_limit(&last, film_last_x(source), film_last_y(source));
+    return network_view_fit(source->shape, box, FRAME_WIDTH, source->most_height, limit);
 }
 
 static bool write_frames(png_animation *animation, const film *source, const network_view *view, const char *title,

@@ -11,7 +11,12 @@
 /// full, every second frame is dropped and the frames that follow come half as often.
 typedef struct film {
     const network_shape *shape;
-    double *x, *y; ///< [frame_capacity][particle_count]
+    double *x, *y;        ///< [frame_capacity][particle_count]
+    uint32_t *flags;      ///< [frame_capacity][spring_count]: springs that break disappear
+    mspring_id *probes;   ///< [frame_capacity]
+    mspring_id probe;     ///< of the frames to come: at first the shape's
+    double strain_limit;  ///< of the colours; 0: what suits the last frame
+    uint32_t most_height; ///< of a frame, pixels
     uint32_t frame_count, frame_capacity;
     uint64_t interval; ///< steps from frame to frame
     uint64_t step;     ///< seen

@@ -16,11 +16,18 @@ static const draw_colour probe_colour = 0x7a1fa2;
 
 enum { MARGIN = 28, HEADER = 44, FOOTER = 62, LEAST_WIDTH = 560 };
 
+static bool is_whole(const network_shape *shape, uint32_t spring) {
+    return !(shape->flags[spring] & MSPRING_SPRING_BROKEN);
+}
+
 static double typical_length(const network_shape *shape) {
     double sum = 0;
-    for (uint32_t i = 0; i < shape->spring_count; i++)
-        sum += shape->rest_length[i];
-    return shape->spring_count ? sum / shape->spring_count : 1;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < shape->spring_count; i++) {
+        sum += is_whole(shape, i) ? (double)shape->rest_length[i] : 0;
+        count += is_whole(shape, i);
+    }
+    return count ? sum / count : 1;
 }
 
 network_view network_view_fit(const network_shape *shape, world_box box, uint32_t most_width, uint32_t most_height,
@@ -73,6 +80,8 @@ static void draw_springs(figure *target, const network_shape *shape, const netwo
     const int middle = COLOUR_SCALE_STEPS / 2;
     for (int distance = 0; distance <= middle; distance++) {
         for (uint32_t i = 0; i < shape->spring_count; i++) {
+            if (!is_whole(shape, i))
+                continue;
             int step = colour_scale_find(strain_of(shape, i, x, y), view->strain_limit);
             if (step - middle == distance || middle - step == distance)
                 draw_spring(target, shape, view, i, x, y, colour_scale_step(step));
@@ -152,10 +161,38 @@ static void draw_ruler(figure *target, const network_view *view) {
     figure_text(target, right - length / 2, y + 15, 9, FIGURE_CENTRE, ink, text);
 }
 
+// Keep the part of a line along which start + t * way is from low to high.
+static void clip(double start, double way, double low, double high, double *from, double *to) {
+    if (way == 0) {
+        *to = start < low || start > high ? -1 : *to;
+        return;
+    }
+    double first = ((way > 0 ? low : high) - start) / way;
+    double last = ((way > 0 ? high : low) - start) / way;
+    *from = fmax(*from, first);
+    *to = fmin(*to, last);
+}
+
+// The lines of the floor, between title and legend.
+static void draw_floor(figure *target, const network_shape *shape, const network_view *view) {
+    for (uint32_t i = 0; i < shape->floor_count; i++) {
+        const double *line = shape->floor[i];
+        double x = to_x(view, line[0]), y = to_y(view, line[1]);
+        double dx = to_x(view, line[2]) - x, dy = to_y(view, line[3]) - y;
+        double from = 0, to = 1;
+        clip(x, dx, 0, view->width, &from, &to);
+        clip(y, dy, HEADER, (double)view->height - FOOTER + 10, &from, &to);
+        if (from < to)
+            figure_line(target, x + from * dx, y + from * dy, x + to * dx, y + to * dy, 1.5, faint_ink);
+    }
+}
+
 void network_picture_draw(figure *target, const network_shape *shape, const network_view *view, const double *x,
                           const double *y, const char *title) {
     for (uint32_t i = 0; i < shape->spring_count; i++)
-        draw_spring(target, shape, view, i, shape->x, shape->y, rest_colour);
+        if (is_whole(shape, i))
+            draw_spring(target, shape, view, i, shape->x, shape->y, rest_colour);
+    draw_floor(target, shape, view);
     draw_springs(target, shape, view, x, y);
     draw_particles(target, shape, view, x, y);
     draw_probe(target, shape, view, x, y);

@@ -9,14 +9,16 @@
 
 #include <massspring/massspring.h>
 
-/// What a picture needs to know of a network beside the positions: its springs that are not broken, and how
-/// it looked at first.
+/// What a picture needs to know of a network beside the positions: its springs, its floor, and how it looked at
+/// first.
 typedef struct network_shape {
-    uint32_t particle_count, spring_count;
+    uint32_t particle_count, spring_count, floor_count;
     mspring_id *a, *b;  ///< [spring_count]
     float *rest_length; ///< [spring_count]
+    uint32_t *flags;    ///< [spring_count]: those with MSPRING_SPRING_BROKEN are not drawn
     double *x, *y;      ///< [particle_count], world positions at first
     bool *pinned;       ///< [particle_count]
+    double (*floor)[4]; ///< [floor_count]: x and y of a line's start and end, m
     mspring_id probe;   ///< or MSPRING_NONE
 } network_shape;
 
@@ -35,7 +37,7 @@ typedef struct network_view {
 } network_view;
 
 /// Take a network's shape as it is now.
-bool network_shape_make(network_shape *made, mspring_network *network, mspring_id probe, draw_error *error);
+bool network_shape_make(network_shape *made, const mspring_network *network, mspring_id probe, draw_error *error);
 void network_shape_free(network_shape *unwanted);
 
 /// The smallest box around the shape's positions at first.

@@ -9,55 +9,89 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool allocate(network_shape *made) {
+static const double far_away = 1e6; // m: where lines that have no end are cut off
+
+static bool allocate(network_shape *made, const mspring_floor_def *floor) {
     // One more of each, so that a network without springs does not ask for nothing.
     size_t springs = (size_t)made->spring_count + 1;
     size_t particles = (size_t)made->particle_count + 1;
+    size_t lines = (size_t)floor->plane_count + floor->height_count + 1;
     made->a = malloc(springs * sizeof *made->a);
     made->b = malloc(springs * sizeof *made->b);
     made->rest_length = malloc(springs * sizeof *made->rest_length);
+    made->flags = malloc(springs * sizeof *made->flags);
     made->x = malloc(particles * sizeof *made->x);
     made->y = malloc(particles * sizeof *made->y);
     made->pinned = malloc(particles * sizeof *made->pinned);
-    return made->a && made->b && made->rest_length && made->x && made->y && made->pinned;
+    made->floor = malloc(lines * sizeof *made->floor);
+    return made->a && made->b && made->rest_length && made->flags && made->x && made->y && made->pinned &&
+           made->floor;
 }
 
-static mspring_result read_network(network_shape *made, mspring_network *network) {
+static void add_line(network_shape *made, double x, double y, double x2, double y2) {
+    double *line = made->floor[made->floor_count++];
+    line[0] = x;
+    line[1] = y;
+    line[2] = x2;
+    line[3] = y2;
+}
+
+// The borders of half-planes, and the heights with the level stretches beyond them.
+static void read_floor(network_shape *made, const mspring_floor_def *floor) {
+    for (uint32_t i = 0; i < floor->plane_count; i++) {
+        const double *plane = &floor->planes[4 * (size_t)i];
+        double far = far_away / hypot(plane[2], plane[3]);
+        add_line(made, plane[0] - far * plane[3], plane[1] + far * plane[2], plane[0] + far * plane[3],
+                 plane[1] - far * plane[2]);
+    }
+    double x = floor->heights_x - far_away;
+    for (uint32_t i = 0; i < floor->height_count; i++) {
+        double next = floor->heights_x + i * floor->spacing;
+        double left = (double)floor->heights[i > 0 ? i - 1 : 0];
+        add_line(made, x, floor->heights_y + left, next, floor->heights_y + (double)floor->heights[i]);
+        x = next;
+    }
+    if (floor->height_count > 0) {
+        double last = floor->heights_y + (double)floor->heights[floor->height_count - 1];
+        add_line(made, x, last, x + far_away, last);
+    }
+}
+
+static mspring_result read_network(network_shape *made, const mspring_network *network) {
     mspring_view view = {.struct_size = sizeof view};
     mspring_result result = mspring_network_view(network, &view);
-    if (result != MSPRING_OK)
-        return result;
-    for (uint32_t i = 0; i < made->particle_count; i++)
+    for (uint32_t i = 0; result == MSPRING_OK && i < made->particle_count; i++)
         made->pinned[i] = view.inverse_mass[view.slot_of_particle[i]] == 0;
-    const uint32_t spring_count = made->spring_count;
-    made->spring_count = 0;
-    for (uint32_t i = 0; i < spring_count; i++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        result = mspring_network_get_spring(network, i, &info);
-        if (result != MSPRING_OK)
-            return result;
-        if (info.flags & MSPRING_SPRING_BROKEN)
-            continue;
-        made->a[made->spring_count] = info.a;
-        made->b[made->spring_count] = info.b;
-        made->rest_length[made->spring_count++] = info.rest_length;
-    }
-    return mspring_network_get_positions(network, 0, made->particle_count, made->x, made->y, 1);
+    const uint32_t springs = made->spring_count;
+    if (result == MSPRING_OK)
+        result = mspring_network_get_ends(network, 0, springs, MSPRING_ENDS_IDS, made->a, made->b, 1);
+    if (result == MSPRING_OK)
+        result = mspring_network_get(network, MSPRING_REST_LENGTH, 0, springs, made->rest_length, 1);
+    if (result == MSPRING_OK)
+        result = mspring_network_get_spring_flags(network, 0, springs, made->flags, 1);
+    return result == MSPRING_OK
+               ? mspring_network_get_positions(network, 0, made->particle_count, made->x, made->y, 1)
+               : result;
 }
 
-bool network_shape_make(network_shape *made, mspring_network *network, mspring_id probe, draw_error *error) {
+bool network_shape_make(network_shape *made, const mspring_network *network, mspring_id probe, draw_error *error) {
     memset(made, 0, sizeof *made);
     made->particle_count = mspring_network_particle_count(network);
     made->spring_count = mspring_network_spring_count(network);
     made->probe = probe;
-    if (!allocate(made)) {
+    mspring_floor_def floor = {.struct_size = sizeof floor};
+    mspring_result result = mspring_network_get_floor(network, &floor);
+    if (result == MSPRING_OK && !allocate(made, &floor)) {
         network_shape_free(made);
         return draw_fail(error, "out of memory for a picture of %u springs", mspring_network_spring_count(network));
     }
-    if (read_network(made, network) != MSPRING_OK) {
+    if (result == MSPRING_OK)
+        result = read_network(made, network);
+    if (result != MSPRING_OK) {
         network_shape_free(made);
-        return draw_fail(error, "cannot read the network for a picture: %s", mspring_network_error(network));
+        return draw_fail(error, "cannot read the network for a picture: %s", mspring_result_string(result));
     }
+    read_floor(made, &floor);
     return true;
 }
 
@@ -65,9 +99,11 @@ void network_shape_free(network_shape *unwanted) {
     free(unwanted->a);
     free(unwanted->b);
     free(unwanted->rest_length);
+    free(unwanted->flags);
     free(unwanted->x);
     free(unwanted->y);
     free(unwanted->pinned);
+    free(unwanted->floor);
     memset(unwanted, 0, sizeof *unwanted);
 }
 
@@ -98,12 +134,16 @@ double network_strain_limit(const network_shape *shape, const double *x, const d
         free(strains);
         return 1;
     }
+    uint32_t whole = 0;
+    strains[0] = 0;
     for (uint32_t i = 0; i < shape->spring_count; i++) {
+        if (shape->flags[i] & MSPRING_SPRING_BROKEN)
+            continue;
         double length = hypot(x[shape->b[i]] - x[shape->a[i]], y[shape->b[i]] - y[shape->a[i]]);
-        strains[i] = (float)fabs(length / shape->rest_length[i] - 1);
+        strains[whole++] = (float)fabs(length / shape->rest_length[i] - 1);
     }
-    qsort(strains, shape->spring_count, sizeof *strains, compare_floats);
-    float most = strains[(size_t)(0.995 * (shape->spring_count - 1))];
+    qsort(strains, whole, sizeof *strains, compare_floats);
+    float most = strains[whole > 0 ? (size_t)(0.995 * (whole - 1)) : 0];
     free(strains);
     // Below that the colours would show how positions are rounded.
     double limit = fmax(most, 1e-7);

@@ -1,0 +1,44 @@
+/// @file 10_bridge.c
+/// A rope bridge gives way under somebody who walks across: ropes, a state of rest, and a force that moves.
+///
+/// SPDX-License-Identifier: MIT
+#include "common/show.h"
+
+#include <massspring/massspring_tools.h>
+
+enum { PLANKS = 24, STEPS = 128 * 63 };
+
+int main(int count, char **arguments) {
+    mspring_builder *builder = NULL;
+    mspring_network *network = NULL;
+    mspring_particle_def post;
+    mspring_particle_def_init(&post, sizeof post);
+    post.flags = MSPRING_PARTICLE_PINNED;
+    mspring_rope_def rope;
+    mspring_rope_def_init(&rope, sizeof rope);
+    rope.segment_count = PLANKS, rope.mass = 6, rope.stiffness = 2e5f, rope.damping = 200, rope.slack = 1.02f;
+    mspring_id ids[2][PLANKS + 1]; // of deck and rail
+    mspring_result result = mspring_builder_create(NULL, &builder);
+    for (int i = 0; !result && i < 2; i++) {
+        post.x = 0, post.y = 1.2 * i; // m
+        result = mspring_builder_add_particle(builder, &post, &rope.from);
+        post.x = PLANKS;
+        result = result ? result : mspring_builder_add_particle(builder, &post, &rope.to);
+        result = result ? result : mspring_builder_add_rope(builder, &rope, ids[i], PLANKS + 1, NULL);
+    }
+    rope.segment_count = 1, rope.slack = 1; // what hangs between
+    for (int i = 1; !result && i < PLANKS; i++) {
+        rope.from = ids[0][i], rope.to = ids[1][i];
+        result = mspring_builder_add_rope(builder, &rope, NULL, 0, NULL);
+    }
+    result = result ? result : mspring_network_create(builder, NULL, &network);
+    result = result ? result : mspring_network_settle(network, NULL, NULL);
+    show shown;
+    show_begin(&shown, count, arguments, "10_bridge", "Somebody walks across a rope bridge.", network, 0.02);
+    for (int step = 0; !result && step < STEPS; step++, show_step(&shown, network)) {
+        shown.film.probe = ids[0][step * PLANKS / STEPS];
+        result = mspring_network_apply_force(network, shown.film.probe, 0, -800);
+        result = result ? result : mspring_network_step(network, 1.0 / 480);
+    }
+    return show_end(&shown, result, builder, network);
+}
