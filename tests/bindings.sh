@@ -18,6 +18,10 @@ if command -v "$CXX" >/dev/null; then
   "$CXX" -std=c++17 -Wall -Wextra -Werror -I"$work/here/include" "$source/examples/bindings/bar.cpp" -o bar_cpp \
     -L"$libdir" -lmassspring
   ./bar_cpp | tee -a says
+  for standard in c++11 c++14 c++17 c++20; do
+    "$CXX" -std=$standard -Wall -Wextra -Wpedantic -Wshadow -Werror -fsyntax-only -I"$work/here/include" \
+      "$source/examples/13_rollback.cpp"
+  done
 else
   echo "left out: C++, there is no $CXX"
 fi

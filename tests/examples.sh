@@ -410,6 +410,16 @@ programs() {
   same "$(grep -c '^[2-4] threads .* lent *[1-9][0-9]* times' "$scratch/out")" 3 'threads that are lent'
   same "$(sed 's/.*state//' "$scratch/out" | sort -u | wc -l | tr -d ' ')" 1 'states of 08_threads'
 
+  # A game that goes back and computes frames again has the bits of one that knew all inputs.
+  bending=$folder/13_rollback
+  if [ -x "$bending" ]; then
+    succeed
+    reports '600 of 600 frames have the bits'
+    grep -Eq '^went back [1-9].* broke [1-9]' "$scratch/out" || complain '13_rollback does not go back, or nothing breaks'
+  else
+    echo 'skipped: 13_rollback, there is no C++ compiler'
+  fi
+
   bending=$folder/05_plan
   succeed "$source/examples/data/truss.msn"
   same "$(echo "$line" | tr -s ' ' | cut -d' ' -f1-3)" "truss $(head -n 20 "$source/examples/data/truss.msn" |
