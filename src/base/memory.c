@@ -67,11 +67,7 @@ mspring_result mspringi_memory_init(mspringi_memory *memory, const mspring_alloc
     return MSPRING_OK;
 }
 
-// A block of this size, header included, with nothing in it yet.
-static block *take(mspringi_memory *memory, size_t size) {
-    block *taken = memory->allocator.alloc(size, MSPRINGI_ALIGNMENT, memory->allocator.user);
-    if (!taken)
-        return NULL;
+static void append(mspringi_memory *memory, block *taken, size_t size) {
     *taken = (block){.previous = memory->last, .size = size};
     if (memory->last)
         memory->last->next = taken;
@@ -79,6 +75,13 @@ static block *take(mspringi_memory *memory, size_t size) {
         memory->first = taken;
     memory->last = taken;
     memory->used += size;
+}
+
+// A block of this size, header included, with nothing in it yet.
+static block *take(mspringi_memory *memory, size_t size) {
+    block *taken = memory->allocator.alloc(size, MSPRINGI_ALIGNMENT, memory->allocator.user);
+    if (taken)
+        append(memory, taken, size);
     return taken;
 }
 
@@ -95,7 +98,10 @@ static void give_back(mspringi_memory *memory, block *taken) {
     else
         memory->last = taken->previous;
     memory->used -= taken->size;
-    memory->allocator.free(taken, taken->size, memory->allocator.user);
+    if (memory->bin)
+        append(memory->bin, taken, taken->size);
+    else
+        memory->allocator.free(taken, taken->size, memory->allocator.user);
 }
 
 static char *contents_of(const block *of) {

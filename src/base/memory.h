@@ -20,6 +20,7 @@ typedef struct mspringi_memory {
     mspring_allocator allocator;
     size_t used;
     struct mspringi_block *first, *last;
+    struct mspringi_memory *bin; ///< of the same allocator, or NULL: what is freed goes there, to be freed later
 } mspringi_memory;
 
 /// Copy the host's allocator, or take malloc and free for NULL.

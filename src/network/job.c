@@ -287,7 +287,9 @@ static mspring_result finish(mspring_network *network, mspring_job *job) {
         }
         return MSPRING_OK;
     }
+    network->memory.bin = &job->memory; // to free a direct solver's factor takes milliseconds
     mspring_result result = exchange(network, job);
+    network->memory.bin = NULL;
     if (result != MSPRING_OK)
         network->message = job->to.message;
     return result;

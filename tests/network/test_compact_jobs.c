@@ -227,6 +227,37 @@ static void a_job_may_stay_unfinished(void **state) {
     recipe_free(&made);
 }
 
+/// The frame that finishes a job frees nothing: the job keeps the old plan, and may outlive the network.
+static void what_a_job_replaces_is_freed_with_it(void **state) {
+    (void)state;
+    recipe made = wrecks_recipe();
+    for (uint32_t solver = 0; solver < 3; solver++) {
+        watched_allocator watched = {.fail_at = 0};
+        mspring_allocator allocator = watched_interface(&watched);
+        mspring_network_def def = support_def(-9.8f, 4);
+        def.allocator = &allocator;
+        mspring_network *network = recipe_network(&made, &def);
+        mspring_job *job = NULL;
+        wrecks_set_up(network, solver);
+        wrecks_make(network, &made, TORN);
+        check_ok(mspring_job_begin(network, MSPRING_LAYOUT_COMPACT, &job));
+        check_ok(mspring_job_run(job, 0, NULL));
+        const size_t blocks = watched.live, calls = watched.calls;
+        check_ok(mspring_job_finish(network, job));
+        assert_int_equal(watched.live - blocks, watched.calls - calls); // what it took, and nothing was freed
+        support_steps(network, 1, 1.0 / 64);
+        if (solver == 1) {
+            mspring_network_destroy(network);
+            network = NULL;
+        }
+        mspring_job_destroy(job);
+        assert_true(watched.live < blocks);
+        mspring_network_destroy(network);
+        check_watched_clean(&watched);
+    }
+    recipe_free(&made);
+}
+
 /// The bits depend on when a job is begun and finished, not on how it is run; if nothing breaks in between they are
 /// those of a compaction at the finish.
 static void bits_depend_on_begin_and_finish_alone(void **state) {
@@ -349,6 +380,7 @@ int main(void) {
         cmocka_unit_test(nothing_that_happens_meanwhile_is_lost),
         cmocka_unit_test(every_failure_of_a_job_can_be_repeated),
         cmocka_unit_test(a_job_may_stay_unfinished),
+        cmocka_unit_test(what_a_job_replaces_is_freed_with_it),
         cmocka_unit_test(bits_depend_on_begin_and_finish_alone),
         cmocka_unit_test(jobs_become_outdated),
         cmocka_unit_test(jobs_belong_to_their_network),
