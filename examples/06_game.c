@@ -206,15 +206,13 @@ static void blast(game *played, double x, double y, double radius, double speed)
 // Restore every broken spring that is not torn too far, and let it pull its ends together.
 static void repair(game *played, double time) {
     static mspring_id list[MOST_SPRINGS];
+    static float length[MOST_SPRINGS], rest[MOST_SPRINGS];
     uint32_t count = 0;
-    for (mspring_id s = 0; s < played->springs; s++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        if (!played->broken_now[s])
-            continue;
-        must(mspring_network_get_spring(played->network, s, &info), "spring", played);
-        if (info.length < 2 * info.rest_length)
+    must(mspring_network_get(played->network, MSPRING_LENGTH, 0, played->springs, length, 1), "lengths", played);
+    must(mspring_network_get(played->network, MSPRING_REST_LENGTH, 0, played->springs, rest, 1), "lengths", played);
+    for (mspring_id s = 0; s < played->springs; s++)
+        if (played->broken_now[s] && length[s] < 2 * rest[s])
             list[count++] = s;
-    }
     must(mspring_network_restore_springs(played->network, list, count, ramp), "repair", played);
     played->ramps_end = time + ramp + 2 * dt;
     books_edit(&played->accounts, played->network);
@@ -480,7 +478,14 @@ static void show(const game *played, figure *pictures, uint32_t number, double a
         x[i] = played->before_x[i] + (played->x[i] - played->before_x[i]) * accumulated / dt;
         y[i] = played->before_y[i] + (played->y[i] - played->before_y[i]) * accumulated / dt;
     }
-    strip_add(pictures, number, &world, played->network, x, y, title);
+    draw_error error = {""};
+    network_shape shape;
+    if (!network_shape_make(&shape, played->network, MSPRING_NONE, &error)) {
+        fprintf(stderr, "%s\n", error.text);
+        exit(EXIT_FAILURE);
+    }
+    strip_add(pictures, number, &world, &shape, x, y, title);
+    network_shape_free(&shape);
 }
 
 static void play(game *played, const options *asked, figure *pictures) {

@@ -261,15 +261,13 @@ static uint32_t list_solvers(mspring_network *network, mspring_solver_def *setti
 
 static bool make_stiffer(mspring_network *network) {
     const uint32_t springs = mspring_network_spring_count(network);
-    for (uint32_t s = 0; s < springs; s++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        if (mspring_network_get_spring(network, s, &info) != MSPRING_OK)
-            return false;
-        const float stiffness = 4 * info.nominal_stiffness;
-        if (mspring_network_set(network, MSPRING_STIFFNESS, s, 1, &stiffness, 1) != MSPRING_OK)
-            return false;
-    }
-    return true;
+    float *stiffness = malloc((springs + 1) * sizeof *stiffness);
+    bool ok = stiffness && mspring_network_get(network, MSPRING_STIFFNESS, 0, springs, stiffness, 1) == MSPRING_OK;
+    for (uint32_t s = 0; ok && s < springs; s++)
+        stiffness[s] *= 4;
+    ok = ok && mspring_network_set(network, MSPRING_STIFFNESS, 0, springs, stiffness, 1) == MSPRING_OK;
+    free(stiffness);
+    return ok;
 }
 
 static bool measure_bending(const subject *about, const options *how, mspring_network *network, cloud *bending) {

@@ -6,7 +6,7 @@
 
 #include "draw/colour_scale.h"
 
-#include <stdlib.h>
+#include <math.h>
 
 static const draw_colour sky = 0xf4f6fa, water = 0xd7e6f4, sand = 0xd8c79c, ink = 0x26262e, broken_ink = 0xb0b4bc,
                          rope_ink = 0x0f8a4a;
@@ -47,18 +47,19 @@ static void draw_world(figure *target, const panel *in) {
     }
 }
 
-static void draw_spring(figure *target, const panel *in, mspring_id id, const mspring_spring_info *spring,
-                        const double *x, const double *y) {
-    const mspring_id a = spring->a, b = spring->b;
-    if ((spring->flags & MSPRING_SPRING_BROKEN) || !is_inside(in, x[a], y[a]) || !is_inside(in, x[b], y[b]))
+static void draw_spring(figure *target, const panel *in, mspring_id id, const network_shape *shape, const double *x,
+                        const double *y) {
+    const mspring_id a = shape->a[id], b = shape->b[id];
+    if ((shape->flags[id] & MSPRING_SPRING_BROKEN) || !is_inside(in, x[a], y[a]) || !is_inside(in, x[b], y[b]))
         return;
     const bool is_rope = id - in->world->first_rope < in->world->rope_springs;
-    const int step = colour_scale_find((double)spring->strain, in->world->strain_limit);
+    const double strain = hypot(x[b] - x[a], y[b] - y[a]) / (double)shape->rest_length[id] - 1;
+    const int step = colour_scale_find(strain, in->world->strain_limit);
     figure_line(target, to_x(in, x[a]), to_y(in, y[a]), to_x(in, x[b]), to_y(in, y[b]), is_rope ? 1.5 : 0.9,
                 is_rope ? rope_ink : colour_scale_step(step));
 }
 
-void strip_add(figure *target, uint32_t number, const strip_world *world, const mspring_network *network,
+void strip_add(figure *target, uint32_t number, const strip_world *world, const network_shape *shape,
                const double *x, const double *y, const char *title) {
     const panel in = {.x = GAP + number % STRIP_COLUMNS * (STRIP_PANEL_WIDTH + GAP),
                       .y = TITLE + number / STRIP_COLUMNS * (STRIP_PANEL_HEIGHT + TITLE),
@@ -66,15 +67,11 @@ void strip_add(figure *target, uint32_t number, const strip_world *world, const 
                       .scale_y = STRIP_PANEL_HEIGHT / (world->top - world->bottom),
                       .world = world};
     draw_world(target, &in);
-    for (uint32_t i = 0; i < mspring_network_particle_count(network); i++)
+    for (uint32_t i = 0; i < shape->particle_count; i++)
         if (is_inside(&in, x[i], y[i]))
             figure_disc(target, to_x(&in, x[i]), to_y(&in, y[i]), 0.9, broken_ink);
-    for (mspring_id s = 0; s < mspring_network_spring_count(network); s++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        if (mspring_network_get_spring(network, s, &info) != MSPRING_OK)
-            abort(); // ids are those that there are
-        draw_spring(target, &in, s, &info, x, y);
-    }
+    for (mspring_id s = 0; s < shape->spring_count; s++)
+        draw_spring(target, &in, s, shape, x, y);
     if (is_inside(&in, x[world->anchor], y[world->anchor]))
         figure_disc(target, to_x(&in, x[world->anchor]), to_y(&in, y[world->anchor]), 3, rope_ink);
     figure_text(target, in.x + 2, in.y - 8, 11, FIGURE_LEFT, ink, title);

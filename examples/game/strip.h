@@ -5,9 +5,7 @@
 #ifndef GAME_STRIP_H
 #define GAME_STRIP_H
 
-#include "draw/figure.h"
-
-#include <massspring/massspring.h>
+#include "draw/network_picture.h"
 
 enum { STRIP_COLUMNS = 2, STRIP_ROWS = 3, STRIP_PANEL_WIDTH = 560, STRIP_PANEL_HEIGHT = 330 };
 
@@ -24,8 +22,8 @@ typedef struct strip_world {
 /// Start the figure of all panels.
 void strip_start(figure *made);
 
-/// Draw the next panel. The springs are drawn that are whole now, between positions x, y by particle.
-void strip_add(figure *target, uint32_t number, const strip_world *world, const mspring_network *network,
+/// Draw the next panel: springs that are whole, between positions x, y by particle.
+void strip_add(figure *target, uint32_t number, const strip_world *world, const network_shape *shape,
                const double *x, const double *y, const char *title);
 
 #endif

@@ -287,26 +287,22 @@ static mspring_id far_from_pins(const lab_stage *made) {
     return farthest;
 }
 
-static mspring_result read_network(lab_stage *made, const mspring_network *network) {
-    mspring_result result = mspring_network_get_positions(network, 0, made->particle_count, made->x, made->y, 1);
-    if (result == MSPRING_OK)
-        result = mspring_network_get(network, MSPRING_MASS, 0, made->particle_count, made->mass, 1);
-    for (uint32_t i = 0; result == MSPRING_OK && i < made->particle_count; i++) {
-        float scale = 1;
-        result = mspring_network_get(network, MSPRING_INVERSE_MASS_SCALE, i, 1, &scale, 1);
-        made->pinned[i] = scale == 0;
-    }
-    for (uint32_t i = 0; result == MSPRING_OK && i < made->spring_count; i++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        result = mspring_network_get_spring(network, i, &info);
-        made->a[i] = info.a;
-        made->b[i] = info.b;
-        made->rest[i] = info.rest_length;
-        made->stiffness[i] = info.nominal_stiffness;
-        made->damping[i] = info.nominal_damping;
-        made->has_damping = made->has_damping || info.nominal_damping > 0;
-    }
-    return result;
+static bool read_network(lab_stage *made, const mspring_network *network) {
+    const uint32_t particles = made->particle_count, springs = made->spring_count;
+    mspring_view view = {.struct_size = sizeof view};
+    const bool ok =
+        mspring_network_view(network, &view) == MSPRING_OK &&
+        mspring_network_get_positions(network, 0, particles, made->x, made->y, 1) == MSPRING_OK &&
+        mspring_network_get(network, MSPRING_MASS, 0, particles, made->mass, 1) == MSPRING_OK &&
+        mspring_network_get_ends(network, 0, springs, MSPRING_ENDS_IDS, made->a, made->b, 1) == MSPRING_OK &&
+        mspring_network_get(network, MSPRING_REST_LENGTH, 0, springs, made->rest, 1) == MSPRING_OK &&
+        mspring_network_get(network, MSPRING_STIFFNESS, 0, springs, made->stiffness, 1) == MSPRING_OK &&
+        mspring_network_get(network, MSPRING_DAMPING, 0, springs, made->damping, 1) == MSPRING_OK;
+    for (uint32_t i = 0; ok && i < particles; i++)
+        made->pinned[i] = view.inverse_mass[view.slot_of_particle[i]] == 0;
+    for (uint32_t i = 0; ok && i < springs; i++)
+        made->has_damping = made->has_damping || made->damping[i] > 0;
+    return ok;
 }
 
 static void make_up_damping(lab_stage *made) {
@@ -325,7 +321,7 @@ static bool read_scene(lab_stage *made, scene_error *error) {
         return scene_fail_builder(error, made->made.name, builder, result);
     made->particle_count = mspring_network_particle_count(network);
     made->spring_count = mspring_network_spring_count(network);
-    const bool ok = allocate(made) && read_network(made, network) == MSPRING_OK;
+    const bool ok = allocate(made) && read_network(made, network);
     mspring_network_destroy(network);
     if (!ok)
         return scene_fail_memory(error, "cannot show the scene");

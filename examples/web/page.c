@@ -110,21 +110,22 @@ static bool take_arrays(void) {
 }
 
 static mspring_result describe_springs(void) {
-    for (uint32_t i = 0; i < page.spring_count; i++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        mspring_result result = mspring_network_get_spring(page.network, i, &info);
-        if (result != MSPRING_OK)
-            return done(result);
-        page.ends[2 * i] = info.a;
-        page.ends[2 * i + 1] = info.b;
-        page.springs[i].a = page.view.slot_of_particle[info.a];
-        page.springs[i].b = page.view.slot_of_particle[info.b];
-        page.springs[i].rest_length = page.rest_length[i] = info.rest_length;
-        page.base_stiffness[i] = info.nominal_stiffness;
-    }
+    enum { STRIDE = sizeof *page.springs / sizeof page.springs->a };
+    const uint32_t n = page.spring_count;
+    page_spring *drawn = page.springs;
+    mspring_result result =
+        mspring_network_get_ends(page.network, 0, n, MSPRING_ENDS_IDS, page.ends, page.ends + 1, 2);
+    if (result == MSPRING_OK)
+        result = mspring_network_get_ends(page.network, 0, n, MSPRING_ENDS_SLOTS, &drawn->a, &drawn->b, STRIDE);
+    if (result == MSPRING_OK)
+        result = mspring_network_get(page.network, MSPRING_REST_LENGTH, 0, n, &drawn->rest_length, STRIDE);
+    if (result == MSPRING_OK)
+        result = mspring_network_get(page.network, MSPRING_REST_LENGTH, 0, n, page.rest_length, 1);
+    if (result == MSPRING_OK)
+        result = mspring_network_get(page.network, MSPRING_STIFFNESS, 0, n, page.base_stiffness, 1);
     for (uint32_t slot = 0; slot < page.view.slot_count; slot++)
         page.total_mass += page.view.inverse_mass[slot] > 0 ? 1 / (double)page.view.inverse_mass[slot] : 0;
-    return MSPRING_OK;
+    return done(result);
 }
 
 static float weaker(float a, float b) {
