@@ -4,6 +4,7 @@
 /// This is the shortest program that uses the library: a builder, a network, steps.
 ///
 /// SPDX-License-Identifier: MIT
+#include "common/check.h"
 #include "common/output.h"
 #include "draw/plot.h"
 
@@ -24,15 +25,13 @@ enum { STEPS = 3 * 64 };
 // Two particles and a spring. Returns NULL, with a message on stderr, if that fails.
 static mspring_network *make_spring(float spring_damping) {
     mspring_builder *builder = NULL;
-    if (mspring_builder_create(NULL, &builder) != MSPRING_OK) {
-        fprintf(stderr, "out of memory\n");
-        return NULL;
-    }
+    mspring_result result = mspring_builder_create(NULL, &builder);
     mspring_particle_def particle;
     mspring_particle_def_init(&particle, sizeof particle);
     particle.mass = mass;
     particle.flags = MSPRING_PARTICLE_PINNED;
-    mspring_result result = mspring_builder_add_particle(builder, &particle, NULL);
+    if (result == MSPRING_OK)
+        result = mspring_builder_add_particle(builder, &particle, NULL);
     particle.flags = 0;
     particle.x = pulled_length;
     if (result == MSPRING_OK)
@@ -54,9 +53,7 @@ static mspring_network *make_spring(float spring_damping) {
     mspring_network *network = NULL;
     if (result == MSPRING_OK)
         result = mspring_network_create(builder, &def, &network);
-    if (result != MSPRING_OK)
-        fprintf(stderr, "cannot make the spring: %s: %s\n", mspring_result_string(result),
-                mspring_builder_error(builder));
+    check(result, "make the spring", mspring_builder_error(builder));
     mspring_builder_destroy(builder);
     return network;
 }
@@ -70,10 +67,7 @@ static bool swing(float spring_damping, double *positions) {
         mspring_result result = mspring_network_get_positions(network, 1, 1, &positions[i], &y, 1);
         if (result == MSPRING_OK)
             result = mspring_network_step(network, dt);
-        ok = result == MSPRING_OK;
-        if (!ok)
-            fprintf(stderr, "step %d failed: %s: %s\n", i, mspring_result_string(result),
-                    mspring_network_error(network));
+        ok = check(result, "step", mspring_network_error(network));
     }
     mspring_network_destroy(network);
     return ok;

@@ -2,6 +2,7 @@
 /// A square of particles, one corner pulled out and let go: it wobbles, for ever or, with dampers, for a while.
 ///
 /// SPDX-License-Identifier: MIT
+#include "common/check.h"
 #include "common/output.h"
 #include "draw/film.h"
 #include "draw/plot.h"
@@ -20,10 +21,7 @@ enum { SIDE = 4, CORNER = SIDE - 1, OPPOSITE = (SIDE - 1) * SIDE, STEPS = 4 * 64
 // A lattice is the short way to particles on a grid with springs between all neighbours.
 static mspring_network *make_square(float spring_damping) {
     mspring_builder *builder = NULL;
-    if (mspring_builder_create(NULL, &builder) != MSPRING_OK) {
-        fprintf(stderr, "out of memory\n");
-        return NULL;
-    }
+    mspring_result result = mspring_builder_create(NULL, &builder);
     mspring_material material;
     mspring_material_init(&material, sizeof material);
     material.mass = 73.3975f;
@@ -42,40 +40,35 @@ static mspring_network *make_square(float spring_damping) {
     mspring_network_def_init(&def, sizeof def);
     def.gravity_y = 0;
     mspring_network *network = NULL;
-    if (mspring_builder_add_lattice(builder, &lattice, NULL) != MSPRING_OK ||
-        mspring_network_create(builder, &def, &network) != MSPRING_OK)
-        fprintf(stderr, "cannot make the square: %s\n", mspring_builder_error(builder));
+    if (result == MSPRING_OK)
+        result = mspring_builder_add_lattice(builder, &lattice, NULL);
+    if (result == MSPRING_OK)
+        result = mspring_network_create(builder, &def, &network);
+    check(result, "make the square", mspring_builder_error(builder));
     mspring_builder_destroy(builder);
     return network;
 }
 
 // From the corner at the top right to the one at the bottom left.
-static bool measure_diagonal(const mspring_network *network, double *length) {
-    double x[2];
-    double y[2];
-    if (mspring_network_get_positions(network, CORNER, 1, &x[0], &y[0], 1) != MSPRING_OK ||
-        mspring_network_get_positions(network, OPPOSITE, 1, &x[1], &y[1], 1) != MSPRING_OK)
-        return false;
-    *length = hypot(x[0] - x[1], y[0] - y[1]);
-    return true;
+static mspring_result measure_diagonal(const mspring_network *network, double *length) {
+    double x[SIDE * SIDE], y[SIDE * SIDE];
+    const mspring_result result = mspring_network_get_positions(network, 0, SIDE * SIDE, x, y, 1);
+    if (result == MSPRING_OK)
+        *length = hypot(x[CORNER] - x[OPPOSITE], y[CORNER] - y[OPPOSITE]);
+    return result;
 }
 
-static bool pull_corner(mspring_network *network) {
-    const double x = SIDE - 1 + 0.6;
-    const double y = SIDE - 1 + 0.6;
-    return mspring_network_set_positions(network, CORNER, 1, &x, &y, 1) == MSPRING_OK;
-}
-
-static bool wobble(mspring_network *network, film *filmed, double *diagonals) {
-    if (!pull_corner(network))
-        return false;
-    for (int i = 0; i <= STEPS; i++) {
+static mspring_result wobble(mspring_network *network, film *filmed, double *diagonals) {
+    const double pulled_to = SIDE - 1 + 0.6;
+    mspring_result result = mspring_network_set_positions(network, CORNER, 1, &pulled_to, &pulled_to, 1);
+    for (int i = 0; result == MSPRING_OK && i <= STEPS; i++) {
         if (i <= FILM_STEPS)
             film_step(filmed, network);
-        if (!measure_diagonal(network, &diagonals[i]) || mspring_network_step(network, dt) != MSPRING_OK)
-            return false;
+        result = measure_diagonal(network, &diagonals[i]);
+        if (result == MSPRING_OK)
+            result = mspring_network_step(network, dt);
     }
-    return true;
+    return result;
 }
 
 static bool film_square(float spring_damping, const char *folder, const char *name, double *diagonals) {
@@ -86,9 +79,9 @@ static bool film_square(float spring_damping, const char *folder, const char *na
     mspring_network *network = make_square(spring_damping);
     bool ok = network && output_path(path, folder, name, ".png");
     ok = ok && network_shape_make(&shape, network, MSPRING_NONE, &error) && film_start(&filmed, &shape, &error);
-    if (ok && !wobble(network, &filmed, diagonals)) {
-        fprintf(stderr, "a step failed: %s\n", mspring_network_error(network));
-        ok = false;
+    if (ok) {
+        const mspring_result result = wobble(network, &filmed, diagonals);
+        ok = check(result, "step", mspring_network_error(network));
     }
     ok = ok && film_write(&filmed, path, spring_damping > 0 ? "with dampers" : "without dampers", &error);
     if (ok)

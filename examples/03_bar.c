@@ -5,6 +5,7 @@
 /// as stiff.
 ///
 /// SPDX-License-Identifier: MIT
+#include "common/check.h"
 #include "common/output.h"
 #include "draw/film.h"
 #include "scenes/scene.h"
@@ -23,18 +24,18 @@ typedef struct bar {
     uint32_t substeps;
 } bar;
 
-static bool run(mspring_network *network, mspring_id probe, film *filmed, double *lowest) {
+static mspring_result run(mspring_network *network, mspring_id probe, film *filmed, double *lowest) {
+    mspring_result result = MSPRING_OK;
     *lowest = ROWS - 1;
-    for (int i = 0; i <= STEPS; i++) {
-        double x = 0;
-        double y = 0;
+    for (int i = 0; result == MSPRING_OK && i <= STEPS; i++) {
+        double x = 0, y = 0;
         film_step(filmed, network);
-        if (mspring_network_get_positions(network, probe, 1, &x, &y, 1) != MSPRING_OK ||
-            mspring_network_step(network, dt) != MSPRING_OK)
-            return false;
+        result = mspring_network_get_positions(network, probe, 1, &x, &y, 1);
+        if (result == MSPRING_OK)
+            result = mspring_network_step(network, dt);
         *lowest = y < *lowest ? y : *lowest;
     }
-    return true;
+    return result;
 }
 
 static bool draw_end(const network_shape *shape, const film *filmed, const char *title, const char *folder,
@@ -59,9 +60,9 @@ static bool film_bar(const bar *filmed_bar, mspring_network *network, mspring_id
     film filmed = {0};
     bool ok = output_path(path, folder, filmed_bar->name, "_animation.png") &&
               network_shape_make(&shape, network, probe, &error) && film_start(&filmed, &shape, &error);
-    if (ok && !run(network, probe, &filmed, lowest)) {
-        fprintf(stderr, "a step failed: %s\n", mspring_network_error(network));
-        ok = false;
+    if (ok) {
+        const mspring_result result = run(network, probe, &filmed, lowest);
+        ok = check(result, "step", mspring_network_error(network));
     }
     ok = ok && film_write(&filmed, path, filmed_bar->title, &error);
     if (ok)
@@ -88,10 +89,9 @@ static bool bend(const bar *bent, const char *folder, double *lowest) {
     mspring_network_def_init(&def, sizeof def);
     def.substeps = bent->substeps;
     mspring_network *network = NULL;
-    bool ok = mspring_network_create(made.builder, &def, &network) == MSPRING_OK;
-    if (!ok)
-        fprintf(stderr, "cannot make the bar: %s\n", mspring_builder_error(made.builder));
-    ok = ok && film_bar(bent, network, made.probe, folder, lowest);
+    const mspring_result result = mspring_network_create(made.builder, &def, &network);
+    const bool ok = check(result, "make the bar", mspring_builder_error(made.builder)) &&
+                    film_bar(bent, network, made.probe, folder, lowest);
     mspring_network_destroy(network);
     scene_free(&made);
     return ok;

@@ -2,6 +2,7 @@
 /// Springs too stiff for the step make a bar explode; a shorter step cures it.
 ///
 /// SPDX-License-Identifier: MIT
+#include "common/check.h"
 #include "common/output.h"
 #include "draw/network_picture.h"
 #include "draw/plot.h"
@@ -31,42 +32,35 @@ typedef struct observation {
     char message[256];
 } observation;
 
-static bool measure_speed(const mspring_network *network, double *fastest) {
-    float vx[PARTICLES];
-    float vy[PARTICLES];
-    if (mspring_network_get_velocities(network, 0, PARTICLES, vx, vy, 1) != MSPRING_OK)
-        return false;
-    *fastest = 0;
-    for (int i = 0; i < PARTICLES; i++)
-        *fastest = fmax(*fastest, hypot((double)vx[i], (double)vy[i]));
-    return true;
-}
-
-static bool keep_positions(const mspring_network *network, observation *seen) {
+static mspring_result keep_positions(const mspring_network *network, observation *seen) {
     double min_x, min_y, max_x, max_y;
-    if (mspring_network_bounds(network, &min_x, &min_y, &max_x, &max_y) != MSPRING_OK)
-        return false;
-    if (max_y - min_y > drawn_height || max_x - min_x > 2 * drawn_height)
-        return true;
-    return mspring_network_get_positions(network, 0, PARTICLES, seen->x, seen->y, 1) == MSPRING_OK;
+    const mspring_result result = mspring_network_bounds(network, &min_x, &min_y, &max_x, &max_y);
+    if (result != MSPRING_OK || max_y - min_y > drawn_height || max_x - min_x > 2 * drawn_height)
+        return result;
+    return mspring_network_get_positions(network, 0, PARTICLES, seen->x, seen->y, 1);
 }
 
-// Steps until the library refuses a step, or for MOST_FRAMES.
-static bool observe(mspring_network *network, double dt, observation *seen) {
-    while (seen->count < MOST_FRAMES) {
-        mspring_result result = mspring_network_step(network, dt);
+// Steps until the library rejects a step, or for MOST_FRAMES.
+static mspring_result observe(mspring_network *network, double dt, observation *seen) {
+    mspring_result result = MSPRING_OK;
+    mspring_step_info info = {.struct_size = sizeof info};
+    while (result == MSPRING_OK && seen->count < MOST_FRAMES) {
+        result = mspring_network_step(network, dt);
         if (result == MSPRING_ERROR_UNSTABLE) {
             seen->unstable = true;
-            snprintf(seen->message, sizeof seen->message, "%s", mspring_network_error(network));
-            return true;
+            snprintf(seen->message, sizeof seen->message, "%s: %s", mspring_result_string(result),
+                     mspring_network_error(network));
+            return MSPRING_OK;
         }
-        if (result != MSPRING_OK || !measure_speed(network, &seen->speeds[seen->count]) ||
-            !keep_positions(network, seen))
-            return false;
+        if (result == MSPRING_OK)
+            result = mspring_network_get_step_info(network, &info);
+        if (result == MSPRING_OK)
+            result = keep_positions(network, seen);
+        seen->speeds[seen->count] = info.largest_speed;
         seen->times[seen->count] = (double)(seen->count + 1) * dt;
         seen->count++;
     }
-    return true;
+    return result;
 }
 
 static bool draw_bar(const network_shape *shape, const observation *seen, const char *folder, const char *name) {
@@ -77,7 +71,7 @@ static bool draw_bar(const network_shape *shape, const observation *seen, const 
     network_view view = network_view_fit(shape, box, 1200, 900, limit);
     figure picture;
     figure_start(&picture, view.width, view.height, 0xffffff);
-    snprintf(title, sizeof title, "%s after %zu steps", seen->unstable ? "explodes: refused" : "stable",
+    snprintf(title, sizeof title, "%s after %zu steps", seen->unstable ? "explodes: rejected" : "stable",
              seen->count);
     network_picture_draw(&picture, shape, &view, seen->x, seen->y, title);
     bool ok = output_figure(&picture, folder, name);
@@ -99,16 +93,17 @@ static bool run(const experiment *tried, observation *seen, const char *folder) 
     mspring_network *network = NULL;
     network_shape shape = {0};
     mspring_network_def settings;
-    // The guard would refuse the first step that is too long, and there would be nothing to see.
-    bool ok = mspring_network_def_init(&settings, sizeof settings) == MSPRING_OK;
+    // The guard would reject the first step that is too long, and there would be nothing to see.
+    mspring_network_def_init(&settings, sizeof settings);
     settings.guard = MSPRING_GUARD_BOUNDS;
-    ok = ok && mspring_network_create(bar.builder, &settings, &network) == MSPRING_OK;
-    if (!ok)
-        fprintf(stderr, "cannot make the bar: %s\n", mspring_builder_error(bar.builder));
+    mspring_result result = mspring_network_create(bar.builder, &settings, &network);
+    bool ok = check(result, "make the bar", mspring_builder_error(bar.builder));
     if (ok && !(ok = network_shape_make(&shape, network, MSPRING_NONE, &drawing_error)))
         fprintf(stderr, "%s\n", drawing_error.text);
-    if (ok && !(ok = observe(network, tried->dt, seen)))
-        fprintf(stderr, "a step failed: %s\n", mspring_network_error(network));
+    if (ok) {
+        result = observe(network, tried->dt, seen);
+        ok = check(result, "step", mspring_network_error(network));
+    }
     ok = ok && draw_bar(&shape, seen, folder, tried->name);
     network_shape_free(&shape);
     mspring_network_destroy(network);
@@ -143,7 +138,7 @@ static void print_speeds(const experiment *tried, const observation *seen) {
     for (size_t i = every - 1; i < seen->count; i += every)
         printf("  step %5zu   fastest particle %12.4g m/s\n", i + 1, seen->speeds[i]);
     if (seen->unstable)
-        printf("  step %5zu   refused: %s\n", seen->count + 1, seen->message);
+        printf("  step %5zu   rejected: %s\n", seen->count + 1, seen->message);
     else
         printf("  stable for %zu steps\n", seen->count);
 }

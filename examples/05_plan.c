@@ -2,6 +2,7 @@
 /// How the library lays networks out: which springs it sweeps without any index, and which are left over.
 ///
 /// SPDX-License-Identifier: MIT
+#include "common/check.h"
 #include "scenes/scene.h"
 
 #include <massspring/massspring_tools.h>
@@ -18,19 +19,17 @@ static void print_header(void) {
 static bool print_plan(const scene *planned) {
     mspring_network *network = NULL;
     mspring_plan plan = {.struct_size = sizeof plan};
-    if (mspring_network_create(planned->builder, NULL, &network) != MSPRING_OK) {
-        fprintf(stderr, "%s: %s\n", planned->name, mspring_builder_error(planned->builder));
+    mspring_result result = mspring_network_create(planned->builder, NULL, &network);
+    if (!check(result, "make the network", mspring_builder_error(planned->builder)))
         return false;
-    }
-    bool ok = mspring_network_plan(network, &plan) == MSPRING_OK;
+    result = mspring_network_plan(network, &plan);
+    const bool ok = check(result, "read the plan", mspring_network_error(network));
     if (ok)
         printf("%-16s %9u %9u | %8u %9u | %6u %8u | %6u %8u %6u | %5u %4u %5u | %7s %7s\n", planned->name,
                plan.particle_count, plan.spring_count, plan.lattice_count, plan.lattice_springs, plan.chain_count,
                plan.chain_springs, plan.web_particles, plan.leftover_springs, plan.web_layers, plan.pass_rows,
                plan.pass_lag, plan.pass_substeps, plan.has_damping ? "yes" : "no",
                mspring_simd_name(plan.simd_level));
-    else
-        fprintf(stderr, "%s: %s\n", planned->name, mspring_network_error(network));
     mspring_network_destroy(network);
     return ok;
 }

@@ -7,6 +7,7 @@
 /// of the host. And it keeps books: of momentum, energy and water, nothing may be lost or found.
 ///
 /// SPDX-License-Identifier: MIT
+#include "common/check.h"
 #include "common/output.h"
 #include "common/thread_pool.h"
 #include "game/books.h"
@@ -68,11 +69,8 @@ typedef struct game {
 
 // A call that cannot fail in this program, or it is wrong.
 static void must(mspring_result result, const char *what, const game *played) {
-    if (result != MSPRING_OK) {
-        fprintf(stderr, "%s: %s: %s\n", what, mspring_result_string(result),
-                mspring_network_error(played->network));
+    if (!check(result, what, mspring_network_error(played->network)))
         exit(EXIT_FAILURE);
-    }
 }
 
 /* --------------------------------------------------------------------------------------------------- the world */
@@ -152,35 +150,34 @@ static bool start(game *played, mspring_builder *builder, const options *asked, 
                                    .substep = dt / SUBSTEPS,
                                    .anchor_x = anchor_x,
                                    .anchor_y = floor_at(anchor_x)};
-    if (mspring_network_def_init(&def, sizeof def) != MSPRING_OK ||
-        ship_build(&played->vessel, builder, &played->choice) != MSPRING_OK)
-        return false;
+    mspring_network_def_init(&def, sizeof def);
     def.substeps = asked->implicit ? 1 : SUBSTEPS;
     def.solver = asked->implicit ? MSPRING_SOLVER_IMPLICIT : MSPRING_SOLVER_EXPLICIT;
     def.worker_count = 2;
     def.tasks = tasks;
     def.spare_springs = SHIP_BRACES;
-    if (mspring_network_create(builder, &def, &played->network) != MSPRING_OK) {
-        fprintf(stderr, "cannot make the ship: %s\n", mspring_builder_error(builder));
+    mspring_result result = ship_build(&played->vessel, builder, &played->choice);
+    if (result == MSPRING_OK)
+        result = mspring_network_create(builder, &def, &played->network);
+    if (!check(result, "make the ship", mspring_builder_error(builder)))
         return false;
-    }
     played->particles = mspring_network_particle_count(played->network);
     played->springs = mspring_network_spring_count(played->network);
     must(mspring_network_get_ends(played->network, 0, played->springs, MSPRING_ENDS_IDS, played->end, ends, 1),
-         "ends", played);
+         "read ends", played);
     for (mspring_id s = 0; s < played->springs; s++) {
         played->made_of[s] = ship_part_of_spring(&played->vessel, played->end[s], ends[s]);
         strains[s] = strain_of[played->made_of[s]];
     }
     must(mspring_network_set(played->network, MSPRING_BREAK_STRAIN, 0, played->springs, strains, 1), "strains",
          played);
-    must(mspring_network_reserve_events(played->network, EVENTS), "events", played);
-    must(mspring_network_get(played->network, MSPRING_MASS, 0, played->particles, played->dry, 1), "masses",
+    must(mspring_network_reserve_events(played->network, EVENTS), "make room for events", played);
+    must(mspring_network_get(played->network, MSPRING_MASS, 0, played->particles, played->dry, 1), "read masses",
          played);
-    must(mspring_network_get_positions(played->network, 0, played->particles, played->x, played->y, 1), "positions",
-         played);
-    must(add_float_hook(played), "float hook", played);
-    must(make_floor(played->network), "sea floor", played);
+    must(mspring_network_get_positions(played->network, 0, played->particles, played->x, played->y, 1),
+         "read positions", played);
+    must(add_float_hook(played), "add the float hook", played);
+    must(make_floor(played->network), "make the sea floor", played);
     played->last_blast = 60 * asked->minutes - sinking;
     books_open(&played->accounts, played->network);
     return true;
@@ -191,7 +188,8 @@ static bool start(game *played, mspring_builder *builder, const options *asked, 
 // Throw particles away from (x, y), the nearest most.
 static void blast(game *played, double x, double y, double radius, double speed) {
     float vx[MOST], vy[MOST];
-    must(mspring_network_get_velocities(played->network, 0, played->particles, vx, vy, 1), "velocities", played);
+    must(mspring_network_get_velocities(played->network, 0, played->particles, vx, vy, 1), "read velocities",
+         played);
     for (uint32_t i = 0; i < played->particles; i++) {
         const double dx = played->x[i] - x, dy = played->y[i] - y, distance = sqrt(dx * dx + dy * dy);
         if (distance > radius || distance == 0)
@@ -199,7 +197,8 @@ static void blast(game *played, double x, double y, double radius, double speed)
         vx[i] += (float)(speed * (1 - distance / radius) * dx / distance);
         vy[i] += (float)(speed * (1 - distance / radius) * dy / distance);
     }
-    must(mspring_network_set_velocities(played->network, 0, played->particles, vx, vy, 1), "velocities", played);
+    must(mspring_network_set_velocities(played->network, 0, played->particles, vx, vy, 1), "set velocities",
+         played);
     books_edit(&played->accounts, played->network);
 }
 
@@ -208,8 +207,10 @@ static void repair(game *played, double time) {
     static mspring_id list[MOST_SPRINGS];
     static float length[MOST_SPRINGS], rest[MOST_SPRINGS];
     uint32_t count = 0;
-    must(mspring_network_get(played->network, MSPRING_LENGTH, 0, played->springs, length, 1), "lengths", played);
-    must(mspring_network_get(played->network, MSPRING_REST_LENGTH, 0, played->springs, rest, 1), "lengths", played);
+    must(mspring_network_get(played->network, MSPRING_LENGTH, 0, played->springs, length, 1), "read lengths",
+         played);
+    must(mspring_network_get(played->network, MSPRING_REST_LENGTH, 0, played->springs, rest, 1), "read lengths",
+         played);
     for (mspring_id s = 0; s < played->springs; s++)
         if (played->broken_now[s] && length[s] < 2 * rest[s])
             list[count++] = s;
@@ -223,18 +224,17 @@ static void repair(game *played, double time) {
 static void brace(game *played) {
     mspring_spring_def defs[SHIP_BRACES];
     mspring_id ids[SHIP_BRACES];
-    const float strains[SHIP_BRACES] = {toughness, toughness};
-    must(ship_braces(&played->vessel, &played->choice, defs), "braces", played);
-    must(mspring_network_add_springs(played->network, defs, SHIP_BRACES, ids), "braces", played);
-    must(mspring_network_set_at(played->network, MSPRING_BREAK_STRAIN, ids, SHIP_BRACES, strains, 1), "braces",
-         played);
+    must(ship_braces(&played->vessel, &played->choice, defs), "brace the mast", played);
+    for (int i = 0; i < SHIP_BRACES; i++)
+        defs[i].break_strain = toughness;
+    must(mspring_network_add_springs(played->network, defs, SHIP_BRACES, ids), "brace the mast", played);
     for (int i = 0; i < SHIP_BRACES; i++) {
         played->end[ids[i]] = defs[i].a;
         played->made_of[ids[i]] = ship_part_of_spring(&played->vessel, defs[i].a, defs[i].b);
     }
     played->springs = mspring_network_spring_count(played->network);
     played->is_braced = true;
-    must(mspring_job_begin(played->network, MSPRING_LAYOUT_COMPACT, &played->job), "compacting", played);
+    must(mspring_job_begin(played->network, MSPRING_LAYOUT_COMPACT, &played->job), "compact", played);
     books_edit(&played->accounts, played->network);
 }
 
@@ -243,7 +243,7 @@ static void make_compact(game *played) {
     uint32_t left;
     if (!played->job)
         return;
-    must(mspring_job_run(played->job, 30, &left), "compacting", played);
+    must(mspring_job_run(played->job, 30, &left), "compact", played);
     if (left > 0)
         return;
     mspring_result result = mspring_job_finish(played->network, played->job);
@@ -251,7 +251,7 @@ static void make_compact(game *played) {
     played->job = NULL;
     if (result == MSPRING_ERROR_OUTDATED) // a spring was restored meanwhile
         result = mspring_job_begin(played->network, MSPRING_LAYOUT_COMPACT, &played->job);
-    must(result, "compacting", played);
+    must(result, "compact", played);
 }
 
 // What a particle has of the water in its piece, kg.
@@ -282,7 +282,7 @@ static void take_water(game *played, double time) {
     }
     for (uint32_t i = 0; i < played->particles; i++)
         played->wet[i] = played->dry[i] + (float)water_of(played, i);
-    must(mspring_network_set(played->network, MSPRING_MASS, 0, played->particles, played->wet, 1), "masses",
+    must(mspring_network_set(played->network, MSPRING_MASS, 0, played->particles, played->wet, 1), "set masses",
          played);
     books_edit(&played->accounts, played->network);
 }
@@ -290,7 +290,8 @@ static void take_water(game *played, double time) {
 // Number the pieces anew; each keeps the water of its particles.
 static void find_pieces(game *played) {
     uint32_t changed;
-    must(mspring_network_update_components(played->network, &played->piece_count, &changed), "pieces", played);
+    must(mspring_network_update_components(played->network, &played->piece_count, &changed), "find the pieces",
+         played);
     if (!changed)
         return;
     double water[MOST];
@@ -310,7 +311,8 @@ static uint32_t find_largest_piece(const game *played, mspring_component *larges
     static mspring_component pieces[MOST];
     for (uint32_t i = 0; i < played->piece_count; i++)
         pieces[i].struct_size = sizeof pieces[i];
-    must(mspring_network_get_components(played->network, 0, played->piece_count, pieces), "pieces", played);
+    must(mspring_network_get_components(played->network, 0, played->piece_count, pieces), "find the pieces",
+         played);
     uint32_t found = 0;
     for (uint32_t i = 1; i < played->piece_count; i++)
         if (pieces[i].particle_count > pieces[found].particle_count)
@@ -322,7 +324,7 @@ static uint32_t find_largest_piece(const game *played, mspring_component *larges
 static void read_events(game *played, double time) {
     static mspring_event events[EVENTS];
     uint32_t count;
-    must(mspring_network_read_events(played->network, events, EVENTS, &count, NULL), "events", played);
+    must(mspring_network_read_events(played->network, events, EVENTS, &count, NULL), "read events", played);
     for (uint32_t i = 0; i < count; i++) {
         if (events[i].kind == MSPRING_EVENT_BROKEN || events[i].kind == MSPRING_EVENT_RESTORED)
             played->broken_now[events[i].id] = events[i].kind == MSPRING_EVENT_BROKEN;
@@ -360,11 +362,11 @@ static void let_happen(game *played, uint32_t step) {
 static void enter_step(game *played, double time) {
     memcpy(played->before_x, played->x, sizeof played->x);
     memcpy(played->before_y, played->y, sizeof played->y);
-    must(mspring_network_get_positions(played->network, 0, played->particles, played->x, played->y, 1), "positions",
-         played);
+    must(mspring_network_get_positions(played->network, 0, played->particles, played->x, played->y, 1),
+         "read positions", played);
     must(mspring_network_get_floor_impulses(played->network, 0, played->particles, played->impulse_x,
                                             played->impulse_y, 1),
-         "floor", played);
+         "read floor impulses", played);
     books_enter(&played->accounts, played->network,
                 &(books_step){.particles = played->particles,
                               .force_x = played->force_x,
@@ -515,7 +517,7 @@ static void play(game *played, const options *asked, figure *pictures) {
         }
     }
     uint64_t hash;
-    must(mspring_network_state_hash(played->network, &hash), "hash", played);
+    must(mspring_network_state_hash(played->network, &hash), "hash the state", played);
     printf("state after %u steps: %016llx\n", step, (unsigned long long)hash);
 }
 

@@ -7,6 +7,7 @@
 /// settings break as many springs as a fine run?
 ///
 /// SPDX-License-Identifier: MIT
+#include "common/check.h"
 #include "common/clock.h"
 #include "common/output.h"
 #include "common/progress.h"
@@ -94,9 +95,7 @@ static bool tune(mspring_network *network, const options *how, mspring_tune_def 
     const mspring_result result = mspring_network_tune(network, def, rows, MOST_ROWS, count);
     progress_clear(&told.line);
     def->user = NULL;
-    if (result != MSPRING_OK)
-        fprintf(stderr, "cannot tune: %s\n", mspring_network_error(network));
-    return result == MSPRING_OK;
+    return check(result, "tune", mspring_network_error(network));
 }
 
 static void add_point(cloud *to, mspring_solver solver, double x, double y, const char *label, bool ringed) {
@@ -132,7 +131,7 @@ static void print_row(const mspring_tune_row *row) {
         snprintf(iterations, sizeof iterations, "%u", row->iterations);
     printf("%-9s %-5s %8u %10s", solver_names[row->solver], steps_back ? "BDF2" : "", row->substeps, iterations);
     if (row->flags & MSPRING_TUNE_REFUSED) {
-        printf("   refused as unstable\n");
+        printf("   rejected as unstable\n");
         return;
     }
     printf(" %11.1f %11.1f", 1e6 * row->min_cost, 1e6 * row->moving_cost);
@@ -196,14 +195,17 @@ static bool check_promise(mspring_network *network, const options *how, const ms
     double seconds[STEPS_OF_THE_PROMISE];
     mspring_solver_def solver;
     mspring_network *clone = NULL;
-    bool ok = mspring_tune_row_solver(row, &solver) == MSPRING_OK &&
-              mspring_network_clone(network, NULL, &clone) == MSPRING_OK &&
-              mspring_network_set_solver(clone, &solver) == MSPRING_OK;
-    for (int i = 0; ok && i < STEPS_OF_THE_PROMISE; i++) {
+    mspring_result result = mspring_tune_row_solver(row, &solver);
+    if (result == MSPRING_OK)
+        result = mspring_network_clone(network, NULL, &clone);
+    if (result == MSPRING_OK)
+        result = mspring_network_set_solver(clone, &solver);
+    for (int i = 0; result == MSPRING_OK && i < STEPS_OF_THE_PROMISE; i++) {
         const double before = how->clock();
-        ok = mspring_network_step(clone, dt) == MSPRING_OK;
+        result = mspring_network_step(clone, dt);
         seconds[i] = how->clock() - before;
     }
+    const bool ok = check(result, "take the recommended setting", mspring_network_error(clone));
     if (ok) {
         qsort(seconds, STEPS_OF_THE_PROMISE, sizeof seconds[0], compare_double);
         const double median = seconds[STEPS_OF_THE_PROMISE / 2];
@@ -212,8 +214,6 @@ static bool check_promise(mspring_network *network, const options *how, const ms
             "least %.1f us (%+.1f %%).\n",
             1e6 * row->median_cost, STEPS_OF_THE_PROMISE, 1e6 * median, 100 * (median / row->median_cost - 1),
             1e6 * seconds[0], 100 * (seconds[0] / row->min_cost - 1));
-    } else {
-        fprintf(stderr, "the recommended setting fails: %s\n", mspring_network_error(clone));
     }
     mspring_network_destroy(clone);
     return ok;
@@ -311,15 +311,15 @@ static bool throw_at_slope(mspring_network *network, uint32_t columns, uint32_t 
     mspring_floor_def floor;
     mspring_floor_def_init(&floor, sizeof floor);
     floor.planes = slope, floor.plane_count = 1, floor.friction = 0.3f, floor.restitution = 0.2f;
-    bool ok = mspring_network_set_floor(network, &floor) == MSPRING_OK;
-    for (uint32_t p = 0; ok && p < columns * rows; p++)
-        ok = mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, p, 1, &one, 1) == MSPRING_OK &&
-             mspring_network_set_velocities(network, p, 1, &still, &down, 1) == MSPRING_OK;
-    for (uint32_t s = 0; ok && s < mspring_network_spring_count(network); s++)
-        ok = mspring_network_set(network, MSPRING_BREAK_STRAIN, s, 1, &strain, 1) == MSPRING_OK;
-    if (!ok)
-        fprintf(stderr, "cannot throw the lattice: %s\n", mspring_network_error(network));
-    return ok;
+    const uint32_t particles = columns * rows, springs = mspring_network_spring_count(network);
+    mspring_result result = mspring_network_set_floor(network, &floor);
+    if (result == MSPRING_OK)
+        result = mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, 0, particles, &one, 0);
+    if (result == MSPRING_OK)
+        result = mspring_network_set_velocities(network, 0, particles, &still, &down, 0);
+    if (result == MSPRING_OK)
+        result = mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, springs, &strain, 0);
+    return check(result, "throw the lattice", mspring_network_error(network));
 }
 
 static void print_quantities(const double *mean, const double *spread) {
@@ -456,14 +456,12 @@ static bool show(const subject *about, const options *how) {
         return false;
     }
     mspring_network *network = NULL;
-    bool ok = mspring_network_create(made.builder, NULL, &network) == MSPRING_OK;
-    if (!ok)
-        fprintf(stderr, "%s: %s\n", about->name, mspring_builder_error(made.builder));
-    ok = ok &&
-         (about->crashes ? measure_crash(about, how, network, &errors)
-                         : measure_errors(about, how, network, &errors)) &&
-         (about->stiffer == 0 || measure_bending(about, how, network, &bending)) &&
-         draw(about, how, &errors, &bending);
+    const mspring_result result = mspring_network_create(made.builder, NULL, &network);
+    const bool ok = check(result, "make the network", mspring_builder_error(made.builder)) &&
+                    (about->crashes ? measure_crash(about, how, network, &errors)
+                                    : measure_errors(about, how, network, &errors)) &&
+                    (about->stiffer == 0 || measure_bending(about, how, network, &bending)) &&
+                    draw(about, how, &errors, &bending);
     mspring_network_destroy(network);
     scene_free(&made);
     return ok;

@@ -2,6 +2,7 @@
 /// A host's own threads step a network: lent by one function, and the bits stay the same whatever their number.
 ///
 /// SPDX-License-Identifier: MIT
+#include "common/check.h"
 #include "common/clock.h"
 #include "common/thread_pool.h"
 
@@ -43,26 +44,26 @@ static bool run(mspring_builder *builder, thread_pool *pool, double *millisecond
     settings.substeps = 20;
     settings.tasks = &tasks; // without it, worker_count gives the network threads of the library's
     mspring_network *network = NULL;
-    if (mspring_network_create(builder, &settings, &network) != MSPRING_OK) {
-        fprintf(stderr, "cannot make the network: %s\n", mspring_builder_error(builder));
+    mspring_result result = mspring_network_create(builder, &settings, &network);
+    if (!check(result, "make the network", mspring_builder_error(builder)))
         return false;
-    }
     const double begun = clock_seconds();
-    bool ok = true;
-    for (int step = 0; ok && step < STEPS; step++)
-        ok = mspring_network_step(network, 1.0 / 64) == MSPRING_OK;
+    for (int step = 0; result == MSPRING_OK && step < STEPS; step++)
+        result = mspring_network_step(network, 1.0 / 64);
     *milliseconds = (clock_seconds() - begun) * 1e3 / STEPS;
-    ok = ok && mspring_network_state_hash(network, hash) == MSPRING_OK;
-    if (!ok)
-        fprintf(stderr, "a step failed: %s\n", mspring_network_error(network));
+    if (result == MSPRING_OK)
+        result = mspring_network_state_hash(network, hash);
+    const bool ok = check(result, "step", mspring_network_error(network));
     mspring_network_destroy(network);
     return ok;
 }
 
 int main(void) {
     mspring_builder *builder = NULL;
-    if (mspring_builder_create(NULL, &builder) != MSPRING_OK || add_bar(builder) != MSPRING_OK) {
-        fprintf(stderr, "cannot build the bar: %s\n", mspring_builder_error(builder));
+    mspring_result result = mspring_builder_create(NULL, &builder);
+    if (result == MSPRING_OK)
+        result = add_bar(builder);
+    if (!check(result, "build the bar", mspring_builder_error(builder))) {
         mspring_builder_destroy(builder);
         return EXIT_FAILURE;
     }

@@ -10,7 +10,7 @@ int main(int count, char **arguments) {
     static const uint16_t cells[ROWS][COLUMNS]; // all of material 0
     mspring_material thread;
     mspring_material_init(&thread, sizeof thread);
-    thread.mass = 0.01f, thread.stiffness = 500, thread.damping = 0.1f;
+    thread.mass = 0.01f, thread.stiffness = 500, thread.damping = 0.1f, thread.break_strain = 0.25f;
     mspring_lattice_def cloth;
     mspring_lattice_def_init(&cloth, sizeof cloth);
     cloth.width = COLUMNS, cloth.height = ROWS, cloth.cells = cells[0], cloth.spacing = 0.06; // m
@@ -24,9 +24,7 @@ int main(int count, char **arguments) {
     mspring_result result = mspring_builder_create(NULL, &builder);
     result = result ? result : mspring_builder_add_lattice(builder, &cloth, NULL);
     result = result ? result : mspring_network_create(builder, &settings, &network);
-    const float limit = 0.25f, pinned = 0, vx = 0, vy = -0.25f; // strain, inverse mass scale, m/s
-    const uint32_t springs = mspring_network_spring_count(network);
-    result = result ? result : mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, springs, &limit, 0);
+    const float pinned = 0, vx = 0, vy = -0.25f; // inverse mass scale, m/s
     result = result ? result : mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, 0, COLUMNS, &pinned, 0);
     result =
         result ? result : mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, LAST_ROW, COLUMNS, &pinned, 0);

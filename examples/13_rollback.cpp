@@ -146,9 +146,6 @@ class world {
 
     /// @param pool  nullptr: the calling thread alone
     explicit world(task_pool *pool) : network(make(pool)) {
-        const float strain = 0.02f;
-        check(mspring_network_set(network.get(), MSPRING_BREAK_STRAIN, 0,
-                                  mspring_network_spring_count(network.get()), &strain, 0));
         const double ground[4] = {0, -1, 0, 1}; // a point, and the way up from it
         mspring_floor_def floor;
         mspring_floor_def_init(&floor, sizeof floor);
@@ -203,6 +200,7 @@ class world {
         wood.mass = 10.0f;
         wood.stiffness = 1e6f;
         wood.damping = 300.0f;
+        wood.break_strain = 0.02f;
         const std::vector<std::uint16_t> cells(std::size_t(columns) * rows, 0);
         mspring_lattice_def bar;
         mspring_lattice_def_init(&bar, sizeof bar);

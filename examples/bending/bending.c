@@ -5,6 +5,7 @@
 #include "bending/options.h"
 #include "bending/report.h"
 #include "bending/settle.h"
+#include "common/check.h"
 #include "common/output.h"
 #include "common/progress.h"
 #include "draw/film.h"
@@ -58,8 +59,8 @@ static bool choose_solver(bending_run *run) {
     def.solver = options->solver;
     def.substeps = options->substeps;
     def.iterations = options->iterations;
-    return mspring_network_set_solver(run->network, &def) == MSPRING_OK ||
-           fail(mspring_network_error(run->network));
+    const mspring_result result = mspring_network_set_solver(run->network, &def);
+    return check(result, "choose the solver", mspring_network_error(run->network));
 }
 
 static bool make_network(bending_run *run) {
@@ -69,17 +70,19 @@ static bool make_network(bending_run *run) {
     def.substeps = options->substeps;
     def.gravity_y = -options->gravity;
     def.simd_level = options->level;
-    if (mspring_network_create(run->scene.builder, &def, &run->network) != MSPRING_OK)
-        return fail(mspring_builder_error(run->scene.builder));
+    mspring_result result = mspring_network_create(run->scene.builder, &def, &run->network);
+    if (!check(result, "make the network", mspring_builder_error(run->scene.builder)))
+        return false;
     mspring_id loose = MSPRING_NONE;
-    if (!settle_find_loose(run->network, &loose))
-        return fail("out of memory: take a smaller network");
+    result = settle_find_loose(run->network, &loose);
+    if (!check(result, "find what is loose", mspring_network_error(run->network)))
+        return false;
     if (loose == MSPRING_NONE)
         return choose_solver(run);
     double x = 0;
     double y = 0;
     if (mspring_network_get_positions(run->network, loose, 1, &x, &y, 1) != MSPRING_OK)
-        return fail(mspring_network_error(run->network));
+        return false; // it is one of the network's
     fprintf(
         stderr,
         "bending: particle %u at (%g, %g) m is not joined to any pinned particle and would fall for ever: join it, "
@@ -133,8 +136,9 @@ static void after_step(mspring_network *network, const settle_progress *at, void
 
 static bool fail_unstable(const bending_run *run) {
     const spring_measures *measures = &run->measures;
-    fprintf(stderr, "bending: unstable in step %llu: %s\n", (unsigned long long)run->settled.steps + 1,
-            mspring_network_error(run->network));
+    char what[64];
+    snprintf(what, sizeof what, "make step %llu", (unsigned long long)run->settled.steps + 1);
+    check(run->settled.result, what, mspring_network_error(run->network));
     if (run->options->solver != MSPRING_SOLVER_EXPLICIT)
         return false;
     // The limit grows with the square of the number of substeps; half of it leaves room for damping.
@@ -168,7 +172,7 @@ static bool settle(bending_run *run) {
     case SETTLE_UNSTABLE:
         return fail_unstable(run);
     case SETTLE_NOT_FOUND:
-        return fail(mspring_network_error(run->network));
+        return check(run->settled.result, "settle", mspring_network_error(run->network));
     case SETTLE_OUT_OF_STEPS:
         fprintf(stderr, "bending: not at rest after %llu steps (the %s is %.6g m down): allow more with --steps\n",
                 (unsigned long long)run->settled.steps, run->scene.probe == MSPRING_NONE ? "mean" : "probe",
@@ -201,9 +205,7 @@ static bool draw_final(const bending_run *run, const char *title, draw_error *er
     bool ok = false;
     if (!x || !y)
         snprintf(error->text, sizeof error->text, "out of memory for a picture of %u particles", count);
-    else if (mspring_network_get_positions(run->network, 0, count, x, y, 1) != MSPRING_OK)
-        snprintf(error->text, sizeof error->text, "%s", mspring_network_error(run->network));
-    else
+    else if (mspring_network_get_positions(run->network, 0, count, x, y, 1) == MSPRING_OK)
         ok = draw_network(run, title, x, y, error);
     free(x);
     free(y);

@@ -6,51 +6,31 @@
 
 #include <stdlib.h>
 
-// Sets of particles that springs join: each points to another of its set, up to the one that stands for it.
-static mspring_id find_root(mspring_id *parents, mspring_id particle) {
-    while (parents[particle] != particle) {
-        parents[particle] = parents[parents[particle]];
-        particle = parents[particle];
-    }
-    return particle;
-}
-
-static bool join_sets(mspring_network *network, mspring_id *parents) {
-    const uint32_t count = mspring_network_spring_count(network);
-    mspring_id(*ends)[2] = malloc((count + 1) * sizeof *ends);
-    const bool ok = ends && mspring_network_get_ends(network, 0, count, MSPRING_ENDS_IDS, &ends[0][0], &ends[0][1],
-                                                     2) == MSPRING_OK;
-    for (mspring_id i = 0; ok && i < count; i++)
-        parents[find_root(parents, ends[i][0])] = find_root(parents, ends[i][1]);
-    free(ends);
-    return ok;
-}
-
-static mspring_id first_without_pin(const mspring_view *view, mspring_id *parents, bool *held) {
+static mspring_id first_without_pin(const mspring_view *view, const uint32_t *component, bool *held) {
     for (mspring_id i = 0; i < view->particle_count; i++)
         if (view->inverse_mass[view->slot_of_particle[i]] == 0)
-            held[find_root(parents, i)] = true;
+            held[component[i]] = true;
     for (mspring_id i = 0; i < view->particle_count; i++)
-        if (!held[find_root(parents, i)])
+        if (!held[component[i]])
             return i;
     return MSPRING_NONE;
 }
 
-bool settle_find_loose(mspring_network *network, mspring_id *loose) {
+mspring_result settle_find_loose(mspring_network *network, mspring_id *loose) {
+    uint32_t count = 0;
     mspring_view view = {.struct_size = sizeof view};
-    if (mspring_network_view(network, &view) != MSPRING_OK)
-        return false;
-    mspring_id *parents = malloc(view.particle_count * sizeof *parents);
-    bool *held = calloc(view.particle_count, sizeof *held);
-    bool ok = parents && held;
-    if (ok) {
-        for (mspring_id i = 0; i < view.particle_count; i++)
-            parents[i] = i;
-        ok = join_sets(network, parents);
-    }
-    if (ok)
-        *loose = first_without_pin(&view, parents, held);
-    free(parents);
+    mspring_result result = mspring_network_update_components(network, &count, NULL);
+    if (result == MSPRING_OK)
+        result = mspring_network_view(network, &view);
+    if (result != MSPRING_OK)
+        return result;
+    uint32_t *component = malloc(view.particle_count * sizeof *component);
+    bool *held = calloc(count, sizeof *held);
+    result = component && held ? mspring_network_get_component_numbers(network, 0, view.particle_count, component)
+                               : MSPRING_ERROR_MEMORY;
+    if (result == MSPRING_OK)
+        *loose = first_without_pin(&view, component, held);
+    free(component);
     free(held);
-    return ok;
+    return result;
 }

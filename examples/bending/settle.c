@@ -50,6 +50,7 @@ typedef struct settling {
     double *durations;
     size_t duration_count, duration_capacity;
     settle_end end;
+    mspring_result result;
 } settling;
 
 // Means over a window, and how many windows in a row have been calm.
@@ -98,8 +99,11 @@ static bool make_step(settling *state) {
     double start = clock_seconds();
     mspring_result result = mspring_network_step(state->network, state->request->dt);
     double seconds = clock_seconds() - start;
-    if (result != MSPRING_OK || mspring_network_energy(state->network, &state->energy, NULL, NULL) != MSPRING_OK) {
+    if (result == MSPRING_OK)
+        result = mspring_network_energy(state->network, &state->energy, NULL, NULL);
+    if (result != MSPRING_OK) {
         state->end = SETTLE_UNSTABLE;
+        state->result = result;
         return false;
     }
     double y = 0;
@@ -191,6 +195,7 @@ static bool damp(settling *state) {
     if (result == MSPRING_OK)
         return true;
     state->end = SETTLE_UNSTABLE;
+    state->result = result;
     return false;
 }
 
@@ -263,11 +268,12 @@ static bool measure_mass(settling *state) {
 }
 
 settle_result settle_network(mspring_network *network, const settle_request *request) {
-    settling state = {.network = network, .request = request, .end = SETTLE_UNSTABLE};
+    settling state = {.network = network, .request = request, .end = SETTLE_NO_MEMORY};
     if (measure_mass(&state) && measure_period(&state))
         let_down(&state);
     settle_result result = {
         .end = state.end,
+        .result = state.result,
         .steps = state.step,
         .time = (double)(state.step - state.measuring_steps) * request->dt,
         .drop = state.drop,
@@ -278,7 +284,7 @@ settle_result settle_network(mspring_network *network, const settle_request *req
 }
 
 settle_result settle_at_once(mspring_network *network, const settle_request *request, double substep) {
-    settle_result result = {.end = SETTLE_NOT_FOUND};
+    settle_result result = {.end = SETTLE_NO_MEMORY};
     mspring_settle_def def;
     mspring_settle_result found = {.struct_size = sizeof found};
     double before = 0;
@@ -286,9 +292,12 @@ settle_result settle_at_once(mspring_network *network, const settle_request *req
     mspring_settle_def_init(&def, sizeof def);
     def.relative_substep = substep;
     double start = clock_seconds();
-    if (measure_height(network, request->probe, &before) &&
-        mspring_network_settle(network, &def, &found) == MSPRING_OK &&
-        measure_height(network, request->probe, &after)) {
+    if (!measure_height(network, request->probe, &before))
+        return result;
+    result.result = mspring_network_settle(network, &def, &found);
+    if (result.result != MSPRING_OK) {
+        result.end = SETTLE_NOT_FOUND;
+    } else if (measure_height(network, request->probe, &after)) {
         result.end = SETTLE_AT_REST;
         result.steps = found.iterations;
         result.drop = before - after;

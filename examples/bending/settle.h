@@ -38,6 +38,7 @@ typedef enum settle_end {
 
 typedef struct settle_result {
     settle_end end;
+    mspring_result result; ///< of the call that failed, where the network says why
     uint64_t steps;       ///< made
     double time;          ///< simulated after measuring, s
     double drop;          ///< how far the probe has come down, m
@@ -53,7 +54,7 @@ settle_result settle_network(mspring_network *network, const settle_request *req
 settle_result settle_at_once(mspring_network *network, const settle_request *request, double substep);
 
 /// The first particle from which no springs lead to a pinned one, so that it would fall for ever; MSPRING_NONE if
-/// there is none. Returns false when out of memory.
-bool settle_find_loose(mspring_network *network, mspring_id *loose);
+/// there is none.
+mspring_result settle_find_loose(mspring_network *network, mspring_id *loose);
 
 #endif
