@@ -26,6 +26,7 @@ bool bench_added_create(mspring_builder *builder, mspring_simd level, uint32_t w
     def.simd_level = level;
     def.worker_count = workers;
     def.substeps = substeps;
+    def.guard = MSPRING_GUARD_GROWTH;
     def.global_damping = BENCH_GLOBAL_DAMPING;
     def.spare_particles = spare_particles;
     def.spare_springs = spare_springs;

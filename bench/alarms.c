@@ -103,6 +103,7 @@ static bool step_scene(const scene *made, bench_format format, uint32_t *steps, 
     (void)mspring_network_def_init(&def, sizeof def);
     def.global_damping = 0.5f;
     def.substeps = SUBSTEPS;
+    def.guard = MSPRING_GUARD_GROWTH;
     double now = 0, any_shape = 0;
     if (mspring_network_create(made->builder, &def, &network) != MSPRING_OK ||
         mspring_network_stable_dt(network, &now, &any_shape) != MSPRING_OK) {

@@ -65,6 +65,8 @@ static mspring_network *make(const frames_scene *of) {
     lattice.y = 3;
     mspring_network_def_init(&def, sizeof def);
     def.gravity_y = of->what == CALM ? 0 : -9.8f;
+    def.substeps = of->substeps;
+    def.guard = MSPRING_GUARD_GROWTH;
     if (cells == NULL || mspring_builder_create(NULL, &builder) != MSPRING_OK ||
         mspring_builder_add_lattice(builder, &lattice, NULL) != MSPRING_OK ||
         mspring_network_create(builder, &def, &network) != MSPRING_OK)

@@ -132,6 +132,7 @@ bool bench_network_create_with(mspring_builder *builder, mspring_simd level, uin
     def.worker_count = workers;
     def.substeps = substeps;
     def.flags = flags;
+    def.guard = MSPRING_GUARD_GROWTH;
     def.global_damping = BENCH_GLOBAL_DAMPING;
 
     bench_network network = {.substeps = substeps};

@@ -138,6 +138,7 @@ static bool measure_sleep(session *with, const bench_options *options, const ben
     def.substeps = with->step->substeps;
     def.sleep_speed = OUT_OF_REACH; // at once
     def.sleep_time = 0;
+    def.guard = MSPRING_GUARD_GROWTH;
     if (result == MSPRING_OK) {
         result = mspring_network_create(subject->made.builder, &def, &asleep.network);
     }
@@ -328,6 +329,7 @@ static bool make_parts(session *with, const bench_scene *subject, mspring_simd l
     def.simd_level = level;
     def.sleep_speed = sleeps ? OUT_OF_REACH : 0.0f; // what is awake is so by a pin that moves
     def.sleep_time = 0;
+    def.guard = MSPRING_GUARD_GROWTH;
     def.substeps = with->step->substeps;
     if (result == MSPRING_OK) {
         result = mspring_network_create(subject->made.builder, &def, &parts->network);

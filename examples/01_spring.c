@@ -50,6 +50,7 @@ static mspring_network *make_spring(float spring_damping) {
     mspring_network_def def;
     mspring_network_def_init(&def, sizeof def);
     def.gravity_y = 0;
+    def.substeps = 1;
     mspring_network *network = NULL;
     if (result == MSPRING_OK)
         result = mspring_network_create(builder, &def, &network);

@@ -39,6 +39,7 @@ static mspring_network *make_square(float spring_damping) {
     mspring_network_def def;
     mspring_network_def_init(&def, sizeof def);
     def.gravity_y = 0;
+    def.substeps = 1;
     mspring_network *network = NULL;
     if (result == MSPRING_OK)
         result = mspring_builder_add_lattice(builder, &lattice, NULL);

@@ -96,6 +96,7 @@ static bool run(const experiment *tried, observation *seen, const char *folder) 
     // The guard would reject the first step that is too long, and there would be nothing to see.
     mspring_network_def_init(&settings, sizeof settings);
     settings.guard = MSPRING_GUARD_BOUNDS;
+    settings.substeps = 1;
     mspring_result result = mspring_network_create(bar.builder, &settings, &network);
     bool ok = check(result, "make the bar", mspring_builder_error(bar.builder));
     if (ok && !(ok = network_shape_make(&shape, network, MSPRING_NONE, &drawing_error)))

@@ -193,7 +193,7 @@ static int compare_double(const void *a, const void *b) {
 // Run the recommended setting on a clone, for longer than it was measured, and compare costs.
 static bool check_promise(mspring_network *network, const options *how, const mspring_tune_row *row) {
     double seconds[STEPS_OF_THE_PROMISE];
-    mspring_solver_def solver;
+    mspring_solver_def solver = {.struct_size = sizeof solver};
     mspring_network *clone = NULL;
     mspring_result result = mspring_tune_row_solver(row, &solver);
     if (result == MSPRING_OK)

@@ -67,6 +67,7 @@ static map_stuff draw_stuff(uint64_t *seed) {
 static map_stuff begin(map_case *drawn, uint64_t *seed) {
     mspring_network_def_init(&drawn->network, sizeof drawn->network);
     drawn->network.gravity_y = 0;
+    drawn->network.guard = MSPRING_GUARD_GROWTH;
     draw_solver(drawn, seed);
     drawn->shape = (map_shape)random_below(seed, MAP_SHAPES);
     const map_stuff stuff = draw_stuff(seed);

@@ -68,6 +68,7 @@ static bool make_network(bending_run *run) {
     mspring_network_def def;
     mspring_network_def_init(&def, sizeof def);
     def.substeps = options->substeps;
+    def.guard = MSPRING_GUARD_GROWTH; // what is too stiff is not to be measured softened
     def.gravity_y = -options->gravity;
     def.simd_level = options->level;
     mspring_result result = mspring_network_create(run->scene.builder, &def, &run->network);

@@ -170,6 +170,7 @@ bool side_make(lab_side *made, const lab_stage *stage, const lab_settings *setti
     mspring_network_def_init(&def, sizeof def);
     def.flags = MSPRING_NETWORK_RESERVE_DAMPING;
     def.gravity_y = (float)-settings->gravity;
+    def.guard = MSPRING_GUARD_GROWTH; // a side that cannot go on says why
     const mspring_result result = mspring_network_create(stage->made.builder, &def, &made->network);
     if (result != MSPRING_OK) {
         side_free(made);

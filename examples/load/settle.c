@@ -151,6 +151,7 @@ bool settle_run(scene *settled, mspring_solver solver, const settle_request *req
     network_shape shape;
     mspring_network_def_init(&def, sizeof def);
     def.global_damping = drag;
+    def.guard = MSPRING_GUARD_GROWTH;
     mspring_result result = mspring_network_create(settled->builder, &def, &network);
     if (result != MSPRING_OK)
         return scene_fail_builder(error, "cannot make the network", settled->builder, result);

@@ -305,6 +305,7 @@ static extreme_outcome take_steps(mspring_network *network, const maker *m, extr
 extreme_outcome extreme_run(const extreme_network *what, extreme_way way, double dt, char *text, size_t size) {
     mspring_network_def def;
     mspring_network_def_init(&def, sizeof def);
+    def.substeps = 1;
     def.solver = way.solver;
     def.guard = way.guard;
     mspring_network *network = NULL;
@@ -332,6 +333,7 @@ extreme_outcome extreme_run(const extreme_network *what, extreme_way way, double
 static bool grows(maker *m, double h) {
     mspring_network_def def;
     mspring_network_def_init(&def, sizeof def);
+    def.substeps = 1;
     def.gravity_y = 0;
     def.guard = MSPRING_GUARD_BOUNDS;
     def.max_speed = 1e15f;

@@ -45,8 +45,11 @@
 ///
 /// **Memory.** Functions say whether they allocate; a step never does.
 ///
+/// **Structs.** What you give has an init function, which fills in defaults: call it first. What you read into only
+/// needs its struct_size: set it first, to the size of the struct. Settings and solvers are both.
+///
 /// **ABI.** Handles are opaque, ids are integers, no struct is passed by value. Every public struct starts with
-/// struct_size; its init function fills in defaults. Reserved fields of what is given must be 0, so that a later
+/// struct_size. Reserved fields of what is given must be 0, so that a later
 /// version may give them a meaning: anything else is MSPRING_ERROR_ARGUMENT. Structs may grow at the end, and a
 /// program built against an older header goes on working. A program built against a newer one is refused: by
 /// MSPRING_ERROR_STRUCT, or, where it calls what is not there, by the loader. Nothing that was released is taken
@@ -167,7 +170,8 @@ typedef uint32_t mspring_id;
 
 /* ---------------------------------------------------------------------------------------------- allocator */
 
-/// Where an object takes its memory from. All fields must be set; the struct is copied.
+/// Where an object takes its memory from. Fill with mspring_allocator_init() first, then set alloc and free, and user
+/// if they need it. The struct is copied.
 /// alloc returns at least size bytes aligned to alignment (a power of two, at most 64), or NULL.
 /// free gets the size that was asked for. Both are called only inside calls that say that they allocate, and
 /// inside the destroy functions.
@@ -186,7 +190,7 @@ typedef struct mspring_allocator {
 /// A piece of work of the library, to be called as fn(argument, index, worker).
 typedef void (*mspring_task_fn)(void *argument, uint32_t index, uint32_t worker);
 
-/// The host's threads, lent to a network. The struct is copied.
+/// The host's threads, lent to a network. Fill with mspring_tasks_init() first. The struct is copied.
 ///
 /// run has to call fn(argument, index, worker) once for each index below count, on any threads, the caller's
 /// included, and to return when all these calls have returned. What the caller wrote before is to be visible to
@@ -205,11 +209,11 @@ typedef void (*mspring_task_fn)(void *argument, uint32_t index, uint32_t worker)
 /// never from inside fn.
 typedef struct mspring_tasks {
     uint32_t struct_size;      ///< sizeof(mspring_tasks)
-    uint32_t worker_count;     ///< 1 to MSPRING_MAX_WORKERS; 1 means that run is not called
-    uint32_t concurrent_count; ///< 1 to worker_count
+    uint32_t worker_count;     ///< 1 to MSPRING_MAX_WORKERS; 1, the default, means that run is not called
+    uint32_t concurrent_count; ///< 1 to worker_count; default 1
     uint32_t reserved;         ///< 0
-    void (*run)(uint32_t count, mspring_task_fn fn, void *argument, void *user);
-    void *user;
+    void (*run)(uint32_t count, mspring_task_fn fn, void *argument, void *user); ///< must be set
+    void *user; ///< handed to run; default NULL
 } mspring_tasks;
 
 /* -------------------------------------------------------------------------------------------- definitions */
@@ -435,13 +439,17 @@ enum {
 /// substeps for "as few as are stable in whatever shape the network may get into" (see
 /// mspring_network_stable_dt()), chosen at every step. mspring_step_info says how many they were. For the
 /// implicit and the direct solver 1.
+///
+/// Relative springs follow the substep, so their number decides how firm they are: 1 if all springs are relative.
+/// Set a number to have them firmer. If relative springs are too stiff to be stable in any shape, the others get half
+/// of the room, and the guard looks at the present shape.
 #define MSPRING_SUBSTEPS_AUTO UINT32_MAX
 
 /// Solver and its settings. Fill with mspring_solver_def_init() first. What a solver does not use is not looked at.
 typedef struct mspring_solver_def {
     uint32_t struct_size;
     mspring_solver solver; ///< default MSPRING_SOLVER_EXPLICIT
-    uint32_t substeps;     ///< substeps in one step, 1 to MSPRING_MAX_SUBSTEPS, or MSPRING_SUBSTEPS_AUTO; default 1
+    uint32_t substeps;     ///< substeps in one step, 1 to MSPRING_MAX_SUBSTEPS, or MSPRING_SUBSTEPS_AUTO, the default
     uint32_t max_substeps; ///< most that MSPRING_SUBSTEPS_AUTO or MSPRING_GUARD_RETRY may choose, 1 to
                            ///< MSPRING_MAX_SUBSTEPS: a step that needs more is refused with
                            ///< MSPRING_ERROR_UNSTABLE; default 1000
@@ -521,10 +529,10 @@ enum {
     /// with the network. mspring_step_info says how often that was.
     MSPRING_GUARD_IMPLICIT = 3,
     /// As MSPRING_GUARD_GROWTH, but take a step that would be refused with strain rates clamped and, unless the
-    /// solver is an implicit one, the 15 after it: in as many substeps (with MSPRING_SUBSTEPS_AUTO max_substeps),
-    /// in each of which springs act one after another in the order of their ids, and back again, by impulses along
-    /// them. None changes the rate at which its spring is strained by more than what takes it to its rest length by
-    /// the end of the substep, or its damper's by more than what brings it to rest.
+    /// solver is an implicit one, the 15 after it: in as many substeps, or a hundredth of max_substeps if these are too
+    /// few for MSPRING_SUBSTEPS_AUTO. In each of them springs act one after another in the order of their ids, and
+    /// back again, by impulses along them. None changes the rate at which its spring is strained by more than what
+    /// takes it to its rest length by the end of the substep, or its damper's by more than what brings it to rest.
     ///
     /// Unphysical: a spring is as stiff as its ends and the substep allow and not more (about mu / h^2, see
     /// MSPRING_SPRING_RELATIVE), so what is stiff turns soft, the more so the more springs stand in line; motion
@@ -544,7 +552,8 @@ enum {
     MSPRING_GUARD_CLAMP_BOUNDS = 5
 };
 
-/// What may change at any time: see mspring_network_set_settings().
+/// What may change at any time: see mspring_network_set_settings(). mspring_settings_init() fills in what a network has
+/// by default.
 typedef struct mspring_settings {
     uint32_t struct_size;
     mspring_guard guard;  ///< what a step does beside checking bounds
@@ -574,7 +583,7 @@ typedef struct mspring_network_def {
     float max_speed;         ///< as in mspring_settings; default 1e6
     mspring_solver solver;   ///< default MSPRING_SOLVER_EXPLICIT; its other settings are those of
                              ///< mspring_solver_def_init()
-    uint32_t substeps;       ///< as in mspring_solver_def; default 1
+    uint32_t substeps;       ///< as in mspring_solver_def; default MSPRING_SUBSTEPS_AUTO
     const mspring_allocator *allocator; ///< default NULL: malloc and free
     const mspring_tasks *tasks; ///< the host's threads; default NULL: threads of the library, if worker_count asks
     uint32_t worker_count;      ///< threads that step the network, the caller's being one of them, 1 to
@@ -583,7 +592,8 @@ typedef struct mspring_network_def {
                            ///< helps. With tasks, whose number counts, this is not looked at.
     uint32_t flags;        ///< bits of MSPRING_NETWORK_; default 0
     uint32_t max_substeps; ///< as in mspring_solver_def; default 1000
-    mspring_guard guard;   ///< as in mspring_settings; default MSPRING_GUARD_GROWTH
+    mspring_guard guard;   ///< as in mspring_settings; default MSPRING_GUARD_CLAMP: a step that is too long for
+                           ///< the springs is made all the same, see there
     float sleep_speed;     ///< as in mspring_settings; default 0: never
     float sleep_time;      ///< as in mspring_settings; default 0.5
     uint32_t spare_particles; ///< particles that may be added (mspring_network_add_particles()), with those that
@@ -596,6 +606,8 @@ typedef struct mspring_network_def {
 /// Fill a definition with its defaults. Pass the size that your header gives it: sizeof *def.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL; MSPRING_ERROR_STRUCT for an impossible size.
 /// @threads any   @allocates never   @since 0.1
+MSPRING_API mspring_result mspring_allocator_init(mspring_allocator *allocator, size_t size);
+MSPRING_API mspring_result mspring_tasks_init(mspring_tasks *tasks, size_t size);
 MSPRING_API mspring_result mspring_particle_def_init(mspring_particle_def *def, size_t size);
 MSPRING_API mspring_result mspring_spring_def_init(mspring_spring_def *def, size_t size);
 MSPRING_API mspring_result mspring_material_init(mspring_material *material, size_t size);
@@ -604,6 +616,7 @@ MSPRING_API mspring_result mspring_rope_def_init(mspring_rope_def *def, size_t s
 MSPRING_API mspring_result mspring_mesh_def_init(mspring_mesh_def *def, size_t size);
 MSPRING_API mspring_result mspring_disc_def_init(mspring_disc_def *def, size_t size);
 MSPRING_API mspring_result mspring_solver_def_init(mspring_solver_def *def, size_t size);
+MSPRING_API mspring_result mspring_settings_init(mspring_settings *settings, size_t size);
 MSPRING_API mspring_result mspring_network_def_init(mspring_network_def *def, size_t size);
 
 /// Fill a material with what looks like steel, wood, rubber or jelly at this substep.

@@ -312,7 +312,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_tune(mspring_networ
 
 /// Get the setting of a row, for mspring_network_set_solver().
 /// Its substeps are those that the row's steps took.
-/// @param solver  struct_size need not be set
+/// @param solver  set its struct_size first
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL, MSPRING_ERROR_STRUCT.
 /// @threads any   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_tune_row_solver(const mspring_tune_row *row,

@@ -4,6 +4,8 @@
 
 #include <massspring/massspring_tools.h>
 
+#include "base/definitions.h"
+
 // Springs neither break nor are stressed.
 #define NO_LIMITS                                                                                                  \
     .break_strain = MSPRING_NEVER, .stress_strain = MSPRING_NEVER, .relax_strain = MSPRING_RELAX_STRAIN_DEFAULT
@@ -17,6 +19,16 @@ static mspring_result fill(void *def, size_t size, const void *defaults, size_t 
         return MSPRING_ERROR_STRUCT;
     memcpy(def, defaults, size);
     return MSPRING_OK;
+}
+
+mspring_result mspring_allocator_init(mspring_allocator *allocator, size_t size) {
+    const mspring_allocator defaults = {.struct_size = sizeof defaults};
+    return fill(allocator, size, &defaults, sizeof defaults);
+}
+
+mspring_result mspring_tasks_init(mspring_tasks *tasks, size_t size) {
+    const mspring_tasks defaults = {.struct_size = sizeof defaults, .worker_count = 1, .concurrent_count = 1};
+    return fill(tasks, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_particle_def_init(mspring_particle_def *def, size_t size) {
@@ -78,7 +90,7 @@ mspring_result mspring_floor_def_init(mspring_floor_def *def, size_t size) {
 
 mspring_result mspring_solver_def_init(mspring_solver_def *def, size_t size) {
     const mspring_solver_def defaults = {
-        .struct_size = sizeof defaults, .solver = MSPRING_SOLVER_EXPLICIT, .substeps = 1, .max_substeps = 1000};
+        .struct_size = sizeof defaults, .solver = MSPRING_SOLVER_EXPLICIT, .substeps = MSPRING_SUBSTEPS_AUTO, .max_substeps = 1000};
     return fill(def, size, &defaults, sizeof defaults);
 }
 
@@ -88,12 +100,19 @@ mspring_result mspring_network_def_init(mspring_network_def *def, size_t size) {
                                           .gravity_y = -9.8f,
                                           .max_speed = 1e6f,
                                           .solver = MSPRING_SOLVER_EXPLICIT,
-                                          .substeps = 1,
+                                          .substeps = MSPRING_SUBSTEPS_AUTO,
                                           .worker_count = 1,
                                           .max_substeps = 1000,
-                                          .guard = MSPRING_GUARD_GROWTH,
+                                          .guard = MSPRING_GUARD_CLAMP,
                                           .sleep_time = 0.5f};
     return fill(def, size, &defaults, sizeof defaults);
+}
+
+mspring_result mspring_settings_init(mspring_settings *settings, size_t size) {
+    mspring_network_def def;
+    (void)mspring_network_def_init(&def, sizeof def);
+    const mspring_settings defaults = mspringi_settings_of(&def);
+    return fill(settings, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_clone_def_init(mspring_clone_def *def, size_t size) {

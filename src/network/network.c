@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "base/cpu.h"
+#include "base/definitions.h"
 #include "base/mix.h"
 #include "network/job.h"
 #include "sleep/sleep.h"
@@ -19,9 +20,6 @@
 #include "store/rests.h"
 #include "store/springs.h"
 #include "store/store.h"
-
-/// Fraction of their stress strain below which springs relax, until the host sets another.
-#define USUAL_RELAX_FRACTION 0.8f
 
 /* --------------------------------------------------------------------------------------------------- checks */
 
@@ -45,18 +43,6 @@ mspring_result mspringi_check_range(mspring_network *network, const char *what, 
                          (unsigned)count, what, (unsigned)first, (unsigned)total);
 }
 
-static mspring_settings settings_of(const mspring_network_def *def) {
-    return (mspring_settings){.struct_size = sizeof(mspring_settings),
-                              .guard = def->guard,
-                              .gravity_x = def->gravity_x,
-                              .gravity_y = def->gravity_y,
-                              .global_damping = def->global_damping,
-                              .max_speed = def->max_speed,
-                              .sleep_speed = def->sleep_speed,
-                              .sleep_time = def->sleep_time,
-                              .relax_fraction = USUAL_RELAX_FRACTION};
-}
-
 static mspring_result check_def(const mspring_network_def *def, mspringi_message *message) {
     mspring_result result =
         mspringi_check_struct(message, "mspring_network_def", def->struct_size, sizeof *def, sizeof *def);
@@ -69,7 +55,7 @@ static mspring_result check_def(const mspring_network_def *def, mspringi_message
         ~(uint32_t)(MSPRING_NETWORK_RESERVE_DAMPING | MSPRING_NETWORK_RESERVE_RELATIVE | MSPRING_NETWORK_PRECISE))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "network flags %#x are unknown",
                              (unsigned)def->flags);
-    const mspring_settings settings = settings_of(def);
+    const mspring_settings settings = mspringi_settings_of(def);
     return mspringi_check_settings(&settings, message);
 }
 
@@ -264,7 +250,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
                                        &network->message);
     if (result != MSPRING_OK)
         return result;
-    network->settings = settings_of(def);
+    network->settings = mspringi_settings_of(def);
     if (def->sleep_speed > 0.0f)
         result = mspringi_sleep_reserve(network);
     if (result == MSPRING_OK)

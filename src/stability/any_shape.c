@@ -60,7 +60,8 @@ static void sum_up(const mspring_network *network, const mspringi_state *sums) {
     }
 }
 
-static double find(mspring_network *network, mspring_id *spring) {
+// The smallest limit of all springs. Relative ones count with at most so much of the bound, which is 4.
+static double find(mspring_network *network, double most_relative, mspring_id *spring) {
     // Room for the rounding of the sums.
     const double tight = 1.0 - 1e-5;
     const mspringi_state room = find_room(network), *sums = &room;
@@ -77,7 +78,7 @@ static double find(mspring_network *network, mspring_id *spring) {
         const mspringi_quotient quotient = {
             .stiffness = (double)sums->x[a] * per_a + (double)sums->x[b] * per_b,
             .damping = (double)sums->y[a] * per_a + (double)sums->y[b] * per_b,
-            .relative = ((double)sums->vx[a] + (double)sums->vx[b]) * tight,
+            .relative = fmin(((double)sums->vx[a] + (double)sums->vx[b]) * tight, most_relative),
         };
         if (quotient.stiffness <= tightest.stiffness && quotient.damping <= tightest.damping &&
             quotient.relative <= tightest.relative)
@@ -104,12 +105,23 @@ double mspringi_stable_in_any_shape(mspring_network *network, mspring_id *spring
         if (!is_of_now(last, edits)) {
             *last = (mspringi_any_shape){
                 .masses = edits->masses, .values = edits->values, .growth = edits->growth, .is_known = true};
-            last->dt = find(network, &last->spring);
+            last->dt = find(network, INFINITY, &last->spring);
         }
         *known = *last;
     }
     *spring = known->spring;
     return known->dt;
+}
+
+double mspringi_stable_with_relative(mspring_network *network) {
+    mspring_id spring;
+    mspringi_any_shape *last = &network->last_shape;
+    (void)mspringi_stable_in_any_shape(network, &spring);
+    if (!is_of_now(last, &network->edits))
+        *last = network->any_shape;
+    if (!(last->mixed_dt > 0.0))
+        last->mixed_dt = find(network, 2.0, &spring);
+    return last->mixed_dt;
 }
 
 mspring_id mspringi_tightest_spring(mspring_network *network, double h) {

@@ -21,6 +21,11 @@ mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_i
 /// between steps only.
 double mspringi_stable_in_any_shape(mspring_network *network, mspring_id *spring);
 
+/// A substep for MSPRING_SUBSTEPS_AUTO where relative springs leave the others no room in the bound above: as if they
+/// took at most half of it. Other substeps would be no more stable, as relative springs follow them: whether this one
+/// is stable in the present shape, the guard sees. Infinite if all springs are relative.
+double mspringi_stable_with_relative(mspring_network *network);
+
 /// The spring to name where substeps of h are too long: of those that share an end with the one that sets the
 /// longest substep, which says only where, the one that is stiffest or most damped for its masses. MSPRING_NONE if
 /// nothing sets it. Looks at all springs, in the same room.

@@ -121,6 +121,8 @@ static mspring_result choose_substeps(mspring_network *network, double dt) {
     mspring_id spring;
     const double limit = mspringi_stable_in_any_shape(network, &spring);
     uint32_t substeps = mspringi_substeps_within(dt, limit, network->max_substeps);
+    if (substeps > network->max_substeps && network->fractions.values)
+        substeps = mspringi_substeps_within(dt, mspringi_stable_with_relative(network), network->max_substeps);
     if (network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS && substeps > network->max_substeps)
         substeps = network->max_substeps;
     if (substeps > network->max_substeps) {
@@ -232,6 +234,10 @@ static mspring_result attempt(mspring_network *network, const request *asked, co
 /// still cannot takes longer than they do.
 #define FALLBACK_STEPS 15
 
+/// Explicit substeps that take about as long as a clamped one. Where MSPRING_SUBSTEPS_AUTO finds that max_substeps are
+/// too few, so many fewer take the step: no frame is late for it.
+#define COST_OF_CLAMPED_SUBSTEP 100u
+
 // The solver for steps that the chosen one cannot take, or NULL.
 static const mspringi_solver *fallback_of(const mspring_network *network) {
     if (network->settings.guard == MSPRING_GUARD_CLAMP)
@@ -240,11 +246,19 @@ static const mspringi_solver *fallback_of(const mspring_network *network) {
                                                                                                 : NULL;
 }
 
+// The substeps of a fallback that takes as many as the host has chosen, or would have been given.
+static uint32_t substeps_of_fallback(mspring_network *network, double dt) {
+    if (!mspringi_picks_substeps(network) || choose_substeps(network, dt) == MSPRING_OK)
+        return network->substeps;
+    const uint32_t fewer = network->max_substeps / COST_OF_CLAMPED_SUBSTEP;
+    return fewer > 0 ? fewer : 1;
+}
+
 // Have the fallback take the step, or leave everything as it is. Neither it nor the chosen solver, for which a new
 // motion begins after it, has a history then.
 static mspring_result attempt_otherwise(mspring_network *network, const request *asked,
                                         const mspringi_solver *fallback) {
-    const uint32_t own = mspringi_picks_substeps(network) ? network->max_substeps : network->substeps;
+    const uint32_t own = substeps_of_fallback(network, asked->dt);
     const bool takes_one = fallback->ops->takes_one;
     mspringi_solver_forget(fallback);
     const mspring_result result = attempt(network, asked, fallback, takes_one ? 1 : own);

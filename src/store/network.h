@@ -132,6 +132,7 @@ typedef struct mspringi_ramps {
 /// What mspringi_stable_in_any_shape() has found, and the edits that it has seen.
 typedef struct mspringi_any_shape {
     double dt;
+    double mixed_dt; ///< see mspringi_stable_with_relative(); 0: not known yet
     mspring_id spring;
     bool is_known;
     uint64_t masses, values, growth;

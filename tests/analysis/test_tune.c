@@ -58,7 +58,7 @@ static reference reference_of_network(const mspring_network *network) {
 static double find_share(mspring_network *network, const mspring_tune_row *row, const mspring_tune_def *def,
                          uint32_t fine_substeps) {
     const uint32_t steps = (uint32_t)(row->duration / def->dt + 0.5);
-    mspring_solver_def solver;
+    mspring_solver_def solver = {.struct_size = sizeof solver};
     reference net = reference_of_network(network), start = reference_of_network(network);
     double error = 0, motion = 0;
     check_ok(mspring_tune_row_solver(row, &solver));

@@ -224,7 +224,7 @@ static void bad_calls_are_refused(void **state) {
     def = good;
     def.struct_size -= 8;
     check_error(mspring_network_tune(network, &def, out.rows, TUNES_MOST, &count), MSPRING_ERROR_STRUCT);
-    mspring_solver_def solver;
+    mspring_solver_def solver = {.struct_size = sizeof solver};
     check_error(mspring_tune_row_solver(NULL, &solver), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_tune_row_solver(&out.rows[0], NULL), MSPRING_ERROR_ARGUMENT);
     out.rows[0].struct_size = 3;

@@ -214,6 +214,11 @@ static void add_hook(arguments *a) {
       mspring_solver_def_init(a->out[0], a->size))                                                                 \
     X(mspring_network_def_init, "Z0", a->size = sizeof(mspring_network_def),                                       \
       mspring_network_def_init(a->out[0], a->size))                                                                \
+    X(mspring_settings_init, "Z0", a->size = sizeof(mspring_settings),                                             \
+      mspring_settings_init(a->out[0], a->size))                                                                   \
+    X(mspring_allocator_init, "Z0", a->size = sizeof(mspring_allocator),                                           \
+      mspring_allocator_init(a->out[0], a->size))                                                                  \
+    X(mspring_tasks_init, "Z0", a->size = sizeof(mspring_tasks), mspring_tasks_init(a->out[0], a->size))           \
     X(mspring_settle_def_init, "Z0", a->size = sizeof(mspring_settle_def),                                         \
       mspring_settle_def_init(a->out[0], a->size))                                                                 \
     X(mspring_hook_def_init, "Z0", a->size = sizeof(mspring_hook_def), mspring_hook_def_init(a->out[0], a->size))  \
@@ -277,7 +282,8 @@ static void add_hook(arguments *a) {
     X(mspring_tune_settings, "NT0", NOTHING, mspring_tune_settings(a->network, a->dt, NULL, 0, a->out[0]))         \
     X(mspring_network_tune, "NsP1", (make_tune(a), OUT_STRUCT(0, tune_row)),                                       \
       mspring_network_tune(a->network, a->given, a->out[0], 1, a->out[1]))                                         \
-    X(mspring_tune_row_solver, "S0", make_tune_row(a), mspring_tune_row_solver(a->given, a->out[0]))               \
+    X(mspring_tune_row_solver, "SP", (make_tune_row(a), OUT_STRUCT(0, solver_def)),                                \
+      mspring_tune_row_solver(a->given, a->out[0]))                                                                \
     X(mspring_network_apply_force, "NIXY", NOTHING, mspring_network_apply_force(a->network, a->id, a->x, a->y))    \
     X(mspring_network_apply_forces, "NRFG", NOTHING,                                                               \
       mspring_network_apply_forces(a->network, a->first, a->count, a->f, a->g, 1))                                 \

@@ -153,7 +153,7 @@ static void solver_defaults(void **state) {
     check_ok(mspring_solver_def_init(&def, sizeof def));
     assert_int_equal(def.struct_size, sizeof def);
     assert_int_equal(def.solver, MSPRING_SOLVER_EXPLICIT);
-    assert_int_equal(def.substeps, 1);
+    assert_int_equal(def.substeps, MSPRING_SUBSTEPS_AUTO);
     assert_int_equal(def.max_substeps, 1000);
 }
 
@@ -165,13 +165,45 @@ static void network_defaults(void **state) {
     assert_int_equal(def.struct_size, sizeof def);
     assert_int_equal(def.simd_level, MSPRING_SIMD_AUTO);
     assert_int_equal(def.solver, MSPRING_SOLVER_EXPLICIT);
-    assert_int_equal(def.substeps, 1);
+    assert_int_equal(def.substeps, MSPRING_SUBSTEPS_AUTO);
     assert_int_equal(def.max_substeps, 1000);
     assert_true(def.gravity_x == 0 && def.gravity_y == -9.8f && def.global_damping == 0 && def.max_speed == 1e6f);
-    assert_int_equal(def.guard, MSPRING_GUARD_GROWTH);
+    assert_int_equal(def.guard, MSPRING_GUARD_CLAMP);
     assert_null(def.allocator);
     assert_null(def.tasks);
     assert_int_equal(def.worker_count, 1);
+}
+
+static void settings_defaults_are_those_of_a_new_network(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    support_particle(builder, 0, 0, 1);
+    mspring_network *network = support_network(builder, NULL);
+    mspring_settings settings;
+    memset(&settings, 0xff, sizeof settings);
+    check_ok(mspring_settings_init(&settings, sizeof settings));
+    const mspring_settings new_ones = support_settings(network);
+    assert_memory_equal(&settings, &new_ones, sizeof settings);
+    mspring_network_destroy(network);
+}
+
+static void allocator_and_tasks_lack_what_the_host_must_set(void **state) {
+    (void)state;
+    mspring_allocator allocator;
+    mspring_tasks tasks;
+    mspring_builder *builder = NULL;
+    memset(&allocator, 0xff, sizeof allocator);
+    memset(&tasks, 0xff, sizeof tasks);
+    check_ok(mspring_allocator_init(&allocator, sizeof allocator));
+    check_ok(mspring_tasks_init(&tasks, sizeof tasks));
+    assert_int_equal(allocator.struct_size, sizeof allocator);
+    assert_true(!allocator.alloc && !allocator.free && !allocator.user);
+    check_error(mspring_builder_create(&allocator, &builder), MSPRING_ERROR_ARGUMENT);
+    assert_int_equal(tasks.struct_size, sizeof tasks);
+    assert_int_equal(tasks.worker_count, 1);
+    assert_int_equal(tasks.concurrent_count, 1);
+    assert_int_equal(tasks.reserved, 0);
+    assert_true(!tasks.run && !tasks.user);
 }
 
 /* ------------------------------------------------------------------------------------------------- sizes */
@@ -246,6 +278,8 @@ int main(void) {
         cmocka_unit_test(solver_defaults),
         cmocka_unit_test(network_defaults),
         cmocka_unit_test(hook_defaults),
+        cmocka_unit_test(settings_defaults_are_those_of_a_new_network),
+        cmocka_unit_test(allocator_and_tasks_lack_what_the_host_must_set),
         cmocka_unit_test(init_refuses_null_and_other_sizes),
     };
     return cmocka_run_group_tests_name("header", tests, NULL, NULL);

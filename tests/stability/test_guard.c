@@ -480,6 +480,7 @@ static void more_substeps_are_tried_where_that_is_wanted(void **state) {
     check_ok(mspring_network_stable_dt(network, &now, NULL));
     mspring_solver_def solver;
     check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    solver.substeps = 1;
     solver.max_substeps = 15;
     check_ok(mspring_network_set_solver(network, &solver));
     const uint64_t before = support_hash(network);

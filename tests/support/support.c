@@ -120,6 +120,7 @@ mspring_network_def support_def(float gravity_y, uint32_t substeps) {
     check_ok(mspring_network_def_init(&def, sizeof def));
     def.gravity_y = gravity_y;
     def.substeps = substeps;
+    def.guard = MSPRING_GUARD_GROWTH;
     return def;
 }
 

@@ -73,7 +73,7 @@ mspring_id support_pinned(mspring_builder *builder, double x, double y, float ma
 /// Add a spring whose rest length is the distance of its ends.
 mspring_id support_spring(mspring_builder *builder, mspring_id a, mspring_id b, float stiffness, float damping);
 
-/// Defaults with this gravity along y and this number of substeps.
+/// Defaults with this gravity along y and this number of substeps, and the guard that rejects steps which would grow.
 mspring_network_def support_def(float gravity_y, uint32_t substeps);
 
 /// Make a network of a builder and destroy the builder.

@@ -92,6 +92,8 @@ mspring_result mspring_tune_row_solver(const mspring_tune_row *row, mspring_solv
         return MSPRING_ERROR_ARGUMENT;
     if (row->struct_size != sizeof *row)
         return MSPRING_ERROR_STRUCT;
+    if (solver->struct_size != sizeof *solver)
+        return MSPRING_ERROR_STRUCT;
     (void)mspring_solver_def_init(solver, sizeof *solver);
     solver->solver = row->solver;
     solver->integrator = row->integrator;

@@ -312,7 +312,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_tune(mspring_networ
 
 /// Get the setting of a row, for mspring_network_set_solver().
 /// Its substeps are those that the row's steps took.
-/// @param solver  struct_size need not be set
+/// @param solver  set its struct_size first
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL, MSPRING_ERROR_STRUCT.
 /// @threads any   @allocates never   @since 0.1
 MSPRING_NODISCARD MSPRING_API mspring_result mspring_tune_row_solver(const mspring_tune_row *row,
@@ -415,8 +415,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_job_run(mspring_job *job, u
 
 /// Move the network to the plan of a job.
 /// Slots change, and views end. Afterwards the job can only be destroyed, unless the result is MSPRING_ERROR_BUSY
-/// or MSPRING_ERROR_ARGUMENT.
-/// With the direct solver it takes some milliseconds to free the memory of the old factor.
+/// or MSPRING_ERROR_ARGUMENT. The job keeps the memory of the old plan until it is destroyed.
 /// @return MSPRING_OK, also if there was nothing to do; MSPRING_ERROR_OUTDATED if since begin particles or springs
 ///         were added or removed, a spring was restored that the plan leaves out, or the plan has changed
 ///         otherwise: begin another job; MSPRING_ERROR_BUSY inside a hook, or if the job has not been run to its
@@ -432,6 +431,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_job_finish(mspring_network 
 MSPRING_API const char *mspring_job_error(const mspring_job *job);
 
 /// Free a job, finished or not. NULL is allowed.
+/// If it is finished, this frees the old plan, which may take milliseconds: another thread may do that.
 /// @threads exclusive access to job and, unless it is finished, to its network   @allocates never   @since 0.1
 MSPRING_API void mspring_job_destroy(mspring_job *job);
 
