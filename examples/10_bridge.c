@@ -6,7 +6,7 @@
 
 #include <massspring/massspring_tools.h>
 
-enum { PLANKS = 24, STEPS = 128 * 63 };
+enum { PLANKS = 24, STEPS = 16 * 63 };
 
 int main(int count, char **arguments) {
     mspring_builder *builder = NULL;
@@ -38,7 +38,7 @@ int main(int count, char **arguments) {
     for (int step = 0; !result && step < STEPS; step++, show_step(&shown, network)) {
         shown.film.probe = ids[0][step * PLANKS / STEPS];
         result = mspring_network_apply_force(network, shown.film.probe, 0, -800);
-        result = result ? result : mspring_network_step(network, 1.0 / 480);
+        result = result ? result : mspring_network_step(network, 1.0 / 60);
     }
     return show_end(&shown, result, builder, network);
 }

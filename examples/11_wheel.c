@@ -20,15 +20,12 @@ int main(int count, char **arguments) {
     mspring_floor_def hill;
     mspring_floor_def_init(&hill, sizeof hill);
     hill.heights = heights, hill.height_count = HEIGHTS, hill.spacing = 0.25, hill.friction = 0.8f;
-    mspring_network_def settings;
-    mspring_network_def_init(&settings, sizeof settings);
-    settings.substeps = 30;
 
     mspring_builder *builder = NULL;
     mspring_network *network = NULL;
     mspring_result result = mspring_builder_create(NULL, &builder);
     result = result ? result : mspring_builder_add_disc(builder, &wheel, NULL, NULL);
-    result = result ? result : mspring_network_create(builder, &settings, &network);
+    result = result ? result : mspring_network_create(builder, NULL, &network);
     result = result ? result : mspring_network_set_floor(network, &hill);
     show shown;
     show_begin(&shown, count, arguments, "11_wheel", "A soft wheel rolls down a hill.", network, 0.1);

@@ -15,15 +15,12 @@ int main(int count, char **arguments) {
     mspring_lattice_def_init(&cloth, sizeof cloth);
     cloth.width = COLUMNS, cloth.height = ROWS, cloth.cells = cells[0], cloth.spacing = 0.06; // m
     cloth.materials = &thread, cloth.material_count = 1, cloth.shear_share = 0.3f;
-    mspring_network_def settings;
-    mspring_network_def_init(&settings, sizeof settings);
-    settings.substeps = 10;
 
     mspring_builder *builder = NULL;
     mspring_network *network = NULL;
     mspring_result result = mspring_builder_create(NULL, &builder);
     result = result ? result : mspring_builder_add_lattice(builder, &cloth, NULL);
-    result = result ? result : mspring_network_create(builder, &settings, &network);
+    result = result ? result : mspring_network_create(builder, NULL, &network);
     const float pinned = 0, vx = 0, vy = -0.25f; // inverse mass scale, m/s
     result = result ? result : mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, 0, COLUMNS, &pinned, 0);
     result =

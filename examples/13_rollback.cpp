@@ -50,8 +50,8 @@ class task_pool {
 
     /// What a network's definition needs. The pool must outlive the network.
     mspring_tasks tasks() noexcept {
-        mspring_tasks lent = {};
-        lent.struct_size = sizeof lent;
+        mspring_tasks lent;
+        mspring_tasks_init(&lent, sizeof lent);
         lent.worker_count = lent.concurrent_count = static_cast<std::uint32_t>(others.size() + 1);
         lent.run = [](std::uint32_t count, mspring_task_fn fn, void *argument, void *user) {
             static_cast<task_pool *>(user)->run(count, fn, argument);
@@ -211,7 +211,7 @@ class world {
         bar.material_count = 1;
         if (result == MSPRING_OK)
             result = mspring_builder_add_lattice(builder.get(), &bar, nullptr);
-        mspring_tasks tasks = {};
+        mspring_tasks tasks;
         mspring_network_def settings;
         mspring_network_def_init(&settings, sizeof settings);
         settings.substeps = 16;

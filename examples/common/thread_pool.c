@@ -174,11 +174,12 @@ static void run(uint32_t count, mspring_task_fn fn, void *argument, void *user) 
 
 mspring_tasks thread_pool_tasks(thread_pool *pool) {
     // Every thread that is free takes the next index at once, so as many as there are threads run at the same time.
-    return (mspring_tasks){.struct_size = sizeof(mspring_tasks),
-                           .worker_count = pool->thread_count,
-                           .concurrent_count = pool->thread_count,
-                           .run = run,
-                           .user = pool};
+    mspring_tasks tasks;
+    mspring_tasks_init(&tasks, sizeof tasks);
+    tasks.worker_count = tasks.concurrent_count = pool->thread_count;
+    tasks.run = run;
+    tasks.user = pool;
+    return tasks;
 }
 
 uint64_t thread_pool_runs(const thread_pool *pool) {
