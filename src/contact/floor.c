@@ -188,6 +188,8 @@ static bool reserve_layout(mspringi_floor *floor, mspring_network *network) {
         floor->before.low_y = floor->before.low_x + floor->slot_count;
     }
     floor->had_impulse = false;
+    floor->is_near = true;
+    floor->room.reach = 0.0;
     return floor->clearances && floor->contacts && floor->before.x &&
            reserve_field(&floor->impulse, floor->slot_count, memory) &&
            reserve_field(&floor->former, floor->slot_count, memory) &&

@@ -2,7 +2,8 @@
 /// What particles cannot get through: half-planes and a field of heights.
 ///
 ///   floor.c      the definition, given by the host
-///   surface.c    where the surface is, which way it faces, and which boxes are clear of it
+///   surface.c    where the surface is, and which way it faces
+///   survey.c     how far it is from strips and from the whole network
 ///   bounce.c     what it does to a particle in a substep of symplectic Euler, and to one without springs
 ///   explicit.c   the same of all particles of such substeps
 ///   collide.c    what it does to particles with springs after an implicit substep; see solvers/implicit/terms.c
@@ -52,6 +53,14 @@ typedef struct mspringi_contact {
     double along;     ///< what brakes it along the surface, likewise
 } mspringi_contact;
 
+/// A box that no surface is near.
+typedef struct mspringi_room {
+    mspringi_bounds box;
+    float place;               ///< coordinates of less than this size are in the box
+    double reach;              ///< half as far from the box there is no surface; 0: there is no such box
+    double origin_x, origin_y; ///< that it is relative to
+} mspringi_room;
+
 typedef struct mspringi_floor {
     mspringi_half_plane planes[MSPRING_MAX_PLANES];
     double given[MSPRING_MAX_PLANES][4];     ///< the same, as the host gave them
@@ -66,6 +75,8 @@ typedef struct mspringi_floor {
     mspringi_field former;  ///< [slot_count] in the step before it, as long as one is made
     size_t slot_count;
     double reach;               ///< twice as far, m, as anything may come in the substeps of the last survey
+    bool is_near;               ///< some strip may come near in these, or there was no survey yet
+    mspringi_room room;         ///< that all of the network was in
     mspringi_bounds clear;      ///< where no surface is, around the network as it was before an implicit substep
     mspringi_contact *contacts; ///< of an implicit substep
     uint32_t contact_count, contact_capacity;
@@ -115,15 +126,27 @@ int64_t mspringi_heights_part_below(const mspringi_heights *heights, double x);
 int64_t mspringi_heights_part_met(const mspringi_heights *heights, double start_x, double start_y, double x,
                                   double y);
 
+/// Height of the highest knot between two x, and of the next ones beyond them.
+double mspringi_heights_highest(const mspringi_heights *heights, double low, double high);
+
 /// Smallest distance from any surface, < 0 where particles cannot be. (That of a point above the heights is the one
 /// from the line below it.)
 double mspringi_floor_distance(const mspringi_floor *floor, double x, double y);
+
+/* survey.c */
 
 /// Look how far every strip is from the surface, and which of them stay clear of it for so many seconds.
 void mspringi_floor_survey(mspring_network *network, double seconds);
 
 /// Whether a block of a strip that may come near the surface may do so itself, in the same substeps.
 bool mspringi_floor_is_near_block(const mspring_network *network, const mspringi_strip *strip, uint32_t block);
+
+/// Whether nothing can come near the surface in a step of so many seconds. The clearances of the last survey then say
+/// so of every strip, too.
+bool mspringi_floor_is_out_of_reach(mspring_network *network, double seconds);
+
+/// After that step, of substeps of h: whether nothing did, by bounds of what it has led to.
+bool mspringi_floor_was_out_of_reach(const mspring_network *network, float h, mspringi_extrema seen);
 
 /* bounce.c */
 

@@ -256,11 +256,18 @@ static float bound_place(const mspring_network *network, float h, float speed, m
                : mspringi_guard_look(network, 0, mspringi_used_slots(network)).place;
 }
 
+mspringi_extrema mspringi_guard_bound(const mspring_network *network, float h, mspringi_extrema extrema) {
+    extrema.speed = bound_speed(network, extrema);
+    extrema.place = bound_place(network, h, extrema.speed, extrema);
+    return extrema;
+}
+
 mspring_result mspringi_guard_end(mspring_network *network, const mspringi_attempt *attempt,
                                   mspringi_extrema extrema) {
     const float h = attempt->h;
     mspringi_guard *guard = &network->guard;
-    float speed = bound_speed(network, extrema), place = bound_place(network, h, speed, extrema);
+    const mspringi_extrema bounds = mspringi_guard_bound(network, h, extrema);
+    float speed = bounds.speed, place = bounds.place;
     const bool is_out = !(place <= (float)MSPRING_MAX_COORDINATE && speed <= network->settings.max_speed);
     if (is_out && network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS) {
         extrema = put_back(network);

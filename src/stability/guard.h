@@ -25,6 +25,9 @@ mspring_result mspringi_guard_begin(mspring_network *network, const mspringi_att
 /// May be called by several threads at once.
 mspringi_extrema mspringi_guard_look(const mspring_network *network, size_t first, size_t end);
 
+/// After substeps of h from what mspringi_guard_begin() saw: the same, with bounds for what was not watched.
+mspringi_extrema mspringi_guard_bound(const mspring_network *network, float h, mspringi_extrema extrema);
+
 /// Put what is out of bounds back into them: before is the state of before the step, or NULL.
 void mspringi_guard_put_back(mspring_network *network, const mspringi_state *before);
 

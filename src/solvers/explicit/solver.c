@@ -1,14 +1,33 @@
 /// The explicit solver's table. It keeps nothing from step to step.
 #include "solvers/explicit/explicit.h"
+
+#include <string.h>
+
+#include "contact/floor.h"
 #include "solvers/explicit/flush.h"
+#include "stability/guard.h"
 #include "store/graft.h"
 
+static void restore(mspring_network *network, void *object) {
+    (void)object;
+    mspringi_explicit_reset(network);
+}
+
+// A floor out of reach costs a look before the step and one after it. If the second finds that it was none, the
+// step is taken again.
 static bool whole(mspring_network *network, const mspringi_attempt *attempt, mspringi_field base,
                   mspringi_extrema *extrema) {
-    if (network->floor || network->graft.count > 0)
+    const float h = attempt->h;
+    if (network->graft.count > 0 ||
+        (network->floor && !mspringi_floor_is_out_of_reach(network, (double)h * (double)attempt->substeps)))
         return false;
-    *extrema = mspringi_explicit_step(network, attempt->h, base, attempt->substeps);
-    return true;
+    *extrema = mspringi_explicit_step(network, h, base, attempt->substeps);
+    if (!network->floor || mspringi_floor_was_out_of_reach(network, h, mspringi_guard_bound(network, h, *extrema)))
+        return true;
+    memcpy(network->state.x, network->backup.x,
+           MSPRINGI_STATE_ARRAYS * mspringi_slot_count(network) * sizeof *network->state.x);
+    mspringi_explicit_reset(network);
+    return false;
 }
 
 static void substeps(mspring_network *network, void *object, float h, mspringi_field base, uint32_t count) {
@@ -18,11 +37,6 @@ static void substeps(mspring_network *network, void *object, float h, mspringi_f
 
 void mspringi_explicit_end(mspring_network *network) {
     mspringi_flush_to_zero(network, 0, mspringi_used_slots(network));
-}
-
-static void restore(mspring_network *network, void *object) {
-    (void)object;
-    mspringi_explicit_reset(network);
 }
 
 bool mspringi_explicit_is_alone(const mspring_network *network, const void *object, size_t slot) {

@@ -1,0 +1,171 @@
+/// @file test_floor_reach.c
+/// A floor that is out of reach takes another way through the step. A hook before each step forces the usual way: a
+/// twin that has one goes through the same states.
+///
+/// SPDX-License-Identifier: MIT
+#include "recipe.h"
+#include "support.h"
+
+static void do_nothing(const mspring_hook_args *args, void *user) {
+    (void)args;
+    (void)user;
+}
+
+/// A network and its twin.
+typedef struct twins {
+    mspring_network *of[2];
+    uint32_t particles;
+} twins;
+
+static void lay_floor(mspring_network *network, double bottom) {
+    const float heights[6] = {0, 3, -2, 1, 5, 0};
+    const double planes[8] = {-2e4, 0, 1, 0, 0, bottom - 2, 0.1, 1};
+    mspring_floor_def def;
+    check_ok(mspring_floor_def_init(&def, sizeof def));
+    def.planes = planes;
+    def.plane_count = 2;
+    def.heights = heights;
+    def.height_count = COUNT_OF(heights);
+    def.heights_x = -20;
+    def.heights_y = bottom;
+    def.spacing = 8;
+    def.friction = 0.4f;
+    def.restitution = 0.5f;
+    check_ok(mspring_network_set_floor(network, &def));
+}
+
+static twins make_twins(const recipe *made, mspring_network_def def, double bottom) {
+    twins both = {.particles = made->particle_count};
+    for (uint32_t i = 0; i < 2; i++) {
+        uint32_t hook;
+        def.worker_count = 1 + i;
+        both.of[i] = recipe_network(made, &def);
+        lay_floor(both.of[i], bottom);
+        if (i == 1) {
+            check_ok(support_add_hook(both.of[i], MSPRING_PHASE_BEFORE_STEP, do_nothing, NULL, &hook));
+        }
+    }
+    return both;
+}
+
+static void destroy(const twins *both) {
+    mspring_network_destroy(both->of[0]);
+    mspring_network_destroy(both->of[1]);
+}
+
+/// What the floor has done to them in the last step is the same, too. Returns whether that was anything.
+static bool check_same(const twins *both) {
+    float x[2], y[2];
+    bool any = false;
+    assert_int_equal(support_hash(both->of[0]), support_hash(both->of[1]));
+    for (mspring_id p = 0; p < both->particles; p++) {
+        for (uint32_t i = 0; i < 2; i++) {
+            check_ok(mspring_network_get_floor_impulses(both->of[i], p, 1, &x[i], &y[i], 1));
+        }
+        assert_true(x[0] == x[1] && y[0] == y[1]);
+        any |= x[0] != 0 || y[0] != 0;
+    }
+    return any;
+}
+
+/// Something of what a host may do between steps.
+static void disturb(const twins *both, uint64_t *seed) {
+    const mspring_id one = (mspring_id)(support_random(seed) % both->particles);
+    const float speed = (float)support_random_between(seed, -300, 300);
+    const uint32_t what = (uint32_t)(support_random(seed) % 16);
+    for (uint32_t i = 0; i < 2; i++) {
+        mspring_network *network = both->of[i];
+        mspring_mutable_view view = {.struct_size = sizeof view};
+        if (what == 0) {
+            check_ok(mspring_network_set_velocities(network, one, 1, &speed, &speed, 1));
+        } else if (what == 1) {
+            check_ok(mspring_network_apply_force(network, one, 0, 20 * speed));
+        } else if (what == 2) {
+            check_ok(mspring_network_view_mutable(network, &view));
+            view.vy[view.slot_of_particle[one]] -= 0.1f;
+        } else if (what == 3) {
+            const support_point at = support_position(network, one);
+            const double x = at.x, y = at.y - 0.3;
+            check_ok(mspring_network_set_positions(network, one, 1, &x, &y, 1));
+        }
+    }
+}
+
+static void falls_the_same_way(void **state) {
+    (void)state;
+    uint32_t touched = 0;
+    for (uint64_t seed = 1; seed <= 12; seed++) {
+        uint64_t draws = seed;
+        recipe made = recipe_mixed(seed);
+        mspring_network_def def = support_def(-9.8f, seed % 3 == 0 ? 1 : 4);
+        def.global_damping = seed % 2 == 0 ? 0.1f : 0;
+        def.guard = MSPRING_GUARD_BOUNDS;
+        const twins both = make_twins(&made, def, seed % 4 == 0 ? -300 : -40);
+        for (uint32_t step = 0; step < 500; step++) {
+            if (seed > 4) {
+                disturb(&both, &draws);
+            }
+            support_steps(both.of[0], 1, 1.0 / 64);
+            support_steps(both.of[1], 1, 1.0 / 64);
+            touched += check_same(&both);
+        }
+        destroy(&both);
+        recipe_free(&made);
+    }
+    assert_true(touched > 100);
+}
+
+/// Springs that are far too short throw what was at rest into a floor which, by its speed, was out of reach.
+static void is_taken_again_if_it_was_not_out_of_reach(void **state) {
+    (void)state;
+    const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {1000, 1000}};
+    uint64_t seed = 5;
+    uint32_t touched = 0;
+    recipe made = {0};
+    recipe_lattice(&made, 20, 6, 0, 0, 1, &stuff, &seed);
+    mspring_network_def def = support_def(-0.1f, 256);
+    def.guard = MSPRING_GUARD_BOUNDS;
+    const twins both = make_twins(&made, def, -16);
+    for (uint32_t step = 0; step < 8; step++) {
+        const float longer = 12;
+        for (uint32_t i = 0; i < 2; i++) {
+            if (step == 3) {
+                check_ok(mspring_network_set(both.of[i], MSPRING_REST_LENGTH, 0, made.spring_count, &longer, 0));
+            }
+            support_steps(both.of[i], 1, 1);
+        }
+        touched += check_same(&both);
+    }
+    assert_true(touched > 0);
+    destroy(&both);
+    recipe_free(&made);
+}
+
+/// The floor stays where it is in the world when the local origin moves along.
+static void is_met_after_a_long_fall(void **state) {
+    (void)state;
+    const double level[4] = {0, -1000, 0, 1};
+    mspring_builder *builder = support_builder();
+    const mspring_id a = support_particle(builder, 0, 0, 1), b = support_particle(builder, 1, 0, 1);
+    support_spring(builder, a, b, 100, 0);
+    const mspring_network_def def = support_def(-9.8f, 4);
+    mspring_network *network = support_network(builder, &def);
+    mspring_floor_def floor;
+    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    floor.planes = level;
+    floor.plane_count = 1;
+    check_ok(mspring_network_set_floor(network, &floor));
+    support_steps(network, 64 * 20, 1.0 / 64);
+    check_near(support_position(network, a).y, -1000, 1e-4);
+    check_near(support_position(network, b).y, -1000, 1e-4);
+    mspring_network_destroy(network);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(falls_the_same_way),
+        cmocka_unit_test(is_taken_again_if_it_was_not_out_of_reach),
+        cmocka_unit_test(is_met_after_a_long_fall),
+    };
+    return cmocka_run_group_tests_name("floor_reach", tests, NULL, NULL);
+}
