@@ -104,13 +104,12 @@ static void collide_block(const mspring_network *network, size_t first, const ms
 static bool collide_spans(const mspring_network *network, const mspringi_bounds *clear, const mspringi_span *spans,
                           uint32_t span_count, double h) {
     const mspringi_state *s = &network->state;
+    const mspringi_beyond_fn beyond = network->kernels->beyond;
     bool any = false;
     for (const mspringi_span *span = spans; span < spans + span_count; ++span) {
         const size_t first = span->first_slot / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
         const size_t end = (span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
-        for (size_t block = first; block < end; block += MSPRINGI_WIDTH) {
-            if (!network->kernels->leaves(s->x + block, s->y + block, MSPRINGI_WIDTH, clear))
-                continue;
+        for (size_t block = first; (block = beyond(s->x, s->y, block, end, clear)) < end; block += MSPRINGI_WIDTH) {
             any = true;
             collide_block(network, block, clear, h);
         }

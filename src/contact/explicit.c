@@ -12,12 +12,15 @@ bool mspringi_floor_is_near(const mspring_network *network, const mspringi_strip
     return network->floor && !network->floor->clearances[strip - network->topology.strips].is_far;
 }
 
-static size_t first_slot(const mspringi_span *span) {
-    return span->first_slot / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
-}
+/// Whole blocks of slots, the end of them excluded.
+typedef struct slot_range {
+    size_t first, end;
+} slot_range;
 
-static size_t end_slot(const mspringi_span *span) {
-    return (span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+// Spans of rows that follow each other lie behind one another.
+static slot_range slots_of(const mspringi_span *spans, uint32_t span_count) {
+    const size_t width = MSPRINGI_WIDTH, end = spans[span_count - 1].end_slot;
+    return (slot_range){spans->first_slot / width * width, (end + width - 1) / width * width};
 }
 
 void mspringi_floor_note(const mspring_network *network, const mspringi_strip *strip, const mspringi_span *spans,
@@ -25,11 +28,10 @@ void mspringi_floor_note(const mspring_network *network, const mspringi_strip *s
     if (!mspringi_floor_is_near(network, strip))
         return;
     const mspringi_state *s = &network->state, *before = &network->floor->before;
-    for (const mspringi_span *span = spans; span < spans + span_count; ++span) {
-        const size_t first = first_slot(span), size = (end_slot(span) - first) * sizeof *s->vx;
-        memcpy(before->vx + first, s->vx + first, size);
-        memcpy(before->vy + first, s->vy + first, size);
-    }
+    const slot_range slots = slots_of(spans, span_count);
+    const size_t size = (slots.end - slots.first) * sizeof *s->vx;
+    memcpy(before->vx + slots.first, s->vx + slots.first, size);
+    memcpy(before->vy + slots.first, s->vy + slots.first, size);
 }
 
 /* -------------------------------------------------------------------------------------------------- what acts */
@@ -69,10 +71,12 @@ static void fly_slot(const mspring_network *network, const mspringi_ground *g, s
 /// Least that global damping may leave of a velocity in a substep, for what forces did to be seen in it.
 static const double least_decay = 1e-12;
 
-static mspringi_ground ground_of(const mspring_network *network, const mspringi_bounds *clear, float h) {
+// What forces have done in the substep is seen by the velocities of before, if these are known.
+static mspringi_ground ground_of(const mspring_network *network, const mspringi_bounds *clear, float h,
+                                 bool knows_before) {
     const mspringi_floor *floor = network->floor;
     const double decay = (double)mspringi_decay(network->settings.global_damping, h);
-    const bool is_seen = decay >= least_decay;
+    const bool is_seen = knows_before && decay >= least_decay;
     return (mspringi_ground){
         .lines = floor->lines,
         .line_count = floor->plane_count,
@@ -101,64 +105,54 @@ static mspringi_ground ground_of(const mspring_network *network, const mspringi_
     };
 }
 
-// Returns whether any particle was looked at.
-static bool touch_spans(const mspring_network *network, const mspringi_ground *ground, bool is_loose,
-                        const mspringi_span *spans, uint32_t span_count) {
-    const mspringi_kernels *kernels = network->kernels;
-    bool any = false;
-    for (const mspringi_span *span = spans; span < spans + span_count; ++span) {
-        const size_t first = first_slot(span), end = end_slot(span);
-        if (!kernels->leaves(ground->x + first, ground->y + first, end - first, &ground->clear))
-            continue;
-        any = true;
-        for (size_t block = first; block < end; block += MSPRINGI_WIDTH) {
-            if (!kernels->leaves(ground->x + block, ground->y + block, MSPRINGI_WIDTH, &ground->clear))
-                continue;
-            uint32_t left = is_loose ? kernels->fly_past(ground, block) : kernels->touch(ground, block);
-            for (size_t slot = block; left != 0; ++slot, left >>= 1)
-                if ((left & 1) && is_loose)
-                    fly_slot(network, ground, slot);
-                else if (left & 1)
-                    bounce_slot(network, ground, slot);
-        }
-    }
-    return any;
+static void touch_block(const mspring_network *network, const mspringi_ground *ground, bool is_loose,
+                        size_t block) {
+    const mspringi_touch_fn act = is_loose ? network->kernels->fly_past : network->kernels->touch;
+    uint32_t left = act(ground, block);
+    for (size_t slot = block; left != 0; ++slot, left >>= 1)
+        if ((left & 1) && is_loose)
+            fly_slot(network, ground, slot);
+        else if (left & 1)
+            bounce_slot(network, ground, slot);
 }
 
-static void touch(const mspring_network *network, const mspringi_strip *strip, bool is_loose,
-                  const mspringi_span *spans, uint32_t span_count, float h) {
-    if (!mspringi_floor_is_near(network, strip))
-        return;
-    const mspringi_clearance *clearance = &network->floor->clearances[strip - network->topology.strips];
-    const mspringi_ground ground = ground_of(network, &clearance->clear, h);
-    (void)touch_spans(network, &ground, is_loose, spans, span_count);
+// Look at the blocks of a strip that are not clear. Returns whether there was any.
+static bool touch_slots(const mspring_network *network, const mspringi_strip *strip, bool is_loose,
+                        slot_range slots, float h, bool knows_before) {
+    const mspringi_bounds *clear = &network->floor->clearances[strip - network->topology.strips].clear;
+    const mspringi_beyond_fn beyond = network->kernels->beyond;
+    const float *x = network->state.x, *y = network->state.y;
+    size_t block = beyond(x, y, slots.first, slots.end, clear);
+    if (block == slots.end)
+        return false;
+    const mspringi_ground ground = ground_of(network, clear, h, knows_before);
+    for (; block < slots.end; block = beyond(x, y, block + MSPRINGI_WIDTH, slots.end, clear))
+        touch_block(network, &ground, is_loose, block);
+    return true;
 }
 
 void mspringi_floor_touch(const mspring_network *network, const mspringi_strip *strip, const mspringi_span *spans,
                           uint32_t span_count, float h) {
-    touch(network, strip, false, spans, span_count, h);
+    if (mspringi_floor_is_near(network, strip))
+        (void)touch_slots(network, strip, false, slots_of(spans, span_count), h, true);
 }
 
 void mspringi_floor_touch_loose(const mspring_network *network, const mspringi_strip *strip,
                                 const mspringi_span *span, float h) {
-    touch(network, strip, true, span, 1, h);
+    if (mspringi_floor_is_near(network, strip))
+        (void)touch_slots(network, strip, true, slots_of(span, 1), h, true);
 }
 
 /* ------------------------------------------------------------------------------------------------ what was far */
 
-// What it was before the last substep is not known: as if no force had changed its velocity.
-static void touch_strip(const mspring_network *network, uint32_t number, float h) {
+static void touch_strip(const mspring_network *network, const mspringi_strip *strip, float h) {
     const mspringi_topology *t = &network->topology;
-    const mspringi_strip *strip = &t->strips[number];
-    mspringi_ground ground = ground_of(network, &network->floor->clearances[number].clear, h);
-    ground.from_vx = ground.vx;
-    ground.from_vy = ground.vy;
-    ground.undamped = 1.0;
     const mspringi_row *first = &t->rows[strip->first_row], *last = first + strip->row_count - 1;
-    bool any = touch_spans(network, &ground, first->kind == MSPRINGI_ROW_LOOSE, &t->spans[first->first_span],
-                           last->first_span + last->span_count - first->first_span);
+    const uint32_t span_count = last->first_span + last->span_count - first->first_span;
+    bool any = touch_slots(network, strip, first->kind == MSPRINGI_ROW_LOOSE,
+                           slots_of(&t->spans[first->first_span], span_count), h, false);
     if (strip->home_span != MSPRING_NONE)
-        any |= touch_spans(network, &ground, false, &t->spans[strip->home_span], 1);
+        any |= touch_slots(network, strip, false, slots_of(&t->spans[strip->home_span], 1), h, false);
     network->floor->has_impulse |= any;
 }
 
@@ -166,14 +160,10 @@ void mspringi_floor_touch_far(const mspring_network *network, float h) {
     for (uint32_t i = 0; i < network->topology.strip_count; ++i)
         if (network->floor->clearances[i].is_far &&
             mspringi_share_of_strip(network, &network->topology.strips[i]) != MSPRINGI_ASLEEP)
-            touch_strip(network, i, h);
+            touch_strip(network, &network->topology.strips[i], h);
 }
 
 /* ---------------------------------------------------------------------------------------------- other solvers */
-
-typedef struct slot_range {
-    size_t first, end;
-} slot_range;
 
 static slot_range loose_slots(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;

@@ -159,7 +159,7 @@ bool mspringi_floor_is_near_block(const mspring_network *network, const mspringi
     // Where the whole strip is clear, if that is enough.
     const mspringi_bounds within = {bound((double)all->min_x + way), bound((double)all->max_x - way),
                                     bound((double)all->min_y + way), bound((double)all->max_y - way)};
-    if (!network->kernels->leaves(s->x + first, s->y + first, MSPRINGI_WIDTH, &within))
+    if (network->kernels->beyond(s->x, s->y, first, first + MSPRINGI_WIDTH, &within) != first)
         return false;
     box around = {INFINITY, -INFINITY, INFINITY, -INFINITY};
     float fastest = 0.0f;
@@ -196,7 +196,8 @@ static mspringi_room find_room(const mspring_network *network, double reach) {
 // Whether all particles are in the box. place: no coordinate is larger.
 static bool is_in_room(const mspring_network *network, const mspringi_room *room, float place) {
     const mspringi_state *s = &network->state;
-    return place < room->place || !network->kernels->leaves(s->x, s->y, mspringi_used_slots(network), &room->box);
+    const size_t slots = mspringi_used_slots(network);
+    return place < room->place || network->kernels->beyond(s->x, s->y, 0, slots, &room->box) == slots;
 }
 
 // At least the largest part of a velocity; NaN if there is one.

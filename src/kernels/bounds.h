@@ -1,20 +1,24 @@
 /// @file bounds.h
-/// Whether slots are all within a box, in the vectors of sweep.h.
+/// Which slots are not within a box, in the vectors of sweep.h.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_BOUNDS_H
 #define MSPRINGI_BOUNDS_H
 
-static bool leaves(const float *x, const float *y, size_t count, const mspringi_bounds *bounds) {
+static size_t beyond(const float *x, const float *y, size_t first, size_t end, const mspringi_bounds *bounds) {
     const vec min_x = set(bounds->min_x), max_x = set(bounds->max_x);
     const vec min_y = set(bounds->min_y), max_y = set(bounds->max_y);
-    uint32_t outside = 0;
-    for (size_t i = 0; i < count; i += LANES) {
-        const vec here_x = load(x + i), here_y = load(y + i);
-        outside |= bits_greater(min_x, here_x) | bits_greater(here_x, max_x);
-        outside |= bits_greater(min_y, here_y) | bits_greater(here_y, max_y);
+    for (size_t block = first; block < end; block += MSPRINGI_WIDTH) {
+        uint32_t any = 0;
+        for (size_t i = block; i < block + MSPRINGI_WIDTH; i += LANES) {
+            const vec here_x = load(x + i), here_y = load(y + i);
+            any |= bits_greater(min_x, here_x) | bits_greater(here_x, max_x);
+            any |= bits_greater(min_y, here_y) | bits_greater(here_y, max_y);
+        }
+        if (any)
+            return block;
     }
-    return outside != 0;
+    return end;
 }
 
 #endif

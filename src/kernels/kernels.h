@@ -135,8 +135,11 @@ typedef struct mspringi_bounds {
     float min_x, max_x, min_y, max_y;
 } mspringi_bounds;
 
-/// Whether any of count slots (a multiple of MSPRINGI_WIDTH) lies outside a box.
-typedef bool (*mspringi_leaves_fn)(const float *x, const float *y, size_t count, const mspringi_bounds *bounds);
+/// Find the first block of slots from first to end (multiples of MSPRINGI_WIDTH) of which a slot lies outside a
+/// box.
+/// @return its first slot, or end if there is none
+typedef size_t (*mspringi_beyond_fn)(const float *x, const float *y, size_t first, size_t end,
+                                     const mspringi_bounds *bounds);
 
 /// The border of a half-plane. The distance from it is n . p + offset, > 0 where particles may be.
 typedef struct mspringi_line {
@@ -238,7 +241,7 @@ typedef struct mspringi_kernels {
     mspringi_precise_kernels precise;
     mspringi_largest_fn largest;
     mspringi_extrema_fn extrema_of;
-    mspringi_leaves_fn leaves;
+    mspringi_beyond_fn beyond;
     mspringi_touch_fn touch, fly_past; ///< of particles with and without springs
     mspringi_strain_fn lattice_strain, chain_strain;
     mspringi_border_fn bound_lattice, bound_chain, image_lattice, image_chain;
