@@ -11,8 +11,8 @@
 #include <string.h>
 
 static void print_header(void) {
-    printf("%-16s %9s %9s | %8s %9s | %6s %8s | %6s %8s %6s | %5s %4s %5s | %7s %7s\n", "scene", "particles",
-           "springs", "lattices", "springs", "chains", "springs", "web", "springs", "layers", "rows", "lag",
+    printf("%-16s %9s %9s | %8s %9s | %6s %8s | %9s %8s %6s | %5s %4s %5s | %7s %7s\n", "scene", "particles",
+           "springs", "lattices", "springs", "chains", "springs", "irregular", "springs", "layers", "rows", "lag",
            "depth", "damping", "level");
 }
 
@@ -25,7 +25,7 @@ static bool print_plan(const scene *planned) {
     result = mspring_network_plan(network, &plan);
     const bool ok = check(result, "read the plan", mspring_network_error(network));
     if (ok)
-        printf("%-16s %9u %9u | %8u %9u | %6u %8u | %6u %8u %6u | %5u %4u %5u | %7s %7s\n", planned->name,
+        printf("%-16s %9u %9u | %8u %9u | %6u %8u | %9u %8u %6u | %5u %4u %5u | %7s %7s\n", planned->name,
                plan.particle_count, plan.spring_count, plan.lattice_count, plan.lattice_springs, plan.chain_count,
                plan.chain_springs, plan.web_particles, plan.leftover_springs, plan.web_layers, plan.pass_rows,
                plan.pass_lag, plan.pass_substeps, plan.has_damping ? "yes" : "no",

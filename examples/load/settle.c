@@ -155,9 +155,9 @@ bool settle_run(scene *settled, mspring_solver solver, const settle_request *req
     mspring_result result = mspring_network_create(settled->builder, &def, &network);
     if (result != MSPRING_OK)
         return scene_fail_builder(error, "cannot make the network", settled->builder, result);
-    bool ok = shape_of(network, &shape, error);
+    bool ok = start(network, solver, error) && shape_of(network, &shape, error);
     if (ok) {
-        ok = start(network, solver, error) && let_down(network, name, request, error);
+        ok = let_down(network, name, request, error);
         if (ok && request->picture) {
             char path[1024];
             char title[128];
