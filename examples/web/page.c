@@ -196,6 +196,7 @@ static mspring_result build(mspring_builder *builder, mspring_lattice_def *def, 
 static mspring_result make_network(mspring_builder *builder) {
     mspring_network_def def;
     mspring_result result = mspring_network_def_init(&def, sizeof def);
+    def.guard = MSPRING_GUARD_GROWTH; // the page says what is too stiff
     def.allocator = ALLOCATOR;
     def.flags = MSPRING_NETWORK_RESERVE_DAMPING;
     def.substeps = MSPRING_SUBSTEPS_AUTO;
