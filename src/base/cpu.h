@@ -24,6 +24,13 @@ typedef uint64_t mspringi_fp_state;
 #define MSPRINGI_NOINLINE __attribute__((noinline))
 #endif
 
+/// Makes a function part of its caller, for loops that are to be vectors with what the caller knows.
+#if defined(_MSC_VER)
+#define MSPRINGI_ALWAYS_INLINE static __forceinline
+#else
+#define MSPRINGI_ALWAYS_INLINE static inline __attribute__((always_inline))
+#endif
+
 /// Switch to rounding to nearest with denormals kept and no exception trapped: the state of the host's thread
 /// must not change a step's bits. Returns what was there.
 mspringi_fp_state mspringi_fp_enter(void);

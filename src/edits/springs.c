@@ -71,6 +71,18 @@ static inline uint32_t skip_equal(const mspringi_place *places, plane known, con
     return i;
 }
 
+// The same of a list.
+static uint32_t skip_equal_listed(const mspring_network *network, const mspring_id *list, plane known,
+                                  const float *values, size_t stride, uint32_t i, uint32_t count) {
+    const mspringi_place *places = network->topology.place_of_spring;
+    for (; i < count && places[list[i]] < known.end; ++i) {
+        const float value = values[i * stride];
+        if (*in_plane(&known, places[list[i]]) != value || value == 0.0f)
+            break;
+    }
+    return i;
+}
+
 // The same of rest lengths that many springs share.
 static inline uint32_t skip_equal_rests(const mspring_network *network, const mspringi_place *places,
                                         const float *values, size_t stride, uint32_t i, uint32_t count) {
@@ -112,6 +124,8 @@ static uint32_t next_other(const mspring_network *network, const mspringi_select
                            at->count);
         else if (!at->list)
             i = skip_equal(places, known, values->first, values->stride, i, at->count);
+        else if (!has_fractions)
+            i = skip_equal_listed(network, at->list, known, values->first, values->stride, i, at->count);
         if (i == at->count ||
             differs(network, values->property, mspringi_selected(at, i), mspringi_value_of(values, i)))
             break;

@@ -5,9 +5,6 @@
 #include "query/measure.h"
 #include "store/springs.h"
 
-/// Springs that are measured at once.
-#define PIECE 512u
-
 static bool is_pinned(const mspring_network *network, mspring_id particle) {
     return network->inverse_mass[network->topology.slot_of_particle[particle]] == 0.0f;
 }
@@ -163,30 +160,5 @@ mspring_result mspring_network_get_spring(const mspring_network *network, msprin
         .nominal_stiffness = nominal.stiffness,
         .nominal_damping = nominal.damping,
     };
-    return MSPRING_OK;
-}
-
-mspring_result mspring_network_max_strain(const mspring_network *network, float *strain, mspring_id *spring) {
-    if (!network)
-        return MSPRING_ERROR_ARGUMENT;
-    const uint32_t springs = network->topology.spring_count;
-    float largest = 0.0f;
-    mspring_id where = springs > 0 ? 0 : MSPRING_NONE;
-    for (mspring_id first = 0; first < springs; first += PIECE) {
-        float strains[PIECE], most = 0.0f;
-        const uint32_t count = springs - first < PIECE ? springs - first : PIECE;
-        mspringi_measure_strains(network, first, count, strains, 1);
-        for (uint32_t i = 0; i < count; ++i)
-            most = fabsf(strains[i]) > most ? fabsf(strains[i]) : most;
-        for (uint32_t i = 0; most > largest && i < count; ++i)
-            if (fabsf(strains[i]) > largest) {
-                largest = fabsf(strains[i]);
-                where = first + i;
-            }
-    }
-    if (strain)
-        *strain = largest;
-    if (spring)
-        *spring = where;
     return MSPRING_OK;
 }

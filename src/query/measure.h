@@ -5,7 +5,7 @@
 #ifndef MSPRINGI_MEASURE_H
 #define MSPRINGI_MEASURE_H
 
-#include "store/network.h"
+#include "store/selection.h"
 
 /// Length and strain of the spring in a place; of a broken one the strain is 0.
 float mspringi_place_length(const mspring_network *network, mspringi_place place);
@@ -14,8 +14,8 @@ float mspringi_place_strain(const mspring_network *network, mspringi_place place
 /// The force along a spring: > 0 pulls its ends together.
 float mspringi_spring_force(const mspring_network *network, mspring_id spring);
 
-/// The strains of the springs first ... first + count - 1, stride floats apart.
-void mspringi_measure_strains(const mspring_network *network, mspring_id first, uint32_t count, float *out,
-                              size_t stride);
+/// MSPRING_LENGTH or MSPRING_STRAIN of springs, stride floats apart: the same to the last bit or so.
+void mspringi_measure(const mspring_network *network, mspring_property property, const mspringi_selection *at,
+                      float *out, size_t stride);
 
 #endif

@@ -1,7 +1,4 @@
 /// Reading properties of particles and springs.
-///
-/// Strains and lengths are computed for sixteen places that follow each other, once each: ids that follow each
-/// other lie in few such words, of which a small cache has the last ones.
 #include <math.h>
 
 #include "base/cpu.h"
@@ -12,21 +9,20 @@
 
 /* ---------------------------------------------------------------------------------------- strains and lengths */
 
-// The same as mspringi_place_length() and mspringi_place_strain() to the last bit or so, of springs that follow
-// each other. Most lie in lattices. Low words are differences of what is near to each other, so single precision is
-// enough.
+// The same as mspringi_place_length() and mspringi_place_strain() to the last bit or so. Most springs lie in
+// lattices. Low words are differences of what is near to each other, so single precision is enough.
 static inline float low_of(float coordinate, float low, bool may_be_stale) {
     return may_be_stale ? mspringi_low_of(coordinate, low) : low;
 }
 
-static inline void measure_range(const mspring_network *network, const mspringi_place *places, uint32_t count,
-                                 mspring_property property, bool may_be_stale, float *out, size_t stride) {
+static inline void measure(const mspring_network *network, mspring_property property, const mspringi_place *places,
+                           const mspring_id *list, uint32_t count, bool may_be_stale, float *out, size_t stride) {
     const mspringi_topology *t = &network->topology;
     const mspringi_state s = network->state;
     const mspringi_rests rests = network->rests;
     const uint16_t *live = network->live;
     for (uint32_t i = 0; i < count; ++i) {
-        const mspringi_place place = places[i];
+        const mspringi_place place = places[list ? list[i] : i];
         uint32_t base, tip;
         if (place >= t->lattice_places) {
             out[i * stride] = property == MSPRING_STRAIN ? mspringi_place_strain(network, place)
@@ -48,20 +44,19 @@ static inline void measure_range(const mspring_network *network, const mspringi_
     }
 }
 
-// Loops of their own for the usual stride, and for low words that are of what is there: nobody can have written to
-// it.
-static inline void measure_all(const mspring_network *network, mspring_id first, uint32_t count,
-                               mspring_property property, float *out, size_t stride) {
-    const mspringi_place *places = network->topology.place_of_spring + first;
-    if (stride == 1 && !network->is_open)
-        measure_range(network, places, count, property, false, out, 1);
+// Loops of their own for ranges at the usual stride, and for low words that are of what is there: nobody can have
+// written to it.
+void mspringi_measure(const mspring_network *network, mspring_property property, const mspringi_selection *at,
+                      float *out, size_t stride) {
+    const mspringi_place *all = network->topology.place_of_spring, *places = at->list ? all : all + at->first;
+    if (network->is_open)
+        measure(network, property, places, at->list, at->count, true, out, stride);
+    else if (at->list)
+        measure(network, property, places, at->list, at->count, false, out, stride);
+    else if (stride == 1)
+        measure(network, property, places, NULL, at->count, false, out, 1);
     else
-        measure_range(network, places, count, property, true, out, stride);
-}
-
-void mspringi_measure_strains(const mspring_network *network, mspring_id first, uint32_t count, float *out,
-                              size_t stride) {
-    measure_all(network, first, count, MSPRING_STRAIN, out, stride);
+        measure(network, property, places, NULL, at->count, false, out, stride);
 }
 
 /* ------------------------------------------------------------------------------------------------------ reading */
@@ -71,10 +66,6 @@ static float value_of(const mspring_network *network, mspring_property property,
     case MSPRING_MASS:
     case MSPRING_INVERSE_MASS_SCALE:
         return mspringi_particle_property(network, property, id);
-    case MSPRING_STRAIN:
-        return mspringi_spring_strain(network, id);
-    case MSPRING_LENGTH:
-        return mspringi_place_length(network, mspringi_place_of(&network->topology, id));
     case MSPRING_FORCE:
         return mspringi_spring_force(network, id);
     default:
@@ -105,16 +96,13 @@ static uint32_t total_of(const mspring_network *network, mspringi_kind kind) {
     return kind == MSPRINGI_PARTICLES ? network->topology.particle_count : network->topology.spring_count;
 }
 
-static MSPRINGI_NOINLINE void get_range(const mspring_network *network, mspring_property property, mspring_id first,
-                                        uint32_t count, float *values, size_t stride) {
-    if (property == MSPRING_STRAIN)
-        mspringi_measure_strains(network, first, count, values, stride);
-    else if (property == MSPRING_LENGTH)
-        measure_all(network, first, count, MSPRING_LENGTH, values, stride);
+static MSPRINGI_NOINLINE void get_values(const mspring_network *network, mspring_property property,
+                                         const mspringi_selection *at, float *values, size_t stride) {
+    if (property == MSPRING_STRAIN || property == MSPRING_LENGTH)
+        mspringi_measure(network, property, at, values, stride);
     else
-        for (uint32_t i = 0; i < count; ++i)
-            values[i * stride] = value_of(network, property, first + i);
-    leave_out_what_is_gone(network, mspringi_property_of(property)->kind, first, count, values, stride);
+        for (uint32_t i = 0; i < at->count; ++i)
+            values[i * stride] = value_of(network, property, mspringi_selected(at, i));
 }
 
 mspring_result mspring_network_get(const mspring_network *network, mspring_property property, mspring_id first,
@@ -125,7 +113,8 @@ mspring_result mspring_network_get(const mspring_network *network, mspring_prope
     const uint32_t total = total_of(network, mspringi_property_of(property)->kind);
     if (first > total || count > total - first)
         return MSPRING_ERROR_ID;
-    get_range(network, property, first, count, values, stride);
+    get_values(network, property, &(mspringi_selection){.first = first, .count = count}, values, stride);
+    leave_out_what_is_gone(network, mspringi_property_of(property)->kind, first, count, values, stride);
     return MSPRING_OK;
 }
 
@@ -140,7 +129,6 @@ mspring_result mspring_network_get_at(const mspring_network *network, mspring_pr
     for (uint32_t i = 0; i < count; ++i)
         if (ids[i] >= total_of(network, kind) || !exists(network, kind, ids[i]))
             return MSPRING_ERROR_ID;
-    for (uint32_t i = 0; i < count; ++i)
-        values[(size_t)i * stride] = value_of(network, property, ids[i]);
+    get_values(network, property, &(mspringi_selection){.list = ids, .count = count}, values, stride);
     return MSPRING_OK;
 }

@@ -240,6 +240,67 @@ static void the_lowest_of_equal_strains_is_named(void **state) {
     mspring_network_destroy(network);
 }
 
+/// What is asked for by a list is what all have; the largest is the first of those.
+static void check_strains(const mspring_network *network, uint32_t count) {
+    float *all = malloc(count * sizeof *all), *listed = malloc(count * sizeof *listed), most = 0, got;
+    mspring_id *ids = malloc(count * sizeof *ids), first = 0, named;
+    assert_true(all && listed && ids);
+    check_ok(mspring_network_get(network, MSPRING_STRAIN, 0, count, all, 1));
+    for (mspring_id s = 0; s < count; s++) {
+        ids[s] = count - 1 - s;
+        if (fabsf(all[s]) > most) {
+            most = fabsf(all[s]);
+            first = s;
+        }
+    }
+    check_ok(mspring_network_get_at(network, MSPRING_STRAIN, ids, count, listed, 1));
+    for (mspring_id s = 0; s < count; s++) {
+        assert_true(listed[s] == all[ids[s]]);
+    }
+    check_ok(mspring_network_max_strain(network, &got, &named));
+    assert_true(got == most);
+    assert_int_equal(named, first);
+    free(all);
+    free(listed);
+    free(ids);
+}
+
+/// Some thousand springs in random order, of which many are strained alike.
+static void strains_do_not_depend_on_how_they_are_asked_for(void **state) {
+    (void)state;
+    const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {100, 100}, .holes = 0.1};
+    for (uint64_t seed = 1; seed <= 4; seed++) {
+        uint64_t draws = seed;
+        recipe made = {0};
+        recipe_lattice(&made, 50, 30, 0, 0, 1, &stuff, &draws);
+        const mspring_id end = recipe_particle(&made, 70, 5, 2, MSPRING_PARTICLE_PINNED);
+        recipe_rope(&made, 0, end, 20, &stuff, &draws);
+        recipe_random_springs(&made, 20, &stuff, &draws);
+        recipe_shuffle(&made, &draws, NULL);
+        const mspring_network_def def = support_def(-9.8f, 4);
+        mspring_network *network = recipe_network(&made, &def);
+        check_strains(network, made.spring_count);
+        for (mspring_id p = 0; seed % 2 == 0 && p < made.particle_count; p++) { // exactly twice as wide
+            const support_point at = support_position(network, p);
+            const double x = 2 * at.x;
+            check_ok(mspring_network_set_positions(network, p, 1, &x, &at.y, 1));
+        }
+        check_strains(network, made.spring_count);
+        for (mspring_id s = 0; s < made.spring_count; s += 7) {
+            check_ok(mspring_network_break_springs(network, &s, 1));
+        }
+        check_strains(network, made.spring_count);
+        support_steps(network, 3, 1.0 / 64);
+        check_strains(network, made.spring_count);
+        mspring_mutable_view view = {.struct_size = sizeof view};
+        check_ok(mspring_network_view_mutable(network, &view));
+        view.x[view.slot_of_particle[made.particle_count / 2]] += 3;
+        check_strains(network, made.spring_count);
+        mspring_network_destroy(network);
+        recipe_free(&made);
+    }
+}
+
 static void the_hash_sees_every_bit_that_matters(void **state) {
     moving *m = *state;
     mspring_mutable_view view = {.struct_size = sizeof view};
@@ -423,6 +484,7 @@ int main(void) {
         MEASURE_TEST(bad_calls_are_refused),
         cmocka_unit_test(no_spring_no_strain),
         cmocka_unit_test(the_lowest_of_equal_strains_is_named),
+        cmocka_unit_test(strains_do_not_depend_on_how_they_are_asked_for),
         MEASURE_TEST(the_hash_sees_every_bit_that_matters),
         cmocka_unit_test(extents_are_those_of_each_spring),
         cmocka_unit_test(ends_come_as_they_were_given),

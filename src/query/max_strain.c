@@ -1,0 +1,106 @@
+/// The largest strain: found in the order of places, where the springs of lattices lie side by side. Then the first
+/// id is looked for among those that lie where it was found.
+#include <math.h>
+
+#include "base/cpu.h"
+#include "query/measure.h"
+#include "store/rests.h"
+#include "store/springs.h"
+
+/// Places that are compared at once.
+#define PIECE ((mspringi_place)1024)
+
+/// The largest strain, and the places that may have it.
+typedef struct peak {
+    float strain;
+    mspringi_place first, end;
+} peak;
+
+static inline float low_of(float coordinate, float low, bool may_be_stale) {
+    return may_be_stale ? mspringi_low_of(coordinate, low) : low;
+}
+
+// Raise the largest strain of each lane to that of sixteen places of a lattice: as mspringi_measure() has them, but
+// in a loop for vectors.
+MSPRINGI_ALWAYS_INLINE void raise_lanes(const mspring_network *network, mspringi_place first, bool may_be_stale,
+                                  float *restrict most) {
+    const mspringi_state s = network->state;
+    const float *rest_lengths = mspringi_rests_at(&network->rests, first);
+    const uint32_t live = network->live[first / MSPRINGI_WIDTH];
+    float strains[MSPRINGI_WIDTH];
+    uint32_t base, tip;
+    mspringi_lattice_ends(&network->topology, first, &base, &tip);
+    for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
+        const size_t a = base + lane, b = tip + lane;
+        const float dx = (s.x[b] - s.x[a]) +
+                         (low_of(s.x[b], s.low_x[b], may_be_stale) - low_of(s.x[a], s.low_x[a], may_be_stale));
+        const float dy = (s.y[b] - s.y[a]) +
+                         (low_of(s.y[b], s.low_y[b], may_be_stale) - low_of(s.y[a], s.low_y[a], may_be_stale));
+        strains[lane] = fabsf((sqrtf(dx * dx + dy * dy) - rest_lengths[lane]) / rest_lengths[lane]);
+    }
+    for (uint32_t lane = 0; live != UINT16_MAX && lane < MSPRINGI_WIDTH; ++lane)
+        if (!(live >> lane & 1))
+            strains[lane] = 0.0f;
+    for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
+        most[lane] = strains[lane] > most[lane] ? strains[lane] : most[lane];
+}
+
+static float largest_in(const mspring_network *network, mspringi_place first, mspringi_place end) {
+    float most[MSPRINGI_WIDTH] = {0.0f}, all = 0.0f;
+    for (; first < end; first += MSPRINGI_WIDTH)
+        if (network->is_open)
+            raise_lanes(network, first, true, most);
+        else
+            raise_lanes(network, first, false, most);
+    for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
+        all = most[lane] > all ? most[lane] : all;
+    return all;
+}
+
+static void include(peak *all, float strain, mspringi_place first, mspringi_place end) {
+    if (strain > all->strain)
+        *all = (peak){strain, first, end};
+    else if (strain == all->strain)
+        all->end = end;
+}
+
+static MSPRINGI_NOINLINE peak find_peak(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_place places = (mspringi_place)(mspringi_place_words(t) * MSPRINGI_WIDTH);
+    peak all = {0.0f, 0, 0};
+    for (mspringi_place first = 0; first < t->lattice_places; first += PIECE) {
+        const mspringi_place left = t->lattice_places - first, end = first + (left < PIECE ? left : PIECE);
+        include(&all, largest_in(network, first, end), first, end);
+    }
+    for (mspringi_place place = t->lattice_places; place < places; ++place)
+        if (mspringi_place_is_live(network, place))
+            include(&all, fabsf(mspringi_place_strain(network, place)), place, place + 1);
+    return all;
+}
+
+static MSPRINGI_NOINLINE mspring_id find_first(const mspring_network *network, const peak *all) {
+    const mspringi_topology *t = &network->topology;
+    for (mspring_id s = 0; all->strain > 0.0f && s < t->spring_count; ++s) {
+        float strain;
+        if (t->place_of_spring[s] < all->first || t->place_of_spring[s] >= all->end)
+            continue;
+        mspringi_measure(network, MSPRING_STRAIN, &(mspringi_selection){.first = s, .count = 1}, &strain, 1);
+        if (fabsf(strain) == all->strain)
+            return s;
+    }
+    return t->spring_count > 0 ? 0 : MSPRING_NONE;
+}
+
+mspring_result mspring_network_max_strain(const mspring_network *network, float *strain, mspring_id *spring) {
+    if (!network)
+        return MSPRING_ERROR_ARGUMENT;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    const peak all = find_peak(network);
+    const mspring_id first = find_first(network, &all);
+    mspringi_fp_leave(before);
+    if (strain)
+        *strain = all.strain;
+    if (spring)
+        *spring = first;
+    return MSPRING_OK;
+}
