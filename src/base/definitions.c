@@ -1,39 +1,28 @@
 /// The defaults of every public definition.
 #include <math.h>
-#include <string.h>
 
 #include <massspring/massspring_tools.h>
 
 #include "base/definitions.h"
+#include "base/message.h"
 
 // Springs neither break nor are stressed.
 #define NO_LIMITS                                                                                                  \
     .break_strain = MSPRING_NEVER, .stress_strain = MSPRING_NEVER, .relax_strain = MSPRING_RELAX_STRAIN_DEFAULT
 
-// Copy the defaults into a struct of the size that its header gives it. This is the first version of every struct,
-// so there is one size.
-static mspring_result fill(void *def, size_t size, const void *defaults, size_t known) {
-    if (!def)
-        return MSPRING_ERROR_ARGUMENT;
-    if (size != known)
-        return MSPRING_ERROR_STRUCT;
-    memcpy(def, defaults, size);
-    return MSPRING_OK;
-}
-
 mspring_result mspring_allocator_init(mspring_allocator *allocator, size_t size) {
     const mspring_allocator defaults = {.struct_size = sizeof defaults};
-    return fill(allocator, size, &defaults, sizeof defaults);
+    return mspringi_init_struct(allocator, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_tasks_init(mspring_tasks *tasks, size_t size) {
     const mspring_tasks defaults = {.struct_size = sizeof defaults, .worker_count = 1, .concurrent_count = 1};
-    return fill(tasks, size, &defaults, sizeof defaults);
+    return mspringi_init_struct(tasks, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_particle_def_init(mspring_particle_def *def, size_t size) {
     const mspring_particle_def defaults = {.struct_size = sizeof defaults, .mass = 1.0f};
-    return fill(def, size, &defaults, sizeof defaults);
+    return mspringi_init_struct(def, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_spring_def_init(mspring_spring_def *def, size_t size) {
@@ -42,17 +31,17 @@ mspring_result mspring_spring_def_init(mspring_spring_def *def, size_t size) {
                                          .b = MSPRING_NONE,
                                          .rest_length = MSPRING_REST_LENGTH_DISTANCE,
                                          NO_LIMITS};
-    return fill(def, size, &defaults, sizeof defaults);
+    return mspringi_init_struct(def, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_material_init(mspring_material *material, size_t size) {
     const mspring_material defaults = {.struct_size = sizeof defaults, .mass = 1.0f, NO_LIMITS};
-    return fill(material, size, &defaults, sizeof defaults);
+    return mspringi_init_struct(material, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_lattice_def_init(mspring_lattice_def *def, size_t size) {
     const mspring_lattice_def defaults = {.struct_size = sizeof defaults, .spacing = 1.0, .shear_share = 1.0f};
-    return fill(def, size, &defaults, sizeof defaults);
+    return mspringi_init_struct(def, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_rope_def_init(mspring_rope_def *def, size_t size) {
@@ -63,35 +52,37 @@ mspring_result mspring_rope_def_init(mspring_rope_def *def, size_t size) {
                                        .mass = 1.0f,
                                        .slack = 1.0f,
                                        NO_LIMITS};
-    return fill(def, size, &defaults, sizeof defaults);
+    return mspringi_init_struct(def, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_mesh_def_init(mspring_mesh_def *def, size_t size) {
     const mspring_mesh_def defaults = {.struct_size = sizeof defaults, .area_density = 1.0f, NO_LIMITS};
-    return fill(def, size, &defaults, sizeof defaults);
+    return mspringi_init_struct(def, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_disc_def_init(mspring_disc_def *def, size_t size) {
     const mspring_disc_def defaults = {
         .struct_size = sizeof defaults, .ring_count = 1, .radius = 1.0, .area_density = 1.0f, NO_LIMITS};
-    return fill(def, size, &defaults, sizeof defaults);
+    return mspringi_init_struct(def, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_hook_def_init(mspring_hook_def *def, size_t size) {
     const mspring_hook_def defaults = {
         .struct_size = sizeof defaults, .phase = MSPRING_PHASE_BEFORE_STEP, .period = 1};
-    return fill(def, size, &defaults, sizeof defaults);
+    return mspringi_init_struct(def, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_floor_def_init(mspring_floor_def *def, size_t size) {
     const mspring_floor_def defaults = {.struct_size = sizeof defaults, .spacing = 1.0};
-    return fill(def, size, &defaults, sizeof defaults);
+    return mspringi_init_struct(def, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_solver_def_init(mspring_solver_def *def, size_t size) {
-    const mspring_solver_def defaults = {
-        .struct_size = sizeof defaults, .solver = MSPRING_SOLVER_EXPLICIT, .substeps = MSPRING_SUBSTEPS_AUTO, .max_substeps = 1000};
-    return fill(def, size, &defaults, sizeof defaults);
+    const mspring_solver_def defaults = {.struct_size = sizeof defaults,
+                                         .solver = MSPRING_SOLVER_EXPLICIT,
+                                         .substeps = MSPRING_SUBSTEPS_AUTO,
+                                         .max_substeps = 1000};
+    return mspringi_init_struct(def, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_network_def_init(mspring_network_def *def, size_t size) {
@@ -105,24 +96,24 @@ mspring_result mspring_network_def_init(mspring_network_def *def, size_t size) {
                                           .max_substeps = 1000,
                                           .guard = MSPRING_GUARD_CLAMP,
                                           .sleep_time = 0.5f};
-    return fill(def, size, &defaults, sizeof defaults);
+    return mspringi_init_struct(def, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_settings_init(mspring_settings *settings, size_t size) {
     mspring_network_def def;
     (void)mspring_network_def_init(&def, sizeof def);
     const mspring_settings defaults = mspringi_settings_of(&def);
-    return fill(settings, size, &defaults, sizeof defaults);
+    return mspringi_init_struct(settings, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_clone_def_init(mspring_clone_def *def, size_t size) {
     const mspring_clone_def defaults = {.struct_size = sizeof defaults, .worker_count = 1};
-    return fill(def, size, &defaults, sizeof defaults);
+    return mspringi_init_struct(def, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_settle_def_init(mspring_settle_def *def, size_t size) {
     const mspring_settle_def defaults = {.struct_size = sizeof defaults, .max_iterations = 1000, .tolerance = 1e-9};
-    return fill(def, size, &defaults, sizeof defaults);
+    return mspringi_init_struct(def, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_tune_scene_init(mspring_tune_scene *scene, size_t size) {
@@ -133,7 +124,7 @@ mspring_result mspring_tune_scene_init(mspring_tune_scene *scene, size_t size) {
                                          .kick = 0.1,
                                          .tolerance = 0.05,
                                          .max_distance = 1.0};
-    return fill(scene, size, &defaults, sizeof defaults);
+    return mspringi_init_struct(scene, size, &defaults, sizeof defaults);
 }
 
 mspring_result mspring_tune_def_init(mspring_tune_def *def, size_t size) {
@@ -144,5 +135,5 @@ mspring_result mspring_tune_def_init(mspring_tune_def *def, size_t size) {
                                        .max_error = 0.01,
                                        .max_cost = INFINITY,
                                        .max_drift = 0.1};
-    return fill(def, size, &defaults, sizeof defaults);
+    return mspringi_init_struct(def, size, &defaults, sizeof defaults);
 }

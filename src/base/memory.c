@@ -56,14 +56,17 @@ mspring_result mspringi_memory_init(mspringi_memory *memory, const mspring_alloc
         .struct_size = sizeof defaults, .alloc = default_alloc, .free = default_free};
 #endif
     if (allocator) {
-        mspring_result result = mspringi_check_struct(message, "mspring_allocator", allocator->struct_size,
-                                                      sizeof *allocator, sizeof *allocator);
+        mspring_result result = mspringi_check_struct(message, "mspring_allocator", allocator, sizeof *allocator);
+        if (result != MSPRING_OK)
+            return result;
+        result = mspringi_check_reserved(message, "mspring_allocator", allocator->reserved);
         if (result != MSPRING_OK)
             return result;
         if (!allocator->alloc || !allocator->free)
             return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "mspring_allocator lacks alloc or free");
     }
     *memory = (mspringi_memory){.allocator = allocator ? *allocator : defaults};
+    memory->allocator.struct_size = sizeof memory->allocator;
     return MSPRING_OK;
 }
 

@@ -1,5 +1,7 @@
 #include "base/message.h"
 
+#include <stdbool.h>
+
 #include "base/assert.h"
 
 #if defined(MSPRINGI_ASSERTS) && !defined(MSPRINGI_FREESTANDING)
@@ -15,14 +17,73 @@ mspring_result mspringi_fail(mspringi_message *message, mspring_result result, c
     return result;
 }
 
-mspring_result mspringi_check_struct(mspringi_message *message, const char *name, size_t given, size_t first,
-                                     size_t current) {
-    if (given >= first && given <= current)
+/// No struct is larger, ever: a size that is has not been set.
+#define LARGEST_STRUCT 4000
+
+static bool is_possible(size_t size, size_t known) {
+    return size >= known && size % sizeof(uint32_t) == 0 && size <= LARGEST_STRUCT;
+}
+
+static mspring_result refuse_size(mspringi_message *message, const char *name, size_t size, size_t known) {
+    if (!message)
+        return MSPRING_ERROR_STRUCT;
+    return mspringi_fail(
+        message, MSPRING_ERROR_STRUCT,
+        "%s.struct_size is %zu, this library knows %zu: fill the struct with its init function, or "
+        "set struct_size to its size",
+        name, size, known);
+}
+
+mspring_result mspringi_check_struct(mspringi_message *message, const char *name, const void *given, size_t known) {
+    const size_t size = mspringi_struct_size(given);
+    const unsigned char *bytes = given;
+    if (!is_possible(size, known))
+        return refuse_size(message, name, size, known);
+    for (size_t i = known; i < size; ++i)
+        if (bytes[i] != 0)
+            return !message ? MSPRING_ERROR_STRUCT
+                            : mspringi_fail(message, MSPRING_ERROR_STRUCT,
+                                            "%s has %zu bytes, of which this library knows %zu, and byte %zu is "
+                                            "not 0: it asks for what a later library has",
+                                            name, size, known, i);
+    return MSPRING_OK;
+}
+
+mspring_result mspringi_check_output(mspringi_message *message, const char *name, const void *out, size_t known) {
+    if (!out)
+        return !message ? MSPRING_ERROR_ARGUMENT
+                        : mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the place for %s is NULL", name);
+    const size_t size = mspringi_struct_size(out);
+    return is_possible(size, known) ? MSPRING_OK : refuse_size(message, name, size, known);
+}
+
+mspring_result mspringi_check_alike(mspringi_message *message, const void *element, size_t struct_size) {
+    const size_t size = mspringi_struct_size(element);
+    if (size == struct_size)
         return MSPRING_OK;
-    return mspringi_fail(message, MSPRING_ERROR_STRUCT,
-                         "%s.struct_size is %zu, this library knows %zu to %zu: fill the struct with its init "
-                         "function",
-                         name, given, first, current);
+    return !message
+               ? MSPRING_ERROR_STRUCT
+               : mspringi_fail(message, MSPRING_ERROR_STRUCT,
+                               "struct_size is %zu, but that of the first in the array is %zu", size, struct_size);
+}
+
+void mspringi_put_struct(void *out, const void *made, size_t known) {
+    const size_t size = mspringi_struct_size(out);
+    const uint32_t struct_size = (uint32_t)size;
+    memcpy(out, made, known);
+    memset((char *)out + known, 0, size - known);
+    memcpy(out, &struct_size, sizeof struct_size);
+}
+
+mspring_result mspringi_init_struct(void *out, size_t size, const void *defaults, size_t known) {
+    const uint32_t struct_size = (uint32_t)size;
+    if (!out)
+        return MSPRING_ERROR_ARGUMENT;
+    if (!is_possible(size, known))
+        return MSPRING_ERROR_STRUCT;
+    memcpy(out, &struct_size, sizeof struct_size);
+    mspringi_put_struct(out, defaults, known);
+    return MSPRING_OK;
 }
 
 mspring_result mspringi_check_reserved(mspringi_message *message, const char *name, uint32_t reserved) {

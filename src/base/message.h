@@ -5,6 +5,8 @@
 #ifndef MSPRINGI_MESSAGE_H
 #define MSPRINGI_MESSAGE_H
 
+#include <string.h>
+
 #include <massspring/massspring.h>
 
 #include "base/format.h"
@@ -22,9 +24,32 @@ static inline void mspringi_message_clear(mspringi_message *message) {
 mspring_result mspringi_fail(mspringi_message *message, mspring_result result, const char *format, ...)
     MSPRINGI_PRINTF(3, 4);
 
-/// Check a public struct's size against those of its first and of this version.
-mspring_result mspringi_check_struct(mspringi_message *message, const char *name, size_t given, size_t first,
-                                     size_t current);
+/// Check a public struct by the struct_size that it begins with. One of a later header may be larger than this
+/// library knows: then what is behind that is 0, so that it is not used. The message may be NULL.
+mspring_result mspringi_check_struct(mspringi_message *message, const char *name, const void *given, size_t known);
+
+/// The same of a struct that is to be filled: one that is larger may hold anything. NULL is
+/// MSPRING_ERROR_ARGUMENT.
+mspring_result mspringi_check_output(mspringi_message *message, const char *name, const void *out, size_t known);
+/// Fill it. What this library does not know becomes 0; struct_size stays.
+void mspringi_put_struct(void *out, const void *made, size_t known);
+
+/// Check that an element of an array is as large as the first. The message may be NULL.
+mspring_result mspringi_check_alike(mspringi_message *message, const void *element, size_t struct_size);
+
+/// Fill a struct of this size with its defaults, and struct_size with the size.
+mspring_result mspringi_init_struct(void *out, size_t size, const void *defaults, size_t known);
+
+/// An element of an array of structs that are as large as they say, all of them alike.
+static inline const void *mspringi_element(const void *array, size_t struct_size, size_t index) {
+    return (const char *)array + struct_size * index;
+}
+/// The size of these, by the first of them.
+static inline size_t mspringi_struct_size(const void *array) {
+    uint32_t size;
+    memcpy(&size, array, sizeof size);
+    return size;
+}
 
 /// Check the reserved field of a public struct: a later version may give it a meaning.
 mspring_result mspringi_check_reserved(mspringi_message *message, const char *name, uint32_t reserved);

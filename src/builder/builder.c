@@ -82,13 +82,13 @@ mspring_result mspringi_builder_reserve_springs(mspring_builder *builder, size_t
 // environment of a step.
 
 mspring_result mspringi_check_struct_of(mspringi_message *message, const char *what, size_t index, const char *name,
-                                        size_t given, size_t known) {
-    if (given == known)
-        return MSPRING_OK;
-    return mspringi_fail(message, MSPRING_ERROR_STRUCT,
-                         "%s %zu: %s.struct_size is %zu, this library knows %zu: fill the struct with its init "
-                         "function",
-                         what, index, name, given, known);
+                                        const void *given, size_t known, size_t struct_size) {
+    mspringi_message reason;
+    mspring_result result = mspringi_check_struct(&reason, name, given, known);
+    if (result == MSPRING_OK)
+        result = mspringi_check_alike(&reason, given, struct_size);
+    return result == MSPRING_OK ? MSPRING_OK
+                                : mspringi_fail(message, result, "%s %zu: %s", what, index, reason.text);
 }
 
 // Put the place in the caller's array in front of what was wrong with it.
@@ -128,10 +128,12 @@ float mspringi_find_damping(float stiffness, float damping, uint32_t flags, floa
     return found < (double)LARGEST_VALUE ? (float)found : LARGEST_VALUE;
 }
 
-mspring_result mspringi_check_particle_def(mspringi_message *message, size_t index,
-                                           const mspring_particle_def *def) {
+mspring_result mspringi_check_particle_def(mspringi_message *message, size_t index, const mspring_particle_def *def,
+                                           size_t struct_size) {
     mspring_result result =
-        mspringi_check_struct_of(message, "particle", index, "mspring_particle_def", def->struct_size, sizeof *def);
+        mspringi_check_struct_of(message, "particle", index, "mspring_particle_def", def, sizeof *def, struct_size);
+    if (result == MSPRING_OK)
+        result = mspringi_check_reserved(message, "mspring_particle_def", def->reserved);
     if (result != MSPRING_OK)
         return result;
     if (!mspringi_is_coordinate(def->x) || !mspringi_is_coordinate(def->y))
@@ -147,8 +149,9 @@ mspring_result mspringi_check_particle_def(mspringi_message *message, size_t ind
     return mspringi_check_mass(message, "particle", index, def->mass);
 }
 
-mspring_result mspringi_check_spring_def(mspringi_message *message, size_t index, const mspring_spring_def *def) {
-    return mspringi_check_struct_of(message, "spring", index, "mspring_spring_def", def->struct_size, sizeof *def);
+mspring_result mspringi_check_spring_def(mspringi_message *message, size_t index, const mspring_spring_def *def,
+                                         size_t struct_size) {
+    return mspringi_check_struct_of(message, "spring", index, "mspring_spring_def", def, sizeof *def, struct_size);
 }
 
 mspring_result mspringi_check_spring_values(mspringi_message *message, size_t index,
@@ -182,9 +185,9 @@ mspring_result mspringi_find_rest_length(mspringi_message *message, size_t index
 
 // Check a spring and find its rest length.
 static mspring_result check_spring(mspring_builder *builder, size_t index, const mspring_spring_def *def,
-                                   float *rest_length) {
+                                   size_t struct_size, float *rest_length) {
     mspringi_message *message = &builder->message;
-    mspring_result result = mspringi_check_spring_def(message, index, def);
+    mspring_result result = mspringi_check_spring_def(message, index, def, struct_size);
     if (result != MSPRING_OK)
         return result;
     if (def->a == MSPRING_NONE || def->b == MSPRING_NONE)
@@ -221,18 +224,20 @@ static void append_spring(mspring_builder *builder, const mspring_spring_def *de
 }
 
 mspring_result mspring_builder_add_particles(mspring_builder *builder, const mspring_particle_def *defs,
-                                             size_t count, mspring_id *first_id) {
+                                             uint32_t count, mspring_id *first_id) {
     if (!builder)
         return MSPRING_ERROR_ARGUMENT;
     mspringi_message_clear(&builder->message);
     if (!defs && count > 0)
         return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "particle definitions are NULL");
     const size_t before = builder->particle_count;
+    const size_t struct_size = count > 0 ? mspringi_struct_size(defs) : 0;
     mspring_result result = mspringi_builder_reserve_particles(builder, count);
     for (size_t i = 0; result == MSPRING_OK && i < count; ++i) {
-        result = mspringi_check_particle_def(&builder->message, before + i, &defs[i]);
+        const mspring_particle_def *def = mspringi_element(defs, struct_size, i);
+        result = mspringi_check_particle_def(&builder->message, before + i, def, struct_size);
         if (result == MSPRING_OK)
-            append_particle(builder, &defs[i]);
+            append_particle(builder, def);
         else if (count > 1)
             result = name_definition(builder, result, i);
     }
@@ -249,18 +254,20 @@ mspring_result mspring_builder_add_particle(mspring_builder *builder, const mspr
 }
 
 static MSPRINGI_NOINLINE mspring_result add_springs(mspring_builder *builder, const mspring_spring_def *defs,
-                                                    size_t count, mspring_id *first_id) {
+                                                    uint32_t count, mspring_id *first_id) {
     if (!defs && count > 0)
         return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "spring definitions are NULL");
     const size_t before = builder->spring_count;
+    const size_t struct_size = count > 0 ? mspringi_struct_size(defs) : 0;
     mspring_result result = mspringi_builder_reserve_springs(builder, count);
     for (size_t i = 0; result == MSPRING_OK && i < count; ++i) {
         float rest_length = 0.0f;
-        result = check_spring(builder, before + i, &defs[i], &rest_length);
+        const mspring_spring_def *def = mspringi_element(defs, struct_size, i);
+        result = check_spring(builder, before + i, def, struct_size, &rest_length);
         if (result == MSPRING_OK)
-            result = mspringi_builder_reserve_limits(builder, count - i, MSPRINGI_LIMITS_OF(&defs[i]));
+            result = mspringi_builder_reserve_limits(builder, count - i, MSPRINGI_LIMITS_OF(def));
         if (result == MSPRING_OK)
-            append_spring(builder, &defs[i], rest_length);
+            append_spring(builder, def, rest_length);
         else if (count > 1)
             result = name_definition(builder, result, i);
     }
@@ -271,7 +278,7 @@ static MSPRINGI_NOINLINE mspring_result add_springs(mspring_builder *builder, co
     return result;
 }
 
-mspring_result mspring_builder_add_springs(mspring_builder *builder, const mspring_spring_def *defs, size_t count,
+mspring_result mspring_builder_add_springs(mspring_builder *builder, const mspring_spring_def *defs, uint32_t count,
                                            mspring_id *first_id) {
     if (!builder)
         return MSPRING_ERROR_ARGUMENT;

@@ -89,17 +89,19 @@ mspring_result mspringi_check_coefficients(mspringi_message *message, const char
 /// The damping of a spring between these masses, where it may be given as a ratio: N s/m, or a fraction if the
 /// spring is relative.
 float mspringi_find_damping(float stiffness, float damping, uint32_t flags, float mass_a, float mass_b);
-/// Refuse a struct_size, where the definition is one of several.
+/// Refuse a struct_size, where the definition is one of several, of which the first has this one.
 mspring_result mspringi_check_struct_of(mspringi_message *message, const char *what, size_t index, const char *name,
-                                        size_t given, size_t known);
+                                        const void *given, size_t known, size_t struct_size);
 
 /// Add a mesh: all of it or, on error, nothing.
 mspring_result mspringi_builder_add_mesh(mspring_builder *builder, const mspring_mesh_def *def);
 
-/// Refuse definitions that are wrong whatever they are added to. index is for the message.
-mspring_result mspringi_check_particle_def(mspringi_message *message, size_t index,
-                                           const mspring_particle_def *def);
-mspring_result mspringi_check_spring_def(mspringi_message *message, size_t index, const mspring_spring_def *def);
+/// Refuse definitions that are wrong whatever they are added to. index is for the message; struct_size is that of
+/// the first of several.
+mspring_result mspringi_check_particle_def(mspringi_message *message, size_t index, const mspring_particle_def *def,
+                                           size_t struct_size);
+mspring_result mspringi_check_spring_def(mspringi_message *message, size_t index, const mspring_spring_def *def,
+                                         size_t struct_size);
 /// The same for what is in the definition of a spring, after its particles have been looked at.
 mspring_result mspringi_check_spring_values(mspringi_message *message, size_t index, const mspring_spring_def *def);
 /// The rest length of a spring whose ends are (dx, dy) apart.

@@ -116,8 +116,7 @@ static mspring_result fill_disc(mspring_builder *builder, const mspring_disc_def
 static MSPRINGI_NOINLINE mspring_result add_disc(mspring_builder *builder, const mspring_disc_def *def) {
     if (!def)
         return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "disc definition is NULL");
-    mspring_result result =
-        mspringi_check_struct(&builder->message, "mspring_disc_def", def->struct_size, sizeof *def, sizeof *def);
+    mspring_result result = mspringi_check_struct(&builder->message, "mspring_disc_def", def, sizeof *def);
     if (result == MSPRING_OK)
         result = check_disc(&builder->message, def);
     if (result != MSPRING_OK)

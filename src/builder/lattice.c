@@ -3,6 +3,11 @@
 
 #include "base/cpu.h"
 
+// The materials, whatever their size.
+static const mspring_material *material_at(const mspring_lattice_def *def, uint32_t i) {
+    return mspringi_element(def->materials, mspringi_struct_size(def->materials), i);
+}
+
 static mspring_result check_materials(mspring_builder *builder, const mspring_lattice_def *def) {
     mspringi_message *message = &builder->message;
     if (!def->materials && def->material_count > 0)
@@ -11,9 +16,9 @@ static mspring_result check_materials(mspring_builder *builder, const mspring_la
         return mspringi_fail(message, MSPRING_ERROR_LIMIT, "%u materials are over the limit of %u",
                              (unsigned)def->material_count, (unsigned)MSPRING_CELL_EMPTY);
     for (uint32_t i = 0; i < def->material_count; ++i) {
-        const mspring_material *material = &def->materials[i];
-        mspring_result result = mspringi_check_struct_of(&builder->message, "material", i, "mspring_material",
-                                                         material->struct_size, sizeof *material);
+        const mspring_material *material = material_at(def, i);
+        mspring_result result = mspringi_check_struct_of(message, "material", i, "mspring_material", material,
+                                                         sizeof *material, mspringi_struct_size(def->materials));
         if (result == MSPRING_OK)
             result = mspringi_check_mass(&builder->message, "material", i, material->mass);
         if (result == MSPRING_OK)
@@ -55,8 +60,7 @@ static bool reaches_down(const mspring_lattice_def *def, size_t row, size_t colu
 static mspring_result check_lattice(mspring_builder *builder, const mspring_lattice_def *def, size_t *particles,
                                     size_t *springs) {
     mspringi_message *message = &builder->message;
-    mspring_result result =
-        mspringi_check_struct(message, "mspring_lattice_def", def->struct_size, sizeof *def, sizeof *def);
+    mspring_result result = mspringi_check_struct(message, "mspring_lattice_def", def, sizeof *def);
     if (result != MSPRING_OK)
         return result;
     const size_t width = def->width, height = def->height;
@@ -126,7 +130,7 @@ static mspringi_limits join_limits(const mspring_material *a, const mspring_mate
 static mspring_result reserve_limits(mspring_builder *builder, const mspring_lattice_def *def, size_t springs) {
     mspring_result result = MSPRING_OK;
     for (uint32_t i = 0; result == MSPRING_OK && i < def->material_count; ++i)
-        result = mspringi_builder_reserve_limits(builder, springs, MSPRINGI_LIMITS_OF(&def->materials[i]));
+        result = mspringi_builder_reserve_limits(builder, springs, MSPRINGI_LIMITS_OF(material_at(def, i)));
     return result;
 }
 
@@ -137,7 +141,7 @@ static void join_cells(mspring_builder *builder, const mspring_lattice_def *def,
                        mspring_id b, uint16_t material_b, join kind) {
     static const double cells[] = {[STRUCTURAL] = 1.0, [SHEAR] = 1.4142135623730951, [BEND] = 2.0};
     const float shares[] = {[STRUCTURAL] = 1.0f, [SHEAR] = def->shear_share, [BEND] = def->bend_share};
-    const mspring_material *ma = &def->materials[material_a], *mb = &def->materials[material_b];
+    const mspring_material *ma = material_at(def, material_a), *mb = material_at(def, material_b);
     const uint32_t flags = ma->spring_flags;
     const float stiffness = shares[kind] * (0.5f * ma->stiffness + 0.5f * mb->stiffness);
     const float given = 0.5f * ma->damping + 0.5f * mb->damping;
@@ -170,7 +174,7 @@ static void append_lattice(mspring_builder *builder, const mspring_lattice_def *
             if (cell_ids)
                 cell_ids[row * width + column] = MSPRING_NONE;
             if (cells[column] != MSPRING_CELL_EMPTY) {
-                const mspring_material *material = &def->materials[cells[column]];
+                const mspring_material *material = material_at(def, cells[column]);
                 builder->particles[builder->particle_count++] =
                     (mspringi_particle){.x = def->x + (double)column * def->spacing,
                                         .y = def->y + (double)(height - 1 - row) * def->spacing,

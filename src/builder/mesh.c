@@ -257,8 +257,7 @@ mspring_result mspringi_builder_add_mesh(mspring_builder *builder, const mspring
 static MSPRINGI_NOINLINE mspring_result add_mesh(mspring_builder *builder, const mspring_mesh_def *def) {
     if (!def)
         return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "mesh definition is NULL");
-    mspring_result result =
-        mspringi_check_struct(&builder->message, "mspring_mesh_def", def->struct_size, sizeof *def, sizeof *def);
+    mspring_result result = mspringi_check_struct(&builder->message, "mspring_mesh_def", def, sizeof *def);
     return result == MSPRING_OK ? mspringi_builder_add_mesh(builder, def) : result;
 }
 

@@ -4,7 +4,7 @@
 /// / 2 along its rows. With k = s m / (2 h^2), and m / spacing^2 = density times thickness, the square of the speed
 /// of sound is (3 s / 4) (spacing / h)^2. A relative lattice of equal masses is stable in any shape if 2 s + 4 d is
 /// at most 1, with d the relative damping: 2 zeta sqrt(s) for the damping ratio zeta.
-#include <massspring/massspring.h>
+#include "base/message.h"
 
 typedef struct preset {
     double density;       // kg/m^3
@@ -29,11 +29,7 @@ mspring_result mspring_material_preset(mspring_material *material, size_t size, 
         !(substep >= 1e-12 && substep <= 1e6))
         return MSPRING_ERROR_ARGUMENT;
     mspring_material filled;
-    if (size != sizeof filled)
-        return MSPRING_ERROR_STRUCT;
-    mspring_result result = mspring_material_init(&filled, sizeof filled);
-    if (result != MSPRING_OK)
-        return result;
+    (void)mspring_material_init(&filled, sizeof filled);
     const preset *of = &presets[preset_number];
     const double cells = of->sound * substep / spacing;
     const double share = 4.0 / 3.0 * cells * cells;
@@ -41,6 +37,5 @@ mspring_result mspring_material_preset(mspring_material *material, size_t size, 
     filled.stiffness = (float)(share < of->largest_share ? share : of->largest_share);
     filled.damping = (float)of->damping_ratio;
     filled.spring_flags = MSPRING_SPRING_RELATIVE | MSPRING_SPRING_DAMPING_RATIO;
-    *material = filled;
-    return MSPRING_OK;
+    return mspringi_init_struct(material, size, &filled, sizeof filled);
 }

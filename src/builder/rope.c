@@ -7,8 +7,7 @@
 
 static mspring_result check_rope(mspring_builder *builder, const mspring_rope_def *def, float *segment_length) {
     mspringi_message *message = &builder->message;
-    mspring_result result =
-        mspringi_check_struct(message, "mspring_rope_def", def->struct_size, sizeof *def, sizeof *def);
+    mspring_result result = mspringi_check_struct(message, "mspring_rope_def", def, sizeof *def);
     if (result != MSPRING_OK)
         return result;
     if (def->from == MSPRING_NONE || def->to == MSPRING_NONE)

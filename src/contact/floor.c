@@ -64,8 +64,7 @@ static mspring_result check_heights(const mspring_floor_def *def, mspringi_messa
 }
 
 static mspring_result check_floor(const mspring_floor_def *def, mspringi_message *message) {
-    mspring_result result =
-        mspringi_check_struct(message, "mspring_floor_def", def->struct_size, sizeof *def, sizeof *def);
+    mspring_result result = mspringi_check_struct(message, "mspring_floor_def", def, sizeof *def);
     if (result == MSPRING_OK)
         result = mspringi_check_reserved(message, "mspring_floor_def", def->reserved);
     if (result != MSPRING_OK)
@@ -245,11 +244,13 @@ static mspring_floor_def def_of(const mspringi_floor *floor) {
 }
 
 mspring_result mspring_network_get_floor(const mspring_network *network, mspring_floor_def *def) {
-    if (!network || !def)
+    if (!network)
         return MSPRING_ERROR_ARGUMENT;
-    if (def->struct_size != sizeof *def)
-        return MSPRING_ERROR_STRUCT;
-    *def = def_of(network->floor);
+    const mspring_result result = mspringi_check_output(NULL, "mspring_floor_def", def, sizeof *def);
+    if (result != MSPRING_OK)
+        return result;
+    const mspring_floor_def had = def_of(network->floor);
+    mspringi_put_struct(def, &had, sizeof had);
     return MSPRING_OK;
 }
 

@@ -51,8 +51,9 @@ static mspring_result check_room(mspring_network *network, const char *what, con
 
 /* --------------------------------------------------------------------------------------------------- particles */
 
-static mspring_result check_particle(mspring_network *network, mspring_id id, const mspring_particle_def *def) {
-    mspring_result result = mspringi_check_particle_def(&network->message, id, def);
+static mspring_result check_particle(mspring_network *network, mspring_id id, const mspring_particle_def *def,
+                                     size_t struct_size) {
+    mspring_result result = mspringi_check_particle_def(&network->message, id, def, struct_size);
     const double largest = MSPRING_MAX_COORDINATE;
     if (result == MSPRING_OK &&
         !(fabs(def->x - network->origin_x) <= largest && fabs(def->y - network->origin_y) <= largest))
@@ -88,12 +89,13 @@ static MSPRINGI_NOINLINE mspring_result add_particles(mspring_network *network, 
                                                       uint32_t count, mspring_id *ids) {
     const mspringi_reserve *reserve = &network->topology.reserve;
     mspringi_growth *g = &network->growth;
+    const size_t struct_size = mspringi_struct_size(defs);
     mspring_result result = check_room(network, "particle", g->particles, g->lowest_particle,
                                        reserve->first_particle, reserve->particle_end, count);
     mspring_id id = g->lowest_particle;
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i, ++id) {
         id = find_spare(g->particles, id, reserve->particle_end);
-        result = check_particle(network, id, &defs[i]);
+        result = check_particle(network, id, mspringi_element(defs, struct_size, i), struct_size);
         if (result != MSPRING_OK && count > 1)
             result = name_definition(network, result, i);
     }
@@ -103,7 +105,7 @@ static MSPRINGI_NOINLINE mspring_result add_particles(mspring_network *network, 
     id = g->lowest_particle;
     for (uint32_t i = 0; i < count; ++i) {
         id = find_spare(g->particles, id, reserve->particle_end);
-        put_particle(network, id, &defs[i]);
+        put_particle(network, id, mspringi_element(defs, struct_size, i));
         end = id >= end ? id + 1 : end;
         ids[i] = id;
     }
@@ -182,9 +184,10 @@ static mspring_result find_rest_length(mspring_network *network, mspring_id id, 
 }
 
 // Check a spring and link its ends, so that those checked after it see it.
-static mspring_result link_spring(mspring_network *network, mspring_id id, const mspring_spring_def *def) {
+static mspring_result link_spring(mspring_network *network, mspring_id id, const mspring_spring_def *def,
+                                  size_t struct_size) {
     float rest_length;
-    mspring_result result = mspringi_check_spring_def(&network->message, id, def);
+    mspring_result result = mspringi_check_spring_def(&network->message, id, def, struct_size);
     if (result == MSPRING_OK)
         result = check_ends(network, id, def);
     if (result == MSPRING_OK)
@@ -232,6 +235,7 @@ static MSPRINGI_NOINLINE mspring_result add_springs(mspring_network *network, co
                                                     uint32_t count, mspring_id *ids) {
     const mspringi_reserve *reserve = &network->topology.reserve;
     mspringi_growth *g = &network->growth;
+    const size_t struct_size = mspringi_struct_size(defs);
     mspring_result result = check_room(network, "spring", g->springs, g->lowest_spring, reserve->first_spring,
                                        reserve->spring_end, count);
     if (result != MSPRING_OK)
@@ -240,14 +244,16 @@ static MSPRINGI_NOINLINE mspring_result add_springs(mspring_network *network, co
     uint32_t linked = 0;
     for (; linked < count; ++linked, ++id) {
         id = find_spare(g->springs, id, reserve->spring_end);
-        result = link_spring(network, id, &defs[linked]);
+        result = link_spring(network, id, mspringi_element(defs, struct_size, linked), struct_size);
         if (result != MSPRING_OK)
             break;
     }
     if (result != MSPRING_OK && count > 1)
         result = name_definition(network, result, linked);
-    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
-        result = mspringi_strain_reserve_limits(network, MSPRINGI_LIMITS_OF(&defs[i]));
+    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
+        const mspring_spring_def *def = mspringi_element(defs, struct_size, i);
+        result = mspringi_strain_reserve_limits(network, MSPRINGI_LIMITS_OF(def));
+    }
     if (result != MSPRING_OK) {
         for (id = g->lowest_spring; linked > 0; --linked, ++id) {
             id = find_spare(g->springs, id, reserve->spring_end);
@@ -259,7 +265,7 @@ static MSPRINGI_NOINLINE mspring_result add_springs(mspring_network *network, co
     id = g->lowest_spring;
     for (uint32_t i = 0; i < count; ++i) {
         id = find_spare(g->springs, id, reserve->spring_end);
-        put_spring(network, id, &defs[i]);
+        put_spring(network, id, mspringi_element(defs, struct_size, i));
         end = id >= end ? id + 1 : end;
         ids[i] = id;
     }

@@ -115,7 +115,7 @@ mspring_result mspring_network_clone(const mspring_network *network, const mspri
         (void)mspring_clone_def_init(&defaults, sizeof defaults);
         def = &defaults;
     }
-    if (def->struct_size != sizeof *def)
+    if (mspringi_check_struct(NULL, "mspring_clone_def", def, sizeof *def) != MSPRING_OK)
         return MSPRING_ERROR_STRUCT;
     if (def->flags & ~(uint32_t)MSPRING_CLONE_HOOKS || def->reserved != 0)
         return MSPRING_ERROR_ARGUMENT;

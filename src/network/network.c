@@ -44,8 +44,7 @@ mspring_result mspringi_check_range(mspring_network *network, const char *what, 
 }
 
 static mspring_result check_def(const mspring_network_def *def, mspringi_message *message) {
-    mspring_result result =
-        mspringi_check_struct(message, "mspring_network_def", def->struct_size, sizeof *def, sizeof *def);
+    mspring_result result = mspringi_check_struct(message, "mspring_network_def", def, sizeof *def);
     if (result != MSPRING_OK)
         return result;
     if (def->simd_level < MSPRING_SIMD_AUTO || def->simd_level > MSPRING_SIMD_WASM)

@@ -32,8 +32,7 @@ static mspring_result check_implicit(const mspring_solver_def *def, mspringi_mes
 mspring_result mspringi_check_solver(const mspring_solver_def *def, mspringi_message *message) {
     if (!def)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "solver definition is NULL");
-    mspring_result result =
-        mspringi_check_struct(message, "mspring_solver_def", def->struct_size, sizeof *def, sizeof *def);
+    mspring_result result = mspringi_check_struct(message, "mspring_solver_def", def, sizeof *def);
     if (result != MSPRING_OK)
         return result;
     result = mspringi_solver_check_name(def->solver, message);
@@ -61,11 +60,13 @@ static mspring_solver_def def_of(const mspring_network *network) {
 }
 
 mspring_result mspring_network_get_solver(const mspring_network *network, mspring_solver_def *def) {
-    if (!network || !def)
+    if (!network)
         return MSPRING_ERROR_ARGUMENT;
-    if (def->struct_size != sizeof *def)
-        return MSPRING_ERROR_STRUCT;
-    *def = def_of(network);
+    const mspring_result result = mspringi_check_output(NULL, "mspring_solver_def", def, sizeof *def);
+    if (result != MSPRING_OK)
+        return result;
+    const mspring_solver_def had = def_of(network);
+    mspringi_put_struct(def, &had, sizeof had);
     return MSPRING_OK;
 }
 
@@ -140,12 +141,12 @@ mspring_result mspringi_check_settings(const mspring_settings *settings, mspring
 }
 
 mspring_result mspring_network_get_settings(const mspring_network *network, mspring_settings *settings) {
-    if (!network || !settings)
+    if (!network)
         return MSPRING_ERROR_ARGUMENT;
-    if (settings->struct_size != sizeof *settings)
-        return MSPRING_ERROR_STRUCT;
-    *settings = network->settings;
-    return MSPRING_OK;
+    const mspring_result result = mspringi_check_output(NULL, "mspring_settings", settings, sizeof *settings);
+    if (result == MSPRING_OK)
+        mspringi_put_struct(settings, &network->settings, sizeof network->settings);
+    return result;
 }
 
 // Allocate what the network does not need with the settings that it has.
@@ -166,8 +167,7 @@ mspring_result mspring_network_set_settings(mspring_network *network, const mspr
         return result;
     if (!settings)
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the settings are NULL");
-    result = mspringi_check_struct(&network->message, "mspring_settings", settings->struct_size, sizeof *settings,
-                                   sizeof *settings);
+    result = mspringi_check_struct(&network->message, "mspring_settings", settings, sizeof *settings);
     if (result == MSPRING_OK)
         result = mspringi_check_settings(settings, &network->message);
     if (result == MSPRING_OK)
@@ -176,6 +176,7 @@ mspring_result mspring_network_set_settings(mspring_network *network, const mspr
         return result;
     const mspring_settings old = network->settings;
     network->settings = *settings;
+    network->settings.struct_size = sizeof network->settings;
     if (settings->guard != old.guard) {
         network->guard.h = network->guard.peak = 0.0f;
         network->guard.fallback_steps = 0;

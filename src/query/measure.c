@@ -135,10 +135,11 @@ mspring_result mspring_network_bounds(const mspring_network *network, double *mi
 
 mspring_result mspring_network_get_spring(const mspring_network *network, mspring_id spring,
                                           mspring_spring_info *info) {
-    if (!network || !info)
+    if (!network)
         return MSPRING_ERROR_ARGUMENT;
-    if (info->struct_size != sizeof *info)
-        return MSPRING_ERROR_STRUCT;
+    const mspring_result result = mspringi_check_output(NULL, "mspring_spring_info", info, sizeof *info);
+    if (result != MSPRING_OK)
+        return result;
     const mspringi_topology *t = &network->topology;
     if (spring >= t->spring_count || !mspringi_spring_exists(network, spring))
         return MSPRING_ERROR_ID;
@@ -146,8 +147,7 @@ mspring_result mspring_network_get_spring(const mspring_network *network, msprin
     const mspringi_spring_values r = mspringi_place_get(network, place);
     const mspringi_ends ends = mspringi_spring_ends(network, spring);
     const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, place);
-    *info = (mspring_spring_info){
-        .struct_size = sizeof *info,
+    const mspring_spring_info made = {
         .flags = mspringi_spring_flags(network, spring),
         .a = t->particle_of_slot[ends.a],
         .b = t->particle_of_slot[ends.b],
@@ -160,5 +160,6 @@ mspring_result mspring_network_get_spring(const mspring_network *network, msprin
         .nominal_stiffness = nominal.stiffness,
         .nominal_damping = nominal.damping,
     };
+    mspringi_put_struct(info, &made, sizeof made);
     return MSPRING_OK;
 }

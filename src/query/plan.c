@@ -41,13 +41,13 @@ static double largest_speed(const mspring_network *network) {
 }
 
 mspring_result mspring_network_get_step_info(const mspring_network *network, mspring_step_info *info) {
-    if (!network || !info)
+    if (!network)
         return MSPRING_ERROR_ARGUMENT;
-    if (info->struct_size != sizeof *info)
-        return MSPRING_ERROR_STRUCT;
+    const mspring_result result = mspringi_check_output(NULL, "mspring_step_info", info, sizeof *info);
+    if (result != MSPRING_OK)
+        return result;
     const mspringi_steps *steps = &network->steps;
-    *info = (mspring_step_info){
-        .struct_size = sizeof *info,
+    const mspring_step_info made = {
         .result = steps->result,
         .particle = steps->outcome.particle,
         .spring = steps->outcome.spring,
@@ -58,17 +58,18 @@ mspring_result mspring_network_get_step_info(const mspring_network *network, msp
         .time = steps->time,
         .largest_speed = largest_speed(network),
     };
+    mspringi_put_struct(info, &made, sizeof made);
     return MSPRING_OK;
 }
 
 mspring_result mspring_network_plan(const mspring_network *network, mspring_plan *plan) {
-    if (!network || !plan)
+    if (!network)
         return MSPRING_ERROR_ARGUMENT;
-    if (plan->struct_size != sizeof *plan)
-        return MSPRING_ERROR_STRUCT;
+    const mspring_result result = mspringi_check_output(NULL, "mspring_plan", plan, sizeof *plan);
+    if (result != MSPRING_OK)
+        return result;
     const mspringi_topology *t = &network->topology;
-    *plan = (mspring_plan){
-        .struct_size = sizeof *plan,
+    mspring_plan made = {
         .particle_count = t->particle_count,
         .spring_count = t->spring_count,
         .lattice_count = t->lattice_count,
@@ -93,6 +94,7 @@ mspring_result mspring_network_plan(const mspring_network *network, mspring_plan
         .web_layers = t->layer_count,
     };
     if (network->solver.ops->describe)
-        network->solver.ops->describe(network->solver.object, plan);
+        network->solver.ops->describe(network->solver.object, &made);
+    mspringi_put_struct(plan, &made, sizeof made);
     return MSPRING_OK;
 }

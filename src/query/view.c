@@ -4,7 +4,7 @@
 // What both kinds of view are filled with.
 #define VIEW_OF(network)                                                                                           \
     {                                                                                                              \
-        .struct_size = view->struct_size, .slot_count = (uint32_t)mspringi_slot_count(network),                    \
+        .slot_count = (uint32_t)mspringi_slot_count(network),                                                      \
         .particle_count = (network)->topology.particle_count,                                                      \
         .layout_generation = (network)->edits.layouts + (network)->edits.growth,                                   \
         .origin_generation = (network)->edits.origins, .origin_x = (network)->origin_x,                            \
@@ -15,25 +15,22 @@
     }
 
 mspring_result mspring_network_view(const mspring_network *network, mspring_view *view) {
-    if (!network || !view)
+    if (!network)
         return MSPRING_ERROR_ARGUMENT;
-    if (view->struct_size != sizeof *view)
-        return MSPRING_ERROR_STRUCT;
-    *view = (mspring_view)VIEW_OF(network);
-    return MSPRING_OK;
+    const mspring_result result = mspringi_check_output(NULL, "mspring_view", view, sizeof *view);
+    if (result == MSPRING_OK)
+        mspringi_put_struct(view, &(mspring_view)VIEW_OF(network), sizeof *view);
+    return result;
 }
 
 mspring_result mspring_network_view_mutable(mspring_network *network, mspring_mutable_view *view) {
     mspring_result result = mspringi_enter(network);
     if (result != MSPRING_OK)
         return result;
-    if (!view)
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the view is NULL");
-    result = mspringi_check_struct(&network->message, "mspring_mutable_view", view->struct_size, sizeof *view,
-                                   sizeof *view);
+    result = mspringi_check_output(&network->message, "mspring_mutable_view", view, sizeof *view);
     if (result != MSPRING_OK)
         return result;
     network->is_open = network->is_lent = true;
-    *view = (mspring_mutable_view)VIEW_OF(network);
+    mspringi_put_struct(view, &(mspring_mutable_view)VIEW_OF(network), sizeof *view);
     return MSPRING_OK;
 }

@@ -10,8 +10,7 @@ static mspring_result check_hook(mspring_network *network, const mspring_hook_de
     mspringi_message *message = &network->message;
     if (!def)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the hook's definition is NULL");
-    mspring_result result =
-        mspringi_check_struct(message, "mspring_hook_def", def->struct_size, sizeof *def, sizeof *def);
+    mspring_result result = mspringi_check_struct(message, "mspring_hook_def", def, sizeof *def);
     if (result == MSPRING_OK)
         result = mspringi_check_reserved(message, "mspring_hook_def", def->reserved);
     if (result != MSPRING_OK)

@@ -17,10 +17,9 @@ static mspring_result reserve(mspring_network *network) {
     mspringi_components *made = &network->components;
     const bool is_there = mspringi_store_reserve(network, MSPRINGI_STORE_COMPONENTS) &&
                           mspringi_store_reserve(network, MSPRINGI_STORE_ROOT);
-    mspring_result result =
-        is_there ? mspringi_incidence_reserve(network)
-                 : mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
-                                 "no memory for the components of %zu particles", particles);
+    mspring_result result = is_there ? mspringi_incidence_reserve(network)
+                                     : mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                                                     "no memory for the components of %zu particles", particles);
     for (size_t p = 0; result == MSPRING_OK && p < particles; ++p)
         made->number[p] = made->old[p] = MSPRING_NONE;
     if (result != MSPRING_OK) {
@@ -143,18 +142,25 @@ static void add_particle(const mspring_network *network, mspring_id particle, ms
     }
 }
 
+static mspring_component *component_at(mspring_component *components, size_t struct_size, uint32_t i) {
+    return (mspring_component *)(void *)((char *)components + i * struct_size);
+}
+
 static MSPRINGI_NOINLINE void measure(const mspring_network *network, uint32_t first, uint32_t count,
                                       mspring_component *components) {
     const mspringi_components *c = &network->components;
+    const size_t struct_size = count > 0 ? mspringi_struct_size(components) : 0;
     for (uint32_t i = 0; i < count; ++i)
-        components[i] = (mspring_component){
-            .struct_size = sizeof *components, .head = c->head[first + i], .particle_count = c->size[first + i]};
+        mspringi_put_struct(component_at(components, struct_size, i),
+                            &(mspring_component){.head = c->head[first + i], .particle_count = c->size[first + i]},
+                            sizeof *components);
     for (mspring_id p = 0; p < network->topology.particle_count; ++p)
         if (c->number[p] - first < count && mspringi_particle_exists(network, p)) // unsigned: below first are not
-            add_particle(network, p, &components[c->number[p] - first]);
+            add_particle(network, p, component_at(components, struct_size, c->number[p] - first));
     for (uint32_t i = 0; i < count; ++i) {
-        components[i].x = network->origin_x + components[i].x / components[i].mass;
-        components[i].y = network->origin_y + components[i].y / components[i].mass;
+        mspring_component *component = component_at(components, struct_size, i);
+        component->x = network->origin_x + component->x / component->mass;
+        component->y = network->origin_y + component->y / component->mass;
     }
 }
 
@@ -164,9 +170,15 @@ mspring_result mspring_network_get_components(const mspring_network *network, ui
         return MSPRING_ERROR_ARGUMENT;
     if (first > network->components.count || count > network->components.count - first)
         return MSPRING_ERROR_ID;
-    for (uint32_t i = 0; i < count; ++i)
-        if (components[i].struct_size != sizeof *components)
-            return MSPRING_ERROR_STRUCT;
+    const size_t struct_size = count > 0 ? mspringi_struct_size(components) : 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        const void *component = mspringi_element(components, struct_size, i);
+        mspring_result result = mspringi_check_output(NULL, "mspring_component", component, sizeof *components);
+        if (result == MSPRING_OK)
+            result = mspringi_check_alike(NULL, component, struct_size);
+        if (result != MSPRING_OK)
+            return result;
+    }
     const mspringi_fp_state before = mspringi_fp_enter();
     measure(network, first, count, components);
     mspringi_fp_leave(before);

@@ -14,8 +14,7 @@ struct mspringi_tasks {
 /* ------------------------------------------------------------------------------------------------ lifecycle */
 
 static mspring_result check_host(const mspring_tasks *host, mspringi_message *message) {
-    mspring_result result =
-        mspringi_check_struct(message, "mspring_tasks", host->struct_size, sizeof *host, sizeof *host);
+    mspring_result result = mspringi_check_struct(message, "mspring_tasks", host, sizeof *host);
     if (result == MSPRING_OK)
         result = mspringi_check_reserved(message, "mspring_tasks", host->reserved);
     if (result != MSPRING_OK)
@@ -63,7 +62,7 @@ mspring_result mspringi_tasks_create(uint32_t worker_count, const mspring_tasks 
     if (!created)
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for %u workers", (unsigned)worker_count);
     if (host)
-        created->host = *host;
+        created->host = *host; // as far as this library knows it
     created->worker_count = worker_count;
     created->concurrency = host ? host->concurrent_count : worker_count;
     mspring_result result = make_counters(created, memory, message);

@@ -214,8 +214,7 @@ static void add_hook(arguments *a) {
       mspring_solver_def_init(a->out[0], a->size))                                                                 \
     X(mspring_network_def_init, "Z0", a->size = sizeof(mspring_network_def),                                       \
       mspring_network_def_init(a->out[0], a->size))                                                                \
-    X(mspring_settings_init, "Z0", a->size = sizeof(mspring_settings),                                             \
-      mspring_settings_init(a->out[0], a->size))                                                                   \
+    X(mspring_settings_init, "Z0", a->size = sizeof(mspring_settings), mspring_settings_init(a->out[0], a->size))  \
     X(mspring_allocator_init, "Z0", a->size = sizeof(mspring_allocator),                                           \
       mspring_allocator_init(a->out[0], a->size))                                                                  \
     X(mspring_tasks_init, "Z0", a->size = sizeof(mspring_tasks), mspring_tasks_init(a->out[0], a->size))           \
@@ -232,11 +231,11 @@ static void add_hook(arguments *a) {
     X(mspring_builder_add_particle, "BSWo", FILL(particle_def),                                                    \
       mspring_builder_add_particle(a->builder, a->given, a->out[0]))                                               \
     X(mspring_builder_add_particles, "BSWCo", FILL(particle_def),                                                  \
-      mspring_builder_add_particles(a->builder, a->given, a->size, a->out[0]))                                     \
+      mspring_builder_add_particles(a->builder, a->given, (uint32_t)a->size, a->out[0]))                           \
     X(mspring_builder_add_spring, "BSWo", make_spring(a),                                                          \
       mspring_builder_add_spring(a->builder, a->given, a->out[0]))                                                 \
     X(mspring_builder_add_springs, "BSWCo", make_spring(a),                                                        \
-      mspring_builder_add_springs(a->builder, a->given, a->size, a->out[0]))                                       \
+      mspring_builder_add_springs(a->builder, a->given, (uint32_t)a->size, a->out[0]))                             \
     X(mspring_builder_add_lattice, "BSo", make_lattice(a),                                                         \
       mspring_builder_add_lattice(a->builder, a->given, a->out[0]))                                                \
     X(mspring_builder_add_rope, "BSo", make_rope(a),                                                               \

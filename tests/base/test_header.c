@@ -249,7 +249,7 @@ static void init_refuses_null_and_other_sizes(void **state) {
         {init_network_def, sizeof(mspring_network_def)},   {init_hook_def, sizeof(mspring_hook_def)},
     };
     for (size_t i = 0; i < COUNT_OF(inits); i++) {
-        const size_t bad[] = {0, 4, inits[i].size - 1, inits[i].size + 1, inits[i].size + 8, SIZE_MAX};
+        const size_t bad[] = {0, 4, inits[i].size - 1, inits[i].size + 1, 4096, SIZE_MAX};
         _Alignas(16) unsigned char memory[256], before[256];
         memset(memory, 0x5a, sizeof memory);
         memcpy(before, memory, sizeof memory);

@@ -13,7 +13,9 @@
 
 #define DT (1.0 / 64)
 
-enum { WRITABLE = MSPRING_RELAX_STRAIN + 1, ALL = MSPRING_FORCE + 1, MOST = 3000 };
+#define WRITABLE ((int)MSPRING_RELAX_STRAIN + 1)
+#define ALL ((int)MSPRING_FORCE + 1)
+#define MOST 3000
 
 /// A network with springs in rows of every kind.
 static recipe mixed_recipe(uint32_t spring_flags) {

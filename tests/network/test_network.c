@@ -129,7 +129,7 @@ static void bad_settings_are_refused(void **state) {
     REFUSED(simd_level, MSPRING_SIMD_WASM + 1, MSPRING_ERROR_ARGUMENT, "simd_level");
     REFUSED(struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_network_def");
     REFUSED(struct_size, sizeof good - 8, MSPRING_ERROR_STRUCT, "mspring_network_def");
-    REFUSED(struct_size, sizeof good + 8, MSPRING_ERROR_STRUCT, "mspring_network_def");
+    REFUSED(struct_size, sizeof good + 2, MSPRING_ERROR_STRUCT, "mspring_network_def");
 
     mspring_allocator allocator = {.struct_size = sizeof allocator};
     REFUSED(allocator, &allocator, MSPRING_ERROR_ARGUMENT, "alloc");
@@ -170,7 +170,7 @@ static void bad_solver_is_refused(void **state) {
     REFUSED(solver, 3, MSPRING_ERROR_ARGUMENT, "solver");
     REFUSED(solver, -7, MSPRING_ERROR_ARGUMENT, "solver");
     REFUSED(struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_solver_def");
-    REFUSED(struct_size, sizeof good + 4, MSPRING_ERROR_STRUCT, "mspring_solver_def");
+    REFUSED(struct_size, sizeof good + 2, MSPRING_ERROR_STRUCT, "mspring_solver_def");
     good.solver = MSPRING_SOLVER_IMPLICIT;
     REFUSED(integrator, -1, MSPRING_ERROR_ARGUMENT, "integrator");
     REFUSED(integrator, MSPRING_INTEGRATOR_EULER + 1, MSPRING_ERROR_ARGUMENT, "integrator");

@@ -213,8 +213,7 @@ static MSPRINGI_NOINLINE mspring_result settle(mspring_network *network, const m
 }
 
 static mspring_result check_def(const mspring_settle_def *def, mspringi_message *message) {
-    mspring_result result =
-        mspringi_check_struct(message, "mspring_settle_def", def->struct_size, sizeof *def, sizeof *def);
+    mspring_result result = mspringi_check_struct(message, "mspring_settle_def", def, sizeof *def);
     if (result == MSPRING_OK)
         result = mspringi_check_reserved(message, "mspring_settle_def", def->reserved);
     if (result != MSPRING_OK)
@@ -254,14 +253,13 @@ mspring_result mspringi_settle_watched(mspring_network *network, const mspring_s
     }
     outcome = check_def(def, &network->message);
     if (outcome == MSPRING_OK && result)
-        outcome = mspringi_check_struct(&network->message, "mspring_settle_result", result->struct_size,
-                                        sizeof *result, sizeof *result);
+        outcome = mspringi_check_output(&network->message, "mspring_settle_result", result, sizeof *result);
     if (outcome != MSPRING_OK)
         return outcome;
     const mspringi_fp_state before = mspringi_fp_enter();
     outcome = settle(network, def, &out, watcher);
     mspringi_fp_leave(before);
     if (outcome == MSPRING_OK && result)
-        *result = out;
+        mspringi_put_struct(result, &out, sizeof out);
     return outcome;
 }

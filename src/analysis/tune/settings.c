@@ -88,18 +88,21 @@ mspring_result mspring_tune_settings(mspring_network *network, double dt, msprin
 }
 
 mspring_result mspring_tune_row_solver(const mspring_tune_row *row, mspring_solver_def *solver) {
-    if (!row || !solver)
+    mspring_solver_def made;
+    if (!row)
         return MSPRING_ERROR_ARGUMENT;
-    if (row->struct_size != sizeof *row)
-        return MSPRING_ERROR_STRUCT;
-    if (solver->struct_size != sizeof *solver)
-        return MSPRING_ERROR_STRUCT;
-    (void)mspring_solver_def_init(solver, sizeof *solver);
-    solver->solver = row->solver;
-    solver->integrator = row->integrator;
-    solver->substeps = row->substeps;
-    solver->iterations = row->iterations;
-    solver->tile_size = row->tile_size;
-    solver->coarse_period = row->coarse_period;
+    mspring_result result = mspringi_check_output(NULL, "mspring_tune_row", row, sizeof *row);
+    if (result == MSPRING_OK)
+        result = mspringi_check_output(NULL, "mspring_solver_def", solver, sizeof *solver);
+    if (result != MSPRING_OK)
+        return result;
+    (void)mspring_solver_def_init(&made, sizeof made);
+    made.solver = row->solver;
+    made.integrator = row->integrator;
+    made.substeps = row->substeps;
+    made.iterations = row->iterations;
+    made.tile_size = row->tile_size;
+    made.coarse_period = row->coarse_period;
+    mspringi_put_struct(solver, &made, sizeof made);
     return MSPRING_OK;
 }

@@ -61,10 +61,10 @@ static mspring_result check_scene_numbers(const mspring_tune_scene *scene, doubl
 
 static mspring_result check_scene(const mspring_tune_scene *scene, double dt, mspring_network *network) {
     mspringi_message *message = &network->message;
-    mspring_result result =
-        mspringi_check_struct(message, "mspring_tune_scene", scene->struct_size, sizeof *scene, sizeof *scene);
+    mspring_result result = mspringi_check_struct(message, "mspring_tune_scene", scene, sizeof *scene);
     if (result == MSPRING_OK)
-        result = mspringi_check_reserved(message, "mspring_tune_scene", scene->reserved);
+        result = mspringi_check_reserved(message, "mspring_tune_scene",
+                                         scene->reserved | (scene->reserved_pointer != NULL));
     if (result == MSPRING_OK)
         result = check_scene_numbers(scene, dt, message);
     if (result == MSPRING_OK && network->fractions.values)
@@ -75,8 +75,9 @@ static mspring_result check_scene(const mspring_tune_scene *scene, double dt, ms
 }
 
 static mspring_result check_def(const mspring_tune_def *def, mspringi_message *message) {
-    mspring_result result =
-        mspringi_check_struct(message, "mspring_tune_def", def->struct_size, sizeof *def, sizeof *def);
+    mspring_result result = mspringi_check_struct(message, "mspring_tune_def", def, sizeof *def);
+    if (result == MSPRING_OK)
+        result = mspringi_check_reserved(message, "mspring_tune_def", def->reserved_pointer != NULL);
     if (result == MSPRING_OK)
         result = check_numbers(def, message);
     if (result != MSPRING_OK)
@@ -94,9 +95,13 @@ static mspring_result check_def(const mspring_tune_def *def, mspringi_message *m
 
 static mspring_result check_settings(const mspring_solver_def *settings, uint32_t count,
                                      mspringi_message *message) {
+    const size_t struct_size = count > 0 ? mspringi_struct_size(settings) : 0;
     for (uint32_t i = 0; i < count; ++i) {
         mspringi_message what = {.text = ""};
-        const mspring_result result = mspringi_check_solver(&settings[i], &what);
+        const mspring_solver_def *setting = mspringi_element(settings, struct_size, i);
+        mspring_result result = mspringi_check_solver(setting, &what);
+        if (result == MSPRING_OK)
+            result = mspringi_check_alike(&what, setting, struct_size);
         if (result != MSPRING_OK)
             return mspringi_fail(message, result, "setting %u: %s", (unsigned)i, what.text);
     }
@@ -109,9 +114,13 @@ static mspring_result check_rows(const mspring_tune_row *rows, uint32_t capacity
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "there is room for %u rows, but %u settings",
                              (unsigned)capacity, (unsigned)needed);
     mspring_result result = MSPRING_OK;
-    for (uint32_t i = 0; result == MSPRING_OK && i < needed; ++i)
-        result =
-            mspringi_check_struct(message, "mspring_tune_row", rows[i].struct_size, sizeof *rows, sizeof *rows);
+    const size_t struct_size = mspringi_struct_size(rows);
+    for (uint32_t i = 0; result == MSPRING_OK && i < needed; ++i) {
+        const mspring_tune_row *row = mspringi_element(rows, struct_size, i);
+        result = mspringi_check_output(message, "mspring_tune_row", row, sizeof *row);
+        if (result == MSPRING_OK)
+            result = mspringi_check_alike(message, row, struct_size);
+    }
     return result;
 }
 
@@ -198,21 +207,24 @@ static mspring_result allocate(mspringi_tuning *tuning) {
 }
 
 static void fill_trials(mspringi_tuning *tuning, const mspring_solver_def *settings) {
+    const size_t struct_size = mspringi_struct_size(settings);
     for (uint32_t i = 0; i < tuning->trial_count; ++i) {
+        const mspring_solver_def *setting = mspringi_element(settings, struct_size, i);
         mspringi_trial *trial = &tuning->trials[i];
-        trial->setting = settings[i];
+        trial->setting = *setting;
+        trial->setting.struct_size = sizeof trial->setting;
         trial->times = tuning->times + (size_t)2 * i * tuning->time_capacity;
         trial->rest_times = trial->times + tuning->time_capacity;
         trial->runs = tuning->runs + (size_t)i * tuning->scene.start_count;
         trial->row = (mspring_tune_row){
             .struct_size = sizeof trial->row,
             .setting = i,
-            .solver = settings[i].solver,
-            .integrator = settings[i].integrator,
-            .substeps = settings[i].substeps,
-            .iterations = settings[i].iterations,
-            .tile_size = settings[i].tile_size,
-            .coarse_period = settings[i].coarse_period,
+            .solver = setting->solver,
+            .integrator = setting->integrator,
+            .substeps = setting->substeps,
+            .iterations = setting->iterations,
+            .tile_size = setting->tile_size,
+            .coarse_period = setting->coarse_period,
         };
     }
 }
@@ -281,8 +293,9 @@ static mspring_result run(mspring_network *network, const mspring_tune_def *def,
     tuning.begun = tuning.def.clock(def->user);
     const mspring_result result = tune(&tuning, settings);
     if (result == MSPRING_OK) {
+        const size_t struct_size = mspringi_struct_size(rows);
         for (uint32_t i = 0; i < setting_count; ++i)
-            rows[i] = tuning.trials[i].row;
+            mspringi_put_struct((char *)rows + i * struct_size, &tuning.trials[i].row, sizeof *rows);
         *count = setting_count;
     }
     mspringi_tune_dismiss(tuning.base);
