@@ -29,7 +29,7 @@ symbols)
   # Version nodes (type A) are names of versions, not of symbols.
   "$NM" -D --defined-only "$library" | awk '$2 != "A" { sub(/@.*/, "", $3); print $3 }' | sort >"$scratch/exported"
   # Declarations: names before a parenthesis, outside of comments.
-  sed -e 's|///.*||' -e 's|//.*||' -e 's|([*]|*|g' "$@" | grep -o 'mspring_[a-z0-9_]* *(' | tr -d ' (' | sort -u >"$scratch/declared"
+  sed -e 's|///.*||' -e 's|//.*||' -e 's|(MSPRING_CALL [*]|*|g' -e 's|([*]|*|g' "$@" | grep -o 'mspring_[a-z0-9_]* *(' | tr -d ' (' | sort -u >"$scratch/declared"
   count=$(wc -l <"$scratch/declared")
   echo "$count functions declared, $(wc -l <"$scratch/exported") symbols exported"
   [ "$count" -ge 50 ] # or the pattern above has gone blind

@@ -45,7 +45,7 @@ package_a_program() {
   dpkg-gencontrol -pswing -Pdebian/swing
   dpkg-deb --root-owner-group --build debian/swing swing.deb
   dpkg-deb --field swing.deb Package Depends
-  dpkg-deb --field swing.deb Depends | grep -qF 'libmassspring0 (>= 0.1.0)'
+  dpkg-deb --field swing.deb Depends | grep -qF 'libmassspring0 (>= 0.2.0)'
   cd "$work"
 }
 

@@ -122,11 +122,11 @@ extern "C" {
 /* ------------------------------------------------------------------------------------------------ version */
 
 /// Version of the library that runs, in the form of MSPRING_VERSION.
-/// @threads any   @allocates never   @since 0.1
+/// @threads any   @allocates never   @since 0.2
 MSPRING_API uint32_t MSPRING_CALL mspring_version(void);
 
-/// Version of the library that runs, as text, such as "0.1.0". Static storage.
-/// @threads any   @allocates never   @since 0.1
+/// Version of the library that runs, as text, such as "0.2.0". Static storage.
+/// @threads any   @allocates never   @since 0.2
 MSPRING_API const char *MSPRING_CALL mspring_version_string(void);
 
 /// What a build of the library has beside what all have.
@@ -140,8 +140,8 @@ enum {
 };
 
 /// Features of the library that runs: bits of MSPRING_FEATURE_. (When compiling, MSPRING_VERSION tells what the
-/// header has: `#if MSPRING_VERSION >= 1000` is true from 0.1.0 on.)
-/// @threads any   @allocates never   @since 0.1
+/// header has: `#if MSPRING_VERSION >= 2000` is true from 0.2.0 on.)
+/// @threads any   @allocates never   @since 0.2
 MSPRING_API uint32_t MSPRING_CALL mspring_features(void);
 
 /* ------------------------------------------------------------------------------------------- result codes */
@@ -166,7 +166,7 @@ typedef enum mspring_result {
 } mspring_result;
 
 /// Short English name of a result code, such as "out of memory". Never NULL; static storage.
-/// @threads any   @allocates never   @since 0.1
+/// @threads any   @allocates never   @since 0.2
 MSPRING_API const char *MSPRING_CALL mspring_result_string(mspring_result result);
 
 /* -------------------------------------------------------------------------------------------- identifiers */
@@ -630,7 +630,7 @@ typedef struct mspring_network_def {
 
 /// Fill a definition with its defaults. Pass the size that your header gives it: sizeof *def.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL; MSPRING_ERROR_STRUCT for an impossible size.
-/// @threads any   @allocates never   @since 0.1
+/// @threads any   @allocates never   @since 0.2
 MSPRING_API mspring_result MSPRING_CALL mspring_allocator_init(mspring_allocator *allocator, size_t size);
 MSPRING_API mspring_result MSPRING_CALL mspring_tasks_init(mspring_tasks *tasks, size_t size);
 MSPRING_API mspring_result MSPRING_CALL mspring_particle_def_init(mspring_particle_def *def, size_t size);
@@ -667,7 +667,7 @@ MSPRING_API mspring_result MSPRING_CALL mspring_network_def_init(mspring_network
 /// @param substep   s, 1e-12 to 1e6: dt / substeps
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL, an unknown preset or a value out of range;
 ///         MSPRING_ERROR_STRUCT for an impossible size. On error nothing changes.
-/// @threads any   @allocates never   @since 0.1
+/// @threads any   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_material_preset(mspring_material *material, size_t size, mspring_preset preset, double spacing,
     double substep);
@@ -680,28 +680,28 @@ typedef struct mspring_builder mspring_builder;
 /// Make an empty builder.
 /// @param allocator  NULL for malloc and free; copied
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT or MSPRING_ERROR_MEMORY.
-/// @threads any   @allocates yes   @since 0.1
+/// @threads any   @allocates yes   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_builder_create(const mspring_allocator *allocator, mspring_builder **builder);
 
 /// Free a builder. NULL is allowed.
-/// @threads exclusive access to builder   @allocates never   @since 0.1
+/// @threads exclusive access to builder   @allocates never   @since 0.2
 MSPRING_API void MSPRING_CALL mspring_builder_destroy(mspring_builder *builder);
 
 /// What was wrong with the last call on this builder, naming the culprit; "" if that call succeeded. Belongs to the
 /// builder, valid until the next call on it. NULL gives "". Print the result's name first: mspring_result_string().
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_API const char *MSPRING_CALL mspring_builder_error(const mspring_builder *builder);
 
 /// Number of particles and springs added so far. NULL gives 0.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_API uint32_t MSPRING_CALL mspring_builder_particle_count(const mspring_builder *builder);
 MSPRING_API uint32_t MSPRING_CALL mspring_builder_spring_count(const mspring_builder *builder);
 
 /// Add one particle.
 /// @param id  receives its id; may be NULL
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
-/// @threads exclusive access to builder   @allocates yes   @since 0.1
+/// @threads exclusive access to builder   @allocates yes   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_builder_add_particle(mspring_builder *builder, const mspring_particle_def *def, mspring_id *id);
 
@@ -709,7 +709,7 @@ mspring_builder_add_particle(mspring_builder *builder, const mspring_particle_de
 /// @param defs      [count], all with the same struct_size
 /// @param first_id  receives the id of the first; the others follow; may be NULL
 /// @return as mspring_builder_add_particle(); the error message names the index.
-/// @threads exclusive access to builder   @allocates yes   @since 0.1
+/// @threads exclusive access to builder   @allocates yes   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_builder_add_particles(mspring_builder *builder, const mspring_particle_def *defs, uint32_t count,
     mspring_id *first_id);
@@ -720,12 +720,12 @@ mspring_builder_add_particles(mspring_builder *builder, const mspring_particle_d
 ///         out of range, a spring from a particle to itself, or a rest length to be taken from the distance of
 ///         two particles in the same place; MSPRING_ERROR_STRUCT, MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
 ///         A second spring between the same two particles is found by mspring_network_create().
-/// @threads exclusive access to builder   @allocates yes   @since 0.1
+/// @threads exclusive access to builder   @allocates yes   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_builder_add_spring(mspring_builder *builder, const mspring_spring_def *def, mspring_id *id);
 
 /// Add many springs: all of them or, on error, none. As mspring_builder_add_particles().
-/// @threads exclusive access to builder   @allocates yes   @since 0.1
+/// @threads exclusive access to builder   @allocates yes   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_builder_add_springs(mspring_builder *builder, const mspring_spring_def *defs, uint32_t count,
     mspring_id *first_id);
@@ -737,7 +737,7 @@ mspring_builder_add_springs(mspring_builder *builder, const mspring_spring_def *
 /// @param cell_ids  [height][width], receives each cell's particle id or MSPRING_NONE; may be NULL
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT (the message names cell or material), MSPRING_ERROR_STRUCT,
 ///         MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
-/// @threads exclusive access to builder   @allocates yes   @since 0.1
+/// @threads exclusive access to builder   @allocates yes   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_builder_add_lattice(mspring_builder *builder, const mspring_lattice_def *def, mspring_id *cell_ids);
 
@@ -748,7 +748,7 @@ mspring_builder_add_lattice(mspring_builder *builder, const mspring_lattice_def 
 /// @param capacity      segment_count + 1 for all of them
 /// @param first_spring  receives the id of the first spring; may be NULL
 /// @return as mspring_builder_add_spring()
-/// @threads exclusive access to builder   @allocates yes   @since 0.1
+/// @threads exclusive access to builder   @allocates yes   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_builder_add_rope(mspring_builder *builder, const mspring_rope_def *def, mspring_id *particles,
     uint32_t capacity, mspring_id *first_spring);
@@ -760,7 +760,7 @@ mspring_builder_add_rope(mspring_builder *builder, const mspring_rope_def *def, 
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for a value out of range, a triangle without area or with a vertex
 ///         that there is not, or a vertex of no triangle (the message names it); MSPRING_ERROR_STRUCT,
 ///         MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
-/// @threads exclusive access to builder   @allocates yes   @since 0.1
+/// @threads exclusive access to builder   @allocates yes   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_builder_add_mesh(mspring_builder *builder, const mspring_mesh_def *def, mspring_id *first_particle,
     mspring_id *first_spring);
@@ -769,7 +769,7 @@ mspring_builder_add_mesh(mspring_builder *builder, const mspring_mesh_def *def, 
 /// counter-clockwise from the right. So the rim is the last 6 * ring_count particles.
 /// @param first_particle, first_spring  as of mspring_builder_add_mesh(); the first particle is the centre
 /// @return as mspring_builder_add_mesh()
-/// @threads exclusive access to builder   @allocates yes   @since 0.1
+/// @threads exclusive access to builder   @allocates yes   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_builder_add_disc(mspring_builder *builder, const mspring_disc_def *def, mspring_id *first_particle,
     mspring_id *first_spring);
@@ -786,7 +786,7 @@ typedef struct mspring_network mspring_network;
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT if the builder has no particle or a setting is out of range;
 ///         MSPRING_ERROR_DUPLICATE if two springs join the same two particles; MSPRING_ERROR_THREAD if a worker
 ///         cannot be started; MSPRING_ERROR_STRUCT, MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
-/// @threads exclusive access to builder   @allocates yes   @since 0.1
+/// @threads exclusive access to builder   @allocates yes   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_create(mspring_builder *builder, const mspring_network_def *def, mspring_network **network);
 
@@ -809,13 +809,13 @@ mspring_network_create(mspring_builder *builder, const mspring_network_def *def,
 /// @return MSPRING_OK; MSPRING_ERROR_ID for a particle that does not exist; MSPRING_ERROR_ARGUMENT for NULL or a
 ///         particle out of bounds (the builder's message names it); MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY. On
 ///         error nothing is added.
-/// @threads exclusive access to builder, shared for network   @allocates yes   @since 0.1
+/// @threads exclusive access to builder, shared for network   @allocates yes   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_builder_add_network(mspring_builder *builder, const mspring_network *network, const mspring_id *particles,
     uint32_t count, mspring_id *particle_ids, mspring_id *spring_ids);
 
 /// Free a network. NULL is allowed. Must not be called from a hook.
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// @threads exclusive access to network   @allocates never   @since 0.2
 MSPRING_API void MSPRING_CALL mspring_network_destroy(mspring_network *network);
 
 /// Flags of mspring_clone_def.
@@ -836,7 +836,7 @@ typedef struct mspring_clone_def {
 } mspring_clone_def;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
-/// @threads any   @allocates never   @since 0.1
+/// @threads any   @allocates never   @since 0.2
 MSPRING_API mspring_result MSPRING_CALL mspring_clone_def_init(mspring_clone_def *def, size_t size);
 
 /// Make a network that is as this one is now, and independent of it: to try out what would happen, to go back to,
@@ -853,18 +853,18 @@ MSPRING_API mspring_result MSPRING_CALL mspring_clone_def_init(mspring_clone_def
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL, unknown flags, workers that are out of range, or more
 ///         workers than the original has where hooks have storage; MSPRING_ERROR_STRUCT; MSPRING_ERROR_MEMORY;
 ///         MSPRING_ERROR_THREAD if a worker cannot be started; MSPRING_ERROR_BUSY in a hook.
-/// @threads shared   @allocates yes, with the clone's allocator   @since 0.1
+/// @threads shared   @allocates yes, with the clone's allocator   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_clone(const mspring_network *network, const mspring_clone_def *def, mspring_network **clone);
 
 /// What was wrong with the last call on this network that needs exclusive access; as mspring_builder_error().
 /// Functions marked shared report by their result alone, so that several threads may call them: they leave this text
 /// as it is. So does a call from inside a concurrent hook.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_API const char *MSPRING_CALL mspring_network_error(const mspring_network *network);
 
 /// Number of particles and springs, those that were removed still counted: all ids are below. NULL gives 0.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_API uint32_t MSPRING_CALL mspring_network_particle_count(const mspring_network *network);
 MSPRING_API uint32_t MSPRING_CALL mspring_network_spring_count(const mspring_network *network);
 
@@ -876,7 +876,7 @@ MSPRING_API uint32_t MSPRING_CALL mspring_network_spring_count(const mspring_net
 ///         tiles, of the size asked for, are so tied to each other that factoring their matrix would take over 2^34
 ///         multiply-adds (the message says how many there would be). On error the solver is the one of before.
 /// @threads exclusive access to network   @allocates for an implicit or direct solver, unless only substeps,
-///         iterations or coarse_period differ from the one of before   @since 0.1
+///         iterations or coarse_period differ from the one of before   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_set_solver(mspring_network *network, const mspring_solver_def *def);
 
@@ -885,13 +885,13 @@ mspring_network_set_solver(mspring_network *network, const mspring_solver_def *d
 /// After steps with MSPRING_GUARD_RETRY, substeps is the number that the next step begins with. Numbers that were
 /// left to the library as 0 may come back as the ones in use. What a solver does not use has its default.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_get_solver(const mspring_network *network, mspring_solver_def *def);
 
 /// Read the settings that the next step uses. Set struct_size first.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_get_settings(const mspring_network *network, mspring_settings *settings);
 
@@ -907,7 +907,7 @@ mspring_network_get_settings(const mspring_network *network, mspring_settings *s
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT (the message names the field and its value), also for a guard whose
 ///         solver this build lacks; MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network
-/// @allocates what a guard or sleep needs, the first time that the network has it   @since 0.1
+/// @allocates what a guard or sleep needs, the first time that the network has it   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_set_settings(mspring_network *network, const mspring_settings *settings);
 
@@ -922,7 +922,7 @@ mspring_network_set_settings(mspring_network *network, const mspring_settings *s
 /// @param dt  seconds, finite, > 0, and long enough that dt / substeps is a normal float
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_UNSTABLE, MSPRING_ERROR_BUSY; in a child of fork()
 ///         MSPRING_ERROR_THREAD if a worker cannot be started again.
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// @threads exclusive access to network   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_step(mspring_network *network, double dt);
 
 /// Whether the network sleeps, all of it: 1 or 0. NULL gives 0.
@@ -947,21 +947,21 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_step(m
 /// move the local origin, and when particles or springs are added or removed. Hooks are called as ever; the forces
 /// of those before substeps are looked at in the first of a step. The implicit solver's history of an island is
 /// that of one at rest; of a network that slept as a whole, none.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_API uint32_t MSPRING_CALL mspring_network_is_asleep(const mspring_network *network);
 
 /// Which of the particles first ... first + count - 1 sleep. Those whose positions, velocities or masses were set
 /// since, or written through a view, still do until the next step.
 /// @param asleep  [count], receives 1 or 0
 /// @return MSPRING_OK; MSPRING_ERROR_ID if there are not so many; MSPRING_ERROR_ARGUMENT for NULL.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_get_sleepers(const mspring_network *network, mspring_id first, uint32_t count, uint8_t *asleep);
 
 /// Wake all of a network. It has to be still for sleep_time again before it sleeps, and so has what is awake
 /// already.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL; MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// @threads exclusive access to network   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_wake(mspring_network *network);
 
 /// How a step was made: flags of mspring_step_info.
@@ -992,7 +992,7 @@ typedef struct mspring_step_info {
 /// Snapshots and clones have step_count, fallback_count, time and substeps. After loading one, result, particle,
 /// spring and flags are those of a new network. In hooks they are of the step before.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_get_step_info(const mspring_network *network, mspring_step_info *info);
 
@@ -1001,7 +1001,7 @@ mspring_network_get_step_info(const mspring_network *network, mspring_step_info 
 /// Add a force (N) to one particle. It acts during the whole of the next step and is gone after it.
 /// @return MSPRING_OK; MSPRING_ERROR_ID; MSPRING_ERROR_ARGUMENT if it is not finite or not with the forces given
 ///         before; MSPRING_ERROR_MEMORY; MSPRING_ERROR_BUSY (in a hook use its force arrays).
-/// @threads exclusive access to network   @allocates at the first force given to a network   @since 0.1
+/// @threads exclusive access to network   @allocates at the first force given to a network   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_apply_force(mspring_network *network, mspring_id particle, float x, float y);
 
@@ -1010,14 +1010,14 @@ mspring_network_apply_force(mspring_network *network, mspring_id particle, float
 /// @param stride  elements from one to the next: 1 for two arrays, 2 with y = x + 1 for one of vectors, 0 for the
 ///                same on all
 /// @return as mspring_network_apply_force(); the message names the particle.
-/// @threads exclusive access to network   @allocates at the first force given to a network   @since 0.1
+/// @threads exclusive access to network   @allocates at the first force given to a network   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_apply_forces(mspring_network *network, mspring_id first, uint32_t count, const float *x,
     const float *y, uint32_t stride);
 
 /// Add forces to listed particles, as mspring_network_apply_forces(). The forces on an id that repeats add up.
 /// @param x, y  N: those on particles[i] are x[i * stride] and y[i * stride]
-/// @threads exclusive access to network   @allocates at the first force given to a network   @since 0.1
+/// @threads exclusive access to network   @allocates at the first force given to a network   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_apply_forces_at(mspring_network *network, const mspring_id *particles, uint32_t count,
     const float *x, const float *y, uint32_t stride);
@@ -1027,7 +1027,7 @@ mspring_network_apply_forces_at(mspring_network *network, const mspring_id *part
 /// @param x, y, stride  as of mspring_network_apply_forces()
 /// @return MSPRING_OK; MSPRING_ERROR_ID; MSPRING_ERROR_ARGUMENT if an impulse is not finite or a velocity would not
 ///         be within MSPRING_MAX_SPEED (the message names the particle); MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// @threads exclusive access to network   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_apply_impulses(mspring_network *network, mspring_id first, uint32_t count, const float *x,
     const float *y, uint32_t stride);
@@ -1035,7 +1035,7 @@ mspring_network_apply_impulses(mspring_network *network, mspring_id first, uint3
 /// Change velocities of listed particles by impulses, as mspring_network_apply_impulses(). The impulses on an id
 /// that repeats add up.
 /// @param x, y  N s: those on particles[i] are x[i * stride] and y[i * stride]
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// @threads exclusive access to network   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_apply_impulses_at(mspring_network *network, const mspring_id *particles, uint32_t count,
     const float *x, const float *y, uint32_t stride);
@@ -1104,20 +1104,20 @@ typedef struct mspring_hook_def {
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL; MSPRING_ERROR_STRUCT for an impossible size.
-/// @threads any   @allocates never   @since 0.1
+/// @threads any   @allocates never   @since 0.2
 MSPRING_API mspring_result MSPRING_CALL mspring_hook_def_init(mspring_hook_def *def, size_t size);
 
 /// Have a hook called in every step from now on, after the hooks of its phase that were added before it.
 /// @param def   copied
 /// @param hook  receives a number for mspring_network_remove_hook(); may be NULL
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates yes   @since 0.1
+/// @threads exclusive access to network   @allocates yes   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_add_hook(mspring_network *network, const mspring_hook_def *def, uint32_t *hook);
 
 /// Remove a hook. Numbers of removed hooks are not used again.
 /// @return MSPRING_OK; MSPRING_ERROR_ID if there is no such hook; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// @threads exclusive access to network   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_remove_hook(mspring_network *network, uint32_t hook);
 
@@ -1148,7 +1148,7 @@ typedef struct mspring_floor_def {
 } mspring_floor_def;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
-/// @threads any   @allocates never   @since 0.1
+/// @threads any   @allocates never   @since 0.2
 MSPRING_API mspring_result MSPRING_CALL mspring_floor_def_init(mspring_floor_def *def, size_t size);
 
 /// Give the network a floor instead of the one it has. It acts on every particle that is not pinned, in every
@@ -1182,7 +1182,7 @@ MSPRING_API mspring_result MSPRING_CALL mspring_floor_def_init(mspring_floor_def
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY. On
 ///         error the floor is the one of before.
 /// @threads exclusive access to network   @allocates yes; 20 to 24 bytes for a height and 74 for a particle
-/// @since 0.1
+/// @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_set_floor(mspring_network *network, const mspring_floor_def *def);
 
@@ -1190,7 +1190,7 @@ mspring_network_set_floor(mspring_network *network, const mspring_floor_def *def
 /// and height_count are 0. planes and heights are the network's own copies: they are valid until the floor is set
 /// again or the network is destroyed.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_get_floor(const mspring_network *network, mspring_floor_def *def);
 
@@ -1198,7 +1198,7 @@ mspring_network_get_floor(const mspring_network *network, mspring_floor_def *def
 /// its length, the mean force. 0 without a floor.
 /// @param x, y, stride  as of mspring_network_get_positions()
 /// @return MSPRING_OK; MSPRING_ERROR_ID or MSPRING_ERROR_ARGUMENT.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_get_floor_impulses(const mspring_network *network, mspring_id first, uint32_t count, float *x,
     float *y, uint32_t stride);
@@ -1228,7 +1228,7 @@ typedef struct mspring_view {
 
 /// Fill a view to read. It makes no later step dearer.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_view(const mspring_network *network, mspring_view *view);
 
@@ -1247,7 +1247,7 @@ typedef struct mspring_mutable_view {
 /// Fill a view to write. The next step looks at all particles for what was written. Before you write after that
 /// step, call this again. In a hook use its arrays.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT or MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// @threads exclusive access to network   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_view_mutable(mspring_network *network, mspring_mutable_view *view);
 
@@ -1255,7 +1255,7 @@ mspring_network_view_mutable(mspring_network *network, mspring_mutable_view *vie
 /// @param x, y    receive those of particle first + i in x[i * stride] and y[i * stride]
 /// @param stride  elements from one to the next, at least 1: 1 for two arrays, 2 with y = x + 1 for one of points
 /// @return MSPRING_OK; MSPRING_ERROR_ID if the range leaves the network; MSPRING_ERROR_ARGUMENT for NULL or stride 0.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_get_positions(const mspring_network *network, mspring_id first, uint32_t count, double *x,
     double *y, uint32_t stride);
@@ -1264,7 +1264,7 @@ mspring_network_get_positions_float(const mspring_network *network, mspring_id f
     float *y, uint32_t stride);
 
 /// Copy out velocities (m/s), as mspring_network_get_positions(). They have single precision.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_get_velocities(const mspring_network *network, mspring_id first, uint32_t count, float *vx,
     float *vy, uint32_t stride);
@@ -1276,7 +1276,7 @@ mspring_network_get_velocities(const mspring_network *network, mspring_id first,
 /// @param stride  as of mspring_network_get_positions(), or 0: the same for all
 /// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the index),
 ///         MSPRING_ERROR_BUSY (in a hook use its arrays).
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// @threads exclusive access to network   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_set_positions(mspring_network *network, mspring_id first, uint32_t count, const double *x,
     const double *y, uint32_t stride);
@@ -1286,7 +1286,7 @@ mspring_network_set_positions_float(mspring_network *network, mspring_id first, 
 
 /// Set velocities (m/s, within MSPRING_MAX_SPEED), as mspring_network_set_positions(). A pinned particle moves by
 /// its velocity.
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// @threads exclusive access to network   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_set_velocities(mspring_network *network, mspring_id first, uint32_t count, const float *vx,
     const float *vy, uint32_t stride);
@@ -1344,7 +1344,7 @@ typedef enum mspring_property {
 /// @return MSPRING_OK; MSPRING_ERROR_ID; MSPRING_ERROR_ARGUMENT for NULL, a property that is unknown or read only,
 ///         or a value out of range (the message names property, id and value); MSPRING_ERROR_MEMORY,
 ///         MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates as the property says   @since 0.1
+/// @threads exclusive access to network   @allocates as the property says   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_set(mspring_network *network, mspring_property property, mspring_id first, uint32_t count,
     const float *values, uint32_t stride);
@@ -1352,7 +1352,7 @@ mspring_network_set(mspring_network *network, mspring_property property, mspring
 /// Set a property of listed particles or springs, as mspring_network_set().
 /// @param ids     [count]; an id may repeat: its last value counts. One that was removed is MSPRING_ERROR_ID.
 /// @param values  that of ids[i] is values[i * stride]
-/// @threads exclusive access to network   @allocates as the property says   @since 0.1
+/// @threads exclusive access to network   @allocates as the property says   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_set_at(mspring_network *network, mspring_property property, const mspring_id *ids, uint32_t count,
     const float *values, uint32_t stride);
@@ -1361,7 +1361,7 @@ mspring_network_set_at(mspring_network *network, mspring_property property, cons
 /// @param values  receives that of id first + i in values[i * stride]; 0 for what was removed
 /// @param stride  floats from one value to the next, at least 1; what lies between is left alone
 /// @return MSPRING_OK; MSPRING_ERROR_ID; MSPRING_ERROR_ARGUMENT for NULL, an unknown property or stride 0.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_get(const mspring_network *network, mspring_property property, mspring_id first, uint32_t count,
     float *values, uint32_t stride);
@@ -1369,7 +1369,7 @@ mspring_network_get(const mspring_network *network, mspring_property property, m
 /// Read a property of listed particles or springs, as mspring_network_get().
 /// @param ids     [count]; one that was removed is MSPRING_ERROR_ID
 /// @param values  receives that of ids[i] in values[i * stride]
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_get_at(const mspring_network *network, mspring_property property, const mspring_id *ids,
     uint32_t count, float *values, uint32_t stride);
@@ -1383,7 +1383,7 @@ mspring_network_get_at(const mspring_network *network, mspring_property property
 
 /// Set positions (m, world coordinates) of listed particles; as mspring_network_set_positions().
 /// @param x, y  those of particles[i] are x[i * stride] and y[i * stride]
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// @threads exclusive access to network   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_set_positions_at(mspring_network *network, const mspring_id *particles, uint32_t count,
     const double *x, const double *y, uint32_t stride);
@@ -1393,14 +1393,14 @@ mspring_network_set_positions_float_at(mspring_network *network, const mspring_i
 
 /// Set velocities (m/s) of listed particles; as mspring_network_set_velocities().
 /// @param vx, vy  those of particles[i] are vx[i * stride] and vy[i * stride]
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// @threads exclusive access to network   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_set_velocities_at(mspring_network *network, const mspring_id *particles, uint32_t count,
     const float *vx, const float *vy, uint32_t stride);
 
 /// Derive relative springs from the masses that their particles have now. Takes a pass over all springs.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// @threads exclusive access to network   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_renew_relative_springs(mspring_network *network);
 
@@ -1409,7 +1409,7 @@ mspring_network_renew_relative_springs(mspring_network *network);
 /// @param springs  [count]
 /// @return MSPRING_OK; MSPRING_ERROR_ID (the message names the index), MSPRING_ERROR_ARGUMENT,
 ///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates at the first break in a network   @since 0.1
+/// @threads exclusive access to network   @allocates at the first break in a network   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_break_springs(mspring_network *network, const mspring_id *springs, uint32_t count);
 
@@ -1426,7 +1426,7 @@ mspring_network_break_springs(mspring_network *network, const mspring_id *spring
 /// expand
 ///            a compact network of which a spring is restored that its plan leaves out; to spread that over frames,
 ///            finish a job for MSPRING_LAYOUT_WHOLE before
-/// @since 0.1
+/// @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_restore_springs(mspring_network *network, const mspring_id *springs, uint32_t count,
     double ramp_seconds);
@@ -1435,14 +1435,14 @@ mspring_network_restore_springs(mspring_network *network, const mspring_id *spri
 /// @param particles  [count]
 /// @return as mspring_network_break_springs()
 /// @threads exclusive access to network   @allocates at the first break and first detachment in a network
-/// @since 0.1
+/// @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_detach_particles(mspring_network *network, const mspring_id *particles, uint32_t count);
 
 /* --------------------------------------------------------------------------------- adding and removing */
 
 /// Whether there is such a particle or spring: 1, or 0 if there has never been one or it has been removed. NULL: 0.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_API uint32_t MSPRING_CALL mspring_network_has_particle(const mspring_network *network, mspring_id particle);
 MSPRING_API uint32_t MSPRING_CALL mspring_network_has_spring(const mspring_network *network, mspring_id spring);
 
@@ -1455,7 +1455,7 @@ MSPRING_API uint32_t MSPRING_CALL mspring_network_has_spring(const mspring_netwo
 /// @param ids   [count], receives their ids
 /// @return MSPRING_OK; MSPRING_ERROR_LIMIT if there is no room (the message says for how many there is);
 ///         MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT (the message names the definition); MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// @threads exclusive access to network   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_add_particles(mspring_network *network, const mspring_particle_def *defs, uint32_t count,
     mspring_id *ids);
@@ -1474,7 +1474,7 @@ mspring_network_add_particles(mspring_network *network, const mspring_particle_d
 ///         MSPRING_ERROR_DUPLICATE if the two are joined by a spring already, broken or not; MSPRING_ERROR_ARGUMENT
 ///         with the direct solver, which has to be chosen anew after springs were added; MSPRING_ERROR_MEMORY.
 /// @threads exclusive access to network   @allocates if a spring has a break, stress or relax strain of its own, at the
-///          first such strain in a network   @since 0.1
+///          first such strain in a network   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_add_springs(mspring_network *network, const mspring_spring_def *defs, uint32_t count,
     mspring_id *ids);
@@ -1486,7 +1486,7 @@ mspring_network_add_springs(mspring_network *network, const mspring_spring_def *
 /// @param particles  [count]
 /// @return as mspring_network_break_springs()
 /// @threads exclusive access to network
-/// @allocates at the first break, detachment and removal in a network   @since 0.1
+/// @allocates at the first break, detachment and removal in a network   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_remove_particles(mspring_network *network, const mspring_id *particles, uint32_t count);
 
@@ -1494,7 +1494,7 @@ mspring_network_remove_particles(mspring_network *network, const mspring_id *par
 /// @param springs  [count]
 /// @return as mspring_network_break_springs()
 /// @threads exclusive access to network
-/// @allocates at the first break, detachment and removal in a network   @since 0.1
+/// @allocates at the first break, detachment and removal in a network   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_remove_springs(mspring_network *network, const mspring_id *springs, uint32_t count);
 
@@ -1502,7 +1502,7 @@ mspring_network_remove_springs(mspring_network *network, const mspring_id *sprin
 /// the host has forgotten them, too. Until then they count as used, and so does the room that they took. Ids of
 /// those that the network was created with are never given again.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL; MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// @threads exclusive access to network   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_recycle(mspring_network *network);
 
 /* ------------------------------------------------------------------------------------------- compaction */
@@ -1530,14 +1530,14 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_recycl
 /// This call does all of it at once. To spread it over frames, or to do it on another thread, use a job.
 /// @return MSPRING_OK, also if there is nothing to do; MSPRING_ERROR_MEMORY or MSPRING_ERROR_LIMIT, after which the
 ///         network is as it was; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates yes, and frees most   @since 0.1
+/// @threads exclusive access to network   @allocates yes, and frees most   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_compact(mspring_network *network);
 
 /// Take all springs into the plan again, as it was when the network was created: the way back from
 /// mspring_network_compact(), with the same consequences for slots and bits. A job that is under way is outdated
 /// then.
 /// @return MSPRING_OK; MSPRING_ERROR_MEMORY, MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates yes, and frees most   @since 0.1
+/// @threads exclusive access to network   @allocates yes, and frees most   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_expand(mspring_network *network);
 
 /* ------------------------------------------------------------------------------------- strain and events */
@@ -1567,7 +1567,7 @@ typedef struct mspring_event {
 /// Make room for events, which are not recorded without. Those not read yet are dropped.
 /// @param capacity  events that may wait to be read, at most MSPRING_MAX_SPRINGS; 0 to record none any more
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates yes   @since 0.1
+/// @threads exclusive access to network   @allocates yes   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_reserve_events(mspring_network *network, uint32_t capacity);
 
@@ -1578,7 +1578,7 @@ mspring_network_reserve_events(mspring_network *network, uint32_t capacity);
 /// @param count     receives how many there were
 /// @param lost      receives how many found the queue full, since room was made for it; may be NULL
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
+/// @threads exclusive access to network   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_read_events(mspring_network *network, mspring_event *events, uint32_t capacity, uint32_t *count,
     uint64_t *lost);
@@ -1596,14 +1596,14 @@ mspring_network_read_events(mspring_network *network, mspring_event *events, uin
 /// @param changed  receives 1 if some particle's component has another number than the last time, else 0; may be
 ///                 NULL
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates the first time   @since 0.1
+/// @threads exclusive access to network   @allocates the first time   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_update_components(mspring_network *network, uint32_t *count, uint32_t *changed);
 
 /// Copy out the numbers of the components of the particles first ... first + count - 1, as of the last update.
 /// @param component  [count]
 /// @return MSPRING_OK; MSPRING_ERROR_ID; MSPRING_ERROR_ARGUMENT for NULL or if there was no update yet.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_get_component_numbers(const mspring_network *network, mspring_id first, uint32_t count,
     uint32_t *component);
@@ -1624,7 +1624,7 @@ typedef struct mspring_component {
 /// @param components  [count], struct_size set in each
 /// @return MSPRING_OK; MSPRING_ERROR_ID if there are not so many; MSPRING_ERROR_STRUCT; MSPRING_ERROR_ARGUMENT for
 ///         NULL or if there was no update yet.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_get_components(const mspring_network *network, uint32_t first, uint32_t count,
     mspring_component *components);
@@ -1637,20 +1637,20 @@ mspring_network_get_components(const mspring_network *network, uint32_t first, u
 ///              stiffness of the last step (before the first: 0)
 ///   potential  - sum of m (gravity . p) over particles that are not pinned, p in world coordinates
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL. Any of the out-parameters may be NULL.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_energy(const mspring_network *network, double *kinetic, double *elastic, double *potential);
 
 /// Momentum (kg m/s) and angular momentum about the world's origin (kg m^2/s) of the particles that are not
 /// pinned. Any of the out-parameters may be NULL.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_momentum(const mspring_network *network, double *px, double *py, double *angular);
 
 /// Smallest box around all particles, world coordinates (m).
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_bounds(const mspring_network *network, double *min_x, double *min_y, double *max_x, double *max_y);
 
@@ -1660,7 +1660,7 @@ mspring_network_bounds(const mspring_network *network, double *min_x, double *mi
 /// @param particle  receives its id, the lowest of several, or MSPRING_NONE
 /// @param distance  receives how far it is, m, or INFINITY; may be NULL
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT.
-/// @threads shared   @allocates never; looks at every particle   @since 0.1
+/// @threads shared   @allocates never; looks at every particle   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_nearest_particle(const mspring_network *network, double x, double y, double within,
     mspring_id *particle, double *distance);
@@ -1670,7 +1670,7 @@ mspring_network_nearest_particle(const mspring_network *network, double x, doubl
 /// @param particles     [capacity] receives as many ids as fit; may be NULL if capacity is 0
 /// @param count         receives how many there are, which may be more than fit
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT.
-/// @threads shared   @allocates never; looks at every particle   @since 0.1
+/// @threads shared   @allocates never; looks at every particle   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_particles_in_circle(const mspring_network *network, double x, double y, double radius,
     mspring_id *particles, uint32_t capacity, uint32_t *count);
@@ -1679,7 +1679,7 @@ mspring_network_particles_in_circle(const mspring_network *network, double x, do
 /// @param min_x, min_y, max_x, max_y  world coordinates, m; no min above its max; may be infinite
 /// @param particles, capacity, count  as of mspring_network_particles_in_circle()
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT.
-/// @threads shared   @allocates never; looks at every particle   @since 0.1
+/// @threads shared   @allocates never; looks at every particle   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_particles_in_box(const mspring_network *network, double min_x, double min_y, double max_x,
     double max_y, mspring_id *particles, uint32_t capacity, uint32_t *count);
@@ -1691,7 +1691,7 @@ mspring_network_particles_in_box(const mspring_network *network, double min_x, d
 /// @param fractions  [capacity] receives where each is met, from 0 at the line's start to 1 at its end; may be NULL
 /// @param count      receives how many there are, which may be more than fit
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT.
-/// @threads shared   @allocates never; looks at every spring   @since 0.1
+/// @threads shared   @allocates never; looks at every spring   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_springs_across(const mspring_network *network, double from_x, double from_y, double to_x,
     double to_y, mspring_id *springs, double *fractions, uint32_t capacity, uint32_t *count);
@@ -1713,7 +1713,7 @@ typedef struct mspring_spring_info {
 
 /// Look at one spring.
 /// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_get_spring(const mspring_network *network, mspring_id spring, mspring_spring_info *info);
 
@@ -1730,7 +1730,7 @@ typedef enum mspring_numbering {
 /// @param a, b    receive those of spring first + i in a[i * stride] and b[i * stride]
 /// @param stride  elements from one to the next, at least 1; for pairs 2, with b = a + 1
 /// @return MSPRING_OK; MSPRING_ERROR_ID; MSPRING_ERROR_ARGUMENT for NULL, an unknown numbering or stride 0.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_get_ends(const mspring_network *network, mspring_id first, uint32_t count,
     mspring_numbering numbering, uint32_t *a, uint32_t *b, uint32_t stride);
@@ -1740,7 +1740,7 @@ mspring_network_get_ends(const mspring_network *network, mspring_id first, uint3
 /// @param flags   receives those of spring first + i in flags[i * stride]
 /// @param stride  elements from one to the next, at least 1
 /// @return MSPRING_OK; MSPRING_ERROR_ID or MSPRING_ERROR_ARGUMENT.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_get_spring_flags(const mspring_network *network, mspring_id first, uint32_t count, uint32_t *flags,
     uint32_t stride);
@@ -1752,7 +1752,7 @@ mspring_network_get_spring_flags(const mspring_network *network, mspring_id firs
 ///                     (0, 0) for a spring of length 0; both or none
 /// @param strain       [spring count], as MSPRING_STRAIN, to the last bit or so
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates the first time   @since 0.1
+/// @threads exclusive access to network   @allocates the first time   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_get_extents(mspring_network *network, float *length, float *direction_x, float *direction_y,
     float *strain);
@@ -1760,14 +1760,14 @@ mspring_network_get_extents(mspring_network *network, float *length, float *dire
 /// The largest absolute strain and the spring that has it (the lowest id of several). A network without springs
 /// has strain 0 and spring MSPRING_NONE. Either out-parameter may be NULL.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_max_strain(const mspring_network *network, float *strain, mspring_id *spring);
 
 /// A 64-bit hash of positions, velocities and local origin, over their bits in id order: equal states have equal
 /// hashes on every machine. (Not cryptographic.)
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_state_hash(const mspring_network *network, uint64_t *hash);
 
@@ -1790,7 +1790,7 @@ typedef enum mspring_snapshot_contents {
 /// The size of a snapshot that is saved now, in bytes. It changes with what there is to save: forces, ramps, edits.
 /// So ask before each save.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL or unknown contents; MSPRING_ERROR_BUSY in a hook.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_snapshot_size(const mspring_network *network, mspring_snapshot_contents contents, size_t *size);
 
@@ -1805,7 +1805,7 @@ mspring_network_snapshot_size(const mspring_network *network, mspring_snapshot_c
 /// @param size      receives the bytes written; may be NULL
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL, unknown contents or too little room; MSPRING_ERROR_BUSY in
 ///         a hook.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_save(const mspring_network *network, mspring_snapshot_contents contents, void *snapshot,
     size_t capacity, size_t *size);
@@ -1815,34 +1815,34 @@ mspring_network_save(const mspring_network *network, mspring_snapshot_contents c
 /// cut off, of another network or with values that a network cannot have is refused, and changes nothing.
 /// @return MSPRING_OK; MSPRING_ERROR_SNAPSHOT (the message says what is wrong), MSPRING_ERROR_ARGUMENT for NULL,
 ///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates yes, what the network did not need so far   @since 0.1
+/// @threads exclusive access to network   @allocates yes, what the network did not need so far   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_load(mspring_network *network, const void *snapshot, size_t size);
 
 /* --------------------------------------------------------------------------------------------- SIMD level */
 
 /// The instruction set that the network's steps use. NULL gives MSPRING_SIMD_AUTO.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_API mspring_simd MSPRING_CALL mspring_network_simd_level(const mspring_network *network);
 
 /// The number of workers that the network has: what its definition asks for, or 1 in a build of the library without
 /// threads. (How many take part in a step depends on the network's size.) NULL gives 0.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_API uint32_t MSPRING_CALL mspring_network_worker_count(const mspring_network *network);
 
 /// The best instruction set that this CPU, operating system and build of the library offer.
-/// @threads any   @allocates never   @since 0.1
+/// @threads any   @allocates never   @since 0.2
 MSPRING_API mspring_simd MSPRING_CALL mspring_simd_supported(void);
 
 /// Whether a network can be made to run at this level here: 1 for MSPRING_SIMD_AUTO and the levels that this CPU,
 /// operating system and build of the library offer, 0 for others. On x86-64, 64-bit ARM and WebAssembly builds have
 /// MSPRING_SIMD_SCALAR only if they are made with it.
-/// @threads any   @allocates never   @since 0.1
+/// @threads any   @allocates never   @since 0.2
 MSPRING_API uint32_t MSPRING_CALL mspring_simd_available(mspring_simd level);
 
 /// Name of a level as in MSPRING_SIMD: "scalar", "sse2", "avx2", "avx512", "neon", "wasm", "auto"; "unknown" for
 /// others.
-/// @threads any   @allocates never   @since 0.1
+/// @threads any   @allocates never   @since 0.2
 MSPRING_API const char *MSPRING_CALL mspring_simd_name(mspring_simd level);
 
 #ifdef __cplusplus

@@ -34,7 +34,7 @@ extern "C" {
 ///                   now. For a full lattice at rest it is 0.71 of now, with dampers alone 0.49. It depends only
 ///                   on springs (broken ones count as whole), masses and pins. May be NULL.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for a network NULL, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates yes, and frees it, if now is asked for   @since 0.1
+/// @threads exclusive access to network   @allocates yes, and frees it, if now is asked for   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_stable_dt(mspring_network *network, double *now, double *any_shape);
 
@@ -45,7 +45,7 @@ mspring_network_stable_dt(mspring_network *network, double *now, double *any_sha
 ///                use less. On a lattice without dampers 0.7 is enough for any motion.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT; MSPRING_ERROR_UNSTABLE if MSPRING_MAX_SUBSTEPS are too few;
 ///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates yes, and frees it   @since 0.1
+/// @threads exclusive access to network   @allocates yes, and frees it   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_suggest_substeps(mspring_network *network, double dt, double safety, uint32_t *substeps);
 
@@ -84,7 +84,7 @@ typedef struct mspring_settle_result {
 } mspring_settle_result;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
-/// @threads any   @allocates never   @since 0.1
+/// @threads any   @allocates never   @since 0.2
 MSPRING_API mspring_result MSPRING_CALL mspring_settle_def_init(mspring_settle_def *def, size_t size);
 
 /// Move the particles to static equilibrium.
@@ -106,7 +106,7 @@ MSPRING_API mspring_result MSPRING_CALL mspring_settle_def_init(mspring_settle_d
 ///         lead to it (the message names a particle, and the force on it); MSPRING_ERROR_LIMIT if the factor would
 ///         have over 2^31 numbers; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY,
 ///         MSPRING_ERROR_BUSY. On error nothing has moved.
-/// @threads exclusive access to network   @allocates yes, and frees it   @since 0.1
+/// @threads exclusive access to network   @allocates yes, and frees it   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_settle(mspring_network *network, const mspring_settle_def *def, mspring_settle_result *result);
 
@@ -166,7 +166,7 @@ typedef struct mspring_tune_scene {
 } mspring_tune_scene;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
-/// @threads any   @allocates never   @since 0.1
+/// @threads any   @allocates never   @since 0.2
 MSPRING_API mspring_result MSPRING_CALL mspring_tune_scene_init(mspring_tune_scene *scene, size_t size);
 
 /// Settings to try. A row above a limit is not recommended. Fill with mspring_tune_def_init() first.
@@ -247,7 +247,7 @@ typedef struct mspring_tune_row {
 } mspring_tune_row;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
-/// @threads any   @allocates never   @since 0.1
+/// @threads any   @allocates never   @since 0.2
 MSPRING_API mspring_result MSPRING_CALL mspring_tune_def_init(mspring_tune_def *def, size_t size);
 
 /// List the default settings of mspring_network_tune().
@@ -262,7 +262,7 @@ MSPRING_API mspring_result MSPRING_CALL mspring_tune_def_init(mspring_tune_def *
 /// @param count     receives the number of settings, even if it is larger than capacity
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, also for too little capacity unless that is 0;
 ///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates yes, and frees it   @since 0.1
+/// @threads exclusive access to network   @allocates yes, and frees it   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_tune_settings(mspring_network *network, double dt, mspring_solver_def *settings, uint32_t capacity,
     uint32_t *count);
@@ -305,7 +305,7 @@ mspring_tune_settings(mspring_network *network, double dt, mspring_solver_def *s
 ///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY; the result of the scene's prepare. On error nothing is
 ///         written, and the network is as it was.
 /// @threads exclusive access to network; prepare is called on the calling thread   @allocates yes, and frees it
-/// @since 0.1
+/// @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_tune(mspring_network *network, const mspring_tune_def *def, mspring_tune_row *rows,
     uint32_t capacity, uint32_t *count);
@@ -314,7 +314,7 @@ mspring_network_tune(mspring_network *network, const mspring_tune_def *def, mspr
 /// Its substeps are those that the row's steps took.
 /// @param solver  set its struct_size first
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL, MSPRING_ERROR_STRUCT.
-/// @threads any   @allocates never   @since 0.1
+/// @threads any   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_tune_row_solver(const mspring_tune_row *row, mspring_solver_def *solver);
 
@@ -363,12 +363,12 @@ typedef struct mspring_plan {
 
 /// Get the plan. Set struct_size first.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_plan(const mspring_network *network, mspring_plan *plan);
 
 /// Get the bytes that the network has allocated. NULL gives 0.
-/// @threads shared   @allocates never   @since 0.1
+/// @threads shared   @allocates never   @since 0.2
 MSPRING_API size_t MSPRING_CALL mspring_network_memory_used(const mspring_network *network);
 
 /* ------------------------------------------------------------------------------------------- compaction jobs */
@@ -400,7 +400,7 @@ typedef enum mspring_layout {
 /// Begin a job: copy springs and their layout.
 /// @return MSPRING_OK; MSPRING_ERROR_BUSY inside a hook, or if the network has a job that is neither finished nor
 ///         destroyed; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY.
-/// @threads exclusive access to network   @allocates yes   @since 0.1
+/// @threads exclusive access to network   @allocates yes   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_job_begin(mspring_network *network, mspring_layout layout, mspring_job **job);
 
@@ -410,7 +410,7 @@ mspring_job_begin(mspring_network *network, mspring_layout layout, mspring_job *
 /// @param left     receives an estimate of the parts left, which never rises; 0: it can be finished; may be NULL
 /// @return MSPRING_OK; MSPRING_ERROR_MEMORY or MSPRING_ERROR_LIMIT, after which the job can only be destroyed;
 ///         MSPRING_ERROR_ARGUMENT for NULL, or for a job that has failed or is finished.
-/// @threads exclusive access to job; no access to any network   @allocates yes   @since 0.1
+/// @threads exclusive access to job; no access to any network   @allocates yes   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_job_run(mspring_job *job, uint32_t at_most, uint32_t *left);
 
@@ -423,18 +423,18 @@ mspring_job_run(mspring_job *job, uint32_t at_most, uint32_t *left);
 ///         end; MSPRING_ERROR_MEMORY; MSPRING_ERROR_LIMIT; MSPRING_ERROR_ARGUMENT for NULL, for a job that is
 ///         finished, or for one of another network. If a run failed, its error is returned again. On error the
 ///         network is as it was.
-/// @threads exclusive access to network and job   @allocates some   @since 0.1
+/// @threads exclusive access to network and job   @allocates some   @since 0.2
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_job_finish(mspring_network *network, mspring_job *job);
 
 /// Get the error message of a job.
 /// It is that of the first mspring_job_run() that failed; "" if none did, or for NULL. The job owns it.
-/// @threads shared with other reads of the job   @allocates never   @since 0.1
+/// @threads shared with other reads of the job   @allocates never   @since 0.2
 MSPRING_API const char *MSPRING_CALL mspring_job_error(const mspring_job *job);
 
 /// Free a job, finished or not. NULL is allowed.
 /// If it is finished, this frees the old plan, which may take milliseconds: another thread may do that.
-/// @threads exclusive access to job and, unless it is finished, to its network   @allocates never   @since 0.1
+/// @threads exclusive access to job and, unless it is finished, to its network   @allocates never   @since 0.2
 MSPRING_API void MSPRING_CALL mspring_job_destroy(mspring_job *job);
 
 #ifdef __cplusplus

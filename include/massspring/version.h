@@ -6,7 +6,7 @@
 #define MASSSPRING_VERSION_H
 
 #define MSPRING_VERSION_MAJOR 0
-#define MSPRING_VERSION_MINOR 1
+#define MSPRING_VERSION_MINOR 2
 #define MSPRING_VERSION_PATCH 0
 
 /// The version as one number that can be compared: major * 1000000 + minor * 1000 + patch.

@@ -145,7 +145,7 @@ static void bad_calls_are_refused(void **state) {
     const mspring_tune_def good = tunes_def(&w);
     check_error(mspring_tune_def_init(NULL, sizeof good), MSPRING_ERROR_ARGUMENT);
     mspring_tune_def def;
-    check_error(mspring_tune_def_init(&def, sizeof def + 8), MSPRING_ERROR_STRUCT);
+    check_error(mspring_tune_def_init(&def, sizeof def + 2), MSPRING_ERROR_STRUCT);
     check_error(mspring_network_tune(NULL, &good, out.rows, TUNES_MOST, &count), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_tune(network, &good, NULL, TUNES_MOST, &count), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_tune(network, &good, out.rows, TUNES_MOST, NULL), MSPRING_ERROR_ARGUMENT);

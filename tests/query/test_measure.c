@@ -185,7 +185,7 @@ static void bad_calls_are_refused(void **state) {
     assert_memory_equal(&info, &before, sizeof info);
     info.struct_size = sizeof info - 4;
     check_error(mspring_network_get_spring(m->network, 0, &info), MSPRING_ERROR_STRUCT);
-    info.struct_size = sizeof info + 4;
+    info.struct_size = sizeof info + 2;
     check_error(mspring_network_get_spring(m->network, 0, &info), MSPRING_ERROR_STRUCT);
     check_error(mspring_network_get(m->network, MSPRING_STRAIN, count, 1, strain, 1), MSPRING_ERROR_ID);
     check_error(mspring_network_get(m->network, MSPRING_STRAIN, 1, UINT32_MAX, strain, 1), MSPRING_ERROR_ID);

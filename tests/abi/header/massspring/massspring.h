@@ -30,7 +30,8 @@
 /// what falls freely less accurate.
 ///
 /// **Same bits.** The same calls give the same state, bit for bit, at every SIMD level, with every supported
-/// compiler and optimisation level. mspring_network_state_hash() is the way to check it.
+/// compiler and optimisation level. This holds within one minor version: 0.2.0 and 0.2.1 have the same bits, 0.3.0 may
+/// have others. mspring_network_state_hash() is the way to check it.
 ///
 /// **Errors.** Every function that can fail returns a mspring_result. A failed call changes nothing but the
 /// object's error message, which says what is wrong and where; out-parameters are left untouched. No function
@@ -48,13 +49,24 @@
 /// **Structs.** What you give has an init function, which fills in defaults: call it first. What you read into only
 /// needs its struct_size: set it first, to the size of the struct. Settings and solvers are both.
 ///
-/// **ABI.** Handles are opaque, ids are integers, no struct is passed by value. Every public struct starts with
-/// struct_size. Reserved fields of what is given must be 0, so that a later
-/// version may give them a meaning: anything else is MSPRING_ERROR_ARGUMENT. Structs may grow at the end, and a
-/// program built against an older header goes on working. A program built against a newer one is refused: by
-/// MSPRING_ERROR_STRUCT, or, where it calls what is not there, by the loader. Nothing that was released is taken
-/// away: what has something better stays, and its description says what to use instead, until the ABI is broken as
-/// a whole, which is counted by the shared library's own number and not by the release.
+/// **ABI.** Handles are opaque, no struct is passed by value. Ids, counts, capacities and strides are uint32_t;
+/// sizes in bytes are size_t. Enums are signed integers of 32 bits. Structs have no padding but what their fields
+/// name.
+///
+/// Every public struct but mspring_event starts with struct_size. Reserved fields of what you give must be 0:
+/// anything else is MSPRING_ERROR_ARGUMENT. A later version may give them a meaning.
+///
+/// Structs may grow at the end, and a program built against an older header goes on working. One built against a
+/// newer header works, too, as long as it leaves what this version does not know at 0, as the init functions do;
+/// else it gets MSPRING_ERROR_STRUCT. What such a program reads there is 0. If it calls a function that is not
+/// there, the loader says so.
+///
+/// Later versions may also add results, kinds of events, and flags in what is read. Ignore those that you do not
+/// know: a result below 0 is an error.
+///
+/// Nothing that was released is taken away. What has something better stays, and its description says what to use
+/// instead, until the ABI is broken as a whole. That is counted by the shared library's own number, not by the
+/// release.
 ///
 /// massspring_tools.h has what tunes and inspects networks.
 ///
@@ -86,6 +98,18 @@ extern "C" {
 #define MSPRING_API
 #endif
 
+/// The calling convention of all functions and callbacks. On other systems than 32-bit Windows there is one.
+#if defined(MSPRING_CALL)
+#elif defined(_WIN32) && !defined(_WIN64)
+#define MSPRING_CALL __cdecl
+#else
+#define MSPRING_CALL
+#endif
+
+/// Makes an enum a signed integer of 32 bits with every compiler, whatever its options. Its enumerator is no value:
+/// give a switch a default.
+#define MSPRING_ENUM_INT (-0x7fffffff - 1)
+
 /// Marks results that must not be ignored.
 #if defined(__cplusplus) && __cplusplus >= 201703L
 #define MSPRING_NODISCARD [[nodiscard]]
@@ -98,12 +122,12 @@ extern "C" {
 /* ------------------------------------------------------------------------------------------------ version */
 
 /// Version of the library that runs, in the form of MSPRING_VERSION.
-/// @threads any   @allocates never   @since 0.1
-MSPRING_API uint32_t mspring_version(void);
+/// @threads any   @allocates never   @since 0.2
+MSPRING_API uint32_t MSPRING_CALL mspring_version(void);
 
-/// Version of the library that runs, as text, such as "0.1.0". Static storage.
-/// @threads any   @allocates never   @since 0.1
-MSPRING_API const char *mspring_version_string(void);
+/// Version of the library that runs, as text, such as "0.2.0". Static storage.
+/// @threads any   @allocates never   @since 0.2
+MSPRING_API const char *MSPRING_CALL mspring_version_string(void);
 
 /// What a build of the library has beside what all have.
 enum {
@@ -116,16 +140,14 @@ enum {
 };
 
 /// Features of the library that runs: bits of MSPRING_FEATURE_. (When compiling, MSPRING_VERSION tells what the
-/// header has: `#if MSPRING_VERSION >= 1000` is true from 0.1.0 on.)
-/// @threads any   @allocates never   @since 0.1
-MSPRING_API uint32_t mspring_features(void);
+/// header has: `#if MSPRING_VERSION >= 2000` is true from 0.2.0 on.)
+/// @threads any   @allocates never   @since 0.2
+MSPRING_API uint32_t MSPRING_CALL mspring_features(void);
 
 /* ------------------------------------------------------------------------------------------- result codes */
 
 /// What a call came to: MSPRING_OK or one of the negative errors below.
-typedef int32_t mspring_result;
-
-enum {
+typedef enum mspring_result {
     MSPRING_OK = 0,
     MSPRING_ERROR_ARGUMENT = -1,     ///< NULL, NaN, infinite, or outside the range that the function states
     MSPRING_ERROR_ID = -2,           ///< no such particle or spring
@@ -139,12 +161,13 @@ enum {
     MSPRING_ERROR_THREAD = -9,       ///< the system refuses a thread or a lock
     MSPRING_ERROR_EQUILIBRIUM = -10, ///< the forces have no equilibrium, or none was found
     MSPRING_ERROR_SNAPSHOT = -11,    ///< this is no snapshot of this network, or a damaged one
-    MSPRING_ERROR_OUTDATED = -12     ///< the network is another than the one that the job was begun for
-};
+    MSPRING_ERROR_OUTDATED = -12,     ///< the network is another than the one that the job was begun for
+    MSPRING_RESULT_INT = MSPRING_ENUM_INT ///< no value
+} mspring_result;
 
 /// Short English name of a result code, such as "out of memory". Never NULL; static storage.
-/// @threads any   @allocates never   @since 0.1
-MSPRING_API const char *mspring_result_string(mspring_result result);
+/// @threads any   @allocates never   @since 0.2
+MSPRING_API const char *MSPRING_CALL mspring_result_string(mspring_result result);
 
 /* -------------------------------------------------------------------------------------------- identifiers */
 
@@ -155,11 +178,11 @@ MSPRING_API const char *mspring_result_string(mspring_result result);
 typedef uint32_t mspring_id;
 
 /// No particle, no spring.
-#define MSPRING_NONE UINT32_MAX
+#define MSPRING_NONE 0xffffffffu
 
 /// Most particles and most springs in one network.
-#define MSPRING_MAX_PARTICLES ((uint32_t)1 << 26)
-#define MSPRING_MAX_SPRINGS ((uint32_t)1 << 28)
+#define MSPRING_MAX_PARTICLES 0x4000000u
+#define MSPRING_MAX_SPRINGS 0x10000000u
 
 /// Largest absolute world coordinate (m) that positions may have when given, and largest coordinate relative
 /// to the local origin that a step may lead to.
@@ -177,8 +200,9 @@ typedef uint32_t mspring_id;
 /// inside the destroy functions.
 typedef struct mspring_allocator {
     uint32_t struct_size; ///< sizeof(mspring_allocator)
-    void *(*alloc)(size_t size, size_t alignment, void *user);
-    void (*free)(void *memory, size_t size, void *user);
+    uint32_t reserved;    ///< 0
+    void *(MSPRING_CALL *alloc)(size_t size, size_t alignment, void *user);
+    void (MSPRING_CALL *free)(void *memory, size_t size, void *user);
     void *user;
 } mspring_allocator;
 
@@ -188,7 +212,7 @@ typedef struct mspring_allocator {
 #define MSPRING_MAX_WORKERS 256u
 
 /// A piece of work of the library, to be called as fn(argument, index, worker).
-typedef void (*mspring_task_fn)(void *argument, uint32_t index, uint32_t worker);
+typedef void (MSPRING_CALL *mspring_task_fn)(void *argument, uint32_t index, uint32_t worker);
 
 /// The host's threads, lent to a network. Fill with mspring_tasks_init() first. The struct is copied.
 ///
@@ -212,7 +236,7 @@ typedef struct mspring_tasks {
     uint32_t worker_count;     ///< 1 to MSPRING_MAX_WORKERS; 1, the default, means that run is not called
     uint32_t concurrent_count; ///< 1 to worker_count; default 1
     uint32_t reserved;         ///< 0
-    void (*run)(uint32_t count, mspring_task_fn fn, void *argument, void *user); ///< must be set
+    void (MSPRING_CALL *run)(uint32_t count, mspring_task_fn fn, void *argument, void *user); ///< must be set
     void *user; ///< handed to run; default NULL
 } mspring_tasks;
 
@@ -251,6 +275,7 @@ typedef struct mspring_particle_def {
     double x, y;    ///< world position, m, at most MSPRING_MAX_COORDINATE in absolute value; default 0
     float vx, vy;   ///< velocity, m/s, within MSPRING_MAX_SPEED; default 0
     float mass;     ///< kg, 1e-30 to 1e30; default 1
+    uint32_t reserved; ///< 0
 } mspring_particle_def;
 
 /// rest_length for "the distance at which the two particles are added".
@@ -290,16 +315,16 @@ typedef struct mspring_material {
 } mspring_material;
 
 /// Materials that mspring_material_preset() knows.
-typedef int32_t mspring_preset;
-enum {
+typedef enum mspring_preset {
     MSPRING_PRESET_STEEL = 0, ///< heavy, as firm as substeps allow, hardly damped
     MSPRING_PRESET_WOOD = 1,  ///< light and firm
     MSPRING_PRESET_RUBBER = 2, ///< bends and stretches far
-    MSPRING_PRESET_JELLY = 3  ///< sags under its own weight and wobbles
-};
+    MSPRING_PRESET_JELLY = 3,  ///< sags under its own weight and wobbles
+    MSPRING_PRESET_INT = MSPRING_ENUM_INT ///< no value
+} mspring_preset;
 
 /// Cell of a lattice with nothing in it.
-#define MSPRING_CELL_EMPTY UINT16_MAX
+#define MSPRING_CELL_EMPTY 0xffffu
 
 /// A grid of cells, as an image gives it: every cell that is not empty becomes a particle, every pair of
 /// neighbours (8 to a cell) is joined by a spring at its rest length. The spring's stiffness and damping are
@@ -385,8 +410,7 @@ typedef struct mspring_disc_def {
 } mspring_disc_def;
 
 /// How a network is evolved.
-typedef int32_t mspring_solver;
-enum {
+typedef enum mspring_solver {
     /// Symplectic Euler in substeps of equal length. First order, conserves momentum, cost proportional to the
     /// number of substeps. Stable while omega_max * h < 2: on a full lattice of equal springs and masses,
     /// stiffness < mass / (2 h^2). See mspring_network_stable_dt().
@@ -416,8 +440,9 @@ enum {
     /// that not do (k h^2 / m of about 1e14 and more), particles are made heavier for this substep by the least
     /// that helps: 1.4e-14 of the stiffness at them, or 64 times that, and so on up to a thousandth; then the step
     /// is refused.
-    MSPRING_SOLVER_DIRECT = 2
-};
+    MSPRING_SOLVER_DIRECT = 2,
+    MSPRING_SOLVER_INT = MSPRING_ENUM_INT ///< no value
+} mspring_solver;
 
 /// How the implicit solvers go from t to t + h. All are stable for any h and damp the fastest oscillations out in
 /// a few steps. The two of second order remember the substep before; the first substep after a change of the
@@ -426,15 +451,15 @@ enum {
 /// Stiff ropes that hang slack, and are pulled taut within a substep, are what no integrator can follow. A substep
 /// that would gain energy is taken again by implicit Euler, with twice the iterations, and then in halves, down to a
 /// 32nd. The next 15 substeps are ones of implicit Euler, too (unless the guard is MSPRING_GUARD_BOUNDS).
-typedef int32_t mspring_integrator;
-enum {
+typedef enum mspring_integrator {
     MSPRING_INTEGRATOR_GA0 = 0,  ///< generalised-alpha with rho_inf = 0 (Chung and Hulbert, 1993): second order
     MSPRING_INTEGRATOR_BDF2 = 1, ///< backward differences of second order
-    MSPRING_INTEGRATOR_EULER = 2 ///< implicit Euler: first order, and takes most energy out of oscillations
-};
+    MSPRING_INTEGRATOR_EULER = 2, ///< implicit Euler: first order, and takes most energy out of oscillations
+    MSPRING_INTEGRATOR_INT = MSPRING_ENUM_INT ///< no value
+} mspring_integrator;
 
 /// Most substeps in one step.
-#define MSPRING_MAX_SUBSTEPS 1000000
+#define MSPRING_MAX_SUBSTEPS 1000000u
 
 /// substeps for "as few as are stable in whatever shape the network may get into" (see
 /// mspring_network_stable_dt()), chosen at every step. mspring_step_info says how many they were. For the
@@ -443,7 +468,7 @@ enum {
 /// Relative springs follow the substep, so their number decides how firm they are: 1 if all springs are relative.
 /// Set a number to have them firmer. If relative springs are too stiff to be stable in any shape, the others get half
 /// of the room, and the guard looks at the present shape.
-#define MSPRING_SUBSTEPS_AUTO UINT32_MAX
+#define MSPRING_SUBSTEPS_AUTO 0xffffffffu
 
 /// Solver and its settings. Fill with mspring_solver_def_init() first. What a solver does not use is not looked at.
 typedef struct mspring_solver_def {
@@ -471,16 +496,16 @@ typedef struct mspring_solver_def {
 /// Instruction sets. All give the same bits. Those of one kind of CPU stand in order, scalar below all of them:
 /// scalar < SSE2 < AVX2 < AVX-512 on x86, scalar < NEON on 64-bit ARM, scalar < WASM in a browser, scalar alone
 /// elsewhere. Between kinds there is no order.
-typedef int32_t mspring_simd;
-enum {
+typedef enum mspring_simd {
     MSPRING_SIMD_AUTO = 0, ///< the best that CPU and operating system offer
     MSPRING_SIMD_SCALAR = 1,
     MSPRING_SIMD_SSE2 = 2,
     MSPRING_SIMD_AVX2 = 3,
     MSPRING_SIMD_AVX512 = 4,
     MSPRING_SIMD_NEON = 5,
-    MSPRING_SIMD_WASM = 6 ///< SIMD128 of WebAssembly, in modules that were built with it
-};
+    MSPRING_SIMD_WASM = 6, ///< SIMD128 of WebAssembly, in modules that were built with it
+    MSPRING_SIMD_INT = MSPRING_ENUM_INT ///< no value
+} mspring_simd;
 
 /// Flags of networks.
 enum {
@@ -495,8 +520,7 @@ enum {
 };
 
 /// What a step does beside refusing to end with a coordinate or speed that is not finite or out of bounds.
-typedef int32_t mspring_guard;
-enum {
+typedef enum mspring_guard {
     /// Refuse a step whose substeps are above the border of mspring_network_stable_dt(): motion would turn round
     /// and grow in each. The border is looked at before a step whose substep is another one, and after a step that
     /// changes a velocity twice as much as one did at the last look. It is never looked at where substeps are
@@ -529,8 +553,8 @@ enum {
     /// with the network. mspring_step_info says how often that was.
     MSPRING_GUARD_IMPLICIT = 3,
     /// As MSPRING_GUARD_GROWTH, but take a step that would be refused with strain rates clamped and, unless the
-    /// solver is an implicit one, the 15 after it: in as many substeps, or a hundredth of max_substeps if these are too
-    /// few for MSPRING_SUBSTEPS_AUTO. In each of them springs act one after another in the order of their ids, and
+    /// solver is an implicit one, the 15 after it: in as many substeps, or a hundredth of max_substeps if these are
+    /// too few for MSPRING_SUBSTEPS_AUTO. In each of them springs act one after another in the order of their ids, and
     /// back again, by impulses along them. None changes the rate at which its spring is strained by more than what
     /// takes it to its rest length by the end of the substep, or its damper's by more than what brings it to rest.
     ///
@@ -549,11 +573,12 @@ enum {
     /// MSPRING_SUBSTEPS_AUTO one that needs more than max_substeps takes max_substeps. Hooks may see what is out of
     /// bounds while the step lasts. After a step that put something back floor impulses are those of the step
     /// before, and an implicit solver begins a new history.
-    MSPRING_GUARD_CLAMP_BOUNDS = 5
-};
+    MSPRING_GUARD_CLAMP_BOUNDS = 5,
+    MSPRING_GUARD_INT = MSPRING_ENUM_INT ///< no value
+} mspring_guard;
 
-/// What may change at any time: see mspring_network_set_settings(). mspring_settings_init() fills in what a network has
-/// by default.
+/// What may change at any time: see mspring_network_set_settings(). mspring_settings_init() fills in what a network
+/// has by default.
 typedef struct mspring_settings {
     uint32_t struct_size;
     mspring_guard guard;  ///< what a step does beside checking bounds
@@ -605,19 +630,19 @@ typedef struct mspring_network_def {
 
 /// Fill a definition with its defaults. Pass the size that your header gives it: sizeof *def.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL; MSPRING_ERROR_STRUCT for an impossible size.
-/// @threads any   @allocates never   @since 0.1
-MSPRING_API mspring_result mspring_allocator_init(mspring_allocator *allocator, size_t size);
-MSPRING_API mspring_result mspring_tasks_init(mspring_tasks *tasks, size_t size);
-MSPRING_API mspring_result mspring_particle_def_init(mspring_particle_def *def, size_t size);
-MSPRING_API mspring_result mspring_spring_def_init(mspring_spring_def *def, size_t size);
-MSPRING_API mspring_result mspring_material_init(mspring_material *material, size_t size);
-MSPRING_API mspring_result mspring_lattice_def_init(mspring_lattice_def *def, size_t size);
-MSPRING_API mspring_result mspring_rope_def_init(mspring_rope_def *def, size_t size);
-MSPRING_API mspring_result mspring_mesh_def_init(mspring_mesh_def *def, size_t size);
-MSPRING_API mspring_result mspring_disc_def_init(mspring_disc_def *def, size_t size);
-MSPRING_API mspring_result mspring_solver_def_init(mspring_solver_def *def, size_t size);
-MSPRING_API mspring_result mspring_settings_init(mspring_settings *settings, size_t size);
-MSPRING_API mspring_result mspring_network_def_init(mspring_network_def *def, size_t size);
+/// @threads any   @allocates never   @since 0.2
+MSPRING_API mspring_result MSPRING_CALL mspring_allocator_init(mspring_allocator *allocator, size_t size);
+MSPRING_API mspring_result MSPRING_CALL mspring_tasks_init(mspring_tasks *tasks, size_t size);
+MSPRING_API mspring_result MSPRING_CALL mspring_particle_def_init(mspring_particle_def *def, size_t size);
+MSPRING_API mspring_result MSPRING_CALL mspring_spring_def_init(mspring_spring_def *def, size_t size);
+MSPRING_API mspring_result MSPRING_CALL mspring_material_init(mspring_material *material, size_t size);
+MSPRING_API mspring_result MSPRING_CALL mspring_lattice_def_init(mspring_lattice_def *def, size_t size);
+MSPRING_API mspring_result MSPRING_CALL mspring_rope_def_init(mspring_rope_def *def, size_t size);
+MSPRING_API mspring_result MSPRING_CALL mspring_mesh_def_init(mspring_mesh_def *def, size_t size);
+MSPRING_API mspring_result MSPRING_CALL mspring_disc_def_init(mspring_disc_def *def, size_t size);
+MSPRING_API mspring_result MSPRING_CALL mspring_solver_def_init(mspring_solver_def *def, size_t size);
+MSPRING_API mspring_result MSPRING_CALL mspring_settings_init(mspring_settings *settings, size_t size);
+MSPRING_API mspring_result MSPRING_CALL mspring_network_def_init(mspring_network_def *def, size_t size);
 
 /// Fill a material with what looks like steel, wood, rubber or jelly at this substep.
 ///
@@ -642,10 +667,10 @@ MSPRING_API mspring_result mspring_network_def_init(mspring_network_def *def, si
 /// @param substep   s, 1e-12 to 1e6: dt / substeps
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL, an unknown preset or a value out of range;
 ///         MSPRING_ERROR_STRUCT for an impossible size. On error nothing changes.
-/// @threads any   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_material_preset(mspring_material *material, size_t size,
-                                                                     mspring_preset preset, double spacing,
-                                                                     double substep);
+/// @threads any   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_material_preset(mspring_material *material, size_t size, mspring_preset preset, double spacing,
+    double substep);
 
 /* ------------------------------------------------------------------------------------------------ builder */
 
@@ -655,40 +680,39 @@ typedef struct mspring_builder mspring_builder;
 /// Make an empty builder.
 /// @param allocator  NULL for malloc and free; copied
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT or MSPRING_ERROR_MEMORY.
-/// @threads any   @allocates yes   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_create(const mspring_allocator *allocator,
-                                                                    mspring_builder **builder);
+/// @threads any   @allocates yes   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_builder_create(const mspring_allocator *allocator, mspring_builder **builder);
 
 /// Free a builder. NULL is allowed.
-/// @threads exclusive access to builder   @allocates never   @since 0.1
-MSPRING_API void mspring_builder_destroy(mspring_builder *builder);
+/// @threads exclusive access to builder   @allocates never   @since 0.2
+MSPRING_API void MSPRING_CALL mspring_builder_destroy(mspring_builder *builder);
 
 /// What was wrong with the last call on this builder, naming the culprit; "" if that call succeeded. Belongs to the
 /// builder, valid until the next call on it. NULL gives "". Print the result's name first: mspring_result_string().
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_API const char *mspring_builder_error(const mspring_builder *builder);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_API const char *MSPRING_CALL mspring_builder_error(const mspring_builder *builder);
 
 /// Number of particles and springs added so far. NULL gives 0.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_API uint32_t mspring_builder_particle_count(const mspring_builder *builder);
-MSPRING_API uint32_t mspring_builder_spring_count(const mspring_builder *builder);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_API uint32_t MSPRING_CALL mspring_builder_particle_count(const mspring_builder *builder);
+MSPRING_API uint32_t MSPRING_CALL mspring_builder_spring_count(const mspring_builder *builder);
 
 /// Add one particle.
 /// @param id  receives its id; may be NULL
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
-/// @threads exclusive access to builder   @allocates yes   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_particle(mspring_builder *builder,
-                                                                          const mspring_particle_def *def,
-                                                                          mspring_id *id);
+/// @threads exclusive access to builder   @allocates yes   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_builder_add_particle(mspring_builder *builder, const mspring_particle_def *def, mspring_id *id);
 
 /// Add many particles: all of them or, on error, none.
 /// @param defs      [count], all with the same struct_size
 /// @param first_id  receives the id of the first; the others follow; may be NULL
 /// @return as mspring_builder_add_particle(); the error message names the index.
-/// @threads exclusive access to builder   @allocates yes   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_particles(mspring_builder *builder,
-                                                                           const mspring_particle_def *defs,
-                                                                           size_t count, mspring_id *first_id);
+/// @threads exclusive access to builder   @allocates yes   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_builder_add_particles(mspring_builder *builder, const mspring_particle_def *defs, uint32_t count,
+    mspring_id *first_id);
 
 /// Add one spring between particles that were added before.
 /// @param id  receives its id; may be NULL
@@ -696,16 +720,15 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_particles(mspri
 ///         out of range, a spring from a particle to itself, or a rest length to be taken from the distance of
 ///         two particles in the same place; MSPRING_ERROR_STRUCT, MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
 ///         A second spring between the same two particles is found by mspring_network_create().
-/// @threads exclusive access to builder   @allocates yes   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_spring(mspring_builder *builder,
-                                                                        const mspring_spring_def *def,
-                                                                        mspring_id *id);
+/// @threads exclusive access to builder   @allocates yes   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_builder_add_spring(mspring_builder *builder, const mspring_spring_def *def, mspring_id *id);
 
 /// Add many springs: all of them or, on error, none. As mspring_builder_add_particles().
-/// @threads exclusive access to builder   @allocates yes   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_springs(mspring_builder *builder,
-                                                                         const mspring_spring_def *defs,
-                                                                         size_t count, mspring_id *first_id);
+/// @threads exclusive access to builder   @allocates yes   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_builder_add_springs(mspring_builder *builder, const mspring_spring_def *defs, uint32_t count,
+    mspring_id *first_id);
 
 /// Add a lattice: all of it or, on error, nothing. Particle ids follow the cells, row by row from the top, left
 /// to right, empty cells left out. Spring ids follow the particles; each brings those to its right, lower left,
@@ -714,10 +737,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_springs(mspring
 /// @param cell_ids  [height][width], receives each cell's particle id or MSPRING_NONE; may be NULL
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT (the message names cell or material), MSPRING_ERROR_STRUCT,
 ///         MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
-/// @threads exclusive access to builder   @allocates yes   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_lattice(mspring_builder *builder,
-                                                                         const mspring_lattice_def *def,
-                                                                         mspring_id *cell_ids);
+/// @threads exclusive access to builder   @allocates yes   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_builder_add_lattice(mspring_builder *builder, const mspring_lattice_def *def, mspring_id *cell_ids);
 
 /// Add a rope: all of it or, on error, nothing. Ids of particles and of springs follow the rope from its first
 /// end to its second.
@@ -726,11 +748,10 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_lattice(mspring
 /// @param capacity      segment_count + 1 for all of them
 /// @param first_spring  receives the id of the first spring; may be NULL
 /// @return as mspring_builder_add_spring()
-/// @threads exclusive access to builder   @allocates yes   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_rope(mspring_builder *builder,
-                                                                      const mspring_rope_def *def,
-                                                                      mspring_id *particles, uint32_t capacity,
-                                                                      mspring_id *first_spring);
+/// @threads exclusive access to builder   @allocates yes   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_builder_add_rope(mspring_builder *builder, const mspring_rope_def *def, mspring_id *particles,
+    uint32_t capacity, mspring_id *first_spring);
 
 /// Add a mesh of triangles: all of it or, on error, nothing. Particle ids follow the vertices. Spring ids follow the
 /// triangles: each brings those of its edges 0-1, 1-2 and 2-0 that no triangle before it has.
@@ -739,21 +760,19 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_rope(mspring_bu
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for a value out of range, a triangle without area or with a vertex
 ///         that there is not, or a vertex of no triangle (the message names it); MSPRING_ERROR_STRUCT,
 ///         MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
-/// @threads exclusive access to builder   @allocates yes   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_mesh(mspring_builder *builder,
-                                                                      const mspring_mesh_def *def,
-                                                                      mspring_id *first_particle,
-                                                                      mspring_id *first_spring);
+/// @threads exclusive access to builder   @allocates yes   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_builder_add_mesh(mspring_builder *builder, const mspring_mesh_def *def, mspring_id *first_particle,
+    mspring_id *first_spring);
 
 /// Add a disc: all of it or, on error, nothing. Particle ids go from the centre outwards, ring by ring, each ring
 /// counter-clockwise from the right. So the rim is the last 6 * ring_count particles.
 /// @param first_particle, first_spring  as of mspring_builder_add_mesh(); the first particle is the centre
 /// @return as mspring_builder_add_mesh()
-/// @threads exclusive access to builder   @allocates yes   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_builder_add_disc(mspring_builder *builder,
-                                                                      const mspring_disc_def *def,
-                                                                      mspring_id *first_particle,
-                                                                      mspring_id *first_spring);
+/// @threads exclusive access to builder   @allocates yes   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_builder_add_disc(mspring_builder *builder, const mspring_disc_def *def, mspring_id *first_particle,
+    mspring_id *first_spring);
 
 /* ---------------------------------------------------------------------------------------------- lifecycle */
 
@@ -767,17 +786,16 @@ typedef struct mspring_network mspring_network;
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT if the builder has no particle or a setting is out of range;
 ///         MSPRING_ERROR_DUPLICATE if two springs join the same two particles; MSPRING_ERROR_THREAD if a worker
 ///         cannot be started; MSPRING_ERROR_STRUCT, MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY.
-/// @threads exclusive access to builder   @allocates yes   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_create(mspring_builder *builder,
-                                                                    const mspring_network_def *def,
-                                                                    mspring_network **network);
+/// @threads exclusive access to builder   @allocates yes   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_create(mspring_builder *builder, const mspring_network_def *def, mspring_network **network);
 
 /// Add what a network holds now to a builder: to store it, to merge networks, or to split one.
 ///
 /// Adds particles with position, velocity, mass and pin, and the springs between them that are not broken. Springs
 /// have rest length, stiffness and damping of now (nominal ones, fractions if relative). A spring on a ramp keeps the
-/// rest length that it has now. Break, stress and relax strains are taken over. Not added: whether a spring is stressed,
-/// settings, solver, floor, hooks, forces, events.
+/// rest length that it has now. Break, stress and relax strains are taken over. Not added: whether a spring is
+/// stressed, settings, solver, floor, hooks, forces, events.
 /// An inverse mass scale becomes 1, or a pin if it is 0. Both kinds of id keep their order.
 ///
 /// A network that is created from the builder starts where the other is, but for the rounding of positions: its local
@@ -791,14 +809,14 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_create(mspring_buil
 /// @return MSPRING_OK; MSPRING_ERROR_ID for a particle that does not exist; MSPRING_ERROR_ARGUMENT for NULL or a
 ///         particle out of bounds (the builder's message names it); MSPRING_ERROR_LIMIT, MSPRING_ERROR_MEMORY. On
 ///         error nothing is added.
-/// @threads exclusive access to builder, shared for network   @allocates yes   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result
+/// @threads exclusive access to builder, shared for network   @allocates yes   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_builder_add_network(mspring_builder *builder, const mspring_network *network, const mspring_id *particles,
-                            uint32_t count, mspring_id *particle_ids, mspring_id *spring_ids);
+    uint32_t count, mspring_id *particle_ids, mspring_id *spring_ids);
 
 /// Free a network. NULL is allowed. Must not be called from a hook.
-/// @threads exclusive access to network   @allocates never   @since 0.1
-MSPRING_API void mspring_network_destroy(mspring_network *network);
+/// @threads exclusive access to network   @allocates never   @since 0.2
+MSPRING_API void MSPRING_CALL mspring_network_destroy(mspring_network *network);
 
 /// Flags of mspring_clone_def.
 enum {
@@ -818,8 +836,8 @@ typedef struct mspring_clone_def {
 } mspring_clone_def;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
-/// @threads any   @allocates never   @since 0.1
-MSPRING_API mspring_result mspring_clone_def_init(mspring_clone_def *def, size_t size);
+/// @threads any   @allocates never   @since 0.2
+MSPRING_API mspring_result MSPRING_CALL mspring_clone_def_init(mspring_clone_def *def, size_t size);
 
 /// Make a network that is as this one is now, and independent of it: to try out what would happen, to go back to,
 /// or to be stepped by another thread. It holds everything that the following steps depend on (solver with its
@@ -835,21 +853,20 @@ MSPRING_API mspring_result mspring_clone_def_init(mspring_clone_def *def, size_t
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL, unknown flags, workers that are out of range, or more
 ///         workers than the original has where hooks have storage; MSPRING_ERROR_STRUCT; MSPRING_ERROR_MEMORY;
 ///         MSPRING_ERROR_THREAD if a worker cannot be started; MSPRING_ERROR_BUSY in a hook.
-/// @threads shared   @allocates yes, with the clone's allocator   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_clone(const mspring_network *network,
-                                                                   const mspring_clone_def *def,
-                                                                   mspring_network **clone);
+/// @threads shared   @allocates yes, with the clone's allocator   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_clone(const mspring_network *network, const mspring_clone_def *def, mspring_network **clone);
 
 /// What was wrong with the last call on this network that needs exclusive access; as mspring_builder_error().
 /// Functions marked shared report by their result alone, so that several threads may call them: they leave this text
 /// as it is. So does a call from inside a concurrent hook.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_API const char *mspring_network_error(const mspring_network *network);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_API const char *MSPRING_CALL mspring_network_error(const mspring_network *network);
 
 /// Number of particles and springs, those that were removed still counted: all ids are below. NULL gives 0.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_API uint32_t mspring_network_particle_count(const mspring_network *network);
-MSPRING_API uint32_t mspring_network_spring_count(const mspring_network *network);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_API uint32_t MSPRING_CALL mspring_network_particle_count(const mspring_network *network);
+MSPRING_API uint32_t MSPRING_CALL mspring_network_spring_count(const mspring_network *network);
 
 /// Choose how the following steps are made. The state goes on from where it is. The solver that there is, with the
 /// settings that it has, changes nothing and wakes nobody.
@@ -859,24 +876,24 @@ MSPRING_API uint32_t mspring_network_spring_count(const mspring_network *network
 ///         tiles, of the size asked for, are so tied to each other that factoring their matrix would take over 2^34
 ///         multiply-adds (the message says how many there would be). On error the solver is the one of before.
 /// @threads exclusive access to network   @allocates for an implicit or direct solver, unless only substeps,
-///         iterations or coarse_period differ from the one of before   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_solver(mspring_network *network,
-                                                                        const mspring_solver_def *def);
+///         iterations or coarse_period differ from the one of before   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_set_solver(mspring_network *network, const mspring_solver_def *def);
 
 /// Read the solver and its settings, as they were set: to set them again changes nothing. Set struct_size first.
 ///
 /// After steps with MSPRING_GUARD_RETRY, substeps is the number that the next step begins with. Numbers that were
 /// left to the library as 0 may come back as the ones in use. What a solver does not use has its default.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_solver(const mspring_network *network,
-                                                                        mspring_solver_def *def);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_get_solver(const mspring_network *network, mspring_solver_def *def);
 
 /// Read the settings that the next step uses. Set struct_size first.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_settings(const mspring_network *network,
-                                                                          mspring_settings *settings);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_get_settings(const mspring_network *network, mspring_settings *settings);
 
 /// Set all settings or, on error, none. To change one, get them, change it and set them:
 ///
@@ -890,9 +907,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_settings(const 
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT (the message names the field and its value), also for a guard whose
 ///         solver this build lacks; MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
 /// @threads exclusive access to network
-/// @allocates what a guard or sleep needs, the first time that the network has it   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_settings(mspring_network *network,
-                                                                          const mspring_settings *settings);
+/// @allocates what a guard or sleep needs, the first time that the network has it   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_set_settings(mspring_network *network, const mspring_settings *settings);
 
 /* --------------------------------------------------------------------------------------------------- step */
 
@@ -905,8 +922,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_settings(msprin
 /// @param dt  seconds, finite, > 0, and long enough that dt / substeps is a normal float
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_UNSTABLE, MSPRING_ERROR_BUSY; in a child of fork()
 ///         MSPRING_ERROR_THREAD if a worker cannot be started again.
-/// @threads exclusive access to network   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_step(mspring_network *network, double dt);
+/// @threads exclusive access to network   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_step(mspring_network *network, double dt);
 
 /// Whether the network sleeps, all of it: 1 or 0. NULL gives 0.
 ///
@@ -930,23 +947,22 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_step(mspring_networ
 /// move the local origin, and when particles or springs are added or removed. Hooks are called as ever; the forces
 /// of those before substeps are looked at in the first of a step. The implicit solver's history of an island is
 /// that of one at rest; of a network that slept as a whole, none.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_API uint32_t mspring_network_is_asleep(const mspring_network *network);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_API uint32_t MSPRING_CALL mspring_network_is_asleep(const mspring_network *network);
 
 /// Which of the particles first ... first + count - 1 sleep. Those whose positions, velocities or masses were set
 /// since, or written through a view, still do until the next step.
 /// @param asleep  [count], receives 1 or 0
 /// @return MSPRING_OK; MSPRING_ERROR_ID if there are not so many; MSPRING_ERROR_ARGUMENT for NULL.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_sleepers(const mspring_network *network,
-                                                                          mspring_id first, uint32_t count,
-                                                                          uint8_t *asleep);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_get_sleepers(const mspring_network *network, mspring_id first, uint32_t count, uint8_t *asleep);
 
 /// Wake all of a network. It has to be still for sleep_time again before it sleeps, and so has what is awake
 /// already.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL; MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_wake(mspring_network *network);
+/// @threads exclusive access to network   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_wake(mspring_network *network);
 
 /// How a step was made: flags of mspring_step_info.
 enum {
@@ -976,67 +992,63 @@ typedef struct mspring_step_info {
 /// Snapshots and clones have step_count, fallback_count, time and substeps. After loading one, result, particle,
 /// spring and flags are those of a new network. In hooks they are of the step before.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_step_info(const mspring_network *network,
-                                                                           mspring_step_info *info);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_get_step_info(const mspring_network *network, mspring_step_info *info);
 
 /* --------------------------------------------------------------------------------------- forces and hooks */
 
 /// Add a force (N) to one particle. It acts during the whole of the next step and is gone after it.
 /// @return MSPRING_OK; MSPRING_ERROR_ID; MSPRING_ERROR_ARGUMENT if it is not finite or not with the forces given
 ///         before; MSPRING_ERROR_MEMORY; MSPRING_ERROR_BUSY (in a hook use its force arrays).
-/// @threads exclusive access to network   @allocates at the first force given to a network   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_apply_force(mspring_network *network,
-                                                                         mspring_id particle, float x, float y);
+/// @threads exclusive access to network   @allocates at the first force given to a network   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_apply_force(mspring_network *network, mspring_id particle, float x, float y);
 
 /// Add forces to the particles first ... first + count - 1: to all or, on error, to none.
 /// @param x, y    N: those on particle first + i are x[i * stride] and y[i * stride]
 /// @param stride  elements from one to the next: 1 for two arrays, 2 with y = x + 1 for one of vectors, 0 for the
 ///                same on all
 /// @return as mspring_network_apply_force(); the message names the particle.
-/// @threads exclusive access to network   @allocates at the first force given to a network   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_apply_forces(mspring_network *network,
-                                                                          mspring_id first, uint32_t count,
-                                                                          const float *x, const float *y,
-                                                                          uint32_t stride);
+/// @threads exclusive access to network   @allocates at the first force given to a network   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_apply_forces(mspring_network *network, mspring_id first, uint32_t count, const float *x,
+    const float *y, uint32_t stride);
 
 /// Add forces to listed particles, as mspring_network_apply_forces(). The forces on an id that repeats add up.
 /// @param x, y  N: those on particles[i] are x[i * stride] and y[i * stride]
-/// @threads exclusive access to network   @allocates at the first force given to a network   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_apply_forces_at(mspring_network *network,
-                                                                             const mspring_id *particles,
-                                                                             uint32_t count, const float *x,
-                                                                             const float *y, uint32_t stride);
+/// @threads exclusive access to network   @allocates at the first force given to a network   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_apply_forces_at(mspring_network *network, const mspring_id *particles, uint32_t count,
+    const float *x, const float *y, uint32_t stride);
 
 /// Change velocities by impulses (N s) at once: by impulse times inverse mass. All change or, on error, none.
 /// A pinned particle ignores its impulse. An inverse mass scale counts, as it does for forces.
 /// @param x, y, stride  as of mspring_network_apply_forces()
 /// @return MSPRING_OK; MSPRING_ERROR_ID; MSPRING_ERROR_ARGUMENT if an impulse is not finite or a velocity would not
 ///         be within MSPRING_MAX_SPEED (the message names the particle); MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_apply_impulses(mspring_network *network,
-                                                                            mspring_id first, uint32_t count,
-                                                                            const float *x, const float *y,
-                                                                            uint32_t stride);
+/// @threads exclusive access to network   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_apply_impulses(mspring_network *network, mspring_id first, uint32_t count, const float *x,
+    const float *y, uint32_t stride);
 
 /// Change velocities of listed particles by impulses, as mspring_network_apply_impulses(). The impulses on an id
 /// that repeats add up.
 /// @param x, y  N s: those on particles[i] are x[i * stride] and y[i * stride]
-/// @threads exclusive access to network   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_apply_impulses_at(mspring_network *network,
-                                                                               const mspring_id *particles,
-                                                                               uint32_t count, const float *x,
-                                                                               const float *y, uint32_t stride);
+/// @threads exclusive access to network   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_apply_impulses_at(mspring_network *network, const mspring_id *particles, uint32_t count,
+    const float *x, const float *y, uint32_t stride);
 
 /// When a hook is called. A hook with a period n (see mspring_hook_def) has the substeps of each step taken in
 /// groups of n, of which the last may be smaller, and is called once for each group: before its first substep, or
 /// after its last. Every step begins a new group.
-typedef int32_t mspring_phase;
-enum {
+typedef enum mspring_phase {
     MSPRING_PHASE_BEFORE_STEP = 0,    ///< once; may change x, y, vx, vy; forces it adds act all through the step
     MSPRING_PHASE_BEFORE_SUBSTEP = 1, ///< adds forces for this group of substeps; must not change x, y, vx, vy
-    MSPRING_PHASE_AFTER_SUBSTEP = 2   ///< may change x, y, vx, vy: collisions; there are no force arrays
-};
+    MSPRING_PHASE_AFTER_SUBSTEP = 2,   ///< may change x, y, vx, vy: collisions; there are no force arrays
+    MSPRING_PHASE_INT = MSPRING_ENUM_INT ///< no value
+} mspring_phase;
 
 /// What a hook gets: arrays by slot, of which it is to handle first_slot ... first_slot + slot_count - 1. Some
 /// slots hold no particle: there particle_of_slot is MSPRING_NONE, and what a hook writes is ignored as long as it
@@ -1057,10 +1069,11 @@ typedef struct mspring_hook_args {
     uint32_t group_count; ///< substeps in the group, 1 ... period; before the step 1
     uint32_t worker;      ///< who calls: below mspring_network_worker_count(); no two calls at a time have the same
     void *storage;        ///< this worker's, see mspring_hook_def; else NULL
+    const void *reserved; ///< NULL
 } mspring_hook_args;
 
 /// A hook. It must not call functions on the network but those marked shared.
-typedef void (*mspring_hook_fn)(const mspring_hook_args *args, void *user);
+typedef void (MSPRING_CALL *mspring_hook_fn)(const mspring_hook_args *args, void *user);
 
 /// Flags of hooks.
 enum {
@@ -1091,38 +1104,39 @@ typedef struct mspring_hook_def {
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL; MSPRING_ERROR_STRUCT for an impossible size.
-/// @threads any   @allocates never   @since 0.1
-MSPRING_API mspring_result mspring_hook_def_init(mspring_hook_def *def, size_t size);
+/// @threads any   @allocates never   @since 0.2
+MSPRING_API mspring_result MSPRING_CALL mspring_hook_def_init(mspring_hook_def *def, size_t size);
 
 /// Have a hook called in every step from now on, after the hooks of its phase that were added before it.
 /// @param def   copied
 /// @param hook  receives a number for mspring_network_remove_hook(); may be NULL
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates yes   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_add_hook(mspring_network *network,
-                                                                      const mspring_hook_def *def, uint32_t *hook);
+/// @threads exclusive access to network   @allocates yes   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_add_hook(mspring_network *network, const mspring_hook_def *def, uint32_t *hook);
 
 /// Remove a hook. Numbers of removed hooks are not used again.
 /// @return MSPRING_OK; MSPRING_ERROR_ID if there is no such hook; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_remove_hook(mspring_network *network, uint32_t hook);
+/// @threads exclusive access to network   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_remove_hook(mspring_network *network, uint32_t hook);
 
 /* -------------------------------------------------------------------------------------------------- floor */
 
 /// Most half-planes of a floor, and most heights.
 #define MSPRING_MAX_PLANES 8u
-#define MSPRING_MAX_HEIGHTS ((uint32_t)1 << 26)
+#define MSPRING_MAX_HEIGHTS 0x4000000u
 
 /// What particles cannot get through: half-planes, such as the sides of a box, and a field of heights, such as a
 /// sea floor. Fill with mspring_floor_def_init() first.
 typedef struct mspring_floor_def {
     uint32_t struct_size;
     uint32_t plane_count; ///< half-planes, at most MSPRING_MAX_PLANES; default 0
-    const double *planes; ///< [plane_count][4]: x and y of a point on the border (m, world coordinates), then x and
-                          ///< y of a vector of any length across it, towards where particles may be
     double heights_x;     ///< of the first height, m, world coordinates; default 0
     double heights_y;     ///< of height 0, m, world coordinates; default 0
     double spacing;       ///< m from one height to the next, 1e-9 to 1e9; default 1
+    const double *planes; ///< [plane_count][4]: x and y of a point on the border (m, world coordinates), then x and
+                          ///< y of a vector of any length across it, towards where particles may be
     const float *heights; ///< [height_count], m above heights_y: joined by straight lines, level beyond both ends;
                           ///< particles may be above
     uint32_t height_count; ///< 0, the default: no field of heights; else 2 to MSPRING_MAX_HEIGHTS
@@ -1134,8 +1148,8 @@ typedef struct mspring_floor_def {
 } mspring_floor_def;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
-/// @threads any   @allocates never   @since 0.1
-MSPRING_API mspring_result mspring_floor_def_init(mspring_floor_def *def, size_t size);
+/// @threads any   @allocates never   @since 0.2
+MSPRING_API mspring_result MSPRING_CALL mspring_floor_def_init(mspring_floor_def *def, size_t size);
 
 /// Give the network a floor instead of the one it has. It acts on every particle that is not pinned, in every
 /// substep: a particle that was above it at the beginning is not below it at the end, whatever its speed and
@@ -1168,27 +1182,26 @@ MSPRING_API mspring_result mspring_floor_def_init(mspring_floor_def *def, size_t
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY. On
 ///         error the floor is the one of before.
 /// @threads exclusive access to network   @allocates yes; 20 to 24 bytes for a height and 74 for a particle
-/// @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_floor(mspring_network *network,
-                                                                       const mspring_floor_def *def);
+/// @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_set_floor(mspring_network *network, const mspring_floor_def *def);
 
 /// Read the floor as it was set: to set it again changes nothing. Set struct_size first. Without a floor plane_count
 /// and height_count are 0. planes and heights are the network's own copies: they are valid until the floor is set
 /// again or the network is destroyed.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_floor(const mspring_network *network,
-                                                                       mspring_floor_def *def);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_get_floor(const mspring_network *network, mspring_floor_def *def);
 
 /// Copy out what momentum (N s) the floor gave to the particles first ... first + count - 1 in the last step: over
 /// its length, the mean force. 0 without a floor.
 /// @param x, y, stride  as of mspring_network_get_positions()
 /// @return MSPRING_OK; MSPRING_ERROR_ID or MSPRING_ERROR_ARGUMENT.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_floor_impulses(const mspring_network *network,
-                                                                                mspring_id first, uint32_t count,
-                                                                                float *x, float *y,
-                                                                                uint32_t stride);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_get_floor_impulses(const mspring_network *network, mspring_id first, uint32_t count, float *x,
+    float *y, uint32_t stride);
 
 /* -------------------------------------------------------------------------------------------------- views */
 
@@ -1210,13 +1223,14 @@ typedef struct mspring_view {
     const float *inverse_mass;   ///< [slot_count], 1/kg; 0 if pinned or no particle
     const uint32_t *particle_of_slot; ///< [slot_count], particle id or MSPRING_NONE
     const uint32_t *slot_of_particle; ///< [particle_count]
+    const void *reserved_pointer;     ///< NULL
 } mspring_view;
 
 /// Fill a view to read. It makes no later step dearer.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_view(const mspring_network *network,
-                                                                  mspring_view *view);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_view(const mspring_network *network, mspring_view *view);
 
 /// The same to write: positions and velocities may be changed until the next step. Set struct_size first.
 typedef struct mspring_mutable_view {
@@ -1227,33 +1241,33 @@ typedef struct mspring_mutable_view {
     float *x, *y, *vx, *vy; ///< finite values only, velocities within MSPRING_MAX_SPEED
     const float *inverse_mass;
     const uint32_t *particle_of_slot, *slot_of_particle;
+    const void *reserved_pointer;
 } mspring_mutable_view;
 
 /// Fill a view to write. The next step looks at all particles for what was written. Before you write after that
 /// step, call this again. In a hook use its arrays.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT or MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_view_mutable(mspring_network *network,
-                                                                          mspring_mutable_view *view);
+/// @threads exclusive access to network   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_view_mutable(mspring_network *network, mspring_mutable_view *view);
 
 /// Copy out world positions (m) of the particles first ... first + count - 1, in id order.
 /// @param x, y    receive those of particle first + i in x[i * stride] and y[i * stride]
 /// @param stride  elements from one to the next, at least 1: 1 for two arrays, 2 with y = x + 1 for one of points
 /// @return MSPRING_OK; MSPRING_ERROR_ID if the range leaves the network; MSPRING_ERROR_ARGUMENT for NULL or stride 0.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_positions(const mspring_network *network,
-                                                                           mspring_id first, uint32_t count,
-                                                                           double *x, double *y, uint32_t stride);
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_positions_float(const mspring_network *network,
-                                                                                 mspring_id first, uint32_t count,
-                                                                                 float *x, float *y,
-                                                                                 uint32_t stride);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_get_positions(const mspring_network *network, mspring_id first, uint32_t count, double *x,
+    double *y, uint32_t stride);
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_get_positions_float(const mspring_network *network, mspring_id first, uint32_t count, float *x,
+    float *y, uint32_t stride);
 
 /// Copy out velocities (m/s), as mspring_network_get_positions(). They have single precision.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_velocities(const mspring_network *network,
-                                                                            mspring_id first, uint32_t count,
-                                                                            float *vx, float *vy, uint32_t stride);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_get_velocities(const mspring_network *network, mspring_id first, uint32_t count, float *vx,
+    float *vy, uint32_t stride);
 
 /// Set world positions (m) of the particles first ... first + count - 1: all or, on error, none. Setting those
 /// of all particles at once also moves the local origin to them; setting a part of them leaves it where it is.
@@ -1262,30 +1276,26 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_velocities(cons
 /// @param stride  as of mspring_network_get_positions(), or 0: the same for all
 /// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT (the message names the index),
 ///         MSPRING_ERROR_BUSY (in a hook use its arrays).
-/// @threads exclusive access to network   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_positions(mspring_network *network,
-                                                                           mspring_id first, uint32_t count,
-                                                                           const double *x, const double *y,
-                                                                           uint32_t stride);
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_positions_float(mspring_network *network,
-                                                                                 mspring_id first, uint32_t count,
-                                                                                 const float *x, const float *y,
-                                                                                 uint32_t stride);
+/// @threads exclusive access to network   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_set_positions(mspring_network *network, mspring_id first, uint32_t count, const double *x,
+    const double *y, uint32_t stride);
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_set_positions_float(mspring_network *network, mspring_id first, uint32_t count, const float *x,
+    const float *y, uint32_t stride);
 
 /// Set velocities (m/s, within MSPRING_MAX_SPEED), as mspring_network_set_positions(). A pinned particle moves by
 /// its velocity.
-/// @threads exclusive access to network   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_velocities(mspring_network *network,
-                                                                            mspring_id first, uint32_t count,
-                                                                            const float *vx, const float *vy,
-                                                                            uint32_t stride);
+/// @threads exclusive access to network   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_set_velocities(mspring_network *network, mspring_id first, uint32_t count, const float *vx,
+    const float *vy, uint32_t stride);
 
 /* --------------------------------------------------------------------------------------------- properties */
 
 /// A property: one float of each particle, or of each spring. mspring_network_set() writes it, mspring_network_get()
 /// reads it. The allocation named is that of the first call that changes such a value.
-typedef int32_t mspring_property;
-enum {
+typedef enum mspring_property {
     /// Of a particle, kg, 1e-30 to 1e30, for cargo or water that gets in. A pinned particle keeps its mass. Relative
     /// springs go on with the masses of before until mspring_network_renew_relative_springs().
     /// Allocates if the network has relative springs.
@@ -1321,8 +1331,9 @@ enum {
     /// Length of a spring, m. Read only.
     MSPRING_LENGTH = 9,
     /// Force along a spring, N, with the share of its damper: > 0 pulls its ends together. Read only.
-    MSPRING_FORCE = 10
-};
+    MSPRING_FORCE = 10,
+    MSPRING_PROPERTY_INT = MSPRING_ENUM_INT ///< no value
+} mspring_property;
 
 /// Set a property of the particles or springs first ... first + count - 1.
 /// A call sets all values or, on error, none. Ids that were removed are left out. A value that is there already
@@ -1333,38 +1344,35 @@ enum {
 /// @return MSPRING_OK; MSPRING_ERROR_ID; MSPRING_ERROR_ARGUMENT for NULL, a property that is unknown or read only,
 ///         or a value out of range (the message names property, id and value); MSPRING_ERROR_MEMORY,
 ///         MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates as the property says   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set(mspring_network *network,
-                                                                 mspring_property property, mspring_id first,
-                                                                 uint32_t count, const float *values,
-                                                                 uint32_t stride);
+/// @threads exclusive access to network   @allocates as the property says   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_set(mspring_network *network, mspring_property property, mspring_id first, uint32_t count,
+    const float *values, uint32_t stride);
 
 /// Set a property of listed particles or springs, as mspring_network_set().
 /// @param ids     [count]; an id may repeat: its last value counts. One that was removed is MSPRING_ERROR_ID.
 /// @param values  that of ids[i] is values[i * stride]
-/// @threads exclusive access to network   @allocates as the property says   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_at(mspring_network *network,
-                                                                    mspring_property property,
-                                                                    const mspring_id *ids, uint32_t count,
-                                                                    const float *values, uint32_t stride);
+/// @threads exclusive access to network   @allocates as the property says   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_set_at(mspring_network *network, mspring_property property, const mspring_id *ids, uint32_t count,
+    const float *values, uint32_t stride);
 
 /// Read a property of the particles or springs first ... first + count - 1.
 /// @param values  receives that of id first + i in values[i * stride]; 0 for what was removed
 /// @param stride  floats from one value to the next, at least 1; what lies between is left alone
 /// @return MSPRING_OK; MSPRING_ERROR_ID; MSPRING_ERROR_ARGUMENT for NULL, an unknown property or stride 0.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get(const mspring_network *network,
-                                                                 mspring_property property, mspring_id first,
-                                                                 uint32_t count, float *values, uint32_t stride);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_get(const mspring_network *network, mspring_property property, mspring_id first, uint32_t count,
+    float *values, uint32_t stride);
 
 /// Read a property of listed particles or springs, as mspring_network_get().
 /// @param ids     [count]; one that was removed is MSPRING_ERROR_ID
 /// @param values  receives that of ids[i] in values[i * stride]
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_at(const mspring_network *network,
-                                                                    mspring_property property,
-                                                                    const mspring_id *ids, uint32_t count,
-                                                                    float *values, uint32_t stride);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_get_at(const mspring_network *network, mspring_property property, const mspring_id *ids,
+    uint32_t count, float *values, uint32_t stride);
 
 /* -------------------------------------------------------------------------------------------------- edits */
 
@@ -1375,39 +1383,35 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_at(const msprin
 
 /// Set positions (m, world coordinates) of listed particles; as mspring_network_set_positions().
 /// @param x, y  those of particles[i] are x[i * stride] and y[i * stride]
-/// @threads exclusive access to network   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_positions_at(mspring_network *network,
-                                                                              const mspring_id *particles,
-                                                                              uint32_t count, const double *x,
-                                                                              const double *y, uint32_t stride);
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_positions_float_at(mspring_network *network,
-                                                                                    const mspring_id *particles,
-                                                                                    uint32_t count, const float *x,
-                                                                                    const float *y,
-                                                                                    uint32_t stride);
+/// @threads exclusive access to network   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_set_positions_at(mspring_network *network, const mspring_id *particles, uint32_t count,
+    const double *x, const double *y, uint32_t stride);
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_set_positions_float_at(mspring_network *network, const mspring_id *particles, uint32_t count,
+    const float *x, const float *y, uint32_t stride);
 
 /// Set velocities (m/s) of listed particles; as mspring_network_set_velocities().
 /// @param vx, vy  those of particles[i] are vx[i * stride] and vy[i * stride]
-/// @threads exclusive access to network   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_set_velocities_at(mspring_network *network,
-                                                                               const mspring_id *particles,
-                                                                               uint32_t count, const float *vx,
-                                                                               const float *vy, uint32_t stride);
+/// @threads exclusive access to network   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_set_velocities_at(mspring_network *network, const mspring_id *particles, uint32_t count,
+    const float *vx, const float *vy, uint32_t stride);
 
 /// Derive relative springs from the masses that their particles have now. Takes a pass over all springs.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_renew_relative_springs(mspring_network *network);
+/// @threads exclusive access to network   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_renew_relative_springs(mspring_network *network);
 
 /// Break springs: from now on they exert nothing, until they are restored. Their ids, rest lengths and nominal
 /// stiffness and damping stay. One that is broken already stays so.
 /// @param springs  [count]
 /// @return MSPRING_OK; MSPRING_ERROR_ID (the message names the index), MSPRING_ERROR_ARGUMENT,
 ///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates at the first break in a network   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_break_springs(mspring_network *network,
-                                                                           const mspring_id *springs,
-                                                                           uint32_t count);
+/// @threads exclusive access to network   @allocates at the first break in a network   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_break_springs(mspring_network *network, const mspring_id *springs, uint32_t count);
 
 /// Restore broken springs to their nominal stiffness and damping. One that is whole stays so.
 ///
@@ -1422,26 +1426,25 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_break_springs(mspri
 /// expand
 ///            a compact network of which a spring is restored that its plan leaves out; to spread that over frames,
 ///            finish a job for MSPRING_LAYOUT_WHOLE before
-/// @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_restore_springs(mspring_network *network,
-                                                                             const mspring_id *springs,
-                                                                             uint32_t count, double ramp_seconds);
+/// @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_restore_springs(mspring_network *network, const mspring_id *springs, uint32_t count,
+    double ramp_seconds);
 
 /// Break all springs of particles, which fly on as loose ones.
 /// @param particles  [count]
 /// @return as mspring_network_break_springs()
 /// @threads exclusive access to network   @allocates at the first break and first detachment in a network
-/// @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_detach_particles(mspring_network *network,
-                                                                              const mspring_id *particles,
-                                                                              uint32_t count);
+/// @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_detach_particles(mspring_network *network, const mspring_id *particles, uint32_t count);
 
 /* --------------------------------------------------------------------------------- adding and removing */
 
 /// Whether there is such a particle or spring: 1, or 0 if there has never been one or it has been removed. NULL: 0.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_API uint32_t mspring_network_has_particle(const mspring_network *network, mspring_id particle);
-MSPRING_API uint32_t mspring_network_has_spring(const mspring_network *network, mspring_id spring);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_API uint32_t MSPRING_CALL mspring_network_has_particle(const mspring_network *network, mspring_id particle);
+MSPRING_API uint32_t MSPRING_CALL mspring_network_has_spring(const mspring_network *network, mspring_id spring);
 
 /// Add particles to a network that has room for them (mspring_network_def.spare_particles): all of them or, on
 /// error, none. They are loose ones until springs are added to them, and take the lowest ids that are free: those
@@ -1452,10 +1455,10 @@ MSPRING_API uint32_t mspring_network_has_spring(const mspring_network *network, 
 /// @param ids   [count], receives their ids
 /// @return MSPRING_OK; MSPRING_ERROR_LIMIT if there is no room (the message says for how many there is);
 ///         MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT (the message names the definition); MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_add_particles(mspring_network *network,
-                                                                           const mspring_particle_def *defs,
-                                                                           uint32_t count, mspring_id *ids);
+/// @threads exclusive access to network   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_add_particles(mspring_network *network, const mspring_particle_def *defs, uint32_t count,
+    mspring_id *ids);
 
 /// Add springs between any particles that there are, to a network that has room for them
 /// (mspring_network_def.spare_springs): all of them or, on error, none. MSPRING_REST_LENGTH_DISTANCE is the
@@ -1471,10 +1474,10 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_add_particles(mspri
 ///         MSPRING_ERROR_DUPLICATE if the two are joined by a spring already, broken or not; MSPRING_ERROR_ARGUMENT
 ///         with the direct solver, which has to be chosen anew after springs were added; MSPRING_ERROR_MEMORY.
 /// @threads exclusive access to network   @allocates if a spring has a break, stress or relax strain of its own, at the
-///          first such strain in a network   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_add_springs(mspring_network *network,
-                                                                         const mspring_spring_def *defs,
-                                                                         uint32_t count, mspring_id *ids);
+///          first such strain in a network   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_add_springs(mspring_network *network, const mspring_spring_def *defs, uint32_t count,
+    mspring_id *ids);
 
 /// Remove particles with all their springs, whether added or there from the beginning. In lists their ids are
 /// refused from then on (MSPRING_ERROR_ID); functions on ranges leave them out, and give 0 for what they have no
@@ -1483,26 +1486,24 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_add_springs(mspring
 /// @param particles  [count]
 /// @return as mspring_network_break_springs()
 /// @threads exclusive access to network
-/// @allocates at the first break, detachment and removal in a network   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_remove_particles(mspring_network *network,
-                                                                              const mspring_id *particles,
-                                                                              uint32_t count);
+/// @allocates at the first break, detachment and removal in a network   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_remove_particles(mspring_network *network, const mspring_id *particles, uint32_t count);
 
 /// Remove springs, likewise: as breaking them, but for good.
 /// @param springs  [count]
 /// @return as mspring_network_break_springs()
 /// @threads exclusive access to network
-/// @allocates at the first break, detachment and removal in a network   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_remove_springs(mspring_network *network,
-                                                                            const mspring_id *springs,
-                                                                            uint32_t count);
+/// @allocates at the first break, detachment and removal in a network   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_remove_springs(mspring_network *network, const mspring_id *springs, uint32_t count);
 
 /// Allow that ids of particles and springs that were added and have been removed are given to others from now on:
 /// the host has forgotten them, too. Until then they count as used, and so does the room that they took. Ids of
 /// those that the network was created with are never given again.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL; MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_recycle(mspring_network *network);
+/// @threads exclusive access to network   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_recycle(mspring_network *network);
 
 /* ------------------------------------------------------------------------------------------- compaction */
 
@@ -1529,21 +1530,20 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_recycle(mspring_net
 /// This call does all of it at once. To spread it over frames, or to do it on another thread, use a job.
 /// @return MSPRING_OK, also if there is nothing to do; MSPRING_ERROR_MEMORY or MSPRING_ERROR_LIMIT, after which the
 ///         network is as it was; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates yes, and frees most   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_compact(mspring_network *network);
+/// @threads exclusive access to network   @allocates yes, and frees most   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_compact(mspring_network *network);
 
 /// Take all springs into the plan again, as it was when the network was created: the way back from
 /// mspring_network_compact(), with the same consequences for slots and bits. A job that is under way is outdated
 /// then.
 /// @return MSPRING_OK; MSPRING_ERROR_MEMORY, MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates yes, and frees most   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_expand(mspring_network *network);
+/// @threads exclusive access to network   @allocates yes, and frees most   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_expand(mspring_network *network);
 
 /* ------------------------------------------------------------------------------------- strain and events */
 
 /// What an event tells.
-typedef int32_t mspring_event_kind;
-enum {
+typedef enum mspring_event_kind {
     MSPRING_EVENT_BROKEN = 0, ///< spring id broke: at the end of a step, by its strain; or in an edit, with strain
                               ///< 0 and, if that was a detachment, the particle detached in other
     MSPRING_EVENT_STRESSED = 1, ///< the strain of spring id rose over its stress strain
@@ -1552,8 +1552,9 @@ enum {
     MSPRING_EVENT_DETACHED = 4, ///< particle id was detached; after the events of its springs
     MSPRING_EVENT_SPLIT =
         5, ///< a component with the lowest particle id has split off the one whose lowest is other
-    MSPRING_EVENT_JOINED = 6 ///< the component whose lowest particle was id is now part of the one of other
-};
+    MSPRING_EVENT_JOINED = 6, ///< the component whose lowest particle was id is now part of the one of other
+    MSPRING_EVENT_KIND_INT = MSPRING_ENUM_INT ///< no value
+} mspring_event_kind;
 
 /// Something that happened in a step or in an edit. These 16 bytes are all that there will be.
 typedef struct mspring_event {
@@ -1566,9 +1567,9 @@ typedef struct mspring_event {
 /// Make room for events, which are not recorded without. Those not read yet are dropped.
 /// @param capacity  events that may wait to be read, at most MSPRING_MAX_SPRINGS; 0 to record none any more
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates yes   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_reserve_events(mspring_network *network,
-                                                                            uint32_t capacity);
+/// @threads exclusive access to network   @allocates yes   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_reserve_events(mspring_network *network, uint32_t capacity);
 
 /// Take the oldest events out of the queue, in the order in which they happened; what happened at the end of one
 /// step comes in an order that depends on the network alone, the same on every machine.
@@ -1577,10 +1578,10 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_reserve_events(mspr
 /// @param count     receives how many there were
 /// @param lost      receives how many found the queue full, since room was made for it; may be NULL
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_read_events(mspring_network *network,
-                                                                         mspring_event *events, uint32_t capacity,
-                                                                         uint32_t *count, uint64_t *lost);
+/// @threads exclusive access to network   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_read_events(mspring_network *network, mspring_event *events, uint32_t capacity, uint32_t *count,
+    uint64_t *lost);
 
 /* --------------------------------------------------------------------------------------------- components */
 
@@ -1595,17 +1596,17 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_read_events(mspring
 /// @param changed  receives 1 if some particle's component has another number than the last time, else 0; may be
 ///                 NULL
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates the first time   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_update_components(mspring_network *network,
-                                                                               uint32_t *count, uint32_t *changed);
+/// @threads exclusive access to network   @allocates the first time   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_update_components(mspring_network *network, uint32_t *count, uint32_t *changed);
 
 /// Copy out the numbers of the components of the particles first ... first + count - 1, as of the last update.
 /// @param component  [count]
 /// @return MSPRING_OK; MSPRING_ERROR_ID; MSPRING_ERROR_ARGUMENT for NULL or if there was no update yet.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_component_numbers(const mspring_network *network,
-                                                                                   mspring_id first, uint32_t count,
-                                                                                   uint32_t *component);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_get_component_numbers(const mspring_network *network, mspring_id first, uint32_t count,
+    uint32_t *component);
 
 /// What a component is and does. Set struct_size first.
 typedef struct mspring_component {
@@ -1623,10 +1624,10 @@ typedef struct mspring_component {
 /// @param components  [count], struct_size set in each
 /// @return MSPRING_OK; MSPRING_ERROR_ID if there are not so many; MSPRING_ERROR_STRUCT; MSPRING_ERROR_ARGUMENT for
 ///         NULL or if there was no update yet.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_components(const mspring_network *network,
-                                                                            uint32_t first, uint32_t count,
-                                                                            mspring_component *components);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_get_components(const mspring_network *network, uint32_t first, uint32_t count,
+    mspring_component *components);
 
 /* ------------------------------------------------------------------------------------------- measurements */
 
@@ -1636,22 +1637,22 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_components(cons
 ///              stiffness of the last step (before the first: 0)
 ///   potential  - sum of m (gravity . p) over particles that are not pinned, p in world coordinates
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL. Any of the out-parameters may be NULL.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_energy(const mspring_network *network, double *kinetic,
-                                                                    double *elastic, double *potential);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_energy(const mspring_network *network, double *kinetic, double *elastic, double *potential);
 
 /// Momentum (kg m/s) and angular momentum about the world's origin (kg m^2/s) of the particles that are not
 /// pinned. Any of the out-parameters may be NULL.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_momentum(const mspring_network *network, double *px,
-                                                                      double *py, double *angular);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_momentum(const mspring_network *network, double *px, double *py, double *angular);
 
 /// Smallest box around all particles, world coordinates (m).
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_bounds(const mspring_network *network, double *min_x,
-                                                                    double *min_y, double *max_x, double *max_y);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_bounds(const mspring_network *network, double *min_x, double *min_y, double *max_x, double *max_y);
 
 /// The particle nearest to a point, of those within a distance: what a mouse picks.
 /// @param x, y      world position, m, at most MSPRING_MAX_COORDINATE in absolute value
@@ -1659,30 +1660,29 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_bounds(const msprin
 /// @param particle  receives its id, the lowest of several, or MSPRING_NONE
 /// @param distance  receives how far it is, m, or INFINITY; may be NULL
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT.
-/// @threads shared   @allocates never; looks at every particle   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_nearest_particle(const mspring_network *network,
-                                                                              double x, double y, double within,
-                                                                              mspring_id *particle,
-                                                                              double *distance);
+/// @threads shared   @allocates never; looks at every particle   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_nearest_particle(const mspring_network *network, double x, double y, double within,
+    mspring_id *particle, double *distance);
 
 /// The particles in a circle, its edge included, in the order of their ids.
 /// @param x, y, radius  world position and radius, m; radius >= 0
 /// @param particles     [capacity] receives as many ids as fit; may be NULL if capacity is 0
 /// @param count         receives how many there are, which may be more than fit
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT.
-/// @threads shared   @allocates never; looks at every particle   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_particles_in_circle(
-    const mspring_network *network, double x, double y, double radius, mspring_id *particles, uint32_t capacity,
-    uint32_t *count);
+/// @threads shared   @allocates never; looks at every particle   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_particles_in_circle(const mspring_network *network, double x, double y, double radius,
+    mspring_id *particles, uint32_t capacity, uint32_t *count);
 
 /// The particles in a box, its edges included, in the order of their ids.
 /// @param min_x, min_y, max_x, max_y  world coordinates, m; no min above its max; may be infinite
 /// @param particles, capacity, count  as of mspring_network_particles_in_circle()
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT.
-/// @threads shared   @allocates never; looks at every particle   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result
+/// @threads shared   @allocates never; looks at every particle   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
 mspring_network_particles_in_box(const mspring_network *network, double min_x, double min_y, double max_x,
-                                 double max_y, mspring_id *particles, uint32_t capacity, uint32_t *count);
+    double max_y, mspring_id *particles, uint32_t capacity, uint32_t *count);
 
 /// The springs that a straight line meets: to cut them, or to find what a ray hits first. Broken ones are left out;
 /// touching one counts. They come in the order of their ids.
@@ -1691,10 +1691,10 @@ mspring_network_particles_in_box(const mspring_network *network, double min_x, d
 /// @param fractions  [capacity] receives where each is met, from 0 at the line's start to 1 at its end; may be NULL
 /// @param count      receives how many there are, which may be more than fit
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT.
-/// @threads shared   @allocates never; looks at every spring   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_springs_across(
-    const mspring_network *network, double from_x, double from_y, double to_x, double to_y, mspring_id *springs,
-    double *fractions, uint32_t capacity, uint32_t *count);
+/// @threads shared   @allocates never; looks at every spring   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_springs_across(const mspring_network *network, double from_x, double from_y, double to_x,
+    double to_y, mspring_id *springs, double *fractions, uint32_t capacity, uint32_t *count);
 
 /// What a spring is and does. Set struct_size first.
 typedef struct mspring_spring_info {
@@ -1713,17 +1713,16 @@ typedef struct mspring_spring_info {
 
 /// Look at one spring.
 /// @return MSPRING_OK; MSPRING_ERROR_ID, MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_spring(const mspring_network *network,
-                                                                        mspring_id spring,
-                                                                        mspring_spring_info *info);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_get_spring(const mspring_network *network, mspring_id spring, mspring_spring_info *info);
 
 /// What ends of springs are numbered by.
-typedef int32_t mspring_numbering;
-enum {
+typedef enum mspring_numbering {
     MSPRING_ENDS_IDS = 0,  ///< ids of particles
-    MSPRING_ENDS_SLOTS = 1 ///< slots, as of a view: they change with its layout_generation
-};
+    MSPRING_ENDS_SLOTS = 1, ///< slots, as of a view: they change with its layout_generation
+    MSPRING_NUMBERING_INT = MSPRING_ENUM_INT ///< no value
+} mspring_numbering;
 
 /// Copy out the ends of the springs first ... first + count - 1, as for an index buffer to draw them.
 /// They come in the order in which they were given: of a lattice's springs the lower id first, of a rope's the end that
@@ -1731,22 +1730,20 @@ enum {
 /// @param a, b    receive those of spring first + i in a[i * stride] and b[i * stride]
 /// @param stride  elements from one to the next, at least 1; for pairs 2, with b = a + 1
 /// @return MSPRING_OK; MSPRING_ERROR_ID; MSPRING_ERROR_ARGUMENT for NULL, an unknown numbering or stride 0.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_ends(const mspring_network *network,
-                                                                      mspring_id first, uint32_t count,
-                                                                      mspring_numbering numbering, uint32_t *a,
-                                                                      uint32_t *b, uint32_t stride);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_get_ends(const mspring_network *network, mspring_id first, uint32_t count,
+    mspring_numbering numbering, uint32_t *a, uint32_t *b, uint32_t stride);
 
 /// Copy out the flags of the springs first ... first + count - 1: MSPRING_SPRING_RELATIVE, _BROKEN, _STRESSED and
 /// _REMOVED.
 /// @param flags   receives those of spring first + i in flags[i * stride]
 /// @param stride  elements from one to the next, at least 1
 /// @return MSPRING_OK; MSPRING_ERROR_ID or MSPRING_ERROR_ARGUMENT.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_spring_flags(const mspring_network *network,
-                                                                              mspring_id first, uint32_t count,
-                                                                              uint32_t *flags,
-                                                                              uint32_t stride);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_get_spring_flags(const mspring_network *network, mspring_id first, uint32_t count, uint32_t *flags,
+    uint32_t stride);
 
 /// Length, direction and strain of all springs at once, in id order: a pass over the network in the order in which
 /// it lies in memory. Each array is filled if it is not NULL; all is 0 of springs that were removed.
@@ -1755,30 +1752,29 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_spring_flags(co
 ///                     (0, 0) for a spring of length 0; both or none
 /// @param strain       [spring count], as MSPRING_STRAIN, to the last bit or so
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates the first time   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_get_extents(mspring_network *network, float *length,
-                                                                         float *direction_x, float *direction_y,
-                                                                         float *strain);
+/// @threads exclusive access to network   @allocates the first time   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_get_extents(mspring_network *network, float *length, float *direction_x, float *direction_y,
+    float *strain);
 
 /// The largest absolute strain and the spring that has it (the lowest id of several). A network without springs
 /// has strain 0 and spring MSPRING_NONE. Either out-parameter may be NULL.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_max_strain(const mspring_network *network,
-                                                                        float *strain, mspring_id *spring);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_max_strain(const mspring_network *network, float *strain, mspring_id *spring);
 
 /// A 64-bit hash of positions, velocities and local origin, over their bits in id order: equal states have equal
 /// hashes on every machine. (Not cryptographic.)
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_state_hash(const mspring_network *network,
-                                                                        uint64_t *hash);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_state_hash(const mspring_network *network, uint64_t *hash);
 
 /* -------------------------------------------------------------------------------------------------- snapshots */
 
 /// What a snapshot holds.
-typedef int32_t mspring_snapshot_contents;
-enum {
+typedef enum mspring_snapshot_contents {
     /// Everything that the following steps depend on: positions, velocities, origin, settings, masses, forces given
     /// for the next step, broken and stressed springs, ramps, and what each spring is like.
     MSPRING_SNAPSHOT_ALL = 0,
@@ -1787,16 +1783,16 @@ enum {
     /// are what they were: into the same network as long as they have not been edited since, and nothing was added
     /// or removed, or into another that was made alike and edited alike, in the same order. (Breaking, restoring,
     /// with or without a ramp, and detaching are no edits of these.)
-    MSPRING_SNAPSHOT_FRAME = 1
-};
+    MSPRING_SNAPSHOT_FRAME = 1,
+    MSPRING_SNAPSHOT_CONTENTS_INT = MSPRING_ENUM_INT ///< no value
+} mspring_snapshot_contents;
 
 /// The size of a snapshot that is saved now, in bytes. It changes with what there is to save: forces, ramps, edits.
 /// So ask before each save.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL or unknown contents; MSPRING_ERROR_BUSY in a hook.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_snapshot_size(const mspring_network *network,
-                                                                           mspring_snapshot_contents contents,
-                                                                           size_t *size);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_snapshot_size(const mspring_network *network, mspring_snapshot_contents contents, size_t *size);
 
 /// Save a snapshot into the caller's memory. It is the same on every machine, for any SIMD level and number of
 /// workers, but only of use to networks made of the same particles and springs by a library that lays them out
@@ -1809,45 +1805,45 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_snapshot_size(const
 /// @param size      receives the bytes written; may be NULL
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL, unknown contents or too little room; MSPRING_ERROR_BUSY in
 ///         a hook.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_save(const mspring_network *network,
-                                                                  mspring_snapshot_contents contents,
-                                                                  void *snapshot, size_t capacity, size_t *size);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_save(const mspring_network *network, mspring_snapshot_contents contents, void *snapshot,
+    size_t capacity, size_t *size);
 
 /// Go back, or forth, to what a snapshot holds: the following steps are the same, bit for bit, as those after it
 /// was saved. Events that have not been read are dropped. The snapshot may come from anywhere: one that is damaged,
 /// cut off, of another network or with values that a network cannot have is refused, and changes nothing.
 /// @return MSPRING_OK; MSPRING_ERROR_SNAPSHOT (the message says what is wrong), MSPRING_ERROR_ARGUMENT for NULL,
 ///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates yes, what the network did not need so far   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_load(mspring_network *network, const void *snapshot,
-                                                                  size_t size);
+/// @threads exclusive access to network   @allocates yes, what the network did not need so far   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_load(mspring_network *network, const void *snapshot, size_t size);
 
 /* --------------------------------------------------------------------------------------------- SIMD level */
 
 /// The instruction set that the network's steps use. NULL gives MSPRING_SIMD_AUTO.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_API mspring_simd mspring_network_simd_level(const mspring_network *network);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_API mspring_simd MSPRING_CALL mspring_network_simd_level(const mspring_network *network);
 
 /// The number of workers that the network has: what its definition asks for, or 1 in a build of the library without
 /// threads. (How many take part in a step depends on the network's size.) NULL gives 0.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_API uint32_t mspring_network_worker_count(const mspring_network *network);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_API uint32_t MSPRING_CALL mspring_network_worker_count(const mspring_network *network);
 
 /// The best instruction set that this CPU, operating system and build of the library offer.
-/// @threads any   @allocates never   @since 0.1
-MSPRING_API mspring_simd mspring_simd_supported(void);
+/// @threads any   @allocates never   @since 0.2
+MSPRING_API mspring_simd MSPRING_CALL mspring_simd_supported(void);
 
 /// Whether a network can be made to run at this level here: 1 for MSPRING_SIMD_AUTO and the levels that this CPU,
 /// operating system and build of the library offer, 0 for others. On x86-64, 64-bit ARM and WebAssembly builds have
 /// MSPRING_SIMD_SCALAR only if they are made with it.
-/// @threads any   @allocates never   @since 0.1
-MSPRING_API uint32_t mspring_simd_available(mspring_simd level);
+/// @threads any   @allocates never   @since 0.2
+MSPRING_API uint32_t MSPRING_CALL mspring_simd_available(mspring_simd level);
 
 /// Name of a level as in MSPRING_SIMD: "scalar", "sse2", "avx2", "avx512", "neon", "wasm", "auto"; "unknown" for
 /// others.
-/// @threads any   @allocates never   @since 0.1
-MSPRING_API const char *mspring_simd_name(mspring_simd level);
+/// @threads any   @allocates never   @since 0.2
+MSPRING_API const char *MSPRING_CALL mspring_simd_name(mspring_simd level);
 
 #ifdef __cplusplus
 }

@@ -34,9 +34,9 @@ extern "C" {
 ///                   now. For a full lattice at rest it is 0.71 of now, with dampers alone 0.49. It depends only
 ///                   on springs (broken ones count as whole), masses and pins. May be NULL.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for a network NULL, MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates yes, and frees it, if now is asked for   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_stable_dt(mspring_network *network, double *now,
-                                                                       double *any_shape);
+/// @threads exclusive access to network   @allocates yes, and frees it, if now is asked for   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_stable_dt(mspring_network *network, double *now, double *any_shape);
 
 /// Compute the smallest number of substeps that is stable.
 /// In a step of dt each substep is then shorter than safety times the stable one of the present shape.
@@ -45,9 +45,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_stable_dt(mspring_n
 ///                use less. On a lattice without dampers 0.7 is enough for any motion.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT; MSPRING_ERROR_UNSTABLE if MSPRING_MAX_SUBSTEPS are too few;
 ///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates yes, and frees it   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_suggest_substeps(mspring_network *network, double dt,
-                                                                              double safety, uint32_t *substeps);
+/// @threads exclusive access to network   @allocates yes, and frees it   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_suggest_substeps(mspring_network *network, double dt, double safety, uint32_t *substeps);
 
 /* ---------------------------------------------------------------------------------------- static equilibrium */
 
@@ -84,8 +84,8 @@ typedef struct mspring_settle_result {
 } mspring_settle_result;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
-/// @threads any   @allocates never   @since 0.1
-MSPRING_API mspring_result mspring_settle_def_init(mspring_settle_def *def, size_t size);
+/// @threads any   @allocates never   @since 0.2
+MSPRING_API mspring_result MSPRING_CALL mspring_settle_def_init(mspring_settle_def *def, size_t size);
 
 /// Move the particles to static equilibrium.
 /// Gravity, springs and the forces given for the next step act. Pinned particles do not move. Hooks are not
@@ -106,21 +106,20 @@ MSPRING_API mspring_result mspring_settle_def_init(mspring_settle_def *def, size
 ///         lead to it (the message names a particle, and the force on it); MSPRING_ERROR_LIMIT if the factor would
 ///         have over 2^31 numbers; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_STRUCT, MSPRING_ERROR_MEMORY,
 ///         MSPRING_ERROR_BUSY. On error nothing has moved.
-/// @threads exclusive access to network   @allocates yes, and frees it   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_settle(mspring_network *network,
-                                                                    const mspring_settle_def *def,
-                                                                    mspring_settle_result *result);
+/// @threads exclusive access to network   @allocates yes, and frees it   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_settle(mspring_network *network, const mspring_settle_def *def, mspring_settle_result *result);
 
 /* ------------------------------------------------------------------------------------------ tuning: the trade */
 
 /// Error by which settings are compared.
-typedef int32_t mspring_tune_measure;
-enum {
+typedef enum mspring_tune_measure {
     MSPRING_TUNE_BY_TRAJECTORY = 0, ///< mspring_tune_row.trajectory_share
     MSPRING_TUNE_BY_REST = 1,       ///< mspring_tune_row.rest_share
     MSPRING_TUNE_BY_BENDING = 2,    ///< mspring_tune_row.bending, m: for networks with relative springs
-    MSPRING_TUNE_BY_SCENE = 3       ///< mspring_tune_row.scene_distance: for networks that break; needs a scene
-};
+    MSPRING_TUNE_BY_SCENE = 3,       ///< mspring_tune_row.scene_distance: for networks that break; needs a scene
+    MSPRING_TUNE_MEASURE_INT = MSPRING_ENUM_INT ///< no value
+} mspring_tune_measure;
 
 /// Flags of mspring_tune_def.
 enum {
@@ -129,10 +128,10 @@ enum {
 
 /// Receives the progress of a long run, 0 to 1, between steps.
 /// It returns 1 to go on, 0 to stop. After a stop the result has the numbers measured so far.
-typedef uint32_t (*mspring_progress_fn)(double done, void *user);
+typedef uint32_t (MSPRING_CALL *mspring_progress_fn)(double done, void *user);
 
 /// Returns seconds since a fixed moment. They never decrease.
-typedef double (*mspring_clock_fn)(void *user);
+typedef double (MSPRING_CALL *mspring_clock_fn)(void *user);
 
 /// Flags of mspring_tune_scene.
 enum {
@@ -148,7 +147,7 @@ enum {
 /// @param start  0 ... start_count - 1. For the same start, prepare all settings and the fine run in the same way.
 /// @param user   mspring_tune_def.user
 /// @return MSPRING_OK; mspring_network_tune() fails with any other result
-typedef mspring_result (*mspring_tune_prepare_fn)(mspring_network *run, uint32_t start, void *user);
+typedef mspring_result (MSPRING_CALL *mspring_tune_prepare_fn)(mspring_network *run, uint32_t start, void *user);
 
 /// Scene in which settings are tried: floor, breaking, hooks. Fill with mspring_tune_scene_init() first.
 typedef struct mspring_tune_scene {
@@ -163,17 +162,17 @@ typedef struct mspring_tune_scene {
     double tolerance;                ///< share of a mean that makes no difference; >= 0, finite; default 0.05
     double max_distance;             ///< instead of max_error with MSPRING_TUNE_BY_SCENE; > 0; default 1
     mspring_tune_prepare_fn prepare; ///< default NULL
+    void *reserved_pointer;          ///< NULL
 } mspring_tune_scene;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
-/// @threads any   @allocates never   @since 0.1
-MSPRING_API mspring_result mspring_tune_scene_init(mspring_tune_scene *scene, size_t size);
+/// @threads any   @allocates never   @since 0.2
+MSPRING_API mspring_result MSPRING_CALL mspring_tune_scene_init(mspring_tune_scene *scene, size_t size);
 
 /// Settings to try. A row above a limit is not recommended. Fill with mspring_tune_def_init() first.
 typedef struct mspring_tune_def {
     uint32_t struct_size;
     uint32_t setting_count;             ///< 1 to 1000; 0 if settings is NULL
-    const mspring_solver_def *settings; ///< [setting_count]; default NULL: those of mspring_tune_settings()
     double dt;                          ///< length of a step, s, as in mspring_network_step(); default 1/64
     /// Simulated time (s) of trajectories, up to 100000 steps, rounded up to whole steps, at least four. Default
     /// 0: one period of the slowest swing in the motion, 16 to 1024 steps, fewer if the budget is small.
@@ -184,11 +183,13 @@ typedef struct mspring_tune_def {
     uint32_t flags;                  ///< MSPRING_TUNE_NOTHING_ELSE or 0; default 0
     double max_error;                ///< limit of a row's error; > 0; default 0.01; INFINITY: none
     double max_cost;                 ///< limit of a row's cost, s for a step; > 0; default INFINITY
+    double max_drift;                ///< limit of energy_drift, if measured; >= 0; default 0.1
+    const mspring_solver_def *settings;   ///< [setting_count]; default NULL: those of mspring_tune_settings()
     mspring_clock_fn clock;          ///< default NULL: the system's; needed if MASSSPRING_FREESTANDING
     mspring_progress_fn progress;    ///< default NULL
     void *user;                      ///< passed to clock, to progress and to the scene's prepare
-    double max_drift;                ///< limit of energy_drift, if measured; >= 0; default 0.1
     const mspring_tune_scene *scene; ///< default NULL: none
+    void *reserved_pointer;          ///< NULL
 } mspring_tune_def;
 
 /// Flags of mspring_tune_row.
@@ -246,8 +247,8 @@ typedef struct mspring_tune_row {
 } mspring_tune_row;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
-/// @threads any   @allocates never   @since 0.1
-MSPRING_API mspring_result mspring_tune_def_init(mspring_tune_def *def, size_t size);
+/// @threads any   @allocates never   @since 0.2
+MSPRING_API mspring_result MSPRING_CALL mspring_tune_def_init(mspring_tune_def *def, size_t size);
 
 /// List the default settings of mspring_network_tune().
 ///
@@ -261,10 +262,10 @@ MSPRING_API mspring_result mspring_tune_def_init(mspring_tune_def *def, size_t s
 /// @param count     receives the number of settings, even if it is larger than capacity
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT, also for too little capacity unless that is 0;
 ///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY.
-/// @threads exclusive access to network   @allocates yes, and frees it   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_tune_settings(mspring_network *network, double dt,
-                                                                   mspring_solver_def *settings, uint32_t capacity,
-                                                                   uint32_t *count);
+/// @threads exclusive access to network   @allocates yes, and frees it   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_tune_settings(mspring_network *network, double dt, mspring_solver_def *settings, uint32_t capacity,
+    uint32_t *count);
 
 /// Measure cost and accuracy of settings of the solver.
 /// Each setting runs on clones of this network, on this machine, from the present state. Call it in a state that
@@ -304,19 +305,18 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_tune_settings(mspring_netwo
 ///         MSPRING_ERROR_MEMORY, MSPRING_ERROR_BUSY; the result of the scene's prepare. On error nothing is
 ///         written, and the network is as it was.
 /// @threads exclusive access to network; prepare is called on the calling thread   @allocates yes, and frees it
-/// @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_tune(mspring_network *network,
-                                                                  const mspring_tune_def *def,
-                                                                  mspring_tune_row *rows, uint32_t capacity,
-                                                                  uint32_t *count);
+/// @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_tune(mspring_network *network, const mspring_tune_def *def, mspring_tune_row *rows,
+    uint32_t capacity, uint32_t *count);
 
 /// Get the setting of a row, for mspring_network_set_solver().
 /// Its substeps are those that the row's steps took.
 /// @param solver  set its struct_size first
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT for NULL, MSPRING_ERROR_STRUCT.
-/// @threads any   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_tune_row_solver(const mspring_tune_row *row,
-                                                                     mspring_solver_def *solver);
+/// @threads any   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_tune_row_solver(const mspring_tune_row *row, mspring_solver_def *solver);
 
 /* ------------------------------------------------------------------------------------------- plan and memory */
 
@@ -356,20 +356,20 @@ typedef struct mspring_plan {
     uint32_t tile_count;           ///< tiles, each of three unknowns in the coarse matrix
     uint32_t coarse_values;        ///< numbers in the factor of that matrix
     uint32_t coarse_period;
+    uint32_t web_layers;    ///< with any solver: layers of the irregular part for passes over it; 0: none
     uint64_t factor_values; ///< of the direct solver: numbers in its factor, which exists in both precisions
     double factor_products; ///< products that computing that factor takes
-    uint32_t web_layers;    ///< with any solver: layers of the irregular part for passes over it; 0: none
 } mspring_plan;
 
 /// Get the plan. Set struct_size first.
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT or MSPRING_ERROR_STRUCT.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_network_plan(const mspring_network *network,
-                                                                  mspring_plan *plan);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_network_plan(const mspring_network *network, mspring_plan *plan);
 
 /// Get the bytes that the network has allocated. NULL gives 0.
-/// @threads shared   @allocates never   @since 0.1
-MSPRING_API size_t mspring_network_memory_used(const mspring_network *network);
+/// @threads shared   @allocates never   @since 0.2
+MSPRING_API size_t MSPRING_CALL mspring_network_memory_used(const mspring_network *network);
 
 /* ------------------------------------------------------------------------------------------- compaction jobs */
 
@@ -391,18 +391,18 @@ MSPRING_API size_t mspring_network_memory_used(const mspring_network *network);
 typedef struct mspring_job mspring_job;
 
 /// Plan that a job makes.
-typedef int32_t mspring_layout;
-enum {
+typedef enum mspring_layout {
     MSPRING_LAYOUT_COMPACT = 0, ///< as mspring_network_compact()
-    MSPRING_LAYOUT_WHOLE = 1    ///< as mspring_network_expand(); restoring springs then needs no long frame
-};
+    MSPRING_LAYOUT_WHOLE = 1,    ///< as mspring_network_expand(); restoring springs then needs no long frame
+    MSPRING_LAYOUT_INT = MSPRING_ENUM_INT ///< no value
+} mspring_layout;
 
 /// Begin a job: copy springs and their layout.
 /// @return MSPRING_OK; MSPRING_ERROR_BUSY inside a hook, or if the network has a job that is neither finished nor
 ///         destroyed; MSPRING_ERROR_ARGUMENT, MSPRING_ERROR_MEMORY.
-/// @threads exclusive access to network   @allocates yes   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_job_begin(mspring_network *network, mspring_layout layout,
-                                                               mspring_job **job);
+/// @threads exclusive access to network   @allocates yes   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_job_begin(mspring_network *network, mspring_layout layout, mspring_job **job);
 
 /// Run the next parts of a job.
 /// Some parts make the solver. For a network of 200,000 springs the longest part takes one to two milliseconds.
@@ -410,8 +410,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_job_begin(mspring_network *
 /// @param left     receives an estimate of the parts left, which never rises; 0: it can be finished; may be NULL
 /// @return MSPRING_OK; MSPRING_ERROR_MEMORY or MSPRING_ERROR_LIMIT, after which the job can only be destroyed;
 ///         MSPRING_ERROR_ARGUMENT for NULL, or for a job that has failed or is finished.
-/// @threads exclusive access to job; no access to any network   @allocates yes   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_job_run(mspring_job *job, uint32_t at_most, uint32_t *left);
+/// @threads exclusive access to job; no access to any network   @allocates yes   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_job_run(mspring_job *job, uint32_t at_most, uint32_t *left);
 
 /// Move the network to the plan of a job.
 /// Slots change, and views end. Afterwards the job can only be destroyed, unless the result is MSPRING_ERROR_BUSY
@@ -422,18 +423,19 @@ MSPRING_NODISCARD MSPRING_API mspring_result mspring_job_run(mspring_job *job, u
 ///         end; MSPRING_ERROR_MEMORY; MSPRING_ERROR_LIMIT; MSPRING_ERROR_ARGUMENT for NULL, for a job that is
 ///         finished, or for one of another network. If a run failed, its error is returned again. On error the
 ///         network is as it was.
-/// @threads exclusive access to network and job   @allocates some   @since 0.1
-MSPRING_NODISCARD MSPRING_API mspring_result mspring_job_finish(mspring_network *network, mspring_job *job);
+/// @threads exclusive access to network and job   @allocates some   @since 0.2
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL
+mspring_job_finish(mspring_network *network, mspring_job *job);
 
 /// Get the error message of a job.
 /// It is that of the first mspring_job_run() that failed; "" if none did, or for NULL. The job owns it.
-/// @threads shared with other reads of the job   @allocates never   @since 0.1
-MSPRING_API const char *mspring_job_error(const mspring_job *job);
+/// @threads shared with other reads of the job   @allocates never   @since 0.2
+MSPRING_API const char *MSPRING_CALL mspring_job_error(const mspring_job *job);
 
 /// Free a job, finished or not. NULL is allowed.
 /// If it is finished, this frees the old plan, which may take milliseconds: another thread may do that.
-/// @threads exclusive access to job and, unless it is finished, to its network   @allocates never   @since 0.1
-MSPRING_API void mspring_job_destroy(mspring_job *job);
+/// @threads exclusive access to job and, unless it is finished, to its network   @allocates never   @since 0.2
+MSPRING_API void MSPRING_CALL mspring_job_destroy(mspring_job *job);
 
 #ifdef __cplusplus
 }

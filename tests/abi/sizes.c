@@ -1,0 +1,59 @@
+/// @file sizes.c
+/// Sizes of all public structs, with pointers of 64 and of 32 bits. Compiled only.
+///
+/// They are the sums of their fields: there is no padding, so a new field makes its struct larger on every system,
+/// and what an old program left there is never read.
+///
+/// SPDX-License-Identifier: MIT
+#include <massspring/massspring_tools.h>
+
+#define SIZE(type, on_64_bits, on_32_bits)                                                                         \
+    _Static_assert(sizeof(void *) == 8   ? sizeof(type) == (on_64_bits)                                            \
+                   : sizeof(void *) == 4 ? sizeof(type) == (on_32_bits)                                            \
+                                         : 1,                                                                      \
+                   "the size of " #type " is another");
+
+SIZE(mspring_allocator, 32, 20)
+SIZE(mspring_tasks, 32, 24)
+SIZE(mspring_particle_def, 40, 40)
+SIZE(mspring_spring_def, 40, 40)
+SIZE(mspring_material, 36, 36)
+SIZE(mspring_lattice_def, 64, 56)
+SIZE(mspring_rope_def, 48, 48)
+SIZE(mspring_mesh_def, 72, 60)
+SIZE(mspring_disc_def, 72, 72)
+SIZE(mspring_solver_def, 32, 32)
+SIZE(mspring_settings, 36, 36)
+SIZE(mspring_network_def, 80, 72)
+SIZE(mspring_clone_def, 32, 24)
+SIZE(mspring_step_info, 56, 56)
+SIZE(mspring_hook_args, 152, 104)
+SIZE(mspring_hook_def, 56, 40)
+SIZE(mspring_floor_def, 64, 56)
+SIZE(mspring_view, 112, 80)
+SIZE(mspring_mutable_view, 112, 80)
+SIZE(mspring_event, 16, 16)
+SIZE(mspring_component, 56, 56)
+SIZE(mspring_spring_info, 48, 48)
+SIZE(mspring_settle_def, 32, 32)
+SIZE(mspring_settle_result, 40, 40)
+SIZE(mspring_tune_scene, 64, 56)
+SIZE(mspring_tune_def, 112, 88)
+SIZE(mspring_tune_row, 248, 248)
+SIZE(mspring_plan, 136, 136)
+
+#define ENUM(type) _Static_assert(sizeof(type) == 4 && (type)-1 < 0, #type " is no int of 32 bits");
+
+ENUM(mspring_result)
+ENUM(mspring_preset)
+ENUM(mspring_solver)
+ENUM(mspring_integrator)
+ENUM(mspring_simd)
+ENUM(mspring_guard)
+ENUM(mspring_phase)
+ENUM(mspring_property)
+ENUM(mspring_event_kind)
+ENUM(mspring_numbering)
+ENUM(mspring_snapshot_contents)
+ENUM(mspring_tune_measure)
+ENUM(mspring_layout)

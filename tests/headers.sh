@@ -1,0 +1,81 @@
+#!/bin/sh
+# The public headers alone, as all compilers and tools that are here read them, with every warning.
+#
+#   headers.sh SOURCE WORK
+#
+# CC and CXX come from the environment. What this machine lacks is left out: clang, tcc, cffi for Python, bindgen.
+set -eu
+source=$1 work=$2
+mkdir -p "$work"
+cd "$work"
+{
+  echo '#include <massspring/massspring_tools.h>'
+  # A struct that is used is laid out, and then -Wpadded sees it.
+  sed -n 's/^typedef struct \(mspring_[a-z_]*\) {$/extern int size_of_\1[sizeof(\1)];/p' "$source"/include/massspring/*.h
+} >headers.c
+cp headers.c headers.cpp
+strict="-I$source/include -fsyntax-only -Wall -Wextra -pedantic-errors -Werror"
+# Not what the documentation is like, and what C++98 cannot do, which is compiled as such.
+all='-Weverything -Wno-documentation -Wno-documentation-unknown-command -Wno-c++98-compat -Wno-c++98-compat-pedantic'
+all="$all -Wno-reserved-identifier -Wno-unknown-warning-option"
+checked=0
+
+for compiler in "${CC:-cc}" clang; do
+  command -v "$compiler" >/dev/null || continue
+  more=
+  [ "$compiler" != clang ] || more=$all
+  for standard in c99 c11 c17 c2x; do
+    # shellcheck disable=SC2086 # the options are words
+    "$compiler" -std=$standard $strict $more headers.c
+    checked=$((checked + 1))
+  done
+done
+for compiler in "${CXX:-c++}" clang++; do
+  command -v "$compiler" >/dev/null || continue
+  more=
+  [ "$compiler" != clang++ ] || more=$all
+  for standard in c++98 c++11 c++14 c++17 c++20; do
+    # shellcheck disable=SC2086
+    "$compiler" -std=$standard $strict $more -Wno-long-long -Wno-c++11-long-long headers.cpp
+    checked=$((checked + 1))
+  done
+done
+
+if command -v tcc >/dev/null; then
+  tcc -Wall -Werror -I"$source/include" -c headers.c -o headers.o
+  checked=$((checked + 1))
+else
+  echo "left out: tcc"
+fi
+
+if python3 -c 'import cffi' 2>/dev/null; then
+  # The whole of both headers, in four lines.
+  python3 - "$source" <<'END'
+import cffi, re, subprocess, sys
+text = "".join(open(f"{sys.argv[1]}/include/massspring/{name}.h").read() for name in ("massspring", "massspring_tools"))
+flat = subprocess.run(["cc", "-E", "-P", "-DMSPRING_API=", "-DMSPRING_NODISCARD=", "-"], text=True, check=True,
+                      input=re.sub('#include.*|__attribute__.*', '', text), capture_output=True).stdout
+ffi = cffi.FFI()
+ffi.cdef(flat)
+assert ffi.sizeof("mspring_network_def") == 72 + 8 * (ffi.sizeof("void *") // 8), ffi.sizeof("mspring_network_def")
+assert ffi.typeof("mspring_solver").elements[1] == "MSPRING_SOLVER_IMPLICIT"
+END
+  checked=$((checked + 1))
+else
+  echo "left out: cffi"
+fi
+
+if command -v bindgen >/dev/null; then
+  bindgen "$source/include/massspring/massspring_tools.h" -o headers.rs -- -I"$source/include" 2>bindgen.says
+  # Types and constants of enums are the same, and signed; functions and fields have these types.
+  grep -q 'pub const mspring_solver_MSPRING_SOLVER_IMPLICIT: mspring_solver = 1;' headers.rs
+  grep -q 'pub type mspring_solver = ::std::os::raw::c_int;' headers.rs
+  grep -q 'pub solver: mspring_solver,' headers.rs
+  grep -q 'pub const MSPRING_NONE: u32 = 4294967295;' headers.rs
+  grep -q 'pub const MSPRING_MAX_PARTICLES: u32 = 67108864;' headers.rs
+  ! command -v rustc >/dev/null || rustc -A warnings --crate-type lib --emit metadata headers.rs -o headers.rmeta
+  checked=$((checked + 1))
+else
+  echo "left out: bindgen"
+fi
+echo "$checked checked, 0 wrong"
