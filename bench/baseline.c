@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <massspring/massspring_tools.h>
+
 #include "network.h"
 
 static bool fill_particles(const bench_network *from, bench_baseline *baseline, scene_error *error) {

@@ -4,6 +4,8 @@
 /// SPDX-License-Identifier: MIT
 #include <stdlib.h>
 
+#include <massspring/massspring_tools.h>
+
 #include "session.h"
 
 /// Springs broken at once where the rest of a structure holds.

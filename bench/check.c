@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include <massspring/massspring_tools.h>
+
 #include "modes.h"
 
 /// 100 substeps in all, ten times as long as those of a game: gravity has time to move things by most of a spacing.

@@ -6,6 +6,8 @@
 
 #include <stdlib.h>
 
+#include <massspring/massspring_tools.h>
+
 static mspring_result add_particles(const bench_network *from, mspring_builder *builder, mspring_particle_def *defs,
                                     float *mass) {
     mspring_view view;

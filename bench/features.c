@@ -4,6 +4,8 @@
 /// SPDX-License-Identifier: MIT
 #include <stdio.h>
 
+#include <massspring/massspring_tools.h>
+
 #include "copy.h"
 #include "modes.h"
 

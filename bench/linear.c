@@ -11,6 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <massspring/massspring_tools.h>
+
 #include "machine.h"
 #include "modes.h"
 #include "solvers/sparse/cholesky.h"

@@ -5,6 +5,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include <massspring/massspring_tools.h>
+
 #include "draw/colour_scale.h"
 #include "map.h"
 

@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <massspring/massspring_tools.h>
+
 #include "turns.h"
 
 void bench_options_help(void) {

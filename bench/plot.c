@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include <massspring/massspring_tools.h>
+
 #include "draw/scatter.h"
 #include "speeds.h"
 

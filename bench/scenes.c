@@ -4,6 +4,8 @@
 /// SPDX-License-Identifier: MIT
 #include "modes.h"
 
+#include <massspring/massspring_tools.h>
+
 static const bench_column columns[] = {
     {"scene", "scene", -22},
     {"particles", "particles", 9},

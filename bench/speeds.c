@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <massspring/massspring_tools.h>
+
 #include "loaders/lines.h"
 
 static const line_style csv = {.separators = ",", .comments = ""};

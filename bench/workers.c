@@ -8,6 +8,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include <massspring/massspring_tools.h>
+
 #include "modes.h"
 
 static const char *const default_scenes[] = {"bar_80x5",      "grid_48x48",   "grid_64x64",

@@ -27,7 +27,7 @@ static bool print_plan(const scene *planned) {
     if (ok)
         printf("%-16s %9u %9u | %8u %9u | %6u %8u | %9u %8u %6u | %5u %4u %5u | %7s %7s\n", planned->name,
                plan.particle_count, plan.spring_count, plan.lattice_count, plan.lattice_springs, plan.chain_count,
-               plan.chain_springs, plan.web_particles, plan.leftover_springs, plan.web_layers, plan.pass_rows,
+               plan.chain_springs, plan.irregular_particles, plan.irregular_springs, plan.irregular_layers, plan.pass_rows,
                plan.pass_lag, plan.pass_substeps, plan.has_damping ? "yes" : "no",
                mspring_simd_name(plan.simd_level));
     mspring_network_destroy(network);

@@ -4,11 +4,13 @@
 /// SPDX-License-Identifier: MIT
 #include "common/show.h"
 
+#include <massspring/massspring_tools.h>
+
 enum { COLUMNS = 9, ROWS = 8, SUBSTEPS = 24, STEPS = 66 };
 static const double dt = 0.01, spacing = 0.03; // s, m
 
 int main(int count, char **arguments) {
-    static const uint16_t cells[ROWS][COLUMNS] = {{0}}; // all of material 0
+    static const uint16_t cells[ROWS][COLUMNS]; // all of material 0
     mspring_material jelly;
     mspring_result result =
         mspring_material_preset(&jelly, sizeof jelly, MSPRING_PRESET_JELLY, spacing, dt / SUBSTEPS);

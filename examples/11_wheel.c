@@ -6,6 +6,8 @@
 
 #include <math.h>
 
+#include <massspring/massspring_tools.h>
+
 enum { HEIGHTS = 64, STEPS = 252 };
 
 int main(int count, char **arguments) {

@@ -4,10 +4,12 @@
 /// SPDX-License-Identifier: MIT
 #include "common/show.h"
 
+#include <massspring/massspring_tools.h>
+
 enum { COLUMNS = 20, ROWS = 14, LAST_ROW = (ROWS - 1) * COLUMNS, STEPS = 132, CUT = 64 };
 
 int main(int count, char **arguments) {
-    static const uint16_t cells[ROWS][COLUMNS] = {{0}}; // all of material 0
+    static const uint16_t cells[ROWS][COLUMNS]; // all of material 0
     mspring_material thread;
     mspring_material_init(&thread, sizeof thread);
     thread.mass = 0.01f, thread.stiffness = 500, thread.damping = 0.1f, thread.break_strain = 0.25f;

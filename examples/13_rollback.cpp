@@ -5,7 +5,7 @@
 /// C++11 or later. The game has threads of its own and lends them to the library.
 ///
 /// SPDX-License-Identifier: MIT
-#include <massspring/massspring.h>
+#include <massspring/massspring_tools.h>
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 /// A program that is compiled with -ffinite-math-only: it says and reads "never" without INFINITY.
 ///
 /// SPDX-License-Identifier: MIT
-#include <massspring/massspring.h>
+#include <massspring/massspring_tools.h>
 
 static int stretch(mspring_builder *builder, mspring_network **network) {
     mspring_particle_def particle;

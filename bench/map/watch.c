@@ -6,6 +6,8 @@
 
 #include <math.h>
 
+#include <massspring/massspring_tools.h>
+
 /* -------------------------------------------------------------------------------------------------- components */
 
 static uint32_t root_of(const uint32_t *parents, uint32_t of) {

@@ -9,6 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include <massspring/massspring_tools.h>
+
 static const char help[] =
     "bending: let a network settle under gravity and measure how far its probe comes down\n"
     "\n"

@@ -67,7 +67,7 @@ static void print_layout(mspring_network *network) {
     if (plan.chain_count)
         printf("%u chain%s with %u springs, ", plan.chain_count, plan.chain_count == 1 ? "" : "s",
                plan.chain_springs);
-    printf("%u other springs\n", plan.leftover_springs);
+    printf("%u other springs\n", plan.irregular_springs);
 }
 
 static void print_stiffness(const spring_measures *measures) {

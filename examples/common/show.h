@@ -16,7 +16,7 @@ typedef struct show {
     film film;
 } show;
 
-/// Read a program's arguments, --out FOLDER or --help, and begin a film of its network. End it with show_end().
+/// Read a program's arguments, --out FOLDER or --help, and begin a film of its network. show_end() the show.
 /// @param about         a sentence on the program, for --help and above the picture
 /// @param network       NULL where it could not be made: there is nothing to film then
 /// @param strain_limit  strain at both ends of the colours; 0: what suits the last frame

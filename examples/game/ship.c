@@ -4,6 +4,8 @@
 /// SPDX-License-Identifier: MIT
 #include "game/ship.h"
 
+#include <massspring/massspring_tools.h>
+
 const ship_material ship_materials[SHIP_PARTS] = {
     [SHIP_HULL] = {.mass = 350, .displaced = 1000, .drag = 300, .room = 1000},
     [SHIP_MAST] = {.mass = 350, .displaced = 1000, .drag = 300, .room = 1000},

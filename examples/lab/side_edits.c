@@ -8,6 +8,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include <massspring/massspring_tools.h>
+
 static bool accepted(lab_side *side, mspring_result result) {
     if (result != MSPRING_OK)
         snprintf(side->complaint, sizeof side->complaint, "%s", mspring_network_error(side->network));

@@ -16,6 +16,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <massspring/massspring_tools.h>
+
 const char *const stage_ready_names[STAGE_READY_COUNT] = {"ship", "bar", "beam", "bridge", "net", "rope", "graph"};
 
 static const float relative_stiffness = 0.5f, relative_damping = 0.02f;

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <massspring/massspring_tools.h>
+
 // Pairs joined already: their note is not used.
 static bool note_springs(const mspring_network *network, pair_set *joined) {
     const uint32_t count = mspring_network_spring_count(network);

@@ -7,6 +7,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include <massspring/massspring_tools.h>
+
 static bool add_bar(scene *out, uint32_t columns, uint32_t rows, const scene_options *options, uint16_t *cells,
                     scene_error *error) {
     enum { FREE, PINNED, KINDS };

@@ -6,6 +6,8 @@
 /// SPDX-License-Identifier: MIT
 #include "page.h"
 
+#include <massspring/massspring_tools.h>
+
 #if defined(__wasm__)
 #include "environment.h"
 #define ALLOCATOR &environment_allocator

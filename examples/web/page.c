@@ -11,6 +11,8 @@
 #define ALLOCATOR &environment_allocator
 #else
 #include <stdlib.h>
+
+#include <massspring/massspring_tools.h>
 #define ALLOCATOR NULL
 #endif
 

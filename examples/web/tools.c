@@ -6,6 +6,8 @@
 
 #include <math.h>
 
+#include <massspring/massspring_tools.h>
+
 // What is held is drawn to its goal as if all of the network hung on a critically damped spring of this angular
 // frequency (rad/s); in one step it is never pulled or slowed by more than these parts of what would get it there.
 static const double pull_frequency = 4;

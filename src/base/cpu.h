@@ -7,7 +7,7 @@
 
 #include <stdint.h>
 
-#include <massspring/massspring.h>
+#include <massspring/massspring_tools.h>
 
 /// The level to run at: the best supported one, lowered by wanted (MSPRING_SIMD_AUTO: not) and by the environment
 /// variable MSPRING_SIMD.

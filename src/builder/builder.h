@@ -7,6 +7,8 @@
 
 #include "base/memory.h"
 
+#include <massspring/massspring_tools.h>
+
 typedef struct mspringi_particle {
     double x, y;
     float vx, vy;

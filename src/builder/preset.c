@@ -4,6 +4,8 @@
 /// / 2 along its rows. With k = s m / (2 h^2), and m / spacing^2 = density times thickness, the square of the speed
 /// of sound is (3 s / 4) (spacing / h)^2. A relative lattice of equal masses is stable in any shape if 2 s + 4 d is
 /// at most 1, with d the relative damping: 2 zeta sqrt(s) for the damping ratio zeta.
+#include <massspring/massspring_tools.h>
+
 #include "base/message.h"
 
 typedef struct preset {

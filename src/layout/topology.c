@@ -406,7 +406,7 @@ void mspringi_topology_finish(mspringi_assembly *begun, mspringi_memory *memory,
     begun->made.chain_count = begun->strands.strand_count;
     begun->made.chain_particles = begun->strands.count;
     begun->made.chain_springs = begun->strands.spring_count;
-    begun->made.web_particles = begun->web.count;
+    begun->made.irregular_particles = begun->web.count;
     // NOLINTNEXTLINE(-Wanalyzer-null-dereference): it was begun
     *topology = begun->made;
     // NOLINTNEXTLINE(-Wanalyzer-null-dereference): as above

@@ -136,7 +136,7 @@ typedef struct mspringi_topology {
     // For the plan.
     uint32_t lattice_count, lattice_particles, lattice_springs, lattice_rows;
     uint32_t chain_count, chain_particles, chain_springs;
-    uint32_t web_particles, loose_particles;
+    uint32_t irregular_particles, loose_particles;
 } mspringi_topology;
 
 /// Words of MSPRINGI_WIDTH bits that hold a bit for each place.

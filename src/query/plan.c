@@ -80,9 +80,9 @@ mspring_result mspring_network_plan(const mspring_network *network, mspring_plan
         .chain_count = t->chain_count,
         .chain_particles = t->chain_particles,
         .chain_springs = t->chain_springs,
-        .web_particles = t->web_particles,
+        .irregular_particles = t->irregular_particles,
         .loose_particles = t->loose_particles + mspringi_growth_added_particles(network),
-        .leftover_springs = t->woven_count + mspringi_growth_added_springs(network),
+        .irregular_springs = t->woven_count + mspringi_growth_added_springs(network),
         .pass_rows = t->wavefront_rows,
         .pass_lag = t->skew,
         .pass_substeps = network->depth,
@@ -91,7 +91,7 @@ mspring_result mspring_network_plan(const mspring_network *network, mspring_plan
         .has_damping = network->parts > MSPRINGI_DAMPING,
         .has_relative = network->fractions.values != NULL,
         .simd_level = network->kernels->level,
-        .web_layers = t->layer_count,
+        .irregular_layers = t->layer_count,
     };
     if (network->solver.ops->describe)
         network->solver.ops->describe(network->solver.object, &made);

@@ -1,6 +1,6 @@
 // What a program that uses the library looks like: two particles, a spring, a second of time.
 // SPDX-License-Identifier: MIT
-#include <massspring/massspring.h>
+#include <massspring/massspring_tools.h>
 #include <stdio.h>
 
 static int failed(const char *what, const char *why) {

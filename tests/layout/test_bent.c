@@ -155,7 +155,7 @@ static void rings_are_lattices_that_are_closed_once(void **state) {
         }
         const mspring_plan plan = shuffled_plan_of(&made);
         assert_int_equal(plan.lattice_count, 1);
-        assert_in_range(plan.leftover_springs, 1, 3 * height);
+        assert_in_range(plan.irregular_springs, 1, 3 * height);
         recipe_free(&made);
     }
 }

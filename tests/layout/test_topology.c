@@ -18,9 +18,9 @@ static mspring_plan plan_of(const recipe *made) {
     check_ok(mspring_network_plan(network, &plan));
     assert_int_equal(plan.particle_count, made->particle_count);
     assert_int_equal(plan.spring_count, made->spring_count);
-    assert_int_equal(plan.lattice_particles + plan.chain_particles + plan.web_particles + plan.loose_particles,
+    assert_int_equal(plan.lattice_particles + plan.chain_particles + plan.irregular_particles + plan.loose_particles,
                      made->particle_count);
-    assert_int_equal(plan.lattice_springs + plan.chain_springs + plan.leftover_springs, made->spring_count);
+    assert_int_equal(plan.lattice_springs + plan.chain_springs + plan.irregular_springs, made->spring_count);
     assert_int_equal(plan.slot_count % plan.block_width, 0);
     assert_true(plan.slot_count >= made->particle_count);
     mspring_network_destroy(network);
@@ -46,7 +46,7 @@ static void a_lattice_is_found_in_any_order(void **state) {
             assert_int_equal(plan.lattice_count, 1);
             assert_int_equal(plan.lattice_particles, made.particle_count);
             assert_int_equal(plan.lattice_springs, made.spring_count);
-            assert_int_equal(plan.leftover_springs, 0);
+            assert_int_equal(plan.irregular_springs, 0);
         }
         recipe_free(&made);
     }
@@ -61,7 +61,7 @@ static void holes_do_not_break_a_lattice_up(void **state) {
     // Particles that holes cut off are strands or loose, but hardly any spring is.
     assert_true(plan.lattice_springs >= 0.99 * made.spring_count);
     assert_true(plan.lattice_particles >= 0.99 * made.particle_count);
-    assert_true(plan.leftover_springs <= 0.01 * made.spring_count);
+    assert_true(plan.irregular_springs <= 0.01 * made.spring_count);
     recipe_free(&made);
 }
 
@@ -197,8 +197,8 @@ static void ropes_on_a_lattice_are_swept_with_it(void **state) {
     mspring_plan plan = shuffled_plan_of(&made);
     assert_int_equal(plan.lattice_springs, lattice_springs);
     assert_int_equal(plan.chain_count, 0);
-    assert_int_equal(plan.leftover_springs, made.spring_count - lattice_springs);
-    assert_int_equal(plan.web_particles, made.particle_count - 1200);
+    assert_int_equal(plan.irregular_springs, made.spring_count - lattice_springs);
+    assert_int_equal(plan.irregular_particles, made.particle_count - 1200);
     assert_int_equal(plan.pass_rows, plan.lattice_rows);
     recipe_free(&made);
 }
@@ -214,7 +214,7 @@ static void more_rope_than_lattice_is_chains(void **state) {
     assert_int_equal(plan.lattice_springs, made.spring_count - 500);
     assert_int_equal(plan.chain_count, 1);
     assert_int_equal(plan.chain_springs, 499);
-    assert_int_equal(plan.leftover_springs, 1);
+    assert_int_equal(plan.irregular_springs, 1);
     assert_int_equal(plan.chain_particles, 500);
     assert_int_equal(plan.pass_rows, 0);
     recipe_free(&made);
@@ -230,7 +230,7 @@ static void a_strand_of_its_own_is_a_chain(void **state) {
     mspring_plan plan = shuffled_plan_of(&made);
     assert_int_equal(plan.chain_springs, 100);
     assert_int_equal(plan.chain_particles, 101);
-    assert_int_equal(plan.leftover_springs, 0);
+    assert_int_equal(plan.irregular_springs, 0);
     assert_int_equal(plan.lattice_particles, 0);
     recipe_free(&made);
 }
@@ -245,8 +245,8 @@ static void a_ring_is_a_chain_but_for_one_spring(void **state) {
         recipe_spring(&made, i, (i + 1) % 50, 100, 0, 0);
     }
     mspring_plan plan = shuffled_plan_of(&made);
-    assert_int_equal(plan.chain_springs + plan.leftover_springs, 50);
-    assert_true(plan.leftover_springs <= 1);
+    assert_int_equal(plan.chain_springs + plan.irregular_springs, 50);
+    assert_true(plan.irregular_springs <= 1);
     recipe_free(&made);
 }
 
@@ -276,7 +276,7 @@ static void a_random_graph_is_no_lattice(void **state) {
     mspring_plan plan = plan_of(&made);
     assert_int_equal(plan.lattice_springs, 0);
     // 7.5 springs to a particle: strands of them are short and few.
-    assert_true(plan.leftover_springs > 1000);
+    assert_true(plan.irregular_springs > 1000);
     recipe_free(&made);
 }
 
@@ -312,12 +312,12 @@ static void sheets_far_off_a_grid_are_webs(void **state) {
     add_sheet(&made, 45, 0.2);
     mspring_plan plan = plan_of(&made);
     assert_int_equal(plan.lattice_count, 1);
-    assert_true(plan.lattice_springs > plan.leftover_springs * 4);
+    assert_true(plan.lattice_springs > plan.irregular_springs * 4);
     recipe_free(&made);
     add_sheet(&made, 45, 0.4);
     plan = shuffled_plan_of(&made);
     assert_int_equal(plan.lattice_count, 0);
-    assert_int_equal(plan.web_particles, 45 * 45);
+    assert_int_equal(plan.irregular_particles, 45 * 45);
     recipe_lattice(&made, 70, 30, 100, 3, 1, &solid, &seed);
     const mspring_id roped = recipe_lattice(&made, 70, 30, 100, 90, 1, &solid, &seed);
     for (uint32_t i = 0; i < 60; i++) {

@@ -83,8 +83,8 @@ static void plans_are_those_of_what_is_left(void **state) {
         assert_int_equal(a.lattice_springs, b.lattice_springs);
         assert_int_equal(a.lattice_blocks, b.lattice_blocks);
         assert_int_equal(a.chain_particles, b.chain_particles);
-        assert_int_equal(a.web_particles, b.web_particles);
-        assert_int_equal(a.leftover_springs, b.leftover_springs);
+        assert_int_equal(a.irregular_particles, b.irregular_particles);
+        assert_int_equal(a.irregular_springs, b.irregular_springs);
         assert_int_equal(a.loose_particles, b.loose_particles);
         free(left.springs);
         mspring_network_destroy(network);

@@ -253,7 +253,7 @@ static void plan_counts_what_is_there(void **state) {
     assert_int_equal(plan.particle_count, 3);
     assert_int_equal(plan.spring_count, 2);
     assert_int_equal(plan.lattice_particles + plan.chain_particles + plan.loose_particles, 3);
-    assert_int_equal(plan.lattice_springs + plan.chain_springs + plan.leftover_springs, 2);
+    assert_int_equal(plan.lattice_springs + plan.chain_springs + plan.irregular_springs, 2);
     assert_int_equal(plan.has_damping, 0);
     assert_int_equal(plan.has_relative, 0);
     assert_int_equal(plan.simd_level, mspring_network_simd_level(network));

@@ -56,7 +56,7 @@ mspring_plan wrecks_plan(const mspring_network *network) {
 
 uint32_t wrecks_swept(const mspring_network *network) {
     const mspring_plan plan = wrecks_plan(network);
-    return plan.lattice_springs + plan.chain_springs + plan.leftover_springs;
+    return plan.lattice_springs + plan.chain_springs + plan.irregular_springs;
 }
 
 void wrecks_set_solver(mspring_network *network, mspring_solver which, mspring_integrator integrator) {

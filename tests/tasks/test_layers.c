@@ -125,7 +125,7 @@ static uint64_t hash_after_steps(const recipe *made, content of, manner how) {
     assert_int_equal(network->topology.chain_count, of == WITH_CABLES ? 1 : of == IN_RIGGING ? 61 : 0);
     mspring_plan plan = {.struct_size = sizeof plan};
     check_ok(mspring_network_plan(network, &plan));
-    assert_int_equal(plan.web_layers > 0, how.has_layers || of <= ON_A_RAFT);
+    assert_int_equal(plan.irregular_layers > 0, how.has_layers || of <= ON_A_RAFT);
     // The raft is part of the web, another lattice is not.
     assert_int_equal(network->topology.lattice_count, of == WITH_CABLES || of >= ON_A_RAFT ? of != IN_RIGGING : 0);
     if (how.one_by_one) {

@@ -115,7 +115,7 @@ static void ropes_do_not_prevent_passes(void **state) {
     recipe_rope(&made, 0, 9999, 20, &solid, &seed); // from corner to corner
     const mspring_plan plan = plan_of(&made);
     assert_int_equal(plan.pass_rows, 100);
-    assert_int_equal(plan.web_particles, 19);
+    assert_int_equal(plan.irregular_particles, 19);
     assert_true(plan.pass_substeps > 1);
     recipe_free(&made);
 }
