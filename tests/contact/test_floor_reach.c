@@ -100,6 +100,7 @@ static void falls_the_same_way(void **state) {
         mspring_network_def def = support_def(-9.8f, seed % 3 == 0 ? 1 : 4);
         def.global_damping = seed % 2 == 0 ? 0.1f : 0;
         def.guard = MSPRING_GUARD_BOUNDS;
+        def.spare_particles = seed % 5 == 0 ? 40 : 0;
         const twins both = make_twins(&made, def, seed % 4 == 0 ? -300 : -40);
         for (uint32_t step = 0; step < 500; step++) {
             if (seed > 4) {
