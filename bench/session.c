@@ -608,7 +608,7 @@ static bool measure_level(const bench_scene *subject, const bench_options *optio
     for (int stress = 0; ok && stress < 2; stress++) {
         ok = measure_strain(&with, options, subject, level, stress == 1, repeat, &error);
     }
-    ok = ok && measure_floor(&with, options, subject, level, "floor, out of reach", 100.0, repeat, &error);
+    ok = ok && measure_floor(&with, options, subject, level, "floor, out of reach", 1e7, repeat, &error);
     ok = ok && measure_floor(&with, options, subject, level, "floor, lowest rows on it", -0.5, repeat, &error);
     ok = ok && measure_hook(&with, options, subject, level, repeat, &error);
     for (const session_call *call = session_calls; ok && call->name != NULL; call++) {
