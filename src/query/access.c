@@ -19,14 +19,24 @@ static mspring_result check_get(const mspring_network *network, mspring_id first
     return first <= total && count <= total - first ? MSPRING_OK : MSPRING_ERROR_ID;
 }
 
+// A removed particle is where the local origin is, whatever the host has written to its slot through a view.
+static double x_from_origin(const mspring_network *network, mspring_id particle) {
+    const uint32_t slot = network->topology.slot_of_particle[particle];
+    return mspringi_particle_exists(network, particle) ? mspringi_x_of(&network->state, slot) : 0.0;
+}
+
+static double y_from_origin(const mspring_network *network, mspring_id particle) {
+    const uint32_t slot = network->topology.slot_of_particle[particle];
+    return mspringi_particle_exists(network, particle) ? mspringi_y_of(&network->state, slot) : 0.0;
+}
+
 mspring_result mspring_network_get_positions(const mspring_network *network, mspring_id first, uint32_t count,
                                              double *x, double *y, uint32_t stride) {
     mspring_result result = check_get(network, first, count, x, y, stride);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
-        const uint32_t slot = network->topology.slot_of_particle[first + i];
         const size_t at = (size_t)i * stride;
-        x[at] = network->origin_x + mspringi_x_of(&network->state, slot);
-        y[at] = network->origin_y + mspringi_y_of(&network->state, slot);
+        x[at] = network->origin_x + x_from_origin(network, first + i);
+        y[at] = network->origin_y + y_from_origin(network, first + i);
     }
     return result;
 }
@@ -35,10 +45,9 @@ mspring_result mspring_network_get_positions_float(const mspring_network *networ
                                                    float *x, float *y, uint32_t stride) {
     mspring_result result = check_get(network, first, count, x, y, stride);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
-        const uint32_t slot = network->topology.slot_of_particle[first + i];
         const size_t at = (size_t)i * stride;
-        x[at] = (float)(network->origin_x + mspringi_x_of(&network->state, slot));
-        y[at] = (float)(network->origin_y + mspringi_y_of(&network->state, slot));
+        x[at] = (float)(network->origin_x + x_from_origin(network, first + i));
+        y[at] = (float)(network->origin_y + y_from_origin(network, first + i));
     }
     return result;
 }
@@ -49,8 +58,9 @@ mspring_result mspring_network_get_velocities(const mspring_network *network, ms
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
         const uint32_t slot = network->topology.slot_of_particle[first + i];
         const size_t at = (size_t)i * stride;
-        vx[at] = network->state.vx[slot];
-        vy[at] = network->state.vy[slot];
+        const bool is_there = mspringi_particle_exists(network, first + i);
+        vx[at] = is_there ? network->state.vx[slot] : 0.0f;
+        vy[at] = is_there ? network->state.vy[slot] : 0.0f;
     }
     return result;
 }
@@ -203,10 +213,15 @@ mspring_result mspring_network_state_hash(const mspring_network *network, uint64
     sum = mspringi_mix_double(sum, network->origin_y);
     for (mspring_id p = 0; p < t->particle_count; ++p) {
         const uint32_t slot = t->slot_of_particle[p];
-        sum = mspringi_mix_floats(sum, s->x[slot], s->y[slot]);
-        sum = mspringi_mix_floats(sum, s->vx[slot], s->vy[slot]);
-        sum = mspringi_mix_floats(sum, mspringi_low_of(s->x[slot], s->low_x[slot]),
-                                  mspringi_low_of(s->y[slot], s->low_y[slot]));
+        if (mspringi_particle_exists(network, p)) {
+            sum = mspringi_mix_floats(sum, s->x[slot], s->y[slot]);
+            sum = mspringi_mix_floats(sum, s->vx[slot], s->vy[slot]);
+            sum = mspringi_mix_floats(sum, mspringi_low_of(s->x[slot], s->low_x[slot]),
+                                      mspringi_low_of(s->y[slot], s->low_y[slot]));
+        } else {
+            for (int pair = 0; pair < 3; ++pair)
+                sum = mspringi_mix_floats(sum, 0.0f, 0.0f);
+        }
     }
     *hash = sum;
     return MSPRING_OK;

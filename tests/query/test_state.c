@@ -153,11 +153,13 @@ static void writing_where_nobody_is_does_nothing(void **state) {
         mspring_builder *builder = support_builder();
         support_particle(builder, 0, 0, 1);
         support_particle(builder, 1, 0, 1);
+        const mspring_id gone = support_particle(builder, 2, 0, 1);
         mspring_network_def def = support_def(0, 1);
         def.sleep_speed = asleep ? 1 : 0;
         def.sleep_time = 0;
         def.spare_particles = 40;
         mspring_network *network = support_network(builder, &def);
+        check_ok(mspring_network_remove_particles(network, &gone, 1));
         support_steps(network, 2, 0.01);
         assert_int_equal(mspring_network_is_asleep(network), asleep);
         const uint64_t before = support_hash(network);
@@ -168,6 +170,12 @@ static void writing_where_nobody_is_does_nothing(void **state) {
                 view.x[slot] = view.y[slot] = view.vx[slot] = view.vy[slot] = NAN;
             }
         }
+        double x = 1, y = 1; // those of the local origin
+        float vx = 1, vy = 1;
+        check_ok(mspring_network_get_positions(network, gone, 1, &x, &y, 1));
+        check_ok(mspring_network_get_velocities(network, gone, 1, &vx, &vy, 1));
+        assert_true(x == view.origin_x && y == view.origin_y && vx == 0 && vy == 0);
+        assert_int_equal(support_hash(network), before);
         support_steps(network, 2, 0.01);
         assert_int_equal(mspring_network_is_asleep(network), asleep);
         assert_int_equal(support_hash(network), before);
