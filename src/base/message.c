@@ -110,7 +110,7 @@ const char *mspring_result_string(mspring_result result) {
     case MSPRING_ERROR_DUPLICATE:
         return "two springs join the same particles";
     case MSPRING_ERROR_UNSTABLE:
-        return "the step is unstable";
+        return "the step was rejected";
     case MSPRING_ERROR_BUSY:
         return "not allowed inside a hook";
     case MSPRING_ERROR_OUTDATED:
