@@ -25,7 +25,7 @@
 extern "C" {
 #endif
 
-/* --------------------------------------------------------------------------------------- shapes and materials */
+/* ------------------------------------------------------------------------------------------ shapes and materials */
 
 /// Materials that mspring_material_preset() knows.
 typedef enum mspring_preset {
@@ -127,7 +127,6 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_add_me
 /// @threads exclusive   @allocates yes   @errors as mspring_builder_add_mesh()
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_add_disc(
     mspring_builder *builder, const mspring_disc_def *def, mspring_id *first_particle, mspring_id *first_spring);
-/* ---------------------------------------------------------------------------------------------- network */
 
 /// Add what a network holds now to a builder: to store it, to merge networks or to split one.
 /// Adds particles with position, velocity, mass and pin, and the springs between them that are not broken, with rest
@@ -147,7 +146,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_add_ne
     const mspring_network *network, const mspring_id *particles, uint32_t count, mspring_id *particle_ids,
     mspring_id *spring_ids);
 
-/* ----------------------------------------------------------------------------------------------------- clones */
+/* -------------------------------------------------------------------------------------------------------- clones */
 
 /// Flags of mspring_clone_def.
 enum {
@@ -179,7 +178,7 @@ MSPRING_API mspring_result MSPRING_CALL mspring_clone_def_init(mspring_clone_def
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_clone(
     const mspring_network *network, const mspring_clone_def *def, mspring_network **clone);
 
-/* ------------------------------------------------------------------------------------------------------ hooks */
+/* --------------------------------------------------------------------------------------------------------- hooks */
 
 /// When a hook is called. A hook with period n divides the substeps of each step into groups of n. The last group may
 /// be smaller. The hook is called once for each group.
@@ -254,7 +253,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_add_ho
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_remove_hook(
     mspring_network *network, uint32_t hook);
 
-/* ---------------------------------------------------------------------------------------------------- queries */
+/* ------------------------------------------------------------------------------------------------------- queries */
 
 /// Find the particle nearest to a point, as a mouse picks it. Takes a pass over all particles.
 /// @param x, y      world position, m, at most MSPRING_MAX_COORDINATE in size
@@ -292,7 +291,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_spring
     double from_x, double from_y, double to_x, double to_y, mspring_id *springs, double *fractions, uint32_t capacity,
     uint32_t *count);
 
-/* --------------------------------------------------------------------------------------- springs and sleepers */
+/* ------------------------------------------------------------------------------------------ springs and sleepers */
 
 /// Report of one spring. Set struct_size first.
 typedef struct mspring_spring_info {
@@ -335,7 +334,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_renew_
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_sleepers(
     const mspring_network *network, mspring_id first, uint32_t count, uint8_t *asleep);
 
-/* ------------------------------------------------------------------------------- workers and instruction sets */
+/* ---------------------------------------------------------------------------------- workers and instruction sets */
 
 /// Return the number of workers: 1 in a build without threads. NULL gives 0.
 /// @threads shared   @allocates never
@@ -358,7 +357,7 @@ MSPRING_API uint32_t MSPRING_CALL mspring_simd_available(mspring_simd level);
 /// @threads any   @allocates never
 MSPRING_API const char *MSPRING_CALL mspring_simd_name(mspring_simd level);
 
-/* ---------------------------------------------------------------------------------------------- stability */
+/* ----------------------------------------------------------------------------------------------------- stability */
 
 /// Compute the longest stable explicit substep (s) of this network.
 /// If a substep is longer, the fastest oscillation reverses and grows in each substep.
@@ -392,7 +391,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_stable
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_suggest_substeps(
     mspring_network *network, double dt, double safety, uint32_t *substeps);
 
-/* ---------------------------------------------------------------------------------------- static equilibrium */
+/* -------------------------------------------------------------------------------------------- static equilibrium */
 
 /// Flags of mspring_settle_def.
 enum {
@@ -452,7 +451,7 @@ MSPRING_API mspring_result MSPRING_CALL mspring_settle_def_init(mspring_settle_d
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_settle(
     mspring_network *network, const mspring_settle_def *def, mspring_settle_result *result);
 
-/* ------------------------------------------------------------------------------------------ tuning: the trade */
+/* --------------------------------------------------------------------------------------------- tuning: the trade */
 
 /// Error by which settings are compared.
 typedef enum mspring_tune_measure {
@@ -653,7 +652,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_tune(
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_tune_row_solver(
     const mspring_tune_row *row, mspring_solver_def *solver);
 
-/* ------------------------------------------------------------------------------------------- plan and memory */
+/* ----------------------------------------------------------------------------------------------- plan and memory */
 
 /// The plan: how a network is laid out in memory. Each particle belongs to one kind of row:
 ///
@@ -705,7 +704,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_plan(
 /// @threads shared   @allocates never   @since 0.2
 MSPRING_API size_t MSPRING_CALL mspring_network_memory_used(const mspring_network *network);
 
-/* ------------------------------------------------------------------------------------------------- compaction */
+/* ---------------------------------------------------------------------------------------------------- compaction */
 
 /// Leave broken springs out of the plan, and take added ones in.
 /// A step then costs what is left. It is worth its time if a quarter of the springs has broken, or if added springs

@@ -105,7 +105,7 @@
 extern "C" {
 #endif
 
-/* ------------------------------------------------------------------------------------------------ library */
+/* ------------------------------------------------------------------------------------------------------- library */
 
 /// Return the version of the library that runs, in the form of MSPRING_VERSION.
 /// @threads any   @allocates never
@@ -166,7 +166,7 @@ typedef uint32_t mspring_id;
 /// Largest speed in x or y that you can give to a particle, m/s.
 #define MSPRING_MAX_SPEED 1e15
 
-/* -------------------------------------------------------------------------------- allocator and workers */
+/* ----------------------------------------------------------------------------------------- allocator and workers */
 
 /// Allocator of an object. Fill with mspring_allocator_init() first, then set alloc and free. The struct is copied.
 /// The library calls alloc and free only inside calls that say that they allocate, and inside destroy functions.
@@ -206,7 +206,7 @@ typedef struct mspring_tasks {
     void *user; ///< passed to run; default NULL
 } mspring_tasks;
 
-/* -------------------------------------------------------------------------------- particles and springs */
+/* ----------------------------------------------------------------------------------------- particles and springs */
 
 /// Flags of particles.
 enum {
@@ -217,8 +217,7 @@ enum {
 enum {
     /// stiffness and damping are fractions of what an explicit substep of length h allows:
     ///     k = stiffness * mu / h^2,   c = damping * mu / h,   mu = m_a m_b / (m_a + m_b)
-    /// Such a network is as stiff as its step allows. A lattice of equal springs and masses is stable for stiffness <
-    /// 1.
+    /// Such a network is as stiff as its step allows. A lattice of equal springs and masses is stable below 1.
     MSPRING_SPRING_RELATIVE = 1u << 0,
     /// damping is a ratio of critical damping, 0 to 1000. With 1 the spring's ends come to rest without swinging.
     ///     c = 2 damping sqrt(stiffness * mu)
@@ -295,7 +294,7 @@ typedef struct mspring_lattice_def {
     float bend_share;  ///< the same for bend springs; default 0
 } mspring_lattice_def;
 
-/* --------------------------------------------------------------------------------------------- settings */
+/* ------------------------------------------------------------------------------------------------------ settings */
 
 /// How a network is evolved. The guide examples/guides/solvers.md compares the solvers.
 typedef enum mspring_solver {
@@ -471,7 +470,7 @@ MSPRING_API mspring_result MSPRING_CALL mspring_settings_init(mspring_settings *
 MSPRING_API mspring_result MSPRING_CALL mspring_allocator_init(mspring_allocator *allocator, size_t size);
 MSPRING_API mspring_result MSPRING_CALL mspring_tasks_init(mspring_tasks *tasks, size_t size);
 
-/* ---------------------------------------------------------------------------------------------- builder */
+/* ------------------------------------------------------------------------------------------------------- builder */
 
 /// Collects particles and springs. It can make any number of networks, and is not needed after that.
 typedef struct mspring_builder mspring_builder;
@@ -487,8 +486,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_create
 MSPRING_API void MSPRING_CALL mspring_builder_destroy(mspring_builder *builder);
 
 /// Return the error message of the last call; "" if that call succeeded.
-/// It names the culprit and is valid until the next call. Print the result first: mspring_result_string(). NULL gives
-/// "".
+/// It names the culprit and is valid until the next call. Print mspring_result_string() first. NULL gives "".
 /// @threads shared   @allocates never
 MSPRING_API const char *MSPRING_CALL mspring_builder_error(const mspring_builder *builder);
 
@@ -533,6 +531,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_add_sp
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_add_lattice(
     mspring_builder *builder, const mspring_lattice_def *def, mspring_id *cell_ids);
 
+/* ------------------------------------------------------------------------------------------------------- network */
+
 /// A network: its topology and its state.
 typedef struct mspring_network mspring_network;
 
@@ -551,8 +551,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_create
 MSPRING_API void MSPRING_CALL mspring_network_destroy(mspring_network *network);
 
 /// Return the error message of the last exclusive call; "" if it succeeded.
-/// As mspring_builder_error(). Shared calls leave it alone, so that several threads may make them. So do concurrent
-/// hooks.
+/// As mspring_builder_error(). Shared calls leave it alone, and so do concurrent hooks.
 /// @threads shared   @allocates never
 MSPRING_API const char *MSPRING_CALL mspring_network_error(const mspring_network *network);
 
@@ -595,7 +594,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_se
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_settings(
     mspring_network *network, const mspring_settings *settings);
 
-/* ------------------------------------------------------------------------------------------------- step */
+/* ---------------------------------------------------------------------------------------------------------- step */
 
 /// Evolve the network by dt.
 /// If a coordinate or speed would end out of bounds, or motion grow by instability (mspring_guard), the step is
@@ -647,7 +646,7 @@ MSPRING_API uint32_t MSPRING_CALL mspring_network_is_asleep(const mspring_networ
 /// @threads exclusive   @allocates never   @errors ARGUMENT, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_wake(mspring_network *network);
 
-/* ------------------------------------------------------------------------------------- forces and hooks */
+/* -------------------------------------------------------------------------------------------------------- forces */
 
 /// Add a force (N) to one particle, during the whole next step.
 /// @threads exclusive   @allocates at the first force given to a network   @errors ID; ARGUMENT if the sum of its
@@ -676,7 +675,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_apply_
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_apply_impulses_at(mspring_network *network,
     const mspring_id *particles, uint32_t count, const float *x, const float *y, uint32_t stride);
 
-/* ------------------------------------------------------------------------------------------------ floor */
+/* --------------------------------------------------------------------------------------------------------- floor */
 
 /// Set the floor, instead of the one that the network has.
 /// It acts on every particle that is not pinned, in every substep. A particle that was above it is not below it
@@ -703,7 +702,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_fl
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_floor_impulses(
     const mspring_network *network, mspring_id first, uint32_t count, float *x, float *y, uint32_t stride);
 
-/* ------------------------------------------------------------------------------------------------ state */
+/* --------------------------------------------------------------------------------------------------------- state */
 
 /// The state as it lies in memory, to read: arrays by slot. Set struct_size first.
 /// Pointers stay valid, and their contents follow the steps, until layout_generation changes. The origin is that of
@@ -795,7 +794,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_ve
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_state_hash(
     const mspring_network *network, uint64_t *hash);
 
-/* ------------------------------------------------------------------------------------------- properties */
+/* ---------------------------------------------------------------------------------------------------- properties */
 
 /// A property: one float of each particle, or of each spring. "Allocates" is about the first call that changes a
 /// value.
@@ -883,7 +882,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_sp
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_max_strain(
     const mspring_network *network, float *strain, mspring_id *spring);
 
-/* ------------------------------------------------------------------------------------------------ edits */
+/* --------------------------------------------------------------------------------------------------------- edits */
 
 /// Break springs: they exert nothing until they are restored.
 /// Ids, rest lengths and nominal values stay. A broken spring stays broken.
@@ -957,7 +956,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_remove
 /// @threads exclusive   @allocates never   @errors ARGUMENT, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_recycle(mspring_network *network);
 
-/* --------------------------------------------------------------------------------- events and components */
+/* ----------------------------------------------------------------------------------------- events and components */
 
 /// Kind of an event.
 typedef enum mspring_event_kind {
@@ -1029,7 +1028,7 @@ typedef struct mspring_component {
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_components(
     const mspring_network *network, uint32_t first, uint32_t count, mspring_component *components);
 
-/* ----------------------------------------------------------------------------- measurements */
+/* -------------------------------------------------------------------------------------------------- measurements */
 
 /// Compute the energies, J, in double precision. Any of them may be NULL.
 ///   kinetic    sum of m v^2 / 2 over particles that are not pinned
@@ -1051,7 +1050,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_moment
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_bounds(
     const mspring_network *network, double *min_x, double *min_y, double *max_x, double *max_y);
 
-/* -------------------------------------------------------------------------------------------- snapshots */
+/* ----------------------------------------------------------------------------------------------------- snapshots */
 
 /// Contents of a snapshot.
 typedef enum mspring_snapshot_contents {
