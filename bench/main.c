@@ -24,6 +24,9 @@ int main(int count, char **arguments) {
     case BENCH_FEATURES:
         ok = bench_run_features(&options);
         break;
+    case BENCH_CONTACT:
+        ok = bench_run_contact(&options);
+        break;
     case BENCH_WORKERS:
         ok = bench_run_workers(&options);
         break;

@@ -20,6 +20,7 @@ void bench_options_help(void) {
          "\n"
          "What to measure (default: scenes against the naive step)\n"
          "  --features           what dampers, hooks, forces and ropes cost\n"
+         "  --contact            what contact between bodies costs\n"
          "  --workers            what workers gain, next to as many threads that share nothing\n"
          "  --session            what a game's edits, events and measurements cost, next to its step\n"
          "  --linear             what the sparse direct solver costs, in explicit substeps\n"
@@ -127,13 +128,11 @@ static bool is_switch(const char *option, bench_options *out) {
     static const struct {
         const char *name;
         bench_mode mode;
-    } modes[] = {{"--features", BENCH_FEATURES}, {"--workers", BENCH_WORKERS},
-                 {"--session", BENCH_SESSION},   {"--linear", BENCH_LINEAR},
-                 {"--solvers", BENCH_SOLVERS},   {"--roofline", BENCH_ROOFLINE},
-                 {"--map", BENCH_MAP},           {"--frames", BENCH_FRAMES},
-                 {"--alarms", BENCH_ALARMS},     {"--guard", BENCH_GUARD},
-                 {"--check", BENCH_CHECK},       {"--list", BENCH_LIST},
-                 {"--help", BENCH_HELP},         {"-h", BENCH_HELP}};
+    } modes[] = {{"--features", BENCH_FEATURES}, {"--contact", BENCH_CONTACT}, {"--workers", BENCH_WORKERS},
+                 {"--session", BENCH_SESSION},   {"--linear", BENCH_LINEAR},   {"--solvers", BENCH_SOLVERS},
+                 {"--roofline", BENCH_ROOFLINE}, {"--map", BENCH_MAP},         {"--frames", BENCH_FRAMES},
+                 {"--alarms", BENCH_ALARMS},     {"--guard", BENCH_GUARD},     {"--check", BENCH_CHECK},
+                 {"--list", BENCH_LIST},         {"--help", BENCH_HELP},       {"-h", BENCH_HELP}};
     for (size_t i = 0; i < sizeof modes / sizeof *modes; i++) {
         if (strcmp(option, modes[i].name) == 0) {
             out->mode = modes[i].mode;

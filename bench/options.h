@@ -14,6 +14,7 @@
 typedef enum bench_mode {
     BENCH_SCENES,
     BENCH_FEATURES,
+    BENCH_CONTACT,
     BENCH_WORKERS,
     BENCH_SESSION,
     BENCH_LINEAR,

@@ -12,6 +12,7 @@
 ///     rest        network_settle; settle_def_init
 ///     tune        network_tune; tune_def_init, tune_scene_init, tune_settings, tune_row_solver
 ///     compact     network_compact, _expand; job_begin, _run, _finish, _error, _destroy
+///     contact     network_set_contact, _get_contact, _set_contact_groups, _contact_info; contact_def_init
 ///
 /// These calls are not frozen yet: a later minor version may change them. massspring.h explains the notation.
 ///
@@ -779,6 +780,90 @@ MSPRING_API const char *MSPRING_CALL mspring_job_error(const mspring_job *job);
 /// If it is finished, this frees the old plan, which may take milliseconds: another thread may do that.
 /// @threads exclusive access to job and, unless it is finished, to its network   @allocates never   @since 0.2
 MSPRING_API void MSPRING_CALL mspring_job_destroy(mspring_job *job);
+
+/* ------------------------------------------------------------------------------------------- contact */
+
+/// Flags of mspring_contact_def.
+enum {
+    MSPRING_CONTACT_SELF = 1u << 0 ///< a body touches itself, too; else only other bodies
+};
+
+/// Contact between bodies, and of a body with itself. Fill with mspring_contact_def_init() first.
+typedef struct mspring_contact_def {
+    uint32_t struct_size;
+    uint32_t flags; ///< MSPRING_CONTACT_SELF or 0; default MSPRING_CONTACT_SELF
+    /// Distance (m) that points keep from springs, > 0, at most 1e6. With MSPRING_CONTACT_SELF at most 0.9 of the
+    /// shortest rest length at creation. Default 0: half of that length.
+    double thickness;
+    float friction;    ///< of bodies that slide (Coulomb), 0 to 1e6; default 0
+    float restitution; ///< speed across the contact after it over that before, 0 to 1; default 0
+    float push_speed;  ///< overlaps are pushed apart at this speed at most, m/s, 0 to 1e6; default 3
+    uint32_t sweeps;   ///< over all contacts in a substep, 1 to 64; default 4. More let stacks lie stiller.
+    uint32_t capacity; ///< pairs of a point and a spring that may be near each other, at most 2^26; default 0: 4096,
+                       ///< two for each particle and eight for each one of the outline
+    uint32_t reserved; ///< 0
+} mspring_contact_def;
+
+/// Fill a definition with its defaults, as mspring_network_def_init().
+/// @threads any   @allocates never   @errors ARGUMENT, STRUCT
+MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact_def *def, size_t size);
+
+/// Let bodies of a network collide, instead of the contact that it has.
+/// A body is a set of particles that springs connect. Its outline is made of all springs that have a free side,
+/// and of particles without springs. Ropes and trusses are all outline. Particles of the outline keep a distance of
+/// thickness from the springs of the outline. Two particles that a spring joins, or two springs, do not collide with
+/// each other's springs. The outline follows breaks, additions and removals. examples/guides/contact.md describes what
+/// holds, what bounces, and what it costs.
+///
+/// Which side of a spring is free follows from the positions at this call, and from those at which particles were
+/// added later. So set contact before the network deforms. Overlaps at the start are pushed apart. Springs that cross
+/// at the start stay crossed.
+///
+/// The explicit solver has contact, and so have steps that are clamped (MSPRING_GUARD_CLAMP). The implicit and the
+/// direct solver and MSPRING_GUARD_IMPLICIT are refused while contact is set. A network that has them refuses contact.
+/// mspring_network_tune() and mspring_network_settle() leave contact out.
+///
+/// Snapshots leave contact as it is, as they leave the floor. They hold the shape only. Set the same contact and the
+/// same groups before you load one: then the steps that follow have the same bits.
+///
+/// A step fails with MSPRING_ERROR_LIMIT, and is not taken, if more than capacity pairs are near each other.
+/// @param def  copied; NULL: no contact, the default. The particles' groups are forgotten then.
+/// @threads exclusive   @allocates yes; about 500 bytes for a particle, 1200 more for one of the outline, 40 for a
+/// spring   @errors ARGUMENT (the message names field or solver), STRUCT, MEMORY, BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_contact(mspring_network *network,
+                                                                         const mspring_contact_def *def);
+
+/// Get the contact as it was set. Set struct_size first.
+/// Without contact capacity is 0. With it, thickness and capacity are those in use.
+/// @threads shared   @allocates never   @errors ARGUMENT, STRUCT
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_contact(const mspring_network *network,
+                                                                         mspring_contact_def *def);
+
+/// Say which particles may touch each other.
+/// Two particles may if each one's group has a bit of the other's mask. A spring may touch what both its ends may.
+/// All have group 1 and mask 0xffffffff at first.
+/// @param first, count  particles first ... first + count - 1, of which those that were removed are left out
+/// @param groups, masks  bits, for all of them
+/// @threads exclusive   @allocates never   @errors ID, ARGUMENT (also without contact), BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_contact_groups(mspring_network *network,
+                                                                                mspring_id first, uint32_t count,
+                                                                                uint32_t groups, uint32_t masks);
+
+/// What contact did in the last step. Set struct_size first.
+typedef struct mspring_contact_info {
+    uint32_t struct_size;
+    uint32_t edges;    ///< of the outline: springs with a free side, and particles without springs
+    uint32_t points;   ///< of the outline
+    uint32_t pairs;    ///< pairs of a point and an edge that are looked at
+    uint32_t touching; ///< pairs that pushed each other in a substep of the step, at most; 0: nothing touched
+    uint32_t reserved; ///< 0
+    double deepest;    ///< largest overlap in the step, m; 0 if there was none
+} mspring_contact_info;
+
+/// Get these numbers. Without contact, and before the first step with it, all are 0.
+/// @threads shared   @allocates never   @errors ARGUMENT, STRUCT
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_contact_info(const mspring_network *network,
+                                                                          mspring_contact_info *info);
 
 #ifdef __cplusplus
 }

@@ -77,6 +77,12 @@ mspring_result mspring_floor_def_init(mspring_floor_def *def, size_t size) {
     return mspringi_init_struct(def, size, &defaults, sizeof defaults);
 }
 
+mspring_result mspring_contact_def_init(mspring_contact_def *def, size_t size) {
+    const mspring_contact_def defaults = {
+        .struct_size = sizeof defaults, .flags = MSPRING_CONTACT_SELF, .push_speed = 3.0f, .sweeps = 4};
+    return mspringi_init_struct(def, size, &defaults, sizeof defaults);
+}
+
 mspring_result mspring_solver_def_init(mspring_solver_def *def, size_t size) {
     const mspring_solver_def defaults = {.struct_size = sizeof defaults,
                                          .solver = MSPRING_SOLVER_EXPLICIT,

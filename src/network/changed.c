@@ -3,6 +3,7 @@
 
 #include "base/mix.h"
 #include "contact/floor.h"
+#include "contact/pairs.h"
 #include "network/job.h"
 #include "sleep/sleep.h"
 #include "store/springs.h"
@@ -44,6 +45,8 @@ static void free_slot(const mspring_network *network, uint32_t slot) {
     mspringi_solvers_clear_slot(network, slot);
     if (network->floor)
         mspringi_floor_clear_slot(network->floor, slot);
+    if (network->pairs)
+        mspringi_outline_clear_slot(network, slot);
 }
 
 static void tell_of_floor(const mspring_network *network) {

@@ -1,9 +1,10 @@
 /// A copy of a network: all its blocks of memory, and then every pointer from one block into another.
 ///
 /// Those of the network are in store/network.def, those of topologies and solvers in tables beside their functions
-/// that destroy, those of floor and hooks here. One that is forgotten leads back into the original, which
-/// test_clone finds by looking at every word of a clone.
+/// that destroy, those of contact in contact/pairs.c, of floor and hooks here. One that is forgotten leads back
+/// into the original, which test_clone finds by looking at every word of a clone.
 #include "contact/floor.h"
+#include "contact/pairs.h"
 #include "store/network.h"
 #include "store/store.h"
 
@@ -51,6 +52,9 @@ static void move_network(const moving *m, mspring_network *n) {
     MOVE(n->floor);
     if (n->floor)
         move_floor(m, n->floor);
+    MOVE(n->pairs);
+    if (n->pairs)
+        mspringi_pairs_relocate(n->pairs, m->from, m->to);
     mspringi_solvers_relocate(n, m->from, m->to);
 }
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/cpu.h"
+#include "contact/pairs.h"
 #include "sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
 #include "stability/guard.h"
@@ -92,6 +93,8 @@ mspring_result mspring_network_set_solver(mspring_network *network, const msprin
     mspring_result result = mspringi_enter(network);
     if (result == MSPRING_OK)
         result = mspringi_check_solver(def, &network->message);
+    if (result == MSPRING_OK && network->pairs)
+        result = mspringi_pairs_check(def->solver, network->settings.guard, &network->message);
     if (result != MSPRING_OK)
         return result;
     const mspring_solver_def before = def_of(network);
@@ -170,6 +173,8 @@ mspring_result mspring_network_set_settings(mspring_network *network, const mspr
     result = mspringi_check_struct(&network->message, "mspring_settings", settings, sizeof *settings);
     if (result == MSPRING_OK)
         result = mspringi_check_settings(settings, &network->message);
+    if (result == MSPRING_OK && network->pairs)
+        result = mspringi_pairs_check(MSPRING_SOLVER_EXPLICIT, settings->guard, &network->message);
     if (result == MSPRING_OK)
         result = reserve_for(network, settings);
     if (result != MSPRING_OK)

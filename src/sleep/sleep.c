@@ -187,6 +187,15 @@ void mspringi_sleep_begin(mspring_network *network, const mspringi_attempt *atte
     map_if_changed(network, naps);
 }
 
+void mspringi_sleep_rouse(mspring_network *network, uint32_t island) {
+    keep_stillness(&network->sleep);
+    set_awake(network, island);
+}
+
+void mspringi_sleep_roused(mspring_network *network, uint64_t naps) {
+    map_if_changed(network, naps);
+}
+
 bool mspringi_sleep_is_idle(const mspring_network *network) {
     return mspringi_sleep_is_whole(network) && !network->sleep.has_force && !network->forces.held_any;
 }

@@ -73,6 +73,10 @@ bool mspringi_sleep_is_disturbed(const mspring_network *network);
 
 /// Before a step: wake what has been disturbed, or what the step would change springs of.
 void mspringi_sleep_begin(mspring_network *network, const mspringi_attempt *attempt);
+/// Likewise: wake an island that something comes to, and go by that once all have been woken; naps is edits.naps of
+/// before the first.
+void mspringi_sleep_rouse(mspring_network *network, uint32_t island);
+void mspringi_sleep_roused(mspring_network *network, uint64_t naps);
 /// Whether all are asleep, with no force to compare.
 bool mspringi_sleep_is_idle(const mspring_network *network);
 /// Keep what sleeps from moving in substeps, where hooks have given it a velocity: hold it before them, and put it

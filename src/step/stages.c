@@ -18,10 +18,19 @@ mspringi_stages mspringi_stages_of(const mspring_network *network) {
             continue;
         stages.used[stages.count++] = all[i];
         stages.give_forces |= all[i]->forces != NULL;
-        stages.cut_substeps |= cuts_substeps(all[i]);
+        stages.cut_substeps |= cuts_substeps(all[i]) && !all[i]->is_quiet;
+        stages.can_be_quiet |= all[i]->is_quiet != NULL;
         stages.follow_substeps |= all[i]->after_substep != NULL;
     }
     return stages;
+}
+
+bool mspringi_stages_cut(const mspring_network *network, const mspringi_attempt *attempt) {
+    const mspringi_stages *stages = attempt->stages;
+    bool cut = stages->cut_substeps;
+    for (size_t i = 0; stages->can_be_quiet && i < stages->count && !cut; ++i)
+        cut = stages->used[i]->is_quiet && !stages->used[i]->is_quiet(network, attempt);
+    return cut;
 }
 
 mspringi_field mspringi_stages_forces(mspring_network *network, const mspringi_attempt *attempt) {
@@ -82,6 +91,23 @@ void mspringi_stages_after_substep(mspring_network *network, const mspringi_atte
     for (size_t i = 0; i < stages->count; ++i)
         if (stages->used[i]->after_substep)
             stages->used[i]->after_substep(network, attempt, substep);
+}
+
+bool mspringi_stages_have_missed(mspring_network *network, const mspringi_attempt *attempt) {
+    const mspringi_stages *stages = attempt->stages;
+    bool missed = false;
+    for (size_t i = 0; stages->can_be_quiet && i < stages->count; ++i)
+        missed |= stages->used[i]->has_missed && stages->used[i]->has_missed(network, attempt);
+    return missed;
+}
+
+mspring_result mspringi_stages_judge(mspring_network *network, const mspringi_attempt *attempt) {
+    const mspringi_stages *stages = attempt->stages;
+    mspring_result result = MSPRING_OK;
+    for (size_t i = 0; stages->can_be_quiet && i < stages->count && result == MSPRING_OK; ++i)
+        if (stages->used[i]->judge)
+            result = stages->used[i]->judge(network);
+    return result;
 }
 
 void mspringi_stages_after_step(mspring_network *network, const mspringi_stages *stages, double dt) {

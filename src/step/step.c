@@ -31,13 +31,14 @@ static void copy_state(const mspring_network *network, const mspringi_state *fro
 
 /* -------------------------------------------------------------------------------------------------- substeps */
 
-static void run_substeps(mspring_network *network, const mspringi_attempt *attempt, mspringi_field base) {
+static void run_substeps(mspring_network *network, const mspringi_attempt *attempt, mspringi_field base,
+                         bool is_cut) {
     const mspringi_solver *solver = attempt->solver;
     const mspringi_stages *stages = attempt->stages;
     for (uint32_t substep = 0, count; substep < attempt->substeps; substep += count) {
         count = mspringi_stages_free_substeps(network, attempt, substep);
         const mspringi_field force = mspringi_stages_before_substep(network, attempt, substep, base);
-        if (substep == 0 && stages->cut_substeps)
+        if (substep == 0 && is_cut)
             mspringi_stages_forces_known(network, attempt, force);
         if (stages->follow_substeps)
             mspringi_sleep_hold(network);
@@ -74,9 +75,9 @@ static void tidy(const mspring_network *network) {
 }
 
 // Keep the state in the backup, run all substeps, and look at what they have led to.
-static mspringi_extrema run(mspring_network *network, const mspringi_attempt *attempt) {
+static mspringi_extrema run_once(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_solver_ops *ops = attempt->solver->ops;
-    const bool is_cut = attempt->stages->cut_substeps;
+    const bool is_cut = mspringi_stages_cut(network, attempt);
     mspringi_extrema extrema = {0.0f, 0.0f, 0.0f};
     mspringi_field base = {NULL, NULL};
     tidy(network);
@@ -93,7 +94,7 @@ static mspringi_extrema run(mspring_network *network, const mspringi_attempt *at
         ops->keep(attempt->solver->object);
     if (is_cut)
         base = mspringi_stages_forces(network, attempt);
-    run_substeps(network, attempt, base);
+    run_substeps(network, attempt, base, is_cut);
     if (network->is_open)
         mspringi_clear_empty_slots(network);
     if (ops->end)
@@ -182,6 +183,15 @@ static bool is_idle(const mspring_network *network, const mspringi_stages *stage
     return mspringi_sleep_is_idle(network) && !stages->give_forces && !stages->cut_substeps;
 }
 
+// Run all substeps, and once more if a stage counted on what did not hold.
+static mspringi_extrema run(mspring_network *network, const mspringi_attempt *attempt) {
+    const mspringi_extrema extrema = run_once(network, attempt);
+    if (!mspringi_stages_have_missed(network, attempt))
+        return extrema;
+    go_back(network, attempt);
+    return run_once(network, attempt);
+}
+
 // Make an attempt whose substeps are numbers, or leave everything as it is.
 static mspring_result carry_out(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_sleep_begin(network, attempt);
@@ -193,7 +203,10 @@ static mspring_result carry_out(mspring_network *network, const mspringi_attempt
     mspringi_stages_before_step(network, attempt);
     mspring_result result = mspringi_guard_begin(network, attempt);
     if (result == MSPRING_OK) {
-        result = mspringi_guard_end(network, attempt, run(network, attempt));
+        const mspringi_extrema extrema = run(network, attempt);
+        result = mspringi_stages_judge(network, attempt);
+        if (result == MSPRING_OK)
+            result = mspringi_guard_end(network, attempt, extrema);
         if (result != MSPRING_OK)
             go_back(network, attempt);
     }

@@ -339,6 +339,7 @@ struct mspring_network {
     mspringi_solver fallback;       ///< takes steps for the explicit one; none before MSPRING_GUARD_IMPLICIT
     const mspringi_solver *running; ///< the one that takes the step that is being made; else NULL
     struct mspringi_floor *floor;   ///< NULL: there is none
+    struct mspringi_pairs *pairs;   ///< contact between bodies; NULL: there is none
     mspringi_guard guard;
     float *looks;    ///< [5][slots] weights of the guard's bound, and room; NULL if it never looks at the border
     double shortest; ///< smallest rest length at first, m

@@ -37,6 +37,9 @@ extern const mspringi_section mspringi_section_forces;
 // In growth.c.
 extern const mspringi_section mspringi_section_growth;
 
+// In contact.c.
+extern const mspringi_section mspringi_section_shape;
+
 // In sleep.c.
 extern const mspringi_section mspringi_section_sleep;
 

@@ -1,13 +1,16 @@
 /// @file stages.h
 /// What happens in a step besides the solver: a table of functions for each stage, one for each place in a step
 /// that it acts in. A step goes through the stages that its network uses; what a network does not use costs one
-/// look.
+/// look. A stage that is quiet in a step does not keep its substeps from being taken all at once.
 ///
 ///   before_step      once, before the guard: values for this substep
 ///   forces           add forces from outside, the same in all substeps; forces.base has been reserved for that
 ///   forces_known     once, with those of the first substep
 ///   before_substep   each substep, or each free group of them; returns the forces that act in them
 ///   after_substep    likewise
+///   has_missed       after the substeps: it counted on what did not hold, so they are undone and repeated
+///   judge            after the substeps, or what stands for them: whether it could do what it is for (like the
+///                    one before, only of stages that can be quiet)
 ///   after_step       once the step is taken, and will not be undone
 ///   take_back        the substeps were undone, and the state is that of before: in the order of the stages
 ///   undo             what before_step did is to be undone: in reverse order
@@ -24,6 +27,7 @@ typedef struct mspringi_stage {
     bool writes_state; ///< before or between substeps: the backup is made before its forces are asked for
 
     void (*before_step)(mspring_network *network, const mspringi_attempt *attempt);
+    bool (*is_quiet)(const mspring_network *network, const mspringi_attempt *attempt); ///< NULL: never
     void (*forces)(mspring_network *network, const mspringi_attempt *attempt, mspringi_field field);
     void (*forces_known)(mspring_network *network, mspringi_field force);
     uint32_t (*free_substeps)(const mspring_network *network, const mspringi_attempt *attempt,
@@ -31,6 +35,8 @@ typedef struct mspringi_stage {
     mspringi_field (*before_substep)(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
                                      mspringi_field base);
     void (*after_substep)(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep);
+    bool (*has_missed)(mspring_network *network, const mspringi_attempt *attempt);
+    mspring_result (*judge)(mspring_network *network);
     void (*after_step)(mspring_network *network, double dt);
     void (*take_back)(mspring_network *network);
     void (*undo)(mspring_network *network, const mspringi_attempt *attempt);
@@ -52,11 +58,15 @@ typedef struct mspringi_stages {
     const mspringi_stage *used[MSPRINGI_STAGES];
     size_t count;
     bool give_forces;     ///< some stage does
-    bool cut_substeps;    ///< substeps cannot be taken all at once
+    bool cut_substeps;    ///< substeps cannot be taken all at once, in whatever step
     bool follow_substeps; ///< some stage acts after substeps
+    bool can_be_quiet;    ///< some stage is asked whether it is quiet, what it has missed, and how it went
 } mspringi_stages;
 
 mspringi_stages mspringi_stages_of(const mspring_network *network);
+
+/// Whether the substeps of this step cannot be taken all at once.
+bool mspringi_stages_cut(const mspring_network *network, const mspringi_attempt *attempt);
 
 /// The forces that all substeps have in common: what the host holds, with what stages add; x NULL: none.
 mspringi_field mspringi_stages_forces(mspring_network *network, const mspringi_attempt *attempt);
@@ -69,6 +79,8 @@ uint32_t mspringi_stages_free_substeps(const mspring_network *network, const msp
 mspringi_field mspringi_stages_before_substep(mspring_network *network, const mspringi_attempt *attempt,
                                               uint32_t substep, mspringi_field base);
 void mspringi_stages_after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep);
+bool mspringi_stages_have_missed(mspring_network *network, const mspringi_attempt *attempt);
+mspring_result mspringi_stages_judge(mspring_network *network, const mspringi_attempt *attempt);
 void mspringi_stages_after_step(mspring_network *network, const mspringi_stages *stages, double dt);
 void mspringi_stages_take_back(mspring_network *network, const mspringi_attempt *attempt);
 void mspringi_stages_undo(mspring_network *network, const mspringi_attempt *attempt);

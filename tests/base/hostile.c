@@ -42,6 +42,27 @@ static mspring_result clone_network(arguments *a) {
     return result;
 }
 
+// Other calls are those of a network without contact.
+static mspring_result set_contact(arguments *a) {
+    const mspring_result result = mspring_network_set_contact(a->network, a->given);
+    if (result == MSPRING_OK) {
+        check_ok(mspring_network_set_contact(a->network, NULL));
+    }
+    return result;
+}
+
+// Contact goes again, and its messages with it: ranges are tested in test_touching.c.
+static mspring_result set_contact_groups(arguments *a) {
+    mspring_contact_def def;
+    check_ok(mspring_contact_def_init(&def, sizeof def));
+    mspring_result result = mspring_network_set_contact(a->network, &def);
+    if (result == MSPRING_OK) {
+        result = mspring_network_set_contact_groups(a->network, a->first, a->count, 1, 2);
+        check_ok(mspring_network_set_contact(a->network, NULL));
+    }
+    return result;
+}
+
 static mspring_result destroy_nothing(void) {
     mspring_builder_destroy(NULL);
     mspring_network_destroy(NULL);
@@ -386,6 +407,14 @@ static void add_hook(arguments *a) {
     X(mspring_network_set_floor, "Ns", make_floor(a), mspring_network_set_floor(a->network, a->given))             \
     X(mspring_network_get_floor_impulses, "nR01", NOTHING,                                                         \
       mspring_network_get_floor_impulses(a->network, a->first, a->count, a->out[0], a->out[1], 1))                 \
+    X(mspring_contact_def_init, "Z0", a->size = sizeof(mspring_contact_def),                                       \
+      mspring_contact_def_init(a->out[0], a->size))                                                                \
+    X(mspring_network_set_contact, "Ns", FILL(contact_def), set_contact(a))                                        \
+    X(mspring_network_set_contact_groups, "N", NOTHING, set_contact_groups(a))                                     \
+    X(mspring_network_get_contact, "nP", OUT_STRUCT(0, contact_def),                                               \
+      mspring_network_get_contact(a->network, a->out[0]))                                                          \
+    X(mspring_network_contact_info, "nP", OUT_STRUCT(0, contact_info),                                             \
+      mspring_network_contact_info(a->network, a->out[0]))                                                         \
     X(mspring_network_get_sleepers, "nR0", NOTHING,                                                                \
       mspring_network_get_sleepers(a->network, a->first, a->count, a->out[0]))                                     \
     X(mspring_network_is_asleep, "v", NOTHING, note_size(mspring_network_is_asleep(a->network)))                   \

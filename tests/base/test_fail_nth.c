@@ -244,6 +244,21 @@ static mspring_result set_floor(life *l) {
     return mspring_network_set_floor(l->network, &def);
 }
 
+static mspring_result drop_fallback(life *l) {
+    return support_set_guard(l->network, MSPRING_GUARD_BOUNDS);
+}
+
+static mspring_result set_contact(life *l) {
+    mspring_contact_def def;
+    check_ok(mspring_contact_def_init(&def, sizeof def));
+    def.thickness = 1e-3;
+    return mspring_network_set_contact(l->network, &def);
+}
+
+static mspring_result drop_contact(life *l) {
+    return mspring_network_set_contact(l->network, NULL);
+}
+
 static mspring_result compact(life *l) {
     return mspring_network_compact(l->network);
 }
@@ -323,9 +338,15 @@ static const struct {
     {"remove springs", remove_springs},
     {"floor", set_floor},
     {"step", step},
+    {"no fallback", drop_fallback},
+    {"contact", set_contact},
+    {"step", step},
     {"compact", compact},
     {"step", step},
     {"expand", expand},
+    {"step", step},
+    {"no contact", drop_contact},
+    {"contact again", set_contact},
     {"components", update_components},
     {"extents", get_extents},
     {"clone", clone},

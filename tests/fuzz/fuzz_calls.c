@@ -234,6 +234,16 @@ static mspring_result set_floor(mspring_network *network, const call *c) {
     return mspring_network_set_floor(network, c->count == 2 ? NULL : &def);
 }
 
+static mspring_result set_contact(mspring_network *network, const call *c) {
+    mspring_contact_def def;
+    FUZZ_CHECK(mspring_contact_def_init(&def, sizeof def) == MSPRING_OK);
+    def.flags = c->spring % 2 ? MSPRING_CONTACT_SELF : 0;
+    def.thickness = c->particle % 2 ? (double)c->a : 0.0;
+    def.friction = c->b;
+    def.restitution = c->particle % 3 == 0 ? 0.5f : 0.0f;
+    return mspring_network_set_contact(network, c->count == 2 ? NULL : &def);
+}
+
 // A job, of which some functions are run, and with luck all.
 static mspring_result change_layout(mspring_network *network, const call *c) {
     mspring_job *job = NULL;
@@ -428,6 +438,10 @@ static mspring_result make_call(mspring_network *network, const call *c) {
         return mspring_network_apply_forces_at(network, twice, c->count, pair, other, 0);
     case 37:
         return write_view(network, c);
+    case 38:
+        return set_contact(network, c);
+    case 39:
+        return mspring_network_set_contact_groups(network, c->particle, c->count, c->spring, c->spring | 1);
     default:
         return mspring_network_step(network, c->dt);
     }
@@ -459,6 +473,7 @@ static void compare_with_reference(twins *all, const recipe *made) {
     double now = 0;
     FUZZ_CHECK(mspring_solver_def_init(&solver, sizeof solver) == MSPRING_OK);
     solver.substeps = 3;
+    FUZZ_CHECK(mspring_network_set_contact(all->of[0], NULL) == MSPRING_OK);
     FUZZ_CHECK(mspring_network_set_solver(all->of[0], &solver) == MSPRING_OK);
     FUZZ_CHECK(support_set_gravity(all->of[0], 1, -9.8f) == MSPRING_OK);
     FUZZ_CHECK(support_set_global_damping(all->of[0], 0.25f) == MSPRING_OK);

@@ -213,6 +213,29 @@ static void push_and_solve_directly(mspring_network *network, uint32_t step) {
     check_ok(mspring_network_set(network, MSPRING_STIFFNESS, 7, 1, &stiffness, 1));
 }
 
+/// Blocks, a rope and a loose particle that fall onto pinned ground, and onto each other.
+static mspring_network *contact(mspring_network_def *def) {
+    const recipe_stuff stuff = {.mass = {3, 5}, .stiffness = {20000, 30000}, .damping = {5, 20}};
+    const recipe_stuff pinned = {.mass = {1, 1}, .stiffness = {1000, 1000}, .pinned = 1};
+    uint64_t seed = 12;
+    recipe made = {0};
+    recipe_lattice(&made, 40, 1, -10, -1, 1, &pinned, &seed);
+    recipe_lattice(&made, 12, 5, 0, 0.25, 1, &stuff, &seed);
+    recipe_lattice(&made, 7, 4, 4.3, 6.5, 1, &stuff, &seed);
+    const mspring_id from = recipe_particle(&made, -6, 7, 2, 0), to = recipe_particle(&made, 8.5, 12, 2, 0);
+    recipe_rope(&made, from, to, 15, &stuff, &seed);
+    recipe_particle(&made, 2.5, 9, 6, 0);
+    mspring_network *network = recipe_network(&made, def);
+    recipe_free(&made);
+    mspring_contact_def touching;
+    check_ok(mspring_contact_def_init(&touching, sizeof touching));
+    touching.thickness = 0.4;
+    touching.friction = 0.5f;
+    touching.restitution = 0.3f;
+    check_ok(mspring_network_set_contact(network, &touching));
+    return network;
+}
+
 const golden_scene golden_scenes[] = {
     {"bar_80x5", bar_80x5, NULL, 30, 64, 1.0 / 64},
     {"bar_544x68", bar_544x68, NULL, 30, 3, 1.0 / 64},
@@ -234,6 +257,7 @@ const golden_scene golden_scenes[] = {
     {"precise_bar", precise_bar, NULL, 30, 3, 1.0 / 64},
     {"precise_graph", precise_graph, NULL, 40, 20, 1.0 / 64},
     {"precise_everything", precise_everything, push_some, 4, 100, 1.0 / 64},
+    {"contact", contact, NULL, 20, 160, 1.0 / 64},
 };
 const uint32_t golden_scene_count = COUNT_OF(golden_scenes);
 

@@ -34,7 +34,7 @@ static mspring_result spawn(mspringi_tuning *tuning, mspring_network *from, uint
     if (result != MSPRING_OK)
         return mspringi_fail(&tuning->network->message, result, "no memory for a clone of the network");
     (*clone)->tasks = from->tasks;
-    return MSPRING_OK;
+    return mspring_network_set_contact(*clone, NULL);
 }
 
 mspring_result mspringi_tune_spawn(mspringi_tuning *tuning, mspring_network *from, mspring_network **clone) {

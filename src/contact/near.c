@@ -1,0 +1,341 @@
+/// Which points are near which edges, and for how many substeps none of them can touch.
+///
+/// Edges lie in cells by their middles, and cells in buckets by a hash, so it does not matter how far apart bodies
+/// are. A point looks at 3 x 3 cells. Edges that are much longer than the others are compared with every point.
+///
+/// All motion is that beside the mean of the outline: what flies along together is at rest. How many substeps are
+/// quiet follows from positions and velocities alone, not from when the list was made.
+#include <math.h>
+#include <string.h>
+
+#include "contact/pairs.h"
+
+/// What a look answers for goes beyond the thickness by this share of it, and by the way of so many steps; as a
+/// rule not beyond another thickness.
+#define LEAST_SHARE 0.15
+#define STEPS_AHEAD 4.0
+
+/// So many times the way of a substep, for rows are made as far as two points can come towards each other in two.
+#define SUBSTEPS_AHEAD 8.0
+
+/// Points may get faster than they are by this factor before the next look, and go this share of the thickness
+/// besides in a step.
+#define FASTER 1.5
+#define DRIFT 0.05
+
+/// Pairs that may touch within so many substeps are looked at in each of them, and found anew after that.
+#define HOT_SUBSTEPS 8
+
+/// An edge this many times as long as the mean is a long one.
+#define LONG 4.0
+
+/// Beyond this many cells all lies in one.
+#define MOST_CELLS 1e9
+
+/* ----------------------------------------------------------------------------------------------------- distance */
+
+mspringi_nearest mspringi_nearest_on(double px, double py, double ax, double ay, double bx, double by) {
+    const double ex = bx - ax, ey = by - ay, square = ex * ex + ey * ey;
+    double share = 0.0;
+    if (square > 0.0) {
+        share = ((px - ax) * ex + (py - ay) * ey) / square;
+        share = share < 0.0 ? 0.0 : share > 1.0 ? 1.0 : share;
+    }
+    return (mspringi_nearest){px - ax - share * ex, py - ay - share * ey, share};
+}
+
+static double distance_of(const mspringi_pairs *pairs, mspring_id p, uint32_t edge) {
+    const mspring_id a = pairs->outline.a[edge], b = pairs->outline.b[edge];
+    const mspringi_nearest at =
+        mspringi_nearest_on(pairs->x[p], pairs->y[p], pairs->x[a], pairs->y[a], pairs->x[b], pairs->y[b]);
+    return sqrt(at.x * at.x + at.y * at.y);
+}
+
+/* --------------------------------------------------------------------------------------------------- the motion */
+
+// Where the points are, how fast beside their mean, and how far they have come since the list was made.
+static void look_at_points(const mspring_network *network, mspringi_pairs *pairs) {
+    const mspringi_outline *o = &pairs->outline;
+    const mspringi_state *s = &network->state;
+    const uint32_t *slot_of = network->topology.slot_of_particle;
+    double vx = 0.0, vy = 0.0, wx = 0.0, wy = 0.0, speed = 0.0, moved = 0.0;
+    for (uint32_t i = 0; i < o->point_count; ++i) {
+        const mspring_id p = o->points[i];
+        const uint32_t slot = slot_of[p];
+        pairs->x[p] = mspringi_x_of(s, slot);
+        pairs->y[p] = mspringi_y_of(s, slot);
+        vx += (double)s->vx[slot];
+        vy += (double)s->vy[slot];
+        wx += pairs->x[p] - pairs->seen_x[p];
+        wy += pairs->y[p] - pairs->seen_y[p];
+    }
+    const double part = o->point_count > 0 ? 1.0 / (double)o->point_count : 0.0;
+    vx *= part, vy *= part, wx *= part, wy *= part;
+    for (uint32_t i = 0; i < o->point_count; ++i) {
+        const mspring_id p = o->points[i];
+        const uint32_t slot = slot_of[p];
+        const double ux = (double)s->vx[slot] - vx, uy = (double)s->vy[slot] - vy;
+        const double dx = pairs->x[p] - pairs->seen_x[p] - wx, dy = pairs->y[p] - pairs->seen_y[p] - wy;
+        const double u = ux * ux + uy * uy, d = dx * dx + dy * dy;
+        speed = u <= speed ? speed : u; // a number that is none stays
+        moved = d <= moved ? moved : d;
+    }
+    pairs->speed = sqrt(speed);
+    pairs->moved = sqrt(moved);
+}
+
+/* ------------------------------------------------------------------------------------------------------- cells */
+
+static int32_t cell_of(double coordinate, double size) {
+    const double cell = floor(coordinate / size);
+    return cell > -MOST_CELLS && cell < MOST_CELLS ? (int32_t)cell
+           : cell > 0.0                            ? (int32_t)MOST_CELLS
+                                                   : -(int32_t)MOST_CELLS;
+}
+
+static uint32_t bucket_of(const mspringi_edge_cells *cells, int32_t x, int32_t y) {
+    uint32_t hash = (uint32_t)x * 0x9E3779B1u ^ (uint32_t)y * 0x85EBCA77u;
+    hash ^= hash >> 15;
+    return hash & (cells->bucket_count - 1);
+}
+
+static double length_of(const mspringi_pairs *pairs, uint32_t edge) {
+    const mspring_id a = pairs->outline.a[edge], b = pairs->outline.b[edge];
+    const double ex = pairs->x[b] - pairs->x[a], ey = pairs->y[b] - pairs->y[a];
+    return sqrt(ex * ex + ey * ey);
+}
+
+// Set the long edges apart, and return how large cells are for the others.
+static double size_cells(mspringi_pairs *pairs, double reach) {
+    mspringi_edge_cells *cells = &pairs->cells;
+    double sum = 0.0, longest = 0.0;
+    for (uint32_t e = 0; e < pairs->outline.edge_count; ++e)
+        sum += length_of(pairs, e);
+    const double most = LONG * (sum / (double)pairs->outline.edge_count + reach);
+    cells->long_count = 0;
+    for (uint32_t e = 0; e < pairs->outline.edge_count; ++e) {
+        const double length = length_of(pairs, e);
+        if (!(length <= most))
+            cells->long_edges[cells->long_count++] = e;
+        else
+            longest = length > longest ? length : longest;
+    }
+    return 0.5 * longest + reach;
+}
+
+static void fill_cells(mspringi_pairs *pairs, double size) {
+    mspringi_edge_cells *cells = &pairs->cells;
+    const mspringi_outline *o = &pairs->outline;
+    cells->bucket_count = 1;
+    while (cells->bucket_count < o->edge_count && cells->bucket_count < cells->bucket_capacity)
+        cells->bucket_count *= 2;
+    memset(cells->first, 0, ((size_t)cells->bucket_count + 1) * sizeof *cells->first);
+    for (uint32_t e = 0, l = 0; e < o->edge_count; ++e) {
+        if (l < cells->long_count && cells->long_edges[l] == e) {
+            ++l;
+            continue;
+        }
+        cells->x[e] = cell_of(0.5 * (pairs->x[o->a[e]] + pairs->x[o->b[e]]), size);
+        cells->y[e] = cell_of(0.5 * (pairs->y[o->a[e]] + pairs->y[o->b[e]]), size);
+        cells->first[bucket_of(cells, cells->x[e], cells->y[e])]++;
+    }
+    for (uint32_t i = 0; i < cells->bucket_count; ++i)
+        cells->first[i + 1] += cells->first[i];
+    for (uint32_t e = o->edge_count, l = cells->long_count; e-- > 0;) {
+        if (l > 0 && cells->long_edges[l - 1] == e)
+            --l;
+        else
+            cells->sorted[--cells->first[bucket_of(cells, cells->x[e], cells->y[e])]] = e;
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------- list */
+
+static bool may_touch(const mspringi_pairs *pairs, mspring_id p, mspring_id q) {
+    return pairs->groups[p] & pairs->masks[q] && pairs->groups[q] & pairs->masks[p];
+}
+
+// Two particles without springs are one pair, and one with a corner is it with the corner's edges.
+static bool is_counted_otherwise(const mspringi_outline *o, mspring_id p, uint32_t edge) {
+    if (o->a[edge] != o->b[edge])
+        return false;
+    const uint32_t own = o->at[o->first[p]];
+    return o->a[own] != o->b[own] || p > o->a[edge];
+}
+
+static bool is_apart(const mspring_network *network, mspringi_pairs *pairs, mspring_id p, uint32_t edge) {
+    const mspring_id a = pairs->outline.a[edge], b = pairs->outline.b[edge];
+    if (!pairs->touches_itself)
+        return pairs->outline.body[a] == pairs->outline.body[p];
+    if (pairs->stamp_of != p)
+        mspringi_outline_stamp(network, pairs, p);
+    pairs->stamp_of = p;
+    return pairs->stamp[a] == p + 1 || pairs->stamp[b] == p + 1;
+}
+
+// False: there is no room.
+static bool try_pair(const mspring_network *network, mspringi_pairs *pairs, uint32_t first, mspring_id p,
+                     uint32_t edge) {
+    const mspringi_outline *o = &pairs->outline;
+    const mspring_id a = o->a[edge], b = o->b[edge];
+    if (p == a || p == b || !(distance_of(pairs, p, edge) < pairs->reach) || is_counted_otherwise(o, p, edge) ||
+        !may_touch(pairs, p, a) || !may_touch(pairs, p, b) || is_apart(network, pairs, p, edge))
+        return true;
+    if (pairs->count == pairs->capacity)
+        return false;
+    uint32_t at = pairs->count++;
+    for (; at > first && pairs->list[at - 1].edge > edge; --at)
+        pairs->list[at] = pairs->list[at - 1];
+    pairs->list[at] = (mspringi_pair){.point = p, .edge = edge};
+    return true;
+}
+
+static bool list_point(const mspring_network *network, mspringi_pairs *pairs, mspring_id p, double size) {
+    const mspringi_edge_cells *cells = &pairs->cells;
+    const int32_t x = cell_of(pairs->x[p], size), y = cell_of(pairs->y[p], size);
+    const uint32_t first = pairs->count;
+    for (int32_t j = y - 1; j <= y + 1; ++j)
+        for (int32_t i = x - 1; i <= x + 1; ++i) {
+            const uint32_t bucket = bucket_of(cells, i, j);
+            for (uint32_t k = cells->first[bucket]; k < cells->first[bucket + 1]; ++k) {
+                const uint32_t edge = cells->sorted[k];
+                if (cells->x[edge] == i && cells->y[edge] == j && !try_pair(network, pairs, first, p, edge))
+                    return false;
+            }
+        }
+    for (uint32_t k = 0; k < cells->long_count; ++k)
+        if (!try_pair(network, pairs, first, p, cells->long_edges[k]))
+            return false;
+    return true;
+}
+
+static void activate(mspringi_active *active, mspring_id p) {
+    if (active->number[p] != MSPRING_NONE)
+        return;
+    active->number[p] = active->count;
+    active->particles[active->count++] = p;
+}
+
+// Those of the hot pairs, and their neighbours on the outline: a corner looks at the edges beside it.
+static void activate_all(mspringi_pairs *pairs) {
+    mspringi_active *active = &pairs->active;
+    const mspringi_outline *o = &pairs->outline;
+    for (uint32_t i = 0; i < active->count; ++i)
+        active->number[active->particles[i]] = MSPRING_NONE;
+    active->count = 0;
+    for (uint32_t i = 0; i < pairs->hot_count; ++i) {
+        const mspringi_pair *pair = &pairs->list[pairs->hot[i]];
+        const mspring_id ends[] = {o->a[pair->edge], o->b[pair->edge]};
+        activate(active, pair->point);
+        for (int k = 0; k < 2; ++k)
+            for (uint32_t j = o->first[ends[k]]; j < o->first[ends[k] + 1]; ++j) {
+                activate(active, o->a[o->at[j]]);
+                activate(active, o->b[o->at[j]]);
+            }
+    }
+}
+
+// How far a look must answer for.
+static double needed(const mspringi_pairs *pairs) {
+    const double thickness = pairs->thickness, substeps = SUBSTEPS_AHEAD * (double)pairs->h * pairs->speed;
+    const double ahead = LEAST_SHARE * thickness + STEPS_AHEAD * pairs->dt * pairs->speed;
+    const double usual = ahead < thickness || pairs->has_sleepers ? ahead : thickness;
+    return thickness + (usual > substeps ? usual : substeps);
+}
+
+// All pairs nearer than this are in the list, however far their points have come since.
+static double answered(const mspringi_pairs *pairs) {
+    return pairs->reach - 2.0 * pairs->moved;
+}
+
+// List all pairs this near.
+static bool make_list(const mspring_network *network, mspringi_pairs *pairs, double reach) {
+    const mspringi_outline *o = &pairs->outline;
+    pairs->count = 0;
+    pairs->stamp_of = MSPRING_NONE;
+    pairs->reach = reach;
+    pairs->moved = 0.0;
+    if (o->edge_count > 0) {
+        const double size = size_cells(pairs, pairs->reach);
+        fill_cells(pairs, size);
+        for (uint32_t i = 0; i < o->point_count; ++i) {
+            const mspring_id p = o->points[i];
+            pairs->seen_x[p] = pairs->x[p];
+            pairs->seen_y[p] = pairs->y[p];
+            if (!list_point(network, pairs, p, size))
+                return false;
+        }
+    }
+    return true;
+}
+
+// How far a point may come in a substep.
+static double way_of_substep(const mspringi_pairs *pairs) {
+    const double h = (double)pairs->h;
+    return FASTER * h * pairs->speed + DRIFT * pairs->thickness * h / pairs->dt;
+}
+
+// For how many substeps the list answers for all that can touch.
+static uint32_t count_valid(const mspringi_pairs *pairs) {
+    const double way = way_of_substep(pairs);
+    const double least = pairs->thickness + 0.5 * (needed(pairs) - pairs->thickness);
+    const double valid = (answered(pairs) - least) / (2.0 * way);
+    return valid >= 1.0 ? valid < 1e6 ? (uint32_t)valid : 1000000 : 1;
+}
+
+// Find the pairs that are hot, and the nearest one.
+static void look_at_pairs(mspringi_pairs *pairs) {
+    const double most = pairs->thickness + 2.0 * HOT_SUBSTEPS * way_of_substep(pairs) +
+                        4.0 * FASTER * (double)pairs->h * pairs->speed;
+    pairs->nearest = pairs->reach;
+    pairs->hot_count = 0;
+    for (uint32_t i = 0; i < pairs->count; ++i) {
+        const double distance = distance_of(pairs, pairs->list[i].point, pairs->list[i].edge);
+        pairs->nearest = distance >= pairs->nearest ? pairs->nearest : distance;
+        if (!(distance > most))
+            pairs->hot[pairs->hot_count++] = i;
+    }
+    activate_all(pairs);
+}
+
+bool mspringi_near_renew(const mspring_network *network, mspringi_pairs *pairs) {
+    look_at_points(network, pairs);
+    if (!pairs->is_listed || !(answered(pairs) >= needed(pairs))) {
+        const double most = needed(pairs), more = pairs->thickness + 2.0 * (most - pairs->thickness);
+        pairs->is_listed = make_list(network, pairs, more) || make_list(network, pairs, most);
+        pairs->is_full = !pairs->is_listed;
+    }
+    if (pairs->is_full)
+        return false;
+    look_at_pairs(pairs);
+    const uint32_t valid = count_valid(pairs);
+    pairs->valid = valid < HOT_SUBSTEPS ? valid : HOT_SUBSTEPS;
+    return true;
+}
+
+/* -------------------------------------------------------------------------------------------------------- look */
+
+static uint32_t count_quiet(mspringi_pairs *pairs) {
+    const double way = 2.0 * way_of_substep(pairs);
+    const double most = needed(pairs), nearest = pairs->nearest < most ? pairs->nearest : most;
+    const double quiet = (nearest - pairs->thickness) / way;
+    pairs->room = nearest - pairs->thickness;
+    return quiet >= 2.0 ? quiet < 1e6 ? (uint32_t)quiet : 1000000 : 0;
+}
+
+bool mspringi_near_look(const mspring_network *network, mspringi_pairs *pairs) {
+    const bool is_same = pairs->is_fresh && pairs->looked_h == pairs->h && pairs->looked_dt == pairs->dt &&
+                         pairs->state == network->edits.state && pairs->naps == network->edits.naps &&
+                         !network->is_open;
+    if (!is_same) {
+        if (!mspringi_near_renew(network, pairs))
+            return false;
+        pairs->is_fresh = true;
+        pairs->looked_h = pairs->h;
+        pairs->looked_dt = pairs->dt;
+        pairs->state = network->edits.state;
+        pairs->naps = network->edits.naps;
+    }
+    pairs->quiet = pairs->is_strict ? 0 : count_quiet(pairs);
+    return true;
+}

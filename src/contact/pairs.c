@@ -1,0 +1,328 @@
+/// Contact between bodies as the host defines it.
+#include "contact/pairs.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/columns.h"
+#include "base/cpu.h"
+#include "store/changed.h"
+#include "store/growth.h"
+
+#define THICKEST 1e6
+#define THICKNESS_SHARE 0.9
+#define MOST_SWEEPS 64
+#define MOST_PAIRS ((uint32_t)1 << 26)
+
+/* ----------------------------------------------------------------------------------------------------- checking */
+
+mspring_result mspringi_pairs_check(mspring_solver solver, mspring_guard guard, mspringi_message *message) {
+    if (solver != MSPRING_SOLVER_EXPLICIT)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "contact needs the explicit solver, and solver %d is another", (int)solver);
+    if (guard == MSPRING_GUARD_IMPLICIT)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "contact needs the explicit solver, and guard %d lets the implicit one take steps",
+                             (int)guard);
+    return MSPRING_OK;
+}
+
+static mspring_result check_numbers(const mspring_contact_def *def, mspringi_message *message) {
+    const struct {
+        const char *name;
+        double value, most;
+    } values[] = {{"friction", (double)def->friction, 1e6},
+                  {"restitution", (double)def->restitution, 1.0},
+                  {"push_speed", (double)def->push_speed, 1e6},
+                  {"thickness", def->thickness, THICKEST}};
+    for (size_t i = 0; i < sizeof values / sizeof values[0]; ++i)
+        if (!(values[i].value >= 0.0 && values[i].value <= values[i].most))
+            return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the contact's %s is %g, it must be 0 to %g",
+                                 values[i].name, values[i].value, values[i].most);
+    if (def->sweeps < 1 || def->sweeps > MOST_SWEEPS)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the contact's sweeps are %u, they must be 1 to %d",
+                             (unsigned)def->sweeps, MOST_SWEEPS);
+    if (def->capacity > MOST_PAIRS)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the contact's capacity is %u, it must be at most %u",
+                             (unsigned)def->capacity, (unsigned)MOST_PAIRS);
+    if (def->flags & ~(uint32_t)MSPRING_CONTACT_SELF)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "contact flags %#x are unknown",
+                             (unsigned)def->flags);
+    return MSPRING_OK;
+}
+
+// What stands for defaults is filled in.
+static mspring_result check_def(const mspring_network *network, mspring_contact_def *def,
+                                mspringi_message *message) {
+    const double shortest = network->shortest;
+    const bool touches_itself = def->flags & MSPRING_CONTACT_SELF;
+    mspring_result result = check_numbers(def, message);
+    if (result != MSPRING_OK)
+        return result;
+    if (def->thickness == 0.0)
+        def->thickness = 0.5 * shortest;
+    if (!(def->thickness <= THICKEST))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "the contact's thickness is 0, and the network has no spring to tell it by");
+    if (touches_itself && def->thickness > THICKNESS_SHARE * shortest)
+        return mspringi_fail(
+            message, MSPRING_ERROR_ARGUMENT,
+            "the contact's thickness is %g m, it must be at most 0.9 of the shortest spring, %g m, "
+            "for bodies that touch themselves",
+            def->thickness, shortest);
+    mspring_solver_def solver = {.struct_size = sizeof solver};
+    result = mspring_network_get_solver(network, &solver);
+    return result == MSPRING_OK ? mspringi_pairs_check(solver.solver, network->settings.guard, message) : result;
+}
+
+/* ------------------------------------------------------------------------------------------------------ memory */
+
+#define ARRAY(member) MSPRINGI_COLUMN(mspringi_pairs, member, MSPRINGI_ARRAY)
+#define VIEW(member) MSPRINGI_COLUMN(mspringi_pairs, member, MSPRINGI_VIEW)
+static const mspringi_column members[] = {
+    ARRAY(groups),
+    VIEW(masks),
+    ARRAY(outline.is_edge),
+    ARRAY(outline.is_known),
+    ARRAY(outline.shape_x),
+    VIEW(outline.shape_y),
+    ARRAY(outline.a),
+    VIEW(outline.b),
+    VIEW(outline.points),
+    VIEW(outline.first),
+    VIEW(outline.at),
+    VIEW(outline.body),
+    ARRAY(cells.first),
+    ARRAY(cells.sorted),
+    VIEW(cells.long_edges),
+    ARRAY(cells.x),
+    VIEW(cells.y),
+    ARRAY(list),
+    ARRAY(seen_x),
+    VIEW(seen_y),
+    VIEW(x),
+    VIEW(y),
+    ARRAY(stamp),
+    ARRAY(active.particles),
+    VIEW(active.number),
+    ARRAY(active.x),
+    VIEW(active.y),
+    VIEW(active.from_vx),
+    VIEW(active.from_vy),
+    VIEW(active.vx),
+    VIEW(active.vy),
+    VIEW(active.weight),
+    VIEW(active.way_x),
+    VIEW(active.way_y),
+    ARRAY(touches),
+    ARRAY(hot),
+};
+#undef ARRAY
+#undef VIEW
+static const mspringi_columns columns = MSPRINGI_COLUMNS(members);
+
+static void destroy(mspringi_pairs *pairs, mspringi_memory *memory) {
+    if (!pairs)
+        return;
+    mspringi_columns_free(columns, pairs, memory);
+    mspringi_free(memory, pairs);
+}
+
+void mspringi_pairs_relocate(mspringi_pairs *pairs, const mspringi_memory *from, const mspringi_memory *to) {
+    mspringi_columns_relocate(columns, pairs, from, to);
+}
+
+// count arrays of so many elements, one behind the other. False: there is no memory.
+static bool reserve_doubles(mspringi_memory *memory, size_t elements, double **const arrays[], size_t count) {
+    double *block = mspringi_alloc(memory, elements * count, sizeof *block);
+    for (size_t i = 0; i < count && block; ++i)
+        *arrays[i] = block + i * elements;
+    return block != NULL;
+}
+
+static bool reserve_particles(mspringi_pairs *made, mspringi_memory *memory, size_t particles) {
+    mspringi_outline *o = &made->outline;
+    mspringi_active *k = &made->active;
+    double **const shape[] = {&o->shape_x, &o->shape_y};
+    double **const places[] = {&made->seen_x, &made->seen_y, &made->x, &made->y};
+    double **const motion[] = {&k->x,  &k->y,      &k->from_vx, &k->from_vy, &k->vx,
+                               &k->vy, &k->weight, &k->way_x,   &k->way_y};
+    made->groups = mspringi_alloc(memory, 2 * particles, sizeof *made->groups);
+    made->stamp = mspringi_alloc(memory, particles, sizeof *made->stamp);
+    o->is_known = mspringi_alloc(memory, particles, sizeof *o->is_known);
+    k->particles = mspringi_alloc(memory, 2 * particles, sizeof *k->particles);
+    if (!made->groups || !made->stamp || !o->is_known || !k->particles)
+        return false;
+    made->masks = made->groups + particles;
+    k->number = k->particles + particles;
+    return reserve_doubles(memory, particles, shape, 2) && reserve_doubles(memory, particles, places, 4) &&
+           reserve_doubles(memory, particles, motion, 9);
+}
+
+static bool reserve_edges(mspringi_pairs *made, mspringi_memory *memory, size_t particles, size_t springs) {
+    mspringi_outline *o = &made->outline;
+    mspringi_edge_cells *c = &made->cells;
+    const size_t edges = particles + springs;
+    c->bucket_capacity = 1;
+    while (c->bucket_capacity < edges && c->bucket_capacity < (uint32_t)1 << 30)
+        c->bucket_capacity *= 2;
+    o->is_edge = mspringi_alloc(memory, springs, sizeof *o->is_edge);
+    o->a = mspringi_alloc(memory, 4 * edges + 3 * particles + 1, sizeof *o->a);
+    c->first = mspringi_alloc(memory, (size_t)c->bucket_capacity + 1, sizeof *c->first);
+    c->sorted = mspringi_alloc(memory, 2 * edges, sizeof *c->sorted);
+    c->x = mspringi_alloc(memory, 2 * edges, sizeof *c->x);
+    if (!o->is_edge || !o->a || !c->first || !c->sorted || !c->x)
+        return false;
+    o->b = o->a + edges;
+    o->at = o->b + edges;
+    o->points = o->at + 2 * edges;
+    o->body = o->points + particles;
+    o->first = o->body + particles;
+    c->long_edges = c->sorted + edges;
+    c->y = c->x + edges;
+    return true;
+}
+
+// By what the outline is, and what it may come to be.
+static bool reserve_pairs(mspringi_pairs *made, mspringi_memory *memory, size_t particles) {
+    const uint64_t usual = 8 * (uint64_t)made->outline.point_count + 2 * (uint64_t)particles + 4096;
+    if (made->def.capacity == 0)
+        made->def.capacity = usual < MOST_PAIRS ? (uint32_t)usual : MOST_PAIRS;
+    made->capacity = made->def.capacity;
+    made->list = mspringi_alloc(memory, made->capacity, sizeof *made->list);
+    made->hot = mspringi_alloc(memory, made->capacity, sizeof *made->hot);
+    made->touches = mspringi_alloc(memory, made->capacity, sizeof *made->touches);
+    return made->list && made->hot && made->touches;
+}
+
+static void set_def(mspringi_pairs *pairs, const mspring_contact_def *def) {
+    pairs->def = *def;
+    pairs->thickness = def->thickness;
+    pairs->friction = (double)def->friction;
+    pairs->restitution = (double)def->restitution;
+    pairs->push = (double)def->push_speed;
+    pairs->touches_itself = def->flags & MSPRING_CONTACT_SELF;
+}
+
+// NULL if there is no memory.
+static mspringi_pairs *make(mspring_network *network, const mspring_contact_def *def) {
+    const size_t particles = network->topology.reserve.particle_end, springs = network->topology.reserve.spring_end;
+    mspringi_memory *memory = &network->memory;
+    mspringi_pairs *made = mspringi_alloc(memory, 1, sizeof *made);
+    if (!made)
+        return NULL;
+    set_def(made, def);
+    bool ok = reserve_particles(made, memory, particles) && reserve_edges(made, memory, particles, springs);
+    for (size_t p = 0; ok && p < particles; ++p) {
+        made->groups[p] = 1;
+        made->masks[p] = UINT32_MAX;
+        made->active.number[p] = MSPRING_NONE;
+    }
+    made->outline.origin_x = network->origin_x;
+    made->outline.origin_y = network->origin_y;
+    if (ok)
+        mspringi_outline_follow(network, made);
+    ok = ok && reserve_pairs(made, memory, particles);
+    if (ok)
+        return made;
+    destroy(made, memory);
+    return NULL;
+}
+
+/* ------------------------------------------------------------------------------------------------- the setting */
+
+static mspring_contact_def def_of(const mspring_network *network) {
+    mspring_contact_def def;
+    (void)mspring_contact_def_init(&def, sizeof def);
+    return network->pairs ? network->pairs->def : def;
+}
+
+mspring_result mspring_network_get_contact(const mspring_network *network, mspring_contact_def *def) {
+    if (!network)
+        return MSPRING_ERROR_ARGUMENT;
+    const mspring_result result = mspringi_check_output(NULL, "mspring_contact_def", def, sizeof *def);
+    if (result != MSPRING_OK)
+        return result;
+    const mspring_contact_def had = def_of(network);
+    mspringi_put_struct(def, &had, sizeof had);
+    return MSPRING_OK;
+}
+
+static mspring_result exchange(mspring_network *network, const mspring_contact_def *def) {
+    mspringi_pairs *made = NULL;
+    if (def) {
+        const mspringi_fp_state before = mspringi_fp_enter();
+        mspring_result result = mspringi_incidence_reserve(network);
+        if (result == MSPRING_OK) {
+            made = make(network, def);
+            if (!made)
+                result = mspringi_fail(
+                    &network->message, MSPRING_ERROR_MEMORY, "no memory for contact of %u particles and %u springs",
+                    (unsigned)network->topology.particle_count, (unsigned)network->topology.spring_count);
+        }
+        mspringi_fp_leave(before);
+        if (result != MSPRING_OK)
+            return result;
+    }
+    destroy(network->pairs, &network->memory);
+    network->pairs = made;
+    mspringi_changed(network, MSPRINGI_CHANGED_CONTACT, 0);
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_set_contact(mspring_network *network, const mspring_contact_def *def) {
+    mspring_contact_def used;
+    mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK || (!def && !network->pairs))
+        return result;
+    if (!def)
+        return exchange(network, NULL);
+    result = mspringi_check_struct(&network->message, "mspring_contact_def", def, sizeof *def);
+    if (result == MSPRING_OK)
+        result = mspringi_check_reserved(&network->message, "mspring_contact_def", def->reserved);
+    if (result != MSPRING_OK)
+        return result;
+    used = *def;
+    used.struct_size = sizeof used;
+    result = check_def(network, &used, &network->message);
+    return result == MSPRING_OK ? exchange(network, &used) : result;
+}
+
+mspring_result mspring_network_set_contact_groups(mspring_network *network, mspring_id first, uint32_t count,
+                                                  uint32_t groups, uint32_t masks) {
+    mspring_result result = mspringi_enter(network);
+    if (result == MSPRING_OK && !network->pairs)
+        result =
+            mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "groups are of contact, and there is none");
+    if (result == MSPRING_OK)
+        result = mspringi_check_range(network, "particle", first, count, network->topology.particle_count);
+    if (result != MSPRING_OK)
+        return result;
+    mspringi_pairs *pairs = network->pairs;
+    for (mspring_id p = first; p < first + count; ++p) {
+        pairs->groups[p] = groups;
+        pairs->masks[p] = masks;
+    }
+    pairs->is_listed = pairs->is_fresh = false;
+    mspringi_changed(network, MSPRINGI_CHANGED_CONTACT, 0);
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_contact_info(const mspring_network *network, mspring_contact_info *info) {
+    if (!network)
+        return MSPRING_ERROR_ARGUMENT;
+    const mspring_result result = mspringi_check_output(NULL, "mspring_contact_info", info, sizeof *info);
+    if (result != MSPRING_OK)
+        return result;
+    mspring_contact_info found = {.struct_size = sizeof found};
+    const mspringi_pairs *pairs = network->pairs;
+    if (pairs) {
+        found.edges = pairs->outline.edge_count;
+        found.points = pairs->outline.point_count;
+        found.pairs = pairs->count;
+        found.touching = pairs->touching;
+        found.deepest = pairs->deepest;
+    }
+    mspringi_put_struct(info, &found, sizeof found);
+    return MSPRING_OK;
+}

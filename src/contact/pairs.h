@@ -1,0 +1,172 @@
+/// @file pairs.h
+/// Contact between bodies, and of a body with itself: outline points against outline edges with a thickness.
+///
+///   pairs.c      the definition, given by the host
+///   outline.c    which springs and particles are the outline
+///   near.c       which points are near which edges, and for how many substeps none of them can touch
+///   rows.c       what happens to those that touch in a substep
+///   touching.c   the stage: when to look, and which islands sleep and wake together
+///
+/// What is simulated: forces, velocity, contact, move. A substep has moved the particles when contact acts, so the
+/// rows take positions of before it and velocities of after it, and correct both.
+///
+/// All that is kept from step to step follows from positions, or is the shape by which the outline was found. Lists
+/// are longer than they need to be; what of them acts does not depend on when they were made.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_PAIRS_H
+#define MSPRINGI_PAIRS_H
+
+#include <massspring/massspring_tools.h>
+
+#include "store/network.h"
+
+/// The outline: springs with a free side, their ends, and particles without springs, as edges of length 0. Edges
+/// are numbered by rising ids: springs first, then particles.
+typedef struct mspringi_outline {
+    uint8_t *is_edge;          ///< [springs] 1: live, and not inside
+    uint8_t *is_known;         ///< [particles] 1: its place in the shape is known
+    double *shape_x, *shape_y; ///< [particles] where it was when contact was set, or when it was added
+    double origin_x, origin_y; ///< of the shape
+    mspring_id *a, *b;         ///< [springs + particles] ends of each edge; the same for a particle
+    mspring_id *points;        ///< [particles]
+    uint32_t *first, *at;      ///< [particles + 1], [2 (springs + particles)]: the edges at a particle, rising
+    uint32_t *body;            ///< [particles] the lowest of the same body, unless bodies touch themselves
+    uint32_t edge_count, point_count;
+    bool is_found;
+    uint64_t links, growth; ///< edits that it has seen
+} mspringi_outline;
+
+/// An outline point that may come near an outline edge.
+typedef struct mspringi_pair {
+    mspring_id point;
+    uint32_t edge;
+    uint16_t is_asked, is_apart; ///< bits for the edges at a's end, and at b's: is_apart if the point never touches
+                                 ///< the edge, once that was asked
+} mspringi_pair;
+
+/// Edges by cells, in buckets; see near.c.
+typedef struct mspringi_edge_cells {
+    uint32_t *first;      ///< [bucket_count + 1]
+    uint32_t *sorted;     ///< [edges]
+    int32_t *x, *y;       ///< [edges] the cell of each
+    uint32_t *long_edges; ///< [edges] those that are compared with every point
+    uint32_t bucket_count, bucket_capacity, long_count;
+} mspringi_edge_cells;
+
+/// Particles that pairs need, by a number of their own.
+typedef struct mspringi_active {
+    mspring_id *particles;     ///< [particles]
+    uint32_t *number;          ///< [particles] MSPRING_NONE if it is none of them
+    double *x, *y;             ///< [particles] at the start of the substep, and of each of its pieces
+    double *from_vx, *from_vy; ///< before the substep's forces
+    double *vx, *vy, *weight;  ///< inverse mass, 1/kg
+    double *way_x, *way_y;     ///< what contact adds to the move
+    uint32_t count;
+} mspringi_active;
+
+/// A point that touches an edge, or may do so in this piece of a substep.
+typedef struct mspringi_touch {
+    uint32_t p, a, b;        ///< active particles
+    double nx, ny;           ///< from the edge to the point, of length 1
+    double share_a, share_b; ///< of the edge's nearest place
+    double gap, distance;    ///< m
+    double target;           ///< speed across that it is to have at least, when it touches, m/s
+    double mass;             ///< impulse across by a unit of velocity, kg
+    double ax, ay, bx, by;   ///< friction on the ends of the edge by a unit on the point
+    double slide_mass;       ///< the same along; 0: no friction
+    double across, along;    ///< impulses, N s
+} mspringi_touch;
+
+struct mspringi_pairs {
+    mspring_contact_def def;
+    double thickness, friction, restitution, push;
+    bool touches_itself;
+    uint32_t *groups, *masks; ///< [particles]
+    mspringi_outline outline;
+    mspringi_edge_cells cells;
+
+    // The list of all pairs that are near.
+    mspringi_pair *list; ///< [capacity]
+    uint32_t count, capacity;
+    uint32_t *hot; ///< [capacity] those of the list that may touch before it is looked at again
+    uint32_t hot_count;
+    bool is_listed, is_full;
+    double reach;            ///< all pairs nearer than this were in the list when it was made, m
+    double *seen_x, *seen_y; ///< [particles] where points were then
+    uint32_t *stamp;         ///< [particles] what is joined by one or two springs to the point of stamp_of
+    uint32_t stamp_of;
+
+    // The last look.
+    double *x, *y;        ///< [particles] where points were
+    double speed;         ///< of any of them beside their mean, at most, m/s
+    double moved;         ///< since the list was made, likewise, m
+    double nearest;       ///< distance of any pair, as far as the list tells, m
+    bool is_fresh;        ///< nothing has moved since
+    uint64_t state, naps; ///< edits then
+    float looked_h;
+    double looked_dt;
+
+    // A step.
+    float h;
+    double dt;
+    uint32_t quiet;         ///< substeps in which nothing can touch
+    uint32_t valid;         ///< substeps until the list is to be looked at again
+    uint32_t first_substep; ///< of the group of substeps that is being taken
+    uint32_t taken;         ///< substeps that were followed
+    bool has_sleepers;      ///< the step began with some: whatever may come to them in it wakes them
+    uint32_t since_look;    ///< the last of them, which were quiet
+    double room;            ///< that the nearest pair had at the last look, m
+    bool is_missed;         ///< pairs could touch where nothing should
+    bool is_strict;         ///< so this time every substep is looked at
+
+    mspringi_active active;
+    mspringi_touch *touches; ///< [capacity]
+    uint32_t touch_count;
+    uint32_t touching; ///< pairs that pushed each other in a substep, at most
+    double deepest;    ///< overlap, m
+};
+
+typedef struct mspringi_pairs mspringi_pairs;
+
+/* outline.c */
+
+/// Forget the shape of what was in a slot: it is another particle's from now on.
+void mspringi_outline_clear_slot(const mspring_network *network, uint32_t slot);
+/// Find the outline, or what edits have changed of it. Allocates nothing.
+void mspringi_outline_follow(const mspring_network *network, mspringi_pairs *pairs);
+/// The particles that a spring joins.
+void mspringi_outline_ends(const mspring_network *network, mspring_id spring, mspring_id ends[2]);
+/// Whether two particles are the same, or joined by one live spring, or by two.
+bool mspringi_outline_is_joined(const mspring_network *network, mspring_id p, mspring_id q);
+/// Stamp what is joined so to a particle.
+void mspringi_outline_stamp(const mspring_network *network, mspringi_pairs *pairs, mspring_id p);
+
+/* near.c */
+
+/// A place on an edge.
+typedef struct mspringi_nearest {
+    double x, y;  ///< from there to the point
+    double share; ///< of the way from a to b
+} mspringi_nearest;
+mspringi_nearest mspringi_nearest_on(double px, double py, double ax, double ay, double bx, double by);
+
+/// Make the list anew if it may lack pairs. False: there is no room for all of them.
+bool mspringi_near_renew(const mspring_network *network, mspringi_pairs *pairs);
+/// Look how near points and edges are, and for how many substeps nothing can touch. False: as above.
+bool mspringi_near_look(const mspring_network *network, mspringi_pairs *pairs);
+
+/* rows.c */
+
+/// Before a substep: keep what contact needs of it.
+void mspringi_rows_note(const mspring_network *network, mspringi_pairs *pairs);
+/// After it: let contact act. Returns whether anything touched, or could have.
+bool mspringi_rows_act(const mspring_network *network, mspringi_pairs *pairs);
+
+/* pairs.c */
+
+void mspringi_pairs_relocate(mspringi_pairs *pairs, const mspringi_memory *from, const mspringi_memory *to);
+/// Refuse a solver, or a guard, with which contact does not act.
+mspring_result mspringi_pairs_check(mspring_solver solver, mspring_guard guard, mspringi_message *message);
+
+#endif

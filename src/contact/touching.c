@@ -1,0 +1,201 @@
+/// The stage of contact between bodies: when to look, and which islands sleep and wake together.
+///
+/// Steps and substeps in which nothing can touch are taken as if there were no contact. How many these are is
+/// bounded by the speeds at the last look. If forces have made points so fast that some could have touched, the
+/// step is taken back and repeated with a look after every substep.
+#include "contact/pairs.h"
+
+#include <math.h>
+
+#include "sleep/sleep.h"
+#include "store/stages.h"
+
+/// Points this near rest on each other, as a share of the thickness.
+#define RESTING_SHARE 0.05
+
+static bool is_used(const mspring_network *network) {
+    return network->pairs != NULL;
+}
+
+/* -------------------------------------------------------------------------------------------------------- sleep */
+
+static uint32_t island_of(const mspring_network *network, mspring_id p) {
+    return network->sleep.island[network->topology.slot_of_particle[p]];
+}
+
+static double distance_of(const mspring_network *network, mspring_id p, mspring_id a, mspring_id b) {
+    const mspringi_state *s = &network->state;
+    const uint32_t *slot = network->topology.slot_of_particle;
+    const mspringi_nearest at =
+        mspringi_nearest_on(mspringi_x_of(s, slot[p]), mspringi_y_of(s, slot[p]), mspringi_x_of(s, slot[a]),
+                            mspringi_y_of(s, slot[a]), mspringi_x_of(s, slot[b]), mspringi_y_of(s, slot[b]));
+    return sqrt(at.x * at.x + at.y * at.y);
+}
+
+// Whether a pair rests on each other, or may do so by the end of the step.
+static bool is_touching(const mspring_network *network, const mspringi_pairs *pairs, const mspringi_pair *pair,
+                        double way) {
+    const mspringi_outline *o = &pairs->outline;
+    const double distance = distance_of(network, pair->point, o->a[pair->edge], o->b[pair->edge]);
+    return distance <= (1.0 + RESTING_SHARE) * pairs->thickness + way;
+}
+
+// Wake what sleeps where something that is awake comes.
+static void wake_touched(mspring_network *network, const mspringi_pairs *pairs) {
+    const mspringi_sleep *s = &network->sleep;
+    const uint64_t naps = network->edits.naps;
+    if (s->sleeping == 0)
+        return;
+    for (bool again = true; again;) {
+        again = false;
+        for (uint32_t i = 0; i < pairs->count; ++i) {
+            const uint32_t p = island_of(network, pairs->list[i].point),
+                           q = island_of(network, pairs->outline.a[pairs->list[i].edge]);
+            if ((s->still[p] < 0.0) == (s->still[q] < 0.0) ||
+                !is_touching(network, pairs, &pairs->list[i], 2.0 * pairs->dt * pairs->speed))
+                continue;
+            mspringi_sleep_rouse(network, s->still[p] < 0.0 ? p : q);
+            again = true;
+        }
+    }
+    mspringi_sleep_roused(network, naps);
+}
+
+// Islands that rest on each other have been still for as long as the one that was still for the shortest time: they
+// fall asleep together.
+static void share_stillness(mspring_network *network, const mspringi_pairs *pairs) {
+    const mspringi_sleep *s = &network->sleep;
+    if (!(network->settings.sleep_speed > 0.0f) || mspringi_sleep_is_whole(network))
+        return;
+    mspringi_islands_find(network);
+    for (bool again = true; again;) {
+        again = false;
+        for (uint32_t i = 0; i < pairs->count; ++i) {
+            double *p = &s->still[island_of(network, pairs->list[i].point)],
+                   *q = &s->still[island_of(network, pairs->outline.a[pairs->list[i].edge])];
+            if (*p == *q || *p < 0.0 || *q < 0.0 || !is_touching(network, pairs, &pairs->list[i], 0.0))
+                continue;
+            *p = *q = *p < *q ? *p : *q;
+            again = true;
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------ stage */
+
+static void before_step(mspring_network *network, const mspringi_attempt *attempt) {
+    mspringi_pairs *pairs = network->pairs;
+    mspringi_outline_follow(network, pairs);
+    pairs->h = attempt->h;
+    pairs->dt = attempt->dt;
+    pairs->is_missed = pairs->is_strict = pairs->is_full = false;
+    pairs->taken = pairs->touching = 0;
+    pairs->since_look = 0;
+    pairs->deepest = 0.0;
+    pairs->has_sleepers = network->sleep.sleeping > 0;
+    if (mspringi_near_look(network, pairs))
+        wake_touched(network, pairs);
+}
+
+static bool is_quiet(const mspring_network *network, const mspringi_attempt *attempt) {
+    return network->pairs->quiet >= attempt->substeps;
+}
+
+static uint32_t free_substeps(const mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
+    const uint32_t quiet = network->pairs->quiet, left = attempt->substeps - substep;
+    return quiet == 0 ? 1 : quiet < left ? quiet : left;
+}
+
+static mspringi_field before_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
+                                     mspringi_field base) {
+    mspringi_pairs *pairs = network->pairs;
+    (void)attempt;
+    pairs->first_substep = substep;
+    if (pairs->quiet == 0)
+        mspringi_rows_note(network, pairs);
+    return base;
+}
+
+static void look(mspring_network *network, mspringi_pairs *pairs) {
+    pairs->is_fresh = false;
+    (void)mspringi_near_look(network, pairs);
+}
+
+// After so many quiet substeps: with the speeds that there are now, some pair could have touched.
+static void look_back(mspring_network *network, mspringi_pairs *pairs, uint32_t count) {
+    const double room = pairs->room;
+    look(network, pairs);
+    pairs->is_missed |=
+        !(2.0 * (double)pairs->h * (double)count * pairs->speed <= room) || pairs->nearest < pairs->thickness;
+}
+
+static void after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
+    mspringi_pairs *pairs = network->pairs;
+    const uint32_t count = substep + 1 - pairs->first_substep;
+    pairs->taken += count;
+    if (pairs->is_full)
+        return;
+    pairs->is_fresh = false;
+    if (pairs->quiet > 0) {
+        pairs->quiet = pairs->quiet > count ? pairs->quiet - count : 0;
+        pairs->since_look += count;
+        if (pairs->quiet == 0 && pairs->taken < attempt->substeps) {
+            look_back(network, pairs, pairs->since_look);
+            pairs->since_look = 0;
+        }
+        return;
+    }
+    if (!mspringi_rows_act(network, pairs) || pairs->is_strict)
+        look(network, pairs);
+    else if (--pairs->valid == 0)
+        (void)mspringi_near_renew(network, pairs);
+}
+
+// The last substeps may have been quiet; all were, if they were taken at once.
+static bool has_missed(mspring_network *network, const mspringi_attempt *attempt) {
+    mspringi_pairs *pairs = network->pairs;
+    const uint32_t count = pairs->taken == 0 ? attempt->substeps : pairs->since_look;
+    if (count > 0 && !pairs->is_full)
+        look_back(network, pairs, count);
+    if (!pairs->is_missed || pairs->is_strict || pairs->is_full)
+        return false;
+    pairs->is_strict = true;
+    return true;
+}
+
+static mspring_result judge(mspring_network *network) {
+    const mspringi_pairs *pairs = network->pairs;
+    if (!pairs->is_full)
+        return MSPRING_OK;
+    return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
+                         "more than %u pairs of an outline point and an outline edge are near each other: set "
+                         "contact with a larger capacity, or less thickness",
+                         (unsigned)pairs->capacity);
+}
+
+// The state is that of before the step. If the step is repeated, it begins with a look.
+static void take_back(mspring_network *network) {
+    mspringi_pairs *pairs = network->pairs;
+    pairs->is_fresh = false;
+    pairs->taken = pairs->since_look = 0;
+    if (pairs->is_strict)
+        (void)mspringi_near_look(network, pairs);
+}
+
+static void after_step(mspring_network *network, double dt) {
+    (void)dt;
+    network->pairs->is_fresh &= !(network->outcome.flags & MSPRING_STEP_PUT_BACK);
+    share_stillness(network, network->pairs);
+}
+
+const mspringi_stage mspringi_stage_pairs = {.is_used = is_used,
+                                             .writes_state = true,
+                                             .before_step = before_step,
+                                             .is_quiet = is_quiet,
+                                             .free_substeps = free_substeps,
+                                             .before_substep = before_substep,
+                                             .after_substep = after_substep,
+                                             .has_missed = has_missed,
+                                             .judge = judge,
+                                             .take_back = take_back,
+                                             .after_step = after_step};

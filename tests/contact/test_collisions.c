@@ -1,0 +1,176 @@
+/// @file test_collisions.c
+/// Bodies of all shapes that fly at each other, thousands of times: none gets into another or through it, momenta
+/// stay, and the energy that the scheme keeps does not grow by contact.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "bodies.h"
+
+#define THICKNESS 0.5
+
+static uint32_t between(uint64_t *seed, uint32_t low, uint32_t high) {
+    return low + (uint32_t)(support_random_between(seed, 0, 1) * (high - low + 1));
+}
+
+/// A hull with holes, a block, a rope, a wedge, a block with a needle, a particle.
+static uint32_t add_shape(bodies *b, uint64_t *seed, double x, double y, double mass, double f) {
+    uint8_t mask[64];
+    bodies_lattice l = {.x = x,
+                        .y = y,
+                        .angle = support_random_between(seed, 0, 6.283),
+                        .spacing = 1,
+                        .mass = mass,
+                        .f = f,
+                        .width = 1,
+                        .height = 1};
+    for (int i = 0; i < 64; i++)
+        mask[i] = 0;
+    switch (between(seed, 0, 5)) {
+    case 0:
+        l.width = 8, l.height = 5, l.mask = mask;
+        for (int i = 0; i < 40; i++)
+            mask[i] = support_random_between(seed, 0, 1) > 0.15;
+        break;
+    case 1:
+        l.width = between(seed, 2, 8), l.height = between(seed, 2, 5);
+        break;
+    case 2:
+        l.width = between(seed, 3, 11);
+        break;
+    case 3:
+        l.width = 9, l.height = 5, l.mask = mask;
+        for (int r = 0; r < 5; r++)
+            for (int c = r; c < 9 - r; c++)
+                mask[r * 9 + c] = 1;
+        break;
+    case 4:
+        l.width = 7, l.height = 3, l.mask = mask;
+        for (int i = 0; i < 21; i++)
+            mask[i] = i < 7 || i % 7 < 3;
+        break;
+    default:
+        break;
+    }
+    return bodies_add(b, &l);
+}
+
+/// Two bodies, 14 m apart, that fly at each other and turn.
+static bodies *two_bodies(uint64_t trial, double fastest, double h, double *speed) {
+    uint64_t seed = trial;
+    bodies *b = bodies_begin(h);
+    const double ratio = support_random_between(&seed, -0.5, 0.5) * log(1000),
+                 f = exp(support_random_between(&seed, log(0.05), log(0.5)));
+    (void)add_shape(b, &seed, 0, 0, exp(ratio) * 10, f);
+    const double angle = support_random_between(&seed, 0, 6.283), x = 14 * cos(angle), y = 14 * sin(angle);
+    const uint32_t second = add_shape(b, &seed, x, y, exp(-ratio) * 10, f);
+    *speed = fastest * pow(10, support_random_between(&seed, -2, 0));
+    const double off = angle + support_random_between(&seed, -0.25, 0.25),
+                 turn = support_random_between(&seed, -0.04, 0.04) * *speed,
+                 turn_2 = support_random_between(&seed, -0.04, 0.04) * *speed;
+    for (uint32_t p = 0; p < second; p++) {
+        b->vx[p] = (float)(-turn * b->y[p]);
+        b->vy[p] = (float)(turn * b->x[p]);
+    }
+    for (uint32_t p = second; p < b->count; p++) {
+        b->vx[p] = (float)(-*speed * cos(off) - turn_2 * (b->y[p] - y));
+        b->vy[p] = (float)(-*speed * sin(off) + turn_2 * (b->x[p] - x));
+    }
+    return b;
+}
+
+typedef struct outcome {
+    bool met, crossed;
+    double deepest, gain, momentum, turn;
+} outcome;
+
+static const uint32_t SUBSTEPS[] = {20, 30, 40, 60, 80, 120};
+
+static outcome collide(uint64_t trial, double fastest, float restitution, bool touches) {
+    const uint32_t substeps = SUBSTEPS[trial % COUNT_OF(SUBSTEPS)];
+    const double dt = 1.0 / 64;
+    double speed;
+    bodies *b = two_bodies(trial, fastest, dt / substeps, &speed);
+    const mspring_network_def def = support_def(0, substeps);
+    mspring_network *network = bodies_network(b, &def);
+    if (touches)
+        check_ok(bodies_touch(network, THICKNESS, 0.3f, restitution));
+    outcome o = {0};
+    const bodies_measure before = bodies_measured(b, network);
+    bodies_measure now = before;
+    const uint32_t steps = (uint32_t)fmin(30 / (speed * dt), 150);
+    for (uint32_t step = 0; step < steps; step++) {
+        uint32_t crossings;
+        mspring_contact_info info = {.struct_size = sizeof info};
+        support_steps(network, 1, dt);
+        now = bodies_measured(b, network);
+        o.gain = fmax(o.gain, now.energy / before.energy - 1);
+        check_ok(mspring_network_contact_info(network, &info));
+        o.met |= info.touching > 0;
+        if (touches)
+            o.deepest = fmax(o.deepest, bodies_deepest(b, THICKNESS, &crossings));
+        o.crossed |= touches && crossings > 0;
+    }
+    o.momentum = hypot(now.x - before.x, now.y - before.y) / before.momentum_scale;
+    o.turn = fabs(now.turn - before.turn) / before.turn_scale;
+    mspring_network_destroy(network);
+    bodies_free(b);
+    return o;
+}
+
+/// A trial is worse than the same one without contact by its own rounding at most.
+static void check_trials(uint32_t first, uint32_t count, double fastest, float restitution, double gain) {
+    outcome most = {0}, without = {0};
+    uint32_t met = 0;
+    for (uint32_t trial = first; trial < first + count; trial++) {
+        const outcome o = collide(trial, fastest, restitution, true),
+                      free = collide(trial, fastest, restitution, false);
+        met += o.met;
+        if (o.crossed || o.deepest > 0.25 * THICKNESS)
+            print_error("trial %u: crossed %d, deepest %g\n", (unsigned)trial, o.crossed, o.deepest);
+        assert_false(o.crossed);
+        most.deepest = fmax(most.deepest, o.deepest);
+        most.gain = fmax(most.gain, o.gain - free.gain);
+        most.momentum = fmax(most.momentum, o.momentum - free.momentum);
+        most.turn = fmax(most.turn, o.turn - free.turn);
+        without.gain = fmax(without.gain, free.gain);
+        without.turn = fmax(without.turn, free.turn);
+    }
+    if (getenv("CONTACT_REPORT"))
+        printf(
+            "%u trials to %g m/s, e %g: met %u, deepest %.3g, worse than without by: energy %.2g, momentum %.2g, "
+            "angular %.2g; without: energy %.2g, angular %.2g\n",
+            (unsigned)count, fastest, (double)restitution, (unsigned)met, most.deepest, most.gain, most.momentum,
+            most.turn, without.gain, without.turn);
+    assert_true(met > count / 2);
+    assert_true(most.deepest <= 0.1);
+    assert_true(most.gain <= gain);
+    assert_true(most.momentum <= 1e-4);
+    assert_true(most.turn <= 2e-3);
+}
+
+static void nothing_gets_through(void **state) {
+    (void)state;
+    check_trials(1, ROUNDS(1500), 100, 0, 2e-3);
+}
+
+static void what_bounces_gets_through_no_more(void **state) {
+    (void)state;
+    check_trials(100000, ROUNDS(300), 100, 0.5f, 2e-3);
+}
+
+static void pieces_of_a_substep_hold_what_is_faster(void **state) {
+    (void)state;
+    check_trials(200000, ROUNDS(200), 1000, 0, 1e-2);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_gets_through),
+        cmocka_unit_test(what_bounces_gets_through_no_more),
+        cmocka_unit_test(pieces_of_a_substep_hold_what_is_faster),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
