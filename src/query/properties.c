@@ -68,6 +68,10 @@ static float value_of(const mspring_network *network, mspring_property property,
         return mspringi_particle_property(network, property, id);
     case MSPRING_FORCE:
         return mspringi_spring_force(network, id);
+    case MSPRING_ACTIVE_STIFFNESS:
+        return mspringi_place_get(network, mspringi_place_of(&network->topology, id)).stiffness;
+    case MSPRING_ACTIVE_DAMPING:
+        return mspringi_place_get(network, mspringi_place_of(&network->topology, id)).damping;
     default:
         return mspringi_read_value(mspringi_spring_property(network, property, id));
     }

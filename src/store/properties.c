@@ -16,6 +16,8 @@ static const mspringi_property list[] = {
     [MSPRING_STRAIN] = {"strain", "", "", MSPRINGI_SPRINGS, false},
     [MSPRING_LENGTH] = {"length", " m", "", MSPRINGI_SPRINGS, false},
     [MSPRING_FORCE] = {"force", " N", "", MSPRINGI_SPRINGS, false},
+    [MSPRING_ACTIVE_STIFFNESS] = {"stiffness in force", " N/m", "", MSPRINGI_SPRINGS, false},
+    [MSPRING_ACTIVE_DAMPING] = {"damping in force", " N s/m", "", MSPRINGI_SPRINGS, false},
 };
 
 const mspringi_property *mspringi_property_of(mspring_property property) {

@@ -14,8 +14,9 @@
 #define DT (1.0 / 64)
 
 #define WRITABLE ((int)MSPRING_RELAX_STRAIN + 1)
-#define ALL ((int)MSPRING_FORCE + 1)
+#define ALL ((int)MSPRING_ACTIVE_DAMPING + 1)
 #define MOST 3000
+#define MEASURES (ALL - WRITABLE)
 
 /// A network with springs in rows of every kind.
 static recipe mixed_recipe(uint32_t spring_flags) {
@@ -137,7 +138,7 @@ static void measured_ones_are_those_of_each_spring(void **state) {
     recipe made = mixed_recipe(0);
     mspring_network_def def = support_def(-9.8f, 40);
     mspring_network *network = recipe_network(&made, &def);
-    static float read[3][MOST], wide[2 * MOST];
+    static float read[MEASURES][MOST], wide[2 * MOST];
     const uint32_t count = made.spring_count;
     const mspring_id broken[] = {3, 50, count - 1};
     check_ok(mspring_network_break_springs(network, broken, 3));
@@ -145,7 +146,7 @@ static void measured_ones_are_those_of_each_spring(void **state) {
     for (int viewed = 0; viewed < 2; viewed++) { // whoever has a view may have written to it
         float largest;
         mspring_id where = 0;
-        for (int i = 0; i < 3; i++) {
+        for (int i = 0; i < MEASURES; i++) {
             check_ok(mspring_network_get(network, MSPRING_STRAIN + i, 0, count, read[i], 1));
             check_ok(mspring_network_get(network, MSPRING_STRAIN + i, 0, count, wide, 2));
             for (uint32_t s = 0; s < count; s++) {
@@ -159,6 +160,7 @@ static void measured_ones_are_those_of_each_spring(void **state) {
             check_near(read[0][s], info.strain, 4e-7); // rounding of lengths
             check_near(read[1][s], info.length, 4e-7 * (double)info.length);
             assert_true(read[2][s] == info.force);
+            assert_true(read[3][s] == info.stiffness && read[4][s] == info.damping);
             check_ok(mspring_network_get_at(network, MSPRING_STRAIN, &s, 1, &strain, 1));
             assert_true(strain == read[0][s]);
             where = fabsf(read[0][s]) > fabsf(read[0][where]) ? s : where;
@@ -316,7 +318,7 @@ static void refused_ones_are_named(void **state) {
         check_contains(mspring_network_error(network), "can only be read");
     }
     check_error(mspring_network_set(network, ALL, 0, 1, kept, 1), MSPRING_ERROR_ARGUMENT);
-    check_contains(mspring_network_error(network), "no property 11");
+    check_contains(mspring_network_error(network), "no property 13");
     assert_true(support_hash(network) == hash);
     mspring_network_destroy(network);
     recipe_free(&made);

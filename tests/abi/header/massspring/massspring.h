@@ -828,6 +828,9 @@ typedef enum mspring_property {
     MSPRING_STRAIN = 8, ///< of a spring: (length - rest_length) / rest_length, 0 if it is broken; read only
     MSPRING_LENGTH = 9, ///< of a spring, m; read only
     MSPRING_FORCE = 10, ///< along a spring, N, damper included; > 0 pulls its ends together; read only
+    /// Stiffness in force of a spring, N/m; of a relative spring that of the last step; 0 if it is broken. Read only.
+    MSPRING_ACTIVE_STIFFNESS = 11,
+    MSPRING_ACTIVE_DAMPING = 12,            ///< damping in force of a spring, N s/m, likewise; read only
     MSPRING_PROPERTY_INT = MSPRING_ENUM_INT ///< no value
 } mspring_property;
 
