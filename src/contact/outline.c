@@ -65,14 +65,14 @@ bool mspringi_outline_is_joined(const mspring_network *network, mspring_id p, ms
 
 void mspringi_outline_stamp(const mspring_network *network, mspringi_pairs *pairs, mspring_id p) {
     mspringi_around around = mspringi_around_begin(network, p);
-    mspring_id near, far;
+    mspring_id next, after;
     const uint32_t stamp = p + 1;
     pairs->stamp[p] = stamp;
-    while (next_live(network, &around, p, &near) != MSPRING_NONE) {
-        mspringi_around beyond = mspringi_around_begin(network, near);
-        pairs->stamp[near] = stamp;
-        while (next_live(network, &beyond, near, &far) != MSPRING_NONE)
-            pairs->stamp[far] = stamp;
+    while (next_live(network, &around, p, &next) != MSPRING_NONE) {
+        mspringi_around beyond = mspringi_around_begin(network, next);
+        pairs->stamp[next] = stamp;
+        while (next_live(network, &beyond, next, &after) != MSPRING_NONE)
+            pairs->stamp[after] = stamp;
     }
 }
 
