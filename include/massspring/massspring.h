@@ -46,8 +46,8 @@
 ///     measure     network_energy, _momentum, _bounds
 ///     snapshots   network_snapshot_size, _save, _load
 ///
-/// massspring_tools.h extends, tunes and inspects: ropes, meshes, clones, hooks, queries, stability limits,
-/// equilibrium, tuning, layout, compaction. examples/guides explains solvers, floor, sleep and edits.
+/// massspring_tools.h extends, tunes and inspects: ropes, meshes, clones, hooks, queries, contact, stability limits,
+/// equilibrium, tuning, layout, compaction. examples/guides explains solvers, floor, contact, sleep and edits.
 ///
 /// **Units** are SI: metres, kilograms, seconds, newtons, N/m, N s/m. The y axis points up.
 ///
@@ -134,7 +134,7 @@ typedef enum mspring_result {
     MSPRING_ERROR_ARGUMENT = -1,          ///< NULL, NaN, infinite, or outside the range that the function states
     MSPRING_ERROR_ID = -2,                ///< no such particle, spring or hook
     MSPRING_ERROR_MEMORY = -3,            ///< the allocator returned NULL
-    MSPRING_ERROR_LIMIT = -4,             ///< more particles, springs or cells than the library or network has room for
+    MSPRING_ERROR_LIMIT = -4,             ///< more particles, springs, cells or pairs than there is room for
     MSPRING_ERROR_STRUCT = -5,            ///< struct_size is not one that any version of this struct had
     MSPRING_ERROR_DUPLICATE = -6,         ///< two springs join the same two particles
     MSPRING_ERROR_UNSTABLE = -7,          ///< the step was unstable and has been rolled back

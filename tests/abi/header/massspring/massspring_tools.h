@@ -781,7 +781,7 @@ MSPRING_API const char *MSPRING_CALL mspring_job_error(const mspring_job *job);
 /// @threads exclusive access to job and, unless it is finished, to its network   @allocates never   @since 0.2
 MSPRING_API void MSPRING_CALL mspring_job_destroy(mspring_job *job);
 
-/* ------------------------------------------------------------------------------------------- contact */
+/* ------------------------------------------------------------------------------------------------------- contact */
 
 /// Flags of mspring_contact_def.
 enum {
@@ -808,48 +808,46 @@ typedef struct mspring_contact_def {
 /// @threads any   @allocates never   @errors ARGUMENT, STRUCT
 MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact_def *def, size_t size);
 
-/// Let bodies of a network collide, instead of the contact that it has.
-/// A body is a set of particles that springs connect. Its outline is made of all springs that have a free side,
-/// and of particles without springs. Ropes and trusses are all outline. Particles of the outline keep a distance of
-/// thickness from the springs of the outline. Two particles that a spring joins, or two springs, do not collide with
-/// each other's springs. The outline follows breaks, additions and removals. examples/guides/contact.md describes what
-/// holds, what bounces, and what it costs.
+/// Let the bodies of a network collide, instead of the contact that it has.
+/// A body is a set of particles that springs connect. Its outline are all springs that have a free side, and particles
+/// without springs. Ropes and trusses are all outline. Particles of the outline keep a distance of thickness from the
+/// springs of the outline. Particles that one spring joins, or two, do not collide with each other's springs. The
+/// outline follows breaks, additions and removals. The guide examples/guides/contact.md describes what holds.
 ///
-/// Which side of a spring is free follows from the positions at this call, and from those at which particles were
-/// added later. So set contact before the network deforms. Overlaps at the start are pushed apart. Springs that cross
-/// at the start stay crossed.
+/// Which side of a spring is free follows from the positions at this call, and from those at which particles were added
+/// later. So set contact before the network deforms. Overlaps at the start are pushed apart. Springs that cross at the
+/// start stay crossed.
 ///
-/// The explicit solver has contact, and so have steps that are clamped (MSPRING_GUARD_CLAMP). The implicit and the
-/// direct solver and MSPRING_GUARD_IMPLICIT are refused while contact is set. A network that has them refuses contact.
+/// Contact needs the explicit solver; clamped steps (MSPRING_GUARD_CLAMP) have it, too. While it is set, the network
+/// rejects the implicit and the direct solver and MSPRING_GUARD_IMPLICIT. A network that has them rejects contact.
 /// mspring_network_tune() and mspring_network_settle() leave contact out.
 ///
-/// Snapshots leave contact as it is, as they leave the floor. They hold the shape only. Set the same contact and the
-/// same groups before you load one: then the steps that follow have the same bits.
+/// Snapshots leave contact as it is, as they leave the floor. They hold the outline's shape only. Before you load one,
+/// set the same contact and the same groups. Then the next steps have the same bits.
 ///
-/// A step fails with MSPRING_ERROR_LIMIT, and is not taken, if more than capacity pairs are near each other.
+/// If more than capacity pairs are near each other, a step fails with MSPRING_ERROR_LIMIT and is rolled back.
 /// @param def  copied; NULL: no contact, the default. The particles' groups are forgotten then.
 /// @threads exclusive   @allocates yes; about 500 bytes for a particle, 1200 more for one of the outline, 40 for a
-/// spring   @errors ARGUMENT (the message names field or solver), STRUCT, MEMORY, BUSY
-MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_contact(mspring_network *network,
-                                                                         const mspring_contact_def *def);
+///          spring   @errors ARGUMENT (the message names field or solver), STRUCT, MEMORY, BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_contact(
+    mspring_network *network, const mspring_contact_def *def);
 
-/// Get the contact as it was set. Set struct_size first.
+/// Read the contact. Set struct_size first.
 /// Without contact capacity is 0. With it, thickness and capacity are those in use.
 /// @threads shared   @allocates never   @errors ARGUMENT, STRUCT
-MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_contact(const mspring_network *network,
-                                                                         mspring_contact_def *def);
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_contact(
+    const mspring_network *network, mspring_contact_def *def);
 
-/// Say which particles may touch each other.
+/// Set which particles may touch each other.
 /// Two particles may if each one's group has a bit of the other's mask. A spring may touch what both its ends may.
 /// All have group 1 and mask 0xffffffff at first.
 /// @param first, count  particles first ... first + count - 1, of which those that were removed are left out
 /// @param groups, masks  bits, for all of them
 /// @threads exclusive   @allocates never   @errors ID, ARGUMENT (also without contact), BUSY
-MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_contact_groups(mspring_network *network,
-                                                                                mspring_id first, uint32_t count,
-                                                                                uint32_t groups, uint32_t masks);
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_contact_groups(
+    mspring_network *network, mspring_id first, uint32_t count, uint32_t groups, uint32_t masks);
 
-/// What contact did in the last step. Set struct_size first.
+/// Report of contact in the last step. Set struct_size first.
 typedef struct mspring_contact_info {
     uint32_t struct_size;
     uint32_t edges;    ///< of the outline: springs with a free side, and particles without springs
@@ -860,10 +858,10 @@ typedef struct mspring_contact_info {
     double deepest;    ///< largest overlap in the step, m; 0 if there was none
 } mspring_contact_info;
 
-/// Get these numbers. Without contact, and before the first step with it, all are 0.
+/// Read the report of contact. Without contact, and before the first step with it, all numbers are 0.
 /// @threads shared   @allocates never   @errors ARGUMENT, STRUCT
-MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_contact_info(const mspring_network *network,
-                                                                          mspring_contact_info *info);
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_contact_info(
+    const mspring_network *network, mspring_contact_info *info);
 
 #ifdef __cplusplus
 }
