@@ -6,13 +6,13 @@
 
 #include <string.h>
 
+#include <massspring/massspring_tools.h>
+
 #if defined(__wasm__)
 #include "environment.h"
 #define ALLOCATOR &environment_allocator
 #else
 #include <stdlib.h>
-
-#include <massspring/massspring_tools.h>
 #define ALLOCATOR NULL
 #endif
 
