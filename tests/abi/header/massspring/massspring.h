@@ -135,7 +135,7 @@ typedef enum mspring_result {
     MSPRING_ERROR_ID = -2,                ///< no such particle, spring or hook
     MSPRING_ERROR_MEMORY = -3,            ///< the allocator returned NULL
     MSPRING_ERROR_LIMIT = -4,             ///< more particles, springs, cells or pairs than there is room for
-    MSPRING_ERROR_STRUCT = -5,            ///< struct_size is not one that any version of this struct had
+    MSPRING_ERROR_STRUCT = -5,            ///< struct_size is impossible, or what this version does not know is not 0
     MSPRING_ERROR_DUPLICATE = -6,         ///< two springs join the same two particles
     MSPRING_ERROR_UNSTABLE = -7,          ///< the step was unstable and has been rolled back
     MSPRING_ERROR_BUSY = -8,              ///< called inside a hook, or a job is under way
