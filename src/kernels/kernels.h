@@ -104,7 +104,7 @@ typedef struct mspringi_herd_group {
     uint32_t first_below, end_below; ///< of the springs to those below it
 } mspringi_herd_group;
 
-/// Herds that are swept together: see web.h.
+/// Herds that are swept together: see layout/emit/web.h.
 typedef struct mspringi_herd {
     uint32_t first_slot, group_count, spring_count;
     mspringi_herd_group groups[MSPRINGI_LONGEST_HERD];

@@ -1,13 +1,13 @@
 /// @file topology.h
 /// From particles and springs to rows: which particles lie on grids, which on strands, and in which slot.
 ///
-/// A slot is a place in the state arrays. Slots come in blocks of MSPRINGI_WIDTH, a block being that many columns
-/// of one row. There are four kinds of row:
+/// A slot is an index into the state arrays. Slots come in blocks of MSPRINGI_WIDTH, a block being that many
+/// columns of one row. There are four kinds of row:
 ///
 ///   lattice  one row of a grid; each block has a record of four springs per slot (see mspringi_direction)
 ///   chain    strands packed end to end; a record of one spring per slot, to the next slot
-///   web      particles with other springs; no record, see web.h. Herds (herds.c) have a row of their own, whose
-///            spans have nothing to do with each other
+///   web      particles with other springs; records by rung, see layout/emit/web.h. Herds (layout/recognise/
+///            herds.c) have a row of their own, whose spans have nothing to do with each other
 ///   loose    particles without a spring; no record
 ///
 /// A spring that lies in no lattice or chain row is left over: the web has it. Web particles that hang on a lattice
@@ -37,8 +37,8 @@ typedef enum mspringi_direction {
 
 /// Where a spring lies: below lattice_places a lattice record, (block * MSPRINGI_DIRECTIONS + direction) *
 /// MSPRINGI_WIDTH + lane; below chain_places a chain record, lattice_places + block * MSPRINGI_WIDTH + lane; above
-/// that, chain_places + number among the leftover springs, behind which are those with spare ids (see spare.h) and
-/// the inactive ones. Block counts from the first of its kind.
+/// that, chain_places + number among the leftover springs, behind which are those with spare ids (see
+/// layout/emit/spare.h) and the inactive ones. Block counts from the first of its kind.
 typedef uint32_t mspringi_place;
 
 /// Lanes of the narrowest vector register.

@@ -1,10 +1,10 @@
 /// Ropes that hang on lattices: with which strip each of their particles is swept, and where in it.
 ///
 /// Springs between particles that lie one above the other, sixteen ropes side by side, are computed once and gather
-/// nothing (see web.h). So a rope goes from the strip that one of its ends hangs on to near the other's in as few
-/// particles as the skew allows, and stays there with all others. What stays is cut into pieces of two lengths:
-/// sixteen of the same length begin and end together, and only springs between pieces, at the first and the last
-/// row, are computed at both ends.
+/// nothing (see layout/emit/web.h). So a rope goes from the strip that one of its ends hangs on to near the other's
+/// in as few particles as the skew allows, and stays there with all others. What stays is cut into pieces of two
+/// lengths: sixteen of the same length begin and end together, and only springs between pieces, at the first and
+/// the last row, are computed at both ends.
 #include "layout/arrange/ropes.h"
 
 /// Particles in pieces.

@@ -11,7 +11,7 @@
 /// Substeps times springs from which more than one worker is worth it.
 #define SMALLEST_SHARED_WORK 400000u
 
-/// What the workers have in common.
+/// What the workers of a sweep have in common. (The job of network/job.h is another thing.)
 typedef struct job {
     const mspring_network *network;
     mspringi_field base;
