@@ -63,9 +63,8 @@ static bool is_free_way(const mspringi_floor *floor, double from_x, double from_
 
 /* ------------------------------------------------------------------------------------------------- with springs */
 
-static double turn_at(const mspringi_floor *floor, const mspringi_line *line, double h, double allowed,
-                      mspringi_going *p) {
-    return mspringi_turn_going(line->nx, line->ny, line->offset, floor->friction, h, allowed, p);
+static double turn_at(const mspringi_line *line, double h, double allowed, mspringi_going *p) {
+    return mspringi_turn_going(line->nx, line->ny, line->offset, line->friction, line->restitution, h, allowed, p);
 }
 
 // The part of the heights that it meets on its way, or else the one that it would end below.
@@ -73,15 +72,15 @@ static double turn_at_heights(const mspringi_floor *floor, double h, double allo
     const double x = p->x + h * p->vx, y = p->y + h * p->vy;
     const int64_t part = mspringi_heights_part_met(&floor->heights, p->x, p->y, x, y);
     const mspringi_line met = mspringi_heights_line(&floor->heights, part), below = line_below(&floor->heights, x);
-    const double acts = turn_at(floor, &met, h, allowed, p);
-    return acts > 0.0 ? acts : turn_at(floor, &below, h, allowed, p);
+    const double acts = turn_at(&met, h, allowed, p);
+    return acts > 0.0 ? acts : turn_at(&below, h, allowed, p);
 }
 
 // Go through all surfaces once. Returns whether any did anything.
 static bool turn(const mspringi_floor *floor, double h, double allowed, mspringi_going *p) {
     double any = 0.0;
     for (uint32_t i = 0; i < floor->plane_count; ++i)
-        any += turn_at(floor, &floor->lines[i], h, allowed, p);
+        any += turn_at(&floor->lines[i], h, allowed, p);
     if (floor->heights.count > 0)
         any += turn_at_heights(floor, h, allowed, p);
     return any > 0.0;
@@ -141,7 +140,7 @@ static void find_end(const mspringi_flyer *p, double *x, double *y) {
 }
 
 static meeting find_meeting(const mspringi_floor *floor, double slop, const mspringi_flyer *p) {
-    meeting first = {{0.0, 0.0, 0.0}, INFINITY};
+    meeting first = {.time = INFINITY};
     for (uint32_t i = 0; i < floor->plane_count; ++i)
         meet(&floor->lines[i], slop, p, &first);
     if (floor->heights.count == 0)
@@ -220,6 +219,7 @@ bool mspringi_floor_fly(const mspringi_floor *floor, const mspringi_turning *how
     bool acts = mspringi_floor_distance(floor, x, y) < 0.0 && put_flyer_outside(floor, p);
     acts |= leave_part(floor, how, slop, p);
     const mspringi_flyer start = *p;
+    double restitution = floor->restitution; // of the last surface that it met
     bool has_slid = false;
     for (int turns = 1; turns <= MSPRINGI_MOST_TURNS; ++turns) {
         const meeting first = find_meeting(floor, slop, p);
@@ -227,8 +227,9 @@ bool mspringi_floor_fly(const mspringi_floor *floor, const mspringi_turning *how
             break;
         acts = true;
         has_slid |= turns > 1 && p->ax == 0.0 && p->ay == 0.0;
-        mspringi_turn_flyer(first.line.nx, first.line.ny, first.line.offset, how, first.time,
-                            turns == MSPRINGI_MOST_TURNS, p);
+        restitution = first.line.restitution;
+        mspringi_turn_flyer(first.line.nx, first.line.ny, first.line.offset, first.line.friction, restitution, how,
+                            first.time, turns == MSPRINGI_MOST_TURNS, p);
     }
     find_end(p, &x, &y);
     const double since = p->left - how->skew, keep = has_slid ? kept_of(&start, p, since, x, y) : 1.0;
@@ -240,7 +241,7 @@ bool mspringi_floor_fly(const mspringi_floor *floor, const mspringi_turning *how
         let_go(floor, how, &start, p, vx, vy);
     if (acts && (keep == 0.0 || !(mspringi_floor_distance(floor, x, y) >= -mspringi_floor_slop(x, y)))) {
         // A corner that leads nowhere: it stays, and turns back as fast as it bounces.
-        const double e = how->restitution > MSPRINGI_LEAST_RESTITUTION ? how->restitution : 0.0;
+        const double e = restitution > MSPRINGI_LEAST_RESTITUTION ? restitution : 0.0;
         p->x = start.x;
         p->y = start.y;
         *vx = e > 0.0 ? -e * start.wx - how->skew * start.ax : 0.0;

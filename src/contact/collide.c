@@ -19,7 +19,7 @@
 #define ROUNDS 4
 
 // Let one straight surface act on a body. Returns whether it did anything.
-static bool touch(const mspringi_floor *floor, const mspringi_line *line, mspringi_body *b, double h, double slop) {
+static bool touch(const mspringi_line *line, mspringi_body *b, double h, double slop) {
     const double distance = line->nx * b->x + line->ny * b->y + line->offset;
     if (!(distance < slop))
         return false;
@@ -27,7 +27,7 @@ static bool touch(const mspringi_floor *floor, const mspringi_line *line, msprin
     const bool approaches = across < 0.0;
     if (approaches) {
         const double along = line->nx * b->vy - line->ny * b->vx;
-        const double taken = mspringi_braked_by(along, floor->friction * -across);
+        const double taken = mspringi_braked_by(along, line->friction * -across);
         b->vx += -across * line->nx + taken * line->ny;
         b->vy += -across * line->ny - taken * line->nx;
         b->x += h * taken * line->ny;
@@ -44,11 +44,11 @@ static bool touch_all(const mspringi_floor *floor, mspringi_body *b, double h, d
     const mspringi_heights *heights = &floor->heights;
     bool any = false;
     for (uint32_t i = 0; i < floor->plane_count; ++i)
-        any |= touch(floor, &floor->lines[i], b, h, slop);
+        any |= touch(&floor->lines[i], b, h, slop);
     if (heights->count > 0) {
         const int64_t part = mspringi_heights_part_met(heights, b->start_x, b->start_y, b->x, b->y);
         const mspringi_line line = mspringi_heights_line(heights, part);
-        any |= touch(floor, &line, b, h, slop);
+        any |= touch(&line, b, h, slop);
     }
     return any;
 }

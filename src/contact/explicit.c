@@ -50,16 +50,14 @@ static void put(const mspring_network *network, size_t slot, double x, double y,
 
 static void bounce_slot(const mspring_network *network, const mspringi_ground *g, size_t slot) {
     const double from_vx = (double)g->from_vx[slot], from_vy = (double)g->from_vy[slot];
-    mspringi_going p =
-        mspringi_going_from((double)g->x[slot], (double)g->y[slot], (double)g->vx[slot], (double)g->vy[slot],
-                            from_vx, from_vy, g->undamped, g->h, g->restitution, g->per_length);
+    mspringi_going p = mspringi_going_from((double)g->x[slot], (double)g->y[slot], (double)g->vx[slot],
+                                           (double)g->vy[slot], from_vx, from_vy, g->undamped, g->h, g->per_length);
     if (mspringi_floor_bounce(network->floor, g->h, from_vx, from_vy, &p))
         put(network, slot, p.x + g->h * p.vx, p.y + g->h * p.vy, p.vx, p.vy);
 }
 
 static void fly_slot(const mspring_network *network, const mspringi_ground *g, size_t slot) {
-    const mspringi_turning how = {
-        .friction = g->friction, .restitution = g->restitution, .h = g->h, .skew = 0.5 * g->h};
+    const mspringi_turning how = {.h = g->h, .skew = 0.5 * g->h};
     mspringi_flyer p =
         mspringi_flyer_from((double)g->x[slot], (double)g->y[slot], (double)g->vx[slot], (double)g->vy[slot],
                             (double)g->from_vx[slot], (double)g->from_vy[slot], g->undamped, g->h);
@@ -86,6 +84,8 @@ static mspringi_ground ground_of(const mspring_network *network, const mspringi_
         .left = floor->heights.local_x,
         .bottom = floor->heights.local_y,
         .spacing = floor->heights.spacing,
+        .frictions = floor->heights.frictions,
+        .restitutions = floor->heights.restitutions,
         .friction = floor->friction,
         .restitution = floor->restitution,
         .h = (double)h,
@@ -208,13 +208,9 @@ typedef struct gliding {
 // acts before and after a parabola (Strang, 1968), so that it takes energy whatever bounces there are: as a part of
 // the acceleration, found before a bounce, it gave some after it.
 static gliding glide(const mspring_network *network, float h) {
-    const mspringi_floor *floor = network->floor;
     const bool skews = network->running->ops->skews;
     const double half = skews ? 1.0 : (double)mspringi_decay(network->settings.global_damping, 0.5f * h);
-    return (gliding){.how = {.friction = floor->friction,
-                             .restitution = floor->restitution,
-                             .h = (double)h,
-                             .skew = skews ? 0.5 * (double)h : 0.0},
+    return (gliding){.how = {.h = (double)h, .skew = skews ? 0.5 * (double)h : 0.0},
                      .before = half,
                      .within = skews ? (double)mspringi_decay(network->settings.global_damping, h) : 1.0,
                      .after = half};

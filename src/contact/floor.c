@@ -63,22 +63,50 @@ static mspring_result check_heights(const mspring_floor_def *def, mspringi_messa
     return MSPRING_OK;
 }
 
+static mspring_result check_values(const float *values, uint32_t count, const char *name, double most,
+                                   mspringi_message *message) {
+    for (uint32_t i = 0; values && i < count; ++i)
+        if (!(values[i] >= 0.0f && (double)values[i] <= most))
+            return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the floor's %s[%u] is %g, it must be 0 to %g",
+                                 name, (unsigned)i, (double)values[i], most);
+    return MSPRING_OK;
+}
+
+#define MOST_FRICTION 1e6
+#define MOST_RESTITUTION 1.0
+
+static mspring_result check_surface(const mspring_floor_def *def, mspringi_message *message) {
+    const uint32_t parts = def->height_count > 0 ? def->height_count - 1 : 0;
+    if (!(def->friction >= 0.0f && (double)def->friction <= MOST_FRICTION))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the floor's friction is %g, it must be 0 to 1e6",
+                             (double)def->friction);
+    if (!(def->restitution >= 0.0f && (double)def->restitution <= MOST_RESTITUTION))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the floor's restitution is %g, it must be 0 to 1",
+                             (double)def->restitution);
+    mspring_result result =
+        check_values(def->plane_frictions, def->plane_count, "plane_frictions", MOST_FRICTION, message);
+    if (result == MSPRING_OK)
+        result = check_values(def->plane_restitutions, def->plane_count, "plane_restitutions", MOST_RESTITUTION,
+                              message);
+    if (result == MSPRING_OK)
+        result = check_values(def->height_frictions, parts, "height_frictions", MOST_FRICTION, message);
+    if (result == MSPRING_OK)
+        result = check_values(def->height_restitutions, parts, "height_restitutions", MOST_RESTITUTION, message);
+    return result;
+}
+
 static mspring_result check_floor(const mspring_floor_def *def, mspringi_message *message) {
     mspring_result result = mspringi_check_struct(message, "mspring_floor_def", def, sizeof *def);
     if (result == MSPRING_OK)
         result = mspringi_check_reserved(message, "mspring_floor_def", def->reserved);
     if (result != MSPRING_OK)
         return result;
-    if (!(def->friction >= 0.0f && def->friction <= 1e6f))
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the floor's friction is %g, it must be 0 to 1e6",
-                             (double)def->friction);
-    if (!(def->restitution >= 0.0f && def->restitution <= 1.0f))
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the floor's restitution is %g, it must be 0 to 1",
-                             (double)def->restitution);
     if (def->plane_count == 0 && def->height_count == 0)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the floor has neither planes nor heights");
     result = check_planes(def, message);
-    return result == MSPRING_OK ? check_heights(def, message) : result;
+    if (result == MSPRING_OK)
+        result = check_heights(def, message);
+    return result == MSPRING_OK ? check_surface(def, message) : result;
 }
 
 /* ----------------------------------------------------------------------------------------------------- copying */
@@ -121,9 +149,28 @@ static bool find_normals(mspringi_heights *h, mspringi_memory *memory) {
     return h->normals != NULL;
 }
 
+// Copy an array that the host may have given. False: there is no memory for it.
+static bool copy_values(float **to, const float *values, uint32_t count, mspringi_memory *memory) {
+    if (!values || count == 0)
+        return true;
+    *to = mspringi_alloc(memory, count, sizeof **to);
+    if (*to)
+        memcpy(*to, values, count * sizeof **to);
+    return *to != NULL;
+}
+
+static bool copy_surface(mspringi_floor *to, const mspring_floor_def *def, mspringi_memory *memory) {
+    const uint32_t parts = def->height_count > 0 ? def->height_count - 1 : 0;
+    mspringi_heights *heights = &to->heights;
+    to->friction = heights->friction = (double)def->friction;
+    to->restitution = heights->restitution = (double)def->restitution;
+    return copy_values(&to->plane_frictions, def->plane_frictions, def->plane_count, memory) &&
+           copy_values(&to->plane_restitutions, def->plane_restitutions, def->plane_count, memory) &&
+           copy_values(&heights->frictions, def->height_frictions, parts, memory) &&
+           copy_values(&heights->restitutions, def->height_restitutions, parts, memory);
+}
+
 static bool copy_floor(mspringi_floor *to, const mspring_floor_def *def, mspringi_memory *memory) {
-    to->friction = (double)def->friction;
-    to->restitution = (double)def->restitution;
     to->plane_count = def->plane_count;
     for (uint32_t i = 0; i < def->plane_count; ++i) {
         const double *plane = def->planes + 4 * (size_t)i;
@@ -135,8 +182,8 @@ static bool copy_floor(mspringi_floor *to, const mspring_floor_def *def, mspring
     to->heights.x = def->heights_x;
     to->heights.y = def->heights_y;
     to->heights.spacing = def->spacing;
-    return def->height_count == 0 ||
-           (copy_heights(&to->heights, def, memory) && find_normals(&to->heights, memory));
+    return copy_surface(to, def, memory) && (def->height_count == 0 || (copy_heights(&to->heights, def, memory) &&
+                                                                        find_normals(&to->heights, memory)));
 }
 
 /* ------------------------------------------------------------------------------------------------------ layout */
@@ -158,6 +205,10 @@ void mspringi_floor_destroy(mspringi_floor *floor, mspringi_memory *memory) {
         return;
     mspringi_free(memory, floor->heights.heights);
     mspringi_free(memory, floor->heights.normals);
+    mspringi_free(memory, floor->heights.frictions);
+    mspringi_free(memory, floor->heights.restitutions);
+    mspringi_free(memory, floor->plane_frictions);
+    mspringi_free(memory, floor->plane_restitutions);
     mspringi_floor_free_layout(floor, memory);
 }
 
@@ -240,6 +291,10 @@ static mspring_floor_def def_of(const mspringi_floor *floor) {
     def.height_count = floor->heights.count;
     def.friction = (float)floor->friction;
     def.restitution = (float)floor->restitution;
+    def.plane_frictions = floor->plane_frictions;
+    def.plane_restitutions = floor->plane_restitutions;
+    def.height_frictions = floor->heights.frictions;
+    def.height_restitutions = floor->heights.restitutions;
     return def;
 }
 
@@ -254,13 +309,21 @@ mspring_result mspring_network_get_floor(const mspring_network *network, mspring
     return MSPRING_OK;
 }
 
+static bool are_same(const float *a, const float *b, uint32_t count) {
+    return count == 0 || (!a && !b) || (a && b && memcmp(a, b, count * sizeof *a) == 0);
+}
+
 // Whether a floor is the one that there is.
 static bool is_same(const mspringi_floor *floor, const mspring_floor_def *b) {
     if (!floor || !b)
         return !floor && !b;
     const mspring_floor_def a = def_of(floor);
+    const uint32_t parts = a.height_count > 0 ? a.height_count - 1 : 0;
     return a.plane_count == b->plane_count && a.height_count == b->height_count && a.friction == b->friction &&
-           a.restitution == b->restitution &&
+           a.restitution == b->restitution && are_same(a.plane_frictions, b->plane_frictions, a.plane_count) &&
+           are_same(a.plane_restitutions, b->plane_restitutions, a.plane_count) &&
+           are_same(a.height_frictions, b->height_frictions, parts) &&
+           are_same(a.height_restitutions, b->height_restitutions, parts) &&
            (a.plane_count == 0 || memcmp(a.planes, b->planes, a.plane_count * sizeof floor->given[0]) == 0) &&
            (a.height_count == 0 ||
             (a.heights_x == b->heights_x && a.heights_y == b->heights_y && a.spacing == b->spacing &&

@@ -30,6 +30,8 @@ typedef struct mspringi_heights {
     uint32_t count; ///< 0: there are none
     float *heights;
     double *normals;                        ///< [count - 1][2] of each straight part
+    float *frictions, *restitutions;        ///< [count - 1] likewise; NULL: all have the floor's
+    double friction, restitution;           ///< the floor's
     float *highest[MSPRINGI_HEIGHT_LEVELS]; ///< [level][i]: the highest of 2^level of them from i 2^level on;
                                             ///< highest[0] is heights
 } mspringi_heights;
@@ -46,6 +48,7 @@ typedef struct mspringi_contact {
     bool is_active;   ///< it is held
     double slip;      ///< it slides this way along the surface, 1 or -1; 0: it sticks
     double nx, ny;    ///< across the surface
+    double friction;  ///< of it
     double gap;       ///< distance where it is predicted, m
     double ahead;     ///< how far it is predicted to come along the surface, m
     double stiffness; ///< of what holds it, in the units of the matrix
@@ -63,8 +66,9 @@ typedef struct mspringi_room {
 
 typedef struct mspringi_floor {
     mspringi_half_plane planes[MSPRING_MAX_PLANES];
-    double given[MSPRING_MAX_PLANES][4];     ///< the same, as the host gave them
-    mspringi_line lines[MSPRING_MAX_PLANES]; ///< the same, local
+    double given[MSPRING_MAX_PLANES][4];         ///< the same, as the host gave them
+    float *plane_frictions, *plane_restitutions; ///< [plane_count] of these; NULL: all have the next two
+    mspringi_line lines[MSPRING_MAX_PLANES];     ///< the same, local
     uint32_t plane_count;
     mspringi_heights heights;
     double friction, restitution;
@@ -141,8 +145,8 @@ void mspringi_floor_survey(mspring_network *network, double seconds);
 /// Whether a block of a strip that may come near the surface may do so itself, in the same substeps.
 bool mspringi_floor_is_near_block(const mspring_network *network, const mspringi_strip *strip, uint32_t block);
 
-/// Whether nothing can come near the surface in a step of so many seconds. The clearances of the last survey then say
-/// so of every strip, too.
+/// Whether nothing can come near the surface in a step of so many seconds. The clearances of the last survey then
+/// say so of every strip, too.
 bool mspringi_floor_is_out_of_reach(mspring_network *network, double seconds);
 
 /// After that step, of substeps of h: whether nothing did, by bounds of what it has led to.

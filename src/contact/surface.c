@@ -15,8 +15,12 @@
 void mspringi_floor_follow(mspringi_floor *floor, double origin_x, double origin_y) {
     for (uint32_t i = 0; i < floor->plane_count; ++i) {
         const mspringi_half_plane *plane = &floor->planes[i];
-        floor->lines[i] = (mspringi_line){plane->nx, plane->ny,
-                                          plane->nx * (origin_x - plane->x) + plane->ny * (origin_y - plane->y)};
+        floor->lines[i] = (mspringi_line){
+            .nx = plane->nx,
+            .ny = plane->ny,
+            .offset = plane->nx * (origin_x - plane->x) + plane->ny * (origin_y - plane->y),
+            .friction = floor->plane_frictions ? (double)floor->plane_frictions[i] : floor->friction,
+            .restitution = floor->plane_restitutions ? (double)floor->plane_restitutions[i] : floor->restitution};
     }
     floor->heights.local_x = floor->heights.x - origin_x;
     floor->heights.local_y = floor->heights.y - origin_y;
@@ -48,12 +52,18 @@ static double knot_y(const mspringi_heights *h, int64_t i) {
 }
 
 mspringi_line mspringi_heights_line(const mspringi_heights *h, int64_t part) {
-    if (part < 0)
-        return (mspringi_line){0.0, 1.0, -knot_y(h, 0)};
-    if (part >= (int64_t)h->count - 1)
-        return (mspringi_line){0.0, 1.0, -knot_y(h, (int64_t)h->count - 1)};
-    const double nx = h->normals[2 * part], ny = h->normals[2 * part + 1];
-    return (mspringi_line){nx, ny, -(nx * knot_x(h, part) + ny * knot_y(h, part))};
+    const int64_t last = (int64_t)h->count - 2, sloping = part < 0 ? 0 : part < last ? part : last;
+    mspringi_line line = {.ny = 1.0,
+                          .friction = h->frictions ? (double)h->frictions[sloping] : h->friction,
+                          .restitution = h->restitutions ? (double)h->restitutions[sloping] : h->restitution};
+    if (part != sloping) {
+        line.offset = -knot_y(h, part < 0 ? 0 : last + 1);
+        return line;
+    }
+    line.nx = h->normals[2 * part];
+    line.ny = h->normals[2 * part + 1];
+    line.offset = -(line.nx * knot_x(h, part) + line.ny * knot_y(h, part));
+    return line;
 }
 
 /// The way of a particle, straight from its start.

@@ -36,7 +36,7 @@ typedef struct mspringi_going {
     double x, y;           ///< before the substep, m
     double vx, vy;         ///< the velocity that it is to move by, m/s
     double half_x, half_y; ///< half of what forces have changed that by
-    double restitution;
+    double most_restitution;
 } mspringi_going;
 
 /// Twice the kinetic energy per mass, in step.
@@ -51,8 +51,7 @@ static inline double mspringi_going_square(const mspringi_going *p) {
 /// most 1 - (4 s)^2. (300 bodies of 2 to 20 particles that fall 10 m, at restitution 1: 1 instead of 94 of them
 /// gain more than the free ones at 0.5 of what is stable in any shape.) per_length is 4 h / l.
 static inline mspringi_going mspringi_going_from(double x, double y, double vx, double vy, double from_vx,
-                                                 double from_vy, double undamped, double h, double restitution,
-                                                 double per_length) {
+                                                 double from_vy, double undamped, double h, double per_length) {
     mspringi_going p = {.x = x - h * vx,
                         .y = y - h * vy,
                         .vx = vx,
@@ -60,8 +59,7 @@ static inline mspringi_going mspringi_going_from(double x, double y, double vx, 
                         .half_x = 0.5 * (undamped * vx - from_vx),
                         .half_y = 0.5 * (undamped * vy - from_vy)};
     const double most = 1.0 - per_length * per_length * mspringi_going_square(&p);
-    const double some = most > 0.0 ? most : 0.0;
-    p.restitution = restitution < some ? restitution : some;
+    p.most_restitution = most > 0.0 ? most : 0.0;
     return p;
 }
 
@@ -73,17 +71,18 @@ static inline double mspringi_braked_by(double along, double most) {
 
 /// Let a surface act on a particle that would come further below it than is allowed. Thrown back, it goes from
 /// where it is, if that is fast enough to leave; else it lands on the surface. Returns 1 if it acts, else 0.
-MSPRINGI_BOUNCE_INLINE double mspringi_turn_going(double nx, double ny, double offset, double friction, double h,
-                                                  double allowed, mspringi_going *p) {
+MSPRINGI_BOUNCE_INLINE double mspringi_turn_going(double nx, double ny, double offset, double friction,
+                                                  double restitution, double h, double allowed, mspringi_going *p) {
     const double distance = nx * p->x + ny * p->y + offset;
     const double across = nx * p->vx + ny * p->vy;
     const bool acts = distance + h * across < -allowed;
     const double depth = distance < 0.0 ? distance : 0.0;
     const double half = nx * p->half_x + ny * p->half_y;
     const double inward = half - across; // in step
-    const double thrown = p->restitution * inward + half;
+    const double e = restitution < p->most_restitution ? restitution : p->most_restitution;
+    const double thrown = e * inward + half;
     const double landing = (depth - distance) / h;
-    const bool bounces = (inward > 0.0) & (thrown > landing) & (p->restitution > MSPRINGI_LEAST_RESTITUTION);
+    const bool bounces = (inward > 0.0) & (thrown > landing) & (e > MSPRINGI_LEAST_RESTITUTION);
     const double away = bounces ? thrown : landing;
     const double out = away > across ? away : across;
     const double given = out - across;
@@ -132,7 +131,6 @@ static inline mspringi_flyer mspringi_flyer_from(double x, double y, double vx, 
 
 /// How it is turned.
 typedef struct mspringi_turning {
-    double friction, restitution;
     double h;    ///< of the substep, s
     double skew; ///< by which a velocity that is stored is behind w: h / 2, or 0 after implicit substeps
 } mspringi_turning;
@@ -167,20 +165,20 @@ static inline double mspringi_time_to(double nx, double ny, double offset, doubl
 /// h a / 2: what presses it on counts as friction takes it, and no bounce. Of what slides, the last places of its
 /// velocity point across the surface, too: at restitution 1 they made it bounce from rest.) Returns whether it
 /// bounces.
-static inline bool mspringi_turn_flyer(double nx, double ny, double offset, const mspringi_turning *how,
-                                       double time, bool is_last, mspringi_flyer *p) {
+static inline bool mspringi_turn_flyer(double nx, double ny, double offset, double friction, double restitution,
+                                       const mspringi_turning *how, double time, bool is_last, mspringi_flyer *p) {
     const double x = p->x + time * (p->wx + 0.5 * time * p->ax), y = p->y + time * (p->wy + 0.5 * time * p->ay);
     const double wx = p->wx + time * p->ax, wy = p->wy + time * p->ay, left = p->left - time;
     const double off = nx * x + ny * y + offset;
     const double speed = nx * wx + ny * wy, along = nx * wy - ny * wx;
     const double pull = nx * p->ax + ny * p->ay, pull_along = nx * p->ay - ny * p->ax;
     const double inward = speed < 0.0 ? -speed : 0.0, pressing = pull < 0.0 ? -pull : 0.0;
-    const double up = how->restitution * inward, rest = left - how->skew;
+    const double up = restitution * inward, rest = left - how->skew;
     const bool lies = is_last | (up <= 0.5 * how->h * pressing + MSPRINGI_LAST_PLACES * fabs(along));
     const double borne = inward - rest * pull;
     const double given = lies ? (borne > 0.0 ? borne : 0.0) : up + inward;
     const double goes = lies ? along + rest * pull_along : along;
-    const double kept = goes - mspringi_braked_by(goes, how->friction * given), out = lies ? 0.0 : up;
+    const double kept = goes - mspringi_braked_by(goes, friction * given), out = lies ? 0.0 : up;
     p->x = x - off * nx;
     p->y = y - off * ny;
     p->wx = out * nx - kept * ny;

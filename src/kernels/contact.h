@@ -14,7 +14,7 @@
 /// Particles as mspringi_going has them, and 1 or 0 for what is true of them or not.
 typedef struct touching {
     double x[MSPRINGI_WIDTH], y[MSPRINGI_WIDTH], vx[MSPRINGI_WIDTH], vy[MSPRINGI_WIDTH];
-    double half_x[MSPRINGI_WIDTH], half_y[MSPRINGI_WIDTH], restitution[MSPRINGI_WIDTH];
+    double half_x[MSPRINGI_WIDTH], half_y[MSPRINGI_WIDTH], most_restitution[MSPRINGI_WIDTH];
     double square[MSPRINGI_WIDTH], slop[MSPRINGI_WIDTH];
     double is_hit[MSPRINGI_WIDTH];  ///< a surface has acted on it
     double is_left[MSPRINGI_WIDTH]; ///< to others
@@ -24,7 +24,22 @@ typedef struct touching {
 typedef struct parts_below {
     double number[MSPRINGI_WIDTH];
     double nx[MSPRINGI_WIDTH], ny[MSPRINGI_WIDTH], offset[MSPRINGI_WIDTH];
+    double friction[MSPRINGI_WIDTH], restitution[MSPRINGI_WIDTH];
 } parts_below;
+
+/// Straight surfaces: the same one for each particle, or one for each, stride apart.
+typedef struct surfaces {
+    const double *nx, *ny, *offset, *friction, *restitution;
+    size_t stride;
+} surfaces;
+
+MSPRINGI_BOUNCE_INLINE surfaces surfaces_of_line(const mspringi_line *line) {
+    return (surfaces){&line->nx, &line->ny, &line->offset, &line->friction, &line->restitution, 0};
+}
+
+MSPRINGI_BOUNCE_INLINE surfaces surfaces_of_parts(const parts_below *parts) {
+    return (surfaces){parts->nx, parts->ny, parts->offset, parts->friction, parts->restitution, 1};
+}
 
 static inline mspringi_going going_at(const touching *b, size_t i) {
     return (mspringi_going){.x = b->x[i],
@@ -33,7 +48,7 @@ static inline mspringi_going going_at(const touching *b, size_t i) {
                             .vy = b->vy[i],
                             .half_x = b->half_x[i],
                             .half_y = b->half_y[i],
-                            .restitution = b->restitution[i]};
+                            .most_restitution = b->most_restitution[i]};
 }
 
 // Whether any flag is 1: by their bits, since adding them up would take one after the other.
@@ -62,36 +77,37 @@ static void load_touching(const mspringi_ground *g, size_t slot, touching *restr
     const float *restrict x = g->x + slot, *restrict y = g->y + slot;
     const float *restrict vx = g->vx + slot, *restrict vy = g->vy + slot;
     const float *restrict from_vx = g->from_vx + slot, *restrict from_vy = g->from_vy + slot;
-    const double h = g->h, undamped = g->undamped, restitution = g->restitution, per_length = g->per_length;
+    const double h = g->h, undamped = g->undamped, per_length = g->per_length;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const mspringi_going p =
             mspringi_going_from((double)x[i], (double)y[i], (double)vx[i], (double)vy[i], (double)from_vx[i],
-                                (double)from_vy[i], undamped, h, restitution, per_length);
+                                (double)from_vy[i], undamped, h, per_length);
         b->x[i] = p.x;
         b->y[i] = p.y;
         b->vx[i] = p.vx;
         b->vy[i] = p.vy;
         b->half_x[i] = p.half_x;
         b->half_y[i] = p.half_y;
-        b->restitution[i] = p.restitution;
+        b->most_restitution[i] = p.most_restitution;
         b->square[i] = mspringi_going_square(&p);
         b->slop[i] = 0x1p-21 * (fabs(p.x) + fabs(p.y)) + 1e-12;
         b->is_hit[i] = b->is_left[i] = 0.0;
     }
 }
 
-// Let a straight surface act on each particle: the same one on all, or one on each, stride apart.
-static inline void touch_line(const mspringi_ground *g, const double *restrict all_nx,
-                              const double *restrict all_ny, const double *restrict all_offset, size_t stride,
-                              touching *restrict b) {
-    const double h = g->h, friction = g->friction;
+// Let a straight surface act on each particle.
+MSPRINGI_BOUNCE_INLINE void touch_line(const mspringi_ground *g, surfaces s, touching *restrict b) {
+    const double *restrict nx = s.nx, *restrict ny = s.ny, *restrict offset = s.offset;
+    const double *restrict friction = s.friction, *restrict restitution = s.restitution;
+    const double h = g->h;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         mspringi_going p = going_at(b, i);
         const double was_hit = b->is_hit[i];
-        const double is_hit = mspringi_turn_going(all_nx[i * stride], all_ny[i * stride], all_offset[i * stride],
-                                                  friction, h, 0.0, &p);
+        const size_t at = i * s.stride;
+        const double is_hit =
+            mspringi_turn_going(nx[at], ny[at], offset[at], friction[at], restitution[at], h, 0.0, &p);
         b->x[i] = p.x;
         b->y[i] = p.y;
         b->vx[i] = p.vx;
@@ -102,15 +118,15 @@ static inline void touch_line(const mspringi_ground *g, const double *restrict a
 
 // Whether a straight surface would act on any particle; those that were beyond it are left. (Of several surfaces,
 // most are far from most blocks.)
-static inline bool look_at_line(const mspringi_ground *g, const double *restrict all_nx,
-                                const double *restrict all_ny, const double *restrict all_offset, size_t stride,
-                                const double *restrict is_held, touching *restrict b) {
+MSPRINGI_BOUNCE_INLINE bool look_at_line(const mspringi_ground *g, surfaces s, const double *restrict is_held,
+                                         touching *restrict b) {
+    const double *restrict all_nx = s.nx, *restrict all_ny = s.ny, *restrict all_offset = s.offset;
     const double h = g->h;
     double any[MSPRINGI_WIDTH];
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
-        const double nx = all_nx[i * stride], ny = all_ny[i * stride];
-        const double distance = nx * b->x[i] + ny * b->y[i] + all_offset[i * stride];
+        const double nx = all_nx[i * s.stride], ny = all_ny[i * s.stride];
+        const double distance = nx * b->x[i] + ny * b->y[i] + all_offset[i * s.stride];
         const double across = nx * b->vx[i] + ny * b->vy[i];
         any[i] = distance + h * across < 0.0 ? is_held[i] : 0.0;
         b->is_left[i] += distance < -b->slop[i] ? 1.0 : 0.0;
@@ -137,6 +153,22 @@ static inline void find_parts(const mspringi_ground *g, const double *restrict x
         numbers[i] = (double)(int32_t)numbers[i];
 }
 
+// Friction or restitution of the parts: the level ones go on as the outermost others.
+static void find_values(const mspringi_ground *g, const float *values, double uniform,
+                        const double *restrict number, double *restrict to) {
+    const int32_t last = (int32_t)g->height_count - 2;
+    MSPRINGI_ROLLED
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
+        to[i] = uniform;
+    if (!values)
+        return;
+    MSPRINGI_ROLLED
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
+        const int32_t part = (int32_t)number[i], not_less = part < 0 ? 0 : part;
+        to[i] = (double)values[not_less < last ? not_less : last];
+    }
+}
+
 static void find_lines(const mspringi_ground *g, parts_below *parts) {
     const int32_t last = (int32_t)g->height_count - 1;
     MSPRINGI_ROLLED
@@ -148,6 +180,8 @@ static void find_lines(const mspringi_ground *g, parts_below *parts) {
         parts->ny[i] = is_level ? 1.0 : g->normals[2 * (size_t)knot + 1];
         parts->offset[i] = is_level ? -y : -(parts->nx[i] * x + parts->ny[i] * y);
     }
+    find_values(g, g->frictions, g->friction, parts->number, parts->friction);
+    find_values(g, g->restitutions, g->restitution, parts->number, parts->restitution);
 }
 
 // Leave those that are not above or below the same part any more.
@@ -182,8 +216,9 @@ static void touch_heights(const mspringi_ground *g, const parts_below *parts, co
         leave_moved(g, parts, ends, b->is_left);
         leave_moved(g, parts, b->x, b->is_left);
     }
-    if (look_at_line(g, parts->nx, parts->ny, parts->offset, 1, is_held, b))
-        touch_line(g, parts->nx, parts->ny, parts->offset, 1, b);
+    const surfaces below = surfaces_of_parts(parts);
+    if (look_at_line(g, below, is_held, b))
+        touch_line(g, below, b);
     find_ends(g, b, ends);
     leave_moved(g, parts, ends, b->is_left);
     leave_moved(g, parts, b->x, b->is_left);
@@ -192,12 +227,12 @@ static void touch_heights(const mspringi_ground *g, const parts_below *parts, co
 /* ------------------------------------------------------------------------------------------------------ blocks */
 
 // Leave those that come beyond a straight surface.
-static void leave_beyond(const double *restrict all_nx, const double *restrict all_ny,
-                         const double *restrict all_offset, size_t stride, const double *restrict x,
-                         const double *restrict y, const double *restrict slop, double *restrict is_left) {
+MSPRINGI_BOUNCE_INLINE void leave_beyond(surfaces s, const double *restrict x, const double *restrict y,
+                                         const double *restrict slop, double *restrict is_left) {
+    const double *restrict nx = s.nx, *restrict ny = s.ny, *restrict offset = s.offset;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
-        const double distance = all_nx[i * stride] * x[i] + all_ny[i * stride] * y[i] + all_offset[i * stride];
+        const double distance = nx[i * s.stride] * x[i] + ny[i * s.stride] * y[i] + offset[i * s.stride];
         is_left[i] += distance < -0.25 * slop[i] ? 1.0 : 0.0;
     }
 }
@@ -205,9 +240,9 @@ static void leave_beyond(const double *restrict all_nx, const double *restrict a
 static void leave_stuck(const mspringi_ground *g, const parts_below *parts, const double *x, const double *y,
                         const double *slop, double *is_left) {
     for (uint32_t i = 0; i < g->line_count; ++i)
-        leave_beyond(&g->lines[i].nx, &g->lines[i].ny, &g->lines[i].offset, 0, x, y, slop, is_left);
+        leave_beyond(surfaces_of_line(&g->lines[i]), x, y, slop, is_left);
     if (g->height_count > 0)
-        leave_beyond(parts->nx, parts->ny, parts->offset, 1, x, y, slop, is_left);
+        leave_beyond(surfaces_of_parts(parts), x, y, slop, is_left);
 }
 
 // Leave those that are faster than before.
@@ -291,8 +326,8 @@ static uint32_t touch(const mspringi_ground *g, size_t slot) {
     if (g->height_count > 0)
         begin_heights(g, &b, &parts);
     for (uint32_t i = 0; i < g->line_count; ++i)
-        if (look_at_line(g, &g->lines[i].nx, &g->lines[i].ny, &g->lines[i].offset, 0, is_held, &b))
-            touch_line(g, &g->lines[i].nx, &g->lines[i].ny, &g->lines[i].offset, 0, &b);
+        if (look_at_line(g, surfaces_of_line(&g->lines[i]), is_held, &b))
+            touch_line(g, surfaces_of_line(&g->lines[i]), &b);
     if (g->height_count > 0)
         touch_heights(g, &parts, is_held, &b);
     leave_faster(&b);

@@ -14,6 +14,7 @@ typedef struct flying {
     double ax[MSPRINGI_WIDTH], ay[MSPRINGI_WIDTH], left[MSPRINGI_WIDTH];
     double slop[MSPRINGI_WIDTH], flight_slop[MSPRINGI_WIDTH];
     double time[MSPRINGI_WIDTH], nx[MSPRINGI_WIDTH], ny[MSPRINGI_WIDTH], offset[MSPRINGI_WIDTH];
+    double friction[MSPRINGI_WIDTH], restitution[MSPRINGI_WIDTH];
     double is_held[MSPRINGI_WIDTH], is_hit[MSPRINGI_WIDTH], is_left[MSPRINGI_WIDTH];
 } flying;
 
@@ -52,13 +53,13 @@ static inline void find_flight_ends(const flying *restrict b, double *restrict x
 }
 
 // Whether any that is held would end below a straight surface; those that begin beyond it are left.
-static inline bool is_met(const double *restrict all_nx, const double *restrict all_ny,
-                          const double *restrict all_offset, size_t stride, flying *restrict b) {
+MSPRINGI_BOUNCE_INLINE bool is_met(surfaces s, flying *restrict b) {
+    const double *restrict all_nx = s.nx, *restrict all_ny = s.ny, *restrict all_offset = s.offset;
     double any[MSPRINGI_WIDTH];
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
-        const double nx = all_nx[i * stride], ny = all_ny[i * stride], left = b->left[i];
-        const double distance = nx * b->x[i] + ny * b->y[i] + all_offset[i * stride];
+        const double nx = all_nx[i * s.stride], ny = all_ny[i * s.stride], left = b->left[i];
+        const double distance = nx * b->x[i] + ny * b->y[i] + all_offset[i * s.stride];
         const double speed = nx * b->wx[i] + ny * b->wy[i], pull = nx * b->ax[i] + ny * b->ay[i];
         const double end = distance + left * (speed + 0.5 * left * pull);
         any[i] = end < -b->flight_slop[i] ? b->is_held[i] : 0.0;
@@ -68,17 +69,21 @@ static inline bool is_met(const double *restrict all_nx, const double *restrict 
 }
 
 // Find which particles meet a straight surface sooner than those before.
-static inline void meet_line(const double *restrict all_nx, const double *restrict all_ny,
-                             const double *restrict all_offset, size_t stride, flying *restrict b) {
+MSPRINGI_BOUNCE_INLINE void meet_line(surfaces s, flying *restrict b) {
+    const double *restrict all_nx = s.nx, *restrict all_ny = s.ny, *restrict all_offset = s.offset;
+    const double *restrict friction = s.friction, *restrict restitution = s.restitution;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
-        const double nx = all_nx[i * stride], ny = all_ny[i * stride], offset = all_offset[i * stride];
+        const size_t at = i * s.stride;
+        const double nx = all_nx[at], ny = all_ny[at], offset = all_offset[at];
         const mspringi_flyer p = flyer_at(b, i);
         const double time = mspringi_time_to(nx, ny, offset, b->flight_slop[i], &p);
         const bool is_sooner = time < b->time[i];
         b->nx[i] = is_sooner ? nx : b->nx[i];
         b->ny[i] = is_sooner ? ny : b->ny[i];
         b->offset[i] = is_sooner ? offset : b->offset[i];
+        b->friction[i] = is_sooner ? friction[at] : b->friction[i];
+        b->restitution[i] = is_sooner ? restitution[at] : b->restitution[i];
         b->time[i] = is_sooner ? time : b->time[i];
     }
 }
@@ -93,7 +98,8 @@ static inline bool turn_flying(const mspringi_turning *how, bool is_last, flying
         mspringi_flyer p = before;
         const bool meets = b->time[i] < INFINITY;
         const double time = meets ? b->time[i] : 0.0;
-        const bool bounces = mspringi_turn_flyer(b->nx[i], b->ny[i], b->offset[i], &by, time, is_last, &p);
+        const bool bounces = mspringi_turn_flyer(b->nx[i], b->ny[i], b->offset[i], b->friction[i],
+                                                 b->restitution[i], &by, time, is_last, &p);
         any[i] = (meets & bounces) ? 1.0 : 0.0;
         const bool has_slid = (before.ax == 0.0) & (before.ay == 0.0);
         b->is_left[i] += (meets & has_slid) ? b->is_hit[i] : 0.0;
@@ -109,7 +115,8 @@ static inline bool turn_flying(const mspringi_turning *how, bool is_last, flying
     return is_any(any);
 }
 
-// Turn each where it next meets a surface. Returns whether any may meet one again: what lies on the only one does not.
+// Turn each where it next meets a surface. Returns whether any may meet one again: what lies on the only one does
+// not.
 static bool fly_on(const mspringi_ground *g, const parts_below *parts, const mspringi_turning *how, bool is_last,
                    flying *b) {
     const bool is_only_one = g->line_count + (g->height_count > 0) == 1;
@@ -117,18 +124,17 @@ static bool fly_on(const mspringi_ground *g, const parts_below *parts, const msp
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         b->time[i] = INFINITY;
-        b->nx[i] = b->ny[i] = b->offset[i] = 0.0;
+        b->nx[i] = b->ny[i] = b->offset[i] = b->friction[i] = b->restitution[i] = 0.0;
     }
     for (uint32_t i = 0; i < g->line_count; ++i) {
-        const mspringi_line *line = &g->lines[i];
-        if (!is_met(&line->nx, &line->ny, &line->offset, 0, b))
+        if (!is_met(surfaces_of_line(&g->lines[i]), b))
             continue;
         any = true;
-        meet_line(&line->nx, &line->ny, &line->offset, 0, b);
+        meet_line(surfaces_of_line(&g->lines[i]), b);
     }
-    if (g->height_count > 0 && is_met(parts->nx, parts->ny, parts->offset, 1, b)) {
+    if (g->height_count > 0 && is_met(surfaces_of_parts(parts), b)) {
         any = true;
-        meet_line(parts->nx, parts->ny, parts->offset, 1, b);
+        meet_line(surfaces_of_parts(parts), b);
     }
     return any && (turn_flying(how, is_last, b) || !is_only_one);
 }
@@ -162,8 +168,7 @@ static uint32_t fly_past(const mspringi_ground *g, size_t slot) {
     flying b;
     parts_below parts;
     block_end end;
-    const mspringi_turning how = {
-        .friction = g->friction, .restitution = g->restitution, .h = g->h, .skew = 0.5 * g->h};
+    const mspringi_turning how = {.h = g->h, .skew = 0.5 * g->h};
     find_held(g, slot, b.is_held);
     load_flying(g, slot, &b);
     if (g->height_count > 0)

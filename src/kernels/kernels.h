@@ -144,6 +144,7 @@ typedef size_t (*mspringi_beyond_fn)(const float *x, const float *y, size_t firs
 /// The border of a half-plane. The distance from it is n . p + offset, > 0 where particles may be.
 typedef struct mspringi_line {
     double nx, ny, offset; ///< n of length 1, offset for local coordinates
+    double friction, restitution;
 } mspringi_line;
 
 /// A floor, and the particles that it acts on, by slot.
@@ -154,6 +155,8 @@ typedef struct mspringi_ground {
     const float *heights;
     const double *normals;        ///< as in mspringi_heights
     double left, bottom, spacing; ///< likewise, local
+    const float *frictions,
+        *restitutions; ///< [height_count - 1] of each straight part; NULL: all have the next two
     double friction, restitution;
     double h;              ///< of the substep, s
     double per_length;     ///< 4 h over the shortest spring's length, s/m

@@ -33,6 +33,10 @@ static void move_state(const moving *m, mspringi_state *state) {
 static void move_floor(const moving *m, mspringi_floor *floor) {
     MOVE(floor->heights.heights);
     MOVE(floor->heights.normals);
+    MOVE(floor->heights.frictions);
+    MOVE(floor->heights.restitutions);
+    MOVE(floor->plane_frictions);
+    MOVE(floor->plane_restitutions);
     for (uint32_t i = 0; i < MSPRINGI_HEIGHT_LEVELS; ++i)
         MOVE(floor->heights.highest[i]);
     MOVE(floor->clearances);

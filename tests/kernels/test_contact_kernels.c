@@ -32,6 +32,8 @@ typedef struct block {
 
 static float heights[2 * HEIGHTS + 8]; // and the highest of 2, of 4 and so on
 static double normals[2 * (HEIGHTS - 1)];
+static float frictions[HEIGHTS - 1], restitutions[HEIGHTS - 1];
+static bool by_stretch; ///< each plane and part has its own
 static uint64_t seed = 1;
 
 static double between(double low, double high) {
@@ -54,7 +56,9 @@ static mspringi_floor make_floor(uint32_t planes, bool has_heights) {
     static const double walls[4][3] = {{0, 1, 0.25}, {1, 0, 7}, {-0.8, 0.6, 12}, {0.28, -0.96, 6}};
     mspringi_floor made = {.friction = 0.6, .restitution = 0.3, .plane_count = planes};
     for (uint32_t i = 0; i < planes; i++) {
-        made.lines[i] = (mspringi_line){walls[i][0], walls[i][1], walls[i][2]};
+        const double more = by_stretch ? 0.2 * i : 0.0;
+        made.lines[i] =
+            (mspringi_line){walls[i][0], walls[i][1], walls[i][2], made.friction - more, made.restitution + more};
     }
     if (has_heights) {
         const double spacing = 0.75;
@@ -70,6 +74,14 @@ static mspringi_floor make_floor(uint32_t planes, bool has_heights) {
         made.heights = (mspringi_heights){
             .local_x = -8, .local_y = 0.1, .spacing = spacing, .count = HEIGHTS, .heights = heights};
         made.heights.normals = normals;
+        made.heights.friction = made.friction;
+        made.heights.restitution = made.restitution;
+        for (uint32_t i = 0; by_stretch && i + 1 < HEIGHTS; i++) {
+            frictions[i] = (float)between(0, 1);
+            restitutions[i] = (float)between(-0.2, 1) > 0 ? (float)between(0, 1) : 0.0f;
+        }
+        made.heights.frictions = by_stretch ? frictions : NULL;
+        made.heights.restitutions = by_stretch ? restitutions : NULL;
         lay_pyramid(&made.heights);
     }
     return made;
@@ -118,6 +130,8 @@ static mspringi_ground ground_of(const mspringi_floor *floor, block *b, double h
                              .left = floor->heights.local_x,
                              .bottom = floor->heights.local_y,
                              .spacing = floor->heights.spacing,
+                             .frictions = floor->heights.frictions,
+                             .restitutions = floor->heights.restitutions,
                              .friction = floor->friction,
                              .restitution = floor->restitution,
                              .h = h,
@@ -150,15 +164,14 @@ static void put(block *b, uint32_t i, double x, double y, double vx, double vy) 
 static void bounce(const mspringi_floor *floor, const mspringi_ground *g, block *b, uint32_t i) {
     const double from_vx = (double)b->from_vx[i], from_vy = (double)b->from_vy[i];
     mspringi_going p = mspringi_going_from((double)b->x[i], (double)b->y[i], (double)b->vx[i], (double)b->vy[i],
-                                           from_vx, from_vy, g->undamped, g->h, floor->restitution, g->per_length);
+                                           from_vx, from_vy, g->undamped, g->h, g->per_length);
     if (mspringi_floor_bounce(floor, g->h, from_vx, from_vy, &p)) {
         put(b, i, p.x + g->h * p.vx, p.y + g->h * p.vy, p.vx, p.vy);
     }
 }
 
 static void fly(const mspringi_floor *floor, const mspringi_ground *g, block *b, uint32_t i) {
-    const mspringi_turning how = {
-        .friction = floor->friction, .restitution = floor->restitution, .h = g->h, .skew = 0.5 * g->h};
+    const mspringi_turning how = {.h = g->h, .skew = 0.5 * g->h};
     mspringi_flyer p = mspringi_flyer_from((double)b->x[i], (double)b->y[i], (double)b->vx[i], (double)b->vy[i],
                                            (double)b->from_vx[i], (double)b->from_vy[i], g->undamped, g->h);
     double vx, vy;
@@ -213,8 +226,11 @@ static void check_kernel(uint32_t planes, bool has_heights, bool is_loose) {
 }
 
 static void check_floor(uint32_t planes, bool has_heights) {
-    check_kernel(planes, has_heights, false);
-    check_kernel(planes, has_heights, true);
+    for (int stretches = 0; stretches < 2; stretches++) {
+        by_stretch = stretches == 1;
+        check_kernel(planes, has_heights, false);
+        check_kernel(planes, has_heights, true);
+    }
 }
 
 static void a_plane(void **state) {

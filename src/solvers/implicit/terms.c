@@ -70,6 +70,7 @@ static bool consider(mspring_network *network, const mover *m, const mspringi_li
                                                                                  : 0.0,
                            .nx = line->nx,
                            .ny = line->ny,
+                           .friction = line->friction,
                            .gap = distance_from(line, x, y),
                            .ahead = line->nx * (y - m->start_y) - line->ny * (x - m->start_x),
                            .normal = (double)n->mass[m->slot] * fmax(-(straight + drop), 0.0)};
@@ -140,11 +141,11 @@ typedef struct term {
     double xx, xy, yy, to_x, to_y;
 } term;
 
-static term term_of(const mspringi_floor *floor, const mspringi_contact *c) {
+static term term_of(const mspringi_contact *c) {
     const double across = c->is_active ? c->stiffness : 0.0;
-    const double along = c->is_active && c->slip == 0.0 && floor->friction > 0.0 ? c->stiffness : 0.0;
+    const double along = c->is_active && c->slip == 0.0 && c->friction > 0.0 ? c->stiffness : 0.0;
     const double tx = -c->ny, ty = c->nx;
-    const double slide = c->is_active && c->slip != 0.0 ? -floor->friction * c->slip * c->normal : 0.0;
+    const double slide = c->is_active && c->slip != 0.0 ? -c->friction * c->slip * c->normal : 0.0;
     const double push = -across * c->gap, pull = slide - along * c->ahead;
     return (term){across * c->nx * c->nx + along * tx * tx, across * c->nx * c->ny + along * tx * ty,
                   across * c->ny * c->ny + along * ty * ty, push * c->nx + pull * tx, push * c->ny + pull * ty};
@@ -167,7 +168,7 @@ bool mspringi_floor_add_terms(mspring_network *network, float h, uint32_t pass) 
     }
     for (uint32_t i = 0; i < floor->contact_count; ++i) {
         const mspringi_contact *c = &floor->contacts[i];
-        const term add = term_of(floor, c);
+        const term add = term_of(c);
         n->system.xx[c->slot] += (float)add.xx;
         n->system.xy[c->slot] += (float)add.xy;
         n->system.yy[c->slot] += (float)add.yy;
@@ -182,7 +183,7 @@ double mspringi_floor_multiply(const mspring_network *network, mspringi_field fr
     double sum = 0.0;
     for (uint32_t i = 0; floor && i < floor->contact_count; ++i) {
         const uint32_t slot = floor->contacts[i].slot;
-        const term add = term_of(floor, &floor->contacts[i]);
+        const term add = term_of(&floor->contacts[i]);
         const double x = (double)from.x[slot], y = (double)from.y[slot];
         const double to_x = add.xx * x + add.xy * y, to_y = add.xy * x + add.yy * y;
         to.x[slot] += (float)to_x;
@@ -197,7 +198,7 @@ void mspringi_floor_stiffen(const mspring_network *network) {
     const mspringi_floor *floor = network->floor;
     for (uint32_t i = 0; floor && i < floor->contact_count; ++i) {
         const uint32_t slot = floor->contacts[i].slot, tile = n->tiles.of_slot[slot];
-        const term add = term_of(floor, &floor->contacts[i]);
+        const term add = term_of(&floor->contacts[i]);
         const double x = (double)n->arm.x[slot], y = (double)n->arm.y[slot];
         if (tile != MSPRING_NONE)
             mspringi_coarse_add(&n->coarse, tile, add.xx, add.xy, add.yy, x, y);
@@ -207,7 +208,7 @@ void mspringi_floor_stiffen(const mspring_network *network) {
 void mspringi_floor_add_nodes(const mspring_network *network, double *xx, double *xy, double *yy) {
     const mspringi_floor *floor = network->floor;
     for (uint32_t i = 0; floor && i < floor->contact_count; ++i) {
-        const term add = term_of(floor, &floor->contacts[i]);
+        const term add = term_of(&floor->contacts[i]);
         xx[floor->contacts[i].slot] += add.xx;
         xy[floor->contacts[i].slot] += add.xy;
         yy[floor->contacts[i].slot] += add.yy;
@@ -217,18 +218,15 @@ void mspringi_floor_add_nodes(const mspring_network *network, double *xx, double
 /* -------------------------------------------------------------------------------------------------- the review */
 
 // Look at what a contact came to. Returns whether that is other than what was assumed.
-static bool review(const mspringi_floor *floor, mspringi_contact *c, double dx, double dy, double slop,
-                   bool is_free) {
+static bool review(mspringi_contact *c, double dx, double dy, double slop, bool is_free) {
     const double gap = c->gap + c->nx * dx + c->ny * dy, ahead = c->ahead + c->nx * dy - c->ny * dx;
     const mspringi_contact before = *c;
     if (before.is_active)
         c->normal = fmax(-c->stiffness * gap, 0.0);
-    const double most = floor->friction * c->normal, needed = c->stiffness * ahead;
-    c->along = !before.is_active    ? 0.0
-               : before.slip != 0.0 ? floor->friction * before.slip * before.normal
-                                    : needed;
+    const double most = c->friction * c->normal, needed = c->stiffness * ahead;
+    c->along = !before.is_active ? 0.0 : before.slip != 0.0 ? c->friction * before.slip * before.normal : needed;
     c->is_active = c->is_active ? gap <= 0.0 || !is_free : gap < -slop;
-    if (floor->friction == 0.0) {
+    if (c->friction == 0.0) {
         c->along = 0.0;
         return c->is_active != before.is_active;
     }
@@ -262,7 +260,7 @@ bool mspringi_floor_review(mspring_network *network, float alpha, uint32_t pass)
         const double rest_y = is_whole ? 0.0 : (double)alpha * (double)n->direction.y[c->slot];
         const double dx = (double)n->displacement.x[c->slot] + rest_x;
         const double dy = (double)n->displacement.y[c->slot] + rest_y;
-        again |= review(floor, c, dx, dy, mspringi_floor_slop(n->x[c->slot], n->y[c->slot]), pass < FREE_PASSES);
+        again |= review(c, dx, dy, mspringi_floor_slop(n->x[c->slot], n->y[c->slot]), pass < FREE_PASSES);
     }
     return again;
 }

@@ -416,12 +416,9 @@ typedef struct mspring_network_def {
     mspring_simd simd_level; ///< highest level to use; default MSPRING_SIMD_AUTO. A level that this machine lacks is no
                              ///< limit. MSPRING_SIMD_SCALAR means the lowest level of this build. The environment
                              ///< variable MSPRING_SIMD (scalar, sse2, avx2, avx512, neon, wasm) can lower it further.
-    float gravity_x;         ///< as in mspring_settings; default 0
-    float gravity_y;         ///< as in mspring_settings; default -9.8
-    float global_damping;    ///< as in mspring_settings; default 0
-    float max_speed;         ///< as in mspring_settings; default 1e6
-    mspring_solver solver;   ///< default MSPRING_SOLVER_EXPLICIT, with the defaults of mspring_solver_def_init()
-    uint32_t substeps;       ///< as in mspring_solver_def; default MSPRING_SUBSTEPS_AUTO
+    float gravity_x, gravity_y, global_damping, max_speed; ///< as in mspring_settings; default 0, -9.8, 0, 1e6
+    mspring_solver solver; ///< default MSPRING_SOLVER_EXPLICIT, with the defaults of mspring_solver_def_init()
+    uint32_t substeps;     ///< as in mspring_solver_def; default MSPRING_SUBSTEPS_AUTO
     const mspring_allocator *allocator; ///< default NULL: malloc and free
     const mspring_tasks *tasks;         ///< threads of the host; default NULL: threads of the library
     uint32_t worker_count;    ///< threads that step the network, the caller's included, 1 to MSPRING_MAX_WORKERS;
@@ -444,10 +441,9 @@ typedef struct mspring_network_def {
 /// mspring_floor_def_init() first.
 typedef struct mspring_floor_def {
     uint32_t struct_size;
-    uint32_t plane_count;  ///< half-planes, at most MSPRING_MAX_PLANES; default 0
-    double heights_x;      ///< of the first height, m, world coordinates; default 0
-    double heights_y;      ///< of height 0, m, world coordinates; default 0
-    double spacing;        ///< m from one height to the next, 1e-9 to 1e9; default 1
+    uint32_t plane_count;        ///< half-planes, at most MSPRING_MAX_PLANES; default 0
+    double heights_x, heights_y; ///< of the first height, and of height 0, m, world coordinates; default 0
+    double spacing;              ///< m from one height to the next, 1e-9 to 1e9; default 1
     const double *planes;  ///< [plane_count][4]: a point on the border (m, world coordinates), then a vector of any
                            ///< length across it, towards the side where particles may be
     const float *heights;  ///< [height_count], m above heights_y, joined by straight lines, level beyond both ends
@@ -455,6 +451,10 @@ typedef struct mspring_floor_def {
     float friction;        ///< of sliding (Coulomb): force along the surface over that across it, 0 to 1e6; default 0
     float restitution;     ///< speed across the surface after contact over that before, 0 to 1; default 0
     uint32_t reserved;     ///< 0
+    /// The same by stretch: of each plane, and of each straight part of the heights from left to right, the outermost
+    /// of which go on beyond both ends. NULL, the default: friction and restitution everywhere.
+    const float *plane_frictions, *plane_restitutions;   ///< [plane_count]
+    const float *height_frictions, *height_restitutions; ///< [height_count - 1]
 } mspring_floor_def;
 
 /// Fill a definition with its defaults. Pass the size that your header gives it: sizeof *def.
@@ -681,16 +681,15 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_apply_
 /// It acts on every particle that is not pinned, in every substep. A particle that was above it is not below it
 /// afterwards, at any speed, but for a millionth of its distance from the local origin. One that was below is put
 /// onto it. Contact takes energy and gives none; the guide examples/guides/floor.md names the exceptions, and what
-/// bounces how. In implicit substeps only particles without springs bounce by restitution: structures are thrown back
-/// by their springs. Snapshots, state hashes and mspring_network_settle() do not contain the floor.
+/// bounces how. Snapshots, state hashes and mspring_network_settle() do not contain the floor.
 /// @param def  copied with all that it points to; NULL: no floor
 /// @threads exclusive   @allocates yes   @errors ARGUMENT, STRUCT, MEMORY, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_floor(
     mspring_network *network, const mspring_floor_def *def);
 
 /// Read the floor. Set struct_size first.
-/// To set it again changes nothing. Without a floor both counts are 0. planes and heights point to the network's
-/// copies, valid until the floor is set again or the network is destroyed.
+/// To set it again changes nothing. Without a floor both counts are 0. Its arrays are the network's copies, valid
+/// until the floor is set again or the network is destroyed.
 /// @threads shared   @allocates never   @errors ARGUMENT, STRUCT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_floor(
     const mspring_network *network, mspring_floor_def *def);
