@@ -210,7 +210,8 @@ typedef struct mspring_hook_args {
     const void *reserved; ///< NULL
 } mspring_hook_args;
 
-/// A hook. On the network it may make shared calls only.
+/// A hook. On the network it may make shared calls only. A step may be taken back and repeated, as by a guard. Then
+/// hooks are called again.
 typedef void(MSPRING_CALL *mspring_hook_fn)(const mspring_hook_args *args, void *user);
 
 /// Flags of hooks.

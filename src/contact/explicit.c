@@ -69,12 +69,11 @@ static void fly_slot(const mspring_network *network, const mspringi_ground *g, s
 /// Least that global damping may leave of a velocity in a substep, for what forces did to be seen in it.
 static const double least_decay = 1e-12;
 
-// What forces have done in the substep is seen by the velocities of before, if these are known.
-static mspringi_ground ground_of(const mspring_network *network, const mspringi_bounds *clear, float h,
-                                 bool knows_before) {
+// What forces have done in the substep is seen by the velocities of before, unless damping left none of them.
+static mspringi_ground ground_of(const mspring_network *network, const mspringi_bounds *clear, float h) {
     const mspringi_floor *floor = network->floor;
     const double decay = (double)mspringi_decay(network->settings.global_damping, h);
-    const bool is_seen = knows_before && decay >= least_decay;
+    const bool is_seen = decay >= least_decay;
     return (mspringi_ground){
         .lines = floor->lines,
         .line_count = floor->plane_count,
@@ -116,51 +115,58 @@ static void touch_block(const mspring_network *network, const mspringi_ground *g
             bounce_slot(network, ground, slot);
 }
 
-// Look at the blocks of a strip that are not clear. Returns whether there was any.
-static bool touch_slots(const mspring_network *network, const mspringi_strip *strip, bool is_loose,
-                        slot_range slots, float h, bool knows_before) {
-    const mspringi_bounds *clear = &network->floor->clearances[strip - network->topology.strips].clear;
+static const mspringi_bounds *clear_of(const mspring_network *network, const mspringi_strip *strip) {
+    return &network->floor->clearances[strip - network->topology.strips].clear;
+}
+
+// Look at the blocks of a strip that are not clear.
+static void touch_slots(const mspring_network *network, const mspringi_strip *strip, bool is_loose,
+                        slot_range slots, float h) {
+    const mspringi_bounds *clear = clear_of(network, strip);
     const mspringi_beyond_fn beyond = network->kernels->beyond;
     const float *x = network->state.x, *y = network->state.y;
     size_t block = beyond(x, y, slots.first, slots.end, clear);
     if (block == slots.end)
-        return false;
-    const mspringi_ground ground = ground_of(network, clear, h, knows_before);
+        return;
+    const mspringi_ground ground = ground_of(network, clear, h);
     for (; block < slots.end; block = beyond(x, y, block + MSPRINGI_WIDTH, slots.end, clear))
         touch_block(network, &ground, is_loose, block);
-    return true;
 }
 
 void mspringi_floor_touch(const mspring_network *network, const mspringi_strip *strip, const mspringi_span *spans,
                           uint32_t span_count, float h) {
     if (mspringi_floor_is_near(network, strip))
-        (void)touch_slots(network, strip, false, slots_of(spans, span_count), h, true);
+        touch_slots(network, strip, false, slots_of(spans, span_count), h);
 }
 
 void mspringi_floor_touch_loose(const mspring_network *network, const mspringi_strip *strip,
                                 const mspringi_span *span, float h) {
     if (mspringi_floor_is_near(network, strip))
-        (void)touch_slots(network, strip, true, slots_of(span, 1), h, true);
+        touch_slots(network, strip, true, slots_of(span, 1), h);
 }
 
 /* ------------------------------------------------------------------------------------------------ what was far */
 
-static void touch_strip(const mspring_network *network, const mspringi_strip *strip, float h) {
+static bool is_clear(const mspring_network *network, const mspringi_strip *strip, slot_range slots) {
+    const mspringi_state *s = &network->state;
+    return network->kernels->beyond(s->x, s->y, slots.first, slots.end, clear_of(network, strip)) == slots.end;
+}
+
+static bool is_strip_clear(const mspring_network *network, const mspringi_strip *strip) {
     const mspringi_topology *t = &network->topology;
     const mspringi_row *first = &t->rows[strip->first_row], *last = first + strip->row_count - 1;
     const uint32_t span_count = last->first_span + last->span_count - first->first_span;
-    bool any = touch_slots(network, strip, first->kind == MSPRINGI_ROW_LOOSE,
-                           slots_of(&t->spans[first->first_span], span_count), h, false);
-    if (strip->home_span != MSPRING_NONE)
-        any |= touch_slots(network, strip, false, slots_of(&t->spans[strip->home_span], 1), h, false);
-    network->floor->has_impulse |= any;
+    return is_clear(network, strip, slots_of(&t->spans[first->first_span], span_count)) &&
+           (strip->home_span == MSPRING_NONE ||
+            is_clear(network, strip, slots_of(&t->spans[strip->home_span], 1)));
 }
 
-void mspringi_floor_touch_far(const mspring_network *network, float h) {
-    for (uint32_t i = 0; i < network->topology.strip_count; ++i)
-        if (network->floor->clearances[i].is_far &&
-            mspringi_share_of_strip(network, &network->topology.strips[i]) != MSPRINGI_ASLEEP)
-            touch_strip(network, &network->topology.strips[i], h);
+void mspringi_floor_look_far(const mspring_network *network) {
+    mspringi_floor *floor = network->floor;
+    for (uint32_t i = 0; i < network->topology.strip_count && !floor->is_missed; ++i)
+        floor->is_missed = floor->clearances[i].is_far &&
+                           mspringi_share_of_strip(network, &network->topology.strips[i]) != MSPRINGI_ASLEEP &&
+                           !is_strip_clear(network, &network->topology.strips[i]);
 }
 
 /* ---------------------------------------------------------------------------------------------- other solvers */

@@ -416,6 +416,21 @@ static bool is_used(const mspring_network *network) {
     return network->floor != NULL;
 }
 
+static void before_step(mspring_network *network, const mspringi_attempt *attempt) {
+    (void)attempt;
+    network->floor->is_missed = network->floor->is_strict = false;
+}
+
+// A strip that was left out may have met the surface, and what has become of it there is lost.
+static bool has_missed(mspring_network *network, const mspringi_attempt *attempt) {
+    mspringi_floor *floor = network->floor;
+    (void)attempt;
+    if (!floor->is_missed || floor->is_strict)
+        return false;
+    floor->is_strict = true;
+    return true;
+}
+
 // A step begins without impulses, but for those on what sleeps.
 static void begin(mspring_network *network, mspringi_field force) {
     (void)force;
@@ -428,4 +443,8 @@ static void take_back(mspring_network *network) {
         mspringi_floor_take_back(network->floor);
 }
 
-const mspringi_stage mspringi_stage_floor = {.is_used = is_used, .forces_known = begin, .take_back = take_back};
+const mspringi_stage mspringi_stage_floor = {.is_used = is_used,
+                                             .before_step = before_step,
+                                             .forces_known = begin,
+                                             .has_missed = has_missed,
+                                             .take_back = take_back};

@@ -80,6 +80,8 @@ typedef struct mspringi_floor {
     size_t slot_count;
     double reach;               ///< twice as far, m, as anything may come in the substeps of the last survey
     bool is_near;               ///< some strip may come near in these, or there was no survey yet
+    bool is_missed;             ///< forces have driven a strip further than the survey had thought
+    bool is_strict;             ///< so this time none is left out
     mspringi_room room;         ///< that all of the network was in
     mspringi_bounds clear;      ///< where no surface is, around the network as it was before an implicit substep
     mspringi_contact *contacts; ///< of an implicit substep
@@ -184,8 +186,8 @@ void mspringi_floor_touch(const mspring_network *network, const mspringi_strip *
 void mspringi_floor_touch_loose(const mspring_network *network, const mspringi_strip *strip,
                                 const mspringi_span *span, float h);
 
-/// Look once at the strips that were left out.
-void mspringi_floor_touch_far(const mspring_network *network, float h);
+/// Look whether the strips that were left out have stayed clear.
+void mspringi_floor_look_far(const mspring_network *network);
 
 /// Whether no spring pulls at a particle, in a network with another solver: it is in the loose row, or all its
 /// springs broke. (A clamped one knows of those in the loose row alone.)

@@ -94,8 +94,9 @@ static mspringi_clearance look_around(const mspringi_floor *floor, const box *st
     clear = (box){clear.min_x + margin, clear.max_x - margin, clear.min_y + margin, clear.max_y - margin};
     const bool is_empty = strip->min_x > strip->max_x; // spare slots alone
     const bool is_far =
-        is_empty || (clear.min_x < strip->min_x - 0.5 * reach && clear.max_x > strip->max_x + 0.5 * reach &&
-                     clear.min_y < strip->min_y - 0.5 * reach && clear.max_y > strip->max_y + 0.5 * reach);
+        is_empty || (!floor->is_strict && clear.min_x < strip->min_x - 0.5 * reach &&
+                     clear.max_x > strip->max_x + 0.5 * reach && clear.min_y < strip->min_y - 0.5 * reach &&
+                     clear.max_y > strip->max_y + 0.5 * reach);
     return (mspringi_clearance){{bound(clear.min_x), bound(clear.max_x), bound(clear.min_y), bound(clear.max_y)},
                                 is_far};
 }

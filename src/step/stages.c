@@ -19,7 +19,7 @@ mspringi_stages mspringi_stages_of(const mspring_network *network) {
         stages.used[stages.count++] = all[i];
         stages.give_forces |= all[i]->forces != NULL;
         stages.cut_substeps |= cuts_substeps(all[i]) && !all[i]->is_quiet;
-        stages.can_be_quiet |= all[i]->is_quiet != NULL;
+        stages.can_be_quiet |= all[i]->is_quiet != NULL || all[i]->has_missed != NULL;
         stages.follow_substeps |= all[i]->after_substep != NULL;
     }
     return stages;

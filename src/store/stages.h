@@ -9,8 +9,8 @@
 ///   before_substep   each substep, or each free group of them; returns the forces that act in them
 ///   after_substep    likewise
 ///   has_missed       after the substeps: it counted on what did not hold, so they are undone and repeated
-///   judge            after the substeps, or what stands for them: whether it could do what it is for (like the
-///                    one before, only of stages that can be quiet)
+///   judge            after the substeps, or what stands for them: whether it could do what it is for (only
+///                    if some stage can be quiet or can miss something)
 ///   after_step       once the step is taken, and will not be undone
 ///   take_back        the substeps were undone, and the state is that of before: in the order of the stages
 ///   undo             what before_step did is to be undone: in reverse order
@@ -60,7 +60,8 @@ typedef struct mspringi_stages {
     bool give_forces;     ///< some stage does
     bool cut_substeps;    ///< substeps cannot be taken all at once, in whatever step
     bool follow_substeps; ///< some stage acts after substeps
-    bool can_be_quiet;    ///< some stage is asked whether it is quiet, what it has missed, and how it went
+    bool can_be_quiet;    ///< some stage is asked whether it is quiet, whether it has missed something, and how it
+                          ///< went
 } mspringi_stages;
 
 mspringi_stages mspringi_stages_of(const mspring_network *network);

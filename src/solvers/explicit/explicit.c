@@ -561,7 +561,7 @@ void mspringi_explicit_substeps(mspring_network *network, float h, mspringi_fiel
         mspringi_floor_survey(network, (double)h * (double)count);
     sweep_all(network, h, base, count, NULL);
     if (network->floor)
-        mspringi_floor_touch_far(network, h);
+        mspringi_floor_look_far(network);
 }
 
 void mspringi_explicit_reset(mspring_network *network) {
