@@ -455,6 +455,9 @@ typedef struct mspring_floor_def {
     /// of which go on beyond both ends. NULL, the default: friction and restitution everywhere.
     const float *plane_frictions, *plane_restitutions;   ///< [plane_count]
     const float *height_frictions, *height_restitutions; ///< [height_count - 1]
+    float silt_depth; ///< m of silt above the heights, straight up, 0 to 1e12: a soft layer that brakes; default 0
+    float silt_rate;  ///< 1/s, 0 to 1e6: dv/dt = -silt_rate v at the heights, falling evenly to 0 at the silt's top;
+                      ///< default 0
 } mspring_floor_def;
 
 /// Fill a definition with its defaults. Pass the size that your header gives it: sizeof *def.

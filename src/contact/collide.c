@@ -90,19 +90,23 @@ static void collide_slot(const mspring_network *network, size_t slot, double h) 
     s->vy[slot] = after_y;
 }
 
-static void collide_block(const mspring_network *network, size_t first, const mspringi_bounds *clear, double h) {
+/// What is done to a particle after a substep of h seconds.
+typedef void (*act_fn)(const mspring_network *network, size_t slot, double h);
+
+static void act_on_block(const mspring_network *network, size_t first, const mspringi_bounds *clear, double h,
+                         act_fn act) {
     const mspringi_state *s = &network->state;
     for (size_t slot = first; slot < first + MSPRINGI_WIDTH; ++slot) {
         const bool is_clear = s->x[slot] >= clear->min_x && s->x[slot] <= clear->max_x &&
                               s->y[slot] >= clear->min_y && s->y[slot] <= clear->max_y;
         if (!is_clear && mspringi_free_mass(network)[slot] > 0.0f && !mspringi_floor_is_alone(network, slot))
-            collide_slot(network, slot, h);
+            act(network, slot, h);
     }
 }
 
 // Returns whether any particle was looked at.
-static bool collide_spans(const mspring_network *network, const mspringi_bounds *clear, const mspringi_span *spans,
-                          uint32_t span_count, double h) {
+static bool act_on_spans(const mspring_network *network, const mspringi_bounds *clear, const mspringi_span *spans,
+                         uint32_t span_count, double h, act_fn act) {
     const mspringi_state *s = &network->state;
     const mspringi_beyond_fn beyond = network->kernels->beyond;
     bool any = false;
@@ -111,21 +115,21 @@ static bool collide_spans(const mspring_network *network, const mspringi_bounds 
         const size_t end = (span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
         for (size_t block = first; (block = beyond(s->x, s->y, block, end, clear)) < end; block += MSPRINGI_WIDTH) {
             any = true;
-            collide_block(network, block, clear, h);
+            act_on_block(network, block, clear, h, act);
         }
     }
     return any;
 }
 
-static void collide_strip(const mspring_network *network, uint32_t number, double h) {
+static void act_on_strip(const mspring_network *network, uint32_t number, double h, act_fn act) {
     const mspringi_topology *t = &network->topology;
     const mspringi_strip *strip = &t->strips[number];
     const mspringi_bounds *clear = &network->floor->clearances[number].clear;
     const mspringi_row *first = &t->rows[strip->first_row], *last = first + strip->row_count - 1;
-    bool any = collide_spans(network, clear, &t->spans[first->first_span],
-                             last->first_span + last->span_count - first->first_span, h);
+    bool any = act_on_spans(network, clear, &t->spans[first->first_span],
+                            last->first_span + last->span_count - first->first_span, h, act);
     if (strip->home_span != MSPRING_NONE)
-        any |= collide_spans(network, clear, &t->spans[strip->home_span], 1, h);
+        any |= act_on_spans(network, clear, &t->spans[strip->home_span], 1, h, act);
     network->floor->has_impulse |= any;
 }
 
@@ -152,9 +156,18 @@ void mspringi_floor_keep(mspring_network *network, float h) {
     }
 }
 
-void mspringi_floor_touch_all(mspring_network *network, float h) {
-    mspringi_floor_survey(network, (double)h);
+static void act_on_all(const mspring_network *network, double h, act_fn act) {
     for (uint32_t i = 0; i < network->topology.strip_count; ++i)
         if (!is_asleep(network, i))
-            collide_strip(network, i, (double)h);
+            act_on_strip(network, i, h, act);
+}
+
+void mspringi_floor_touch_all(mspring_network *network, float h) {
+    mspringi_floor_survey(network, (double)h);
+    act_on_all(network, (double)h, collide_slot);
+}
+
+void mspringi_floor_brake_all(const mspring_network *network, float h) {
+    if (mspringi_has_silt(&network->floor->heights))
+        act_on_all(network, (double)h, mspringi_silt_brake);
 }

@@ -96,6 +96,12 @@ static mspringi_ground ground_of(const mspring_network *network, const mspringi_
         .vy = network->state.vy,
         .from_vx = is_seen ? floor->before.vx : network->state.vx,
         .from_vy = is_seen ? floor->before.vy : network->state.vy,
+        .low_x = network->state.low_x,
+        .low_y = network->state.low_y,
+        .before_vx = is_seen ? floor->before.vx : NULL,
+        .before_vy = is_seen ? floor->before.vy : NULL,
+        .silt_depth = floor->heights.silt_depth,
+        .silt_rate = floor->heights.silt_rate,
         .undamped = is_seen ? 1.0 / decay : 1.0,
         .impulse_x = floor->impulse.x,
         .impulse_y = floor->impulse.y,
@@ -107,6 +113,8 @@ static mspringi_ground ground_of(const mspring_network *network, const mspringi_
 static void touch_block(const mspring_network *network, const mspringi_ground *ground, bool is_loose,
                         size_t block) {
     const mspringi_touch_fn act = is_loose ? network->kernels->fly_past : network->kernels->touch;
+    if (mspringi_has_silt(&network->floor->heights))
+        network->kernels->brake(ground, block);
     uint32_t left = act(ground, block);
     for (size_t slot = block; left != 0; ++slot, left >>= 1)
         if ((left & 1) && is_loose)
@@ -237,8 +245,10 @@ static void fly_free(const mspring_network *network, size_t slot, const gliding 
     p.ay = (undamped_vy - vy) / h;
     s->vx[slot] = (float)(g->after * to_vx);
     s->vy[slot] = (float)(g->after * to_vy);
-    const bool acts = mspringi_floor_fly(network->floor, &g->how, &p, &to_vx, &to_vy);
-    if (acts) {
+    const double taken = mspringi_silt_taken(&network->floor->heights, p.x, p.y, h);
+    p.wx -= taken * p.wx;
+    p.wy -= taken * p.wy;
+    if (mspringi_floor_fly(network->floor, &g->how, &p, &to_vx, &to_vy) || taken > 0.0) {
         put(network, slot, p.x, p.y, g->after * to_vx, g->after * to_vy);
         return;
     }

@@ -75,6 +75,21 @@ static mspring_result check_values(const float *values, uint32_t count, const ch
 #define MOST_FRICTION 1e6
 #define MOST_RESTITUTION 1.0
 
+static mspring_result check_silt(const mspring_floor_def *def, mspringi_message *message) {
+    if (!(def->silt_depth >= 0.0f && (double)def->silt_depth <= MSPRING_MAX_COORDINATE))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "the floor's silt_depth is %g m, it must be 0 to 1e12", (double)def->silt_depth);
+    if (!(def->silt_rate >= 0.0f && def->silt_rate <= 1e6f))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the floor's silt_rate is %g/s, it must be 0 to 1e6",
+                             (double)def->silt_rate);
+    if (def->silt_depth > 0.0f && def->height_count == 0)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "the floor has %g m of silt, but no heights that it could lie on: two heights make "
+                             "level ground",
+                             (double)def->silt_depth);
+    return MSPRING_OK;
+}
+
 static mspring_result check_surface(const mspring_floor_def *def, mspringi_message *message) {
     const uint32_t parts = def->height_count > 0 ? def->height_count - 1 : 0;
     if (!(def->friction >= 0.0f && (double)def->friction <= MOST_FRICTION))
@@ -106,6 +121,8 @@ static mspring_result check_floor(const mspring_floor_def *def, mspringi_message
     result = check_planes(def, message);
     if (result == MSPRING_OK)
         result = check_heights(def, message);
+    if (result == MSPRING_OK)
+        result = check_silt(def, message);
     return result == MSPRING_OK ? check_surface(def, message) : result;
 }
 
@@ -164,6 +181,8 @@ static bool copy_surface(mspringi_floor *to, const mspring_floor_def *def, mspri
     mspringi_heights *heights = &to->heights;
     to->friction = heights->friction = (double)def->friction;
     to->restitution = heights->restitution = (double)def->restitution;
+    heights->silt_depth = (double)def->silt_depth;
+    heights->silt_rate = (double)def->silt_rate;
     return copy_values(&to->plane_frictions, def->plane_frictions, def->plane_count, memory) &&
            copy_values(&to->plane_restitutions, def->plane_restitutions, def->plane_count, memory) &&
            copy_values(&heights->frictions, def->height_frictions, parts, memory) &&
@@ -295,6 +314,8 @@ static mspring_floor_def def_of(const mspringi_floor *floor) {
     def.plane_restitutions = floor->plane_restitutions;
     def.height_frictions = floor->heights.frictions;
     def.height_restitutions = floor->heights.restitutions;
+    def.silt_depth = (float)floor->heights.silt_depth;
+    def.silt_rate = (float)floor->heights.silt_rate;
     return def;
 }
 
@@ -320,7 +341,8 @@ static bool is_same(const mspringi_floor *floor, const mspring_floor_def *b) {
     const mspring_floor_def a = def_of(floor);
     const uint32_t parts = a.height_count > 0 ? a.height_count - 1 : 0;
     return a.plane_count == b->plane_count && a.height_count == b->height_count && a.friction == b->friction &&
-           a.restitution == b->restitution && are_same(a.plane_frictions, b->plane_frictions, a.plane_count) &&
+           a.restitution == b->restitution && a.silt_depth == b->silt_depth && a.silt_rate == b->silt_rate &&
+           are_same(a.plane_frictions, b->plane_frictions, a.plane_count) &&
            are_same(a.plane_restitutions, b->plane_restitutions, a.plane_count) &&
            are_same(a.height_frictions, b->height_frictions, parts) &&
            are_same(a.height_restitutions, b->height_restitutions, parts) &&

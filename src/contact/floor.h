@@ -7,6 +7,7 @@
 ///   bounce.c     what it does to a particle in a substep of symplectic Euler, and to one without springs
 ///   explicit.c   the same of all particles of such substeps
 ///   collide.c    what it does to particles with springs after an implicit substep; see solvers/implicit/terms.c
+///   silt.c       what silt above the heights does to a particle; kernels/silt.h has blocks of them
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_FLOOR_H
@@ -32,6 +33,7 @@ typedef struct mspringi_heights {
     double *normals;                        ///< [count - 1][2] of each straight part
     float *frictions, *restitutions;        ///< [count - 1] likewise; NULL: all have the floor's
     double friction, restitution;           ///< the floor's
+    double silt_depth, silt_rate;           ///< m and 1/s; if either is 0 there is none
     float *highest[MSPRINGI_HEIGHT_LEVELS]; ///< [level][i]: the highest of 2^level of them from i 2^level on;
                                             ///< highest[0] is heights
 } mspringi_heights;
@@ -169,6 +171,18 @@ bool mspringi_floor_bounce(const mspringi_floor *floor, double h, double from_vx
 bool mspringi_floor_fly(const mspringi_floor *floor, const mspringi_turning *how, mspringi_flyer *p, double *vx,
                         double *vy);
 
+/* silt.c */
+
+static inline bool mspringi_has_silt(const mspringi_heights *heights) {
+    return heights->count > 0 && heights->silt_depth > 0.0 && heights->silt_rate > 0.0;
+}
+
+/// The share of its velocity that silt takes from a particle at (x, y), if there is any, in so many seconds.
+double mspringi_silt_taken(const mspringi_heights *heights, double x, double y, double seconds);
+
+/// Let it act on a particle after a substep of h seconds.
+void mspringi_silt_brake(const mspring_network *network, size_t slot, double h);
+
 /* explicit.c */
 
 /// Whether a strip may come near the surface in the substeps that the last survey was for.
@@ -206,5 +220,8 @@ void mspringi_floor_collide(const mspringi_floor *floor, mspringi_body *body, do
 /// Keep the positions before an implicit substep of h, and let the surface act after it on particles with springs.
 void mspringi_floor_keep(mspring_network *network, float h);
 void mspringi_floor_touch_all(mspring_network *network, float h);
+
+/// Let silt act on them after that.
+void mspringi_floor_brake_all(const mspring_network *network, float h);
 
 #endif

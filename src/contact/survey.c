@@ -88,7 +88,8 @@ static mspringi_clearance look_around(const mspringi_floor *floor, const box *st
     for (uint32_t i = 0; i < floor->plane_count; ++i)
         keep_clear_of(&floor->lines[i], &clear);
     if (floor->heights.count > 0)
-        clear.min_y = fmax(clear.min_y, mspringi_heights_highest(&floor->heights, clear.min_x, clear.max_x));
+        clear.min_y = fmax(clear.min_y, mspringi_heights_highest(&floor->heights, clear.min_x, clear.max_x) +
+                                            (mspringi_has_silt(&floor->heights) ? floor->heights.silt_depth : 0.0));
     const double size = fabs(clear.min_x) + fabs(clear.max_x) + fmax(fabs(strip->min_y), fabs(strip->max_y));
     const double margin = 4.0 * mspringi_floor_slop(size, reach);
     clear = (box){clear.min_x + margin, clear.max_x - margin, clear.min_y + margin, clear.max_y - margin};

@@ -192,4 +192,24 @@ static inline bool mspringi_turn_flyer(double nx, double ny, double offset, doub
 /// Turns of a particle in a substep.
 #define MSPRINGI_MOST_TURNS 8
 
+/* --------------------------------------------------------------------------------------------------------- silt */
+
+/// How high a field of heights is at so many spacings from the first one.
+MSPRINGI_BOUNCE_INLINE double mspringi_height_at(const float *heights, uint32_t count, double place) {
+    const double last = (double)(count - 1), not_less = place >= 0.0 ? place : 0.0;
+    const double within = not_less < last ? not_less : last;
+    const int32_t knot = (int32_t)within, last_part = (int32_t)count - 2,
+                  part = knot < last_part ? knot : last_part;
+    const double low = (double)heights[part], high = (double)heights[part + 1];
+    return low + (within - (double)part) * (high - low);
+}
+
+/// The share of a velocity that silt takes in a substep of implicit Euler: of v' = v - h rate share v'. rate_h is
+/// rate times h, share 1 at the ground and 0 from so much above it on.
+static inline double mspringi_silt_takes(double above, double depth, double rate_h) {
+    const double share = 1.0 - above / depth, some = share > 0.0 ? share : 0.0;
+    const double brakes = rate_h * (some < 1.0 ? some : 1.0);
+    return brakes / (1.0 + brakes);
+}
+
 #endif

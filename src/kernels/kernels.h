@@ -163,7 +163,10 @@ typedef struct mspringi_ground {
     mspringi_bounds clear; ///< particles in here are left alone
     float *x, *y, *vx, *vy;
     const float *from_vx, *from_vy; ///< before the substep
-    double undamped;                ///< times a velocity: what it would be without global damping in the substep
+    float *low_x, *low_y;
+    float *before_vx, *before_vy; ///< from_vx and from_vy; NULL if these are vx and vy
+    double silt_depth, silt_rate;
+    double undamped; ///< times a velocity: what it would be without global damping in the substep
     float *impulse_x, *impulse_y;
     const float *inverse_mass, *free_mass;
 } mspringi_ground;
@@ -173,6 +176,9 @@ typedef struct mspringi_ground {
 /// @return a bit for each that nothing has been done to, as it has come from one straight part of the heights to
 ///         another or is in a corner: mspringi_floor_bounce() and mspringi_floor_fly() are for them
 typedef uint32_t (*mspringi_touch_fn)(const mspringi_ground *ground, size_t slot);
+
+/// Let silt brake the particles of that block, before a floor acts on them.
+typedef void (*mspringi_brake_fn)(const mspringi_ground *ground, size_t slot);
 
 /// What a strain pass works on: arrays by slot and, by place, the least strain that anything happens at.
 typedef struct mspringi_strain_sweep {
@@ -246,6 +252,7 @@ typedef struct mspringi_kernels {
     mspringi_extrema_fn extrema_of;
     mspringi_beyond_fn beyond;
     mspringi_touch_fn touch, fly_past; ///< of particles with and without springs
+    mspringi_brake_fn brake;
     mspringi_strain_fn lattice_strain, chain_strain;
     mspringi_border_fn bound_lattice, bound_chain, image_lattice, image_chain;
     mspringi_checksum_fn checksum;

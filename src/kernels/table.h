@@ -1,8 +1,8 @@
 /// @file table.h
 /// The variants of an instruction set's lattice(), chain(), web(), herd(), loose(), attached(), pack(), largest(),
-/// extrema_of(), touch(), fly_past(), lattice_strain(), chain_strain(), bound_ and image_lattice() and _chain() and
-/// take_checksum(), and the table of them. Included at the end of each kernel file, which defines MSPRINGI_TABLE
-/// and MSPRINGI_LEVEL.
+/// extrema_of(), touch(), fly_past(), brake(), lattice_strain(), chain_strain(), bound_ and image_lattice() and
+/// _chain() and take_checksum(), and the table of them. Included at the end of each kernel file, which defines
+/// MSPRINGI_TABLE and MSPRINGI_LEVEL.
 ///
 /// SPDX-License-Identifier: MIT
 
@@ -11,6 +11,7 @@
 #include "kernels/checksum.h"
 #include "kernels/extrema.h"
 #include "kernels/flight.h"
+#include "kernels/silt.h"
 #include "kernels/strain.h"
 #include "kernels/system_table.h"
 
@@ -94,6 +95,7 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .beyond = beyond,
     .touch = touch,
     .fly_past = fly_past,
+    .brake = brake,
     .lattice_strain = lattice_strain,
     .chain_strain = chain_strain,
     .bound_lattice = bound_lattice,

@@ -231,6 +231,10 @@ static mspring_result set_floor(mspring_network *network, const call *c) {
     def.height_count = c->spring % 2 ? 3 : 0;
     def.heights_y = -30;
     def.friction = c->b;
+    def.plane_frictions = def.height_frictions = c->particle % 5 == 1 ? heights : NULL;
+    def.plane_restitutions = def.height_restitutions = c->particle % 5 == 2 ? heights : NULL;
+    def.silt_depth = c->particle % 5 == 3 ? 20.0f : 0.0f;
+    def.silt_rate = c->a;
     return mspring_network_set_floor(network, c->count == 2 ? NULL : &def);
 }
 

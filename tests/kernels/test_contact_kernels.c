@@ -1,6 +1,6 @@
 /// @file test_contact_kernels.c
 /// What a level's kernels do to blocks of particles on a floor, against mspringi_floor_bounce() and
-/// mspringi_floor_fly() of each: byte for byte, and nothing to those that they leave.
+/// mspringi_floor_fly() of each: byte for byte, and nothing to those that they leave. Silt likewise.
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
@@ -24,6 +24,8 @@ typedef struct block {
     _Alignas(64) float vy[W];
     _Alignas(64) float from_vx[W];
     _Alignas(64) float from_vy[W];
+    _Alignas(64) float low_x[W];
+    _Alignas(64) float low_y[W];
     _Alignas(64) float impulse_x[W];
     _Alignas(64) float impulse_y[W];
     _Alignas(64) float inverse_mass[W];
@@ -143,6 +145,8 @@ static mspringi_ground ground_of(const mspringi_floor *floor, block *b, double h
                              .vy = b->vy,
                              .from_vx = b->from_vx,
                              .from_vy = b->from_vy,
+                             .low_x = b->low_x,
+                             .low_y = b->low_y,
                              .undamped = undamped,
                              .impulse_x = b->impulse_x,
                              .impulse_y = b->impulse_y,
@@ -233,6 +237,78 @@ static void check_floor(uint32_t planes, bool has_heights) {
     }
 }
 
+/* ----------------------------------------------------------------------------------------------------------- silt
+ */
+
+/// One coordinate of a particle, of whose velocity in step with its position silt takes a share.
+static void brake_one(const mspringi_ground *g, double taken, float *v, float *at, float *low, float *impulse,
+                      float *from, float inverse_mass) {
+    const double w = (double)*v - 0.5 * (g->undamped * (double)*v - (double)*from);
+    const float change = (float)((double)*v - taken * w) - *v;
+    if (!(taken > 0.0) || change == 0.0f) {
+        return;
+    }
+    const float way = (float)(g->h * (double)change) + *low, to = *at + way;
+    *impulse += 1.0f / inverse_mass * change;
+    *low = way - (to - *at);
+    *at = to;
+    *v += change;
+    *from = g->before_vx ? (float)((double)*from + g->undamped * (double)change) : *from;
+}
+
+static void silt(void **state) {
+    (void)state;
+    uint32_t braked = 0;
+    for (uint32_t n = 0; n < BLOCKS; n++) {
+        mspringi_floor floor = make_floor(1, true);
+        floor.heights.silt_depth = between(0.01, 2);
+        floor.heights.silt_rate = pow(10, between(-3, 6));
+        const double h = pow(10, between(-3, -1.5));
+        const mspringi_bounds clear = {-20, 20, n % 3 == 0 ? 0.2f : 20.0f, 20};
+        block before = make_block(&floor, h);
+        for (uint32_t i = 0; i < W; i++) {
+            before.low_x[i] = (float)between(-1e-7, 1e-7);
+            before.low_y[i] = (float)between(-1e-7, 1e-7);
+        }
+        block found = before;
+        const bool is_seen = n % 2 == 0;
+        mspringi_ground ground = ground_of(&floor, &found, h, is_seen && n % 4 == 0 ? 1.25 : 1.0, clear);
+        ground.from_vx = is_seen ? found.from_vx : found.vx;
+        ground.from_vy = is_seen ? found.from_vy : found.vy;
+        ground.before_vx = is_seen ? found.from_vx : NULL;
+        ground.before_vy = is_seen ? found.from_vy : NULL;
+        ground.silt_depth = floor.heights.silt_depth;
+        ground.silt_rate = floor.heights.silt_rate;
+        kernels->brake(&ground, 0);
+        for (uint32_t i = 0; i < W; i++) {
+            block to = before;
+            const double taken = mspringi_silt_taken(&floor.heights, (double)before.x[i], (double)before.y[i], h);
+            float stays_vx = to.vx[i], stays_vy = to.vy[i];
+            if (!is_clear(&before, i, &clear) && before.free_mass[i] > 0.0f) {
+                brake_one(&ground, taken, &to.vx[i], &to.x[i], &to.low_x[i], &to.impulse_x[i],
+                          is_seen ? &to.from_vx[i] : &stays_vx, before.inverse_mass[i]);
+                brake_one(&ground, taken, &to.vy[i], &to.y[i], &to.low_y[i], &to.impulse_y[i],
+                          is_seen ? &to.from_vy[i] : &stays_vy, before.inverse_mass[i]);
+            }
+            braked += to.vx[i] != before.vx[i];
+            const float *const pairs[][2] = {{found.x, to.x},
+                                             {found.y, to.y},
+                                             {found.vx, to.vx},
+                                             {found.vy, to.vy},
+                                             {found.low_x, to.low_x},
+                                             {found.low_y, to.low_y},
+                                             {found.from_vx, to.from_vx},
+                                             {found.from_vy, to.from_vy},
+                                             {found.impulse_x, to.impulse_x},
+                                             {found.impulse_y, to.impulse_y}};
+            for (size_t k = 0; k < COUNT_OF(pairs); k++) {
+                check_lane(pairs[k][0], pairs[k][1], i);
+            }
+        }
+    }
+    assert_in_range(braked, BLOCKS * W / 8, BLOCKS * W);
+}
+
 static void a_plane(void **state) {
     (void)state;
     check_floor(1, false);
@@ -263,10 +339,9 @@ int main(int argc, char **argv) {
         return 1;
     }
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_plane),
-        cmocka_unit_test(several_planes),
-        cmocka_unit_test(heights_alone),
-        cmocka_unit_test(heights_and_planes),
+        cmocka_unit_test(a_plane),       cmocka_unit_test(several_planes),
+        cmocka_unit_test(heights_alone), cmocka_unit_test(heights_and_planes),
+        cmocka_unit_test(silt),
     };
     return cmocka_run_group_tests_name("contact_kernels", tests, NULL, NULL);
 }

@@ -75,6 +75,11 @@ static void move_all(const mspring_network *network, float h) {
     }
 }
 
+static void act_on_floor(mspring_network *network, float h) {
+    mspringi_floor_touch_all(network, h);
+    mspringi_floor_brake_all(network, h);
+}
+
 static void take_substeps(mspring_network *network, void *object, float h, mspringi_field base, uint32_t count) {
     const uint32_t springs = network->topology.spring_count;
     (void)object;
@@ -90,7 +95,7 @@ static void take_substeps(mspring_network *network, void *object, float h, mspri
             take_turn(network, (double)h, s);
         move_all(network, h);
         if (network->floor)
-            mspringi_floor_touch_all(network, h);
+            act_on_floor(network, h);
     }
     if (network->floor)
         mspringi_floor_fly_alone(network, h, base, count);

@@ -177,6 +177,7 @@ static void take_pieces(mspringi_substep_of *substep) {
         if (pieces > 1)
             mspringi_floor_keep(network, substep->h);
         take_substep(substep, 0);
+        mspringi_floor_brake_all(network, substep->h);
     }
     substep->h = h;
 }
