@@ -46,8 +46,8 @@
 ///     measure     network_energy, _momentum, _bounds
 ///     snapshots   network_snapshot_size, _save, _load
 ///
-/// massspring_tools.h extends, tunes and inspects: ropes, meshes, clones, hooks, queries, contact, stability limits,
-/// equilibrium, tuning, layout, compaction. examples/guides explains solvers, floor, contact, sleep and edits.
+/// massspring_tools.h extends, tunes and inspects: ropes, meshes, clones, hooks, queries, contact, grips, stability
+/// limits, equilibrium, tuning, layout, compaction. examples/guides explains solvers, floor, contact, sleep and edits.
 ///
 /// **Units** are SI: metres, kilograms, seconds, newtons, N/m, N s/m. The y axis points up.
 ///

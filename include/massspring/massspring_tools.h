@@ -13,6 +13,7 @@
 ///     tune        network_tune; tune_def_init, tune_scene_init, tune_settings, tune_row_solver
 ///     compact     network_compact, _expand; job_begin, _run, _finish, _error, _destroy
 ///     contact     network_set_contact, _get_contact, _set_contact_groups, _contact_info; contact_def_init
+///     grips       network_set_grip, _move_grip, _get_grip, _get_grip_impulse; grip_def_init
 ///
 /// These calls are not frozen yet: a later minor version may change them. massspring.h explains the notation.
 ///
@@ -131,7 +132,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_add_di
 
 /// Add what a network holds now to a builder: to store it, to merge networks or to split one.
 /// Adds particles with position, velocity, mass and pin, and the springs between them that are not broken, with rest
-/// length, stiffness, damping and strains of now. Settings, solver, floor, hooks, forces and events are not added. An
+/// length, stiffness, damping and strains of now. Settings, solver, floor, grips, hooks, forces and events are not added. An
 /// inverse mass scale becomes 1, or a pin if it is 0. Ids keep their order.
 ///
 /// A network that is created from the builder starts where the other is, but for the rounding of positions: its local
@@ -863,6 +864,68 @@ typedef struct mspring_contact_info {
 /// @threads shared   @allocates never   @errors ARGUMENT, STRUCT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_contact_info(
     const mspring_network *network, mspring_contact_info *info);
+
+/* --------------------------------------------------------------------------------------------------------- grips */
+
+/// Grips that a network can have at a time.
+#define MSPRING_MAX_GRIPS 16u
+
+/// A soft hold of a particle, as of a mouse or a finger. Fill with mspring_grip_def_init() first.
+///
+/// The grip pulls the particle with the force
+///     F = stiffness (target - p) + damping (velocity of the target - v),    |F| <= max_force
+/// at the end of each substep (implicit Euler). So it is stable with any stiffness, dt and solver. To hold a body of
+/// mass M at the angular frequency w without overshoot, use stiffness = M w^2 and damping = 2 M w.
+typedef struct mspring_grip_def {
+    uint32_t struct_size;
+    mspring_id particle; ///< default MSPRING_NONE: give one
+    double x, y;         ///< target, world position, m, at most MSPRING_MAX_COORDINATE in size; default 0
+    float stiffness;     ///< N/m, 0 to 1e30; default 0
+    float damping;       ///< N s/m, 0 to 1e30; default 0
+    float max_force;     ///< N, 0 to MSPRING_NEVER; default MSPRING_NEVER: no bound
+    uint32_t reserved;   ///< 0
+} mspring_grip_def;
+
+/// Fill a definition with its defaults, as mspring_network_def_init().
+/// @threads any   @allocates never   @errors ARGUMENT, STRUCT
+MSPRING_API mspring_result MSPRING_CALL mspring_grip_def_init(mspring_grip_def *def, size_t size);
+
+/// Hold a particle with a grip, change what it does, or let go.
+/// A new grip begins with its target at rest. If the grip holds the same particle already, its target moves as by
+/// mspring_network_move_grip(). The particle's island wakes.
+///
+/// A pinned particle does not feel a grip. A particle that is removed is let go. Snapshots and clones have the grips.
+/// mspring_network_settle() leaves them out. While a grip acts, the explicit solver takes substeps one by one, as with
+/// hooks.
+///
+/// The target may be far away. Then a stiff grip without max_force throws the particle, as a stiff spring would. The
+/// guide examples/guides/grips.md has the details.
+/// @param number  0 to MSPRING_MAX_GRIPS - 1, chosen by the host
+/// @param def     copied; NULL lets go, also if the grip holds nothing
+/// @threads exclusive   @allocates never   @errors ARGUMENT (the message names the field), ID, STRUCT, BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_grip(
+    mspring_network *network, uint32_t number, const mspring_grip_def *def);
+
+/// Move the target of a grip.
+/// In the next step the target goes there in a straight line. It rests from then on.
+/// @param x, y  world position, m, at most MSPRING_MAX_COORDINATE in size
+/// @threads exclusive   @allocates never   @errors ARGUMENT also for a grip that holds nothing; BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_move_grip(
+    mspring_network *network, uint32_t number, double x, double y);
+
+/// Read a grip. Set struct_size first.
+/// The target is the one given last. The particle of a grip that holds nothing is MSPRING_NONE.
+/// @threads shared   @allocates never   @errors ARGUMENT, STRUCT
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_grip(
+    const mspring_network *network, uint32_t number, mspring_grip_def *def);
+
+/// Read the impulse (N s) that a grip gave its particle in the last step.
+/// It is the sum of force times substep, and at most max_force times dt. While the particle sleeps, it is that of the
+/// last step before. The impulse of a grip that holds nothing is 0.
+/// @param x, y  receive the impulse
+/// @threads shared   @allocates never   @errors ARGUMENT
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_grip_impulse(
+    const mspring_network *network, uint32_t number, double *x, double *y);
 
 #ifdef __cplusplus
 }

@@ -83,6 +83,12 @@ mspring_result mspring_contact_def_init(mspring_contact_def *def, size_t size) {
     return mspringi_init_struct(def, size, &defaults, sizeof defaults);
 }
 
+mspring_result mspring_grip_def_init(mspring_grip_def *def, size_t size) {
+    const mspring_grip_def defaults = {
+        .struct_size = sizeof defaults, .particle = MSPRING_NONE, .max_force = MSPRING_NEVER};
+    return mspringi_init_struct(def, size, &defaults, sizeof defaults);
+}
+
 mspring_result mspring_solver_def_init(mspring_solver_def *def, size_t size) {
     const mspring_solver_def defaults = {.struct_size = sizeof defaults,
                                          .solver = MSPRING_SOLVER_EXPLICIT,

@@ -89,8 +89,6 @@ typedef struct mspringi_floor {
     mspringi_contact *contacts; ///< of an implicit substep
     uint32_t contact_count, contact_capacity;
     bool is_in_coarse; ///< some are in the coarse matrix
-    bool again;        ///< the substep is to be solved again
-    bool has_hit;      ///< it is to be begun again, as one of implicit Euler
     bool has_impulse;  ///< impulse is not all zero
     bool had_impulse;  ///< former is not all zero
 } mspringi_floor;

@@ -1,4 +1,5 @@
 /// Removing particles and springs, and giving their ids back.
+#include "contact/grips.h"
 #include "layout/emit/spare.h"
 #include "step/breaking.h"
 #include "store/changed.h"
@@ -23,6 +24,7 @@ static void remove_particle(mspring_network *network, mspring_id particle) {
     mspringi_around around = mspringi_around_begin(network, particle);
     for (mspring_id s; (s = mspringi_around_next(network, &around)) != MSPRING_NONE;)
         remove_spring(network, s, particle);
+    mspringi_grips_forget(network, particle);
     mspringi_growth_take_particle(network, particle);
     network->growth.particles[particle] = MSPRINGI_GONE;
     mspringi_fingerprint(network, MSPRINGI_EDIT_REMOVED_PARTICLE, particle);

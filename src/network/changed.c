@@ -63,6 +63,7 @@ static void tell_of_floor(const mspring_network *network) {
 #define COPY_SPRING mspringi_job_follow(network, mspringi_place_of(&network->topology, index));
 #define WAKE mspringi_wake(network);
 #define WAKE_SPRING mspringi_wake_spring(network, index);
+#define WAKE_SLOT mspringi_wake_slot(network, index);
 #define FREE_ENDS free_ends(network, index);
 #define FLOOR tell_of_floor(network);
 
@@ -87,6 +88,7 @@ void mspringi_tell(mspring_network *network, mspringi_change what, uint32_t inde
 #undef COPY_SPRING
 #undef WAKE
 #undef WAKE_SPRING
+#undef WAKE_SLOT
 #undef FREE_ENDS
 #undef FLOOR
 

@@ -138,6 +138,30 @@ typedef struct mspringi_any_shape {
     uint64_t masses, values, growth;
 } mspringi_any_shape;
 
+/// A particle that the host holds; see contact/grips.h.
+typedef struct mspringi_grip {
+    mspring_id particle; ///< MSPRING_NONE: it holds nothing
+    float stiffness, damping, max_force;
+    double x, y;                 ///< where the target is at the end of the next step, world coordinates
+    double from_x, from_y;       ///< and at its start
+    double impulse_x, impulse_y; ///< that it gave in the last step, N s
+    double sum_x, sum_y;         ///< the same of the step that is being made
+    double force_x, force_y;     ///< in an implicit substep, N
+    double share;                ///< of stiffness and damping that acts in it
+    bool is_bounded;             ///< none does, but the force that is the largest
+} mspringi_grip;
+
+typedef struct mspringi_grips {
+    mspringi_grip list[MSPRING_MAX_GRIPS];
+    uint32_t count; ///< that hold something
+
+    // A step.
+    bool were_asked; ///< they could act in it
+    float h;
+    double begin, share; ///< of the step that has passed before its substep, and that the substep is
+    double passed;       ///< of the substep, where an implicit one is taken in pieces
+} mspringi_grips;
+
 /// The events that the host has not read yet: a ring, empty if the host has not asked for one.
 typedef struct mspringi_events {
     mspring_event *ring; ///< [capacity]
@@ -346,6 +370,7 @@ struct mspring_network {
 
     mspringi_edits edits;
     mspringi_ramps ramps;
+    mspringi_grips grips;
     mspringi_strain strain;
     mspringi_events events;
     mspringi_components components;

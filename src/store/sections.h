@@ -40,6 +40,9 @@ extern const mspringi_section mspringi_section_growth;
 // In contact.c.
 extern const mspringi_section mspringi_section_shape;
 
+// In grips.c.
+extern const mspringi_section mspringi_section_grips;
+
 // In sleep.c.
 extern const mspringi_section mspringi_section_sleep;
 

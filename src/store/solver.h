@@ -53,6 +53,7 @@ struct mspringi_solver_ops {
     bool skews;          ///< velocities are those of half a substep before the positions, as of symplectic Euler
     bool has_herds;      ///< sweeps small trees in herds
     bool can_add;        ///< springs may be added
+    bool holds_grips;    ///< its substeps have grips in them, but for those of particles that are alone
 
     // Life. create: for a network that is otherwise complete, or of which there are the layout and what springs and
     // masses are, which may be on another thread; tile_size is for one whose tiles go by plan, 0: by that of the

@@ -63,6 +63,35 @@ static mspring_result set_contact_groups(arguments *a) {
     return result;
 }
 
+static void make_grip(arguments *a) {
+    mspring_grip_def *def = (mspring_grip_def *)(void *)a->given_bytes;
+    (void)mspring_grip_def_init(def, sizeof *def);
+    def->particle = 2;
+    def->stiffness = 100;
+}
+
+// Other calls are those of a network without grips.
+static mspring_result set_grip(arguments *a) {
+    const mspring_result result = mspring_network_set_grip(a->network, a->id, a->given);
+    if (result == MSPRING_OK) {
+        check_ok(mspring_network_set_grip(a->network, a->id, NULL));
+    }
+    return result;
+}
+
+// Messages go with the grip: numbers are tested in test_grip_calls.c.
+static mspring_result move_grip(arguments *a) {
+    mspring_grip_def def;
+    check_ok(mspring_grip_def_init(&def, sizeof def));
+    def.particle = 2;
+    mspring_result result = mspring_network_set_grip(a->network, 3, &def);
+    if (result == MSPRING_OK) {
+        result = mspring_network_move_grip(a->network, 3, 1, 2);
+        check_ok(mspring_network_set_grip(a->network, 3, NULL));
+    }
+    return result;
+}
+
 static mspring_result destroy_nothing(void) {
     mspring_builder_destroy(NULL);
     mspring_network_destroy(NULL);
@@ -417,6 +446,13 @@ static void add_hook(arguments *a) {
       mspring_network_get_contact(a->network, a->out[0]))                                                          \
     X(mspring_network_contact_info, "nP", OUT_STRUCT(0, contact_info),                                             \
       mspring_network_contact_info(a->network, a->out[0]))                                                         \
+    X(mspring_grip_def_init, "Z0", a->size = sizeof(mspring_grip_def), mspring_grip_def_init(a->out[0], a->size))  \
+    X(mspring_network_set_grip, "NIsW", make_grip(a), set_grip(a))                                                 \
+    X(mspring_network_move_grip, "N", NOTHING, move_grip(a))                                                       \
+    X(mspring_network_get_grip, "nP", OUT_STRUCT(0, grip_def),                                                     \
+      mspring_network_get_grip(a->network, a->id, a->out[0]))                                                      \
+    X(mspring_network_get_grip_impulse, "n01", NOTHING,                                                            \
+      mspring_network_get_grip_impulse(a->network, a->id, a->out[0], a->out[1]))                                   \
     X(mspring_network_get_sleepers, "nR0", NOTHING,                                                                \
       mspring_network_get_sleepers(a->network, a->first, a->count, a->out[0]))                                     \
     X(mspring_network_is_asleep, "v", NOTHING, note_size(mspring_network_is_asleep(a->network)))                   \

@@ -143,6 +143,12 @@ static mspring_result give_contact(subject *s, void *given) {
     return mspring_network_set_contact(s->network, given);
 }
 
+static mspring_result give_grip(subject *s, void *given) {
+    mspring_grip_def *grip = given;
+    grip->particle = 1;
+    return mspring_network_set_grip(s->network, 3, given);
+}
+
 static mspring_result give_settle(subject *s, void *given) {
     const mspring_result result = mspring_network_settle(s->network, given, NULL);
     return result == MSPRING_ERROR_EQUILIBRIUM ? MSPRING_OK : result;
@@ -190,6 +196,7 @@ INIT(settings)
 INIT(hook_def)
 INIT(floor_def)
 INIT(contact_def)
+INIT(grip_def)
 INIT(settle_def)
 INIT(tune_def)
 INIT(tune_scene)
@@ -220,6 +227,7 @@ static const struct input {
     INPUT(hook_def, offsetof(mspring_hook_def, reserved), give_hook),
     INPUT(floor_def, offsetof(mspring_floor_def, reserved), give_floor),
     INPUT(contact_def, offsetof(mspring_contact_def, reserved), give_contact),
+    INPUT(grip_def, offsetof(mspring_grip_def, reserved), give_grip),
     INPUT(settle_def, offsetof(mspring_settle_def, reserved), give_settle),
     INPUT(tune_def, offsetof(mspring_tune_def, reserved_pointer), give_tune),
     INPUT(tune_scene, offsetof(mspring_tune_scene, reserved), give_scene),
@@ -308,6 +316,9 @@ static mspring_result fill_contact(subject *s, void *out) {
 static mspring_result fill_contact_info(subject *s, void *out) {
     return mspring_network_contact_info(s->network, out);
 }
+static mspring_result fill_grip(subject *s, void *out) {
+    return mspring_network_get_grip(s->network, 3, out);
+}
 static mspring_result fill_step_info(subject *s, void *out) {
     return mspring_network_get_step_info(s->network, out);
 }
@@ -355,6 +366,7 @@ static const struct output {
     OUTPUT(mspring_floor_def, fill_floor),
     OUTPUT(mspring_contact_def, fill_contact),
     OUTPUT(mspring_contact_info, fill_contact_info),
+    OUTPUT(mspring_grip_def, fill_grip),
     OUTPUT(mspring_step_info, fill_step_info),
     OUTPUT(mspring_spring_info, fill_spring_info),
     OUTPUT(mspring_plan, fill_plan),

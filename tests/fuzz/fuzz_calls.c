@@ -248,6 +248,18 @@ static mspring_result set_contact(mspring_network *network, const call *c) {
     return mspring_network_set_contact(network, c->count == 2 ? NULL : &def);
 }
 
+static mspring_result set_grip(mspring_network *network, const call *c) {
+    mspring_grip_def def;
+    FUZZ_CHECK(mspring_grip_def_init(&def, sizeof def) == MSPRING_OK);
+    def.particle = c->particle;
+    def.x = (double)c->a;
+    def.y = (double)c->b;
+    def.stiffness = c->b;
+    def.damping = c->spring % 2 ? c->a : 0.0f;
+    def.max_force = c->spring % 3 ? 1000.0f : MSPRING_NEVER;
+    return mspring_network_set_grip(network, c->spring % 20, c->count == 2 ? NULL : &def);
+}
+
 // A job, of which some functions are run, and with luck all.
 static mspring_result change_layout(mspring_network *network, const call *c) {
     mspring_job *job = NULL;
@@ -446,6 +458,11 @@ static mspring_result make_call(mspring_network *network, const call *c) {
         return set_contact(network, c);
     case 39:
         return mspring_network_set_contact_groups(network, c->particle, c->count, c->spring, c->spring | 1);
+    case 40:
+    case 41:
+        return set_grip(network, c);
+    case 42:
+        return mspring_network_move_grip(network, c->spring % 20, (double)c->a, (double)c->b);
     default:
         return mspring_network_step(network, c->dt);
     }
@@ -478,6 +495,8 @@ static void compare_with_reference(twins *all, const recipe *made) {
     FUZZ_CHECK(mspring_solver_def_init(&solver, sizeof solver) == MSPRING_OK);
     solver.substeps = 3;
     FUZZ_CHECK(mspring_network_set_contact(all->of[0], NULL) == MSPRING_OK);
+    for (uint32_t number = 0; number < MSPRING_MAX_GRIPS; number++)
+        FUZZ_CHECK(mspring_network_set_grip(all->of[0], number, NULL) == MSPRING_OK);
     FUZZ_CHECK(mspring_network_set_solver(all->of[0], &solver) == MSPRING_OK);
     FUZZ_CHECK(support_set_gravity(all->of[0], 1, -9.8f) == MSPRING_OK);
     FUZZ_CHECK(support_set_global_damping(all->of[0], 0.25f) == MSPRING_OK);

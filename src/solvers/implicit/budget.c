@@ -97,7 +97,7 @@ static void begin_account(const mspring_network *network, account *a) {
     for (size_t i = 0; i < 4; ++i)
         a->origin[i] = (double)state[i][a->first_slot];
     a->is_asleep = mspringi_slot_is_asleep(network, a->first_slot);
-    a->is_driven = a->is_stopped = false;
+    a->is_driven = a->is_stopped = a->is_held = false;
     a->frame_x = a->frame_y = 0.0;
     a->frame_pin = MSPRING_NONE;
 }
@@ -311,7 +311,7 @@ static void judge_account(const mspring_network *network, account *a, const outs
     a->is_free = false;
     if (a->is_asleep || !(c.mass > 0.0))
         return;
-    if (a->is_pinned || a->is_stopped || a->sums[MSPRINGI_EFFECT_TOUCH] > 0.0)
+    if (a->is_pinned || a->is_held || a->is_stopped || a->sums[MSPRINGI_EFFECT_TOUCH] > 0.0)
         judge_held(network, a, &c, o->h);
     else
         judge_free(network, a, &c, o);
@@ -559,6 +559,7 @@ bool mspringi_budget_close(mspring_network *network, float h, mspringi_field bas
                               .motion = motion_of(network),
                               .before = motion_before(network),
                               .base = base,
+                              .h = h,
                               .is_after = true};
     const outside o = outside_in(network, (double)h);
     for (int step = 0;; ++step) {

@@ -5,10 +5,10 @@
 /// early then stretch springs by more than any force has done work for. So after each substep, and after the floor
 /// has acted, every component (all that live springs join) is looked at by itself:
 ///
-///   - It is held if it has a pinned particle, or if the floor has given it an impulse in this substep. Else it is
-///     free: momentum and angular momentum about its mass centre are what they were, with what forces from outside
-///     and global damping have added. Where the substep has changed them otherwise, the velocities get a rigid
-///     motion that makes up for it.
+///   - It is held if it has a pinned particle, if a grip holds one, or if the floor has given it an impulse in this
+///     substep. Else it is free: momentum and angular momentum about its mass centre are what they were, with what
+///     forces from outside and global damping have added. Where the substep has changed them otherwise, the
+///     velocities get a rigid motion that makes up for it.
 ///   - Its room is the energy from before the substep, with the work of gravity and forces, less what its springs
 ///     have now and less what its momenta demand. Work of the floor does not count: it can only take energy. A free
 ///     component is seen from its mass centre, where gravity does no work, and one whose pins all move alike from
@@ -67,6 +67,7 @@ enum {
 typedef struct mspringi_account {
     uint32_t first_slot;
     bool is_pinned, is_driven, is_asleep; ///< driven: its pinned particles do not all move alike
+    bool is_held;                         ///< by a grip
     bool exceeds;                         ///< its springs alone have too much energy
     bool gains;                           ///< springs and velocities together have much too much
     double origin[4];                     ///< x, y, vx, vy of its first slot before the substep
@@ -140,6 +141,7 @@ typedef struct mspringi_measuring {
     mspring_network *network;
     mspringi_motion motion, before; ///< before: where it was, after a substep
     mspringi_field base;            ///< forces from outside
+    float h;                        ///< length of the substep, after it
     bool is_after;
     bool knows_elastic; ///< elastic and length are there already
     uint32_t workers;

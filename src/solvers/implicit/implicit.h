@@ -75,6 +75,8 @@ typedef struct mspringi_implicit {
     double leftover_product;            ///< what leftover springs and contacts add to p . A p
     bool is_hit;                        ///< the present substep is one of implicit Euler: particles hit the floor,
                                         ///< or motion is not to be followed as the integrator would
+    bool hits_floor;                    ///< it is to be begun again, as one of implicit Euler
+    bool again;                         ///< it is to be solved again, as floor or grips hold particles otherwise
     bool is_piece;                      ///< it is a half of one that got energy from nowhere, or of such a half
     mspringi_system system;
     mspringi_iterate iterate;

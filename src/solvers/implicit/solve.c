@@ -63,6 +63,7 @@ static void factor_coarse(const mspring_network *network) {
         return;
     mspringi_coarse_complete(&n->coarse, &n->tiles, &parts);
     mspringi_floor_stiffen(network);
+    mspringi_grips_stiffen(network);
     mspringi_coarse_factor(&n->coarse);
 }
 

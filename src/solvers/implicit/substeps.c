@@ -38,10 +38,25 @@ static float solve(const mspringi_substep_of *substep, mspringi_mate *mate) {
 // Most times that a substep is solved to find out which particles the floor holds.
 #define MOST_PASSES 4
 
-// Solve with what the floor adds. Returns false if the substep is to be begun anew.
-static bool solve_with_floor(const mspringi_substep_of *substep, mspringi_mate *mate, float *alpha) {
+// Add what floor and grips add. Returns false if particles hit the floor.
+static bool add_terms(const mspringi_substep_of *substep, uint32_t pass) {
     mspring_network *network = substep->network;
-    mspringi_floor *floor = network->floor;
+    if (network->floor && !mspringi_floor_add_terms(network, substep->h, pass))
+        return false;
+    mspringi_grips_add_terms(network, substep->h, pass);
+    return true;
+}
+
+// Returns whether other particles are to be held than were, or otherwise.
+static bool review_terms(mspring_network *network, float alpha, uint32_t pass) {
+    const bool by_floor = network->floor && mspringi_floor_review(network, alpha, pass);
+    return mspringi_grips_review(network, alpha) || by_floor;
+}
+
+// Solve with what floor and grips add. Returns false if the substep is to be begun anew.
+static bool solve_with_terms(const mspringi_substep_of *substep, mspringi_mate *mate, float *alpha) {
+    mspring_network *network = substep->network;
+    mspringi_implicit *n = mspringi_implicit_of(network);
     for (uint32_t pass = 0; pass < MOST_PASSES; ++pass) {
         if (pass > 0) {
             mspringi_predict(substep, mate);
@@ -49,16 +64,16 @@ static bool solve_with_floor(const mspringi_substep_of *substep, mspringi_mate *
         }
         mspringi_meet(mate);
         if (mate->index == 0)
-            floor->has_hit = !mspringi_floor_add_terms(network, substep->h, pass);
+            n->hits_floor = !add_terms(substep, pass);
         mspringi_meet(mate);
-        if (floor->has_hit)
+        if (n->hits_floor)
             return false;
         *alpha = solve(substep, mate);
         mspringi_meet(mate);
         if (mate->index == 0)
-            floor->again = mspringi_floor_review(network, *alpha, pass);
+            n->again = review_terms(network, *alpha, pass);
         mspringi_meet(mate);
-        if (!floor->again)
+        if (!n->again)
             break;
     }
     return true;
@@ -72,9 +87,9 @@ static void run_share(void *argument, uint32_t index, uint32_t worker) {
     mspringi_predict(substep, &mate);
     mspringi_assemble(substep, &mate);
     float alpha = 0.0f;
-    if (!substep->network->floor)
+    if (!substep->network->floor && substep->network->grips.count == 0)
         alpha = solve(substep, &mate);
-    else if (!solve_with_floor(substep, &mate, &alpha))
+    else if (!solve_with_terms(substep, &mate, &alpha))
         return;
     mspringi_land(substep, &mate, alpha);
 }
@@ -112,9 +127,9 @@ static void run_substep(mspringi_substep_of *substep, bool is_piece) {
     const uint32_t sleeps = mspringi_tasks_sleeps(network->tasks);
     choose_team(substep);
     n->is_piece = is_piece;
-    n->is_hit = false;
+    n->is_hit = n->hits_floor = false;
     run_team(substep);
-    if (network->floor && network->floor->has_hit) {
+    if (n->hits_floor) {
         n->is_hit = true;
         run_team(substep);
     }
@@ -141,8 +156,10 @@ static void take_substep(mspringi_substep_of *substep, uint32_t tries) {
         n->budget.knows_elastic = false;
     run_substep(substep, tries > 0);
     if (!substep->watches ||
-        mspringi_budget_close(network, substep->h, substep->base, tries <= MSPRINGI_MOST_HALVINGS))
+        mspringi_budget_close(network, substep->h, substep->base, tries <= MSPRINGI_MOST_HALVINGS)) {
+        mspringi_grips_pass(network, substep->h);
         return;
+    }
     mspringi_budget_undo(network);
     n->history.restarts = MSPRINGI_CALM_SUBSTEPS;
     n->age = 0;

@@ -8,6 +8,7 @@
 #include "contact/floor.h"
 #include "sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
+#include "solvers/implicit/terms.h"
 #include "store/springs.h"
 
 typedef mspringi_budget budget_of;
@@ -219,8 +220,10 @@ void mspringi_budget_measure(measuring *all) {
         a->length = all->knows_elastic ? a->length : 0.0;
     }
     add_particles(all);
-    if (all->is_after)
+    if (all->is_after) {
         add_contacts(network);
+        mspringi_grips_account(all);
+    }
     if (!all->knows_elastic)
         add_springs(all);
 }

@@ -1,0 +1,37 @@
+/// @file grips.h
+/// Particles that the host holds.
+///
+///   grips.c      the definition, given by the host; the law
+///   pulling.c    the stage; what a grip does after a substep of symplectic Euler
+///
+/// The solvers with a linear system have grips in it, see solvers/implicit/held.c. All have the force of the end of
+/// the substep, so it is stable however stiff the grip is.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_GRIPS_H
+#define MSPRINGI_GRIPS_H
+
+#include "store/network.h"
+
+/// What a grip pulls at: a place that moves, local coordinates.
+typedef struct mspringi_aim {
+    double x, y, vx, vy;
+} mspringi_aim;
+
+/// Where the target is once so much of the step has passed.
+mspringi_aim mspringi_grip_aim(const mspring_network *network, const mspringi_grip *grip, double share);
+
+/// Bound a force by what the grip can. Returns whether it was more.
+bool mspringi_grip_bound(const mspringi_grip *grip, double *force_x, double *force_y);
+
+/// Whether a grip holds a particle that can be moved now. If so, *slot is where it is.
+bool mspringi_grip_acts(const mspring_network *network, const mspringi_grip *grip, uint32_t *slot);
+
+/// No grip holds anything, as at first.
+void mspringi_grips_clear(mspringi_grips *grips);
+/// Let go of a particle that is removed.
+void mspringi_grips_forget(mspring_network *network, mspring_id particle);
+/// The next step begins where the targets are.
+void mspringi_grips_arrive(mspring_network *network);
+
+#endif
