@@ -151,22 +151,27 @@ static void check_trials(uint32_t first, uint32_t count, double fastest, float r
     assert_true(most.turn <= 2e-3);
 }
 
+/// Trials in all.
+static uint32_t trials = ROUNDS(2000);
+
 static void nothing_gets_through(void **state) {
     (void)state;
-    check_trials(1, ROUNDS(1500), 100, 0, 2e-3);
+    check_trials(1, trials / 20 * 15, 100, 0, 2e-3);
 }
 
 static void what_bounces_gets_through_no_more(void **state) {
     (void)state;
-    check_trials(100000, ROUNDS(300), 100, 0.5f, 2e-3);
+    check_trials(100000, trials / 20 * 3, 100, 0.5f, 2e-3);
 }
 
 static void pieces_of_a_substep_hold_what_is_faster(void **state) {
     (void)state;
-    check_trials(200000, ROUNDS(200), 1000, 0, 1e-2);
+    check_trials(200000, trials / 20 * 2, 1000, 0, 1e-2);
 }
 
-int main(void) {
+int main(int argc, char **argv) {
+    if (argc > 1)
+        trials = (uint32_t)strtoul(argv[1], NULL, 10);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_gets_through),
         cmocka_unit_test(what_bounces_gets_through_no_more),
