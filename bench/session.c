@@ -554,10 +554,22 @@ static void empty_hook(const mspring_hook_args *args, void *user) {
     (void)user;
 }
 
-/// Time steps with an empty hook in every substep against steps without, and say what one substep's call costs:
-/// with it substeps are swept one by one.
+/// Push up what is below a sea floor of the host.
+static void sea_floor(const mspring_hook_args *args, void *user) {
+    const double *height = user;
+    const float local = (float)(*height - args->origin_y);
+    for (uint32_t i = args->first_slot; i < args->first_slot + args->slot_count; i++) {
+        const bool is_below = args->y[i] < local;
+        args->vy[i] = is_below && args->vy[i] < 0 ? 0 : args->vy[i];
+    }
+}
+
+/// Time steps with a hook in every substep against steps without. One that is empty: what one substep's call costs,
+/// with which substeps are swept one by one. A sea floor 1 km below, with a reach or called for all: what a step
+/// costs.
 static bool measure_hook(session *with, const bench_options *options, const bench_scene *subject,
-                         mspring_simd level, uint32_t repeat, scene_error *error) {
+                         mspring_simd level, bool is_empty, uint32_t flags, uint32_t repeat, scene_error *error) {
+    double left, bottom, right, top;
     bench_network hooked, plain;
     if (!bench_network_create(subject->made.builder, level, 1, with->step->substeps, &hooked, error)) {
         return false;
@@ -569,8 +581,14 @@ static bool measure_hook(session *with, const bench_options *options, const benc
     mspring_hook_def def;
     mspring_result result = mspring_hook_def_init(&def, sizeof def);
     def.phase = MSPRING_PHASE_AFTER_SUBSTEP;
-    def.fn = empty_hook;
+    def.fn = is_empty ? empty_hook : sea_floor;
     if (result == MSPRING_OK) {
+        result = mspring_network_bounds(plain.network, &left, &bottom, &right, &top);
+    }
+    if (result == MSPRING_OK) {
+        def.flags = flags;
+        def.below_y = bottom - 1000.0;
+        def.user = &def.below_y;
         result = mspring_network_add_hook(hooked.network, &def, NULL);
     }
     bool ok = result == MSPRING_OK;
@@ -581,9 +599,11 @@ static bool measure_hook(session *with, const bench_options *options, const benc
     bench_turns turns;
     ok = ok && bench_turns_measure(&first, &second, repeat, &turns, error);
     if (ok) {
-        const double substeps = with->step->substeps;
-        print_row(options, subject, with->step, "an empty hook, one substep",
-                  (turns.second_min - turns.first_min) / substeps,
+        const double substeps = is_empty ? with->step->substeps : 1.0;
+        const char *name = is_empty ? "an empty hook, one substep"
+                           : flags  ? "  the same, with a reach"
+                                    : "a hook 1 km below";
+        print_row(options, subject, with->step, name, (turns.second_min - turns.first_min) / substeps,
                   (turns.second_median - turns.first_median) / substeps, turns.first_min);
     }
     bench_network_free(&plain);
@@ -610,7 +630,9 @@ static bool measure_level(const bench_scene *subject, const bench_options *optio
     }
     ok = ok && measure_floor(&with, options, subject, level, "floor, out of reach", 1e7, repeat, &error);
     ok = ok && measure_floor(&with, options, subject, level, "floor, lowest rows on it", -0.5, repeat, &error);
-    ok = ok && measure_hook(&with, options, subject, level, repeat, &error);
+    ok = ok && measure_hook(&with, options, subject, level, true, 0, repeat, &error);
+    ok = ok && measure_hook(&with, options, subject, level, false, 0, repeat, &error);
+    ok = ok && measure_hook(&with, options, subject, level, false, MSPRING_HOOK_BELOW, repeat, &error);
     for (const session_call *call = session_calls; ok && call->name != NULL; call++) {
         ok = measure_call(call, &with, options, subject, repeat, times, &error);
     }

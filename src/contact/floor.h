@@ -58,14 +58,6 @@ typedef struct mspringi_contact {
     double along;     ///< what brakes it along the surface, likewise
 } mspringi_contact;
 
-/// A box that no surface is near.
-typedef struct mspringi_room {
-    mspringi_bounds box;
-    float place;               ///< coordinates of less than this size are in the box
-    double reach;              ///< half as far from the box there is no surface; 0: there is no such box
-    double origin_x, origin_y; ///< that it is relative to
-} mspringi_room;
-
 typedef struct mspringi_floor {
     mspringi_half_plane planes[MSPRING_MAX_PLANES];
     double given[MSPRING_MAX_PLANES][4];         ///< the same, as the host gave them
@@ -153,6 +145,13 @@ bool mspringi_floor_is_out_of_reach(mspring_network *network, double seconds);
 
 /// After that step, of substeps of h: whether nothing did, by bounds of what it has led to.
 bool mspringi_floor_was_out_of_reach(const mspring_network *network, float h, mspringi_extrema seen);
+
+/// The same of other surfaces, whose lines are local, and a room of theirs; way is what a particle may have gone at
+/// the highest speed.
+bool mspringi_room_is_enough(const mspring_network *network, const mspringi_floor *surfaces, mspringi_room *room,
+                             double seconds);
+bool mspringi_room_was_enough(const mspring_network *network, const mspringi_room *room, double way,
+                              mspringi_extrema seen);
 
 /* bounce.c */
 

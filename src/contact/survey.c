@@ -177,12 +177,10 @@ bool mspringi_floor_is_near_block(const mspring_network *network, const mspringi
 #define FARTHEST 1e9
 
 // Find a box around the network that leaves it as much room again on all sides, at least for that reach.
-static mspringi_room find_room(const mspring_network *network, double reach) {
-    mspringi_floor *floor = network->floor;
+static mspringi_room find_room(const mspring_network *network, const mspringi_floor *floor, double reach) {
     box all = {INFINITY, -INFINITY, INFINITY, -INFINITY};
     float fastest = 0.0f;
     double free = 0.0;
-    mspringi_floor_follow(floor, network->origin_x, network->origin_y);
     cover(network, 0, mspringi_used_slots(network), &all, &fastest);
     for (double way = 2.0 * reach; way < FARTHEST && look_around(floor, &all, way).is_far; way *= 2.0)
         free = way;
@@ -216,20 +214,29 @@ static float fastest_of(const mspring_network *network) {
     return vx > vy || vx != vx ? vx : vy;
 }
 
-bool mspringi_floor_is_out_of_reach(mspring_network *network, double seconds) {
-    mspringi_floor *floor = network->floor;
-    mspringi_room *room = &floor->room;
-    if (floor->is_near || network->sleep.sleeping > 0)
-        return false;
+bool mspringi_room_is_enough(const mspring_network *network, const mspringi_floor *surfaces, mspringi_room *room,
+                             double seconds) {
     const double reach = reach_of(network, fastest_of(network), seconds);
     const bool is_known =
         room->reach >= reach && room->origin_x == network->origin_x && room->origin_y == network->origin_y;
     if (!is_known || !is_in_room(network, room, network->guard.knows_speed ? network->guard.place : INFINITY))
-        *room = find_room(network, reach);
+        *room = find_room(network, surfaces, reach);
     return room->reach >= reach;
 }
 
+bool mspringi_room_was_enough(const mspring_network *network, const mspringi_room *room, double way,
+                              mspringi_extrema seen) {
+    return way <= 0.5 * room->reach && is_in_room(network, room, seen.place);
+}
+
+bool mspringi_floor_is_out_of_reach(mspring_network *network, double seconds) {
+    mspringi_floor *floor = network->floor;
+    if (floor->is_near || network->sleep.sleeping > 0)
+        return false;
+    mspringi_floor_follow(floor, network->origin_x, network->origin_y);
+    return mspringi_room_is_enough(network, floor, &floor->room, seconds);
+}
+
 bool mspringi_floor_was_out_of_reach(const mspring_network *network, float h, mspringi_extrema seen) {
-    const mspringi_room *room = &network->floor->room;
-    return (double)h * (double)seen.speed <= 0.5 * room->reach && is_in_room(network, room, seen.place);
+    return mspringi_room_was_enough(network, &network->floor->room, (double)h * (double)seen.speed, seen);
 }

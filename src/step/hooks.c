@@ -1,4 +1,8 @@
 /// Host functions that are called in the course of a step.
+#include <math.h>
+
+#include "sleep/sleep.h"
+#include "step/reach.h"
 #include "store/stages.h"
 
 /// Fewest slots that are worth to be handed to another worker, if the host does not say.
@@ -20,7 +24,7 @@ static mspring_result check_hook(mspring_network *network, const mspring_hook_de
                              (int)def->phase);
     if (!def->fn)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the hook's function is NULL");
-    if (def->flags & ~(uint32_t)MSPRING_HOOK_CONCURRENT)
+    if (def->flags & ~(uint32_t)(MSPRING_HOOK_CONCURRENT | MSPRING_HOOK_BELOW))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the hook's flags are 0x%x, of which some are none",
                              (unsigned)def->flags);
     if (def->period < 1)
@@ -29,6 +33,9 @@ static mspring_result check_hook(mspring_network *network, const mspring_hook_de
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "the hook's period is %u substeps, but it is called before the step: it must be 1",
                              (unsigned)def->period);
+    if (mspringi_has_reach(def) && !(fabs(def->below_y) <= MSPRING_MAX_COORDINATE))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "the hook's below_y is %g m, it must be -1e12 to 1e12", def->below_y);
     return MSPRING_OK;
 }
 
@@ -86,21 +93,32 @@ mspring_result mspring_network_remove_hook(mspring_network *network, uint32_t ho
 
 // A hook's call, divided into ranges.
 typedef struct hook_call {
+    const mspring_network *network;
     const mspring_hook_def *def;
     mspring_hook_args args; ///< but for range, worker and storage
     uint32_t slot_count, range;
 } hook_call;
 
-static void call_range(void *argument, uint32_t index, uint32_t worker) {
-    const hook_call *call = argument;
+static void call_run(const hook_call *call, mspringi_slot_run run, uint32_t worker) {
     mspring_hook_args args = call->args;
-    args.first_slot = index * call->range;
-    args.slot_count =
-        call->slot_count - args.first_slot < call->range ? call->slot_count - args.first_slot : call->range;
+    args.first_slot = run.first;
+    args.slot_count = run.end - run.first;
     args.worker = worker;
     if (call->def->storage)
         args.storage = (char *)call->def->storage + worker * call->def->storage_stride;
     call->def->fn(&args, call->def->user);
+}
+
+static void call_range(void *argument, uint32_t index, uint32_t worker) {
+    const hook_call *call = argument;
+    const uint32_t first = index * call->range;
+    const uint32_t end = call->slot_count - first < call->range ? call->slot_count : first + call->range;
+    mspringi_slot_run run = {first, end};
+    if (!mspringi_has_reach(call->def))
+        call_run(call, run, worker);
+    else
+        for (run.end = first; mspringi_next_below(call->network, call->def, run.end, end, &run);)
+            call_run(call, run, worker);
 }
 
 // Slots in a range: whole blocks.
@@ -127,7 +145,13 @@ static hook_group group_of(const mspringi_attempt *attempt, uint32_t substep, ui
 static void call_hook(mspring_network *network, const mspringi_attempt *attempt, const mspring_hook_def *def,
                       hook_group group, mspringi_field field) {
     const uint32_t slot_count = (uint32_t)mspringi_used_slots(network);
+    mspringi_slot_run lowest;
+    if (mspringi_has_reach(def) && !mspringi_next_below(network, def, 0, slot_count, &lowest))
+        return;
+    network->is_open = network->was_in_hook = true;
+    network->guard.knows_speed = network->guard.knows_place = false;
     hook_call call = {
+        .network = network,
         .def = def,
         .slot_count = slot_count,
         .range = range_of(network, def, slot_count),
@@ -167,13 +191,41 @@ static bool has_any(const mspring_network *network, mspring_phase phase) {
     return false;
 }
 
-// Substeps, from this one on, that can be taken until a hook is due again.
-static uint32_t free_substeps(const mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
-    uint32_t count = attempt->substeps - substep;
+// Whether a hook acts in this phase of the step.
+static bool is_due(const mspring_network *network, const mspringi_attempt *attempt, mspringi_hook *hook,
+                   mspring_phase phase) {
+    return hook->def.phase == phase && !mspringi_hook_is_away(network, hook, attempt->dt);
+}
+
+static bool is_any_due(const mspring_network *network, const mspringi_attempt *attempt, mspring_phase phase) {
+    for (size_t i = 0; i < network->hook_count; ++i)
+        if (is_due(network, attempt, &network->hooks[i], phase))
+            return true;
+    return false;
+}
+
+// Whether a hook is to be called in any step, or where all sleep.
+static bool is_any_needed(const mspring_network *network, mspring_phase phase) {
+    const uint32_t slots = (uint32_t)mspringi_used_slots(network);
+    mspringi_slot_run run;
     for (size_t i = 0; i < network->hook_count; ++i) {
         const mspring_hook_def *def = &network->hooks[i].def;
-        if (def->phase != MSPRING_PHASE_BEFORE_STEP && def->period - substep % def->period < count)
-            count = def->period - substep % def->period;
+        if (def->phase == phase &&
+            (!mspringi_has_reach(def) ||
+             (mspringi_sleep_is_idle(network) && mspringi_next_below(network, def, 0, slots, &run))))
+            return true;
+    }
+    return false;
+}
+
+// Substeps, from this one on, that can be taken until a hook of a phase is due again.
+static uint32_t free_substeps(const mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
+                              mspring_phase phase) {
+    uint32_t count = attempt->substeps - substep;
+    for (size_t i = 0; i < network->hook_count; ++i) {
+        const uint32_t period = network->hooks[i].def.period;
+        if (is_due(network, attempt, &network->hooks[i], phase) && period - substep % period < count)
+            count = period - substep % period;
     }
     return count;
 }
@@ -181,7 +233,7 @@ static uint32_t free_substeps(const mspring_network *network, const mspringi_att
 static void before_step(mspring_network *network, const mspringi_attempt *attempt, mspringi_field field) {
     const hook_group all = {0, 1, attempt->dt};
     for (size_t i = 0; i < network->hook_count; ++i)
-        if (network->hooks[i].def.phase == MSPRING_PHASE_BEFORE_STEP)
+        if (is_due(network, attempt, &network->hooks[i], MSPRING_PHASE_BEFORE_STEP))
             call_hook(network, attempt, &network->hooks[i].def, all, field);
 }
 
@@ -194,17 +246,19 @@ static void add(const mspring_network *network, mspringi_field from, mspringi_fi
 }
 
 // Call the hooks that are due before this substep, and give forces.driven anew: base (x NULL: none) and the forces
-// of all hooks. If none is due, the field stays as it was.
+// of all hooks. If none is due, the field stays as it was; if none is in the whole step, the forces are base.
 static mspringi_field before_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
                                      mspringi_field base) {
-    bool any = false;
-    for (size_t i = 0; i < network->hook_count && !any; ++i) {
-        const mspring_hook_def *def = &network->hooks[i].def;
-        any = def->phase == MSPRING_PHASE_BEFORE_SUBSTEP && substep % def->period == 0;
+    bool any = false, acts = false;
+    for (size_t i = 0; i < network->hook_count; ++i) {
+        mspringi_hook *hook = &network->hooks[i];
+        const bool acts_here = is_due(network, attempt, hook, MSPRING_PHASE_BEFORE_SUBSTEP);
+        acts |= acts_here;
+        any |= acts_here && substep % hook->def.period == 0;
     }
     const mspringi_field driven = network->forces.driven;
     if (!any)
-        return driven;
+        return acts ? driven : base;
     if (base.x)
         mspringi_field_copy(network, base, driven);
     else
@@ -212,8 +266,8 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
     // A hook with a period has a field of its own, since its forces act on while others may be called again.
     const uint32_t left = attempt->substeps - substep;
     for (size_t i = 0; i < network->hook_count; ++i) {
-        const mspringi_hook *hook = &network->hooks[i];
-        if (hook->def.phase != MSPRING_PHASE_BEFORE_SUBSTEP)
+        mspringi_hook *hook = &network->hooks[i];
+        if (!is_due(network, attempt, hook, MSPRING_PHASE_BEFORE_SUBSTEP))
             continue;
         if (!hook->held.x) {
             call_hook(network, attempt, &hook->def, group_of(attempt, substep, 1), driven);
@@ -231,34 +285,86 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
 
 static void after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
     for (size_t i = 0; i < network->hook_count; ++i) {
-        const mspring_hook_def *def = &network->hooks[i].def;
-        const uint32_t group = substep % def->period + 1;
+        mspringi_hook *hook = &network->hooks[i];
+        const uint32_t group = substep % hook->def.period + 1;
         const mspringi_field none = {NULL, NULL};
-        if (def->phase == MSPRING_PHASE_AFTER_SUBSTEP && (group == def->period || substep + 1 == attempt->substeps))
-            call_hook(network, attempt, def, group_of(attempt, substep, group), none);
+        if (is_due(network, attempt, hook, MSPRING_PHASE_AFTER_SUBSTEP) &&
+            (group == hook->def.period || substep + 1 == attempt->substeps))
+            call_hook(network, attempt, &hook->def, group_of(attempt, substep, group), none);
     }
+}
+
+/* ------------------------------------------------------------------------------------------- what was out of reach
+ */
+
+static void begin(mspring_network *network, const mspringi_attempt *attempt) {
+    (void)attempt;
+    for (size_t i = 0; i < network->hook_count; ++i)
+        network->hooks[i].distance = MSPRINGI_UNKNOWN;
+}
+
+static bool has_missed(mspring_network *network, const mspringi_attempt *attempt) {
+    bool any = false;
+    for (size_t i = 0; i < network->hook_count; ++i)
+        any |= network->hooks[i].def.phase != MSPRING_PHASE_BEFORE_STEP &&
+               mspringi_hook_was_missed(network, &network->hooks[i], attempt->dt);
+    return any;
+}
+
+// A step that is repeated is looked at in every substep.
+static void take_back(mspring_network *network) {
+    for (size_t i = 0; i < network->hook_count; ++i)
+        if (network->hooks[i].distance == MSPRINGI_AWAY)
+            network->hooks[i].distance = MSPRINGI_CLOSE;
 }
 
 /* ------------------------------------------------------------------------------------------------------ stages */
 
-static bool has_before_step(const mspring_network *network) {
-    return has_any(network, MSPRING_PHASE_BEFORE_STEP);
+// The operations of a phase's stage that the others have, too.
+#define PHASE(name, phase)                                                                                         \
+    static bool has_##name(const mspring_network *network) {                                                       \
+        return has_any(network, phase);                                                                            \
+    }                                                                                                              \
+    static bool is_##name##_quiet(const mspring_network *network, const mspringi_attempt *attempt) {               \
+        return !is_any_due(network, attempt, phase);                                                               \
+    }                                                                                                              \
+    static bool is_##name##_needed(const mspring_network *network) {                                               \
+        return is_any_needed(network, phase);                                                                      \
+    }
+PHASE(before_step, MSPRING_PHASE_BEFORE_STEP)
+PHASE(before_substep, MSPRING_PHASE_BEFORE_SUBSTEP)
+PHASE(after_substep, MSPRING_PHASE_AFTER_SUBSTEP)
+
+static uint32_t free_before(const mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
+    return free_substeps(network, attempt, substep, MSPRING_PHASE_BEFORE_SUBSTEP);
 }
-static bool has_before_substep(const mspring_network *network) {
-    return has_any(network, MSPRING_PHASE_BEFORE_SUBSTEP);
-}
-static bool has_after_substep(const mspring_network *network) {
-    return has_any(network, MSPRING_PHASE_AFTER_SUBSTEP);
+static uint32_t free_after(const mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
+    return free_substeps(network, attempt, substep, MSPRING_PHASE_AFTER_SUBSTEP);
 }
 
 // Hooks may write to the state through the arrays that they are given.
-const mspringi_stage mspringi_stage_hooks_before_step = {
-    .is_used = has_before_step, .writes_state = true, .forces = before_step};
+const mspringi_stage mspringi_stage_hooks_before_step = {.is_used = has_before_step,
+                                                         .writes_state = true,
+                                                         .before_step = begin,
+                                                         .is_quiet = is_before_step_quiet,
+                                                         .is_needed = is_before_step_needed,
+                                                         .forces = before_step,
+                                                         .take_back = take_back};
 const mspringi_stage mspringi_stage_hooks_before_substep = {.is_used = has_before_substep,
                                                             .writes_state = true,
-                                                            .free_substeps = free_substeps,
-                                                            .before_substep = before_substep};
+                                                            .before_step = begin,
+                                                            .is_quiet = is_before_substep_quiet,
+                                                            .is_needed = is_before_substep_needed,
+                                                            .free_substeps = free_before,
+                                                            .before_substep = before_substep,
+                                                            .has_missed = has_missed,
+                                                            .take_back = take_back};
 const mspringi_stage mspringi_stage_hooks_after_substep = {.is_used = has_after_substep,
                                                            .writes_state = true,
-                                                           .free_substeps = free_substeps,
-                                                           .after_substep = after_substep};
+                                                           .before_step = begin,
+                                                           .is_quiet = is_after_substep_quiet,
+                                                           .is_needed = is_after_substep_needed,
+                                                           .free_substeps = free_after,
+                                                           .after_substep = after_substep,
+                                                           .has_missed = has_missed,
+                                                           .take_back = take_back};

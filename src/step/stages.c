@@ -16,9 +16,10 @@ mspringi_stages mspringi_stages_of(const mspring_network *network) {
     for (size_t i = 0; i < MSPRINGI_STAGES; ++i) {
         if (all[i]->is_used && !all[i]->is_used(network))
             continue;
+        const bool is_optional = all[i]->is_quiet && !(all[i]->is_needed && all[i]->is_needed(network));
         stages.used[stages.count++] = all[i];
-        stages.give_forces |= all[i]->forces != NULL;
-        stages.cut_substeps |= cuts_substeps(all[i]) && !all[i]->is_quiet;
+        stages.give_forces |= all[i]->forces && !is_optional;
+        stages.cut_substeps |= cuts_substeps(all[i]) && !is_optional;
         stages.can_be_quiet |= all[i]->is_quiet != NULL || all[i]->has_missed != NULL;
         stages.follow_substeps |= all[i]->after_substep != NULL;
     }
@@ -33,11 +34,19 @@ bool mspringi_stages_cut(const mspring_network *network, const mspringi_attempt 
     return cut;
 }
 
+static bool are_forces_given(const mspring_network *network, const mspringi_attempt *attempt) {
+    const mspringi_stages *stages = attempt->stages;
+    bool any = stages->give_forces;
+    for (size_t i = 0; stages->can_be_quiet && i < stages->count && !any; ++i)
+        any = stages->used[i]->forces && stages->used[i]->is_quiet && !stages->used[i]->is_quiet(network, attempt);
+    return any;
+}
+
 mspringi_field mspringi_stages_forces(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_stages *stages = attempt->stages;
     const mspringi_forces *forces = &network->forces;
     const mspringi_field none = {NULL, NULL};
-    if (!stages->give_forces)
+    if (!are_forces_given(network, attempt))
         return forces->held_any ? forces->held : none;
     if (forces->held_any)
         mspringi_field_copy(network, forces->held, forces->base);

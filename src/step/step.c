@@ -186,6 +186,8 @@ static bool is_idle(const mspring_network *network, const mspringi_stages *stage
 // Run all substeps, and once more if a stage counted on what did not hold.
 static mspringi_extrema run(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_extrema extrema = run_once(network, attempt);
+    if (network->hook_count > 0)
+        network->seen = mspringi_guard_bound(network, attempt->h, extrema);
     if (!mspringi_stages_have_missed(network, attempt))
         return extrema;
     go_back(network, attempt);
@@ -247,8 +249,8 @@ static mspring_result attempt(mspring_network *network, const request *asked, co
 /// still cannot takes longer than they do.
 #define FALLBACK_STEPS 15
 
-/// Explicit substeps that take about as long as a clamped one. Where MSPRING_SUBSTEPS_AUTO finds that max_substeps are
-/// too few, so many fewer take the step: no frame is late for it.
+/// Explicit substeps that take about as long as a clamped one. Where MSPRING_SUBSTEPS_AUTO finds that max_substeps
+/// are too few, so many fewer take the step: no frame is late for it.
 #define COST_OF_CLAMPED_SUBSTEP 100u
 
 // The solver for steps that the chosen one cannot take, or NULL.
@@ -332,7 +334,7 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
     const mspringi_any_shape any_shape = network->any_shape;
     if (check_given_speeds(network, dt) != MSPRING_OK)
         return MSPRING_ERROR_UNSTABLE;
-    network->sleep.has_kept = false;
+    network->sleep.has_kept = network->was_in_hook = false;
     const mspringi_stages stages = mspringi_stages_of(network);
     const mspring_result result = take_step(network, &(request){dt, &stages});
     if (result != MSPRING_OK) {
@@ -341,7 +343,7 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
         mspringi_sleep_undo(network);
         return result;
     }
-    network->is_open = network->hook_count > 0;
+    network->is_open = network->was_in_hook;
     network->is_lent = false;
     if (is_idle(network, &stages)) {
         network->outcome.flags |= MSPRING_STEP_ASLEEP;

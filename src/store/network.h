@@ -70,10 +70,23 @@ typedef struct mspringi_forces {
     bool held_any;         ///< held is not all zero
 } mspringi_forces;
 
+/// A box that no surface is near.
+typedef struct mspringi_room {
+    mspringi_bounds box;
+    float place;               ///< coordinates of less than this size are in the box
+    double reach;              ///< half as far from the box there is no surface; 0: there is no such box
+    double origin_x, origin_y; ///< that it is relative to
+} mspringi_room;
+
+/// Whether any particle may come below the height of a hook with MSPRING_HOOK_BELOW in a step.
+typedef enum mspringi_distance { MSPRINGI_UNKNOWN, MSPRINGI_AWAY, MSPRINGI_CLOSE } mspringi_distance;
+
 typedef struct mspringi_hook {
     mspring_hook_def def;
     uint32_t number;
     mspringi_field held; ///< forces of a hook that is not called before every substep; else none
+    mspringi_distance distance;
+    mspringi_room room; ///< above its height, that all of the network was in
 } mspringi_hook;
 
 typedef enum mspringi_in_hook {
@@ -387,6 +400,8 @@ struct mspring_network {
     size_t hook_count, hook_capacity;
     uint32_t next_hook;
     mspringi_in_hook in_hook;
+    bool was_in_hook;      ///< one was called in this step
+    mspringi_extrema seen; ///< of what the substeps have led to, with bounds for what was not watched
     bool is_open; ///< somebody outside may write to the state's arrays, or has done since the last step: a hook, or
                   ///< the host through a view
     bool is_lent; ///< the latter, so also to slots that no step uses

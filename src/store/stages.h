@@ -28,6 +28,7 @@ typedef struct mspringi_stage {
 
     void (*before_step)(mspring_network *network, const mspringi_attempt *attempt);
     bool (*is_quiet)(const mspring_network *network, const mspringi_attempt *attempt); ///< NULL: never
+    bool (*is_needed)(const mspring_network *network); ///< it is not quiet in any step, even if all sleep; NULL: no
     void (*forces)(mspring_network *network, const mspringi_attempt *attempt, mspringi_field field);
     void (*forces_known)(mspring_network *network, mspringi_field force);
     uint32_t (*free_substeps)(const mspring_network *network, const mspringi_attempt *attempt,

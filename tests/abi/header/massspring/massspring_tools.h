@@ -220,7 +220,11 @@ enum {
     /// The hook is called for ranges of slots, in any order, perhaps at the same time on different workers. It must
     /// read and write only the slots of its range, and data that no call writes. Then the state does not depend on
     /// the ranges.
-    MSPRING_HOOK_CONCURRENT = 1u << 0
+    MSPRING_HOOK_CONCURRENT = 1u << 0,
+    /// The hook is called only for whole blocks with a slot that is below below_y when the hook is due, by one call for
+    /// each run of such blocks. A step is skipped, at no cost, if nothing can get there in it at four times the speed
+    /// before it or twice that after it. Only what springs throw there and back within one step is missed.
+    MSPRING_HOOK_BELOW = 1u << 1
 };
 
 /// A hook's definition. Fill with mspring_hook_def_init() first.
@@ -231,13 +235,14 @@ typedef struct mspring_hook_def {
     void *user;          ///< passed to fn; default NULL
     uint32_t period;     ///< substeps in a group, at least 1; before the step 1; default 1. Its forces act unchanged in
                          ///< the whole group. A step with long periods is faster.
-    uint32_t flags;      ///< MSPRING_HOOK_CONCURRENT or 0; default 0: one call, on the thread that steps
+    uint32_t flags;      ///< bits of MSPRING_HOOK_; default 0: one call for all slots, on the thread that steps
     uint32_t range_slots; ///< slots in a range of a concurrent hook, rounded up to whole blocks; default 0: one range
                           ///< for each worker
     uint32_t reserved;    ///< 0
     void *storage; ///< [mspring_network_worker_count()][storage_stride] bytes of the host, such as a sum for each
                    ///< worker; default NULL
     size_t storage_stride; ///< bytes from one worker's to the next's, best a multiple of 64; default 0
+    double below_y;        ///< height for MSPRING_HOOK_BELOW, m, world coordinates, at most 1e12 in size; default 0
 } mspring_hook_def;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
