@@ -89,6 +89,16 @@ mspring_result mspring_grip_def_init(mspring_grip_def *def, size_t size) {
     return mspringi_init_struct(def, size, &defaults, sizeof defaults);
 }
 
+mspring_result mspring_collider_def_init(mspring_collider_def *def, size_t size) {
+    const mspring_collider_def defaults = {.struct_size = sizeof defaults,
+                                           .kind = MSPRING_COLLIDER_CHAIN,
+                                           .width = 1.0,
+                                           .height = 1.0,
+                                           .groups = 1,
+                                           .masks = UINT32_MAX};
+    return mspringi_init_struct(def, size, &defaults, sizeof defaults);
+}
+
 mspring_result mspring_solver_def_init(mspring_solver_def *def, size_t size) {
     const mspring_solver_def defaults = {.struct_size = sizeof defaults,
                                          .solver = MSPRING_SOLVER_EXPLICIT,

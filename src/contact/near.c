@@ -44,42 +44,91 @@ mspringi_nearest mspringi_nearest_on(double px, double py, double ax, double ay,
     return (mspringi_nearest){px - ax - share * ex, py - ay - share * ey, share};
 }
 
+// Of the point from the edge, or from the surface of a collider.
 static double distance_of(const mspringi_pairs *pairs, mspring_id p, uint32_t edge) {
     const mspring_id a = pairs->outline.a[edge], b = pairs->outline.b[edge];
     const mspringi_nearest at =
         mspringi_nearest_on(pairs->x[p], pairs->y[p], pairs->x[a], pairs->y[a], pairs->x[b], pairs->y[b]);
-    return sqrt(at.x * at.x + at.y * at.y);
+    const double distance = sqrt(at.x * at.x + at.y * at.y);
+    return pairs->colliders.count > 0 ? distance - mspringi_radius_of(pairs, p, edge) : distance;
 }
 
 /* --------------------------------------------------------------------------------------------------- the motion */
+
+// Sums over all points: velocity, and the way since the list was made.
+typedef struct mean_motion {
+    double vx, vy, wx, wy;
+} mean_motion;
+
+// Where colliders are, and how fast.
+static void look_at_colliders(const mspring_network *network, mspringi_pairs *pairs, mean_motion *sum) {
+    const mspringi_colliders *c = &pairs->colliders;
+    if (c->count == 0)
+        return;
+    mspringi_colliders_place(network, pairs, pairs->taken);
+    for (uint32_t i = 0; i < c->point_count; ++i) {
+        const mspring_id p = pairs->particles + i;
+        double vx, vy;
+        mspringi_collider_velocity(&c->list[c->owner[i]], pairs->dt, &vx, &vy);
+        pairs->x[p] = c->x[i];
+        pairs->y[p] = c->y[i];
+        sum->vx += vx;
+        sum->vy += vy;
+        sum->wx += pairs->x[p] - pairs->seen_x[p];
+        sum->wy += pairs->y[p] - pairs->seen_y[p];
+    }
+}
+
+// The same of their motion beside the mean: squares of the largest.
+static void compare_colliders(const mspringi_pairs *pairs, const mean_motion *mean, double *speed, double *moved) {
+    const mspringi_colliders *c = &pairs->colliders;
+    for (uint32_t i = 0; i < c->point_count; ++i) {
+        const mspring_id p = pairs->particles + i;
+        const mspringi_collider *owner = &c->list[c->owner[i]];
+        const double u = c->shape[2 * i], v = c->shape[2 * i + 1];
+        const double turning = fabs(mspringi_collider_spin(owner, pairs->dt)) * sqrt(u * u + v * v);
+        double vx, vy;
+        mspringi_collider_velocity(owner, pairs->dt, &vx, &vy);
+        vx -= mean->vx, vy -= mean->vy;
+        const double most = sqrt(vx * vx + vy * vy) + turning;
+        const double dx = pairs->x[p] - pairs->seen_x[p] - mean->wx, dy = pairs->y[p] - pairs->seen_y[p] - mean->wy;
+        const double way = dx * dx + dy * dy;
+        *speed = most * most <= *speed ? *speed : most * most;
+        *moved = way <= *moved ? *moved : way;
+    }
+}
 
 // Where the points are, how fast beside their mean, and how far they have come since the list was made.
 static void look_at_points(const mspring_network *network, mspringi_pairs *pairs) {
     const mspringi_outline *o = &pairs->outline;
     const mspringi_state *s = &network->state;
     const uint32_t *slot_of = network->topology.slot_of_particle;
-    double vx = 0.0, vy = 0.0, wx = 0.0, wy = 0.0, speed = 0.0, moved = 0.0;
-    for (uint32_t i = 0; i < o->point_count; ++i) {
+    const uint32_t own = o->point_count - pairs->colliders.point_count;
+    mean_motion mean = {0.0, 0.0, 0.0, 0.0};
+    double speed = 0.0, moved = 0.0;
+    for (uint32_t i = 0; i < own; ++i) {
         const mspring_id p = o->points[i];
         const uint32_t slot = slot_of[p];
         pairs->x[p] = mspringi_x_of(s, slot);
         pairs->y[p] = mspringi_y_of(s, slot);
-        vx += (double)s->vx[slot];
-        vy += (double)s->vy[slot];
-        wx += pairs->x[p] - pairs->seen_x[p];
-        wy += pairs->y[p] - pairs->seen_y[p];
+        mean.vx += (double)s->vx[slot];
+        mean.vy += (double)s->vy[slot];
+        mean.wx += pairs->x[p] - pairs->seen_x[p];
+        mean.wy += pairs->y[p] - pairs->seen_y[p];
     }
+    look_at_colliders(network, pairs, &mean);
     const double part = o->point_count > 0 ? 1.0 / (double)o->point_count : 0.0;
-    vx *= part, vy *= part, wx *= part, wy *= part;
-    for (uint32_t i = 0; i < o->point_count; ++i) {
+    mean.vx *= part, mean.vy *= part, mean.wx *= part, mean.wy *= part;
+    for (uint32_t i = 0; i < own; ++i) {
         const mspring_id p = o->points[i];
         const uint32_t slot = slot_of[p];
-        const double ux = (double)s->vx[slot] - vx, uy = (double)s->vy[slot] - vy;
-        const double dx = pairs->x[p] - pairs->seen_x[p] - wx, dy = pairs->y[p] - pairs->seen_y[p] - wy;
+        const double ux = (double)s->vx[slot] - mean.vx, uy = (double)s->vy[slot] - mean.vy;
+        const double dx = pairs->x[p] - pairs->seen_x[p] - mean.wx, dy = pairs->y[p] - pairs->seen_y[p] - mean.wy;
         const double u = ux * ux + uy * uy, d = dx * dx + dy * dy;
         speed = u <= speed ? speed : u; // a number that is none stays
         moved = d <= moved ? moved : d;
     }
+    compare_colliders(pairs, &mean, &speed, &moved);
     pairs->speed = sqrt(speed);
     pairs->moved = sqrt(moved);
 }
@@ -99,10 +148,11 @@ static uint32_t bucket_of(const mspringi_edge_cells *cells, int32_t x, int32_t y
     return hash & (cells->bucket_count - 1);
 }
 
+// With what the surface of a collider lies beyond its ends.
 static double length_of(const mspringi_pairs *pairs, uint32_t edge) {
     const mspring_id a = pairs->outline.a[edge], b = pairs->outline.b[edge];
-    const double ex = pairs->x[b] - pairs->x[a], ey = pairs->y[b] - pairs->y[a];
-    return sqrt(ex * ex + ey * ey);
+    const double ex = pairs->x[b] - pairs->x[a], ey = pairs->y[b] - pairs->y[a], length = sqrt(ex * ex + ey * ey);
+    return mspringi_is_of_collider(pairs, a) ? length + 2.0 * mspringi_collider_of(pairs, a)->radius : length;
 }
 
 // Set the long edges apart, and return how large cells are for the others.
@@ -165,6 +215,8 @@ static bool is_counted_otherwise(const mspringi_outline *o, mspring_id p, uint32
 
 static bool is_apart(const mspring_network *network, mspringi_pairs *pairs, mspring_id p, uint32_t edge) {
     const mspring_id a = pairs->outline.a[edge], b = pairs->outline.b[edge];
+    if (mspringi_is_of_collider(pairs, a) || mspringi_is_of_collider(pairs, p))
+        return mspringi_is_of_collider(pairs, a) && mspringi_is_of_collider(pairs, p);
     if (!pairs->touches_itself)
         return pairs->outline.body[a] == pairs->outline.body[p];
     if (pairs->stamp_of != p)
@@ -190,12 +242,21 @@ static bool try_pair(const mspring_network *network, mspringi_pairs *pairs, uint
     return true;
 }
 
-static bool list_point(const mspring_network *network, mspringi_pairs *pairs, mspring_id p, double size) {
+// The pairs of a point with the edges of cells that are so many away; of all cells, if they are as many as edges.
+static bool try_cells(const mspring_network *network, mspringi_pairs *pairs, mspring_id p, double size,
+                      double away) {
     const mspringi_edge_cells *cells = &pairs->cells;
-    const int32_t x = cell_of(pairs->x[p], size), y = cell_of(pairs->y[p], size);
     const uint32_t first = pairs->count;
-    for (int32_t j = y - 1; j <= y + 1; ++j)
-        for (int32_t i = x - 1; i <= x + 1; ++i) {
+    const double across = 2.0 * away + 1.0;
+    const bool is_wide = !(away == 1.0 || across * across < (double)pairs->outline.edge_count);
+    for (uint32_t k = 0; is_wide && k < cells->first[cells->bucket_count]; ++k)
+        if (!try_pair(network, pairs, first, p, cells->sorted[k]))
+            return false;
+    if (is_wide)
+        return true;
+    const int32_t x = cell_of(pairs->x[p], size), y = cell_of(pairs->y[p], size), most = (int32_t)away;
+    for (int32_t j = y - most; j <= y + most; ++j)
+        for (int32_t i = x - most; i <= x + most; ++i) {
             const uint32_t bucket = bucket_of(cells, i, j);
             for (uint32_t k = cells->first[bucket]; k < cells->first[bucket + 1]; ++k) {
                 const uint32_t edge = cells->sorted[k];
@@ -203,6 +264,15 @@ static bool list_point(const mspring_network *network, mspringi_pairs *pairs, ms
                     return false;
             }
         }
+    return true;
+}
+
+static bool list_point(const mspring_network *network, mspringi_pairs *pairs, mspring_id p, double size) {
+    const mspringi_edge_cells *cells = &pairs->cells;
+    const uint32_t first = pairs->count;
+    const double radius = mspringi_is_of_collider(pairs, p) ? mspringi_collider_of(pairs, p)->radius : 0.0;
+    if (!try_cells(network, pairs, p, size, radius > 0.0 ? 2.0 + floor(radius / size) : 1.0))
+        return false;
     for (uint32_t k = 0; k < cells->long_count; ++k)
         if (!try_pair(network, pairs, first, p, cells->long_edges[k]))
             return false;

@@ -144,11 +144,34 @@ static void know_all(const mspring_network *network, mspringi_outline *o) {
 
 /* ------------------------------------------------------------------------------------------------------- lists */
 
-static void list_edges(const mspring_network *network, mspringi_outline *o) {
+static void list_side(mspringi_outline *o, mspring_id a, mspring_id b) {
+    o->a[o->edge_count] = a;
+    o->b[o->edge_count++] = b;
+    o->first[a]++;
+    o->first[b] += a != b;
+}
+
+// A collider of one point has an edge of length 0.
+static void list_sides(mspringi_pairs *pairs) {
+    mspringi_outline *o = &pairs->outline;
+    const uint32_t before = o->edge_count;
+    for (uint32_t i = 0; i < pairs->colliders.count; ++i) {
+        const mspringi_collider *c = &pairs->colliders.list[i];
+        const mspring_id first = pairs->particles + c->first;
+        for (uint32_t k = 0; k < c->sides; ++k)
+            list_side(o, first + k, first + (k + 1) % c->count);
+        for (uint32_t k = 0; k < c->count; ++k)
+            o->body[first + k] = first + k;
+    }
+    pairs->colliders.listed_points = pairs->colliders.point_count;
+    pairs->colliders.listed_sides = o->edge_count - before;
+}
+
+static void list_edges(const mspring_network *network, mspringi_outline *o, uint32_t nodes) {
     const mspringi_topology *t = &network->topology;
     mspring_id ends[2], other;
     o->edge_count = 0;
-    memset(o->first, 0, ((size_t)t->reserve.particle_end + 1) * sizeof *o->first);
+    memset(o->first, 0, ((size_t)nodes + 1) * sizeof *o->first);
     for (mspring_id s = 0; s < t->spring_count; ++s) {
         if (!o->is_edge[s])
             continue;
@@ -170,16 +193,15 @@ static void list_edges(const mspring_network *network, mspringi_outline *o) {
     }
 }
 
-static void list_points(const mspring_network *network, mspringi_outline *o) {
-    const uint32_t particles = network->topology.reserve.particle_end;
+static void list_points(mspringi_outline *o, uint32_t nodes) {
     uint32_t end = 0;
     o->point_count = 0;
-    for (mspring_id p = 0; p < particles; ++p) {
+    for (mspring_id p = 0; p < nodes; ++p) {
         if (o->first[p] > 0)
             o->points[o->point_count++] = p;
         o->first[p] = end += o->first[p];
     }
-    o->first[particles] = end;
+    o->first[nodes] = end;
     for (uint32_t e = o->edge_count; e-- > 0;) {
         o->at[--o->first[o->a[e]]] = e;
         if (o->b[e] != o->a[e])
@@ -202,26 +224,35 @@ static void find_bodies(const mspring_network *network, uint32_t *body) {
         body[p] = mspringi_forest_root(body, p);
 }
 
-void mspringi_outline_follow(const mspring_network *network, mspringi_pairs *pairs) {
-    mspringi_outline *o = &pairs->outline;
+// What edits have changed of the springs that are edges.
+static void judge_anew(const mspring_network *network, mspringi_outline *o) {
     const mspringi_edits *edits = &network->edits;
-    if (o->is_found && o->links == edits->links && o->growth == edits->growth)
-        return;
     const bool is_local = o->is_found && o->growth == edits->growth && mspringi_edits_have_link(edits, o->links);
     if (!is_local) {
         know_all(network, o);
         judge_all(network, o);
-    } else {
-        for (uint64_t n = o->links; n < edits->links; ++n)
-            judge_around(network, o, mspringi_edits_link(edits, n));
+        return;
     }
-    list_edges(network, o);
-    list_points(network, o);
+    for (uint64_t n = o->links; n < edits->links; ++n)
+        judge_around(network, o, mspringi_edits_link(edits, n));
+}
+
+void mspringi_outline_follow(const mspring_network *network, mspringi_pairs *pairs) {
+    mspringi_outline *o = &pairs->outline;
+    const mspringi_edits *edits = &network->edits;
+    const uint32_t nodes = pairs->particles + pairs->colliders.point_count;
+    if (o->is_found && o->links == edits->links && o->growth == edits->growth && !pairs->colliders.are_new)
+        return;
+    judge_anew(network, o);
+    list_edges(network, o, nodes);
+    list_sides(pairs);
+    list_points(o, nodes);
     if (!pairs->touches_itself)
         find_bodies(network, o->body);
-    memset(pairs->stamp, 0, network->topology.reserve.particle_end * sizeof *pairs->stamp);
+    memset(pairs->stamp, 0, pairs->particles * sizeof *pairs->stamp);
     o->is_found = true;
     o->links = edits->links;
     o->growth = edits->growth;
+    pairs->colliders.are_new = false;
     pairs->is_listed = pairs->is_fresh = false;
 }

@@ -14,6 +14,9 @@
 #define MOST_SWEEPS 64
 #define MOST_PAIRS ((uint32_t)1 << 26)
 
+/// That there is room for besides, for each point of a collider.
+#define PAIRS_OF_POINT 8
+
 /* ----------------------------------------------------------------------------------------------------- checking */
 
 mspring_result mspringi_pairs_check(mspring_solver solver, mspring_guard guard, mspringi_message *message) {
@@ -116,6 +119,13 @@ static const mspringi_column members[] = {
     VIEW(active.way_y),
     ARRAY(touches),
     ARRAY(hot),
+    ARRAY(colliders.list),
+    ARRAY(colliders.shape),
+    VIEW(colliders.x),
+    VIEW(colliders.y),
+    VIEW(colliders.vx),
+    VIEW(colliders.vy),
+    ARRAY(colliders.owner),
 };
 #undef ARRAY
 #undef VIEW
@@ -140,34 +150,35 @@ static bool reserve_doubles(mspringi_memory *memory, size_t elements, double **c
     return block != NULL;
 }
 
-static bool reserve_particles(mspringi_pairs *made, mspringi_memory *memory, size_t particles) {
+// For particles, and for nodes: these and points of colliders.
+static bool reserve_nodes(mspringi_pairs *made, mspringi_memory *memory, size_t particles, size_t nodes) {
     mspringi_outline *o = &made->outline;
     mspringi_active *k = &made->active;
     double **const shape[] = {&o->shape_x, &o->shape_y};
     double **const places[] = {&made->seen_x, &made->seen_y, &made->x, &made->y};
     double **const motion[] = {&k->x,  &k->y,      &k->from_vx, &k->from_vy, &k->vx,
                                &k->vy, &k->weight, &k->way_x,   &k->way_y};
-    made->groups = mspringi_alloc(memory, 2 * particles, sizeof *made->groups);
+    made->groups = mspringi_alloc(memory, 2 * nodes, sizeof *made->groups);
     made->stamp = mspringi_alloc(memory, particles, sizeof *made->stamp);
     o->is_known = mspringi_alloc(memory, particles, sizeof *o->is_known);
-    k->particles = mspringi_alloc(memory, 2 * particles, sizeof *k->particles);
+    k->particles = mspringi_alloc(memory, 2 * nodes, sizeof *k->particles);
     if (!made->groups || !made->stamp || !o->is_known || !k->particles)
         return false;
-    made->masks = made->groups + particles;
-    k->number = k->particles + particles;
-    return reserve_doubles(memory, particles, shape, 2) && reserve_doubles(memory, particles, places, 4) &&
-           reserve_doubles(memory, particles, motion, 9);
+    made->masks = made->groups + nodes;
+    k->number = k->particles + nodes;
+    return reserve_doubles(memory, particles, shape, 2) && reserve_doubles(memory, nodes, places, 4) &&
+           reserve_doubles(memory, nodes, motion, 9);
 }
 
-static bool reserve_edges(mspringi_pairs *made, mspringi_memory *memory, size_t particles, size_t springs) {
+static bool reserve_edges(mspringi_pairs *made, mspringi_memory *memory, size_t nodes, size_t springs) {
     mspringi_outline *o = &made->outline;
     mspringi_edge_cells *c = &made->cells;
-    const size_t edges = particles + springs;
+    const size_t edges = nodes + springs;
     c->bucket_capacity = 1;
     while (c->bucket_capacity < edges && c->bucket_capacity < (uint32_t)1 << 30)
         c->bucket_capacity *= 2;
     o->is_edge = mspringi_alloc(memory, springs, sizeof *o->is_edge);
-    o->a = mspringi_alloc(memory, 4 * edges + 3 * particles + 1, sizeof *o->a);
+    o->a = mspringi_alloc(memory, 4 * edges + 3 * nodes + 1, sizeof *o->a);
     c->first = mspringi_alloc(memory, (size_t)c->bucket_capacity + 1, sizeof *c->first);
     c->sorted = mspringi_alloc(memory, 2 * edges, sizeof *c->sorted);
     c->x = mspringi_alloc(memory, 2 * edges, sizeof *c->x);
@@ -176,11 +187,22 @@ static bool reserve_edges(mspringi_pairs *made, mspringi_memory *memory, size_t 
     o->b = o->a + edges;
     o->at = o->b + edges;
     o->points = o->at + 2 * edges;
-    o->body = o->points + particles;
-    o->first = o->body + particles;
+    o->body = o->points + nodes;
+    o->first = o->body + nodes;
     c->long_edges = c->sorted + edges;
     c->y = c->x + edges;
     return true;
+}
+
+static bool reserve_points(mspringi_pairs *made, mspringi_memory *memory, uint32_t points) {
+    mspringi_colliders *c = &made->colliders;
+    double **const motion[] = {&c->x, &c->y, &c->vx, &c->vy};
+    c->point_capacity = points;
+    if (points == 0)
+        return true;
+    c->shape = mspringi_alloc(memory, points, 2 * sizeof *c->shape);
+    c->owner = mspringi_alloc(memory, points, sizeof *c->owner);
+    return c->shape && c->owner && reserve_doubles(memory, points, motion, 4);
 }
 
 // By what the outline is, and what it may come to be.
@@ -188,7 +210,7 @@ static bool reserve_pairs(mspringi_pairs *made, mspringi_memory *memory, size_t 
     const uint64_t usual = 8 * (uint64_t)made->outline.point_count + 2 * (uint64_t)particles + 4096;
     if (made->def.capacity == 0)
         made->def.capacity = usual < MOST_PAIRS ? (uint32_t)usual : MOST_PAIRS;
-    made->capacity = made->def.capacity;
+    made->capacity = made->def.capacity + PAIRS_OF_POINT * made->colliders.point_capacity;
     made->list = mspringi_alloc(memory, made->capacity, sizeof *made->list);
     made->hot = mspringi_alloc(memory, made->capacity, sizeof *made->hot);
     made->touches = mspringi_alloc(memory, made->capacity, sizeof *made->touches);
@@ -204,29 +226,80 @@ static void set_def(mspringi_pairs *pairs, const mspring_contact_def *def) {
     pairs->touches_itself = def->flags & MSPRING_CONTACT_SELF;
 }
 
-// NULL if there is no memory.
-static mspringi_pairs *make(mspring_network *network, const mspring_contact_def *def) {
-    const size_t particles = network->topology.reserve.particle_end, springs = network->topology.reserve.spring_end;
+// Take over what the host has set, and the outline as it was found.
+static void take_over(mspringi_pairs *made, const mspringi_pairs *had, size_t springs) {
+    const size_t particles = made->particles, points = had->colliders.point_count, nodes = particles + points;
+    mspringi_outline *o = &made->outline;
+    const mspringi_outline *from = &had->outline;
+    mspringi_colliders *c = &made->colliders;
+    const mspringi_colliders was = *c;
+    memcpy(made->groups, had->groups, nodes * sizeof *made->groups);
+    memcpy(made->masks, had->masks, nodes * sizeof *made->masks);
+    memcpy(o->is_edge, from->is_edge, springs * sizeof *o->is_edge);
+    memcpy(o->is_known, from->is_known, particles * sizeof *o->is_known);
+    memcpy(o->shape_x, from->shape_x, particles * sizeof *o->shape_x);
+    memcpy(o->shape_y, from->shape_y, particles * sizeof *o->shape_y);
+    o->origin_x = from->origin_x;
+    o->origin_y = from->origin_y;
+    o->is_found = from->is_found;
+    o->links = from->links;
+    o->growth = from->growth;
+    *c = had->colliders;
+    c->point_capacity = was.point_capacity;
+    c->shape = was.shape, c->owner = was.owner;
+    c->x = was.x, c->y = was.y, c->vx = was.vx, c->vy = was.vy;
+    if (points > 0) {
+        memcpy(c->shape, had->colliders.shape, 2 * points * sizeof *c->shape);
+        memcpy(c->owner, had->colliders.owner, points * sizeof *c->owner);
+    }
+    c->is_placed = false;
+    c->are_new = true;
+    made->touching = had->touching;
+    made->deepest = had->deepest;
+}
+
+// With room for so many points of colliders; had: what is to go on, or NULL. NULL if there is no memory.
+static mspringi_pairs *make(mspring_network *network, const mspring_contact_def *def, uint32_t points,
+                            const mspringi_pairs *had) {
+    const size_t particles = network->topology.reserve.particle_end, springs = network->topology.reserve.spring_end,
+                 nodes = particles + points;
     mspringi_memory *memory = &network->memory;
     mspringi_pairs *made = mspringi_alloc(memory, 1, sizeof *made);
     if (!made)
         return NULL;
     set_def(made, def);
-    bool ok = reserve_particles(made, memory, particles) && reserve_edges(made, memory, particles, springs);
-    for (size_t p = 0; ok && p < particles; ++p) {
+    made->particles = (uint32_t)particles;
+    bool ok = reserve_nodes(made, memory, particles, nodes) && reserve_edges(made, memory, nodes, springs) &&
+              reserve_points(made, memory, points);
+    for (size_t p = 0; ok && p < nodes; ++p) {
         made->groups[p] = 1;
         made->masks[p] = UINT32_MAX;
         made->active.number[p] = MSPRING_NONE;
     }
     made->outline.origin_x = network->origin_x;
     made->outline.origin_y = network->origin_y;
+    if (ok && had)
+        take_over(made, had, springs);
     if (ok)
         mspringi_outline_follow(network, made);
     ok = ok && reserve_pairs(made, memory, particles);
     if (ok)
         return made;
+    if (had)
+        made->colliders.list = NULL; // it is still that of the other
     destroy(made, memory);
     return NULL;
+}
+
+bool mspringi_pairs_widen(mspring_network *network, uint32_t points) {
+    mspringi_pairs *had = network->pairs;
+    mspringi_pairs *made = make(network, &had->def, points, had);
+    if (!made)
+        return false;
+    had->colliders.list = NULL;
+    destroy(had, &network->memory);
+    network->pairs = made;
+    return true;
 }
 
 /* ------------------------------------------------------------------------------------------------- the setting */
@@ -254,7 +327,7 @@ static mspring_result exchange(mspring_network *network, const mspring_contact_d
         const mspringi_fp_state before = mspringi_fp_enter();
         mspring_result result = mspringi_incidence_reserve(network);
         if (result == MSPRING_OK) {
-            made = make(network, def);
+            made = make(network, def, 0, NULL);
             if (!made)
                 result = mspringi_fail(
                     &network->message, MSPRING_ERROR_MEMORY, "no memory for contact of %u particles and %u springs",
@@ -317,8 +390,8 @@ mspring_result mspring_network_contact_info(const mspring_network *network, mspr
     mspring_contact_info found = {.struct_size = sizeof found};
     const mspringi_pairs *pairs = network->pairs;
     if (pairs) {
-        found.edges = pairs->outline.edge_count;
-        found.points = pairs->outline.point_count;
+        found.edges = pairs->outline.edge_count - pairs->colliders.listed_sides;
+        found.points = pairs->outline.point_count - pairs->colliders.listed_points;
         found.pairs = pairs->count;
         found.touching = pairs->touching;
         found.deepest = pairs->deepest;

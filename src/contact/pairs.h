@@ -6,6 +6,8 @@
 ///   near.c       which points are near which edges, and for how many substeps none of them can touch
 ///   rows.c       what happens to those that touch in a substep
 ///   touching.c   the stage: when to look, and which islands sleep and wake together
+///   colliders.c  shapes of the host: adding, moving, reading them
+///   poses.c      where these are in the course of a step, and what they get in it
 ///
 /// What is simulated: forces, velocity, contact, move. A substep has moved the particles when contact acts, so the
 /// rows take positions of before it and velocities of after it, and correct both.
@@ -22,16 +24,17 @@
 #include "store/network.h"
 
 /// The outline: springs with a free side, their ends, and particles without springs, as edges of length 0. Edges
-/// are numbered by rising ids: springs first, then particles.
+/// are numbered by rising ids: springs first, then particles, then the sides of colliders. The points of colliders
+/// are numbered from the number of particles on, so nodes are both. A collider of one point is an edge of length 0.
 typedef struct mspringi_outline {
     uint8_t *is_edge;          ///< [springs] 1: live, and not inside
     uint8_t *is_known;         ///< [particles] 1: its place in the shape is known
     double *shape_x, *shape_y; ///< [particles] where it was when contact was set, or when it was added
     double origin_x, origin_y; ///< of the shape
-    mspring_id *a, *b;         ///< [springs + particles] ends of each edge; the same for a particle
-    mspring_id *points;        ///< [particles]
-    uint32_t *first, *at;      ///< [particles + 1], [2 (springs + particles)]: the edges at a particle, rising
-    uint32_t *body;            ///< [particles] the lowest of the same body, unless bodies touch themselves
+    mspring_id *a, *b;         ///< [springs + nodes] ends of each edge; the same for a particle
+    mspring_id *points;        ///< [nodes]
+    uint32_t *first, *at;      ///< [nodes + 1], [2 (springs + nodes)]: the edges at a node, rising
+    uint32_t *body;            ///< [nodes] the lowest of the same body, unless bodies touch themselves
     uint32_t edge_count, point_count;
     bool is_found;
     uint64_t links, growth; ///< edits that it has seen
@@ -54,10 +57,10 @@ typedef struct mspringi_edge_cells {
     uint32_t bucket_count, bucket_capacity, long_count;
 } mspringi_edge_cells;
 
-/// Particles that pairs need, by a number of their own.
+/// Nodes that pairs need, by a number of their own.
 typedef struct mspringi_active {
-    mspring_id *particles;     ///< [particles]
-    uint32_t *number;          ///< [particles] MSPRING_NONE if it is none of them
+    mspring_id *particles;     ///< [nodes]
+    uint32_t *number;          ///< [nodes] MSPRING_NONE if it is none of them
     double *x, *y;             ///< [particles] at the start of the substep, and of each of its pieces
     double *from_vx, *from_vy; ///< before the substep's forces
     double *vx, *vy, *weight;  ///< inverse mass, 1/kg
@@ -67,7 +70,8 @@ typedef struct mspringi_active {
 
 /// A point that touches an edge, or may do so in this piece of a substep.
 typedef struct mspringi_touch {
-    uint32_t p, a, b;        ///< active particles
+    uint32_t p, a, b;        ///< active nodes
+    uint32_t collider;       ///< number of the collider that the point or the edge is of, MSPRING_NONE if none is
     double nx, ny;           ///< from the edge to the point, of length 1
     double share_a, share_b; ///< of the edge's nearest place
     double gap, distance;    ///< m
@@ -78,13 +82,52 @@ typedef struct mspringi_touch {
     double across, along;    ///< impulses, N s
 } mspringi_touch;
 
+/// Where a collider is, world coordinates.
+typedef struct mspringi_pose {
+    double x, y, angle;
+} mspringi_pose;
+
+/// A shape of the host.
+typedef struct mspringi_collider {
+    mspring_collider_def def; ///< as given; points does not count, position and angle are those of now
+    mspring_id id;
+    uint32_t first, count; ///< its points
+    uint32_t sides;
+    double radius, friction, restitution;
+    mspringi_pose target;                 ///< at the end of the next step
+    bool is_moving;                       ///< target is elsewhere
+    double impulse_x, impulse_y, angular; ///< of the last step
+    double pushed_x, pushed_y, turned;    ///< of the step that is being made
+} mspringi_collider;
+
+/// All of them, by rising ids, and their points one behind the other.
+typedef struct mspringi_colliders {
+    mspringi_collider *list; ///< [capacity]
+    size_t capacity;
+    uint32_t count, point_count, point_capacity;
+    uint32_t listed_points, listed_sides; ///< those in the outline
+    mspring_id next_id;
+    double *shape;   ///< [point_capacity][2] as given
+    uint32_t *owner; ///< [point_capacity] number of its collider
+    double *x, *y;   ///< [point_capacity] local coordinates, at the end of so many substeps as done says
+    double *vx, *vy; ///< [point_capacity] in the substep after that
+    uint32_t done, substeps;
+    double origin_x, origin_y; ///< of x and y
+    bool is_placed;            ///< x and y are right but for what moves
+    bool are_new;              ///< the outline lacks some
+    bool are_moving;           ///< some are, in this step
+    uint64_t reported;         ///< the step that the impulses are of
+} mspringi_colliders;
+
 struct mspringi_pairs {
     mspring_contact_def def;
     double thickness, friction, restitution, push;
     bool touches_itself;
-    uint32_t *groups, *masks; ///< [particles]
+    uint32_t particles;       ///< that there is room for
+    uint32_t *groups, *masks; ///< [nodes]
     mspringi_outline outline;
     mspringi_edge_cells cells;
+    mspringi_colliders colliders;
 
     // The list of all pairs that are near.
     mspringi_pair *list; ///< [capacity]
@@ -93,12 +136,12 @@ struct mspringi_pairs {
     uint32_t hot_count;
     bool is_listed, is_full;
     double reach;            ///< all pairs nearer than this were in the list when it was made, m
-    double *seen_x, *seen_y; ///< [particles] where points were then
+    double *seen_x, *seen_y; ///< [nodes] where points were then
     uint32_t *stamp;         ///< [particles] what is joined by one or two springs to the point of stamp_of
     uint32_t stamp_of;
 
     // The last look.
-    double *x, *y;        ///< [particles] where points were
+    double *x, *y;        ///< [nodes] where points were
     double speed;         ///< of any of them beside their mean, at most, m/s
     double moved;         ///< since the list was made, likewise, m
     double nearest;       ///< distance of any pair, as far as the list tells, m
@@ -163,8 +206,46 @@ void mspringi_rows_note(const mspring_network *network, mspringi_pairs *pairs);
 /// After it: let contact act. Returns whether anything touched, or could have.
 bool mspringi_rows_act(const mspring_network *network, mspringi_pairs *pairs);
 
+/* poses.c */
+
+/// Whether a node is a point of a collider.
+static inline bool mspringi_is_of_collider(const mspringi_pairs *pairs, mspring_id node) {
+    return node >= pairs->particles;
+}
+static inline const mspringi_collider *mspringi_collider_of(const mspringi_pairs *pairs, mspring_id node) {
+    const mspringi_colliders *c = &pairs->colliders;
+    return &c->list[c->owner[node - pairs->particles]];
+}
+/// How much nearer the surface of a collider is than its points and sides are, m.
+static inline double mspringi_radius_of(const mspringi_pairs *pairs, mspring_id point, uint32_t edge) {
+    const mspring_id a = pairs->outline.a[edge];
+    return mspringi_is_of_collider(pairs, point) ? mspringi_collider_of(pairs, point)->radius
+           : mspringi_is_of_collider(pairs, a)   ? mspringi_collider_of(pairs, a)->radius
+                                                 : 0.0;
+}
+
+/// A step of so many substeps begins.
+void mspringi_colliders_begin(const mspring_network *network, mspringi_pairs *pairs, uint32_t substeps);
+/// Have all points be where they are after so many of them.
+void mspringi_colliders_place(const mspring_network *network, mspringi_pairs *pairs, uint32_t done);
+/// Speeds in a step, 1/s and m/s; 0 of what stands still.
+double mspringi_collider_spin(const mspringi_collider *collider, double dt);
+void mspringi_collider_velocity(const mspringi_collider *collider, double dt, double *vx, double *vy);
+/// Forget what colliders got in the step so far.
+void mspringi_colliders_forget(mspringi_pairs *pairs);
+/// From the point of a row to where friction acts on it: 0, or to the surface of the collider that it is of, m.
+double mspringi_collider_grip(const mspringi_pairs *pairs, const mspringi_touch *touch);
+/// What the turning of a collider adds to the speed along a row, m/s. Sides have it in the motion of their ends.
+double mspringi_collider_drag(const mspringi_pairs *pairs, const mspringi_touch *touch);
+/// Count what a row gives to a collider, at the beginning of a piece of a substep.
+void mspringi_colliders_push(mspringi_pairs *pairs, const mspringi_touch *touch);
+/// The step is taken: all are where they were to come.
+void mspringi_colliders_end(const mspring_network *network, mspringi_pairs *pairs);
+
 /* pairs.c */
 
+/// Make room for so many points of colliders. False: there is no memory, and nothing has changed.
+bool mspringi_pairs_widen(mspring_network *network, uint32_t points);
 void mspringi_pairs_relocate(mspringi_pairs *pairs, const mspringi_memory *from, const mspringi_memory *to);
 /// Refuse a solver, or a guard, with which contact does not act.
 mspring_result mspringi_pairs_check(mspring_solver solver, mspring_guard guard, mspringi_message *message);

@@ -23,14 +23,37 @@
 /// A substep is cut into pieces in which nothing moves further than the thickness; into so many at most.
 #define MOST_PIECES 64
 
+/// Where a collider presses, what gets deeper by this share of the thickness in a piece is swept again, so often at
+/// most: all of it, and then what gets into colliders.
+#define GIVEN_SHARE 1e-3
+#define MOST_PRESSING_SWEEPS 256
+#define MOST_COLLIDER_SWEEPS 64
+
 /// Edges at a corner that are remembered by bits, at each end.
 #define REMEMBERED 8
+
+/* ------------------------------------------------------------------------------------------------------- nodes */
+
+// A point of a collider is where it will be whatever touches it.
+static void note_point(const mspringi_pairs *pairs, uint32_t i) {
+    const mspringi_active *k = &pairs->active;
+    const uint32_t point = k->particles[i] - pairs->particles;
+    k->x[i] = pairs->colliders.x[point];
+    k->y[i] = pairs->colliders.y[point];
+    k->vx[i] = k->from_vx[i] = pairs->colliders.vx[point];
+    k->vy[i] = k->from_vy[i] = pairs->colliders.vy[point];
+    k->weight[i] = 0.0;
+}
 
 void mspringi_rows_note(const mspring_network *network, mspringi_pairs *pairs) {
     const mspringi_active *k = &pairs->active;
     const mspringi_state *s = &network->state;
     const float *free_mass = mspringi_free_mass(network);
     for (uint32_t i = 0; i < k->count; ++i) {
+        if (mspringi_is_of_collider(pairs, k->particles[i])) {
+            note_point(pairs, i);
+            continue;
+        }
         const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
         k->x[i] = mspringi_x_of(s, slot);
         k->y[i] = mspringi_y_of(s, slot);
@@ -40,8 +63,11 @@ void mspringi_rows_note(const mspring_network *network, mspringi_pairs *pairs) {
     }
 }
 
-static void begin(const mspring_network *network, const mspringi_active *k) {
+static void begin(const mspring_network *network, const mspringi_pairs *pairs) {
+    const mspringi_active *k = &pairs->active;
     for (uint32_t i = 0; i < k->count; ++i) {
+        if (mspringi_is_of_collider(pairs, k->particles[i]))
+            continue;
         const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
         k->vx[i] = (double)network->state.vx[slot];
         k->vy[i] = (double)network->state.vy[slot];
@@ -55,7 +81,8 @@ static void begin(const mspring_network *network, const mspringi_active *k) {
 static bool is_apart(const mspring_network *network, mspringi_pairs *pairs, mspringi_pair *pair, uint32_t end,
                      uint32_t number, mspring_id other) {
     const uint32_t bit = 1u << (end * REMEMBERED + number);
-    if (!pairs->touches_itself)
+    if (!pairs->touches_itself || mspringi_is_of_collider(pairs, pair->point) ||
+        mspringi_is_of_collider(pairs, other))
         return false;
     if (number < REMEMBERED && pair->is_asked & bit)
         return pair->is_apart & bit;
@@ -91,9 +118,16 @@ static bool is_of_another(const mspring_network *network, mspringi_pairs *pairs,
 }
 
 // Friction on the ends of the edge, by a unit along (-ny, nx) on the point, and the couple that it needs.
-static void add_friction(const mspringi_active *k, mspringi_touch *t, double length) {
-    const double ex = (k->x[t->b] - k->x[t->a]) / length, ey = (k->y[t->b] - k->y[t->a]) / length;
-    const double turn = t->distance / length, tx = -t->ny, ty = t->nx;
+static void add_friction(const mspringi_pairs *pairs, mspringi_touch *t) {
+    const mspringi_active *k = &pairs->active;
+    double ex = k->x[t->b] - k->x[t->a], ey = k->y[t->b] - k->y[t->a], turn = 0.0;
+    const double length = sqrt(ex * ex + ey * ey), tx = -t->ny, ty = t->nx;
+    if (length == 0.0 && t->collider == MSPRING_NONE)
+        return;
+    if (length > 0.0) {
+        ex /= length, ey /= length;
+        turn = (t->distance - mspringi_collider_grip(pairs, t)) / length;
+    }
     t->ax = -t->share_a * tx - turn * ey;
     t->ay = -t->share_a * ty + turn * ex;
     t->bx = -t->share_b * tx + turn * ey;
@@ -108,14 +142,14 @@ static double speed_across(const mspringi_touch *t, const double *vx, const doub
 }
 
 // The speed across that a row is to have at least, when it touches.
-static double wanted(const mspringi_pairs *pairs, const mspringi_touch *t, double h) {
+static double wanted(const mspringi_pairs *pairs, const mspringi_touch *t, double restitution, double h) {
     double speed = -t->gap / h;
     if (t->gap <= 0.0) {
         speed *= PUSHED_SHARE;
         speed = speed < pairs->push ? speed : pairs->push;
     }
     const double before = speed_across(t, pairs->active.from_vx, pairs->active.from_vy);
-    const double bounce = before < -SLOWEST_BOUNCE ? -pairs->restitution * before : speed;
+    const double bounce = before < -SLOWEST_BOUNCE ? -restitution * before : speed;
     return bounce > speed ? bounce : speed;
 }
 
@@ -124,17 +158,42 @@ static double square_of_speed(const mspringi_active *k, uint32_t p, uint32_t q) 
     return x * x + y * y;
 }
 
-// The row of a pair in a piece of h seconds, if it may touch there.
+// What touches, and how: the contact's, or the collider's.
+typedef struct touch_kind {
+    double thickness, friction, restitution;
+    uint32_t collider;
+} touch_kind;
+
+static touch_kind kind_of(const mspringi_pairs *pairs, const mspringi_pair *pair) {
+    const mspring_id a = pairs->outline.a[pair->edge];
+    const bool is_point = mspringi_is_of_collider(pairs, pair->point);
+    if (!is_point && !mspringi_is_of_collider(pairs, a))
+        return (touch_kind){pairs->thickness, pairs->friction, pairs->restitution, MSPRING_NONE};
+    const uint32_t owner = pairs->colliders.owner[(is_point ? pair->point : a) - pairs->particles];
+    const mspringi_collider *c = &pairs->colliders.list[owner];
+    return (touch_kind){pairs->thickness + c->radius, c->friction, c->restitution, owner};
+}
+
+// The resistance of a row of a point and its nearest place on an edge, 1/kg.
+static double resistance_of(const mspringi_active *k, const mspringi_touch *t) {
+    return k->weight[t->p] +
+           (t->a == t->b ? k->weight[t->a]
+                         : t->share_a * t->share_a * k->weight[t->a] + t->share_b * t->share_b * k->weight[t->b]);
+}
+
+// The row of a pair in a piece of h seconds, if it may touch there by its own speed; or, if that is too slow for
+// it, by one that other rows may give to it.
 static void make_row(const mspring_network *network, mspringi_pairs *pairs, mspringi_pair *pair, double h,
-                     double *fastest) {
+                     double given, double *fastest) {
     const mspringi_outline *o = &pairs->outline;
     const mspringi_active *k = &pairs->active;
     const uint32_t p = k->number[pair->point], a = k->number[o->a[pair->edge]], b = k->number[o->b[pair->edge]];
     const mspringi_nearest at = mspringi_nearest_on(k->x[p], k->y[p], k->x[a], k->y[a], k->x[b], k->y[b]);
     const double square = at.x * at.x + at.y * at.y, of_a = square_of_speed(k, p, a),
                  of_b = square_of_speed(k, p, b), speed = sqrt(of_a > of_b ? of_a : of_b);
-    const double reach = pairs->thickness + 2.0 * h * speed;
-    if (!(square < reach * reach) || square == 0.0)
+    const touch_kind s = kind_of(pairs, pair);
+    const double own = s.thickness + 2.0 * h * speed, reach = given > 0.0 ? s.thickness + 2.0 * h * given : own;
+    if (!(square < reach * reach) || square == 0.0 || (given > 0.0 && square < own * own))
         return;
     if (a != b && (at.share <= 0.0 || at.share >= 1.0) &&
         is_of_another(network, pairs, pair, at.share <= 0.0 ? 0 : 1))
@@ -148,29 +207,38 @@ static void make_row(const mspring_network *network, mspringi_pairs *pairs, mspr
                           .ny = at.y / distance,
                           .share_a = 1.0 - at.share,
                           .share_b = at.share,
-                          .gap = distance - pairs->thickness,
-                          .distance = distance};
-    const double resistance =
-        k->weight[p] +
-        (a == b ? k->weight[a] : t->share_a * t->share_a * k->weight[a] + t->share_b * t->share_b * k->weight[b]);
+                          .gap = distance - s.thickness,
+                          .distance = distance,
+                          .collider = s.collider};
+    const double resistance = resistance_of(k, t);
     if (!(resistance > 0.0))
         return;
     t->mass = 1.0 / resistance;
-    t->target = wanted(pairs, t, h);
-    if (pairs->friction > 0.0 && a != b) {
-        const double ex = k->x[b] - k->x[a], ey = k->y[b] - k->y[a], length = sqrt(ex * ex + ey * ey);
-        if (length > 0.0)
-            add_friction(k, t, length);
-    }
+    t->target = wanted(pairs, t, s.restitution, h);
+    if (s.friction > 0.0)
+        add_friction(pairs, t);
     *fastest = speed > *fastest ? speed : *fastest;
     ++pairs->touch_count;
+}
+
+// What another body may throw at a collider, which does not give way.
+static void make_more_rows(const mspring_network *network, mspringi_pairs *pairs, double h, double fastest) {
+    double slower = 0.0;
+    for (uint32_t i = 0; i < pairs->hot_count; ++i) {
+        mspringi_pair *pair = &pairs->list[pairs->hot[i]];
+        if (mspringi_is_of_collider(pairs, pair->point) ||
+            mspringi_is_of_collider(pairs, pairs->outline.a[pair->edge]))
+            make_row(network, pairs, pair, h, fastest, &slower);
+    }
 }
 
 static double make_rows(const mspring_network *network, mspringi_pairs *pairs, double h) {
     double fastest = 0.0;
     pairs->touch_count = 0;
     for (uint32_t i = 0; i < pairs->hot_count; ++i)
-        make_row(network, pairs, &pairs->list[pairs->hot[i]], h, &fastest);
+        make_row(network, pairs, &pairs->list[pairs->hot[i]], h, 0.0, &fastest);
+    if (pairs->colliders.count > 0 && fastest > 0.0)
+        make_more_rows(network, pairs, h, fastest);
     return fastest;
 }
 
@@ -191,12 +259,18 @@ static void push_apart(const mspringi_active *k, mspringi_touch *t, double h) {
     k->vy[t->b] -= t->share_b * k->weight[t->b] * y;
 }
 
-static void rub(const mspringi_active *k, mspringi_touch *t, double friction) {
+static void rub(const mspringi_pairs *pairs, mspringi_touch *t) {
+    const mspringi_active *k = &pairs->active;
     if (t->slide_mass == 0.0 || (t->across == 0.0 && t->along == 0.0))
         return;
     const double tx = -t->ny, ty = t->nx;
-    const double speed = k->vx[t->p] * tx + k->vy[t->p] * ty + k->vx[t->a] * t->ax + k->vy[t->a] * t->ay +
-                         k->vx[t->b] * t->bx + k->vy[t->b] * t->by;
+    double speed = k->vx[t->p] * tx + k->vy[t->p] * ty + k->vx[t->a] * t->ax + k->vy[t->a] * t->ay +
+                   k->vx[t->b] * t->bx + k->vy[t->b] * t->by,
+           friction = pairs->friction;
+    if (t->collider != MSPRING_NONE) {
+        speed += mspringi_collider_drag(pairs, t);
+        friction = pairs->colliders.list[t->collider].friction;
+    }
     const double most = friction * t->across, sum = t->along - speed * t->slide_mass;
     const double along = sum > most ? most : sum < -most ? -most : sum, by = along - t->along;
     t->along = along;
@@ -208,12 +282,47 @@ static void rub(const mspringi_active *k, mspringi_touch *t, double friction) {
     k->vy[t->b] += k->weight[t->b] * by * t->by;
 }
 
+// Whether a row would end deeper than it begins by more than rounding.
+static bool gives_way(const mspringi_pairs *pairs, const mspringi_touch *t, double h) {
+    const double speed = speed_across(t, pairs->active.vx, pairs->active.vy);
+    const double end = t->gap + h * speed, begin = t->gap < 0.0 ? t->gap : 0.0;
+    return end < begin - GIVEN_SHARE * pairs->thickness;
+}
+
+// Sweep over rows that give way, of colliders or of all, until none does.
+static void sweep_given(const mspringi_pairs *pairs, double h, bool of_colliders, uint32_t most) {
+    bool again = true;
+    for (uint32_t sweep = 0; again && sweep < most; ++sweep) {
+        again = false;
+        for (uint32_t i = 0; i < pairs->touch_count; ++i) {
+            mspringi_touch *t = &pairs->touches[i];
+            if ((of_colliders && t->collider == MSPRING_NONE) || !gives_way(pairs, t, h))
+                continue;
+            push_apart(&pairs->active, t, h);
+            again = true;
+        }
+    }
+}
+
+// A collider presses a light body against a heavy one as hard as it takes, which the sweeps may not have come to.
+// At last nothing goes into the collider.
+static void press(const mspringi_pairs *pairs, double h) {
+    bool is_touched = false;
+    for (uint32_t i = 0; i < pairs->touch_count && pairs->colliders.count > 0; ++i)
+        is_touched |= pairs->touches[i].collider != MSPRING_NONE && pairs->touches[i].across > 0.0;
+    if (!is_touched)
+        return;
+    sweep_given(pairs, h, false, MOST_PRESSING_SWEEPS);
+    sweep_given(pairs, h, true, MOST_COLLIDER_SWEEPS);
+}
+
 static void solve(const mspringi_pairs *pairs, double h) {
     for (uint32_t sweep = 0; sweep < pairs->def.sweeps; ++sweep)
         for (uint32_t i = 0; i < pairs->touch_count; ++i) {
             push_apart(&pairs->active, &pairs->touches[i], h);
-            rub(&pairs->active, &pairs->touches[i], pairs->friction);
+            rub(pairs, &pairs->touches[i]);
         }
+    press(pairs, h);
 }
 
 /* --------------------------------------------------------------------------------------------- the substep */
@@ -222,6 +331,8 @@ static void count_touching(mspringi_pairs *pairs) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < pairs->touch_count; ++i) {
         const mspringi_touch *t = &pairs->touches[i];
+        if (t->collider != MSPRING_NONE)
+            mspringi_colliders_push(pairs, t);
         count += t->across > 0.0;
         pairs->deepest = -t->gap > pairs->deepest ? -t->gap : pairs->deepest;
     }
@@ -229,11 +340,14 @@ static void count_touching(mspringi_pairs *pairs) {
 }
 
 // Go along for a piece of h seconds. What contact adds to the move is counted apart.
-static void advance(const mspring_network *network, const mspringi_active *k, double h, bool is_last) {
+static void advance(const mspring_network *network, const mspringi_pairs *pairs, double h, bool is_last) {
+    const mspringi_active *k = &pairs->active;
     for (uint32_t i = 0; i < k->count; ++i) {
-        const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
-        k->way_x[i] += h * (k->vx[i] - (double)network->state.vx[slot]);
-        k->way_y[i] += h * (k->vy[i] - (double)network->state.vy[slot]);
+        if (!mspringi_is_of_collider(pairs, k->particles[i])) {
+            const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
+            k->way_x[i] += h * (k->vx[i] - (double)network->state.vx[slot]);
+            k->way_y[i] += h * (k->vy[i] - (double)network->state.vy[slot]);
+        }
         if (is_last)
             continue;
         k->x[i] += h * k->vx[i];
@@ -241,9 +355,12 @@ static void advance(const mspring_network *network, const mspringi_active *k, do
     }
 }
 
-static void put_back(const mspring_network *network, const mspringi_active *k) {
+static void put_back(const mspring_network *network, const mspringi_pairs *pairs) {
+    const mspringi_active *k = &pairs->active;
     const mspringi_state *s = &network->state;
     for (uint32_t i = 0; i < k->count; ++i) {
+        if (mspringi_is_of_collider(pairs, k->particles[i]))
+            continue;
         const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
         if (k->way_x[i] == 0.0 && k->way_y[i] == 0.0 && k->vx[i] == (double)s->vx[slot] &&
             k->vy[i] == (double)s->vy[slot])
@@ -255,9 +372,8 @@ static void put_back(const mspring_network *network, const mspringi_active *k) {
 }
 
 bool mspringi_rows_act(const mspring_network *network, mspringi_pairs *pairs) {
-    const mspringi_active *k = &pairs->active;
     const double h = (double)pairs->h;
-    begin(network, k);
+    begin(network, pairs);
     const double fastest = make_rows(network, pairs, h);
     if (pairs->touch_count == 0)
         return false;
@@ -268,8 +384,8 @@ bool mspringi_rows_act(const mspring_network *network, mspringi_pairs *pairs) {
             (void)make_rows(network, pairs, h / pieces);
         solve(pairs, h / pieces);
         count_touching(pairs);
-        advance(network, k, h / pieces, piece + 1 == pieces);
+        advance(network, pairs, h / pieces, piece + 1 == pieces);
     }
-    put_back(network, k);
+    put_back(network, pairs);
     return true;
 }

@@ -17,44 +17,79 @@ static bool is_used(const mspring_network *network) {
     return network->pairs != NULL;
 }
 
+// A collider moves even where all bodies sleep.
+static bool moves(const mspring_network *network) {
+    const mspringi_colliders *c = &network->pairs->colliders;
+    for (uint32_t i = 0; i < c->count; ++i)
+        if (c->list[i].is_moving)
+            return true;
+    return false;
+}
+
 /* -------------------------------------------------------------------------------------------------------- sleep */
 
 static uint32_t island_of(const mspring_network *network, mspring_id p) {
     return network->sleep.island[network->topology.slot_of_particle[p]];
 }
 
-static double distance_of(const mspring_network *network, mspring_id p, mspring_id a, mspring_id b) {
+typedef struct node_place {
+    double x, y;
+} node_place;
+
+static node_place place_of(const mspring_network *network, const mspringi_pairs *pairs, mspring_id node) {
     const mspringi_state *s = &network->state;
-    const uint32_t *slot = network->topology.slot_of_particle;
-    const mspringi_nearest at =
-        mspringi_nearest_on(mspringi_x_of(s, slot[p]), mspringi_y_of(s, slot[p]), mspringi_x_of(s, slot[a]),
-                            mspringi_y_of(s, slot[a]), mspringi_x_of(s, slot[b]), mspringi_y_of(s, slot[b]));
-    return sqrt(at.x * at.x + at.y * at.y);
+    if (mspringi_is_of_collider(pairs, node)) {
+        const uint32_t point = node - pairs->particles;
+        return (node_place){pairs->colliders.x[point], pairs->colliders.y[point]};
+    }
+    const uint32_t slot = network->topology.slot_of_particle[node];
+    return (node_place){mspringi_x_of(s, slot), mspringi_y_of(s, slot)};
 }
 
 // Whether a pair rests on each other, or may do so by the end of the step.
 static bool is_touching(const mspring_network *network, const mspringi_pairs *pairs, const mspringi_pair *pair,
                         double way) {
     const mspringi_outline *o = &pairs->outline;
-    const double distance = distance_of(network, pair->point, o->a[pair->edge], o->b[pair->edge]);
+    const node_place p = place_of(network, pairs, pair->point), a = place_of(network, pairs, o->a[pair->edge]),
+                     b = place_of(network, pairs, o->b[pair->edge]);
+    const mspringi_nearest at = mspringi_nearest_on(p.x, p.y, a.x, a.y, b.x, b.y);
+    const double distance = sqrt(at.x * at.x + at.y * at.y) - mspringi_radius_of(pairs, pair->point, pair->edge);
     return distance <= (1.0 + RESTING_SHARE) * pairs->thickness + way;
+}
+
+// The two sides of a pair: islands, and for how long each has been still. A collider that moves never is, and one
+// that stands still is no side.
+typedef struct pair_sides {
+    uint32_t island[2]; // MSPRING_NONE: a collider
+    double still[2];
+    bool are_two;
+} pair_sides;
+
+static pair_sides sides_of(const mspring_network *network, const mspringi_pairs *pairs, const mspringi_pair *pair) {
+    const mspring_id nodes[2] = {pair->point, pairs->outline.a[pair->edge]};
+    pair_sides s = {.are_two = true};
+    for (int i = 0; i < 2; ++i) {
+        const bool is_collider = mspringi_is_of_collider(pairs, nodes[i]);
+        s.island[i] = is_collider ? MSPRING_NONE : island_of(network, nodes[i]);
+        s.still[i] = is_collider ? 0.0 : network->sleep.still[s.island[i]];
+        s.are_two &= !is_collider || mspringi_collider_of(pairs, nodes[i])->is_moving;
+    }
+    return s;
 }
 
 // Wake what sleeps where something that is awake comes.
 static void wake_touched(mspring_network *network, const mspringi_pairs *pairs) {
-    const mspringi_sleep *s = &network->sleep;
     const uint64_t naps = network->edits.naps;
-    if (s->sleeping == 0)
+    if (network->sleep.sleeping == 0)
         return;
     for (bool again = true; again;) {
         again = false;
         for (uint32_t i = 0; i < pairs->count; ++i) {
-            const uint32_t p = island_of(network, pairs->list[i].point),
-                           q = island_of(network, pairs->outline.a[pairs->list[i].edge]);
-            if ((s->still[p] < 0.0) == (s->still[q] < 0.0) ||
+            const pair_sides s = sides_of(network, pairs, &pairs->list[i]);
+            if (!s.are_two || (s.still[0] < 0.0) == (s.still[1] < 0.0) ||
                 !is_touching(network, pairs, &pairs->list[i], 2.0 * pairs->dt * pairs->speed))
                 continue;
-            mspringi_sleep_rouse(network, s->still[p] < 0.0 ? p : q);
+            mspringi_sleep_rouse(network, s.island[s.still[0] < 0.0 ? 0 : 1]);
             again = true;
         }
     }
@@ -64,18 +99,20 @@ static void wake_touched(mspring_network *network, const mspringi_pairs *pairs) 
 // Islands that rest on each other have been still for as long as the one that was still for the shortest time: they
 // fall asleep together.
 static void share_stillness(mspring_network *network, const mspringi_pairs *pairs) {
-    const mspringi_sleep *s = &network->sleep;
     if (!(network->settings.sleep_speed > 0.0f) || mspringi_sleep_is_whole(network))
         return;
     mspringi_islands_find(network);
     for (bool again = true; again;) {
         again = false;
         for (uint32_t i = 0; i < pairs->count; ++i) {
-            double *p = &s->still[island_of(network, pairs->list[i].point)],
-                   *q = &s->still[island_of(network, pairs->outline.a[pairs->list[i].edge])];
-            if (*p == *q || *p < 0.0 || *q < 0.0 || !is_touching(network, pairs, &pairs->list[i], 0.0))
+            const pair_sides s = sides_of(network, pairs, &pairs->list[i]);
+            if (!s.are_two || s.still[0] == s.still[1] || s.still[0] < 0.0 || s.still[1] < 0.0 ||
+                !is_touching(network, pairs, &pairs->list[i], 0.0))
                 continue;
-            *p = *q = *p < *q ? *p : *q;
+            const double least = s.still[0] < s.still[1] ? s.still[0] : s.still[1];
+            for (int k = 0; k < 2; ++k)
+                if (s.island[k] != MSPRING_NONE)
+                    network->sleep.still[s.island[k]] = least;
             again = true;
         }
     }
@@ -93,6 +130,7 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
     pairs->since_look = 0;
     pairs->deepest = 0.0;
     pairs->has_sleepers = network->sleep.sleeping > 0;
+    mspringi_colliders_begin(network, pairs, attempt->substeps);
     if (mspringi_near_look(network, pairs))
         wake_touched(network, pairs);
 }
@@ -111,8 +149,10 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
     mspringi_pairs *pairs = network->pairs;
     (void)attempt;
     pairs->first_substep = substep;
-    if (pairs->quiet == 0)
+    if (pairs->quiet == 0) {
+        mspringi_colliders_place(network, pairs, substep);
         mspringi_rows_note(network, pairs);
+    }
     return base;
 }
 
@@ -155,6 +195,7 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
 static bool has_missed(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_pairs *pairs = network->pairs;
     const uint32_t count = pairs->taken == 0 ? attempt->substeps : pairs->since_look;
+    pairs->taken = attempt->substeps;
     if (count > 0 && !pairs->is_full)
         look_back(network, pairs, count);
     if (!pairs->is_missed || pairs->is_strict || pairs->is_full)
@@ -178,17 +219,22 @@ static void take_back(mspring_network *network) {
     mspringi_pairs *pairs = network->pairs;
     pairs->is_fresh = false;
     pairs->taken = pairs->since_look = 0;
+    mspringi_colliders_forget(pairs);
     if (pairs->is_strict)
         (void)mspringi_near_look(network, pairs);
 }
 
 static void after_step(mspring_network *network, double dt) {
+    mspringi_pairs *pairs = network->pairs;
     (void)dt;
-    network->pairs->is_fresh &= !(network->outcome.flags & MSPRING_STEP_PUT_BACK);
-    share_stillness(network, network->pairs);
+    pairs->is_fresh &= !(network->outcome.flags & MSPRING_STEP_PUT_BACK);
+    mspringi_colliders_place(network, pairs, pairs->colliders.substeps);
+    share_stillness(network, pairs);
+    mspringi_colliders_end(network, pairs);
 }
 
 const mspringi_stage mspringi_stage_pairs = {.is_used = is_used,
+                                             .moves = moves,
                                              .writes_state = true,
                                              .before_step = before_step,
                                              .is_quiet = is_quiet,

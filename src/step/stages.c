@@ -19,6 +19,7 @@ mspringi_stages mspringi_stages_of(const mspring_network *network) {
         const bool is_optional = all[i]->is_quiet && !(all[i]->is_needed && all[i]->is_needed(network));
         stages.used[stages.count++] = all[i];
         stages.give_forces |= all[i]->forces && !is_optional;
+        stages.move |= all[i]->moves && all[i]->moves(network);
         stages.cut_substeps |= cuts_substeps(all[i]) && !is_optional;
         stages.can_be_quiet |= all[i]->is_quiet != NULL || all[i]->has_missed != NULL;
         stages.follow_substeps |= all[i]->after_substep != NULL;

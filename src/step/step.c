@@ -180,7 +180,7 @@ static mspring_result check_given_speeds(mspring_network *network, double dt) {
 
 // Whether a step has nothing to do at all.
 static bool is_idle(const mspring_network *network, const mspringi_stages *stages) {
-    return mspringi_sleep_is_idle(network) && !stages->give_forces && !stages->cut_substeps;
+    return mspringi_sleep_is_idle(network) && !stages->give_forces && !stages->cut_substeps && !stages->move;
 }
 
 // Run all substeps, and once more if a stage counted on what did not hold.

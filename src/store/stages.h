@@ -24,6 +24,8 @@
 /// Places where a stage does nothing are NULL.
 typedef struct mspringi_stage {
     bool (*is_used)(const mspring_network *network); ///< NULL: always
+    bool (*moves)(
+        const mspring_network *network); ///< something of it moves though all may sleep; NULL: nothing does
     bool writes_state; ///< before or between substeps: the backup is made before its forces are asked for
 
     void (*before_step)(mspring_network *network, const mspringi_attempt *attempt);
@@ -59,6 +61,7 @@ typedef struct mspringi_stages {
     const mspringi_stage *used[MSPRINGI_STAGES];
     size_t count;
     bool give_forces;     ///< some stage does
+    bool move;            ///< something of some stage does
     bool cut_substeps;    ///< substeps cannot be taken all at once, in whatever step
     bool follow_substeps; ///< some stage acts after substeps
     bool can_be_quiet;    ///< some stage is asked whether it is quiet, whether it has missed something, and how it

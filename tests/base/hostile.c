@@ -92,6 +92,63 @@ static mspring_result move_grip(arguments *a) {
     return result;
 }
 
+// Colliders go with their contact.
+static mspring_result with_collider(arguments *a, mspring_result (*call)(arguments *a, mspring_id id)) {
+    mspring_contact_def contact;
+    mspring_collider_def def;
+    mspring_id id = 0;
+    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    check_ok(mspring_collider_def_init(&def, sizeof def));
+    def.kind = MSPRING_COLLIDER_CIRCLE;
+    def.radius = 1;
+    if (!a->network) {
+        return call(a, id);
+    }
+    mspring_result result = mspring_network_set_contact(a->network, &contact);
+    if (result != MSPRING_OK) {
+        return result;
+    }
+    result = mspring_network_add_collider(a->network, &def, &id);
+    if (result == MSPRING_OK) {
+        result = call(a, id);
+    }
+    check_ok(mspring_network_set_contact(a->network, NULL));
+    if (result != MSPRING_OK) {
+        check_error(call(a, id), MSPRING_ERROR_ARGUMENT); // messages go with the contact: test_collider_calls.c
+    }
+    return result;
+}
+
+static mspring_result add_collider(arguments *a, mspring_id id) {
+    mspring_collider_def def;
+    (void)id;
+    check_ok(mspring_collider_def_init(&def, sizeof def));
+    def.kind = MSPRING_COLLIDER_BOX;
+    return mspring_network_add_collider(a->network, &def, NULL);
+}
+
+static mspring_result remove_collider(arguments *a, mspring_id id) {
+    return mspring_network_remove_collider(a->network, id);
+}
+
+static mspring_result move_collider(arguments *a, mspring_id id) {
+    return mspring_network_move_collider(a->network, id, 1, 2, 3);
+}
+
+static mspring_result place_collider(arguments *a, mspring_id id) {
+    return mspring_network_place_collider(a->network, id, 1, 2, 3);
+}
+
+static mspring_result get_collider(arguments *a, mspring_id id) {
+    mspring_collider_def def = {.struct_size = sizeof def};
+    return mspring_network_get_collider(a->network, id, &def);
+}
+
+static mspring_result get_collider_impulse(arguments *a, mspring_id id) {
+    double x, y, angular;
+    return mspring_network_get_collider_impulse(a->network, id, &x, &y, &angular);
+}
+
 static mspring_result destroy_nothing(void) {
     mspring_builder_destroy(NULL);
     mspring_network_destroy(NULL);
@@ -453,6 +510,14 @@ static void add_hook(arguments *a) {
       mspring_network_get_grip(a->network, a->id, a->out[0]))                                                      \
     X(mspring_network_get_grip_impulse, "n01", NOTHING,                                                            \
       mspring_network_get_grip_impulse(a->network, a->id, a->out[0], a->out[1]))                                   \
+    X(mspring_collider_def_init, "Z0", a->size = sizeof(mspring_collider_def),                                     \
+      mspring_collider_def_init(a->out[0], a->size))                                                               \
+    X(mspring_network_add_collider, "N", NOTHING, with_collider(a, add_collider))                                  \
+    X(mspring_network_remove_collider, "N", NOTHING, with_collider(a, remove_collider))                            \
+    X(mspring_network_move_collider, "N", NOTHING, with_collider(a, move_collider))                                \
+    X(mspring_network_place_collider, "N", NOTHING, with_collider(a, place_collider))                              \
+    X(mspring_network_get_collider, "n", NOTHING, with_collider(a, get_collider))                                  \
+    X(mspring_network_get_collider_impulse, "n", NOTHING, with_collider(a, get_collider_impulse))                  \
     X(mspring_network_get_sleepers, "nR0", NOTHING,                                                                \
       mspring_network_get_sleepers(a->network, a->first, a->count, a->out[0]))                                     \
     X(mspring_network_is_asleep, "v", NOTHING, note_size(mspring_network_is_asleep(a->network)))                   \

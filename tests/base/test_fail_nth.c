@@ -255,6 +255,18 @@ static mspring_result set_contact(life *l) {
     return mspring_network_set_contact(l->network, &def);
 }
 
+static mspring_result add_colliders(life *l) {
+    mspring_collider_def def;
+    mspring_result result = MSPRING_OK;
+    check_ok(mspring_collider_def_init(&def, sizeof def));
+    def.kind = MSPRING_COLLIDER_BOX;
+    for (int i = 0; i < 3 && result == MSPRING_OK; i++) {
+        def.x = 100 + 2 * i;
+        result = mspring_network_add_collider(l->network, &def, NULL);
+    }
+    return result;
+}
+
 static mspring_result drop_contact(life *l) {
     return mspring_network_set_contact(l->network, NULL);
 }
@@ -340,6 +352,7 @@ static const struct {
     {"step", step},
     {"no fallback", drop_fallback},
     {"contact", set_contact},
+    {"colliders", add_colliders},
     {"step", step},
     {"compact", compact},
     {"step", step},

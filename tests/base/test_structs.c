@@ -149,6 +149,15 @@ static mspring_result give_grip(subject *s, void *given) {
     return mspring_network_set_grip(s->network, 3, given);
 }
 
+static mspring_result give_collider(subject *s, void *given) {
+    mspring_collider_def *collider = given;
+    mspring_contact_def contact;
+    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    check_ok(mspring_network_set_contact(s->network, &contact));
+    collider->kind = MSPRING_COLLIDER_BOX;
+    return mspring_network_add_collider(s->network, given, NULL);
+}
+
 static mspring_result give_settle(subject *s, void *given) {
     const mspring_result result = mspring_network_settle(s->network, given, NULL);
     return result == MSPRING_ERROR_EQUILIBRIUM ? MSPRING_OK : result;
@@ -197,6 +206,7 @@ INIT(hook_def)
 INIT(floor_def)
 INIT(contact_def)
 INIT(grip_def)
+INIT(collider_def)
 INIT(settle_def)
 INIT(tune_def)
 INIT(tune_scene)
@@ -228,6 +238,7 @@ static const struct input {
     INPUT(floor_def, offsetof(mspring_floor_def, reserved), give_floor),
     INPUT(contact_def, offsetof(mspring_contact_def, reserved), give_contact),
     INPUT(grip_def, offsetof(mspring_grip_def, reserved), give_grip),
+    INPUT(collider_def, offsetof(mspring_collider_def, reserved_pointer), give_collider),
     INPUT(settle_def, offsetof(mspring_settle_def, reserved), give_settle),
     INPUT(tune_def, offsetof(mspring_tune_def, reserved_pointer), give_tune),
     INPUT(tune_scene, offsetof(mspring_tune_scene, reserved), give_scene),
@@ -319,6 +330,14 @@ static mspring_result fill_contact_info(subject *s, void *out) {
 static mspring_result fill_grip(subject *s, void *out) {
     return mspring_network_get_grip(s->network, 3, out);
 }
+static mspring_result fill_collider(subject *s, void *out) {
+    mspring_collider_def def;
+    mspring_id id;
+    check_ok(mspring_collider_def_init(&def, sizeof def));
+    check_ok(give_collider(s, &def));
+    check_ok(mspring_network_add_collider(s->network, &def, &id));
+    return mspring_network_get_collider(s->network, id, out);
+}
 static mspring_result fill_step_info(subject *s, void *out) {
     return mspring_network_get_step_info(s->network, out);
 }
@@ -367,6 +386,7 @@ static const struct output {
     OUTPUT(mspring_contact_def, fill_contact),
     OUTPUT(mspring_contact_info, fill_contact_info),
     OUTPUT(mspring_grip_def, fill_grip),
+    OUTPUT(mspring_collider_def, fill_collider),
     OUTPUT(mspring_step_info, fill_step_info),
     OUTPUT(mspring_spring_info, fill_spring_info),
     OUTPUT(mspring_plan, fill_plan),

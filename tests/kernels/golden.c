@@ -236,6 +236,31 @@ static mspring_network *contact(mspring_network_def *def) {
     return network;
 }
 
+/// The same with a basin, a paddle that turns and a circle that swings to and fro.
+static mspring_network *colliders(mspring_network_def *def) {
+    static const double basin[8] = {-12, 9, -9, 1, 10, 1.5, 13, 9};
+    mspring_network *network = contact(def);
+    mspring_collider_def def_of[3];
+    for (int i = 0; i < 3; i++) {
+        check_ok(mspring_collider_def_init(&def_of[i], sizeof def_of[i]));
+        def_of[i].kind = (mspring_collider_kind)i;
+        def_of[i].friction = 0.4f;
+        def_of[i].restitution = 0.25f;
+    }
+    def_of[0].points = basin, def_of[0].point_count = 4, def_of[0].radius = 0.1;
+    def_of[1].width = 5, def_of[1].height = 0.5, def_of[1].x = -3, def_of[1].y = 5;
+    def_of[2].radius = 0.75, def_of[2].x = 7, def_of[2].y = 3;
+    for (mspring_id i = 0; i < 3; i++)
+        check_ok(mspring_network_add_collider(network, &def_of[i], NULL));
+    return network;
+}
+
+static void move_colliders(mspring_network *network, uint32_t step) {
+    const double swing = step % 64 < 32 ? step % 32 / 8.0 : 4 - step % 32 / 8.0;
+    check_ok(mspring_network_move_collider(network, 1, -3, 5, (step + 1) / 16.0));
+    check_ok(mspring_network_move_collider(network, 2, 7 - swing, 3, -(double)step / 8));
+}
+
 const golden_scene golden_scenes[] = {
     {"bar_80x5", bar_80x5, NULL, 30, 64, 1.0 / 64},
     {"bar_544x68", bar_544x68, NULL, 30, 3, 1.0 / 64},
@@ -258,6 +283,7 @@ const golden_scene golden_scenes[] = {
     {"precise_graph", precise_graph, NULL, 40, 20, 1.0 / 64},
     {"precise_everything", precise_everything, push_some, 4, 100, 1.0 / 64},
     {"contact", contact, NULL, 20, 160, 1.0 / 64},
+    {"colliders", colliders, move_colliders, 20, 160, 1.0 / 64},
 };
 const uint32_t golden_scene_count = COUNT_OF(golden_scenes);
 

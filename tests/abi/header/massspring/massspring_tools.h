@@ -14,6 +14,8 @@
 ///     compact     network_compact, _expand; job_begin, _run, _finish, _error, _destroy
 ///     contact     network_set_contact, _get_contact, _set_contact_groups, _contact_info; contact_def_init
 ///     grips       network_set_grip, _move_grip, _get_grip, _get_grip_impulse; grip_def_init
+///     colliders   network_add_collider, _remove_collider, _move_collider, _place_collider, _get_collider,
+///                 _get_collider_impulse; collider_def_init
 ///
 /// These calls are not frozen yet: a later minor version may change them. massspring.h explains the notation.
 ///
@@ -833,7 +835,7 @@ MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact
 /// set the same contact and the same groups. Then the next steps have the same bits.
 ///
 /// If more than capacity pairs are near each other, a step fails with MSPRING_ERROR_LIMIT and is rolled back.
-/// @param def  copied; NULL: no contact, the default. The particles' groups are forgotten then.
+/// @param def  copied; NULL: no contact, the default. Groups of particles and colliders of the host are forgotten.
 /// @threads exclusive   @allocates yes; about 500 bytes for a particle, 1200 more for one of the outline, 40 for a
 ///          spring   @errors ARGUMENT (the message names field or solver), STRUCT, MEMORY, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_contact(
@@ -931,6 +933,104 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_gr
 /// @threads shared   @allocates never   @errors ARGUMENT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_grip_impulse(
     const mspring_network *network, uint32_t number, double *x, double *y);
+
+/* ----------------------------------------------------------------------------------------------------- colliders */
+
+/// Most points of a chain.
+#define MSPRING_MAX_COLLIDER_POINTS 0x10000u
+
+/// Shapes of colliders.
+typedef enum mspring_collider_kind {
+    MSPRING_COLLIDER_CHAIN = 0,             ///< straight sides from point to point
+    MSPRING_COLLIDER_BOX = 1,               ///< a rectangle around its position
+    MSPRING_COLLIDER_CIRCLE = 2,            ///< a circle around its position
+    MSPRING_COLLIDER_INT = MSPRING_ENUM_INT ///< no value
+} mspring_collider_kind;
+
+/// Flags of mspring_collider_def.
+enum {
+    MSPRING_COLLIDER_CLOSED = 1u << 0 ///< a side joins the last point of a chain to the first
+};
+
+/// A collider: a shape that the host owns and moves, and that bodies collide with. Fill with
+/// mspring_collider_def_init() first. Half-planes and fields of heights are mspring_floor_def's.
+typedef struct mspring_collider_def {
+    uint32_t struct_size;
+    mspring_collider_kind kind; ///< default MSPRING_COLLIDER_CHAIN
+    double x, y;                ///< position, m, world coordinates, at most MSPRING_MAX_COORDINATE; default 0
+    double angle;               ///< rad, counterclockwise around the position, at most 1e6 in size; default 0
+    double width, height;       ///< of a box, m, > 0, at most MSPRING_MAX_COORDINATE; default 1
+    /// Of a circle, m, > 0, at most MSPRING_MAX_COORDINATE. Chains and boxes are this much thicker, and rounded; 0 is
+    /// allowed for them. Default 0.
+    double radius;
+    const double *points; ///< [point_count][2] of a chain, m, before it is turned by the angle and put at its position
+    void *reserved_pointer; ///< NULL
+    uint32_t point_count;   ///< 2 to MSPRING_MAX_COLLIDER_POINTS, at least 3 if it is closed; 0 for boxes and circles
+    uint32_t flags;         ///< MSPRING_COLLIDER_CLOSED or 0, the default
+    float friction;         ///< of what touches it, instead of the contact's, 0 to 1e6; default 0
+    float restitution;      ///< likewise, 0 to 1; default 0
+    uint32_t groups, masks; ///< bits, as of mspring_network_set_contact_groups(); default 1 and 0xffffffff
+} mspring_collider_def;
+
+/// Fill a definition with its defaults, as mspring_network_def_init().
+/// @threads any   @allocates never   @errors ARGUMENT, STRUCT
+MSPRING_API mspring_result MSPRING_CALL mspring_collider_def_init(mspring_collider_def *def, size_t size);
+
+/// Add a collider.
+/// Bodies keep the contact's thickness from it. Nothing passes it, from either side: boxes and closed chains are walls
+/// around a space, and what lies inside stays inside. Sides may cross. Colliders do not touch each other. Their mass is
+/// infinite. The contact's sweeps and push_speed are theirs, too. The guide examples/guides/contact.md describes what
+/// holds.
+///
+/// Colliders need contact, so they need the explicit solver. If only colliders are to touch particles, set groups and
+/// masks by which particles do not touch each other.
+///
+/// Snapshots leave colliders out, as they leave the floor. Before you load one, add the same colliders and place them.
+/// Clones have them. All bodies wake.
+/// @param def       copied, with its points
+/// @param collider  receives its id, which no other collider of the contact gets; may be NULL
+/// @threads exclusive   @allocates yes; 2 to 4 kB for a point   @since 0.2   @errors ARGUMENT (also without
+///          contact), STRUCT, MEMORY, BUSY, LIMIT for more than 0x1000000 points in all
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_add_collider(
+    mspring_network *network, const mspring_collider_def *def, mspring_id *collider);
+
+/// Remove a collider. All bodies wake.
+/// @threads exclusive   @allocates never   @since 0.2   @errors ID, ARGUMENT without contact, BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_remove_collider(
+    mspring_network *network, mspring_id collider);
+
+/// Set where a collider is to be at the end of the next step.
+/// In that step it moves and turns at an even speed, and pushes what is in its way. It is there once the step is taken,
+/// and stands still from then on. If the step fails, the collider has not moved, and goes on to wait for it. A collider
+/// that moves wakes the bodies it comes to, and none falls asleep on it.
+/// @param x, y, angle  as in mspring_collider_def. An angle of more than half a turn away makes it spin: it goes the
+///                     whole way.
+/// @threads exclusive   @allocates never   @since 0.2   @errors ID, ARGUMENT (also without contact), BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_move_collider(
+    mspring_network *network, mspring_id collider, double x, double y, double angle);
+
+/// Put a collider somewhere else at once.
+/// It touches nothing on its way. What it overlaps there is pushed apart. What it lies across stays so. A move that was
+/// set is dropped. All bodies wake.
+/// @threads exclusive   @allocates never   @since 0.2   @errors ID, ARGUMENT (also without contact), BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_place_collider(
+    mspring_network *network, mspring_id collider, double x, double y, double angle);
+
+/// Read a collider. Set struct_size first.
+/// Position and angle are those of now. points leads to the network's copy, valid until a collider is added or removed
+/// or contact is set.
+/// @threads shared   @allocates never   @since 0.2   @errors ID, ARGUMENT without contact, STRUCT
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_collider(
+    const mspring_network *network, mspring_id collider, mspring_collider_def *def);
+
+/// Read what bodies gave to a collider in the last step.
+/// A rigid body with this shape gets its motion by them: its momentum changes by the impulse, its spin around its
+/// position by the angular one. Both momenta of the whole are kept then. Bodies that sleep give nothing.
+/// @param x, y     impulse, N s
+/// @param angular  angular impulse around the position at the end of the step, N m s, counterclockwise
+/// @threads shared   @allocates never   @since 0.2   @errors ID, ARGUMENT (also without contact)
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_collider_impulse(
+    const mspring_network *network, mspring_id collider, double *x, double *y, double *angular);
 
 #ifdef __cplusplus
 }

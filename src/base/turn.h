@@ -1,0 +1,20 @@
+/// @file turn.h
+/// Cosine and sine from additions and multiplications alone, so that they have the same bits everywhere.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_TURN_H
+#define MSPRINGI_TURN_H
+
+/// Angles may be this large, rad.
+#define MSPRINGI_MAX_ANGLE 1e6
+
+/// A rotation by an angle.
+typedef struct mspringi_rotation {
+    double cosine, sine;
+} mspringi_rotation;
+
+/// Correct to 2e-16.
+/// @param angle  at most MSPRINGI_MAX_ANGLE in size
+mspringi_rotation mspringi_turn_by(double angle);
+
+#endif
