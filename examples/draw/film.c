@@ -5,6 +5,7 @@
 #include "draw/film.h"
 #include "draw/png.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -37,8 +38,9 @@ bool film_start(film *made, const network_shape *shape, draw_error *error) {
         made->y = malloc(made->frame_capacity * particles);
         made->flags = malloc(made->frame_capacity * springs);
         made->probes = malloc(made->frame_capacity * sizeof *made->probes);
+        made->places = malloc(made->frame_capacity * sizeof *made->places);
     }
-    if (made->x && made->y && made->flags && made->probes)
+    if (made->x && made->y && made->flags && made->probes && made->places)
         return true;
     film_free(made);
     snprintf(error->text, sizeof error->text, "no memory for an animation of %u particles: leave it out",
@@ -51,6 +53,7 @@ void film_free(film *unwanted) {
     free(unwanted->y);
     free(unwanted->flags);
     free(unwanted->probes);
+    free(unwanted->places);
     memset(unwanted, 0, sizeof *unwanted);
 }
 
@@ -77,6 +80,7 @@ static void drop_every_second(film *target) {
         memcpy(frame_of(target, target->y, i), frame_of(target, target->y, 2 * i), size);
         memcpy(flags_of(target, i), flags_of(target, 2 * i), target->shape->spring_count * sizeof(uint32_t));
         target->probes[i] = target->probes[2 * i];
+        memcpy(target->places[i], target->places[2 * i], sizeof target->places[i]);
     }
     target->frame_count /= 2;
     target->interval *= 2;
@@ -97,6 +101,7 @@ void film_step(film *target, const mspring_network *network) {
         mspring_network_get_spring_flags(network, 0, shape->spring_count, flags_of(target, frame), 1) != MSPRING_OK)
         return;
     target->probes[frame] = target->probe;
+    memcpy(target->places[frame], target->place, sizeof target->place);
     target->frame_count++;
 }
 
@@ -108,6 +113,14 @@ static network_shape shape_in(const film *source, uint32_t frame) {
     return shape;
 }
 
+// A corner of what moves besides, in a frame; the first one again behind the last.
+static void corner_in(const film *source, uint32_t frame, uint32_t corner, double *x, double *y) {
+    const double *local = source->corners + 2 * (size_t)(corner % source->corner_count);
+    const double *place = source->places[frame];
+    *x = place[0] + cos(place[2]) * local[0] - sin(place[2]) * local[1];
+    *y = place[1] + sin(place[2]) * local[0] + cos(place[2]) * local[1];
+}
+
 static bool draw_frame(canvas *made, const film *source, const network_view *view, uint32_t frame,
                        const char *title, draw_error *error) {
     figure drawing;
@@ -115,6 +128,12 @@ static bool draw_frame(canvas *made, const film *source, const network_view *vie
     figure_start(&drawing, view->width, view->height, 0xffffff);
     network_picture_draw(&drawing, &shape, view, frame_of(source, source->x, frame),
                          frame_of(source, source->y, frame), title);
+    for (uint32_t i = 0; i < source->corner_count; i++) {
+        double line[4];
+        corner_in(source, frame, i, &line[0], &line[1]);
+        corner_in(source, frame, i + 1, &line[2], &line[3]);
+        network_picture_line(&drawing, view, line);
+    }
     bool ok = canvas_from_figure(made, &drawing, error);
     figure_free(&drawing);
     return ok;
@@ -142,6 +161,12 @@ static network_view choose_view(const film *source) {
     for (uint32_t i = 0; i < source->frame_count; i++)
         box = world_box_add(box, frame_of(source, source->x, i), frame_of(source, source->y, i),
                             source->shape->particle_count);
+    for (uint32_t i = 0; i < source->frame_count; i++)
+        for (uint32_t corner = 0; corner < source->corner_count; corner++) {
+            double x, y;
+            corner_in(source, i, corner, &x, &y);
+            box = world_box_add(box, &x, &y, 1);
+        }
     network_shape last = shape_in(source, source->frame_count - 1);
     double limit = source->strain_limit;
     if (!(limit > 0))

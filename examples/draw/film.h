@@ -11,10 +11,15 @@
 /// full, every second frame is dropped and the frames that follow come half as often.
 typedef struct film {
     const network_shape *shape;
-    double *x, *y;        ///< [frame_capacity][particle_count]
-    uint32_t *flags;      ///< [frame_capacity][spring_count]: springs that break disappear
-    mspring_id *probes;   ///< [frame_capacity]
-    mspring_id probe;     ///< of the frames to come: at first the shape's
+    double *x, *y;      ///< [frame_capacity][particle_count]
+    uint32_t *flags;    ///< [frame_capacity][spring_count]: springs that break disappear
+    mspring_id *probes; ///< [frame_capacity]
+    mspring_id probe;   ///< of the frames to come: at first the shape's
+    const double
+        *corners; ///< [corner_count][2] of something else that moves, m, around its place; NULL: nothing does
+    uint32_t corner_count;
+    double place[3];      ///< of it in the frames to come: x, y, m, and angle, rad
+    double (*places)[3];  ///< [frame_capacity]
     double strain_limit;  ///< of the colours; 0: what suits the last frame
     uint32_t most_height; ///< of a frame, pixels
     uint32_t frame_count, frame_capacity;

@@ -200,3 +200,8 @@ void network_picture_draw(figure *target, const network_shape *shape, const netw
     draw_legend(target, view);
     draw_ruler(target, view);
 }
+
+void network_picture_line(figure *target, const network_view *view, const double line[4]) {
+    figure_line(target, to_x(view, line[0]), to_y(view, line[1]), to_x(view, line[2]), to_y(view, line[3]), 2.5,
+                probe_colour);
+}

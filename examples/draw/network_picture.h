@@ -57,4 +57,7 @@ network_view network_view_fit(const network_shape *shape, world_box box, uint32_
 void network_picture_draw(figure *target, const network_shape *shape, const network_view *view, const double *x,
                           const double *y, const char *title);
 
+/// Draw a line of something else on top: x and y of its start and end, m.
+void network_picture_line(figure *target, const network_view *view, const double line[4]);
+
 #endif
