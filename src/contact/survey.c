@@ -11,52 +11,72 @@ typedef struct box {
     double min_x, max_x, min_y, max_y;
 } box;
 
-// Widen what a span of slots covers; a pass over memory, so written for vectors.
-static void cover(const mspring_network *network, size_t first, size_t end, box *all, float *fastest) {
-    const mspringi_state *s = &network->state;
+/// What slots cover, and how fast the fastest is, by lane.
+typedef struct extent {
     float min_x[MSPRINGI_WIDTH], max_x[MSPRINGI_WIDTH], min_y[MSPRINGI_WIDTH], max_y[MSPRINGI_WIDTH];
     float fast[MSPRINGI_WIDTH];
+} extent;
+
+static void begin_extent(extent *e) {
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
-        min_x[lane] = min_y[lane] = INFINITY;
-        max_x[lane] = max_y[lane] = -INFINITY;
-        fast[lane] = 0.0f;
+        e->min_x[lane] = e->min_y[lane] = INFINITY;
+        e->max_x[lane] = e->max_y[lane] = -INFINITY;
+        e->fast[lane] = 0.0f;
     }
+}
+
+// Widen it by slots; a pass over memory, so written for vectors.
+static void extend(const mspring_network *network, size_t first, size_t end, extent *e) {
+    const mspringi_state *s = &network->state;
     for (size_t slot = first; slot < end; slot += MSPRINGI_WIDTH)
         for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
             const float x = s->x[slot + lane], y = s->y[slot + lane];
             const float vx = fabsf(s->vx[slot + lane]), vy = fabsf(s->vy[slot + lane]);
-            min_x[lane] = x < min_x[lane] ? x : min_x[lane];
-            max_x[lane] = x > max_x[lane] ? x : max_x[lane];
-            min_y[lane] = y < min_y[lane] ? y : min_y[lane];
-            max_y[lane] = y > max_y[lane] ? y : max_y[lane];
-            fast[lane] = vx > fast[lane] ? vx : fast[lane];
-            fast[lane] = vy > fast[lane] ? vy : fast[lane];
+            e->min_x[lane] = x < e->min_x[lane] ? x : e->min_x[lane];
+            e->max_x[lane] = x > e->max_x[lane] ? x : e->max_x[lane];
+            e->min_y[lane] = y < e->min_y[lane] ? y : e->min_y[lane];
+            e->max_y[lane] = y > e->max_y[lane] ? y : e->max_y[lane];
+            e->fast[lane] = vx > e->fast[lane] ? vx : e->fast[lane];
+            e->fast[lane] = vy > e->fast[lane] ? vy : e->fast[lane];
         }
-    for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
-        all->min_x = (double)min_x[lane] < all->min_x ? (double)min_x[lane] : all->min_x;
-        all->max_x = (double)max_x[lane] > all->max_x ? (double)max_x[lane] : all->max_x;
-        all->min_y = (double)min_y[lane] < all->min_y ? (double)min_y[lane] : all->min_y;
-        all->max_y = (double)max_y[lane] > all->max_y ? (double)max_y[lane] : all->max_y;
-        *fastest = fast[lane] > *fastest ? fast[lane] : *fastest;
-    }
 }
 
-static void cover_span(const mspring_network *network, const mspringi_span *span, box *all, float *fastest) {
+static box end_extent(const extent *e, float *fastest) {
+    float min_x = INFINITY, max_x = -INFINITY, min_y = INFINITY, max_y = -INFINITY;
+    for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
+        min_x = e->min_x[lane] < min_x ? e->min_x[lane] : min_x;
+        max_x = e->max_x[lane] > max_x ? e->max_x[lane] : max_x;
+        min_y = e->min_y[lane] < min_y ? e->min_y[lane] : min_y;
+        max_y = e->max_y[lane] > max_y ? e->max_y[lane] : max_y;
+        *fastest = e->fast[lane] > *fastest ? e->fast[lane] : *fastest;
+    }
+    return (box){(double)min_x, (double)max_x, (double)min_y, (double)max_y};
+}
+
+static box cover(const mspring_network *network, size_t first, size_t end, float *fastest) {
+    extent e;
+    begin_extent(&e);
+    extend(network, first, end, &e);
+    return end_extent(&e, fastest);
+}
+
+static void extend_span(const mspring_network *network, const mspringi_span *span, extent *e) {
     const size_t first = span->first_slot / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
     const size_t end = (span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
     if (first < end)
-        cover(network, first, end, all, fastest);
+        extend(network, first, end, e);
 }
 
 static box cover_strip(const mspring_network *network, const mspringi_strip *strip, float *fastest) {
     const mspringi_topology *t = &network->topology;
     const mspringi_row *first = &t->rows[strip->first_row], *last = first + strip->row_count - 1;
-    box all = {INFINITY, -INFINITY, INFINITY, -INFINITY};
+    extent e;
+    begin_extent(&e);
     for (uint32_t i = first->first_span; i < last->first_span + last->span_count; ++i)
-        cover_span(network, &t->spans[i], &all, fastest);
+        extend_span(network, &t->spans[i], &e);
     if (strip->home_span != MSPRING_NONE)
-        cover_span(network, &t->spans[strip->home_span], &all, fastest);
-    return all;
+        extend_span(network, &t->spans[strip->home_span], &e);
+    return end_extent(&e, fastest);
 }
 
 // Take the part of a box where a line is not, as far as that is a box.
@@ -165,9 +185,8 @@ bool mspringi_floor_is_near_block(const mspring_network *network, const mspringi
                                     bound((double)all->min_y + way), bound((double)all->max_y - way)};
     if (network->kernels->beyond(s->x, s->y, first, first + MSPRINGI_WIDTH, &within) != first)
         return false;
-    box around = {INFINITY, -INFINITY, INFINITY, -INFINITY};
     float fastest = 0.0f;
-    cover(network, first, first + MSPRINGI_WIDTH, &around, &fastest);
+    const box around = cover(network, first, first + MSPRINGI_WIDTH, &fastest);
     return !look_around(floor, &around, floor->reach).is_far;
 }
 
@@ -178,10 +197,9 @@ bool mspringi_floor_is_near_block(const mspring_network *network, const mspringi
 
 // Find a box around the network that leaves it as much room again on all sides, at least for that reach.
 static mspringi_room find_room(const mspring_network *network, const mspringi_floor *floor, double reach) {
-    box all = {INFINITY, -INFINITY, INFINITY, -INFINITY};
     float fastest = 0.0f;
     double free = 0.0;
-    cover(network, 0, mspringi_used_slots(network), &all, &fastest);
+    const box all = cover(network, 0, mspringi_used_slots(network), &fastest);
     for (double way = 2.0 * reach; way < FARTHEST && look_around(floor, &all, way).is_far; way *= 2.0)
         free = way;
     const double quarter = 0.25 * free;

@@ -48,6 +48,11 @@ static inline vec choose_positive(vec selector, vec a, vec b) {
 static inline uint32_t bits_greater(vec a, vec b) {
     return (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_GT_OQ));
 }
+// Not 0 if any lane of a is outside of least to most.
+static inline uint32_t any_outside(vec a, vec least, vec most) {
+    return (uint32_t)_mm256_movemask_ps(
+        _mm256_or_ps(_mm256_cmp_ps(least, a, _CMP_GT_OQ), _mm256_cmp_ps(a, most, _CMP_GT_OQ)));
+}
 // The last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {
     const __m256i halo =

@@ -48,6 +48,10 @@ static inline vec choose_positive(vec selector, vec a, vec b) {
 static inline uint32_t bits_greater(vec a, vec b) {
     return _mm512_cmp_ps_mask(a, b, _CMP_GT_OQ);
 }
+// Not 0 if any lane of a is outside of least to most.
+static inline uint32_t any_outside(vec a, vec least, vec most) {
+    return (uint32_t)_mm512_cmp_ps_mask(least, a, _CMP_GT_OQ) | (uint32_t)_mm512_cmp_ps_mask(a, most, _CMP_GT_OQ);
+}
 // The last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {
     return _mm512_castsi512_ps(_mm512_alignr_epi32(_mm512_castps_si512(a), _mm512_castps_si512(before), 15));

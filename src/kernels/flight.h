@@ -53,7 +53,7 @@ static inline void find_flight_ends(const flying *restrict b, double *restrict x
 }
 
 // Whether any that is held would end below a straight surface; those that begin beyond it are left.
-MSPRINGI_BOUNCE_INLINE bool is_met(surfaces s, flying *restrict b) {
+static inline bool is_met(surfaces s, flying *restrict b) {
     const double *restrict all_nx = s.nx, *restrict all_ny = s.ny, *restrict all_offset = s.offset;
     double any[MSPRINGI_WIDTH];
     MSPRINGI_ROLLED
@@ -65,11 +65,11 @@ MSPRINGI_BOUNCE_INLINE bool is_met(surfaces s, flying *restrict b) {
         any[i] = end < -b->flight_slop[i] ? b->is_held[i] : 0.0;
         b->is_left[i] += distance < -b->slop[i] ? 1.0 : 0.0;
     }
-    return is_any(any);
+    return is_any(any, MSPRINGI_WIDTH);
 }
 
 // Find which particles meet a straight surface sooner than those before.
-MSPRINGI_BOUNCE_INLINE void meet_line(surfaces s, flying *restrict b) {
+static inline void meet_line(surfaces s, flying *restrict b) {
     const double *restrict all_nx = s.nx, *restrict all_ny = s.ny, *restrict all_offset = s.offset;
     const double *restrict friction = s.friction, *restrict restitution = s.restitution;
     MSPRINGI_ROLLED
@@ -112,7 +112,7 @@ static inline bool turn_flying(const mspringi_turning *how, bool is_last, flying
         b->left[i] = meets ? p.left : before.left;
         b->is_hit[i] = meets ? 1.0 : b->is_hit[i];
     }
-    return is_any(any);
+    return is_any(any, MSPRINGI_WIDTH);
 }
 
 // Turn each where it next meets a surface. Returns whether any may meet one again: what lies on the only one does
@@ -142,16 +142,16 @@ static bool fly_on(const mspringi_ground *g, const parts_below *parts, const msp
 static void leave_flown(const mspringi_ground *g, const parts_below *parts, flying *b) {
     double x[MSPRINGI_WIDTH], y[MSPRINGI_WIDTH];
     find_flight_ends(b, x, y);
-    leave_moved(g, parts, b->x, b->is_left);
-    leave_moved(g, parts, x, b->is_left);
+    leave_moved(g, parts, b->x, MSPRINGI_WIDTH, b->is_left);
+    leave_moved(g, parts, x, MSPRINGI_WIDTH, b->is_left);
 }
 
 static void begin_flown(const mspringi_ground *g, flying *b, parts_below *parts) {
     double x[MSPRINGI_WIDTH], y[MSPRINGI_WIDTH];
     find_flight_ends(b, x, y);
-    find_parts(g, x, parts->number);
-    find_lines(g, parts);
-    leave_moved(g, parts, b->x, b->is_left);
+    find_parts(g, x, MSPRINGI_WIDTH, parts->number);
+    find_lines(g, MSPRINGI_WIDTH, parts);
+    leave_moved(g, parts, b->x, MSPRINGI_WIDTH, b->is_left);
 }
 
 static void find_flight_end(const flying *restrict b, double skew, block_end *restrict end) {
@@ -169,7 +169,7 @@ static uint32_t fly_past(const mspringi_ground *g, size_t slot) {
     parts_below parts;
     block_end end;
     const mspringi_turning how = {.h = g->h, .skew = 0.5 * g->h};
-    find_held(g, slot, b.is_held);
+    find_held(g, slot, MSPRINGI_WIDTH, b.is_held);
     load_flying(g, slot, &b);
     if (g->height_count > 0)
         begin_flown(g, &b, &parts);
@@ -181,9 +181,9 @@ static uint32_t fly_past(const mspringi_ground *g, size_t slot) {
     }
     find_flight_end(&b, how.skew, &end);
     if (g->line_count + (g->height_count > 0) > 1)
-        leave_stuck(g, &parts, end.x, end.y, b.slop, b.is_left);
-    const uint32_t left = find_moved(b.is_held, b.is_hit, b.is_left, end.is_moved);
-    store_block(g, slot, &end);
+        leave_stuck(g, &parts, end.x, end.y, b.slop, MSPRINGI_WIDTH, b.is_left);
+    const uint32_t left = find_moved(b.is_held, b.is_hit, b.is_left, MSPRINGI_WIDTH, end.is_moved);
+    store_block(g, slot, MSPRINGI_WIDTH, &end);
     return left;
 }
 

@@ -49,6 +49,10 @@ static inline uint32_t bits_greater(vec a, vec b) {
     static const uint32_t bits[LANES] = {1, 2, 4, 8};
     return vaddvq_u32(vandq_u32(vcgtq_f32(a, b), vld1q_u32(bits)));
 }
+// Not 0 if any lane of a is outside of least to most.
+static inline uint32_t any_outside(vec a, vec least, vec most) {
+    return vmaxvq_u32(vorrq_u32(vcgtq_f32(least, a), vcgtq_f32(a, most)));
+}
 // The last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {
     return vextq_f32(before, a, 3);

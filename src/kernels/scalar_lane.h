@@ -52,6 +52,10 @@ static inline float largest_lane(vec a) {
 static inline uint32_t bits_greater(vec a, vec b) {
     return a > b;
 }
+// Not 0 if any lane of a is outside of least to most.
+static inline uint32_t any_outside(vec a, vec least, vec most) {
+    return (uint32_t)(least > a) | (uint32_t)(a > most);
+}
 // The last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {
     (void)a;

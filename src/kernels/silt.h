@@ -14,7 +14,7 @@ static void find_taken(const mspringi_ground *g, size_t slot, double *restrict t
     const double left = g->left, spacing = g->spacing, bottom = g->bottom;
     const double depth = g->silt_depth, rate_h = g->silt_rate * g->h;
     const uint32_t count = g->height_count;
-    find_held(g, slot, taken);
+    find_held(g, slot, MSPRINGI_WIDTH, taken);
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const double ground = bottom + mspringi_height_at(heights, count, ((double)x[i] - left) / spacing);
@@ -72,7 +72,7 @@ static void brake_along(const mspringi_ground *g, size_t slot, const double *res
 static void brake(const mspringi_ground *g, size_t slot) {
     double taken[MSPRINGI_WIDTH];
     find_taken(g, slot, taken);
-    if (!is_any(taken))
+    if (!is_any(taken, MSPRINGI_WIDTH))
         return;
     float *const before_x = g->before_vx ? g->before_vx + slot : NULL;
     float *const before_y = g->before_vy ? g->before_vy + slot : NULL;

@@ -49,6 +49,10 @@ static inline vec choose_positive(vec selector, vec a, vec b) {
 static inline uint32_t bits_greater(vec a, vec b) {
     return (uint32_t)_mm_movemask_ps(_mm_cmpgt_ps(a, b));
 }
+// Not 0 if any lane of a is outside of least to most.
+static inline uint32_t any_outside(vec a, vec least, vec most) {
+    return (uint32_t)_mm_movemask_ps(_mm_or_ps(_mm_cmpgt_ps(least, a), _mm_cmpgt_ps(a, most)));
+}
 // The last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {
     const vec halo = _mm_shuffle_ps(before, a, _MM_SHUFFLE(0, 0, 3, 3));

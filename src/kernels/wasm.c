@@ -48,6 +48,10 @@ static inline vec choose_positive(vec selector, vec a, vec b) {
 static inline uint32_t bits_greater(vec a, vec b) {
     return (uint32_t)wasm_i32x4_bitmask(wasm_f32x4_gt(a, b));
 }
+// Not 0 if any lane of a is outside of least to most.
+static inline uint32_t any_outside(vec a, vec least, vec most) {
+    return (uint32_t)wasm_i32x4_bitmask(wasm_v128_or(wasm_f32x4_gt(least, a), wasm_f32x4_gt(a, most)));
+}
 // The last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {
     return wasm_i32x4_shuffle(before, a, 3, 4, 5, 6);

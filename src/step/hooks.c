@@ -320,20 +320,35 @@ static void take_back(mspring_network *network) {
 
 /* ------------------------------------------------------------------------------------------------------ stages */
 
-// The operations of a phase's stage that the others have, too.
-#define PHASE(name, phase)                                                                                         \
-    static bool has_##name(const mspring_network *network) {                                                       \
-        return has_any(network, phase);                                                                            \
-    }                                                                                                              \
-    static bool is_##name##_quiet(const mspring_network *network, const mspringi_attempt *attempt) {               \
-        return !is_any_due(network, attempt, phase);                                                               \
-    }                                                                                                              \
-    static bool is_##name##_needed(const mspring_network *network) {                                               \
-        return is_any_needed(network, phase);                                                                      \
-    }
-PHASE(before_step, MSPRING_PHASE_BEFORE_STEP)
-PHASE(before_substep, MSPRING_PHASE_BEFORE_SUBSTEP)
-PHASE(after_substep, MSPRING_PHASE_AFTER_SUBSTEP)
+static bool has_before_step(const mspring_network *network) {
+    return has_any(network, MSPRING_PHASE_BEFORE_STEP);
+}
+static bool has_before_substep(const mspring_network *network) {
+    return has_any(network, MSPRING_PHASE_BEFORE_SUBSTEP);
+}
+static bool has_after_substep(const mspring_network *network) {
+    return has_any(network, MSPRING_PHASE_AFTER_SUBSTEP);
+}
+
+static bool is_before_step_quiet(const mspring_network *network, const mspringi_attempt *attempt) {
+    return !is_any_due(network, attempt, MSPRING_PHASE_BEFORE_STEP);
+}
+static bool is_before_substep_quiet(const mspring_network *network, const mspringi_attempt *attempt) {
+    return !is_any_due(network, attempt, MSPRING_PHASE_BEFORE_SUBSTEP);
+}
+static bool is_after_substep_quiet(const mspring_network *network, const mspringi_attempt *attempt) {
+    return !is_any_due(network, attempt, MSPRING_PHASE_AFTER_SUBSTEP);
+}
+
+static bool is_before_step_needed(const mspring_network *network) {
+    return is_any_needed(network, MSPRING_PHASE_BEFORE_STEP);
+}
+static bool is_before_substep_needed(const mspring_network *network) {
+    return is_any_needed(network, MSPRING_PHASE_BEFORE_SUBSTEP);
+}
+static bool is_after_substep_needed(const mspring_network *network) {
+    return is_any_needed(network, MSPRING_PHASE_AFTER_SUBSTEP);
+}
 
 static uint32_t free_before(const mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
     return free_substeps(network, attempt, substep, MSPRING_PHASE_BEFORE_SUBSTEP);
