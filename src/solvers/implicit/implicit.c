@@ -458,7 +458,14 @@ static void rest_sleepers(const mspring_network *network, mspringi_implicit *n) 
     n->rested = network->edits.naps;
 }
 
+// The factorisation of the direct solver has places for all.
+static void follow_slots(const mspring_network *network, mspringi_implicit *n) {
+    const size_t slots = n->is_direct ? mspringi_slot_count(network) : mspringi_used_slots(network);
+    n->touched_slots = slots > n->touched_slots ? slots : n->touched_slots;
+}
+
 void mspringi_implicit_follow(const mspring_network *network, mspringi_implicit *n) {
+    follow_slots(network, n);
     if (n->rested != network->edits.naps && network->sleep.sleeping > 0)
         rest_sleepers(network, n);
     if (!n->is_direct && mspringi_tiles_are_outdated(&n->tiles, network, &n->seen)) {

@@ -82,7 +82,8 @@ typedef struct mspringi_implicit {
     mspringi_iterate iterate;
     mspringi_edits seen;                     ///< the edits that it has followed
     struct mspringi_implicit_making *making; ///< NULL: it is complete
-    uint64_t rested; ///< edits.naps for which what sleeps is at rest in all that is kept by slot
+    size_t touched_slots; ///< behind these no particle has ever been: all that is kept by slot is 0 there
+    uint64_t rested;      ///< edits.naps for which what sleeps is at rest in all that is kept by slot
 
     mspringi_budget budget;
     mspringi_panels panels;
@@ -153,7 +154,8 @@ typedef struct mspringi_slots {
     size_t first, end;
 } mspringi_slots;
 static inline mspringi_slots mspringi_slots_of(const mspring_network *network, const mspringi_mate *mate) {
-    const size_t slots = mspringi_slot_count(network), chunks = (slots + MSPRINGI_CHUNK - 1) / MSPRINGI_CHUNK;
+    const size_t slots = mspringi_implicit_of(network)->touched_slots;
+    const size_t chunks = (slots + MSPRINGI_CHUNK - 1) / MSPRINGI_CHUNK;
     const size_t end = mspringi_share_end(mate, chunks) * MSPRINGI_CHUNK;
     return (mspringi_slots){mspringi_share_of(mate, chunks) * MSPRINGI_CHUNK, end < slots ? end : slots};
 }

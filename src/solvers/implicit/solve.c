@@ -105,7 +105,7 @@ static double advance(const substep_of *substep, mspringi_mate *mate, float alph
     const mspring_network *network = substep->network;
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_slots slots = mspringi_slots_of(network, mate);
-    const size_t chunks = (mspringi_slot_count(network) + MSPRINGI_CHUNK - 1) / MSPRINGI_CHUNK;
+    const size_t chunks = (n->touched_slots + MSPRINGI_CHUNK - 1) / MSPRINGI_CHUNK;
     const size_t first_chunk = slots.first / MSPRINGI_CHUNK;
     const size_t end_chunk = (slots.end + MSPRINGI_CHUNK - 1) / MSPRINGI_CHUNK;
     if (network->sleep.sleeping > 0)
