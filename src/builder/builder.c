@@ -172,14 +172,13 @@ mspring_result mspringi_find_rest_length(mspringi_message *message, size_t index
         if (!(length > 0.0f))
             return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                                  "spring %zu: particles %u and %u lie in the same place, so their distance is no "
-                                 "rest length: give one",
+                                 "rest length: give one, or 0 to weld them",
                                  index, (unsigned)def->a, (unsigned)def->b);
     }
-    if (!(length > 0.0f && length <= MSPRINGI_LARGEST_LENGTH))
+    if (!(length >= 0.0f && length <= MSPRINGI_LARGEST_LENGTH))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
-                             "spring %zu: rest length is %g m, it must be > 0 and at most 4e12", index,
-                             (double)length);
-    *rest_length = length;
+                             "spring %zu: rest length is %g m, it must be 0 to 4e12", index, (double)length);
+    *rest_length = mspringi_kept_length(length);
     return MSPRING_OK;
 }
 

@@ -19,6 +19,27 @@ typedef struct mspringi_particle {
 /// Of a particle that has been removed from the network whose topology is made anew: it gets no slot.
 #define MSPRINGI_PARTICLE_ABSENT (1u << 31)
 
+/// What networks keep for the rest length 0 of a weld, m: shorter than what positions tell apart, so it pulls as a
+/// spring of length 0 does. Where both ends are in the same place it counts as pressed. Such springs are as stiff
+/// in all directions in the linear system of the implicit solver.
+#define MSPRINGI_WELD 0x1p-50f
+
+/// A rest length as it is kept, and as the host reads it.
+static inline float mspringi_kept_length(float given) {
+    return given == 0.0f ? MSPRINGI_WELD : given;
+}
+static inline float mspringi_read_length(float kept) {
+    return kept == MSPRINGI_WELD ? 0.0f : kept;
+}
+
+/// The length that strains are shares of, by the rest length that is kept: of a weld they are in metres.
+static inline float mspringi_strain_length(float kept) {
+    return kept == MSPRINGI_WELD ? 1.0f : kept;
+}
+static inline float mspringi_strain_of(float length, float kept) {
+    return (length - mspringi_read_length(kept)) / mspringi_strain_length(kept);
+}
+
 typedef struct mspringi_spring {
     mspring_id a, b;
     float stiffness, damping, rest_length;

@@ -266,6 +266,7 @@ static inline bool set_in_plane(mspring_network *network, const plane *known, ms
         return true;
     }
     *had = value;
+    network->has_welds |= value == MSPRINGI_WELD;
     mspringi_changed(network, MSPRINGI_CHANGED_PLACE, place);
     return true;
 }

@@ -15,7 +15,8 @@ typedef struct mspringi_values {
 } mspringi_values;
 
 static inline float mspringi_value_of(const mspringi_values *values, uint32_t i) {
-    return mspringi_kept_value(values->first[i * values->stride]);
+    const float value = values->first[i * values->stride];
+    return values->property == MSPRING_REST_LENGTH ? mspringi_kept_length(value) : mspringi_kept_value(value);
 }
 
 /// Set them of particles (particles.c) or springs (springs.c). What has its value already is left alone.

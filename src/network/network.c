@@ -184,7 +184,8 @@ static void fill_springs(mspring_network *network, const mspring_builder *builde
         network->topology_fingerprint = mspringi_mix(network->topology_fingerprint, t->slot_of_particle[p]);
     for (mspring_id s = 0; s < t->spring_count; ++s) {
         const mspringi_spring *spring = &builder->springs[s];
-        network->shortest = fmin(network->shortest, (double)spring->rest_length);
+        if (spring->rest_length != MSPRINGI_WELD)
+            network->shortest = fmin(network->shortest, (double)spring->rest_length);
         const mspringi_place place = t->place_of_spring[s];
         const bool relative = spring->flags & MSPRING_SPRING_RELATIVE;
         mspringi_place_set_rest_length(network, place, spring->rest_length);

@@ -81,7 +81,7 @@ static inline void compute_word(const mspring_network *network, size_t word, con
             second[lane] = dy / divisor * sign + 0.0f;
         } else {
             first[lane] = length;
-            second[lane] = (length - rest_lengths[lane]) / rest_lengths[lane];
+            second[lane] = mspringi_strain_of(length, rest_lengths[lane]);
         }
     }
     if (what == DIRECTIONS)

@@ -23,7 +23,7 @@ static inline float low_of(float coordinate, float low, bool may_be_stale) {
 // Raise the largest strain of each lane to that of sixteen places of a lattice: as mspringi_measure() has them, but
 // in a loop for vectors.
 MSPRINGI_ALWAYS_INLINE void raise_lanes(const mspring_network *network, mspringi_place first, bool may_be_stale,
-                                  float *restrict most) {
+                                        bool has_welds, float *restrict most) {
     const mspringi_state s = network->state;
     const float *rest_lengths = mspringi_rests_at(&network->rests, first);
     const uint32_t live = network->live[first / MSPRINGI_WIDTH];
@@ -36,7 +36,9 @@ MSPRINGI_ALWAYS_INLINE void raise_lanes(const mspring_network *network, mspringi
                          (low_of(s.x[b], s.low_x[b], may_be_stale) - low_of(s.x[a], s.low_x[a], may_be_stale));
         const float dy = (s.y[b] - s.y[a]) +
                          (low_of(s.y[b], s.low_y[b], may_be_stale) - low_of(s.y[a], s.low_y[a], may_be_stale));
-        strains[lane] = fabsf((sqrtf(dx * dx + dy * dy) - rest_lengths[lane]) / rest_lengths[lane]);
+        const float length = sqrtf(dx * dx + dy * dy), rest_length = rest_lengths[lane];
+        strains[lane] =
+            fabsf(has_welds ? mspringi_strain_of(length, rest_length) : (length - rest_length) / rest_length);
     }
     for (uint32_t lane = 0; live != UINT16_MAX && lane < MSPRINGI_WIDTH; ++lane)
         if (!(live >> lane & 1))
@@ -48,10 +50,12 @@ MSPRINGI_ALWAYS_INLINE void raise_lanes(const mspring_network *network, mspringi
 static float largest_in(const mspring_network *network, mspringi_place first, mspringi_place end) {
     float most[MSPRINGI_WIDTH] = {0.0f}, all = 0.0f;
     for (; first < end; first += MSPRINGI_WIDTH)
-        if (network->is_open)
-            raise_lanes(network, first, true, most);
+        if (network->has_welds)
+            raise_lanes(network, first, network->is_open, true, most);
+        else if (network->is_open)
+            raise_lanes(network, first, true, false, most);
         else
-            raise_lanes(network, first, false, most);
+            raise_lanes(network, first, false, false, most);
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
         all = most[lane] > all ? most[lane] : all;
     return all;

@@ -31,9 +31,10 @@ float mspringi_place_strain(const mspring_network *network, mspringi_place place
     if (!mspringi_place_is_live(network, place))
         return 0.0f;
     const mspringi_spring_values r = mspringi_place_get(network, place);
-    const double rest_length = (double)r.rest_length;
+    const double rest_length = (double)mspringi_read_length(r.rest_length);
     double rate;
-    return (float)((spring_length(network, &r, &rate) - rest_length) / rest_length);
+    return (float)((spring_length(network, &r, &rate) - rest_length) /
+                   (double)mspringi_strain_length(r.rest_length));
 }
 
 float mspringi_spring_strain(const mspring_network *network, mspring_id spring) {
@@ -153,7 +154,7 @@ mspring_result mspring_network_get_spring(const mspring_network *network, msprin
         .b = t->particle_of_slot[ends.b],
         .stiffness = r.stiffness,
         .damping = r.damping,
-        .rest_length = r.rest_length,
+        .rest_length = mspringi_read_length(r.rest_length),
         .length = mspringi_place_length(network, place),
         .strain = mspringi_place_strain(network, place),
         .force = mspringi_spring_force(network, spring),

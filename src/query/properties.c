@@ -46,8 +46,8 @@ static inline void measure(const mspring_network *network, mspring_property prop
 
 // Loops of their own for ranges at the usual stride, and for low words that are of what is there: nobody can have
 // written to it.
-void mspringi_measure(const mspring_network *network, mspring_property property, const mspringi_selection *at,
-                      float *out, size_t stride) {
+static void measure_all(const mspring_network *network, mspring_property property, const mspringi_selection *at,
+                        float *out, size_t stride) {
     const mspringi_place *all = network->topology.place_of_spring, *places = at->list ? all : all + at->first;
     if (network->is_open)
         measure(network, property, places, at->list, at->count, true, out, stride);
@@ -57,6 +57,25 @@ void mspringi_measure(const mspring_network *network, mspring_property property,
         measure(network, property, places, NULL, at->count, false, out, 1);
     else
         measure(network, property, places, NULL, at->count, false, out, stride);
+}
+
+// The strain of a weld in a lattice is its length.
+static void measure_welds(const mspring_network *network, const mspringi_selection *at, float *out, size_t stride) {
+    const mspringi_topology *t = &network->topology;
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const mspringi_selection one = {.first = mspringi_selected(at, i), .count = 1};
+        const mspringi_place place = t->place_of_spring[one.first];
+        if (place < t->lattice_places && *mspringi_rests_at(&network->rests, place) == MSPRINGI_WELD &&
+            mspringi_place_is_live(network, place))
+            measure_all(network, MSPRING_LENGTH, &one, out + i * stride, 1);
+    }
+}
+
+void mspringi_measure(const mspring_network *network, mspring_property property, const mspringi_selection *at,
+                      float *out, size_t stride) {
+    measure_all(network, property, at, out, stride);
+    if (network->has_welds && property == MSPRING_STRAIN)
+        measure_welds(network, at, out, stride);
 }
 
 /* ------------------------------------------------------------------------------------------------------ reading */
@@ -72,6 +91,8 @@ static float value_of(const mspring_network *network, mspring_property property,
         return mspringi_place_get(network, mspringi_place_of(&network->topology, id)).stiffness;
     case MSPRING_ACTIVE_DAMPING:
         return mspringi_place_get(network, mspringi_place_of(&network->topology, id)).damping;
+    case MSPRING_REST_LENGTH:
+        return mspringi_read_length(mspringi_spring_property(network, property, id));
     default:
         return mspringi_read_value(mspringi_spring_property(network, property, id));
     }

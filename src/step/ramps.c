@@ -27,6 +27,8 @@ mspring_result mspringi_ramps_reserve(mspring_network *network, size_t count) {
 void mspringi_ramp_begin(mspring_network *network, mspring_id spring, double seconds) {
     const mspringi_state *s = &network->state;
     const mspringi_spring_values values = mspringi_spring_get(network, spring);
+    if (values.rest_length == MSPRINGI_WELD)
+        return; // on its way it would be strained by its rest length, and then by the metre
     const double dx = (double)s->x[values.tip] - (double)s->x[values.base];
     const double dy = (double)s->y[values.tip] - (double)s->y[values.base];
     const double length = sqrt(dx * dx + dy * dy), shortest = SHORTEST_START * (double)values.rest_length;

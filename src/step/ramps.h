@@ -16,7 +16,7 @@
 /// Make room for count ramps more.
 mspring_result mspringi_ramps_reserve(mspring_network *network, size_t count);
 
-/// Begin a ramp of a live spring from its present length; after mspringi_ramps_reserve().
+/// Begin a ramp of a live spring from its present length; after mspringi_ramps_reserve(). A weld has none.
 void mspringi_ramp_begin(mspring_network *network, mspring_id spring, double seconds);
 
 bool mspringi_has_ramp(const mspring_network *network, mspring_id spring);

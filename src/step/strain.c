@@ -45,7 +45,7 @@ static uint32_t leftover_strain(const mspring_network *network, mspringi_strain_
                 continue;
             const mspringi_spring_values values = mspringi_place_get(network, place);
             if (has_bit(network->live, place) &&
-                stretch_of(network, &values) > least_of(strain)[place] * values.rest_length)
+                stretch_of(network, &values) > least_of(strain)[place] * mspringi_strain_length(values.rest_length))
                 bits |= 1u << (i - first);
         }
         if (bits)
@@ -71,10 +71,10 @@ static bool next_swept(const mspring_network *network, uint32_t base, uint32_t c
 }
 
 // The stretch below which a stressed spring relaxes.
-static float relaxes_at(const mspring_network *network, mspringi_place place, float rest_length, float stress_at) {
+static float relaxes_at(const mspring_network *network, mspringi_place place, float whole, float stress_at) {
     const mspringi_strain *strain = &network->strain;
     const float own = strain->relax_strain ? strain->relax_strain[place] : MSPRING_RELAX_STRAIN_DEFAULT;
-    return own >= 0.0f ? fminf(own * rest_length, stress_at) : stress_at * network->settings.relax_fraction;
+    return own >= 0.0f ? fminf(own * whole, stress_at) : stress_at * network->settings.relax_fraction;
 }
 
 // Break, stress or relax the spring in this place, if it is time for that.
@@ -82,15 +82,15 @@ static void look_at(mspring_network *network, mspringi_place place) {
     const mspringi_topology *t = &network->topology;
     mspringi_strain *strain = &network->strain;
     const mspringi_spring_values values = mspringi_place_get(network, place);
-    const float stretch = stretch_of(network, &values);
-    const float stress_at = strain->stress_strain ? strain->stress_strain[place] * values.rest_length : INFINITY;
+    const float stretch = stretch_of(network, &values), whole = mspringi_strain_length(values.rest_length);
+    const float stress_at = strain->stress_strain ? strain->stress_strain[place] * whole : INFINITY;
     const bool is_stressed = has_bit(strain->stressed, place);
     mspring_event event = {.other = MSPRING_NONE};
-    if (stretch > strain->break_strain[place] * values.rest_length)
+    if (stretch > strain->break_strain[place] * whole)
         event.kind = MSPRING_EVENT_BROKEN;
     else if (!is_stressed && stretch > stress_at)
         event.kind = MSPRING_EVENT_STRESSED;
-    else if (is_stressed && relaxes_at(network, place, values.rest_length, stress_at) > stretch)
+    else if (is_stressed && relaxes_at(network, place, whole, stress_at) > stretch)
         event.kind = MSPRING_EVENT_RELAXED;
     else
         return;

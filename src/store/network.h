@@ -379,7 +379,8 @@ struct mspring_network {
     struct mspringi_pairs *pairs;   ///< contact between bodies; NULL: there is none
     mspringi_guard guard;
     float *looks;    ///< [5][slots] weights of the guard's bound, and room; NULL if it never looks at the border
-    double shortest; ///< smallest rest length at first, m
+    double shortest; ///< smallest rest length at first, m, but for welds
+    bool has_welds;  ///< there has been one
 
     mspringi_edits edits;
     mspringi_ramps ramps;

@@ -9,7 +9,7 @@ static const mspringi_property list[] = {
     [MSPRING_INVERSE_MASS_SCALE] = {"scale of inverse mass", "", "0 or 1e-6 to 1", MSPRINGI_PARTICLES, true},
     [MSPRING_STIFFNESS] = {"stiffness", "", "0 to 1e30", MSPRINGI_SPRINGS, true},
     [MSPRING_DAMPING] = {"damping", "", "0 to 1e30", MSPRINGI_SPRINGS, true},
-    [MSPRING_REST_LENGTH] = {"rest length", " m", "> 0 and at most 4e12", MSPRINGI_SPRINGS, true},
+    [MSPRING_REST_LENGTH] = {"rest length", " m", "0 to 4e12", MSPRINGI_SPRINGS, true},
     [MSPRING_BREAK_STRAIN] = {"break strain", "", "> 0", MSPRINGI_SPRINGS, true},
     [MSPRING_STRESS_STRAIN] = {"stress strain", "", "> 0", MSPRINGI_SPRINGS, true},
     [MSPRING_RELAX_STRAIN] = {"relax strain", "", ">= 0 or MSPRING_RELAX_STRAIN_DEFAULT", MSPRINGI_SPRINGS, true},
@@ -38,7 +38,7 @@ const mspringi_property *mspringi_property_of(mspring_property property) {
                 others |= !(test(values[i * stride]));                                                             \
         return others == 0;                                                                                        \
     }
-#define IS_REST_LENGTH(value) mspringi_is_spring_value(MSPRINGI_REST_LENGTH, value)
+#define IS_REST_LENGTH(value) ((value >= 0.0f) & (value <= 4e12f))
 #define IS_COEFFICIENT(value) mspringi_is_spring_value(MSPRINGI_STIFFNESS, value)
 
 bool mspringi_are_allowed(mspring_property property, const float *values, uint32_t count, size_t stride) {

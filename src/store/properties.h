@@ -22,7 +22,7 @@ static inline bool mspringi_is_inverse_mass_scale(float scale) {
     return (scale == 0.0f) | ((scale >= MSPRINGI_SMALLEST_SCALE) & (scale <= 1.0f));
 }
 
-/// Whether a spring may have this stiffness, damping or rest length.
+/// Whether a network may keep this stiffness, damping or rest length.
 static inline bool mspringi_is_spring_value(mspringi_part part, float value) {
     return part == MSPRINGI_REST_LENGTH ? (value > 0.0f) & (value <= 4e12f) : (value >= 0.0f) & (value <= 1e30f);
 }

@@ -105,6 +105,7 @@ void mspringi_place_set_rest_length(mspring_network *network, mspringi_place pla
                     *records.ends[0].rest_length == rest_length);
     for (int i = 0; i < records.count; ++i)
         *records.ends[i].rest_length = rest_length;
+    network->has_welds |= rest_length == MSPRINGI_WELD;
     mspringi_changed(network, MSPRINGI_CHANGED_PLACE, place);
 }
 

@@ -193,7 +193,7 @@ static spring_case *bad_springs(size_t *count) {
     BAD(stiffness, 1.1e30f, MSPRING_ERROR_ARGUMENT, "stiffness");
     BAD(damping, -FLT_MIN, MSPRING_ERROR_ARGUMENT, "damping");
     BAD(damping, FLT_MAX, MSPRING_ERROR_ARGUMENT, "damping");
-    BAD(rest_length, 0, MSPRING_ERROR_ARGUMENT, "rest length");
+    BAD(rest_length, -FLT_MIN, MSPRING_ERROR_ARGUMENT, "rest length");
     BAD(rest_length, -0.5f, MSPRING_ERROR_ARGUMENT, "rest length");
     BAD(rest_length, -2, MSPRING_ERROR_ARGUMENT, "rest length");
     BAD(rest_length, 4.1e12f, MSPRING_ERROR_ARGUMENT, "rest length");

@@ -320,7 +320,7 @@ static void what_is_refused_changes_nothing(void **state) {
     const double far[] = {0, 1e13, 0}, near[] = {0, 0, 0};
     const float good[] = {1, 1, 1};
     const float bad_masses[] = {0, -1, 1e31f, NAN, INFINITY}, bad_scales[] = {-1, 1e-7f, 1.5f, NAN};
-    const float bad_values[] = {-1, 1e31f, NAN, INFINITY}, bad_lengths[] = {0, -1, 5e12f, NAN, INFINITY};
+    const float bad_values[] = {-1, 1e31f, NAN, INFINITY}, bad_lengths[] = {-1e-30f, -1, 5e12f, NAN, INFINITY};
     for (size_t i = 0; i < COUNT_OF(bad_masses); i++) {
         const float mass[] = {2, bad_masses[i], 2};
         check_error(mspring_network_set(network, MSPRING_MASS, 5, 3, mass, 1), MSPRING_ERROR_ARGUMENT);

@@ -321,7 +321,7 @@ static void wrong_springs_are_refused_and_change_nothing(void **state) {
     check_refused(network, defs, 3, MSPRING_ERROR_ARGUMENT, "MSPRING_NETWORK_RESERVE_RELATIVE");
     defs[2].flags = 0, defs[2].stiffness = NAN;
     check_refused(network, defs, 3, MSPRING_ERROR_ARGUMENT, "stiffness");
-    defs[2].stiffness = 1, defs[2].rest_length = 0;
+    defs[2].stiffness = 1, defs[2].rest_length = -2;
     check_refused(network, defs, 3, MSPRING_ERROR_ARGUMENT, "rest length");
     defs[2].rest_length = 1;
     check_ok(mspring_network_add_springs(network, defs, 3, ids));

@@ -49,7 +49,7 @@ static void fill_springs(mspringi_statics *statics, const mspring_network *netwo
         const uint32_t a = s->a[i] = network->topology.particle_of_slot[values.base];
         const uint32_t b = s->b[i] = network->topology.particle_of_slot[values.tip];
         s->stiffness[i] = (double)values.stiffness;
-        s->rest_length[i] = (double)values.rest_length;
+        s->rest_length[i] = (double)mspringi_read_length(values.rest_length);
         s->x[i] = statics->start.x[b] - statics->start.x[a];
         s->y[i] = statics->start.y[b] - statics->start.y[a];
     }

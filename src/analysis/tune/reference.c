@@ -81,7 +81,7 @@ static void fill_springs(mspringi_reference *r, const mspring_network *network) 
             .b = particle[values.tip],
             .stiffness = values.stiffness,
             .damping = values.damping,
-            .rest_length = values.rest_length,
+            .rest_length = mspringi_read_length(values.rest_length),
         };
     }
 }

@@ -118,7 +118,9 @@ static leftover compute_leftover(const mspringi_system *s, uint32_t base, uint32
     const double extension = length - (double)values->rest_length;
     const double stiffness = s->force_scale * (double)values->stiffness;
     const double damping = s->force_scale * (double)values->damping;
-    const double relative = extension * inverse, tensed = mspringi_geometric_fraction(relative);
+    // A weld of no length is as stiff in all directions.
+    const double relative = length > 0.0 || values->rest_length != MSPRINGI_WELD ? extension * inverse : 1.0;
+    const double tensed = mspringi_geometric_fraction(relative);
     const double dvx = (double)s->vx[tip] - (double)s->vx[base], dvy = (double)s->vy[tip] - (double)s->vy[base];
     const double force = MSPRINGI_LAW_FORCE(MSPRINGI_TIMES, stiffness, extension) +
                          MSPRINGI_LAW_DAMPING_FORCE(MSPRINGI_TIMES, damping, dvx * nx + dvy * ny);

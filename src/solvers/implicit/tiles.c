@@ -430,8 +430,9 @@ static mspring_result add_lengths(mspringi_tiling *m, uint32_t first, uint32_t e
     for (mspring_id s = first; s < end; ++s) {
         if (!mspringi_spring_exists(m->network, s))
             continue;
-        m->length += (double)mspringi_spring_get(m->network, s).rest_length;
-        m->counted++;
+        const float rest_length = mspringi_spring_get(m->network, s).rest_length;
+        m->length += (double)mspringi_read_length(rest_length);
+        m->counted += rest_length != MSPRINGI_WELD;
     }
     return MSPRING_OK;
 }

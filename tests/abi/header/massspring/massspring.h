@@ -256,7 +256,7 @@ typedef struct mspring_spring_def {
     mspring_id a, b;     ///< the particles that it joins, not the same; default MSPRING_NONE
     float stiffness;     ///< N/m, or a fraction if relative, 0 to 1e30; default 0
     float damping;       ///< N s/m, or a fraction, or a ratio, 0 to 1e30; default 0
-    float rest_length;   ///< m, > 0 and at most 4e12; default MSPRING_REST_LENGTH_DISTANCE
+    float rest_length;   ///< m, 0 (a weld) to 4e12; default MSPRING_REST_LENGTH_DISTANCE
     float break_strain;  ///< as MSPRING_BREAK_STRAIN; default MSPRING_NEVER
     float stress_strain; ///< as MSPRING_STRESS_STRAIN; default MSPRING_NEVER
     float relax_strain;  ///< as MSPRING_RELAX_STRAIN; default MSPRING_RELAX_STRAIN_DEFAULT
@@ -814,8 +814,8 @@ typedef enum mspring_property {
     /// Nominal damping of a spring, N s/m, 0 to 1e30; of a relative spring its fraction. Values above 0 need a spring
     /// that was made with damping, or MSPRING_NETWORK_RESERVE_DAMPING. Allocates as MSPRING_STIFFNESS.
     MSPRING_DAMPING = 3,
-    /// Rest length of a spring, m, > 0 and at most 4e12, for muscles and winches. Writing it ends a ramp. Allocates
-    /// for a spring of a lattice.
+    /// Rest length of a spring, m, 0 to 4e12, for muscles and winches; 0 is a weld: its ends rest in the same place.
+    /// Writing it ends a ramp. Allocates for a spring of a lattice.
     MSPRING_REST_LENGTH = 4,
     /// Break strain of a spring, > 0; default MSPRING_NEVER. If the size of a spring's strain exceeds it at the end
     /// of a step, the spring breaks. Substeps too long to follow a blow change the strains. Allocates.
@@ -827,7 +827,7 @@ typedef enum mspring_property {
     /// below its relax strain and its stress strain. 0: it stays stressed. MSPRING_RELAX_STRAIN_DEFAULT, the default:
     /// relax_fraction of the stress strain. Allocates.
     MSPRING_RELAX_STRAIN = 7,
-    MSPRING_STRAIN = 8, ///< of a spring: (length - rest_length) / rest_length, 0 if it is broken; read only
+    MSPRING_STRAIN = 8, ///< (length - rest_length) / rest_length; of a weld length / 1 m; 0 if broken; read only
     MSPRING_LENGTH = 9, ///< of a spring, m; read only
     MSPRING_FORCE = 10, ///< along a spring, N, damper included; > 0 pulls its ends together; read only
     /// Stiffness in force of a spring, N/m; of a relative spring that of the last step; 0 if it is broken. Read only.
@@ -899,7 +899,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_break_
 
 /// Restore broken springs to their nominal stiffness and damping.
 /// With a ramp, the rest length goes evenly from the present length to its own, so that the spring does not kick its
-/// ends.
+/// ends. A weld (rest length 0) has no ramp.
 /// @param springs       [count]
 /// @param ramp_seconds  simulated time, 0 to 1e6; 0: no ramp
 /// @threads exclusive   @allocates for ramps and rest lengths; if a compacted network must be expanded
