@@ -286,23 +286,33 @@ static void activate(mspringi_active *active, mspring_id p) {
     active->particles[active->count++] = p;
 }
 
-// Those of the hot pairs, and their neighbours on the outline: a corner looks at the edges beside it.
-static void activate_all(mspringi_pairs *pairs) {
+// Nodes below an id, of hot pairs, and their neighbours on the outline: a corner looks at the edges beside it.
+static void activate_below(mspringi_pairs *pairs, mspring_id end) {
     mspringi_active *active = &pairs->active;
     const mspringi_outline *o = &pairs->outline;
-    for (uint32_t i = 0; i < active->count; ++i)
-        active->number[active->particles[i]] = MSPRING_NONE;
-    active->count = 0;
     for (uint32_t i = 0; i < pairs->hot_count; ++i) {
         const mspringi_pair *pair = &pairs->list[pairs->hot[i]];
         const mspring_id ends[] = {o->a[pair->edge], o->b[pair->edge]};
-        activate(active, pair->point);
+        if (pair->point < end)
+            activate(active, pair->point);
         for (int k = 0; k < 2; ++k)
-            for (uint32_t j = o->first[ends[k]]; j < o->first[ends[k] + 1]; ++j) {
+            for (uint32_t j = o->first[ends[k]]; j < o->first[ends[k] + 1] && ends[k] < end; ++j) {
                 activate(active, o->a[o->at[j]]);
                 activate(active, o->b[o->at[j]]);
             }
     }
+}
+
+// Edges join particles, or points of one collider.
+static void activate_all(mspringi_pairs *pairs) {
+    mspringi_active *active = &pairs->active;
+    for (uint32_t i = 0; i < active->count; ++i)
+        active->number[active->particles[i]] = MSPRING_NONE;
+    active->count = 0;
+    activate_below(pairs, pairs->particles);
+    active->own = active->count;
+    if (pairs->colliders.count > 0)
+        activate_below(pairs, MSPRING_NONE);
 }
 
 // How far a look must answer for.

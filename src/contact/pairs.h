@@ -65,7 +65,7 @@ typedef struct mspringi_active {
     double *from_vx, *from_vy; ///< before the substep's forces
     double *vx, *vy, *weight;  ///< inverse mass, 1/kg
     double *way_x, *way_y;     ///< what contact adds to the move
-    uint32_t count;
+    uint32_t own, count;       ///< particles, and with the points of colliders, which are behind these
 } mspringi_active;
 
 /// A point that touches an edge, or may do so in this piece of a substep.

@@ -11,6 +11,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/cpu.h"
 #include "contact/pairs.h"
 #include "store/network.h"
 
@@ -49,11 +50,7 @@ void mspringi_rows_note(const mspring_network *network, mspringi_pairs *pairs) {
     const mspringi_active *k = &pairs->active;
     const mspringi_state *s = &network->state;
     const float *free_mass = mspringi_free_mass(network);
-    for (uint32_t i = 0; i < k->count; ++i) {
-        if (mspringi_is_of_collider(pairs, k->particles[i])) {
-            note_point(pairs, i);
-            continue;
-        }
+    for (uint32_t i = 0; i < k->own; ++i) {
         const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
         k->x[i] = mspringi_x_of(s, slot);
         k->y[i] = mspringi_y_of(s, slot);
@@ -61,13 +58,12 @@ void mspringi_rows_note(const mspring_network *network, mspringi_pairs *pairs) {
         k->from_vy[i] = (double)s->vy[slot];
         k->weight[i] = (double)free_mass[slot];
     }
+    for (uint32_t i = k->own; i < k->count; ++i)
+        note_point(pairs, i);
 }
 
-static void begin(const mspring_network *network, const mspringi_pairs *pairs) {
-    const mspringi_active *k = &pairs->active;
-    for (uint32_t i = 0; i < k->count; ++i) {
-        if (mspringi_is_of_collider(pairs, k->particles[i]))
-            continue;
+static void begin(const mspring_network *network, const mspringi_active *k) {
+    for (uint32_t i = 0; i < k->own; ++i) {
         const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
         k->vx[i] = (double)network->state.vx[slot];
         k->vy[i] = (double)network->state.vy[slot];
@@ -126,7 +122,8 @@ static void add_friction(const mspringi_pairs *pairs, mspringi_touch *t) {
         return;
     if (length > 0.0) {
         ex /= length, ey /= length;
-        turn = (t->distance - mspringi_collider_grip(pairs, t)) / length;
+        turn =
+            (t->collider == MSPRING_NONE ? t->distance : t->distance - mspringi_collider_grip(pairs, t)) / length;
     }
     t->ax = -t->share_a * tx - turn * ey;
     t->ay = -t->share_a * ty + turn * ex;
@@ -158,20 +155,12 @@ static double square_of_speed(const mspringi_active *k, uint32_t p, uint32_t q) 
     return x * x + y * y;
 }
 
-// What touches, and how: the contact's, or the collider's.
-typedef struct touch_kind {
-    double thickness, friction, restitution;
-    uint32_t collider;
-} touch_kind;
-
-static touch_kind kind_of(const mspringi_pairs *pairs, const mspringi_pair *pair) {
+// The collider that one of a pair is of; NULL if neither is.
+static const mspringi_collider *collider_of_pair(const mspringi_pairs *pairs, const mspringi_pair *pair) {
     const mspring_id a = pairs->outline.a[pair->edge];
-    const bool is_point = mspringi_is_of_collider(pairs, pair->point);
-    if (!is_point && !mspringi_is_of_collider(pairs, a))
-        return (touch_kind){pairs->thickness, pairs->friction, pairs->restitution, MSPRING_NONE};
-    const uint32_t owner = pairs->colliders.owner[(is_point ? pair->point : a) - pairs->particles];
-    const mspringi_collider *c = &pairs->colliders.list[owner];
-    return (touch_kind){pairs->thickness + c->radius, c->friction, c->restitution, owner};
+    return mspringi_is_of_collider(pairs, pair->point) ? mspringi_collider_of(pairs, pair->point)
+           : mspringi_is_of_collider(pairs, a)         ? mspringi_collider_of(pairs, a)
+                                                       : NULL;
 }
 
 // The resistance of a row of a point and its nearest place on an edge, 1/kg.
@@ -191,8 +180,9 @@ static void make_row(const mspring_network *network, mspringi_pairs *pairs, mspr
     const mspringi_nearest at = mspringi_nearest_on(k->x[p], k->y[p], k->x[a], k->y[a], k->x[b], k->y[b]);
     const double square = at.x * at.x + at.y * at.y, of_a = square_of_speed(k, p, a),
                  of_b = square_of_speed(k, p, b), speed = sqrt(of_a > of_b ? of_a : of_b);
-    const touch_kind s = kind_of(pairs, pair);
-    const double own = s.thickness + 2.0 * h * speed, reach = given > 0.0 ? s.thickness + 2.0 * h * given : own;
+    const mspringi_collider *c = pairs->colliders.count > 0 ? collider_of_pair(pairs, pair) : NULL;
+    const double thickness = c ? pairs->thickness + c->radius : pairs->thickness;
+    const double own = thickness + 2.0 * h * speed, reach = given > 0.0 ? thickness + 2.0 * h * given : own;
     if (!(square < reach * reach) || square == 0.0 || (given > 0.0 && square < own * own))
         return;
     if (a != b && (at.share <= 0.0 || at.share >= 1.0) &&
@@ -207,15 +197,15 @@ static void make_row(const mspring_network *network, mspringi_pairs *pairs, mspr
                           .ny = at.y / distance,
                           .share_a = 1.0 - at.share,
                           .share_b = at.share,
-                          .gap = distance - s.thickness,
+                          .gap = distance - thickness,
                           .distance = distance,
-                          .collider = s.collider};
+                          .collider = c ? (uint32_t)(c - pairs->colliders.list) : MSPRING_NONE};
     const double resistance = resistance_of(k, t);
     if (!(resistance > 0.0))
         return;
     t->mass = 1.0 / resistance;
-    t->target = wanted(pairs, t, s.restitution, h);
-    if (s.friction > 0.0)
+    t->target = wanted(pairs, t, c ? c->restitution : pairs->restitution, h);
+    if ((c ? c->friction : pairs->friction) > 0.0)
         add_friction(pairs, t);
     *fastest = speed > *fastest ? speed : *fastest;
     ++pairs->touch_count;
@@ -244,7 +234,7 @@ static double make_rows(const mspring_network *network, mspringi_pairs *pairs, d
 
 /* ----------------------------------------------------------------------------------------------------- impulses */
 
-static void push_apart(const mspringi_active *k, mspringi_touch *t, double h) {
+MSPRINGI_ALWAYS_INLINE void push_apart(const mspringi_active *k, mspringi_touch *t, double h) {
     const double speed = speed_across(t, k->vx, k->vy);
     if (t->across == 0.0 && t->gap > 0.0 && t->gap + h * speed >= 0.0)
         return;
@@ -259,7 +249,7 @@ static void push_apart(const mspringi_active *k, mspringi_touch *t, double h) {
     k->vy[t->b] -= t->share_b * k->weight[t->b] * y;
 }
 
-static void rub(const mspringi_pairs *pairs, mspringi_touch *t) {
+MSPRINGI_ALWAYS_INLINE void rub(const mspringi_pairs *pairs, mspringi_touch *t) {
     const mspringi_active *k = &pairs->active;
     if (t->slide_mass == 0.0 || (t->across == 0.0 && t->along == 0.0))
         return;
@@ -289,19 +279,23 @@ static bool gives_way(const mspringi_pairs *pairs, const mspringi_touch *t, doub
     return end < begin - GIVEN_SHARE * pairs->thickness;
 }
 
-// Sweep over rows that give way, of colliders or of all, until none does.
-static void sweep_given(const mspringi_pairs *pairs, double h, bool of_colliders, uint32_t most) {
-    bool again = true;
-    for (uint32_t sweep = 0; again && sweep < most; ++sweep) {
-        again = false;
-        for (uint32_t i = 0; i < pairs->touch_count; ++i) {
-            mspringi_touch *t = &pairs->touches[i];
-            if ((of_colliders && t->collider == MSPRING_NONE) || !gives_way(pairs, t, h))
-                continue;
-            push_apart(&pairs->active, t, h);
-            again = true;
-        }
+/// Rows of a sweep.
+typedef enum swept { SWEPT_ALL, SWEPT_GIVEN, SWEPT_GIVEN_OF_COLLIDERS } swept;
+
+// Returns whether there were any.
+MSPRINGI_ALWAYS_INLINE bool sweep_rows(const mspringi_pairs *pairs, double h, swept rows) {
+    bool any = false;
+    for (uint32_t i = 0; i < pairs->touch_count; ++i) {
+        mspringi_touch *t = &pairs->touches[i];
+        if (rows != SWEPT_ALL &&
+            ((rows == SWEPT_GIVEN_OF_COLLIDERS && t->collider == MSPRING_NONE) || !gives_way(pairs, t, h)))
+            continue;
+        push_apart(&pairs->active, t, h);
+        if (rows == SWEPT_ALL)
+            rub(pairs, t);
+        any = true;
     }
+    return any;
 }
 
 // A collider presses a light body against a heavy one as hard as it takes, which the sweeps may not have come to.
@@ -312,16 +306,15 @@ static void press(const mspringi_pairs *pairs, double h) {
         is_touched |= pairs->touches[i].collider != MSPRING_NONE && pairs->touches[i].across > 0.0;
     if (!is_touched)
         return;
-    sweep_given(pairs, h, false, MOST_PRESSING_SWEEPS);
-    sweep_given(pairs, h, true, MOST_COLLIDER_SWEEPS);
+    for (uint32_t n = 0; n < MOST_PRESSING_SWEEPS && sweep_rows(pairs, h, SWEPT_GIVEN); ++n) {
+    }
+    for (uint32_t n = 0; n < MOST_COLLIDER_SWEEPS && sweep_rows(pairs, h, SWEPT_GIVEN_OF_COLLIDERS); ++n) {
+    }
 }
 
 static void solve(const mspringi_pairs *pairs, double h) {
     for (uint32_t sweep = 0; sweep < pairs->def.sweeps; ++sweep)
-        for (uint32_t i = 0; i < pairs->touch_count; ++i) {
-            push_apart(&pairs->active, &pairs->touches[i], h);
-            rub(pairs, &pairs->touches[i]);
-        }
+        (void)sweep_rows(pairs, h, SWEPT_ALL);
     press(pairs, h);
 }
 
@@ -340,27 +333,21 @@ static void count_touching(mspringi_pairs *pairs) {
 }
 
 // Go along for a piece of h seconds. What contact adds to the move is counted apart.
-static void advance(const mspring_network *network, const mspringi_pairs *pairs, double h, bool is_last) {
-    const mspringi_active *k = &pairs->active;
-    for (uint32_t i = 0; i < k->count; ++i) {
-        if (!mspringi_is_of_collider(pairs, k->particles[i])) {
-            const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
-            k->way_x[i] += h * (k->vx[i] - (double)network->state.vx[slot]);
-            k->way_y[i] += h * (k->vy[i] - (double)network->state.vy[slot]);
-        }
-        if (is_last)
-            continue;
+static void advance(const mspring_network *network, const mspringi_active *k, double h, bool is_last) {
+    for (uint32_t i = 0; i < k->own; ++i) {
+        const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
+        k->way_x[i] += h * (k->vx[i] - (double)network->state.vx[slot]);
+        k->way_y[i] += h * (k->vy[i] - (double)network->state.vy[slot]);
+    }
+    for (uint32_t i = 0; i < k->count && !is_last; ++i) {
         k->x[i] += h * k->vx[i];
         k->y[i] += h * k->vy[i];
     }
 }
 
-static void put_back(const mspring_network *network, const mspringi_pairs *pairs) {
-    const mspringi_active *k = &pairs->active;
+static void put_back(const mspring_network *network, const mspringi_active *k) {
     const mspringi_state *s = &network->state;
-    for (uint32_t i = 0; i < k->count; ++i) {
-        if (mspringi_is_of_collider(pairs, k->particles[i]))
-            continue;
+    for (uint32_t i = 0; i < k->own; ++i) {
         const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
         if (k->way_x[i] == 0.0 && k->way_y[i] == 0.0 && k->vx[i] == (double)s->vx[slot] &&
             k->vy[i] == (double)s->vy[slot])
@@ -373,7 +360,7 @@ static void put_back(const mspring_network *network, const mspringi_pairs *pairs
 
 bool mspringi_rows_act(const mspring_network *network, mspringi_pairs *pairs) {
     const double h = (double)pairs->h;
-    begin(network, pairs);
+    begin(network, &pairs->active);
     const double fastest = make_rows(network, pairs, h);
     if (pairs->touch_count == 0)
         return false;
@@ -384,8 +371,8 @@ bool mspringi_rows_act(const mspring_network *network, mspringi_pairs *pairs) {
             (void)make_rows(network, pairs, h / pieces);
         solve(pairs, h / pieces);
         count_touching(pairs);
-        advance(network, pairs, h / pieces, piece + 1 == pieces);
+        advance(network, &pairs->active, h / pieces, piece + 1 == pieces);
     }
-    put_back(network, pairs);
+    put_back(network, &pairs->active);
     return true;
 }
