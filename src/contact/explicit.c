@@ -110,11 +110,15 @@ static mspringi_ground ground_of(const mspring_network *network, const mspringi_
     };
 }
 
-static void touch_block(const mspring_network *network, const mspringi_ground *ground, bool is_loose,
-                        size_t block) {
+// bare: where there is no surface, but may be silt.
+static void touch_block(const mspring_network *network, const mspringi_ground *ground, const mspringi_bounds *bare,
+                        bool is_loose, size_t block) {
     const mspringi_touch_fn act = is_loose ? network->kernels->fly_past : network->kernels->touch;
-    if (mspringi_has_silt(&network->floor->heights))
+    if (mspringi_has_silt(&network->floor->heights)) {
         network->kernels->brake(ground, block);
+        if (network->kernels->beyond(ground->x, ground->y, block, block + MSPRINGI_WIDTH, bare) != block)
+            return;
+    }
     uint32_t left = act(ground, block);
     for (size_t slot = block; left != 0; ++slot, left >>= 1)
         if ((left & 1) && is_loose)
@@ -137,8 +141,10 @@ static void touch_slots(const mspring_network *network, const mspringi_strip *st
     if (block == slots.end)
         return;
     const mspringi_ground ground = ground_of(network, clear, h);
+    const mspringi_bounds bare = {clear->min_x, clear->max_x,
+                                  network->floor->clearances[strip - network->topology.strips].bare, clear->max_y};
     for (; block < slots.end; block = beyond(x, y, block + MSPRINGI_WIDTH, slots.end, clear))
-        touch_block(network, &ground, is_loose, block);
+        touch_block(network, &ground, &bare, is_loose, block);
 }
 
 void mspringi_floor_touch(const mspring_network *network, const mspringi_strip *strip, const mspringi_span *spans,
@@ -165,8 +171,7 @@ static bool is_strip_clear(const mspring_network *network, const mspringi_strip 
     const mspringi_row *first = &t->rows[strip->first_row], *last = first + strip->row_count - 1;
     const uint32_t span_count = last->first_span + last->span_count - first->first_span;
     return is_clear(network, strip, slots_of(&t->spans[first->first_span], span_count)) &&
-           (strip->home_span == MSPRING_NONE ||
-            is_clear(network, strip, slots_of(&t->spans[strip->home_span], 1)));
+           (strip->home_span == MSPRING_NONE || is_clear(network, strip, slots_of(&t->spans[strip->home_span], 1)));
 }
 
 void mspringi_floor_look_far(const mspring_network *network) {

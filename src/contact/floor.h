@@ -40,7 +40,8 @@ typedef struct mspringi_heights {
 
 /// What is clear of the surface, for the slots of a strip.
 typedef struct mspringi_clearance {
-    mspringi_bounds clear; ///< no surface is in it
+    mspringi_bounds clear; ///< no surface is in it, and no silt
+    float bare;            ///< no surface is in a box that begins here, instead of at clear.min_y
     bool is_far;           ///< the strip cannot come out of it in the substeps that this was made for
 } mspringi_clearance;
 

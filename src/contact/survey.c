@@ -107,9 +107,13 @@ static mspringi_clearance look_around(const mspringi_floor *floor, const box *st
     box clear = {strip->min_x - reach, strip->max_x + reach, -INFINITY, INFINITY};
     for (uint32_t i = 0; i < floor->plane_count; ++i)
         keep_clear_of(&floor->lines[i], &clear);
-    if (floor->heights.count > 0)
-        clear.min_y = fmax(clear.min_y, mspringi_heights_highest(&floor->heights, clear.min_x, clear.max_x) +
-                                            (mspringi_has_silt(&floor->heights) ? floor->heights.silt_depth : 0.0));
+    double bare = clear.min_y;
+    if (floor->heights.count > 0) {
+        const double highest = mspringi_heights_highest(&floor->heights, clear.min_x, clear.max_x);
+        const double silt = mspringi_has_silt(&floor->heights) ? floor->heights.silt_depth : 0.0;
+        bare = fmax(bare, highest);
+        clear.min_y = fmax(clear.min_y, highest + silt);
+    }
     const double size = fabs(clear.min_x) + fabs(clear.max_x) + fmax(fabs(strip->min_y), fabs(strip->max_y));
     const double margin = 4.0 * mspringi_floor_slop(size, reach);
     clear = (box){clear.min_x + margin, clear.max_x - margin, clear.min_y + margin, clear.max_y - margin};
@@ -119,6 +123,7 @@ static mspringi_clearance look_around(const mspringi_floor *floor, const box *st
                      clear.max_x > strip->max_x + 0.5 * reach && clear.min_y < strip->min_y - 0.5 * reach &&
                      clear.max_y > strip->max_y + 0.5 * reach);
     return (mspringi_clearance){{bound(clear.min_x), bound(clear.max_x), bound(clear.min_y), bound(clear.max_y)},
+                                bound(bare + margin),
                                 is_far};
 }
 
