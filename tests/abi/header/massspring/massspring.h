@@ -46,8 +46,12 @@
 ///     measure     network_energy, _momentum, _bounds
 ///     snapshots   network_snapshot_size, _save, _load
 ///
-/// massspring_tools.h extends, tunes and inspects: ropes, meshes, clones, hooks, queries, contact, grips, stability
-/// limits, equilibrium, tuning, layout, compaction. examples/guides explains solvers, floor, contact, sleep and edits.
+/// massspring_tools.h has the rest: ropes, meshes, clones, hooks, queries, contact, grips, colliders, stability limits,
+/// equilibrium, tuning and compaction. See examples/guides for solvers, floor, contact, grips, sleep and edits.
+///
+/// **Words.** A slot is an index into the arrays of a view; an id is another number. A hook is a function of yours that
+/// steps call. A component is all particles that unbroken springs connect, or a lone one. The plan is how a network
+/// lies in memory.
 ///
 /// **Units** are SI: metres, kilograms, seconds, newtons, N/m, N s/m. The y axis points up.
 ///
@@ -70,12 +74,11 @@
 /// optimisation level make no difference. This holds within one minor version (0.2.x). Compare by
 /// mspring_network_state_hash().
 ///
-/// **Errors.** If a function can fail, it returns a mspring_result. A failed call changes nothing but the object's
-/// error message, which names the fault and the place. It leaves out-parameters alone. No function prints, exits or
-/// aborts. The library cannot detect one mistake: a handle that was destroyed.
-///
-/// "@errors" lists the results other than MSPRING_OK, without the prefix MSPRING_ERROR_. mspring_result explains
-/// them. ARGUMENT is a NULL that is not allowed, or a value outside its range, such as NaN.
+/// **Errors.** If a function can fail, it returns a mspring_result. A failed call changes nothing and leaves
+/// out-parameters alone. An exclusive call then sets the object's error message, which names the fault and the place.
+/// A shared call sets none. No function prints, exits or aborts. The library cannot detect one mistake: a handle that
+/// was destroyed. "@errors" lists the results other than MSPRING_OK, without the prefix MSPRING_ERROR_. ARGUMENT is
+/// always a NULL that is not allowed, or a value outside its range, such as NaN.
 ///
 /// **Threads.** The library has no global state. "any": no rule. "shared": several threads may make such calls on one
 /// object at once. "exclusive": no other call on that object may overlap. Calls on different objects may always
@@ -132,13 +135,13 @@ MSPRING_API uint32_t MSPRING_CALL mspring_features(void);
 typedef enum mspring_result {
     MSPRING_OK = 0,
     MSPRING_ERROR_ARGUMENT = -1,          ///< NULL, NaN, infinite, or outside the range that the function states
-    MSPRING_ERROR_ID = -2,                ///< no such particle, spring or hook
+    MSPRING_ERROR_ID = -2,                ///< no such particle, spring, component, hook or collider
     MSPRING_ERROR_MEMORY = -3,            ///< the allocator returned NULL
-    MSPRING_ERROR_LIMIT = -4,             ///< more particles, springs, cells or pairs than there is room for
+    MSPRING_ERROR_LIMIT = -4,             ///< more particles, springs, cells, pairs or points than fit
     MSPRING_ERROR_STRUCT = -5,            ///< struct_size is impossible, or what this version does not know is not 0
     MSPRING_ERROR_DUPLICATE = -6,         ///< two springs join the same two particles
     MSPRING_ERROR_UNSTABLE = -7,          ///< the step was unstable and has been rolled back
-    MSPRING_ERROR_BUSY = -8,              ///< called inside a hook, or a job is under way
+    MSPRING_ERROR_BUSY = -8,              ///< called inside a hook; a second job; or a job that is not ready
     MSPRING_ERROR_THREAD = -9,            ///< the system gave no thread or no lock
     MSPRING_ERROR_EQUILIBRIUM = -10,      ///< the forces have no equilibrium, or none was found
     MSPRING_ERROR_SNAPSHOT = -11,         ///< no snapshot of this network, or a damaged one
@@ -150,9 +153,8 @@ typedef enum mspring_result {
 /// @threads any   @allocates never
 MSPRING_API const char *MSPRING_CALL mspring_result_string(mspring_result result);
 
-/// Name of a particle or a spring: 0, 1, 2 ... in the order in which they were added. It never changes. After
-/// mspring_network_recycle(), new ones may get ids of removed ones. (Slots, the indices of a view, are other
-/// numbers.)
+/// Id of a particle or a spring: 0, 1, 2 ... in the order in which they were added. It never changes. After
+/// mspring_network_recycle(), added ones may get ids of removed ones. Colliders have ids of their own.
 typedef uint32_t mspring_id;
 
 /// No particle, no spring.
@@ -253,9 +255,9 @@ typedef struct mspring_particle_def {
 typedef struct mspring_spring_def {
     uint32_t struct_size;
     uint32_t flags;      ///< MSPRING_SPRING_RELATIVE, MSPRING_SPRING_DAMPING_RATIO; default 0
-    mspring_id a, b;     ///< the particles that it joins, not the same; default MSPRING_NONE
+    mspring_id a, b;     ///< the particles that it joins, not the same; default MSPRING_NONE: set both
     float stiffness;     ///< N/m, or a fraction if relative, 0 to 1e30; default 0
-    float damping;       ///< N s/m, or a fraction, or a ratio, 0 to 1e30; default 0
+    float damping;       ///< N s/m or a fraction, 0 to 1e30, or a ratio, 0 to 1000; default 0
     float rest_length;   ///< m, 0 (a weld) to 4e12; default MSPRING_REST_LENGTH_DISTANCE
     float break_strain;  ///< as MSPRING_BREAK_STRAIN; default MSPRING_NEVER
     float stress_strain; ///< as MSPRING_STRESS_STRAIN; default MSPRING_NEVER
@@ -279,19 +281,19 @@ typedef struct mspring_material {
 ///
 /// Each cell that is not empty becomes a particle. Springs at rest join it with its 8 neighbours. Their stiffness and
 /// damping are the means of the two materials. Their break strain is the lower one. Stress and relax strain are those
-/// of the material with the lower stress strain. Cloth has three kinds of spring. Structural ones follow rows and
-/// columns, shear ones diagonals. Bend ones join cells two apart, if the cell between is not empty. A damping ratio
-/// is not scaled. Bend springs make a step several times dearer, and lower the stable stiffness.
+/// of the material with the lower stress strain. Structural springs follow rows and columns, shear springs diagonals.
+/// Bend springs, as for cloth, join cells two apart, if the cell between is not empty. They make a step several times
+/// dearer, and lower the stable stiffness. The shares scale stiffness and damping, but not a damping ratio.
 typedef struct mspring_lattice_def {
     uint32_t struct_size;
-    uint32_t width, height;            ///< cells, each at least 1, product at most MSPRING_MAX_PARTICLES
-    uint32_t material_count;           ///< at most 65535
+    uint32_t width, height;            ///< cells, each at least 1, product at most MSPRING_MAX_PARTICLES; set both
+    uint32_t material_count;           ///< at most 65535; default 0
     double x, y;                       ///< world position of the bottom left cell's centre; default 0
     double spacing;                    ///< m between neighbouring columns and rows, 1e-9 to 1e9; default 1
-    const uint16_t *cells;             ///< [height][width], the top row first: index into materials, or empty
+    const uint16_t *cells;             ///< [height][width], top row first: index into materials or MSPRING_CELL_EMPTY
     const mspring_material *materials; ///< [material_count]
-    float shear_share; ///< stiffness of shear springs over structural ones, 0 to 1000; default 1; 0: none
-    float bend_share;  ///< the same for bend springs; default 0
+    float shear_share; ///< stiffness of shear springs over that of structural ones, 0 to 1000; 0: none; default 1
+    float bend_share;  ///< the same for bend springs; default 0: none
 } mspring_lattice_def;
 
 /* ------------------------------------------------------------------------------------------------------ settings */
@@ -333,7 +335,7 @@ typedef struct mspring_solver_def {
     mspring_solver solver;         ///< default MSPRING_SOLVER_EXPLICIT
     uint32_t substeps;             ///< of one step, 1 to MSPRING_MAX_SUBSTEPS, or MSPRING_SUBSTEPS_AUTO, the default
     uint32_t max_substeps;         ///< most that MSPRING_SUBSTEPS_AUTO or MSPRING_GUARD_RETRY may choose, 1 to
-                                   ///< MSPRING_MAX_SUBSTEPS; a step that needs more is rejected; default 1000
+                                   ///< MSPRING_MAX_SUBSTEPS; default 1000. If a step needs more, the guard decides.
     mspring_integrator integrator; ///< of the implicit and the direct solver; default MSPRING_INTEGRATOR_GA0
     uint32_t iterations;    ///< of conjugate gradients in a substep, at most 10000; with 1, springs hardly act; 0, the
                             ///< default: 8
@@ -377,9 +379,8 @@ typedef enum mspring_guard {
     /// number until mspring_network_set_solver(). Hooks are called again. Relative springs gain nothing by it.
     MSPRING_GUARD_RETRY = 1,
     MSPRING_GUARD_BOUNDS = 2, ///< check the bounds only
-    /// Repeat a step that would be rejected, by one substep of implicit Euler; likewise the 15 steps after it. That
-    /// is slower and softer, but stable at nearly any stiffness. Hooks are called again. The network reserves the
-    /// memory.
+    /// Repeat a step that would be rejected, by one substep of implicit Euler. The 15 steps after it use that, too. It
+    /// is slower and softer, but stable at nearly any stiffness. Hooks are called again. The network reserves memory.
     MSPRING_GUARD_IMPLICIT = 3,
     /// Repeat a step that would be rejected, with clamped strain rates; unless the solver is implicit, also the 15
     /// steps after it. Springs act one after another, by impulses that never push a spring past its rest length.
@@ -387,27 +388,26 @@ typedef enum mspring_guard {
     /// called again. Uses one thread and no memory. The default.
     MSPRING_GUARD_CLAMP = 4,
     /// Check nothing, and put back particles that end out of bounds. Speeds become at most max_speed, local
-    /// coordinates at most MSPRING_MAX_COORDINATE. A particle with a number that is not finite goes back to its place
-    /// before the step, or to the local origin, and stands still. No step fails; an explosion is bounded, but not
-    /// physical.
+    /// coordinates at most MSPRING_MAX_COORDINATE. A particle with NaN or infinity goes back to its place before the
+    /// step, or to the local origin, and stands still. No step fails. An explosion is bounded, but not physical.
     MSPRING_GUARD_CLAMP_BOUNDS = 5,
     MSPRING_GUARD_INT = MSPRING_ENUM_INT ///< no value
 } mspring_guard;
 
-/// Settings that may change at any time: see mspring_network_set_settings(). mspring_settings_init() fills in those
-/// of a new network.
+/// Settings that may change at any time: see mspring_network_set_settings(). mspring_settings_init() fills in the
+/// defaults. To start from a network's own settings, use mspring_network_get_settings().
 typedef struct mspring_settings {
     uint32_t struct_size;
-    mspring_guard guard;  ///< what a step does to keep motion bounded
-    float gravity_x;      ///< m/s^2, finite
-    float gravity_y;      ///< m/s^2, finite
-    float global_damping; ///< 1/s, 0 to 1e6: velocities decay by exp(-global_damping t), whatever the step
-    float max_speed;      ///< m/s, > 0 and at most 1e15: a step rejects faster particles, in x or y
-    float sleep_speed;    ///< m/s, 0 to 1e15: an island sleeps if none of its particles has been faster, in x or y, for
-                          ///< sleep_time. 0: never. See mspring_network_is_asleep()
-    float sleep_time;     ///< s of simulated time, 0 to 1e6
+    mspring_guard guard;  ///< what a step does to keep motion bounded; default MSPRING_GUARD_CLAMP
+    float gravity_x;      ///< m/s^2, finite; default 0
+    float gravity_y;      ///< m/s^2, finite; default -9.8
+    float global_damping; ///< 1/s, 0 to 1e6: velocities decay by exp(-global_damping t), at any dt; default 0
+    float max_speed;      ///< m/s, > 0 and at most 1e15: a step rejects faster particles, in x or y; default 1e6
+    float sleep_speed;    ///< m/s, 0 to 1e15: a component sleeps if none of its particles has been faster, in x or y,
+                          ///< for sleep_time. Default 0: never. See mspring_network_is_asleep()
+    float sleep_time;     ///< s of simulated time, 0 to 1e6; default 0.5
     float relax_fraction; ///< 0 to 1: a stressed spring relaxes below this fraction of its stress strain; 0: it stays
-                          ///< stressed; 0.8 in a new network
+                          ///< stressed; default 0.8
 } mspring_settings;
 
 /// A network at the start. Fill with mspring_network_def_init() first.
@@ -425,12 +425,12 @@ typedef struct mspring_network_def {
                               ///< default 1. They take no signals, and sleep between steps. Ignored if tasks is set.
     uint32_t flags;           ///< bits of MSPRING_NETWORK_; default 0
     uint32_t max_substeps;    ///< as in mspring_solver_def; default 1000
-    mspring_guard guard;      ///< as in mspring_settings; default MSPRING_GUARD_CLAMP: no step is too long
+    mspring_guard guard;      ///< as in mspring_settings; default MSPRING_GUARD_CLAMP
     float sleep_speed;        ///< as in mspring_settings; default 0: never
     float sleep_time;         ///< as in mspring_settings; default 0.5
     uint32_t spare_particles; ///< particles that may be added later, with the builder's at most
                               ///< MSPRING_MAX_PARTICLES; default 0. The network reserves memory for them.
-    uint32_t spare_springs;   ///< springs that may be added later; default 0
+    uint32_t spare_springs;   ///< the same for springs, at most MSPRING_MAX_SPRINGS; default 0
 } mspring_network_def;
 
 /// Most half-planes of a floor, and most heights.
@@ -442,17 +442,17 @@ typedef struct mspring_network_def {
 typedef struct mspring_floor_def {
     uint32_t struct_size;
     uint32_t plane_count;        ///< half-planes, at most MSPRING_MAX_PLANES; default 0
-    double heights_x, heights_y; ///< of the first height, and of height 0, m, world coordinates; default 0
+    double heights_x, heights_y; ///< x of the first height, y of height 0, m, world coordinates; default 0
     double spacing;              ///< m from one height to the next, 1e-9 to 1e9; default 1
-    const double *planes;  ///< [plane_count][4]: a point on the border (m, world coordinates), then a vector of any
-                           ///< length across it, towards the side where particles may be
+    const double *planes;  ///< [plane_count][4]: x, y of a point on the border (m, world coordinates), x, y of a normal
+                           ///< of any length. It points to the side where particles may be.
     const float *heights;  ///< [height_count], m above heights_y, joined by straight lines, level beyond both ends
     uint32_t height_count; ///< 2 to MSPRING_MAX_HEIGHTS, or 0, the default: no heights
     float friction;        ///< of sliding (Coulomb): force along the surface over that across it, 0 to 1e6; default 0
     float restitution;     ///< speed across the surface after contact over that before, 0 to 1; default 0
     uint32_t reserved;     ///< 0
-    /// The same by stretch: of each plane, and of each straight part of the heights from left to right, the outermost
-    /// of which go on beyond both ends. NULL, the default: friction and restitution everywhere.
+    /// Friction and restitution of each plane, and of each straight part of the heights from left to right. The first
+    /// and the last part go on beyond the ends. NULL, the default: the fields friction and restitution everywhere.
     const float *plane_frictions, *plane_restitutions;   ///< [plane_count]
     const float *height_frictions, *height_restitutions; ///< [height_count - 1]
     float silt_depth; ///< m of silt above the heights, straight up, 0 to 1e12: a soft layer that brakes; default 0
@@ -515,7 +515,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_add_pa
 /// mspring_network_create() rejects a second spring between the same two.
 /// @param id  receives its id; may be NULL
 /// @threads exclusive   @allocates yes   @errors ID for a particle that does not exist; ARGUMENT also for a spring
-///          from a particle to itself, or for the distance of two particles in one place; STRUCT, LIMIT, MEMORY
+///          from a particle to itself, or for MSPRING_REST_LENGTH_DISTANCE at distance 0; STRUCT, LIMIT, MEMORY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_add_spring(
     mspring_builder *builder, const mspring_spring_def *def, mspring_id *id);
 
@@ -564,7 +564,7 @@ MSPRING_API uint32_t MSPRING_CALL mspring_network_particle_count(const mspring_n
 MSPRING_API uint32_t MSPRING_CALL mspring_network_spring_count(const mspring_network *network);
 
 /// Choose the solver and its settings. The state goes on from where it is.
-/// To set what is set already changes nothing.
+/// If they are set already, nothing changes.
 /// @threads exclusive   @allocates for an implicit or direct solver, unless only substeps, iterations or
 ///          coarse_period change   @errors ARGUMENT also for a solver that this build lacks; LIMIT if the solver's
 ///          matrix is too large (the message says how large); STRUCT, MEMORY, BUSY
@@ -572,8 +572,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_so
     mspring_network *network, const mspring_solver_def *def);
 
 /// Read the solver and its settings. Set struct_size first.
-/// To set them again changes nothing. After steps with MSPRING_GUARD_RETRY, substeps is the number of the next step.
-/// Numbers that were set to 0 may come back as the ones in use.
+/// If you set them again, nothing changes. With MSPRING_GUARD_RETRY, substeps is the number of the next step. Numbers
+/// that were set to 0 may come back as the ones in use.
 /// @threads shared   @allocates never   @errors ARGUMENT, STRUCT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_solver(
     const mspring_network *network, mspring_solver_def *def);
@@ -590,8 +590,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_se
 ///     settings.gravity_y = -1.6f;
 ///     if (mspring_network_set_settings(network, &settings) != MSPRING_OK) ...
 ///
-/// A value that is set already changes nothing. Another gravity, sleep_speed, sleep_time or relax_fraction wakes all
-/// islands.
+/// A value that is set already changes nothing. A new gravity, sleep_speed, sleep_time or relax_fraction wakes all.
 /// @threads exclusive   @allocates what a guard or sleep needs, the first time   @errors ARGUMENT (the message
 ///          names the field and its value), STRUCT, MEMORY, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_settings(
@@ -603,8 +602,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_se
 /// If a coordinate or speed would end out of bounds, or motion grow by instability (mspring_guard), the step is
 /// rolled back. The state is then that before the step, bit for bit, and forces given for it are still there. The
 /// message and mspring_step_info name a particle or a spring. Use a shorter dt, more substeps or lower stiffness.
-/// @param dt  s, finite, > 0, and long enough that dt / substeps is a normal float
-/// @threads exclusive   @allocates never   @errors ARGUMENT, UNSTABLE, BUSY; THREAD in a child of fork()
+/// @param dt  s, > 0; as a float, dt / substeps must be finite and at least 1.2e-38
+/// @threads exclusive   @allocates never   @errors ARGUMENT, UNSTABLE, BUSY; THREAD in a child of fork();
+///          LIMIT if contact finds more pairs than its capacity (mspring_contact_def)
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_step(mspring_network *network, double dt);
 
 /// Flags of mspring_step_info: how a step was made.
@@ -621,13 +621,13 @@ typedef struct mspring_step_info {
     uint32_t struct_size;
     mspring_result result;   ///< of the last step; MSPRING_OK before the first
     mspring_id particle;     ///< cause of a rejection, or of what the guard did; or MSPRING_NONE
-    mspring_id spring;       ///< likewise
+    mspring_id spring;       ///< the same for a spring
     uint32_t flags;          ///< of the last step: MSPRING_STEP_FALLBACK and so on
     uint32_t substeps;       ///< of the last step that succeeded; 0 before
     uint64_t step_count;     ///< steps that have succeeded
     uint64_t fallback_count; ///< of these with MSPRING_STEP_FALLBACK or MSPRING_STEP_CLAMPED
     double time;             ///< simulated time of these, s
-    double largest_speed;    ///< of a particle now, m/s
+    double largest_speed;    ///< length of the fastest particle's velocity now, m/s
 } mspring_step_info;
 
 /// Read the report of the last step. Takes a pass over the velocities.
@@ -638,7 +638,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_st
     const mspring_network *network, mspring_step_info *info);
 
 /// Return 1 if all of the network sleeps, else 0. NULL gives 0.
-/// An island is a component (mspring_network_update_components()). It falls asleep after a step if it has been slower
+/// Each component sleeps by itself; the guide calls it an island. It falls asleep after a step if it has been slower
 /// than mspring_settings.sleep_speed for sleep_time. Its velocities become 0. Steps do not move it, and cost only
 /// what is awake. It wakes if an edit, a force or a setting changes it. The guide examples/guides/sleep.md has the
 /// rules.
@@ -652,8 +652,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_wake(m
 /* -------------------------------------------------------------------------------------------------------- forces */
 
 /// Add a force (N) to one particle, during the whole next step.
-/// @threads exclusive   @allocates at the first force given to a network   @errors ID; ARGUMENT if the sum of its
-///          forces is not finite; MEMORY; BUSY (in a hook use its force arrays)
+/// @threads exclusive   @allocates at the first force given to a network   @errors ID; ARGUMENT also if the sum of
+///          its forces is not finite; MEMORY; BUSY (in a hook use its force arrays)
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_apply_force(
     mspring_network *network, mspring_id particle, float x, float y);
 
@@ -669,7 +669,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_apply_
     const mspring_id *particles, uint32_t count, const float *x, const float *y, uint32_t stride);
 
 /// Change velocities by impulses (N s) at once: all or, on error, none.
-/// The change is impulse times inverse mass, with an inverse mass scale. Pinned particles ignore impulses.
+/// The change is impulse / mass * MSPRING_INVERSE_MASS_SCALE. Pinned particles ignore impulses.
 /// @param x, y, stride  as of mspring_network_apply_forces()
 /// @threads exclusive   @allocates never   @errors ID; ARGUMENT also if a velocity would exceed MSPRING_MAX_SPEED;
 ///          BUSY
@@ -691,7 +691,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_fl
     mspring_network *network, const mspring_floor_def *def);
 
 /// Read the floor. Set struct_size first.
-/// To set it again changes nothing. Without a floor both counts are 0. Its arrays are the network's copies, valid
+/// If you set it again, nothing changes. Without a floor both counts are 0. Its arrays are the network's copies, valid
 /// until the floor is set again or the network is destroyed.
 /// @threads shared   @allocates never   @errors ARGUMENT, STRUCT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_floor(
@@ -707,8 +707,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_fl
 /* --------------------------------------------------------------------------------------------------------- state */
 
 /// The state as it lies in memory, to read: arrays by slot. Set struct_size first.
-/// Pointers stay valid, and their contents follow the steps, until layout_generation changes. The origin is that of
-/// the call: fill the view again after steps.
+/// Pointers stay valid, and their contents follow the steps, until layout_generation changes. A step may move the
+/// origin, and origin_x and origin_y are copies: fill the view again after steps.
 typedef struct mspring_view {
     uint32_t struct_size;
     uint32_t slot_count;     ///< length of the arrays by slot; some slots hold no particle
@@ -750,7 +750,7 @@ typedef struct mspring_mutable_view {
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_view_mutable(
     mspring_network *network, mspring_mutable_view *view);
 
-/// Read world positions (m) of the particles first ... first + count - 1.
+/// Read world positions (m) of the particles first ... first + count - 1. The form with _float rounds them.
 /// @param x, y    receive those of particle first + i in x[i * stride] and y[i * stride]
 /// @param stride  elements from one to the next, at least 1: 1 for two arrays, 2 with y = x + 1 for one of points
 /// @threads shared   @allocates never   @errors ID, ARGUMENT
@@ -805,8 +805,8 @@ typedef enum mspring_property {
     /// use the old masses until mspring_network_renew_relative_springs(). Allocates if the network has relative
     /// springs.
     MSPRING_MASS = 0,
-    /// Of a particle: scale of its response to forces, 0 or 1e-6 to 1. 1 is normal, 0 is pinned. Gravity, energy and
-    /// momentum do not change by it. Allocates at the first scale that is neither 0 nor 1.
+    /// Of a particle: scale of its response to forces, 0 or 1e-6 to 1. 1 is normal, 0 is pinned. It scales neither
+    /// gravity nor the mass in energy and momentum. Allocates at the first scale that is neither 0 nor 1.
     MSPRING_INVERSE_MASS_SCALE = 1,
     /// Nominal stiffness of a spring, N/m, 0 to 1e30; of a relative spring its fraction. A broken spring gets it when
     /// it is restored. Allocates for a relative spring.
@@ -818,7 +818,7 @@ typedef enum mspring_property {
     /// Writing it ends a ramp. Allocates for a spring of a lattice.
     MSPRING_REST_LENGTH = 4,
     /// Break strain of a spring, > 0; default MSPRING_NEVER. If the size of a spring's strain exceeds it at the end
-    /// of a step, the spring breaks. Substeps too long to follow a blow change the strains. Allocates.
+    /// of a step, the spring breaks. If substeps are too long to follow a blow, the strains are wrong. Allocates.
     MSPRING_BREAK_STRAIN = 5,
     /// Stress strain of a spring, > 0; default MSPRING_NEVER. If the size of a spring's strain exceeds it at the end
     /// of a step, the spring is stressed until it relaxes. Allocates.
@@ -832,7 +832,7 @@ typedef enum mspring_property {
     MSPRING_FORCE = 10, ///< along a spring, N, damper included; > 0 pulls its ends together; read only
     /// Stiffness in force of a spring, N/m; of a relative spring that of the last step; 0 if it is broken. Read only.
     MSPRING_ACTIVE_STIFFNESS = 11,
-    MSPRING_ACTIVE_DAMPING = 12,            ///< damping in force of a spring, N s/m, likewise; read only
+    MSPRING_ACTIVE_DAMPING = 12,            ///< the same for damping, N s/m; read only
     MSPRING_PROPERTY_INT = MSPRING_ENUM_INT ///< no value
 } mspring_property;
 
@@ -881,8 +881,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_en
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_spring_flags(
     const mspring_network *network, mspring_id first, uint32_t count, uint32_t *flags, uint32_t stride);
 
-/// Read the largest strain in size, and the spring that has it.
-/// Of several springs it is the lowest id. Without springs it is 0 and MSPRING_NONE. Either may be NULL.
+/// Read the largest absolute value of a strain, and the spring that has it.
+/// Of several springs it is the lowest id. Without springs: 0 and MSPRING_NONE. Either pointer may be NULL.
 /// @threads shared   @allocates never   @errors ARGUMENT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_max_strain(
     const mspring_network *network, float *strain, mspring_id *spring);
@@ -936,7 +936,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_add_pa
 /// @param ids   [count], receives their ids: the lowest free ones
 /// @threads exclusive   @allocates at the first break, stress or relax strain in a network   @errors as
 ///          mspring_network_add_particles(); ID for a particle that does not exist; DUPLICATE if the two are joined
-///          already, broken or not; ARGUMENT with the direct solver, which must be set anew afterwards; MEMORY
+///          already, broken or not; ARGUMENT also with the direct solver: set another one first; MEMORY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_add_springs(
     mspring_network *network, const mspring_spring_def *defs, uint32_t count, mspring_id *ids);
 
@@ -965,8 +965,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_recycl
 
 /// Kind of an event.
 typedef enum mspring_event_kind {
-    MSPRING_EVENT_BROKEN = 0,   ///< spring id broke: by its strain after a step, or by an edit, with strain 0 and the
-                                ///< particle that was detached or removed in other
+    MSPRING_EVENT_BROKEN = 0,   ///< spring id broke, by its strain after a step or by an edit. By an edit strain is 0,
+                                ///< and other is the particle that was detached or removed, if any
     MSPRING_EVENT_STRESSED = 1, ///< the strain of spring id exceeded its stress strain
     MSPRING_EVENT_RELAXED = 2,  ///< and fell below its relax strain
     MSPRING_EVENT_RESTORED = 3, ///< spring id was restored
@@ -993,9 +993,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_reserv
 
 /// Read and remove the oldest events, in the order in which they happened.
 /// Within a step the order depends on the network alone: it is the same on every machine.
-/// @param events    [capacity]
+/// @param events    [capacity]; may be NULL if capacity is 0
 /// @param count     receives how many were read
-/// @param lost      receives how many found the queue full since it was reserved; may be NULL
+/// @param lost      receives how many were lost to a full queue since it was reserved; may be NULL
 /// @threads exclusive   @allocates never   @errors ARGUMENT, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_read_events(
     mspring_network *network, mspring_event *events, uint32_t capacity, uint32_t *count, uint64_t *lost);
@@ -1050,7 +1050,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_energy
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_momentum(
     const mspring_network *network, double *px, double *py, double *angular);
 
-/// Compute the smallest box around all particles, world coordinates (m).
+/// Compute the smallest box around all particles, world coordinates (m). Without particles: the local origin.
 /// @threads shared   @allocates never   @errors ARGUMENT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_bounds(
     const mspring_network *network, double *min_x, double *min_y, double *max_x, double *max_y);

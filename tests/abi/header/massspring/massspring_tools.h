@@ -1,5 +1,5 @@
 /// @file massspring_tools.h
-/// What extends, tunes and inspects networks.
+/// Functions that extend, tune and inspect networks.
 ///
 ///     build       material_preset, builder_add_rope, _add_mesh, _add_disc, _add_network; rope_def_init, mesh_def_init,
 ///                 disc_def_init
@@ -56,11 +56,11 @@ typedef struct mspring_rope_def {
     uint32_t struct_size;
     uint32_t spring_flags;  ///< as flags of mspring_spring_def; default 0
     mspring_id from, to;    ///< its ends; default MSPRING_NONE
-    uint32_t segment_count; ///< springs, at least 1; default 1; one inner particle fewer
-    float mass;             ///< kg of each inner particle; default 1
-    float stiffness;        ///< of each spring, as in mspring_spring_def
-    float damping;          ///< of each spring
-    float slack;            ///< rest length of the whole over the distance of its ends, 0.001 to 1000; default 1
+    uint32_t segment_count; ///< springs, at least 1; default 1. There is one inner particle fewer.
+    float mass;             ///< kg of each inner particle, 1e-30 to 1e30; default 1
+    float stiffness;        ///< of each spring, as in mspring_spring_def; default 0
+    float damping;          ///< of each spring, as in mspring_spring_def; default 0
+    float slack;            ///< rest length of the whole rope / distance of its ends, 0.001 to 1000; default 1
     float break_strain, stress_strain, relax_strain; ///< of each spring, as in mspring_spring_def
 } mspring_rope_def;
 
@@ -79,7 +79,8 @@ typedef struct mspring_mesh_def {
     const uint32_t *triangles; ///< [triangle_count][3] indices of vertices, clockwise or not
     float area_density;        ///< kg/m^2, 1e-30 to 1e30; default 1
     float stiffness;           ///< of each spring, as in mspring_spring_def; default 0
-    float young_modulus;       ///< N/m: Young's modulus times thickness, at most 1e30; default 0: stiffness counts
+    float young_modulus;       ///< N/m: Young's modulus times thickness, 0 to 1e30; above 0 stiffness must be 0, and
+                               ///< springs not relative; default 0: stiffness counts
     float damping;             ///< of each spring, as in mspring_spring_def; default 0
     float break_strain, stress_strain, relax_strain; ///< of each spring, as in mspring_spring_def
     uint32_t reserved;                               ///< 0
@@ -133,9 +134,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_add_di
     mspring_builder *builder, const mspring_disc_def *def, mspring_id *first_particle, mspring_id *first_spring);
 
 /// Add what a network holds now to a builder: to store it, to merge networks or to split one.
-/// Adds particles with position, velocity, mass and pin, and the springs between them that are not broken, with rest
-/// length, stiffness, damping and strains of now. Settings, solver, floor, grips, hooks, forces and events are not added. An
-/// inverse mass scale becomes 1, or a pin if it is 0. Ids keep their order.
+/// Adds particles with position, velocity, mass and pin. Adds the springs between them that are not broken, with
+/// their present rest length, stiffness, damping and strains. Settings, solver, floor, grips, hooks, forces and events
+/// are not added. An inverse mass scale becomes 1, or a pin if it is 0. Ids keep their order.
 ///
 /// A network that is created from the builder starts where the other is, but for the rounding of positions: its local
 /// origin may differ. If the other has not moved since it was created from the same parts, both have the same bits.
@@ -143,7 +144,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_add_di
 /// @param count         0 if particles is NULL
 /// @param particle_ids  [particle count of the network] receives the builder's id of each, MSPRING_NONE if it was not
 ///                      added; may be NULL
-/// @param spring_ids    [spring count of the network] likewise
+/// @param spring_ids    [spring count of the network] receives the same for springs; may be NULL
 /// @threads exclusive for builder, shared for network   @allocates yes   @errors ID; ARGUMENT also for a particle
 ///          out of bounds (the builder's message names it); LIMIT, MEMORY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_add_network(mspring_builder *builder,
@@ -194,7 +195,7 @@ typedef enum mspring_phase {
 } mspring_phase;
 
 /// Arguments of a hook: arrays by slot. It handles first_slot ... first_slot + slot_count - 1. Slots without particle
-/// have MSPRING_NONE in particle_of_slot. The network ignores what a hook writes there, within the bounds of a step.
+/// have MSPRING_NONE in particle_of_slot. A hook may write there: values within the bounds of a step have no effect.
 typedef struct mspring_hook_args {
     uint32_t struct_size;
     mspring_phase phase;
@@ -213,8 +214,8 @@ typedef struct mspring_hook_args {
     const void *reserved; ///< NULL
 } mspring_hook_args;
 
-/// A hook. On the network it may make shared calls only. A step may be taken back and repeated, as by a guard. Then
-/// hooks are called again.
+/// A hook. On the network it may make shared calls only. If a step is rolled back and repeated, as by a guard, hooks
+/// are called again.
 typedef void(MSPRING_CALL *mspring_hook_fn)(const mspring_hook_args *args, void *user);
 
 /// Flags of hooks.
@@ -223,9 +224,10 @@ enum {
     /// read and write only the slots of its range, and data that no call writes. Then the state does not depend on
     /// the ranges.
     MSPRING_HOOK_CONCURRENT = 1u << 0,
-    /// The hook is called only for whole blocks with a slot that is below below_y when the hook is due, by one call for
-    /// each run of such blocks. A step is skipped, at no cost, if nothing can get there in it at four times the speed
-    /// before it or twice that after it. Only what springs throw there and back within one step is missed.
+    /// When the hook is due, it is called only for whole blocks that have a slot below below_y. There is one call for
+    /// each run of such blocks. If no particle can get there in a step, the step skips the hook at no cost. The test
+    /// assumes four times the speed before the step, or twice the speed after it. The hook misses only particles that
+    /// springs throw there and back within one step.
     MSPRING_HOOK_BELOW = 1u << 1
 };
 
@@ -235,8 +237,8 @@ typedef struct mspring_hook_def {
     mspring_phase phase; ///< default MSPRING_PHASE_BEFORE_STEP
     mspring_hook_fn fn;  ///< must be set
     void *user;          ///< passed to fn; default NULL
-    uint32_t period;     ///< substeps in a group, at least 1; before the step 1; default 1. Its forces act unchanged in
-                         ///< the whole group. A step with long periods is faster.
+    uint32_t period;     ///< substeps in a group, at least 1; must be 1 for MSPRING_PHASE_BEFORE_STEP; default 1. Its
+                         ///< forces act unchanged in the whole group. Longer periods make a step faster.
     uint32_t flags;      ///< bits of MSPRING_HOOK_; default 0: one call for all slots, on the thread that steps
     uint32_t range_slots; ///< slots in a range of a concurrent hook, rounded up to whole blocks; default 0: one range
                           ///< for each worker
@@ -291,7 +293,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_partic
     uint32_t capacity, uint32_t *count);
 
 /// Find the springs that a straight line meets, to cut them or to cast a ray.
-/// Takes a pass over all springs. Broken ones are left out; touching one counts.
+/// Takes a pass over all springs. Broken ones are left out. A spring that the line only touches counts.
 /// @param from_x, from_y, to_x, to_y  the line's ends, world positions, m
 /// @param springs    [capacity] receives as many ids as fit, in order; may be NULL if capacity is 0
 /// @param fractions  [capacity] receives where each is met, from 0 at the line's start to 1 at its end; may be NULL
@@ -309,7 +311,7 @@ typedef struct mspring_spring_info {
     uint32_t flags;          ///< MSPRING_SPRING_RELATIVE, MSPRING_SPRING_BROKEN, MSPRING_SPRING_STRESSED
     mspring_id a, b;         ///< its particles, as they were given
     float stiffness;         ///< N/m in force; of a relative spring that of the last step; 0 if broken
-    float damping;           ///< N s/m, likewise
+    float damping;           ///< N s/m, the same
     float rest_length;       ///< m
     float length;            ///< m, now
     float strain;            ///< as MSPRING_STRAIN
@@ -327,12 +329,12 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_sp
 /// Each array is filled if it is not NULL. Removed springs have 0.
 /// @param length       [spring count], m
 /// @param direction_x, direction_y  [spring count] unit vector from end a to end b; (0, 0) for length 0; both or none
-/// @param strain       [spring count], as MSPRING_STRAIN, to the last bit or so
+/// @param strain       [spring count], as MSPRING_STRAIN; the last bit may differ
 /// @threads exclusive   @allocates the first time   @errors ARGUMENT, MEMORY, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_extents(
     mspring_network *network, float *length, float *direction_x, float *direction_y, float *strain);
 
-/// Compute relative springs from the masses of now. Takes a pass over all springs.
+/// Compute relative springs from the present masses. Takes a pass over all springs.
 /// @threads exclusive   @allocates never   @errors ARGUMENT, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_renew_relative_springs(
     mspring_network *network);
@@ -396,6 +398,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_stable
 /// @param dt      seconds, finite, > 0
 /// @param safety  > 0, at most 1. If the network keeps its shape, use 0.95. If it will be stretched or crushed,
 ///                use less. On a lattice without dampers 0.7 is enough for any motion.
+/// @param substeps  receives the number
 /// @threads exclusive   @allocates yes, and frees it   @since 0.2   @errors ARGUMENT; UNSTABLE if
 ///          MSPRING_MAX_SUBSTEPS are too few; MEMORY, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_suggest_substeps(
@@ -436,7 +439,7 @@ typedef struct mspring_settle_result {
 } mspring_settle_result;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
-/// @threads any   @allocates never   @since 0.2
+/// @threads any   @allocates never   @since 0.2   @errors ARGUMENT, STRUCT
 MSPRING_API mspring_result MSPRING_CALL mspring_settle_def_init(mspring_settle_def *def, size_t size);
 
 /// Move the particles to static equilibrium.
@@ -517,7 +520,7 @@ typedef struct mspring_tune_scene {
 } mspring_tune_scene;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
-/// @threads any   @allocates never   @since 0.2
+/// @threads any   @allocates never   @since 0.2   @errors ARGUMENT, STRUCT
 MSPRING_API mspring_result MSPRING_CALL mspring_tune_scene_init(mspring_tune_scene *scene, size_t size);
 
 /// Settings to try. A row above a limit is not recommended. Fill with mspring_tune_def_init() first.
@@ -536,9 +539,9 @@ typedef struct mspring_tune_def {
     double max_cost;                    ///< limit of a row's cost, s for a step; > 0; default INFINITY
     double max_drift;                   ///< limit of energy_drift, if measured; >= 0; default 0.1
     const mspring_solver_def *settings; ///< [setting_count]; default NULL: those of mspring_tune_settings()
-    mspring_clock_fn clock;             ///< default NULL: the system's; needed if MASSSPRING_FREESTANDING
+    mspring_clock_fn clock;             ///< default NULL: the system's; must be set without MSPRING_FEATURE_HOSTED
     mspring_progress_fn progress;       ///< default NULL
-    void *user;                         ///< passed to clock, to progress and to the scene's prepare
+    void *user;                         ///< passed to clock, to progress and to the scene's prepare; default NULL
     const mspring_tune_scene *scene;    ///< default NULL: none
     void *reserved_pointer;             ///< NULL
 } mspring_tune_def;
@@ -598,7 +601,7 @@ typedef struct mspring_tune_row {
 } mspring_tune_row;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
-/// @threads any   @allocates never   @since 0.2
+/// @threads any   @allocates never   @since 0.2   @errors ARGUMENT, STRUCT
 MSPRING_API mspring_result MSPRING_CALL mspring_tune_def_init(mspring_tune_def *def, size_t size);
 
 /// List the default settings of mspring_network_tune().
@@ -717,11 +720,11 @@ MSPRING_API size_t MSPRING_CALL mspring_network_memory_used(const mspring_networ
 /* ---------------------------------------------------------------------------------------------------- compaction */
 
 /// Leave broken springs out of the plan, and take added ones in.
-/// A step then costs what is left. It is worth its time if a quarter of the springs has broken, or if added springs
-/// are to stay. Ids and values stay. Slots change: take views again. Forces are summed in another order from then on,
-/// so the next steps differ by rounding; they are the same on every machine. Snapshots from before do not fit any
-/// more. To spread the work over frames, or to another thread, use a job. The guide examples/guides/edits.md has the
-/// details.
+/// A step then costs only the springs that are left. Compaction is worth its time if a quarter of the springs has
+/// broken, or if added springs are to stay. Ids and values stay. Slots change: fill views again. Forces are summed in
+/// another order from then on, so the next steps differ by rounding. They are the same on every machine. Earlier
+/// snapshots no longer fit. To spread the work over frames, or to another thread, use a job. The guide
+/// examples/guides/edits.md has the details.
 /// @threads exclusive   @allocates yes, and frees most   @errors ARGUMENT, MEMORY, LIMIT, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_compact(mspring_network *network);
 
@@ -731,7 +734,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_compac
 /// @threads exclusive   @allocates yes, and frees most   @errors ARGUMENT, MEMORY, LIMIT, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_expand(mspring_network *network);
 
-/// A job makes another plan while the network goes on: it compacts off the frame, or undoes that.
+/// A job makes another plan while the network goes on: it compacts, or undoes that, without a long frame.
 ///
 ///   mspring_job_begin(network, MSPRING_LAYOUT_COMPACT, &job);     // in a frame: copies the springs
 ///   mspring_job_run(job, 0, NULL);                                // on any thread, or some parts a frame
@@ -770,8 +773,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_job_run(
     mspring_job *job, uint32_t at_most, uint32_t *left);
 
 /// Move the network to the plan of a job.
-/// Slots change, and views end. Afterwards the job can only be destroyed, unless the result is MSPRING_ERROR_BUSY or
-/// MSPRING_ERROR_ARGUMENT. The job keeps the memory of the old plan until it is destroyed.
+/// Slots change: fill views again. Afterwards the job can only be destroyed, unless the result is MSPRING_ERROR_BUSY
+/// or MSPRING_ERROR_ARGUMENT. The job keeps the memory of the old plan until it is destroyed.
 /// @threads exclusive and job   @allocates some   @since 0.2   @errors OUTDATED if since begin particles or springs
 ///          were added or removed, a spring was restored that the plan leaves out, or the plan has changed
 ///          otherwise: begin another job; BUSY inside a hook, or if the job has not been run to its end; MEMORY;
@@ -802,14 +805,14 @@ typedef struct mspring_contact_def {
     uint32_t struct_size;
     uint32_t flags; ///< MSPRING_CONTACT_SELF or 0; default MSPRING_CONTACT_SELF
     /// Distance (m) that points keep from springs, > 0, at most 1e6. With MSPRING_CONTACT_SELF at most 0.9 of the
-    /// shortest rest length at creation. Default 0: half of that length.
+    /// shortest rest length at creation. Default 0: half of that length; without springs, set another.
     double thickness;
     float friction;    ///< of bodies that slide (Coulomb), 0 to 1e6; default 0
     float restitution; ///< speed across the contact after it over that before, 0 to 1; default 0
     float push_speed;  ///< overlaps are pushed apart at this speed at most, m/s, 0 to 1e6; default 3
-    uint32_t sweeps;   ///< over all contacts in a substep, 1 to 64; default 4. More let stacks lie stiller.
-    uint32_t capacity; ///< pairs of a point and a spring that may be near each other, at most 2^26; default 0: 4096,
-                       ///< two for each particle and eight for each one of the outline
+    uint32_t sweeps;   ///< over all contacts in a substep, 1 to 64; default 4. With more, stacks lie stiller.
+    uint32_t capacity; ///< pairs of a point and a spring that may be near each other, at most 2^26; default 0: 4096
+                       ///< + 2 for each particle + 8 for each particle of the outline
     uint32_t reserved; ///< 0
 } mspring_contact_def;
 
@@ -817,11 +820,11 @@ typedef struct mspring_contact_def {
 /// @threads any   @allocates never   @errors ARGUMENT, STRUCT
 MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact_def *def, size_t size);
 
-/// Let the bodies of a network collide, instead of the contact that it has.
-/// A body is a set of particles that springs connect. Its outline are all springs that have a free side, and particles
-/// without springs. Ropes and trusses are all outline. Particles of the outline keep a distance of thickness from the
-/// springs of the outline. Particles that one spring joins, or two, do not collide with each other's springs. The
-/// outline follows breaks, additions and removals. The guide examples/guides/contact.md describes what holds.
+/// Let the bodies of a network collide. This replaces the contact that it has.
+/// A body is a component. The outline of the network is all springs with a free side, and particles without springs.
+/// Ropes and trusses are all outline. Particles of the outline, its points, keep the distance thickness from its
+/// springs. If one spring or two in a row join two particles, neither collides with the other's springs. The outline
+/// follows breaks, additions and removals. The guide examples/guides/contact.md has the guarantees.
 ///
 /// Which side of a spring is free follows from the positions at this call, and from those at which particles were added
 /// later. So set contact before the network deforms. Overlaps at the start are pushed apart. Springs that cross at the
@@ -885,7 +888,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_contac
 /// mass M at the angular frequency w without overshoot, use stiffness = M w^2 and damping = 2 M w.
 typedef struct mspring_grip_def {
     uint32_t struct_size;
-    mspring_id particle; ///< default MSPRING_NONE: give one
+    mspring_id particle; ///< default MSPRING_NONE: set it
     double x, y;         ///< target, world position, m, at most MSPRING_MAX_COORDINATE in size; default 0
     float stiffness;     ///< N/m, 0 to 1e30; default 0
     float damping;       ///< N s/m, 0 to 1e30; default 0
@@ -899,7 +902,7 @@ MSPRING_API mspring_result MSPRING_CALL mspring_grip_def_init(mspring_grip_def *
 
 /// Hold a particle with a grip, change what it does, or let go.
 /// A new grip begins with its target at rest. If the grip holds the same particle already, its target moves as by
-/// mspring_network_move_grip(). The particle's island wakes.
+/// mspring_network_move_grip(). The particle's component wakes.
 ///
 /// A pinned particle does not feel a grip. A particle that is removed is let go. Snapshots and clones have the grips.
 /// mspring_network_settle() leaves them out. While a grip acts, the explicit solver takes substeps one by one, as with
@@ -915,7 +918,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_gr
 
 /// Move the target of a grip.
 /// In the next step the target goes there in a straight line. It rests from then on.
-/// @param x, y  world position, m, at most MSPRING_MAX_COORDINATE in size
+/// @param number  as of mspring_network_set_grip()
+/// @param x, y    world position, m, at most MSPRING_MAX_COORDINATE in size
 /// @threads exclusive   @allocates never   @errors ARGUMENT also for a grip that holds nothing; BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_move_grip(
     mspring_network *network, uint32_t number, double x, double y);
@@ -957,18 +961,18 @@ enum {
 typedef struct mspring_collider_def {
     uint32_t struct_size;
     mspring_collider_kind kind; ///< default MSPRING_COLLIDER_CHAIN
-    double x, y;                ///< position, m, world coordinates, at most MSPRING_MAX_COORDINATE; default 0
+    double x, y;                ///< position, m, world coordinates, at most MSPRING_MAX_COORDINATE in size; default 0
     double angle;               ///< rad, counterclockwise around the position, at most 1e6 in size; default 0
     double width, height;       ///< of a box, m, > 0, at most MSPRING_MAX_COORDINATE; default 1
     /// Of a circle, m, > 0, at most MSPRING_MAX_COORDINATE. Chains and boxes are this much thicker, and rounded; 0 is
-    /// allowed for them. Default 0.
+    /// allowed for them. Default 0: set it for a circle.
     double radius;
-    const double *points; ///< [point_count][2] of a chain, m, before it is turned by the angle and put at its position
+    const double *points; ///< [point_count][2]: x, y of a chain's points, m, relative to its position, before the turn
     void *reserved_pointer; ///< NULL
-    uint32_t point_count;   ///< 2 to MSPRING_MAX_COLLIDER_POINTS, at least 3 if it is closed; 0 for boxes and circles
+    uint32_t point_count;   ///< of a chain 2 (closed 3) to MSPRING_MAX_COLLIDER_POINTS; else 0, the default
     uint32_t flags;         ///< MSPRING_COLLIDER_CLOSED or 0, the default
     float friction;         ///< of what touches it, instead of the contact's, 0 to 1e6; default 0
-    float restitution;      ///< likewise, 0 to 1; default 0
+    float restitution;      ///< the same, 0 to 1; default 0
     uint32_t groups, masks; ///< bits, as of mspring_network_set_contact_groups(); default 1 and 0xffffffff
 } mspring_collider_def;
 
@@ -979,8 +983,8 @@ MSPRING_API mspring_result MSPRING_CALL mspring_collider_def_init(mspring_collid
 /// Add a collider.
 /// Bodies keep the contact's thickness from it. Nothing passes it, from either side: boxes and closed chains are walls
 /// around a space, and what lies inside stays inside. Sides may cross. Colliders do not touch each other. Their mass is
-/// infinite. The contact's sweeps and push_speed are theirs, too. The guide examples/guides/contact.md describes what
-/// holds.
+/// infinite. The contact's sweeps and push_speed are theirs, too. The guide examples/guides/contact.md has the
+/// guarantees.
 ///
 /// Colliders need contact, so they need the explicit solver. If only colliders are to touch particles, set groups and
 /// masks by which particles do not touch each other.
@@ -1000,9 +1004,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_remove
     mspring_network *network, mspring_id collider);
 
 /// Set where a collider is to be at the end of the next step.
-/// In that step it moves and turns at an even speed, and pushes what is in its way. It is there once the step is taken,
-/// and stands still from then on. If the step fails, the collider has not moved, and goes on to wait for it. A collider
-/// that moves wakes the bodies it comes to, and none falls asleep on it.
+/// In that step it moves and turns at an even speed, and pushes bodies in its way. From then on it stands still. If the
+/// step fails, the collider has not moved, and the next step moves it. A moving collider wakes the bodies it comes to,
+/// and none falls asleep on it.
 /// @param x, y, angle  as in mspring_collider_def. An angle of more than half a turn away makes it spin: it goes the
 ///                     whole way.
 /// @threads exclusive   @allocates never   @since 0.2   @errors ID, ARGUMENT (also without contact), BUSY
@@ -1010,8 +1014,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_move_c
     mspring_network *network, mspring_id collider, double x, double y, double angle);
 
 /// Put a collider somewhere else at once.
-/// It touches nothing on its way. What it overlaps there is pushed apart. What it lies across stays so. A move that was
-/// set is dropped. All bodies wake.
+/// It touches nothing on its way. A body that it overlaps there is pushed apart from it. A body that it lies across
+/// stays so. A move that was set is dropped. All bodies wake.
+/// @param x, y, angle  as in mspring_collider_def
 /// @threads exclusive   @allocates never   @since 0.2   @errors ID, ARGUMENT (also without contact), BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_place_collider(
     mspring_network *network, mspring_id collider, double x, double y, double angle);
@@ -1023,9 +1028,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_place_
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_collider(
     const mspring_network *network, mspring_id collider, mspring_collider_def *def);
 
-/// Read what bodies gave to a collider in the last step.
-/// A rigid body with this shape gets its motion by them: its momentum changes by the impulse, its spin around its
-/// position by the angular one. Both momenta of the whole are kept then. Bodies that sleep give nothing.
+/// Read the impulses that bodies gave to a collider in the last step.
+/// To move the collider as a rigid body, add the impulse to its momentum, and the angular impulse to its angular
+/// momentum around its position. Both totals are then conserved. Bodies that sleep give nothing.
 /// @param x, y     impulse, N s
 /// @param angular  angular impulse around the position at the end of the step, N m s, counterclockwise
 /// @threads shared   @allocates never   @since 0.2   @errors ID, ARGUMENT (also without contact)
