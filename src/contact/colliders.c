@@ -142,8 +142,7 @@ static void renew(mspring_network *network) {
     mspringi_changed(network, MSPRINGI_CHANGED_CONTACT, 0);
 }
 
-/* ---------------------------------------------------------------------------------------------- adding, removing
- */
+/* --------------------------------------------------------------------------------------------- adding, removing */
 
 static mspring_result make_room(mspring_network *network, uint32_t points) {
     const mspringi_colliders *all = &network->pairs->colliders;
@@ -263,28 +262,32 @@ mspring_result mspring_network_remove_collider(mspring_network *network, mspring
 
 /* ------------------------------------------------------------------------------------------------------- moving */
 
+// Find a collider and give it a target.
+static mspring_result aim_at(mspring_network *network, mspring_id collider, mspringi_pose target,
+                             mspringi_collider **found) {
+    mspring_result result = find_or_fail(network, collider, found);
+    if (result == MSPRING_OK)
+        result = check_pose(target.x, target.y, target.angle, &network->message);
+    if (result == MSPRING_OK)
+        (*found)->target = target;
+    return result;
+}
+
 mspring_result mspring_network_move_collider(mspring_network *network, mspring_id collider, double x, double y,
                                              double angle) {
     mspringi_collider *c;
-    mspring_result result = find_or_fail(network, collider, &c);
+    const mspring_result result = aim_at(network, collider, (mspringi_pose){x, y, angle}, &c);
     if (result == MSPRING_OK)
-        result = check_pose(x, y, angle, &network->message);
-    if (result != MSPRING_OK)
-        return result;
-    c->target = (mspringi_pose){x, y, angle};
-    c->is_moving = x != c->def.x || y != c->def.y || angle != c->def.angle;
-    return MSPRING_OK;
+        c->is_moving = x != c->def.x || y != c->def.y || angle != c->def.angle;
+    return result;
 }
 
 mspring_result mspring_network_place_collider(mspring_network *network, mspring_id collider, double x, double y,
                                               double angle) {
     mspringi_collider *c;
-    mspring_result result = find_or_fail(network, collider, &c);
-    if (result == MSPRING_OK)
-        result = check_pose(x, y, angle, &network->message);
+    const mspring_result result = aim_at(network, collider, (mspringi_pose){x, y, angle}, &c);
     if (result != MSPRING_OK)
         return result;
-    c->target = (mspringi_pose){x, y, angle};
     c->is_moving = false;
     c->def.x = x;
     c->def.y = y;
