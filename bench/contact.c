@@ -9,6 +9,7 @@
 
 #include "modes.h"
 
+#include <massspring/massspring_contact.h>
 #include <massspring/massspring_tools.h>
 
 #define SUBSTEPS 40

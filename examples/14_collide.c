@@ -4,7 +4,7 @@
 /// SPDX-License-Identifier: MIT
 #include "common/show.h"
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring_contact.h>
 #include <stdio.h>
 
 enum { COLUMNS = 48, ROWS = 5, BLOCK = 10, STEPS = 96 };

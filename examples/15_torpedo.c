@@ -4,6 +4,7 @@
 /// SPDX-License-Identifier: MIT
 #include "common/show.h"
 
+#include <massspring/massspring_contact.h>
 #include <massspring/massspring_tools.h>
 #include <math.h>
 #include <stdio.h>

@@ -9,7 +9,9 @@ source=$1 work=$2
 mkdir -p "$work"
 cd "$work"
 {
-  echo '#include <massspring/massspring_tools.h>'
+  for header in "$source"/include/massspring/*.h; do
+    echo "#include <massspring/$(basename "$header")>"
+  done
   # A struct that is used is laid out, and then -Wpadded sees it.
   sed -n 's/^typedef struct \(mspring_[a-z_]*\) {$/extern int size_of_\1[sizeof(\1)];/p' "$source"/include/massspring/*.h
 } >headers.c
@@ -49,10 +51,10 @@ else
 fi
 
 if python3 -c 'import cffi' 2>/dev/null; then
-  # The whole of both headers, in four lines.
+  # The whole of all headers, in four lines.
   python3 - "$source" <<'END'
 import cffi, re, subprocess, sys
-text = "".join(open(f"{sys.argv[1]}/include/massspring/{name}.h").read() for name in ("export", "massspring", "massspring_tools"))
+text = "".join(open(f"{sys.argv[1]}/include/massspring/{name}.h").read() for name in ("export", "massspring", "massspring_contact", "massspring_tools"))
 flat = subprocess.run(["cc", "-E", "-P", "-DMSPRING_API=", "-DMSPRING_NODISCARD=", "-"], text=True, check=True,
                       input=re.sub('#include.*|__attribute__.*', '', text), capture_output=True).stdout
 ffi = cffi.FFI()
@@ -66,7 +68,7 @@ else
 fi
 
 if command -v bindgen >/dev/null; then
-  bindgen "$source/include/massspring/massspring_tools.h" -o headers.rs -- -I"$source/include" 2>bindgen.says
+  bindgen headers.c -o headers.rs -- -I"$source/include" 2>bindgen.says
   # Types and constants of enums are the same, and signed; functions and fields have these types.
   grep -q 'pub const mspring_solver_MSPRING_SOLVER_IMPLICIT: mspring_solver = 1;' headers.rs
   grep -q 'pub type mspring_solver = ::std::os::raw::c_int;' headers.rs

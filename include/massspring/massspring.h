@@ -46,8 +46,8 @@
 ///     measure     network_energy, _momentum, _bounds
 ///     snapshots   network_snapshot_size, _save, _load
 ///
-/// massspring_tools.h has the rest: ropes, meshes, clones, hooks, queries, contact, grips, colliders, stability limits,
-/// equilibrium, tuning and compaction. See examples/guides for solvers, floor, contact, grips, sleep and edits.
+/// massspring_contact.h has contact between bodies, colliders and grips. massspring_tools.h has the rest: ropes, meshes,
+/// clones, hooks, queries, stability limits, equilibrium, tuning and compaction. See examples/guides.
 ///
 /// **Words.** A slot is an index into the arrays of a view; an id is another number. A hook is a function of yours that
 /// steps call. A component is all particles that unbroken springs connect, or a lone one. The plan is how a network

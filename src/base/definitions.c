@@ -1,6 +1,7 @@
 /// The defaults of every public definition.
 #include <math.h>
 
+#include <massspring/massspring_contact.h>
 #include <massspring/massspring_tools.h>
 
 #include "base/definitions.h"

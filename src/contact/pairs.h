@@ -19,7 +19,7 @@
 #ifndef MSPRINGI_PAIRS_H
 #define MSPRINGI_PAIRS_H
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring_contact.h>
 
 #include "store/network.h"
 

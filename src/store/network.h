@@ -5,6 +5,8 @@
 #ifndef MSPRINGI_NETWORK_H
 #define MSPRINGI_NETWORK_H
 
+#include <massspring/massspring_contact.h>
+
 #include "base/assert.h"
 #include "kernels/kernels.h"
 #include "layout/topology.h"

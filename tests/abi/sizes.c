@@ -5,6 +5,7 @@
 /// and what an old program left there is never read.
 ///
 /// SPDX-License-Identifier: MIT
+#include <massspring/massspring_contact.h>
 #include <massspring/massspring_tools.h>
 
 #define SIZE(type, on_64_bits, on_32_bits)                                                                         \

@@ -13,6 +13,7 @@
 #include <setjmp.h>
 
 #include <cmocka.h>
+#include <massspring/massspring_contact.h>
 #include <massspring/massspring_tools.h>
 
 #define COUNT_OF(array) (sizeof(array) / sizeof((array)[0]))

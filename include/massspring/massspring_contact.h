@@ -1,0 +1,270 @@
+/// @file massspring_contact.h
+/// Bodies that meet: contact between bodies, colliders of the host, and grips.
+///
+///     contact     network_set_contact, _get_contact, _set_contact_groups, _contact_info; contact_def_init
+///     colliders   network_add_collider, _remove_collider, _move_collider, _place_collider, _get_collider,
+///                 _get_collider_impulse; collider_def_init
+///     grips       network_set_grip, _move_grip, _get_grip, _get_grip_impulse; grip_def_init
+///
+/// These calls are not frozen yet: a later minor version may change them. massspring.h explains the notation. The floor
+/// is part of massspring.h.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MASSSPRING_MASSSPRING_CONTACT_H
+#define MASSSPRING_MASSSPRING_CONTACT_H
+
+#include "massspring.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ------------------------------------------------------------------------------------------------------- contact */
+
+/// Flags of mspring_contact_def.
+enum {
+    MSPRING_CONTACT_SELF = 1u << 0 ///< a body touches itself, too; else only other bodies
+};
+
+/// Contact between bodies, and of a body with itself. Fill with mspring_contact_def_init() first.
+typedef struct mspring_contact_def {
+    uint32_t struct_size;
+    uint32_t flags; ///< MSPRING_CONTACT_SELF or 0; default MSPRING_CONTACT_SELF
+    /// Distance (m) that points keep from springs, > 0, at most 1e6. With MSPRING_CONTACT_SELF at most 0.9 of the
+    /// shortest rest length at creation. Default 0: half of that length; without springs, set another.
+    double thickness;
+    float friction;    ///< of bodies that slide (Coulomb), 0 to 1e6; default 0
+    float restitution; ///< speed across the contact after it over that before, 0 to 1; default 0
+    float push_speed;  ///< overlaps are pushed apart at this speed at most, m/s, 0 to 1e6; default 3
+    uint32_t sweeps;   ///< over all contacts in a substep, 1 to 64; default 4. With more, stacks lie stiller.
+    uint32_t capacity; ///< pairs of a point and a spring that may be near each other, at most 2^26; default 0: 4096
+                       ///< + 2 for each particle + 8 for each particle of the outline
+    uint32_t reserved; ///< 0
+} mspring_contact_def;
+
+/// Fill a definition with its defaults, as mspring_network_def_init().
+/// @threads any   @allocates never   @errors ARGUMENT, STRUCT
+MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact_def *def, size_t size);
+
+/// Let the bodies of a network collide. This replaces the contact that it has.
+/// A body is a component. The outline of the network is all springs with a free side, and particles without springs.
+/// Ropes and trusses are all outline. Particles of the outline, its points, keep the distance thickness from its
+/// springs. If one spring or two in a row join two particles, neither collides with the other's springs. The outline
+/// follows breaks, additions and removals. The guide examples/guides/contact.md has the guarantees.
+///
+/// Which side of a spring is free follows from the positions at this call, and from those at which particles were added
+/// later. So set contact before the network deforms. Overlaps at the start are pushed apart. Springs that cross at the
+/// start stay crossed.
+///
+/// Contact needs the explicit solver; clamped steps (MSPRING_GUARD_CLAMP) have it, too. While it is set, the network
+/// rejects the implicit and the direct solver and MSPRING_GUARD_IMPLICIT. A network that has them rejects contact.
+/// mspring_network_tune() and mspring_network_settle() leave contact out.
+///
+/// Snapshots leave contact as it is, as they leave the floor. They hold the outline's shape only. Before you load one,
+/// set the same contact and the same groups. Then the next steps have the same bits.
+///
+/// If more than capacity pairs are near each other, a step fails with MSPRING_ERROR_LIMIT and is rolled back.
+/// @param def  copied; NULL: no contact, the default. Groups of particles and colliders of the host are forgotten.
+/// @threads exclusive   @allocates yes; about 500 bytes for a particle, 1200 more for one of the outline, 40 for a
+///          spring   @errors ARGUMENT (the message names field or solver), STRUCT, MEMORY, BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_contact(
+    mspring_network *network, const mspring_contact_def *def);
+
+/// Read the contact. Set struct_size first.
+/// Without contact capacity is 0. With it, thickness and capacity are those in use.
+/// @threads shared   @allocates never   @errors ARGUMENT, STRUCT
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_contact(
+    const mspring_network *network, mspring_contact_def *def);
+
+/// Set which particles may touch each other.
+/// Two particles may if each one's group has a bit of the other's mask. A spring may touch what both its ends may.
+/// All have group 1 and mask 0xffffffff at first.
+/// @param first, count  particles first ... first + count - 1, of which those that were removed are left out
+/// @param groups, masks  bits, for all of them
+/// @threads exclusive   @allocates never   @errors ID, ARGUMENT (also without contact), BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_contact_groups(
+    mspring_network *network, mspring_id first, uint32_t count, uint32_t groups, uint32_t masks);
+
+/// Report of contact in the last step. Set struct_size first.
+typedef struct mspring_contact_info {
+    uint32_t struct_size;
+    uint32_t edges;    ///< of the outline: springs with a free side, and particles without springs
+    uint32_t points;   ///< of the outline
+    uint32_t pairs;    ///< pairs of a point and an edge that are looked at
+    uint32_t touching; ///< pairs that pushed each other in a substep of the step, at most; 0: nothing touched
+    uint32_t reserved; ///< 0
+    double deepest;    ///< largest overlap in the step, m; 0 if there was none
+} mspring_contact_info;
+
+/// Read the report of contact. Without contact, and before the first step with it, all numbers are 0.
+/// @threads shared   @allocates never   @errors ARGUMENT, STRUCT
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_contact_info(
+    const mspring_network *network, mspring_contact_info *info);
+
+/* ----------------------------------------------------------------------------------------------------- colliders */
+
+/// Most points of a chain.
+#define MSPRING_MAX_COLLIDER_POINTS 0x10000u
+
+/// Shapes of colliders.
+typedef enum mspring_collider_kind {
+    MSPRING_COLLIDER_CHAIN = 0,             ///< straight sides from point to point
+    MSPRING_COLLIDER_BOX = 1,               ///< a rectangle around its position
+    MSPRING_COLLIDER_CIRCLE = 2,            ///< a circle around its position
+    MSPRING_COLLIDER_INT = MSPRING_ENUM_INT ///< no value
+} mspring_collider_kind;
+
+/// Flags of mspring_collider_def.
+enum {
+    MSPRING_COLLIDER_CLOSED = 1u << 0 ///< a side joins the last point of a chain to the first
+};
+
+/// A collider: a shape that the host owns and moves, and that bodies collide with. Fill with
+/// mspring_collider_def_init() first. Half-planes and fields of heights are mspring_floor_def's.
+typedef struct mspring_collider_def {
+    uint32_t struct_size;
+    mspring_collider_kind kind; ///< default MSPRING_COLLIDER_CHAIN
+    double x, y;                ///< position, m, world coordinates, at most MSPRING_MAX_COORDINATE in size; default 0
+    double angle;               ///< rad, counterclockwise around the position, at most 1e6 in size; default 0
+    double width, height;       ///< of a box, m, > 0, at most MSPRING_MAX_COORDINATE; default 1
+    /// Of a circle, m, > 0, at most MSPRING_MAX_COORDINATE. Chains and boxes are this much thicker, and rounded; 0 is
+    /// allowed for them. Default 0: set it for a circle.
+    double radius;
+    const double *points; ///< [point_count][2]: x, y of a chain's points, m, relative to its position, before the turn
+    void *reserved_pointer; ///< NULL
+    uint32_t point_count;   ///< of a chain 2 (closed 3) to MSPRING_MAX_COLLIDER_POINTS; else 0, the default
+    uint32_t flags;         ///< MSPRING_COLLIDER_CLOSED or 0, the default
+    float friction;         ///< of what touches it, instead of the contact's, 0 to 1e6; default 0
+    float restitution;      ///< the same, 0 to 1; default 0
+    uint32_t groups, masks; ///< bits, as of mspring_network_set_contact_groups(); default 1 and 0xffffffff
+} mspring_collider_def;
+
+/// Fill a definition with its defaults, as mspring_network_def_init().
+/// @threads any   @allocates never   @errors ARGUMENT, STRUCT
+MSPRING_API mspring_result MSPRING_CALL mspring_collider_def_init(mspring_collider_def *def, size_t size);
+
+/// Add a collider.
+/// Bodies keep the contact's thickness from it. Nothing passes it, from either side: boxes and closed chains are walls
+/// around a space, and what lies inside stays inside. Sides may cross. Colliders do not touch each other. Their mass is
+/// infinite. The contact's sweeps and push_speed are theirs, too. The guide examples/guides/contact.md has the
+/// guarantees.
+///
+/// Colliders need contact, so they need the explicit solver. If only colliders are to touch particles, set groups and
+/// masks by which particles do not touch each other.
+///
+/// Snapshots leave colliders out, as they leave the floor. Before you load one, add the same colliders and place them.
+/// Clones have them. All bodies wake.
+/// @param def       copied, with its points
+/// @param collider  receives its id, which no other collider of the contact gets; may be NULL
+/// @threads exclusive   @allocates yes; 2 to 4 kB for a point   @since 0.2   @errors ARGUMENT (also without
+///          contact), STRUCT, MEMORY, BUSY, LIMIT for more than 0x1000000 points in all
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_add_collider(
+    mspring_network *network, const mspring_collider_def *def, mspring_id *collider);
+
+/// Remove a collider. All bodies wake.
+/// @threads exclusive   @allocates never   @since 0.2   @errors ID, ARGUMENT without contact, BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_remove_collider(
+    mspring_network *network, mspring_id collider);
+
+/// Set where a collider is to be at the end of the next step.
+/// In that step it moves and turns at an even speed, and pushes bodies in its way. From then on it stands still. If the
+/// step fails, the collider has not moved, and the next step moves it. A moving collider wakes the bodies it comes to,
+/// and none falls asleep on it.
+/// @param x, y, angle  as in mspring_collider_def. An angle of more than half a turn away makes it spin: it goes the
+///                     whole way.
+/// @threads exclusive   @allocates never   @since 0.2   @errors ID, ARGUMENT (also without contact), BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_move_collider(
+    mspring_network *network, mspring_id collider, double x, double y, double angle);
+
+/// Put a collider somewhere else at once.
+/// It touches nothing on its way. A body that it overlaps there is pushed apart from it. A body that it lies across
+/// stays so. A move that was set is dropped. All bodies wake.
+/// @param x, y, angle  as in mspring_collider_def
+/// @threads exclusive   @allocates never   @since 0.2   @errors ID, ARGUMENT (also without contact), BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_place_collider(
+    mspring_network *network, mspring_id collider, double x, double y, double angle);
+
+/// Read a collider. Set struct_size first.
+/// Position and angle are those of now. points leads to the network's copy, valid until a collider is added or removed
+/// or contact is set.
+/// @threads shared   @allocates never   @since 0.2   @errors ID, ARGUMENT without contact, STRUCT
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_collider(
+    const mspring_network *network, mspring_id collider, mspring_collider_def *def);
+
+/// Read the impulses that bodies gave to a collider in the last step.
+/// To move the collider as a rigid body, add the impulse to its momentum, and the angular impulse to its angular
+/// momentum around its position. Both totals are then conserved. Bodies that sleep give nothing.
+/// @param x, y     impulse, N s
+/// @param angular  angular impulse around the position at the end of the step, N m s, counterclockwise
+/// @threads shared   @allocates never   @since 0.2   @errors ID, ARGUMENT (also without contact)
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_collider_impulse(
+    const mspring_network *network, mspring_id collider, double *x, double *y, double *angular);
+
+/* --------------------------------------------------------------------------------------------------------- grips */
+
+/// Grips that a network can have at a time.
+#define MSPRING_MAX_GRIPS 16u
+
+/// A soft hold of a particle, as of a mouse or a finger. Fill with mspring_grip_def_init() first.
+///
+/// The grip pulls the particle with the force
+///     F = stiffness (target - p) + damping (velocity of the target - v),    |F| <= max_force
+/// at the end of each substep (implicit Euler). So it is stable with any stiffness, dt and solver. To hold a body of
+/// mass M at the angular frequency w without overshoot, use stiffness = M w^2 and damping = 2 M w.
+typedef struct mspring_grip_def {
+    uint32_t struct_size;
+    mspring_id particle; ///< default MSPRING_NONE: set it
+    double x, y;         ///< target, world position, m, at most MSPRING_MAX_COORDINATE in size; default 0
+    float stiffness;     ///< N/m, 0 to 1e30; default 0
+    float damping;       ///< N s/m, 0 to 1e30; default 0
+    float max_force;     ///< N, 0 to MSPRING_NEVER; default MSPRING_NEVER: no bound
+    uint32_t reserved;   ///< 0
+} mspring_grip_def;
+
+/// Fill a definition with its defaults, as mspring_network_def_init().
+/// @threads any   @allocates never   @errors ARGUMENT, STRUCT
+MSPRING_API mspring_result MSPRING_CALL mspring_grip_def_init(mspring_grip_def *def, size_t size);
+
+/// Hold a particle with a grip, change what it does, or let go.
+/// A new grip begins with its target at rest. If the grip holds the same particle already, its target moves as by
+/// mspring_network_move_grip(). The particle's component wakes.
+///
+/// A pinned particle does not feel a grip. A particle that is removed is let go. Snapshots and clones have the grips.
+/// mspring_network_settle() leaves them out. While a grip acts, the explicit solver takes substeps one by one, as with
+/// hooks.
+///
+/// The target may be far away. Then a stiff grip without max_force throws the particle, as a stiff spring would. The
+/// guide examples/guides/grips.md has the details.
+/// @param number  0 to MSPRING_MAX_GRIPS - 1, chosen by the host
+/// @param def     copied; NULL lets go, also if the grip holds nothing
+/// @threads exclusive   @allocates never   @errors ARGUMENT (the message names the field), ID, STRUCT, BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_grip(
+    mspring_network *network, uint32_t number, const mspring_grip_def *def);
+
+/// Move the target of a grip.
+/// In the next step the target goes there in a straight line. It rests from then on.
+/// @param number  as of mspring_network_set_grip()
+/// @param x, y    world position, m, at most MSPRING_MAX_COORDINATE in size
+/// @threads exclusive   @allocates never   @errors ARGUMENT also for a grip that holds nothing; BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_move_grip(
+    mspring_network *network, uint32_t number, double x, double y);
+
+/// Read a grip. Set struct_size first.
+/// The target is the one given last. The particle of a grip that holds nothing is MSPRING_NONE.
+/// @threads shared   @allocates never   @errors ARGUMENT, STRUCT
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_grip(
+    const mspring_network *network, uint32_t number, mspring_grip_def *def);
+
+/// Read the impulse (N s) that a grip gave its particle in the last step.
+/// It is the sum of force times substep, and at most max_force times dt. While the particle sleeps, it is that of the
+/// last step before. The impulse of a grip that holds nothing is 0.
+/// @param x, y  receive the impulse
+/// @threads shared   @allocates never   @errors ARGUMENT
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_grip_impulse(
+    const mspring_network *network, uint32_t number, double *x, double *y);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
