@@ -5,6 +5,7 @@
 #include "common/show.h"
 
 #include <massspring/massspring_contact.h>
+#include <massspring/massspring_tools.h>
 #include <stdio.h>
 
 enum { COLUMNS = 48, ROWS = 5, BLOCK = 10, STEPS = 96 };
