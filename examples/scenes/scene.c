@@ -93,6 +93,7 @@ void scene_free(scene *unwanted) {
         return;
     mspring_builder_destroy(unwanted->builder);
     free(unwanted->break_strain);
+    free(unwanted->velocity);
     memset(unwanted, 0, sizeof *unwanted);
     unwanted->probe = MSPRING_NONE;
 }

@@ -28,6 +28,7 @@ typedef struct scene {
     mspring_builder *builder;
     mspring_id probe;    ///< the particle whose drop is the bending, or MSPRING_NONE
     float *break_strain; ///< [springs] strain at which each breaks, 0: never; NULL if none ever does
+    float *velocity;     ///< [particles][2] at first, m/s; NULL if all rest
 } scene;
 
 /// What the springs of a scene are like. Fill with scene_options_default().
@@ -62,6 +63,17 @@ bool scene_wheel(uint32_t columns, uint32_t rows, const scene_options *options, 
 /// A hanging rope: a horizontal chain of particles (at least 3), both ends pinned, the probe in its middle.
 /// "rope_<particles>".
 bool scene_rope(uint32_t particles, const scene_options *options, scene *out, scene_error *error);
+
+/* meeting.c: bodies for contact, whose outlines keep 0.5 m apart */
+
+/// Two hollow ships that sail at each other, without probe, for a network without gravity. "ships".
+bool scene_ships(const scene_options *options, scene *out, scene_error *error);
+
+/// Fragments of 1 to 20 particles and of masses 1:30 above a pit of pinned particles. No probe. "pile_<fragments>".
+bool scene_pile(uint32_t fragments, const scene_options *options, scene *out, scene_error *error);
+
+/// Soft discs above such a pit; mass, stiffness and damping are their own. No probe. "jellies_<jellies>".
+bool scene_jellies(uint32_t jellies, const scene_options *options, scene *out, scene_error *error);
 
 /* random_graph.c */
 
