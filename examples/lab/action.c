@@ -67,6 +67,7 @@ static const action_def defs[ACTION_KINDS] = {
     [ACTION_RELATIVE] = {"relative", "stiffness as a fraction of what an explicit substep bears", {SWITCH}},
     [ACTION_BREAKING] = {"breaking", "whether springs break that are stretched too far", {SWITCH}},
     [ACTION_FLOOR] = {"floor", "whether there is one, below the scene", {SWITCH}},
+    [ACTION_COLLIDE] = {"collide", "whether bodies meet each other and themselves (explicit solver)", {SWITCH}},
     [ACTION_GRIP] = {"grip", "how hard particles are pulled, 1/s", {NUMBER("RATE", 1, 100)}},
     [ACTION_GRAB] = {"grab", "take hold of the particles around a place", {PLACE, NUMBER("RADIUS", 0, 1e6)}},
     [ACTION_PULL] = {"pull", "them to another place", {PLACE}},

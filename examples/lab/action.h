@@ -29,6 +29,7 @@ typedef enum action_kind {
     ACTION_RELATIVE,   ///< off, on
     ACTION_BREAKING,   ///< off, on
     ACTION_FLOOR,      ///< off, on
+    ACTION_COLLIDE,    ///< off, on
     ACTION_GRIP,       ///< 1/s: how hard the mouse pulls
     ACTION_GRAB,       ///< x, y, radius
     ACTION_PULL,       ///< x, y

@@ -4,6 +4,7 @@
 /// SPDX-License-Identifier: MIT
 #include "lab/controller.h"
 #include "lab/keys.h"
+#include "lab/ready.h"
 #include "lab/tint.h"
 
 #include <math.h>
@@ -71,10 +72,10 @@ static void toggle_pin(lab_controller *controller, const lab_model *model, doubl
 
 static void next_scene(lab_controller *controller, const lab_model *model) {
     int next = 0;
-    for (int i = 0; i < STAGE_READY_COUNT; i++)
-        if (strcmp(model->scene_name, stage_ready_names[i]) == 0)
-            next = (i + 1) % STAGE_READY_COUNT;
-    const lab_action action = action_of_text(ACTION_SCENE, stage_ready_names[next]);
+    for (int i = 0; i < READY_COUNT; i++)
+        if (strcmp(model->scene_name, ready_scenes[i].name) == 0)
+            next = (i + 1) % READY_COUNT;
+    const lab_action action = action_of_text(ACTION_SCENE, ready_scenes[next].name);
     controller->perform(&action, controller->user);
 }
 

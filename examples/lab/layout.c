@@ -3,6 +3,7 @@
 ///
 /// SPDX-License-Identifier: MIT
 #include "lab/layout.h"
+#include "lab/ready.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -87,16 +88,16 @@ static void add_playing(control_stack *stack, const lab_model *model) {
     if (!which)
         return;
     int now = -1;
-    for (int i = 0; i < STAGE_READY_COUNT; i++)
-        if (strcmp(model->scene_name, stage_ready_names[i]) == 0)
+    for (int i = 0; i < READY_COUNT; i++)
+        if (strcmp(model->scene_name, ready_scenes[i].name) == 0)
             now = i;
-    const int before = now < 0 ? 0 : (now + STAGE_READY_COUNT - 1) % STAGE_READY_COUNT;
+    const int before = now < 0 ? 0 : (now + READY_COUNT - 1) % READY_COUNT;
     which[0].box.width = which[2].box.width = 30;
     which[1].box.x = which[0].box.x + 34;
     which[1].box.width = stack->width - 68;
     which[2].box.x = which[1].box.x + which[1].box.width + 4;
-    which[0].action = action_of_text(ACTION_SCENE, stage_ready_names[before]);
-    which[2].action = action_of_text(ACTION_SCENE, stage_ready_names[(now + 1) % STAGE_READY_COUNT]);
+    which[0].action = action_of_text(ACTION_SCENE, ready_scenes[before].name);
+    which[2].action = action_of_text(ACTION_SCENE, ready_scenes[(now + 1) % READY_COUNT].name);
     which[1].label = model->stage.made.name;
     which[1].action = number(ACTION_RESET, 0);
     lab_control *play = add_buttons(stack, 4, play_labels);
@@ -112,7 +113,7 @@ static void add_playing(control_stack *stack, const lab_model *model) {
 
 static void add_physics(control_stack *stack, const lab_model *model) {
     const lab_settings *now = &model->settings;
-    static const char *const toggles[] = {"relative", "breaking", "floor"};
+    static const char *const toggles[2][2] = {{"relative", "breaking"}, {"floor", "collide"}};
     add_slider(stack, "gravity", number(ACTION_GRAVITY, now->gravity), 0, 0, 30, false, "%.1f m/s^2", now->gravity);
     add_slider(stack, "mass", number(ACTION_MASS, now->mass), 0, 0.1, 10, true, "x %.2f", now->mass);
     if (model->stage.relative)
@@ -124,15 +125,15 @@ static void add_physics(control_stack *stack, const lab_model *model) {
     add_slider(stack, "damping", number(ACTION_DAMPING, now->damping), 0, 0, 10, false, "x %.2f", now->damping);
     add_slider(stack, "air", number(ACTION_AIR, now->air), 0, 0, 4, false, "%.2f /s", now->air);
     add_slider(stack, "step", number(ACTION_DT, now->dt), 0, 1.0 / 512, 1.0 / 8, true, "%.2f ms", 1e3 * now->dt);
-    lab_control *toggle = add_buttons(stack, 3, toggles);
-    if (!toggle)
-        return;
-    toggle[0].is_on = model->stage.relative;
-    toggle[0].action = number(ACTION_RELATIVE, !model->stage.relative);
-    toggle[1].is_on = now->breaking;
-    toggle[1].action = number(ACTION_BREAKING, !now->breaking);
-    toggle[2].is_on = now->has_floor;
-    toggle[2].action = number(ACTION_FLOOR, !now->has_floor);
+    const bool is_on[2][2] = {{model->stage.relative, now->breaking}, {now->has_floor, now->collides}};
+    static const action_kind kinds[2][2] = {{ACTION_RELATIVE, ACTION_BREAKING}, {ACTION_FLOOR, ACTION_COLLIDE}};
+    for (int row = 0; row < 2; row++) {
+        lab_control *toggle = add_buttons(stack, 2, toggles[row]);
+        for (int i = 0; toggle && i < 2; i++) {
+            toggle[i].is_on = is_on[row][i];
+            toggle[i].action = number(kinds[row][i], !is_on[row][i]);
+        }
+    }
 }
 
 static void add_solver(control_stack *stack, const lab_model *model, int side) {

@@ -50,15 +50,16 @@ static bool make_sides(lab_side sides[2], int count, const lab_stage *stage, con
 
 // What a new scene begins with.
 static lab_settings settings_for(const lab_stage *stage) {
-    return (lab_settings){.gravity = 9.8,
+    return (lab_settings){.gravity = stage->gravity,
                           .mass = 1,
                           .stiffness = 1,
                           .damping = stage->has_damping ? 1 : 0,
                           .air = 0,
                           .dt = 1.0 / FRAMES_PER_SECOND,
                           .grip = 30,
-                          .breaking = false,
-                          .has_floor = !stage->has_pins};
+                          .breaking = stage->collides && stage->made.break_strain,
+                          .has_floor = !stage->has_pins && stage->gravity > 0,
+                          .collides = stage->collides};
 }
 
 static void begin_anew(lab_model *model) {
@@ -83,6 +84,15 @@ static void make_stable(lab_model *model) {
     }
 }
 
+// Contact needs explicit substeps. More of them show what they change.
+static void choose_solvers(const lab_model *model, const lab_stage *stage, lab_solver chosen[2]) {
+    for (int i = 0; i < 2; i++) {
+        chosen[i] = model->solvers[i];
+        if (stage->collides && chosen[i].solver != MSPRING_SOLVER_EXPLICIT)
+            chosen[i].solver = MSPRING_SOLVER_EXPLICIT, chosen[i].substeps = 60;
+    }
+}
+
 // Opens a scene on some sides, or leaves all as it is. keeps: settings, time and the state of the old networks.
 static bool open_scene(lab_model *model, const char *name, bool relative, int side_count, bool keeps,
                        scene_error *error) {
@@ -91,10 +101,12 @@ static bool open_scene(lab_model *model, const char *name, bool relative, int si
     if (!stage_open(&stage, name, relative, error))
         return false;
     const lab_settings settings = keeps ? model->settings : settings_for(&stage);
+    lab_solver solvers[2];
+    choose_solvers(model, &stage, solvers);
     // The sides keep the stage's address, which is to be the model's.
     lab_stage before = model->stage;
     model->stage = stage;
-    if (!make_sides(sides, side_count, &model->stage, &settings, model->solvers, error)) {
+    if (!make_sides(sides, side_count, &model->stage, &settings, solvers, error)) {
         model->stage = before;
         stage_free(&stage);
         return false;
@@ -108,6 +120,7 @@ static bool open_scene(lab_model *model, const char *name, bool relative, int si
     if (before.particle_count > 0)
         stage_free(&before);
     memcpy(model->sides, sides, sizeof sides);
+    memcpy(model->solvers, solvers, sizeof solvers);
     if (name != model->scene_name)
         snprintf(model->scene_name, sizeof model->scene_name, "%s", name);
     model->side_count = side_count;
@@ -170,6 +183,8 @@ static bool change_setting(lab_model *model, const lab_action *action, scene_err
         *places[action->kind] = action->values[0];
     else if (action->kind == ACTION_BREAKING)
         settings.breaking = action->values[0] != 0;
+    else if (action->kind == ACTION_COLLIDE)
+        settings.collides = action->values[0] != 0;
     else
         settings.has_floor = action->values[0] != 0;
     remember(model, action->kind, true);
@@ -282,7 +297,7 @@ static bool undo(lab_model *model) {
         snprintf(model->message, sizeof model->message, "nothing to undo");
         return true;
     }
-    if (!undo_pop(&model->undo, model->sides, &state))
+    if (!undo_pop(&model->undo, model->sides, &model->settings, &state))
         snprintf(model->message, sizeof model->message, "undo failed");
     model->settings = state.settings;
     memcpy(model->solvers, state.solvers, sizeof model->solvers);
@@ -353,6 +368,7 @@ bool model_do(lab_model *model, const lab_action *action, scene_error *error) {
     case ACTION_GRIP:
     case ACTION_BREAKING:
     case ACTION_FLOOR:
+    case ACTION_COLLIDE:
         return change_setting(model, action, error);
     case ACTION_GRAB:
     case ACTION_PIN:

@@ -6,6 +6,7 @@
 #include "common/clock.h"
 #include "scenes/internal.h"
 
+#include <massspring/massspring_contact.h>
 #include <massspring/massspring_tools.h>
 #include <math.h>
 #include <stdio.h>
@@ -125,6 +126,22 @@ static mspring_result set_floor(lab_side *side, bool has_floor) {
     return mspring_network_set_floor(side->network, has_floor ? &def : NULL);
 }
 
+static mspring_result set_contact(lab_side *side, bool collides) {
+    mspring_contact_def def;
+    mspring_contact_def_init(&def, sizeof def);
+    def.friction = 0.4f;
+    return mspring_network_set_contact(side->network, collides ? &def : NULL);
+}
+
+bool side_set_obstacles(lab_side *side, const lab_settings *settings, const lab_settings *before) {
+    mspring_result result = MSPRING_OK;
+    if (settings->has_floor != before->has_floor)
+        result = set_floor(side, settings->has_floor);
+    if (result == MSPRING_OK && settings->collides != before->collides)
+        result = set_contact(side, settings->collides);
+    return accepted(side, result);
+}
+
 static mspring_result set_surroundings(lab_side *side, const lab_settings *settings) {
     mspring_settings now = {.struct_size = sizeof now};
     const mspring_result result = mspring_network_get_settings(side->network, &now);
@@ -137,8 +154,6 @@ bool side_set_settings(lab_side *side, const lab_settings *settings, const lab_s
     mspring_result result = set_surroundings(side, settings);
     if (result == MSPRING_OK && settings->mass != before->mass)
         result = set_masses(side, settings->mass);
-    if (result == MSPRING_OK && settings->has_floor != before->has_floor)
-        result = set_floor(side, settings->has_floor);
     if (side->stage->spring_count > 0) {
         if (result == MSPRING_OK && settings->stiffness != before->stiffness)
             result = set_stiffnesses(side, settings->stiffness);
@@ -147,7 +162,7 @@ bool side_set_settings(lab_side *side, const lab_settings *settings, const lab_s
         if (result == MSPRING_OK && settings->breaking != before->breaking)
             result = set_breaking(side, settings->breaking);
     }
-    return accepted(side, result);
+    return accepted(side, result) && side_set_obstacles(side, settings, before);
 }
 
 /* --------------------------------------------------------------------------------------------- making, unmaking */
@@ -177,9 +192,12 @@ bool side_make(lab_side *made, const lab_stage *stage, const lab_settings *setti
         return scene_fail_builder(error, stage->made.name, stage->made.builder, result);
     }
     made->view.struct_size = sizeof made->view;
+    const float *velocity = stage->made.velocity;
     const lab_settings fresh = {
         .gravity = settings->gravity, .mass = 1, .stiffness = 1, .damping = stage->has_damping ? 1 : 0};
-    if (accepted(made, mspring_network_view(made->network, &made->view)) &&
+    if ((!velocity || accepted(made, mspring_network_set_velocities(made->network, 0, stage->particle_count,
+                                                                    velocity, velocity + 1, 2))) &&
+        accepted(made, mspring_network_view(made->network, &made->view)) &&
         accepted(made, mspring_network_reserve_events(made->network, EVENTS)) && side_set_solver(made, solver) &&
         side_set_settings(made, settings, &fresh))
         return true;

@@ -10,7 +10,7 @@
 /// What both sides have in common.
 typedef struct lab_settings {
     double gravity, mass, stiffness, damping, air, dt, grip; ///< as the actions of these names
-    bool breaking, has_floor;
+    bool breaking, has_floor, collides;
 } lab_settings;
 
 enum { LAB_COMPLAINT_SIZE = 256 };
@@ -60,6 +60,8 @@ void side_free(lab_side *unwanted);
 /// Take over solver or settings. On error, which complaint tells, nothing changes.
 bool side_set_solver(lab_side *side, const lab_solver *solver);
 bool side_set_settings(lab_side *side, const lab_settings *settings, const lab_settings *before);
+/// Of these settings only what snapshots leave as it is: floor and contact. To be called before one is loaded.
+bool side_set_obstacles(lab_side *side, const lab_settings *settings, const lab_settings *before);
 /// Substeps that a step needs if the network keeps nearly its shape, for explicit steps; 0 if there are too many.
 uint32_t side_suggest_substeps(lab_side *side, double dt);
 void side_start_measuring_time(lab_side *side);

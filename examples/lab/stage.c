@@ -1,155 +1,24 @@
 /// @file stage.c
-/// Ready scenes and files, and their arrays.
+/// Scenes from files, and the arrays of all scenes.
 ///
 /// SPDX-License-Identifier: MIT
 #include "lab/stage.h"
 #include "data/pixels.h"
-#include "data/ship.h"
 #include "draw/network_picture.h"
+#include "lab/ready.h"
 #include "lab/ship_materials.h"
 #include "loaders/structure.h"
 #include "scenes/image.h"
 #include "scenes/internal.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <massspring/massspring_tools.h>
-
-const char *const stage_ready_names[STAGE_READY_COUNT] = {"ship", "bar", "beam", "bridge", "net", "rope", "graph"};
-
-static const float relative_stiffness = 0.5f, relative_damping = 0.02f;
 
 // Where a scene has no dampers, the slider's 1 is this part of critical damping of a single spring.
 static const float made_up_damping = 0.02f;
 
-/* ------------------------------------------------------------------------------------------------ making scenes */
-
-static scene_options options_for(bool relative, bool from_file) {
-    scene_options options = from_file ? scene_options_from_file() : scene_options_default();
-    options.relative = relative;
-    if (relative) {
-        options.stiffness = relative_stiffness;
-        options.damping = relative_damping;
-    }
-    return options;
-}
-
-// The steamer, drawn here and now: neither a file nor a reader for it is needed.
-static bool make_ship(lab_stage *made, bool relative, scene_error *error) {
-    enum { HEAD = 32 };
-    const size_t pixels = (size_t)SHIP_WIDTH * SHIP_HEIGHT;
-    char *bytes = malloc(HEAD + 3 * pixels);
-    canvas drawn = {0};
-    scene_materials materials = {0};
-    const scene_options options = options_for(relative, true);
-    bool ok = bytes && canvas_make(&drawn, SHIP_WIDTH, SHIP_HEIGHT, PIXELS_EMPTY);
-    if (!ok)
-        scene_fail_memory(error, "cannot draw the ship");
-    if (ok) {
-        ship_draw(&drawn);
-        const int head = snprintf(bytes, HEAD, "P6 %d %d 255\n", SHIP_WIDTH, SHIP_HEIGHT);
-        memcpy(bytes + head, drawn.rgb, 3 * pixels);
-        ok = scene_materials_parse(ship_materials, strlen(ship_materials), "ship_materials.csv", &materials,
-                                   error) &&
-             scene_image_parse(bytes, (size_t)head + 3 * pixels, "ship.ppm", &materials, &options, &made->made,
-                               error);
-        made->material = ok ? malloc(pixels * sizeof *made->material) : NULL;
-        for (size_t i = 0, id = 0; made->material && i < pixels; i++) {
-            const lab_colour colour = pixels_get(&drawn, (int)(i % SHIP_WIDTH), (int)(i / SHIP_WIDTH));
-            if (colour != PIXELS_EMPTY)
-                made->material[id++] = colour;
-        }
-        scene_materials_free(&materials);
-        canvas_free(&drawn);
-    }
-    free(bytes);
-    return ok;
-}
-
-// Particles on a line from pin to pin and a deck of a lattice under them, hung up by ropes.
-static bool make_bridge(lab_stage *made, bool relative, scene_error *error) {
-    enum { COLUMNS = 121, ROWS = 4, ROPES = 23, PITCH = 5, RISE = 34 };
-    uint16_t cells[ROWS][COLUMNS] = {{0}};
-    mspring_material materials[2];
-    for (int i = 0; i < 2; i++) {
-        mspring_material_init(&materials[i], sizeof materials[i]);
-        materials[i].mass = 60;
-        materials[i].stiffness = relative ? relative_stiffness : 3e7f;
-        materials[i].damping = relative ? relative_damping : 3000;
-        materials[i].spring_flags = relative ? MSPRING_SPRING_RELATIVE : 0;
-    }
-    materials[1].particle_flags = MSPRING_PARTICLE_PINNED;
-    for (int row = 0; row < ROWS; row++)
-        cells[row][0] = cells[row][COLUMNS - 1] = 1;
-    mspring_id ids[ROWS][COLUMNS];
-    mspring_lattice_def deck;
-    mspring_lattice_def_init(&deck, sizeof deck);
-    deck.width = COLUMNS, deck.height = ROWS, deck.cells = cells[0], deck.materials = materials;
-    deck.material_count = 2;
-    if (!scene_start(&made->made, error))
-        return false;
-    mspring_builder *builder = made->made.builder;
-    mspring_result result = mspring_builder_add_lattice(builder, &deck, ids[0]);
-    // The main cable is a parabola of knots, from tower to tower; hangers go down from it.
-    mspring_id knot = MSPRING_NONE;
-    for (int i = 0; result == MSPRING_OK && i <= ROPES + 1; i++) {
-        const double place = 2.0 * i / (ROPES + 1) - 1;
-        mspring_particle_def particle;
-        mspring_particle_def_init(&particle, sizeof particle);
-        particle.x = i * PITCH;
-        particle.y = ROWS - 1 + 4 + (RISE - 4) * place * place;
-        particle.mass = 60;
-        particle.flags = i == 0 || i == ROPES + 1 ? MSPRING_PARTICLE_PINNED : 0;
-        mspring_id here = MSPRING_NONE;
-        result = mspring_builder_add_particle(builder, &particle, &here);
-        mspring_rope_def rope;
-        mspring_rope_def_init(&rope, sizeof rope);
-        rope.mass = 12, rope.stiffness = relative ? relative_stiffness : 1.2e7f;
-        rope.damping = relative ? relative_damping : 800;
-        rope.spring_flags = relative ? MSPRING_SPRING_RELATIVE : 0;
-        if (result == MSPRING_OK && i > 0) {
-            rope.from = knot, rope.to = here, rope.segment_count = 6;
-            result = mspring_builder_add_rope(builder, &rope, NULL, 0, NULL);
-        }
-        if (result == MSPRING_OK && i > 0 && i <= ROPES) {
-            rope.from = here, rope.to = ids[0][i * PITCH];
-            rope.segment_count = 2 + (uint32_t)(particle.y / 3);
-            result = mspring_builder_add_rope(builder, &rope, NULL, 0, NULL);
-        }
-        knot = here;
-    }
-    snprintf(made->made.name, sizeof made->made.name, "bridge");
-    made->made.probe = ids[ROWS - 1][COLUMNS / 2];
-    const uint32_t springs = mspring_builder_spring_count(builder);
-    made->made.break_strain = malloc(springs * sizeof(float));
-    for (uint32_t i = 0; made->made.break_strain && i < springs; i++)
-        made->made.break_strain[i] = 0.12f;
-    if (result == MSPRING_OK)
-        return true;
-    scene_fail_builder(error, "bridge", builder, result);
-    scene_free(&made->made);
-    return false;
-}
-
-// Bars of a lattice, one above the other, tied together and to the pins by ropes.
-static bool make_net(lab_stage *made, bool relative, scene_error *error) {
-    scene_options options = options_for(relative, false);
-    options.damping = relative ? relative_damping : 1400;
-    if (!scene_bar(160, 16, &options, &made->made, error))
-        return false;
-    options.mass = 30;
-    if (!relative)
-        options.stiffness = 2e7f, options.damping = 800;
-    if (!scene_add_ropes(&made->made, 60, 12, 7, &options, error)) {
-        scene_free(&made->made);
-        return false;
-    }
-    snprintf(made->made.name, sizeof made->made.name, "net");
-    return true;
-}
+/* ------------------------------------------------------------------------------------------------------- files */
 
 static bool read_image(lab_stage *made, const char *path, bool relative, scene_error *error) {
     char *bytes = NULL;
@@ -157,7 +26,7 @@ static bool read_image(lab_stage *made, const char *path, bool relative, scene_e
     scene_materials tables[2] = {{0}};
     pixel_image image = {0};
     scene_error first = {""};
-    const scene_options options = options_for(relative, true);
+    const scene_options options = ready_options(relative, true);
     bool ok =
         file_read(path, &bytes, &length, error) && scene_materials_builtin(&tables[0], error) &&
         scene_materials_parse(ship_materials, strlen(ship_materials), "ship_materials.csv", &tables[1], error);
@@ -191,36 +60,20 @@ static bool read_structure(lab_stage *made, const char *path, bool relative, sce
         return false;
     for (uint32_t i = 0; relative && i < read.spring_count; i++) {
         read.springs[i].flags = MSPRING_SPRING_RELATIVE;
-        read.springs[i].stiffness = relative_stiffness;
-        read.springs[i].damping = relative_damping;
+        read.springs[i].stiffness = READY_RELATIVE_STIFFNESS;
+        read.springs[i].damping = READY_RELATIVE_DAMPING;
     }
     const bool ok = structure_scene(&read, path, &made->made, error);
     structure_free(&read);
     return ok;
 }
 
-static bool make_scene(lab_stage *made, const char *name, bool relative, scene_error *error) {
-    const scene_options options = options_for(relative, false);
-    if (strcmp(name, "ship") == 0)
-        return make_ship(made, relative, error);
-    if (strcmp(name, "bar") == 0)
-        return scene_bar(80, 5, &options, &made->made, error);
-    if (strcmp(name, "beam") == 0)
-        return scene_bar(300, 40, &options, &made->made, error);
-    if (strcmp(name, "bridge") == 0)
-        return make_bridge(made, relative, error);
-    if (strcmp(name, "net") == 0)
-        return make_net(made, relative, error);
-    if (strcmp(name, "rope") == 0)
-        return scene_rope(120, &options, &made->made, error);
-    if (strcmp(name, "graph") == 0)
-        return scene_random_graph(3000, 8, 5, &options, &made->made, error);
-    made->is_ready = false;
-    if (structure_format_of(name) != STRUCTURE_UNKNOWN)
-        return read_structure(made, name, relative, error);
-    const scene_options file_options = options_for(relative, true);
-    return scene_file_is_image(name) ? read_image(made, name, relative, error)
-                                     : scene_network_file(name, &file_options, &made->made, error);
+static bool read_file(lab_stage *made, const char *path, bool relative, scene_error *error) {
+    if (structure_format_of(path) != STRUCTURE_UNKNOWN)
+        return read_structure(made, path, relative, error);
+    const scene_options options = ready_options(relative, true);
+    return scene_file_is_image(path) ? read_image(made, path, relative, error)
+                                     : scene_network_file(path, &options, &made->made, error);
 }
 
 /* ------------------------------------------------------------------------------------------------ its arrays */
@@ -310,8 +163,8 @@ static bool read_network(lab_stage *made, const mspring_network *network) {
 static void make_up_damping(lab_stage *made) {
     for (uint32_t i = 0; i < made->spring_count; i++) {
         const float a = made->mass[made->a[i]], b = made->mass[made->b[i]];
-        made->damping[i] =
-            made->relative ? relative_damping : made_up_damping * 2 * sqrtf(made->stiffness[i] * (a * b / (a + b)));
+        made->damping[i] = made->relative ? READY_RELATIVE_DAMPING
+                                          : made_up_damping * 2 * sqrtf(made->stiffness[i] * (a * b / (a + b)));
     }
 }
 
@@ -343,8 +196,9 @@ static bool read_scene(lab_stage *made, scene_error *error) {
 }
 
 bool stage_open(lab_stage *made, const char *name, bool relative, scene_error *error) {
-    lab_stage opened = {.relative = relative, .is_ready = true};
-    bool ok = make_scene(&opened, name, relative, error);
+    const ready_scene *ready = ready_find(name);
+    lab_stage opened = {.relative = relative, .is_ready = ready != NULL, .gravity = 9.8};
+    bool ok = ready ? ready->make(&opened, relative, error) : read_file(&opened, name, relative, error);
     if (ok && !read_scene(&opened, error)) {
         stage_free(&opened);
         ok = false;

@@ -25,14 +25,12 @@ typedef struct lab_stage {
     double floor_y;   ///< where a floor lies, m
     mspring_id probe; ///< the scene's, or one far away from all pins
     bool relative;
-    bool is_ready; ///< one of the ready scenes
+    bool is_ready;  ///< one of the ready scenes
+    bool collides;  ///< its bodies are there to meet
+    double gravity; ///< m/s^2, down, that it begins with
     bool has_pins;
     bool has_damping; ///< the scene's own; if not, some is made up for the slider
 } lab_stage;
-
-/// Ready scenes, in the order in which keys go through them.
-enum { STAGE_READY_COUNT = 7 };
-extern const char *const stage_ready_names[STAGE_READY_COUNT];
 
 /// Make a ready scene or read a file. With relative springs stiffness is half of what an explicit substep bears.
 bool stage_open(lab_stage *made, const char *name, bool relative, scene_error *error);

@@ -52,14 +52,22 @@ bool undo_push(lab_undo *undo, const lab_side *sides, const lab_moment *state) {
     return true;
 }
 
-bool undo_pop(lab_undo *undo, lab_side *sides, lab_moment *state) {
+// Snapshots hold neither. The solver of the moment may be one that has no contact, or one that its contact needs.
+static bool set_surroundings(lab_side *side, const lab_moment *moment, int index, const lab_settings *now) {
+    lab_settings apart = moment->settings;
+    apart.collides = false;
+    return side_set_obstacles(side, &apart, now) && side_set_solver(side, &moment->solvers[index]) &&
+           side_set_obstacles(side, &moment->settings, &apart);
+}
+
+bool undo_pop(lab_undo *undo, lab_side *sides, const lab_settings *now, lab_moment *state) {
     if (undo->count == 0)
         return false;
     const lab_moment *last = &undo->moments[undo->count - 1];
     bool ok = true;
     for (int i = 0; ok && i < last->side_count; i++) {
         // A snapshot of the implicit solver needs the same one to be there.
-        ok = side_set_solver(&sides[i], &last->solvers[i]);
+        ok = set_surroundings(&sides[i], last, i, now);
         if (ok && mspring_network_load(sides[i].network, last->snapshots[i], last->sizes[i]) != MSPRING_OK) {
             snprintf(sides[i].complaint, sizeof sides[i].complaint, "%s", mspring_network_error(sides[i].network));
             ok = false;

@@ -29,8 +29,8 @@ void undo_clear(lab_undo *undo);
 /// Keep a moment; the oldest ones go when there are too many or they take too much memory. Returns false when out
 /// of memory.
 bool undo_push(lab_undo *undo, const lab_side *sides, const lab_moment *state);
-/// Take the last moment out and bring the sides back to it. state receives the rest of it. Returns false if there
-/// is none or a network refuses it, which its complaint tells.
-bool undo_pop(lab_undo *undo, lab_side *sides, lab_moment *state);
+/// Take the last moment out and bring the sides back to it, from the settings that they have now. state receives
+/// the rest of it. Returns false if there is none or a network refuses it, which its complaint tells.
+bool undo_pop(lab_undo *undo, lab_side *sides, const lab_settings *now, lab_moment *state);
 
 #endif

@@ -189,6 +189,30 @@ static void undo_brings_back_the_state_of_before(void **state) {
     model_end(&model);
 }
 
+// Snapshots hold neither contact nor floor. The ships meet after half a second.
+static void undo_brings_back_contact_and_floor(void **state) {
+    (void)state;
+    static const char *const edits[] = {"collide off", "floor on", "solver both explicit"};
+    static lab_model model;
+    start(&model, "ships");
+    frames(&model, 72);
+    const uint64_t expected = model_hash(&model);
+    for (size_t i = 0; i < sizeof edits / sizeof *edits; i++) {
+        must_do(&model, "scene ships");
+        frames(&model, 8);
+        must_do(&model, edits[i]);
+        frames(&model, 2);
+        must_do(&model, "undo");
+        frames(&model, 64);
+        assert_int_equal(model_hash(&model), expected);
+    }
+    must_do(&model, "scene ships");
+    must_do(&model, "collide off");
+    frames(&model, 72);
+    assert_int_not_equal(model_hash(&model), expected);
+    model_end(&model);
+}
+
 static void what_is_too_stiff_is_refused_and_goes_on_when_it_is_not(void **state) {
     (void)state;
     static lab_model model;
@@ -468,6 +492,7 @@ int main(void) {
         cmocka_unit_test(a_pulled_particle_comes_along_and_a_pinned_one_does_not),
         cmocka_unit_test(a_cut_makes_two_parts),
         cmocka_unit_test(undo_brings_back_the_state_of_before),
+        cmocka_unit_test(undo_brings_back_contact_and_floor),
         cmocka_unit_test(what_is_too_stiff_is_refused_and_goes_on_when_it_is_not),
         cmocka_unit_test(the_cost_of_a_step_is_not_that_of_the_first),
         cmocka_unit_test(a_scene_that_cannot_be_opened_changes_nothing),
