@@ -31,6 +31,8 @@ extern page_state page;
 /// Memory of the page, zeroed; NULL if there is none.
 void *page_take(size_t size);
 void page_leave(void *memory, size_t size);
+/// Pass the result of a call on the network on, and keep its message for page_error().
+mspring_result page_done(mspring_result result);
 /// Add the forces of what is held, for the next step.
 void page_pull(double dt);
 

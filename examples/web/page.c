@@ -62,8 +62,7 @@ static mspring_result failed(mspring_result result, const char *message) {
     return result;
 }
 
-// The result of a call on the network.
-static mspring_result done(mspring_result result) {
+mspring_result page_done(mspring_result result) {
     return result == MSPRING_OK ? MSPRING_OK : failed(result, mspring_network_error(page.network));
 }
 
@@ -127,7 +126,7 @@ static mspring_result describe_springs(void) {
         result = mspring_network_get(page.network, MSPRING_STIFFNESS, 0, n, page.base_stiffness, 1);
     for (uint32_t slot = 0; slot < page.view.slot_count; slot++)
         page.total_mass += page.view.inverse_mass[slot] > 0 ? 1 / (double)page.view.inverse_mass[slot] : 0;
-    return done(result);
+    return page_done(result);
 }
 
 static float weaker(float a, float b) {
@@ -211,7 +210,7 @@ static mspring_result make_network(mspring_builder *builder) {
     if (result == MSPRING_OK)
         result = mspring_network_reserve_events(page.network, EVENTS);
     if (result != MSPRING_OK)
-        return done(result);
+        return page_done(result);
     return take_arrays() ? describe_springs() : failed(MSPRING_ERROR_MEMORY, NULL);
 }
 
@@ -274,23 +273,23 @@ static void follow_events(void) {
 
 mspring_result page_step(double dt) {
     page_pull(dt);
-    const mspring_result result = done(mspring_network_step(page.network, dt));
+    const mspring_result result = page_done(mspring_network_step(page.network, dt));
     if (result == MSPRING_OK)
         follow_events();
     page.view.struct_size = sizeof page.view;
     const mspring_result seen = mspring_network_view(page.network, &page.view);
-    return result != MSPRING_OK ? result : done(seen);
+    return result != MSPRING_OK ? result : page_done(seen);
 }
 
 mspring_result page_set_solver(uint32_t solver, uint32_t substeps, uint32_t iterations) {
     mspring_solver_def def;
     const mspring_result result = mspring_solver_def_init(&def, sizeof def);
     if (result != MSPRING_OK)
-        return done(result);
+        return page_done(result);
     def.solver = (mspring_solver)solver;
     def.substeps = substeps ? substeps : MSPRING_SUBSTEPS_AUTO;
     def.iterations = iterations;
-    return done(mspring_network_set_solver(page.network, &def));
+    return page_done(mspring_network_set_solver(page.network, &def));
 }
 
 mspring_result page_set_gravity(float y) {
@@ -300,7 +299,7 @@ mspring_result page_set_gravity(float y) {
     settings.gravity_y = y;
     if (result == MSPRING_OK)
         result = mspring_network_set_settings(page.network, &settings);
-    return done(result);
+    return page_done(result);
 }
 
 mspring_result page_set_damping(float rate) {
@@ -309,19 +308,19 @@ mspring_result page_set_damping(float rate) {
     settings.global_damping = rate;
     if (result == MSPRING_OK)
         result = mspring_network_set_settings(page.network, &settings);
-    return done(result);
+    return page_done(result);
 }
 
 mspring_result page_set_stiffness(float factor) {
     for (uint32_t i = 0; i < page.spring_count; i++)
         page.values[i] = factor * page.base_stiffness[i];
-    return done(mspring_network_set(page.network, MSPRING_STIFFNESS, 0, page.spring_count, page.values, 1));
+    return page_done(mspring_network_set(page.network, MSPRING_STIFFNESS, 0, page.spring_count, page.values, 1));
 }
 
 mspring_result page_set_breaking(uint32_t on) {
     for (uint32_t i = 0; i < page.spring_count; i++)
         page.values[i] = on && page.break_strain[i] > 0 ? page.break_strain[i] : __builtin_inff();
-    return done(mspring_network_set(page.network, MSPRING_BREAK_STRAIN, 0, page.spring_count, page.values, 1));
+    return page_done(mspring_network_set(page.network, MSPRING_BREAK_STRAIN, 0, page.spring_count, page.values, 1));
 }
 
 /* -------------------------------------------------------------------------------------------------- looking */

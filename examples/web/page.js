@@ -35,6 +35,8 @@ async function sceneOf(name) {
       return bridge();
     case 'weights':
       return weights();
+    case 'rubble':
+      return rubble();
     case 'own':
       return fromImage(ownImage, materials);
     default:
@@ -45,6 +47,11 @@ async function sceneOf(name) {
 async function load(name) {
   try {
     current = await sceneOf(name);
+    if (current.collide) {
+      toggle(byId('collide'), true);
+      Object.assign(byId('solver'), { value: 0 });
+      Object.assign(byId('substeps'), { value: 40 });
+    }
     start();
   } catch (problem) {
     tell(problem.message);
@@ -89,7 +96,7 @@ function fit() {
   view.x = core.origin_x() + (box.left + box.right) / 2 - (0.1 * panels) / view.scale;
   view.y = core.origin_y() + (box.bottom + box.top) / 2 - (0.06 * height) / view.scale;
   state.floorAt = core.origin_y() + box.bottom - 0.25 * (box.right - box.left);
-  if (byId('floor').getAttribute('aria-pressed') === 'true') core.floor(state.floorAt);
+  if (isOn('floor')) core.floor(state.floorAt);
 }
 
 /* ------------------------------------------------------------------------------------------------ settings */
@@ -107,6 +114,8 @@ function check(result) {
 }
 
 const value = (id) => Number(byId(id).value);
+
+const isOn = (id) => byId(id).getAttribute('aria-pressed') === 'true';
 
 const settingsOf = {
   solver() {
@@ -132,7 +141,11 @@ const settingsOf = {
     byId('limit-text').textContent = (100 * view.strainLimit).toPrecision(2) + ' %';
   },
   breaking() {
-    check(core.breaking(byId('breaking').getAttribute('aria-pressed') === 'true' ? 1 : 0));
+    check(core.breaking(isOn('breaking') ? 1 : 0));
+  },
+  collide() {
+    if (check(core.collide(isOn('collide') ? 1 : 0))) tell('');
+    else toggle(byId('collide'), false);
   },
 };
 
@@ -162,11 +175,11 @@ function connectControls() {
   });
   byId('again').addEventListener('click', start);
   byId('repair').addEventListener('click', () => check(core.repair()));
-  for (const id of ['breaking', 'floor'])
+  for (const id of ['breaking', 'floor', 'collide'])
     byId(id).addEventListener('click', () => {
-      const on = toggle(byId(id), byId(id).getAttribute('aria-pressed') !== 'true');
+      const on = toggle(byId(id), !isOn(id));
       if (id === 'floor') check(core.floor(on ? state.floorAt : -1e12));
-      else settingsOf.breaking();
+      else settingsOf[id]();
     });
   byId('open').addEventListener('click', () => byId('file').click());
   byId('file').addEventListener('change', () => byId('file').files.length && open(byId('file').files[0]));
@@ -393,7 +406,7 @@ async function main() {
   materials = readMaterials(new TextDecoder().decode(await resource('ship_materials.csv')));
   for (const id of ['scene', 'solver', 'substeps', 'stiffness', 'gravity', 'damping', 'limit'])
     if (settings.has(id)) byId(id).value = settings.get(id);
-  for (const id of ['breaking', 'floor']) if (settings.has(id)) toggle(byId(id), true);
+  for (const id of ['breaking', 'floor', 'collide']) if (settings.has(id)) toggle(byId(id), true);
   connectControls();
   connectHand();
   await load(byId('scene').value);

@@ -45,6 +45,27 @@ function weights() {
   return scene;
 }
 
+// Blocks of many sizes above a deck that is pinned at its ends. Bodies meet.
+function rubble() {
+  const stone = { mass: 60, stiffness: 4e7, damping: 2500, breakStrain: 0.05, pinned: 0 };
+  const deck = { mass: 40, stiffness: 3e7, damping: 1500, breakStrain: 0.03, pinned: 0 };
+  const scene = { ...empty(150, 90, [deck, PINNED, stone]), collide: true };
+  const { cells, width, height } = scene;
+  for (let x = 0; x < width; x++)
+    for (let y = height - 6; y < height; y++) cells[y * width + x] = x < 2 || x >= width - 2 ? 1 : 0;
+  let seed = 7;
+  const below = (most) => {
+    seed = (seed * 48271) % 2147483647;
+    return seed % most;
+  };
+  for (let y = 2; y < height - 22; y += 11)
+    for (let x = 24; x < width - 34; x += 11) {
+      const across = 2 + below(7), up = 2 + below(7);
+      for (let i = 0; i < across * up; i++) cells[(y + Math.floor(i / across)) * width + x + (i % across)] = 2;
+    }
+  return scene;
+}
+
 // colour,name,mass,stiffness,damping,break_strain,pinned,probe
 function readMaterials(text) {
   const table = new Map(), materials = [];
@@ -116,4 +137,4 @@ function hashText(part) {
 }
 
 if (typeof module !== 'undefined')
-  module.exports = { bar, bridge, weights, readMaterials, fromPixels, makeScene, textAt, hashText };
+  module.exports = { bar, bridge, weights, rubble, readMaterials, fromPixels, makeScene, textAt, hashText };

@@ -1,11 +1,12 @@
 /// @file tools.c
-/// Dragging, pinning, cutting, blasting, a floor.
+/// Dragging, pinning, cutting, blasting, a floor, contact.
 ///
 /// SPDX-License-Identifier: MIT
 #include "internal.h"
 
 #include <math.h>
 
+#include <massspring/massspring_contact.h>
 #include <massspring/massspring_tools.h>
 
 // What is held is drawn to its goal as if all of the network hung on a critically damped spring of this angular
@@ -118,7 +119,7 @@ mspring_result page_pin(double x, double y, double radius) {
         const mspring_result result =
             mspring_network_set(page.network, MSPRING_INVERSE_MASS_SCALE, page.list[i], 1, &scale, 1);
         if (result != MSPRING_OK)
-            return result;
+            return page_done(result);
     }
     page.changes++;
     return MSPRING_OK;
@@ -130,8 +131,8 @@ mspring_result page_cut(double x, double y, double x2, double y2) {
     const mspring_result result =
         mspring_network_springs_across(page.network, x, y, x2, y2, page.list, NULL, page.list_capacity, &count);
     if (result != MSPRING_OK)
-        return result;
-    return mspring_network_break_springs(page.network, page.list, count);
+        return page_done(result);
+    return page_done(mspring_network_break_springs(page.network, page.list, count));
 }
 
 mspring_result page_repair(void) {
@@ -139,14 +140,14 @@ mspring_result page_repair(void) {
     for (mspring_id spring = 0; spring < page.spring_count; spring++)
         if (page.springs[spring].rest_length == 0)
             page.list[count++] = spring;
-    return mspring_network_restore_springs(page.network, page.list, count, 1);
+    return page_done(mspring_network_restore_springs(page.network, page.list, count, 1));
 }
 
 mspring_result page_blast(double x, double y, double radius, double speed) {
     mspring_mutable_view to = {.struct_size = sizeof to};
     const mspring_result result = mspring_network_view_mutable(page.network, &to);
     if (result != MSPRING_OK)
-        return result;
+        return page_done(result);
     const uint32_t count = list_near(x, y, radius);
     for (uint32_t i = 0; i < count; i++) {
         const uint32_t slot = to.slot_of_particle[page.list[i]];
@@ -161,16 +162,23 @@ mspring_result page_blast(double x, double y, double radius, double speed) {
     return MSPRING_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------- floor */
+/* ------------------------------------------------------------------------------------------- floor and contact */
 
 mspring_result page_set_floor(double height) {
     if (!(height > -1e11))
-        return mspring_network_set_floor(page.network, NULL);
+        return page_done(mspring_network_set_floor(page.network, NULL));
     const double plane[4] = {0, height, 0, 1};
     mspring_floor_def def;
     const mspring_result result = mspring_floor_def_init(&def, sizeof def);
     def.plane_count = 1;
     def.planes = plane;
     def.friction = 0.5f;
-    return result == MSPRING_OK ? mspring_network_set_floor(page.network, &def) : result;
+    return result == MSPRING_OK ? page_done(mspring_network_set_floor(page.network, &def)) : result;
+}
+
+mspring_result page_set_collide(uint32_t on) {
+    mspring_contact_def def;
+    const mspring_result result = mspring_contact_def_init(&def, sizeof def);
+    def.friction = 0.5f;
+    return result == MSPRING_OK ? page_done(mspring_network_set_contact(page.network, on ? &def : NULL)) : result;
 }

@@ -7,7 +7,7 @@ const { readFileSync } = require('node:fs');
 const { resolve } = require('node:path');
 
 const [file, scenes] = process.argv.slice(2);
-const { bar, bridge, weights, readMaterials, fromPixels, makeScene, textAt, hashText } = require(resolve(scenes));
+const { bar, bridge, weights, rubble, readMaterials, fromPixels, makeScene, textAt, hashText } = require(resolve(scenes));
 const compiled = new WebAssembly.Module(readFileSync(file));
 assert.deepStrictEqual(WebAssembly.Module.imports(compiled), [], 'the module needs nothing');
 const core = new WebAssembly.Instance(compiled, {}).exports;
@@ -73,6 +73,19 @@ assert(Math.abs(lowest() + 10) < 0.1, `its lowest particle is at ${lowest()}`);
 good(core.floor(-1e12));
 steps(64);
 assert(lowest() < -12);
+
+// Rubble lies on its deck, and falls through it without contact; the implicit solver has none.
+for (const [on, falls] of [[1, false], [0, true]]) {
+  makeScene(core, rubble());
+  good(core.solver(0, 40, 0));
+  good(core.collide(on));
+  good(core.damping(0.2));
+  steps(256);
+  assert.strictEqual(lowest() < -20, falls, `with contact ${on} its lowest particle is at ${lowest()}`);
+}
+good(core.collide(1));
+assert.notStrictEqual(core.solver(1, 2, 0), 0);
+assert.match(textAt(core, core.error()), /contact/);
 
 // A blast moves it, and breaks what may break.
 makeScene(core, free);
