@@ -202,7 +202,7 @@ static bool measure(const subject *s, const bench_options *options, mspring_simd
                             with.network ? mspring_network_error(with.network) : "");
     bool ok = result == MSPRING_OK &&
               compare(&without, &with, s->steps, options->repeat > 0 ? options->repeat : 11, &turns, &error);
-    ok = ok && mspring_network_contact_info(with.network, &info) == MSPRING_OK;
+    ok = ok && mspring_network_get_contact_info(with.network, &info) == MSPRING_OK;
     if (ok) {
         const bench_cell cells[COLUMN_COUNT] = {
             bench_cell_of("%s", s->name),

@@ -57,7 +57,7 @@ static bool measure(const bench_scene *subject, const bench_options *options, be
         return false;
     }
     mspring_plan plan = {.struct_size = sizeof plan};
-    const mspring_result result = mspring_network_plan(alone->network, &plan);
+    const mspring_result result = mspring_network_get_plan(alone->network, &plan);
     if (result != MSPRING_OK) {
         bench_library_error(error, "asking for the plan", result, "");
         return false;

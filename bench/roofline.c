@@ -226,7 +226,7 @@ static bool has_damping(const bench_scene *subject, bool *out, scene_error *erro
     }
     mspring_plan plan;
     plan.struct_size = sizeof plan;
-    mspring_result result = mspring_network_plan(network.network, &plan);
+    mspring_result result = mspring_network_get_plan(network.network, &plan);
     if (result == MSPRING_OK) {
         *out = plan.has_damping != 0;
     } else {

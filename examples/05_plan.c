@@ -22,7 +22,7 @@ static bool print_plan(const scene *planned) {
     mspring_result result = mspring_network_create(planned->builder, NULL, &network);
     if (!check(result, "make the network", mspring_builder_error(planned->builder)))
         return false;
-    result = mspring_network_plan(network, &plan);
+    result = mspring_network_get_plan(network, &plan);
     const bool ok = check(result, "read the plan", mspring_network_error(network));
     if (ok)
         printf("%-16s %9u %9u | %8u %9u | %6u %8u | %9u %8u %6u | %5u %4u %5u | %7s %7s\n", planned->name,

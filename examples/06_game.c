@@ -297,7 +297,7 @@ static void find_pieces(game *played) {
     double water[MOST];
     for (uint32_t i = 0; i < played->particles; i++)
         water[i] = water_of(played, i);
-    must(mspring_network_get_component_numbers(played->network, 0, played->particles, played->piece), "pieces",
+    must(mspring_network_get_component_numbers(played->network, 0, played->particles, played->piece, 1), "pieces",
          played);
     memset(played->water, 0, sizeof played->water);
     memset(played->room, 0, sizeof played->room);

@@ -130,7 +130,7 @@ static void print_row(const mspring_tune_row *row) {
     if (row->solver == MSPRING_SOLVER_IMPLICIT)
         snprintf(iterations, sizeof iterations, "%u", row->iterations);
     printf("%-9s %-5s %8u %10s", solver_names[row->solver], steps_back ? "BDF2" : "", row->substeps, iterations);
-    if (row->flags & MSPRING_TUNE_REFUSED) {
+    if (row->flags & MSPRING_TUNE_REJECTED) {
         printf("   rejected as unstable\n");
         return;
     }

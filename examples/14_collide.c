@@ -52,7 +52,7 @@ int main(int count, char **arguments) {
     double deepest = 0;
     for (int step = 0; !result && step < STEPS; step++, show_step(&shown, network)) {
         result = mspring_network_step(network, dt);
-        result = result ? result : mspring_network_contact_info(network, &info);
+        result = result ? result : mspring_network_get_contact_info(network, &info);
         deepest = info.deepest > deepest ? info.deepest : deepest;
     }
     printf("the bodies keep %.2f m apart, less %.4f m at most\n", 0.5, deepest);

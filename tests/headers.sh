@@ -22,6 +22,20 @@ all='-Weverything -Wno-documentation -Wno-documentation-unknown-command -Wno-c++
 all="$all -Wno-reserved-identifier -Wno-unknown-warning-option"
 checked=0
 
+# A struct with struct_size is filled by the host, which needs an init function, or by the library, and then the host
+# sets struct_size. The comment says which. The library makes mspring_hook_args itself.
+awk '
+  /^\/\/\// { comment = comment $0 "\n"; next }
+  /^typedef struct mspring_[a-z_]* \{$/ { name = $3; said = comment; comment = ""; next }
+  name != "" && /^    uint32_t struct_size;/ {
+    if (name != "mspring_hook_args" && !index(said, name "_init()") && !index(said, "Set struct_size first"))
+      wrong = wrong " " name
+  }
+  { name = comment = "" }
+  END { if (wrong != "") { print "neither an init function nor struct_size in the comment of:" wrong; exit 1 } }
+' "$source"/include/massspring/*.h
+checked=$((checked + 1))
+
 for compiler in "${CC:-cc}" clang; do
   command -v "$compiler" >/dev/null || continue
   more=
@@ -59,7 +73,7 @@ flat = subprocess.run(["cc", "-E", "-P", "-DMSPRING_API=", "-DMSPRING_NODISCARD=
                       input=re.sub('#include.*|__attribute__.*', '', text), capture_output=True).stdout
 ffi = cffi.FFI()
 ffi.cdef(flat)
-assert ffi.sizeof("mspring_network_def") == 72 + 8 * (ffi.sizeof("void *") // 8), ffi.sizeof("mspring_network_def")
+assert ffi.sizeof("mspring_network_def") == 96 + 8 * (ffi.sizeof("void *") // 8), ffi.sizeof("mspring_network_def")
 assert ffi.typeof("mspring_solver").elements[1] == "MSPRING_SOLVER_IMPLICIT"
 END
   checked=$((checked + 1))

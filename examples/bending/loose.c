@@ -26,7 +26,7 @@ mspring_result settle_find_loose(mspring_network *network, mspring_id *loose) {
         return result;
     uint32_t *component = malloc(view.particle_count * sizeof *component);
     bool *held = calloc(count, sizeof *held);
-    result = component && held ? mspring_network_get_component_numbers(network, 0, view.particle_count, component)
+    result = component && held ? mspring_network_get_component_numbers(network, 0, view.particle_count, component, 1)
                                : MSPRING_ERROR_MEMORY;
     if (result == MSPRING_OK)
         *loose = first_without_pin(&view, component, held);

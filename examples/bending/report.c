@@ -58,7 +58,7 @@ bool report_measure(mspring_network *network, const scene *measured, double subs
 
 static void print_layout(mspring_network *network) {
     mspring_plan plan = {.struct_size = sizeof plan};
-    if (mspring_network_plan(network, &plan) != MSPRING_OK)
+    if (mspring_network_get_plan(network, &plan) != MSPRING_OK)
         return;
     printf("  layout        ");
     if (plan.lattice_count)

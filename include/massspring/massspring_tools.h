@@ -6,7 +6,8 @@
 ///     copy        network_clone; clone_def_init
 ///     hooks       network_add_hook, _remove_hook; hook_def_init
 ///     find        network_nearest_particle, _particles_in_circle, _particles_in_box, _springs_across
-///     inspect     network_get_spring, _get_extents, _get_sleepers, _renew_relative_springs, _plan,
+///     write       network_view_mutable
+///     inspect     network_get_spring, _get_extents, _get_sleepers, _renew_relative_springs, _get_plan,
 ///                 _memory_used, _worker_count, _simd_level; simd_supported, simd_available, simd_name
 ///     stability   network_stable_dt, _suggest_substeps
 ///     rest        network_settle; settle_def_init
@@ -251,15 +252,15 @@ MSPRING_API mspring_result MSPRING_CALL mspring_hook_def_init(mspring_hook_def *
 
 /// Add a hook to all steps from now on. It runs after the earlier hooks of its phase.
 /// @param def   copied
-/// @param hook  receives a number for mspring_network_remove_hook(); may be NULL
+/// @param hook  receives its id; may be NULL
 /// @threads exclusive   @allocates yes   @errors ARGUMENT, STRUCT, MEMORY, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_add_hook(
-    mspring_network *network, const mspring_hook_def *def, uint32_t *hook);
+    mspring_network *network, const mspring_hook_def *def, mspring_id *hook);
 
-/// Remove a hook. Its number is not used again.
+/// Remove a hook.
 /// @threads exclusive   @allocates never   @errors ID, ARGUMENT, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_remove_hook(
-    mspring_network *network, uint32_t hook);
+    mspring_network *network, mspring_id hook);
 
 /* ------------------------------------------------------------------------------------------------------- queries */
 
@@ -299,6 +300,26 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_spring
     double from_x, double from_y, double to_x, double to_y, mspring_id *springs, double *fractions, uint32_t capacity,
     uint32_t *count);
 
+/* ------------------------------------------------------------------------------------------------ a view to write */
+
+/// A view (mspring_view) to write: positions and velocities may be changed until the next step. Set struct_size first.
+typedef struct mspring_mutable_view {
+    uint32_t struct_size;
+    uint32_t slot_count, particle_count, reserved; ///< all fields as in mspring_view
+    uint64_t layout_generation, origin_generation;
+    double origin_x, origin_y;
+    float *x, *y, *vx, *vy; ///< write finite values only, and velocities within MSPRING_MAX_SPEED
+    const float *inverse_mass;
+    const uint32_t *particle_of_slot, *slot_of_particle;
+    const void *reserved_pointer;
+} mspring_mutable_view;
+
+/// Fill a view to write. The next step checks what was written.
+/// Call it again before you write after that step. In a hook use its arrays.
+/// @threads exclusive   @allocates never   @errors ARGUMENT, STRUCT, BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_view_mutable(
+    mspring_network *network, mspring_mutable_view *view);
+
 /* ------------------------------------------------------------------------------------------ springs and sleepers */
 
 /// Report of one spring. Set struct_size first.
@@ -337,10 +358,11 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_renew_
 
 /// Read which of the particles first ... first + count - 1 sleep.
 /// Particles that were set or written since still count as asleep until the next step.
-/// @param asleep  [count], receives 1 or 0
+/// @param asleep  receives 1 or 0 for particle first + i in asleep[i * stride]
+/// @param stride  elements from one to the next, at least 1
 /// @threads shared   @allocates never   @errors ID, ARGUMENT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_sleepers(
-    const mspring_network *network, mspring_id first, uint32_t count, uint8_t *asleep);
+    const mspring_network *network, mspring_id first, uint32_t count, uint8_t *asleep, uint32_t stride);
 
 /* ---------------------------------------------------------------------------------- workers and instruction sets */
 
@@ -547,7 +569,7 @@ enum {
     MSPRING_TUNE_HAS_COST = 1u << 0,       ///< costs are measured
     MSPRING_TUNE_HAS_TRAJECTORY = 1u << 1, ///< trajectory_error, trajectory_share and energy_drift are measured
     MSPRING_TUNE_HAS_REST = 1u << 2,       ///< bending, rest_error and rest_share are measured
-    MSPRING_TUNE_REFUSED = 1u << 3,        ///< a step was rejected as unstable, or the solver rejects the network
+    MSPRING_TUNE_REJECTED = 1u << 3,        ///< a step was rejected as unstable, or the solver rejects the network
     MSPRING_TUNE_PARETO = 1u << 4,         ///< no other row has both less cost and less error
     MSPRING_TUNE_RECOMMENDED = 1u << 5,    ///< the recommended row
     MSPRING_TUNE_HAS_SCENE = 1u << 6       ///< the numbers of the scene are measured, from at least four starts
@@ -608,10 +630,10 @@ MSPRING_API mspring_result MSPRING_CALL mspring_tune_def_init(mspring_tune_def *
 ///
 /// Solvers that this build lacks are left out.
 /// @param dt        seconds, finite, > 0
-/// @param settings  [capacity]; may be NULL with capacity 0, to ask for the count
+/// @param settings  [capacity], struct_size set in each; may be NULL with capacity 0, to ask for the count
 /// @param count     receives the number of settings, even if it is larger than capacity
 /// @threads exclusive   @allocates yes, and frees it   @since 0.2   @errors ARGUMENT, also for too little capacity
-///          unless that is 0; MEMORY, BUSY
+///          unless that is 0; STRUCT, MEMORY, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_tune_settings(
     mspring_network *network, double dt, mspring_solver_def *settings, uint32_t capacity, uint32_t *count);
 
@@ -663,7 +685,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_tune_row_solve
 
 /* ----------------------------------------------------------------------------------------------- plan and memory */
 
-/// The plan: how a network is laid out in memory. Each particle belongs to one kind of row:
+/// The plan: how a network is laid out in memory. Set struct_size first. Each particle belongs to one kind of row:
 ///
 ///   lattice    particles of a grid with 8 neighbours; it may lie at any angle, be oblong, slanted or bent
 ///   chain      particles of a rope or another single strand
@@ -706,7 +728,7 @@ typedef struct mspring_plan {
 
 /// Get the plan. Set struct_size first.
 /// @threads shared   @allocates never   @since 0.2   @errors ARGUMENT or STRUCT
-MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_plan(
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_plan(
     const mspring_network *network, mspring_plan *plan);
 
 /// Get the bytes that the network has allocated. NULL gives 0.

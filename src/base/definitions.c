@@ -101,10 +101,9 @@ mspring_result mspring_collider_def_init(mspring_collider_def *def, size_t size)
 }
 
 mspring_result mspring_solver_def_init(mspring_solver_def *def, size_t size) {
-    const mspring_solver_def defaults = {.struct_size = sizeof defaults,
-                                         .solver = MSPRING_SOLVER_EXPLICIT,
-                                         .substeps = MSPRING_SUBSTEPS_AUTO,
-                                         .max_substeps = 1000};
+    mspring_network_def network;
+    (void)mspring_network_def_init(&network, sizeof network);
+    const mspring_solver_def defaults = mspringi_solver_of(&network);
     return mspringi_init_struct(def, size, &defaults, sizeof defaults);
 }
 
@@ -118,7 +117,8 @@ mspring_result mspring_network_def_init(mspring_network_def *def, size_t size) {
                                           .worker_count = 1,
                                           .max_substeps = 1000,
                                           .guard = MSPRING_GUARD_CLAMP,
-                                          .sleep_time = 0.5f};
+                                          .sleep_time = 0.5f,
+                                          .relax_fraction = 0.8f};
     return mspringi_init_struct(def, size, &defaults, sizeof defaults);
 }
 

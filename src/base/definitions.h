@@ -7,9 +7,6 @@
 
 #include <massspring/massspring.h>
 
-/// Fraction of their stress strain below which springs relax, until the host sets another.
-#define MSPRINGI_USUAL_RELAX_FRACTION 0.8f
-
 /// The settings that a network begins with.
 static inline mspring_settings mspringi_settings_of(const mspring_network_def *def) {
     return (mspring_settings){.struct_size = sizeof(mspring_settings),
@@ -20,7 +17,19 @@ static inline mspring_settings mspringi_settings_of(const mspring_network_def *d
                               .max_speed = def->max_speed,
                               .sleep_speed = def->sleep_speed,
                               .sleep_time = def->sleep_time,
-                              .relax_fraction = MSPRINGI_USUAL_RELAX_FRACTION};
+                              .relax_fraction = def->relax_fraction};
+}
+
+/// The solver that it begins with.
+static inline mspring_solver_def mspringi_solver_of(const mspring_network_def *def) {
+    return (mspring_solver_def){.struct_size = sizeof(mspring_solver_def),
+                                .solver = def->solver,
+                                .substeps = def->substeps,
+                                .max_substeps = def->max_substeps,
+                                .integrator = def->integrator,
+                                .iterations = def->iterations,
+                                .tile_size = def->tile_size,
+                                .coarse_period = def->coarse_period};
 }
 
 #endif

@@ -1,6 +1,6 @@
 #include "base/message.h"
 
-#include <stdbool.h>
+#include <stdatomic.h>
 
 #include "base/assert.h"
 
@@ -14,6 +14,37 @@ mspring_result mspringi_fail(mspringi_message *message, mspring_result result, c
     va_start(arguments, format);
     mspringi_format(message->text, sizeof message->text, format, arguments);
     va_end(arguments);
+    return result;
+}
+
+void mspringi_shared_clear(mspringi_shared_message *shared) {
+    atomic_store_explicit(&shared->state, MSPRINGI_MESSAGE_NONE, memory_order_relaxed);
+}
+
+const char *mspringi_shared_text(const mspringi_shared_message *shared) {
+    return atomic_load_explicit(&shared->state, memory_order_acquire) == MSPRINGI_MESSAGE_WRITTEN
+               ? shared->message.text
+               : "";
+}
+
+mspring_result mspringi_shared_fail(mspringi_shared_message *shared, mspring_result result, const char *format,
+                                    ...) {
+    mspringi_message message;
+    va_list arguments;
+    va_start(arguments, format);
+    mspringi_format(message.text, sizeof message.text, format, arguments);
+    va_end(arguments);
+    return mspringi_shared_take(shared, result, &message);
+}
+
+mspring_result mspringi_shared_take(mspringi_shared_message *shared, mspring_result result,
+                                    const mspringi_message *message) {
+    uint32_t none = MSPRINGI_MESSAGE_NONE;
+    if (atomic_compare_exchange_strong_explicit(&shared->state, &none, MSPRINGI_MESSAGE_CLAIMED,
+                                                memory_order_relaxed, memory_order_relaxed)) {
+        shared->message = *message;
+        atomic_store_explicit(&shared->state, MSPRINGI_MESSAGE_WRITTEN, memory_order_release);
+    }
     return result;
 }
 
@@ -67,6 +98,19 @@ mspring_result mspringi_check_alike(mspringi_message *message, const void *eleme
                                "struct_size is %zu, but that of the first in the array is %zu", size, struct_size);
 }
 
+mspring_result mspringi_check_outputs(const void *array, uint32_t count, const char *name, size_t known,
+                                      mspringi_message *message) {
+    mspring_result result = MSPRING_OK;
+    const size_t struct_size = count > 0 ? mspringi_struct_size(array) : 0;
+    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
+        const void *element = mspringi_element(array, struct_size, i);
+        result = mspringi_check_output(message, name, element, known);
+        if (result == MSPRING_OK)
+            result = mspringi_check_alike(message, element, struct_size);
+    }
+    return result;
+}
+
 void mspringi_put_struct(void *out, const void *made, size_t known) {
     const size_t size = mspringi_struct_size(out);
     const uint32_t struct_size = (uint32_t)size;
@@ -100,11 +144,11 @@ const char *mspring_result_string(mspring_result result) {
     case MSPRING_ERROR_ARGUMENT:
         return "invalid argument";
     case MSPRING_ERROR_ID:
-        return "no such particle, spring or hook";
+        return "unknown id";
     case MSPRING_ERROR_MEMORY:
         return "out of memory";
     case MSPRING_ERROR_LIMIT:
-        return "too many particles, springs or cells";
+        return "limit exceeded";
     case MSPRING_ERROR_STRUCT:
         return "unknown struct size";
     case MSPRING_ERROR_DUPLICATE:
@@ -112,7 +156,7 @@ const char *mspring_result_string(mspring_result result) {
     case MSPRING_ERROR_UNSTABLE:
         return "the step was rejected";
     case MSPRING_ERROR_BUSY:
-        return "not allowed inside a hook";
+        return "not allowed now";
     case MSPRING_ERROR_OUTDATED:
         return "the network is another by now";
     case MSPRING_ERROR_THREAD:

@@ -5,6 +5,7 @@
 #ifndef MSPRINGI_MESSAGE_H
 #define MSPRINGI_MESSAGE_H
 
+#include <stdbool.h>
 #include <string.h>
 
 #include <massspring/massspring.h>
@@ -14,6 +15,26 @@
 typedef struct mspringi_message {
     char text[256];
 } mspringi_message;
+
+/// The message of calls that may run side by side: the first of them that fails writes it, and no other touches it
+/// until it is cleared. So it can be read without a lock.
+typedef struct mspringi_shared_message {
+    _Atomic uint32_t state; ///< MSPRINGI_MESSAGE_...
+    mspringi_message message;
+} mspringi_shared_message;
+
+enum { MSPRINGI_MESSAGE_NONE = 0, MSPRINGI_MESSAGE_CLAIMED = 1, MSPRINGI_MESSAGE_WRITTEN = 2 };
+
+/// Nobody else may be here.
+void mspringi_shared_clear(mspringi_shared_message *shared);
+/// The text, or "".
+const char *mspringi_shared_text(const mspringi_shared_message *shared);
+/// Write the message, cut to fit, and return result.
+mspring_result mspringi_shared_fail(mspringi_shared_message *shared, mspring_result result, const char *format, ...)
+    MSPRINGI_PRINTF(3, 4);
+/// The same of one that is there already.
+mspring_result mspringi_shared_take(mspringi_shared_message *shared, mspring_result result,
+                                    const mspringi_message *message);
 
 /// At the entry of a call.
 static inline void mspringi_message_clear(mspringi_message *message) {
@@ -36,6 +57,10 @@ void mspringi_put_struct(void *out, const void *made, size_t known);
 
 /// Check that an element of an array is as large as the first. The message may be NULL.
 mspring_result mspringi_check_alike(mspringi_message *message, const void *element, size_t struct_size);
+
+/// Check an array of structs that are to be filled, all of them alike.
+mspring_result mspringi_check_outputs(const void *array, uint32_t count, const char *name, size_t known,
+                                      mspringi_message *message);
 
 /// Fill a struct of this size with its defaults, and struct_size with the size.
 mspring_result mspringi_init_struct(void *out, size_t size, const void *defaults, size_t known);

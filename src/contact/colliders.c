@@ -160,7 +160,7 @@ static mspring_result make_room(mspring_network *network, uint32_t points) {
     return ok ? MSPRING_OK
               : mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                               "no memory for collider %u of %u points, beside %u points of others",
-                              (unsigned)all->next_id, (unsigned)points, (unsigned)all->point_count);
+                              (unsigned)network->next_collider, (unsigned)points, (unsigned)all->point_count);
 }
 
 static void append(mspring_network *network, const mspring_collider_def *def) {
@@ -169,7 +169,7 @@ static void append(mspring_network *network, const mspring_collider_def *def) {
     const bool is_open = def->kind == MSPRING_COLLIDER_CHAIN && !(def->flags & MSPRING_COLLIDER_CLOSED);
     mspringi_collider *c = &all->list[all->count++];
     *c = (mspringi_collider){.def = *def,
-                             .id = all->next_id++,
+                             .id = network->next_collider++,
                              .first = all->point_count,
                              .count = count,
                              .sides = is_open ? count - 1 : count,
@@ -183,20 +183,14 @@ static void append(mspring_network *network, const mspring_collider_def *def) {
     renew(network);
 }
 
-// Refuse calls that need contact.
-static mspring_result enter(mspring_network *network) {
-    const mspring_result result = mspringi_enter(network);
-    if (result != MSPRING_OK || network->pairs)
-        return result;
-    return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                         "colliders are of contact, and there is none: call mspring_network_set_contact() first");
-}
-
 mspring_result mspring_network_add_collider(mspring_network *network, const mspring_collider_def *def,
                                             mspring_id *collider) {
-    mspring_result result = enter(network);
+    mspring_result result = mspringi_enter(network);
     if (result != MSPRING_OK)
         return result;
+    if (!network->pairs)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "colliders need contact: call mspring_network_set_contact() first");
     if (!def)
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the collider's definition is NULL");
     result = mspringi_check_struct(&network->message, "mspring_collider_def", def, sizeof *def);
@@ -204,7 +198,7 @@ mspring_result mspring_network_add_collider(mspring_network *network, const mspr
         result = mspringi_check_reserved(&network->message, "mspring_collider_def", def->reserved_pointer != NULL);
     if (result == MSPRING_OK)
         result = check_def(def, &network->message);
-    if (result == MSPRING_OK && network->pairs->colliders.next_id == MSPRING_NONE)
+    if (result == MSPRING_OK && network->next_collider == MSPRING_NONE)
         result = mspringi_fail(&network->message, MSPRING_ERROR_LIMIT, "all ids of colliders have been given away");
     if (result != MSPRING_OK)
         return result;
@@ -214,12 +208,16 @@ mspring_result mspring_network_add_collider(mspring_network *network, const mspr
         append(network, def);
     mspringi_fp_leave(before);
     if (result == MSPRING_OK && collider)
-        *collider = network->pairs->colliders.next_id - 1;
+        *collider = network->next_collider - 1;
     return result;
 }
 
+#define NO_COLLIDER "there is no collider %u"
+
 // NULL if there is none.
 static mspringi_collider *find(const mspringi_pairs *pairs, mspring_id id) {
+    if (!pairs)
+        return NULL;
     const mspringi_colliders *all = &pairs->colliders;
     uint32_t low = 0, high = all->count;
     while (low < high) {
@@ -233,12 +231,11 @@ static mspringi_collider *find(const mspringi_pairs *pairs, mspring_id id) {
 }
 
 static mspring_result find_or_fail(mspring_network *network, mspring_id id, mspringi_collider **found) {
-    const mspring_result result = enter(network);
+    const mspring_result result = mspringi_enter(network);
     if (result != MSPRING_OK)
         return result;
     *found = find(network->pairs, id);
-    return *found ? MSPRING_OK
-                  : mspringi_fail(&network->message, MSPRING_ERROR_ID, "there is no collider %u", (unsigned)id);
+    return *found ? MSPRING_OK : mspringi_fail(&network->message, MSPRING_ERROR_ID, NO_COLLIDER, (unsigned)id);
 }
 
 mspring_result mspring_network_remove_collider(mspring_network *network, mspring_id collider) {
@@ -302,14 +299,12 @@ mspring_result mspring_network_place_collider(mspring_network *network, mspring_
 
 mspring_result mspring_network_get_collider(const mspring_network *network, mspring_id collider,
                                             mspring_collider_def *def) {
-    if (!network || !network->pairs)
-        return MSPRING_ERROR_ARGUMENT;
-    const mspring_result result = mspringi_check_output(NULL, "mspring_collider_def", def, sizeof *def);
+    const mspring_result result = mspringi_check_report(network, "mspring_collider_def", def, sizeof *def);
     if (result != MSPRING_OK)
         return result;
     const mspringi_collider *c = find(network->pairs, collider);
     if (!c)
-        return MSPRING_ERROR_ID;
+        return mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, NO_COLLIDER, (unsigned)collider);
     mspring_collider_def had = c->def;
     had.points = had.kind == MSPRING_COLLIDER_CHAIN ? network->pairs->colliders.shape + 2 * (size_t)c->first : NULL;
     mspringi_put_struct(def, &had, sizeof had);
@@ -318,11 +313,13 @@ mspring_result mspring_network_get_collider(const mspring_network *network, mspr
 
 mspring_result mspring_network_get_collider_impulse(const mspring_network *network, mspring_id collider, double *x,
                                                     double *y, double *angular) {
-    if (!network || !network->pairs || !x || !y || !angular)
+    if (!network)
         return MSPRING_ERROR_ARGUMENT;
+    if (!x || !y || !angular)
+        return mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT, "the place for the impulse is NULL");
     const mspringi_collider *c = find(network->pairs, collider);
     if (!c)
-        return MSPRING_ERROR_ID;
+        return mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, NO_COLLIDER, (unsigned)collider);
     const bool is_of_last_step = network->pairs->colliders.reported == network->steps.count;
     *x = is_of_last_step ? c->impulse_x : 0.0;
     *y = is_of_last_step ? c->impulse_y : 0.0;

@@ -7,6 +7,7 @@
 #include "base/cpu.h"
 #include "sleep/sleep.h"
 #include "store/changed.h"
+#include "store/selection.h"
 #include "store/stages.h"
 
 #define SHORTEST_SPACING 1e-9
@@ -320,9 +321,7 @@ static mspring_floor_def def_of(const mspringi_floor *floor) {
 }
 
 mspring_result mspring_network_get_floor(const mspring_network *network, mspring_floor_def *def) {
-    if (!network)
-        return MSPRING_ERROR_ARGUMENT;
-    const mspring_result result = mspringi_check_output(NULL, "mspring_floor_def", def, sizeof *def);
+    const mspring_result result = mspringi_check_report(network, "mspring_floor_def", def, sizeof *def);
     if (result != MSPRING_OK)
         return result;
     const mspring_floor_def had = def_of(network->floor);
@@ -420,10 +419,11 @@ void mspringi_floor_take_back(mspringi_floor *floor) {
 
 mspring_result mspring_network_get_floor_impulses(const mspring_network *network, mspring_id first, uint32_t count,
                                                   float *x, float *y, uint32_t stride) {
-    if (!network || (count > 0 && (!x || !y)) || stride == 0)
-        return MSPRING_ERROR_ARGUMENT;
-    if (first > network->topology.particle_count || count > network->topology.particle_count - first)
-        return MSPRING_ERROR_ID;
+    mspringi_selection at;
+    const mspring_result result =
+        mspringi_look_up_range(network, MSPRINGI_PARTICLES, first, count, x, y, stride, &at);
+    if (result != MSPRING_OK)
+        return result;
     for (uint32_t i = 0; i < count; ++i) {
         const uint32_t slot = network->topology.slot_of_particle[first + i];
         x[(size_t)i * stride] = network->floor ? network->floor->impulse.x[slot] : 0.0f;

@@ -50,44 +50,60 @@ void mspringi_grips_arrive(mspring_network *network) {
 
 /* ------------------------------------------------------------------------------------------------- the setting */
 
-static void let_go(mspringi_grips *grips, mspringi_grip *grip) {
-    grips->count -= grip->particle != MSPRING_NONE;
-    *grip = (mspringi_grip){.particle = MSPRING_NONE};
+// NULL if there is none.
+static mspringi_grip *find(mspringi_grips *grips, mspring_id id) {
+    for (uint32_t i = 0; i < grips->count; ++i)
+        if (grips->list[i].id == id)
+            return &grips->list[i];
+    return NULL;
+}
+
+static void drop(mspringi_grips *grips, mspringi_grip *grip) {
+    mspringi_grip *last = &grips->list[--grips->count];
+    for (; grip < last; ++grip)
+        *grip = grip[1];
+    *last = (mspringi_grip){.id = MSPRING_NONE, .particle = MSPRING_NONE};
 }
 
 void mspringi_grips_clear(mspringi_grips *grips) {
     *grips = (mspringi_grips){.count = 0};
     for (uint32_t i = 0; i < MSPRING_MAX_GRIPS; ++i)
-        grips->list[i].particle = MSPRING_NONE;
+        grips->list[i].id = grips->list[i].particle = MSPRING_NONE;
 }
 
 void mspringi_grips_forget(mspring_network *network, mspring_id particle) {
-    for (uint32_t i = 0; network->grips.count > 0 && i < MSPRING_MAX_GRIPS; ++i)
-        if (network->grips.list[i].particle == particle)
-            let_go(&network->grips, &network->grips.list[i]);
+    mspringi_grips *grips = &network->grips;
+    for (uint32_t i = grips->count; i-- > 0;)
+        if (grips->list[i].particle == particle)
+            drop(grips, &grips->list[i]);
 }
 
-static mspring_result check_number(mspring_network *network, uint32_t number) {
-    return number < MSPRING_MAX_GRIPS ? MSPRING_OK
-                                      : mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                                                      "the grip is number %u, it may be 0 to %u", (unsigned)number,
-                                                      (unsigned)MSPRING_MAX_GRIPS - 1);
+#define NO_GRIP "there is no grip %u"
+
+static mspring_result find_or_fail(mspring_network *network, mspring_id id, mspringi_grip **found) {
+    const mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK)
+        return result;
+    *found = find(&network->grips, id);
+    return *found ? MSPRING_OK : mspringi_fail(&network->message, MSPRING_ERROR_ID, NO_GRIP, (unsigned)id);
 }
 
-static mspring_result check_target(mspring_network *network, uint32_t number, double x, double y) {
+static mspring_result check_target(mspring_network *network, double x, double y) {
     return fabs(x) <= MSPRING_MAX_COORDINATE && fabs(y) <= MSPRING_MAX_COORDINATE
                ? MSPRING_OK
                : mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                               "the target of grip %u is (%g, %g), which is out of bounds", (unsigned)number, x, y);
+                               "the target (%g, %g) m of the grip is not within 1e12", x, y);
 }
 
-static mspring_result check_grip(mspring_network *network, uint32_t number, const mspring_grip_def *def) {
+static mspring_result check_grip(mspring_network *network, const mspring_grip_def *def) {
     mspringi_message *message = &network->message;
+    if (!def)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the grip's definition is NULL");
     mspring_result result = mspringi_check_struct(message, "mspring_grip_def", def, sizeof *def);
     if (result == MSPRING_OK)
         result = mspringi_check_reserved(message, "mspring_grip_def", def->reserved);
     if (result == MSPRING_OK)
-        result = check_target(network, number, def->x, def->y);
+        result = check_target(network, def->x, def->y);
     if (result != MSPRING_OK)
         return result;
     const struct {
@@ -98,11 +114,11 @@ static mspring_result check_grip(mspring_network *network, uint32_t number, cons
                   {"max_force", def->max_force, MSPRING_NEVER}};
     for (size_t i = 0; i < sizeof values / sizeof values[0]; ++i)
         if (!(values[i].value >= 0.0f && values[i].value <= values[i].most))
-            return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the %s of grip %u is %g, it must be 0 to %g",
-                                 values[i].name, (unsigned)number, (double)values[i].value, (double)values[i].most);
+            return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the grip's %s is %g, it must be 0 to %g",
+                                 values[i].name, (double)values[i].value, (double)values[i].most);
     if (def->particle >= network->topology.particle_count || !mspringi_particle_exists(network, def->particle))
-        return mspringi_fail(message, MSPRING_ERROR_ID, "grip %u is to hold particle %u, which does not exist",
-                             (unsigned)number, (unsigned)def->particle);
+        return mspringi_fail(message, MSPRING_ERROR_ID, "the grip is to hold particle %u, which does not exist",
+                             (unsigned)def->particle);
     return MSPRING_OK;
 }
 
@@ -111,86 +127,114 @@ static void tell(mspring_network *network, const mspringi_grip *grip) {
     mspringi_changed(network, MSPRINGI_CHANGED_GRIP, network->topology.slot_of_particle[grip->particle]);
 }
 
-mspring_result mspring_network_set_grip(mspring_network *network, uint32_t number, const mspring_grip_def *def) {
+static mspringi_grip made_of(const mspring_grip_def *def, mspring_id id) {
+    return (mspringi_grip){.id = id,
+                           .particle = def->particle,
+                           .stiffness = def->stiffness,
+                           .damping = def->damping,
+                           .max_force = def->max_force,
+                           .x = def->x,
+                           .y = def->y,
+                           .from_x = def->x,
+                           .from_y = def->y};
+}
+
+mspring_result mspring_network_add_grip(mspring_network *network, const mspring_grip_def *def, mspring_id *grip) {
     mspring_result result = mspringi_enter(network);
     if (result == MSPRING_OK)
-        result = check_number(network, number);
-    if (result == MSPRING_OK && def)
-        result = check_grip(network, number, def);
+        result = check_grip(network, def);
     if (result != MSPRING_OK)
         return result;
-    mspringi_grip *grip = &network->grips.list[number];
-    const mspringi_grip had = *grip;
-    if (had.particle != MSPRING_NONE)
-        tell(network, &had);
-    let_go(&network->grips, grip);
-    if (!def)
-        return MSPRING_OK;
-    *grip = (mspringi_grip){.particle = def->particle,
-                            .stiffness = def->stiffness,
-                            .damping = def->damping,
-                            .max_force = def->max_force,
-                            .x = def->x,
-                            .y = def->y,
-                            .from_x = def->x,
-                            .from_y = def->y};
+    mspringi_grips *grips = &network->grips;
+    if (grips->count == MSPRING_MAX_GRIPS || grips->next_id == MSPRING_NONE)
+        return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT, "there are %u grips already, of %u ever made",
+                             (unsigned)grips->count, (unsigned)grips->next_id);
+    grips->list[grips->count] = made_of(def, grips->next_id++);
+    if (grip)
+        *grip = grips->list[grips->count].id;
+    tell(network, &grips->list[grips->count++]);
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_remove_grip(mspring_network *network, mspring_id grip) {
+    mspringi_grip *found;
+    const mspring_result result = find_or_fail(network, grip, &found);
+    if (result != MSPRING_OK)
+        return result;
+    tell(network, found);
+    drop(&network->grips, found);
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_set_grip(mspring_network *network, mspring_id grip, const mspring_grip_def *def) {
+    mspringi_grip *found;
+    mspring_result result = find_or_fail(network, grip, &found);
+    if (result == MSPRING_OK)
+        result = check_grip(network, def);
+    if (result != MSPRING_OK)
+        return result;
+    const mspringi_grip had = *found;
+    tell(network, &had);
+    *found = made_of(def, grip);
     if (had.particle == def->particle) {
-        grip->from_x = had.from_x;
-        grip->from_y = had.from_y;
-        grip->impulse_x = had.impulse_x;
-        grip->impulse_y = had.impulse_y;
+        found->from_x = had.from_x;
+        found->from_y = had.from_y;
+        found->impulse_x = had.impulse_x;
+        found->impulse_y = had.impulse_y;
     }
-    network->grips.count++;
-    tell(network, grip);
+    tell(network, found);
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_move_grip(mspring_network *network, uint32_t number, double x, double y) {
-    mspring_result result = mspringi_enter(network);
+mspring_result mspring_network_move_grip(mspring_network *network, mspring_id grip, double x, double y) {
+    mspringi_grip *found;
+    mspring_result result = find_or_fail(network, grip, &found);
     if (result == MSPRING_OK)
-        result = check_number(network, number);
-    if (result == MSPRING_OK)
-        result = check_target(network, number, x, y);
-    if (result != MSPRING_OK)
+        result = check_target(network, x, y);
+    if (result != MSPRING_OK || (found->x == x && found->y == y))
         return result;
-    mspringi_grip *grip = &network->grips.list[number];
-    if (grip->particle == MSPRING_NONE)
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                             "grip %u holds nothing: set it before you move it", (unsigned)number);
-    if (grip->x == x && grip->y == y)
-        return MSPRING_OK;
-    grip->x = x;
-    grip->y = y;
-    tell(network, grip);
+    found->x = x;
+    found->y = y;
+    tell(network, found);
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_get_grip(const mspring_network *network, uint32_t number, mspring_grip_def *def) {
-    mspring_grip_def had;
-    if (!network || number >= MSPRING_MAX_GRIPS)
-        return MSPRING_ERROR_ARGUMENT;
-    const mspring_result result = mspringi_check_output(NULL, "mspring_grip_def", def, sizeof *def);
+// The same for calls that only read: NULL if there is none, with a message.
+static const mspringi_grip *look_up(const mspring_network *network, mspring_id id) {
+    for (uint32_t i = 0; i < network->grips.count; ++i)
+        if (network->grips.list[i].id == id)
+            return &network->grips.list[i];
+    (void)mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, NO_GRIP, (unsigned)id);
+    return NULL;
+}
+
+mspring_result mspring_network_get_grip(const mspring_network *network, mspring_id grip, mspring_grip_def *def) {
+    const mspring_result result = mspringi_check_report(network, "mspring_grip_def", def, sizeof *def);
     if (result != MSPRING_OK)
         return result;
-    const mspringi_grip *grip = &network->grips.list[number];
-    (void)mspring_grip_def_init(&had, sizeof had);
-    if (grip->particle != MSPRING_NONE) {
-        had.particle = grip->particle;
-        had.x = grip->x;
-        had.y = grip->y;
-        had.stiffness = grip->stiffness;
-        had.damping = grip->damping;
-        had.max_force = grip->max_force;
-    }
+    const mspringi_grip *found = look_up(network, grip);
+    if (!found)
+        return MSPRING_ERROR_ID;
+    const mspring_grip_def had = {.particle = found->particle,
+                                  .x = found->x,
+                                  .y = found->y,
+                                  .stiffness = found->stiffness,
+                                  .damping = found->damping,
+                                  .max_force = found->max_force};
     mspringi_put_struct(def, &had, sizeof had);
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_get_grip_impulse(const mspring_network *network, uint32_t number, double *x,
+mspring_result mspring_network_get_grip_impulse(const mspring_network *network, mspring_id grip, double *x,
                                                 double *y) {
-    if (!network || number >= MSPRING_MAX_GRIPS || !x || !y)
+    if (!network)
         return MSPRING_ERROR_ARGUMENT;
-    *x = network->grips.list[number].impulse_x;
-    *y = network->grips.list[number].impulse_y;
+    if (!x || !y)
+        return mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT, "the place for the impulse is NULL");
+    const mspringi_grip *found = look_up(network, grip);
+    if (!found)
+        return MSPRING_ERROR_ID;
+    *x = found->impulse_x;
+    *y = found->impulse_y;
     return MSPRING_OK;
 }

@@ -27,9 +27,9 @@ bool mspringi_grip_bound(const mspringi_grip *grip, double *force_x, double *for
 /// Whether a grip holds a particle that can be moved now. If so, *slot is where it is.
 bool mspringi_grip_acts(const mspring_network *network, const mspringi_grip *grip, uint32_t *slot);
 
-/// No grip holds anything, as at first.
+/// There is no grip, and none has been.
 void mspringi_grips_clear(mspringi_grips *grips);
-/// Let go of a particle that is removed.
+/// Remove the grips of a particle that is removed.
 void mspringi_grips_forget(mspring_network *network, mspring_id particle);
 /// The next step begins where the targets are.
 void mspringi_grips_arrive(mspring_network *network);

@@ -311,9 +311,7 @@ static mspring_contact_def def_of(const mspring_network *network) {
 }
 
 mspring_result mspring_network_get_contact(const mspring_network *network, mspring_contact_def *def) {
-    if (!network)
-        return MSPRING_ERROR_ARGUMENT;
-    const mspring_result result = mspringi_check_output(NULL, "mspring_contact_def", def, sizeof *def);
+    const mspring_result result = mspringi_check_report(network, "mspring_contact_def", def, sizeof *def);
     if (result != MSPRING_OK)
         return result;
     const mspring_contact_def had = def_of(network);
@@ -381,10 +379,8 @@ mspring_result mspring_network_set_contact_groups(mspring_network *network, mspr
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_contact_info(const mspring_network *network, mspring_contact_info *info) {
-    if (!network)
-        return MSPRING_ERROR_ARGUMENT;
-    const mspring_result result = mspringi_check_output(NULL, "mspring_contact_info", info, sizeof *info);
+mspring_result mspring_network_get_contact_info(const mspring_network *network, mspring_contact_info *info) {
+    const mspring_result result = mspringi_check_report(network, "mspring_contact_info", info, sizeof *info);
     if (result != MSPRING_OK)
         return result;
     mspring_contact_info found = {.struct_size = sizeof found};

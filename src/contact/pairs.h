@@ -106,9 +106,8 @@ typedef struct mspringi_colliders {
     size_t capacity;
     uint32_t count, point_count, point_capacity;
     uint32_t listed_points, listed_sides; ///< those in the outline
-    mspring_id next_id;
-    double *shape;   ///< [point_capacity][2] as given
-    uint32_t *owner; ///< [point_capacity] number of its collider
+    double *shape;                        ///< [point_capacity][2] as given
+    uint32_t *owner;                      ///< [point_capacity] number of its collider
     double *x, *y;   ///< [point_capacity] local coordinates, at the end of so many substeps as done says
     double *vx, *vy; ///< [point_capacity] in the substep after that
     uint32_t done, substeps;

@@ -79,64 +79,82 @@ static bool has_hook_with_storage(const mspring_network *network) {
 
 // Give a copy threads of its own, and what they work in.
 static mspring_result employ(mspring_network *network, const mspring_clone_def *def) {
-    mspring_result result = mspringi_tasks_create(def->worker_count, def->tasks, &network->tasks_memory,
-                                                  &network->message, &network->tasks);
+    mspring_result result = mspringi_shared_reserve(network);
+    if (result == MSPRING_OK)
+        result = mspringi_tasks_create(def->worker_count, def->tasks, &network->tasks_memory, &network->message,
+                                       &network->tasks);
     if (result == MSPRING_OK)
         result = mspringi_carry_reserve(network);
     return result == MSPRING_OK ? mspringi_solvers_reserve(network) : result;
 }
 
 static mspring_result copy(const mspring_network *network, const mspring_clone_def *def,
-                           const mspring_allocator *allocator, mspring_network **clone) {
+                           const mspring_allocator *allocator, mspring_network **clone, mspringi_message *message) {
     mspringi_memory memory = {.allocator = *allocator};
     mspring_network *made = NULL;
     if (mspringi_memory_copy(&network->memory, &memory))
         made = mspringi_memory_moved(&network->memory, &memory, network);
     if (!made) {
         mspringi_free_all(&memory);
-        return MSPRING_ERROR_MEMORY;
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for a copy of the network");
     }
     made->memory = memory;
     made->tasks_memory = (mspringi_memory){.allocator = *allocator};
     made->tasks = NULL;
     made->job = NULL;
-    made->message = (mspringi_message){0};
+    mspringi_message_clear(&made->message);
+    made->shared = NULL;
     move_network(&(moving){&network->memory, &made->memory}, made);
     if (!(def->flags & MSPRING_CLONE_HOOKS))
         drop_hooks(made);
     mspring_result result = employ(made, def);
-    if (result == MSPRING_OK)
+    if (result == MSPRING_OK) {
         *clone = made;
-    else
+    } else {
+        *message = made->message;
         mspring_network_destroy(made);
+    }
     return result;
+}
+
+static mspring_result check_clone(const mspring_network *network, const mspring_clone_def *def,
+                                  mspring_network *const *clone, mspringi_message *message) {
+    if (!clone)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the place for the clone is NULL");
+    if (network->in_hook != MSPRINGI_IN_NO_HOOK)
+        return mspringi_fail(message, MSPRING_ERROR_BUSY, "no clone is made inside a hook");
+    mspring_result result = mspringi_check_struct(message, "mspring_clone_def", def, sizeof *def);
+    if (result == MSPRING_OK)
+        result = mspringi_check_reserved(message, "mspring_clone_def", def->reserved);
+    if (result != MSPRING_OK)
+        return result;
+    if (def->flags & ~(uint32_t)MSPRING_CLONE_HOOKS)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "clone flags %#x are unknown", (unsigned)def->flags);
+    const uint32_t has = mspringi_tasks_workers(network->tasks);
+    const uint32_t workers = def->tasks ? def->tasks->worker_count : def->worker_count;
+    if (def->flags & MSPRING_CLONE_HOOKS && workers > has && has_hook_with_storage(network))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "hooks have storage for %u workers, the clone is to have %u", (unsigned)has,
+                             (unsigned)workers);
+    return MSPRING_OK;
 }
 
 mspring_result mspring_network_clone(const mspring_network *network, const mspring_clone_def *def,
                                      mspring_network **clone) {
     mspring_clone_def defaults;
-    if (!network || !clone)
+    mspringi_message message;
+    if (!network)
         return MSPRING_ERROR_ARGUMENT;
-    if (network->in_hook != MSPRINGI_IN_NO_HOOK)
-        return MSPRING_ERROR_BUSY;
     if (!def) {
         (void)mspring_clone_def_init(&defaults, sizeof defaults);
         def = &defaults;
     }
-    if (mspringi_check_struct(NULL, "mspring_clone_def", def, sizeof *def) != MSPRING_OK)
-        return MSPRING_ERROR_STRUCT;
-    if (def->flags & ~(uint32_t)MSPRING_CLONE_HOOKS || def->reserved != 0)
-        return MSPRING_ERROR_ARGUMENT;
-    const uint32_t workers = def->tasks ? def->tasks->worker_count : def->worker_count;
-    if (def->flags & MSPRING_CLONE_HOOKS && workers > mspringi_tasks_workers(network->tasks) &&
-        has_hook_with_storage(network))
-        return MSPRING_ERROR_ARGUMENT;
+    mspringi_message_clear(&message);
+    mspring_result result = check_clone(network, def, clone, &message);
     mspringi_memory memory = network->memory;
-    mspringi_message message;
-    if (def->allocator) {
-        mspring_result result = mspringi_memory_init(&memory, def->allocator, &message);
-        if (result != MSPRING_OK)
-            return result;
-    }
-    return copy(network, def, &memory.allocator, clone);
+    if (result == MSPRING_OK && def->allocator)
+        result = mspringi_memory_init(&memory, def->allocator, &message);
+    if (result == MSPRING_OK)
+        result = copy(network, def, &memory.allocator, clone, &message);
+    return result == MSPRING_OK ? MSPRING_OK : mspringi_shared_take(network->shared, result, &message);
 }

@@ -24,16 +24,35 @@
 
 /* --------------------------------------------------------------------------------------------------- checks */
 
+#define IN_HOOK "called from inside a hook, where only functions marked as shared are allowed"
+
 mspring_result mspringi_enter(mspring_network *network) {
     if (!network)
         return MSPRING_ERROR_ARGUMENT;
     if (network->in_hook == MSPRINGI_IN_HOOKS)
-        return MSPRING_ERROR_BUSY; // without a message, which other threads might be writing, too
+        return mspringi_shared_fail(network->shared, MSPRING_ERROR_BUSY, IN_HOOK);
     if (network->in_hook == MSPRINGI_IN_HOOK)
-        return mspringi_fail(&network->message, MSPRING_ERROR_BUSY,
-                             "called from inside a hook, where only functions marked as shared are allowed");
+        return mspringi_fail(&network->message, MSPRING_ERROR_BUSY, IN_HOOK);
     mspringi_message_clear(&network->message);
+    mspringi_shared_clear(network->shared);
     return MSPRING_OK;
+}
+
+mspring_result mspringi_shared_reserve(mspring_network *network) {
+    network->shared = mspringi_alloc(&network->tasks_memory, 1, sizeof *network->shared);
+    if (!network->shared)
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for a message");
+    mspringi_shared_clear(network->shared);
+    return MSPRING_OK;
+}
+
+mspring_result mspringi_check_report(const mspring_network *network, const char *name, const void *out,
+                                     size_t known) {
+    mspringi_message message;
+    if (!network)
+        return MSPRING_ERROR_ARGUMENT;
+    const mspring_result result = mspringi_check_output(&message, name, out, known);
+    return result == MSPRING_OK ? MSPRING_OK : mspringi_shared_take(network->shared, result, &message);
 }
 
 mspring_result mspringi_check_range(mspring_network *network, const char *what, mspring_id first, uint32_t count,
@@ -56,7 +75,8 @@ static mspring_result check_def(const mspring_network_def *def, mspringi_message
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "network flags %#x are unknown",
                              (unsigned)def->flags);
     const mspring_settings settings = mspringi_settings_of(def);
-    return mspringi_check_settings(&settings, message);
+    result = mspringi_check_reserved(message, "mspring_network_def", def->reserved);
+    return result == MSPRING_OK ? mspringi_check_settings(&settings, message) : result;
 }
 
 /* ---------------------------------------------------------------------------------------------------- filling */
@@ -227,8 +247,11 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     mspringi_reserve reserve = {0};
     network->solver.ops = mspringi_solver_ops_of(MSPRING_SOLVER_EXPLICIT);
     network->kernels = mspringi_kernels_of(mspringi_cpu_choose(def->simd_level));
-    mspring_result result = mspringi_tasks_create(def->worker_count, def->tasks, &network->tasks_memory,
-                                                  &network->message, &network->tasks);
+    mspring_result result = mspringi_shared_reserve(network);
+    if (result != MSPRING_OK)
+        return result;
+    result = mspringi_tasks_create(def->worker_count, def->tasks, &network->tasks_memory, &network->message,
+                                   &network->tasks);
     if (result == MSPRING_OK)
         result = make_reserve(&reserve, builder, def, &network->message);
     if (result == MSPRING_OK)
@@ -269,11 +292,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
         result = mspringi_growth_reserve(network);
     if (result != MSPRING_OK)
         return result;
-    mspring_solver_def solver;
-    (void)mspring_solver_def_init(&solver, sizeof solver);
-    solver.solver = def->solver;
-    solver.substeps = def->substeps;
-    solver.max_substeps = def->max_substeps;
+    const mspring_solver_def solver = mspringi_solver_of(def);
     result = mspring_network_set_solver(network, &solver);
     if (result == MSPRING_OK)
         result = mspringi_guard_reserve(network, def->guard);
@@ -328,6 +347,7 @@ void mspring_network_destroy(mspring_network *network) {
         return;
     mspringi_memory memory = network->memory, tasks_memory = network->tasks_memory;
     mspringi_tasks_destroy(network->tasks, &tasks_memory);
+    mspringi_free_all(&tasks_memory);
     mspringi_job_lose(network);
     mspringi_free_all(&memory);
 }

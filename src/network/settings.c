@@ -61,9 +61,7 @@ static mspring_solver_def def_of(const mspring_network *network) {
 }
 
 mspring_result mspring_network_get_solver(const mspring_network *network, mspring_solver_def *def) {
-    if (!network)
-        return MSPRING_ERROR_ARGUMENT;
-    const mspring_result result = mspringi_check_output(NULL, "mspring_solver_def", def, sizeof *def);
+    const mspring_result result = mspringi_check_report(network, "mspring_solver_def", def, sizeof *def);
     if (result != MSPRING_OK)
         return result;
     const mspring_solver_def had = def_of(network);
@@ -144,9 +142,7 @@ mspring_result mspringi_check_settings(const mspring_settings *settings, mspring
 }
 
 mspring_result mspring_network_get_settings(const mspring_network *network, mspring_settings *settings) {
-    if (!network)
-        return MSPRING_ERROR_ARGUMENT;
-    const mspring_result result = mspringi_check_output(NULL, "mspring_settings", settings, sizeof *settings);
+    const mspring_result result = mspringi_check_report(network, "mspring_settings", settings, sizeof *settings);
     if (result == MSPRING_OK)
         mspringi_put_struct(settings, &network->settings, sizeof network->settings);
     return result;

@@ -10,15 +10,6 @@
 
 /* ---------------------------------------------------------------------------------------------------------- get */
 
-// A range for a shared function: no message, as several threads may be here.
-static mspring_result check_get(const mspring_network *network, mspring_id first, uint32_t count, const void *a,
-                                const void *b, uint32_t stride) {
-    if (!network || (count > 0 && (!a || !b)) || stride == 0)
-        return MSPRING_ERROR_ARGUMENT;
-    const uint32_t total = network->topology.particle_count;
-    return first <= total && count <= total - first ? MSPRING_OK : MSPRING_ERROR_ID;
-}
-
 // A removed particle is where the local origin is, whatever the host has written to its slot through a view.
 static double x_from_origin(const mspring_network *network, mspring_id particle) {
     const uint32_t slot = network->topology.slot_of_particle[particle];
@@ -30,38 +21,87 @@ static double y_from_origin(const mspring_network *network, mspring_id particle)
     return mspringi_particle_exists(network, particle) ? mspringi_y_of(&network->state, slot) : 0.0;
 }
 
+static void get_positions(const mspring_network *network, const mspringi_selection *at, double *x, double *y,
+                          size_t stride) {
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const mspring_id particle = mspringi_selected(at, i);
+        x[i * stride] = network->origin_x + x_from_origin(network, particle);
+        y[i * stride] = network->origin_y + y_from_origin(network, particle);
+    }
+}
+
+static void get_positions_float(const mspring_network *network, const mspringi_selection *at, float *x, float *y,
+                                size_t stride) {
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const mspring_id particle = mspringi_selected(at, i);
+        x[i * stride] = (float)(network->origin_x + x_from_origin(network, particle));
+        y[i * stride] = (float)(network->origin_y + y_from_origin(network, particle));
+    }
+}
+
+static void get_velocities(const mspring_network *network, const mspringi_selection *at, float *vx, float *vy,
+                           size_t stride) {
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const mspring_id particle = mspringi_selected(at, i);
+        const uint32_t slot = network->topology.slot_of_particle[particle];
+        const bool is_there = mspringi_particle_exists(network, particle);
+        vx[i * stride] = is_there ? network->state.vx[slot] : 0.0f;
+        vy[i * stride] = is_there ? network->state.vy[slot] : 0.0f;
+    }
+}
+
 mspring_result mspring_network_get_positions(const mspring_network *network, mspring_id first, uint32_t count,
                                              double *x, double *y, uint32_t stride) {
-    mspring_result result = check_get(network, first, count, x, y, stride);
-    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
-        const size_t at = (size_t)i * stride;
-        x[at] = network->origin_x + x_from_origin(network, first + i);
-        y[at] = network->origin_y + y_from_origin(network, first + i);
-    }
+    mspringi_selection at;
+    mspring_result result = mspringi_look_up_range(network, MSPRINGI_PARTICLES, first, count, x, y, stride, &at);
+    if (result == MSPRING_OK)
+        get_positions(network, &at, x, y, stride);
     return result;
 }
 
 mspring_result mspring_network_get_positions_float(const mspring_network *network, mspring_id first, uint32_t count,
                                                    float *x, float *y, uint32_t stride) {
-    mspring_result result = check_get(network, first, count, x, y, stride);
-    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
-        const size_t at = (size_t)i * stride;
-        x[at] = (float)(network->origin_x + x_from_origin(network, first + i));
-        y[at] = (float)(network->origin_y + y_from_origin(network, first + i));
-    }
+    mspringi_selection at;
+    mspring_result result = mspringi_look_up_range(network, MSPRINGI_PARTICLES, first, count, x, y, stride, &at);
+    if (result == MSPRING_OK)
+        get_positions_float(network, &at, x, y, stride);
+    return result;
+}
+
+mspring_result mspring_network_get_positions_at(const mspring_network *network, const mspring_id *particles,
+                                                uint32_t count, double *x, double *y, uint32_t stride) {
+    mspringi_selection at;
+    mspring_result result = mspringi_look_up_list(network, MSPRINGI_PARTICLES, particles, count, x, y, stride, &at);
+    if (result == MSPRING_OK)
+        get_positions(network, &at, x, y, stride);
+    return result;
+}
+
+mspring_result mspring_network_get_positions_float_at(const mspring_network *network, const mspring_id *particles,
+                                                      uint32_t count, float *x, float *y, uint32_t stride) {
+    mspringi_selection at;
+    mspring_result result = mspringi_look_up_list(network, MSPRINGI_PARTICLES, particles, count, x, y, stride, &at);
+    if (result == MSPRING_OK)
+        get_positions_float(network, &at, x, y, stride);
     return result;
 }
 
 mspring_result mspring_network_get_velocities(const mspring_network *network, mspring_id first, uint32_t count,
                                               float *vx, float *vy, uint32_t stride) {
-    mspring_result result = check_get(network, first, count, vx, vy, stride);
-    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
-        const uint32_t slot = network->topology.slot_of_particle[first + i];
-        const size_t at = (size_t)i * stride;
-        const bool is_there = mspringi_particle_exists(network, first + i);
-        vx[at] = is_there ? network->state.vx[slot] : 0.0f;
-        vy[at] = is_there ? network->state.vy[slot] : 0.0f;
-    }
+    mspringi_selection at;
+    mspring_result result = mspringi_look_up_range(network, MSPRINGI_PARTICLES, first, count, vx, vy, stride, &at);
+    if (result == MSPRING_OK)
+        get_velocities(network, &at, vx, vy, stride);
+    return result;
+}
+
+mspring_result mspring_network_get_velocities_at(const mspring_network *network, const mspring_id *particles,
+                                                 uint32_t count, float *vx, float *vy, uint32_t stride) {
+    mspringi_selection at;
+    mspring_result result =
+        mspringi_look_up_list(network, MSPRINGI_PARTICLES, particles, count, vx, vy, stride, &at);
+    if (result == MSPRING_OK)
+        get_velocities(network, &at, vx, vy, stride);
     return result;
 }
 
@@ -204,8 +244,10 @@ mspring_result mspring_network_set_velocities_at(mspring_network *network, const
 /* -------------------------------------------------------------------------------------------------------- hash */
 
 mspring_result mspring_network_state_hash(const mspring_network *network, uint64_t *hash) {
-    if (!network || !hash)
+    if (!network)
         return MSPRING_ERROR_ARGUMENT;
+    if (!hash)
+        return mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT, "the place for the hash is NULL");
     const mspringi_topology *t = &network->topology;
     const mspringi_state *s = &network->state;
     uint64_t sum = MSPRINGI_MIX_START;

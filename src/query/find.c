@@ -37,14 +37,33 @@ static bool is_coordinate(double x) {
     return fabs(x) <= MSPRING_MAX_COORDINATE; // and no NaN
 }
 
-static bool is_room(const mspring_id *ids, uint32_t capacity, const uint32_t *count) {
-    return count && (ids || capacity == 0);
+static mspring_result check_point(const mspring_network *network, double x, double y) {
+    return is_coordinate(x) && is_coordinate(y)
+               ? MSPRING_OK
+               : mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT,
+                                      "the point (%g, %g) m is not within 1e12", x, y);
+}
+
+static mspring_result check_room(const mspring_network *network, const mspring_id *ids, uint32_t capacity,
+                                 const uint32_t *count) {
+    if (!network)
+        return MSPRING_ERROR_ARGUMENT;
+    return count && (ids || capacity == 0)
+               ? MSPRING_OK
+               : mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT, "the place for %s is NULL",
+                                      count ? "the ids" : "their count");
 }
 
 mspring_result mspring_network_nearest_particle(const mspring_network *network, double x, double y, double within,
                                                 mspring_id *particle, double *distance) {
-    if (!network || !particle || !is_coordinate(x) || !is_coordinate(y) || !(within >= 0.0))
-        return MSPRING_ERROR_ARGUMENT;
+    mspring_result result = check_room(network, particle, 1, &(uint32_t){0});
+    if (result == MSPRING_OK)
+        result = check_point(network, x, y);
+    if (result == MSPRING_OK && !(within >= 0.0))
+        result = mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT,
+                                      "within is %g m, it must be at least 0", within);
+    if (result != MSPRING_OK)
+        return result;
     const point centre = local_point(network, x, y);
     mspring_id nearest = MSPRING_NONE;
     double least = within * within;
@@ -65,9 +84,14 @@ mspring_result mspring_network_nearest_particle(const mspring_network *network, 
 mspring_result mspring_network_particles_in_circle(const mspring_network *network, double x, double y,
                                                    double radius, mspring_id *particles, uint32_t capacity,
                                                    uint32_t *count) {
-    if (!network || !is_room(particles, capacity, count) || !is_coordinate(x) || !is_coordinate(y) ||
-        !(radius >= 0.0))
-        return MSPRING_ERROR_ARGUMENT;
+    mspring_result result = check_room(network, particles, capacity, count);
+    if (result == MSPRING_OK)
+        result = check_point(network, x, y);
+    if (result == MSPRING_OK && !(radius >= 0.0))
+        result = mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT,
+                                      "the radius is %g m, it must be at least 0", radius);
+    if (result != MSPRING_OK)
+        return result;
     const point centre = local_point(network, x, y);
     found to = {particles, NULL, capacity, 0};
     for (mspring_id p = 0; p < network->topology.particle_count; ++p) {
@@ -83,8 +107,13 @@ mspring_result mspring_network_particles_in_circle(const mspring_network *networ
 mspring_result mspring_network_particles_in_box(const mspring_network *network, double min_x, double min_y,
                                                 double max_x, double max_y, mspring_id *particles,
                                                 uint32_t capacity, uint32_t *count) {
-    if (!network || !is_room(particles, capacity, count) || !(min_x <= max_x) || !(min_y <= max_y))
-        return MSPRING_ERROR_ARGUMENT;
+    mspring_result result = check_room(network, particles, capacity, count);
+    if (result == MSPRING_OK && !(min_x <= max_x && min_y <= max_y))
+        result = mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT,
+                                      "the box from (%g, %g) to (%g, %g) has a min above its max", min_x, min_y,
+                                      max_x, max_y);
+    if (result != MSPRING_OK)
+        return result;
     const point low = local_point(network, min_x, min_y), high = local_point(network, max_x, max_y);
     found to = {particles, NULL, capacity, 0};
     for (mspring_id p = 0; p < network->topology.particle_count; ++p) {
@@ -128,9 +157,13 @@ static bool is_across(point a, point b, point c, point d, double *fraction) {
 mspring_result mspring_network_springs_across(const mspring_network *network, double from_x, double from_y,
                                               double to_x, double to_y, mspring_id *springs, double *fractions,
                                               uint32_t capacity, uint32_t *count) {
-    if (!network || !is_room(springs, capacity, count) || !is_coordinate(from_x) || !is_coordinate(from_y) ||
-        !is_coordinate(to_x) || !is_coordinate(to_y))
-        return MSPRING_ERROR_ARGUMENT;
+    mspring_result result = check_room(network, springs, capacity, count);
+    if (result == MSPRING_OK)
+        result = check_point(network, from_x, from_y);
+    if (result == MSPRING_OK)
+        result = check_point(network, to_x, to_y);
+    if (result != MSPRING_OK)
+        return result;
     const point from = local_point(network, from_x, from_y), end = local_point(network, to_x, to_y);
     found to = {springs, fractions, capacity, 0};
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {

@@ -109,8 +109,10 @@ mspring_result mspring_network_momentum(const mspring_network *network, double *
 
 mspring_result mspring_network_bounds(const mspring_network *network, double *min_x, double *min_y, double *max_x,
                                       double *max_y) {
-    if (!network || !min_x || !min_y || !max_x || !max_y)
+    if (!network)
         return MSPRING_ERROR_ARGUMENT;
+    if (!min_x || !min_y || !max_x || !max_y)
+        return mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT, "the place for a bound is NULL");
     const mspringi_topology *t = &network->topology;
     const mspringi_state *s = &network->state;
     double low_x = INFINITY, low_y = INFINITY, high_x = -INFINITY, high_y = -INFINITY;
@@ -136,14 +138,12 @@ mspring_result mspring_network_bounds(const mspring_network *network, double *mi
 
 mspring_result mspring_network_get_spring(const mspring_network *network, mspring_id spring,
                                           mspring_spring_info *info) {
-    if (!network)
-        return MSPRING_ERROR_ARGUMENT;
-    const mspring_result result = mspringi_check_output(NULL, "mspring_spring_info", info, sizeof *info);
+    const mspring_result result = mspringi_check_report(network, "mspring_spring_info", info, sizeof *info);
     if (result != MSPRING_OK)
         return result;
     const mspringi_topology *t = &network->topology;
     if (spring >= t->spring_count || !mspringi_spring_exists(network, spring))
-        return MSPRING_ERROR_ID;
+        return mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, "there is no spring %u", (unsigned)spring);
     const mspringi_place place = mspringi_place_of(t, spring);
     const mspringi_spring_values r = mspringi_place_get(network, place);
     const mspringi_ends ends = mspringi_spring_ends(network, spring);

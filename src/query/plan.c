@@ -5,7 +5,8 @@
 #include "store/network.h"
 
 const char *mspring_network_error(const mspring_network *network) {
-    return network ? network->message.text : "";
+    const char *shared = network ? mspringi_shared_text(network->shared) : "";
+    return shared[0] || !network ? shared : network->message.text;
 }
 
 uint32_t mspring_network_particle_count(const mspring_network *network) {
@@ -41,9 +42,7 @@ static double largest_speed(const mspring_network *network) {
 }
 
 mspring_result mspring_network_get_step_info(const mspring_network *network, mspring_step_info *info) {
-    if (!network)
-        return MSPRING_ERROR_ARGUMENT;
-    const mspring_result result = mspringi_check_output(NULL, "mspring_step_info", info, sizeof *info);
+    const mspring_result result = mspringi_check_report(network, "mspring_step_info", info, sizeof *info);
     if (result != MSPRING_OK)
         return result;
     const mspringi_steps *steps = &network->steps;
@@ -62,10 +61,8 @@ mspring_result mspring_network_get_step_info(const mspring_network *network, msp
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_plan(const mspring_network *network, mspring_plan *plan) {
-    if (!network)
-        return MSPRING_ERROR_ARGUMENT;
-    const mspring_result result = mspringi_check_output(NULL, "mspring_plan", plan, sizeof *plan);
+mspring_result mspring_network_get_plan(const mspring_network *network, mspring_plan *plan) {
+    const mspring_result result = mspringi_check_report(network, "mspring_plan", plan, sizeof *plan);
     if (result != MSPRING_OK)
         return result;
     const mspringi_topology *t = &network->topology;

@@ -110,15 +110,12 @@ static void leave_out_what_is_gone(const mspring_network *network, mspringi_kind
             out[i * stride] = 0.0f;
 }
 
-static mspring_result check(const mspring_network *network, mspring_property property, uint32_t count,
-                            const float *values, uint32_t stride) {
-    return network && mspringi_property_of(property) && (count == 0 || (values && stride > 0))
-               ? MSPRING_OK
-               : MSPRING_ERROR_ARGUMENT;
-}
-
-static uint32_t total_of(const mspring_network *network, mspringi_kind kind) {
-    return kind == MSPRINGI_PARTICLES ? network->topology.particle_count : network->topology.spring_count;
+static mspring_result check(const mspring_network *network, mspring_property property) {
+    if (!network)
+        return MSPRING_ERROR_ARGUMENT;
+    return mspringi_property_of(property) ? MSPRING_OK
+                                          : mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT,
+                                                                 "there is no property %d", (int)property);
 }
 
 static MSPRINGI_NOINLINE void get_values(const mspring_network *network, mspring_property property,
@@ -132,28 +129,27 @@ static MSPRINGI_NOINLINE void get_values(const mspring_network *network, mspring
 
 mspring_result mspring_network_get(const mspring_network *network, mspring_property property, mspring_id first,
                                    uint32_t count, float *values, uint32_t stride) {
-    mspring_result result = check(network, property, count, values, stride);
+    mspringi_selection at;
+    mspring_result result = check(network, property);
     if (result != MSPRING_OK)
         return result;
-    const uint32_t total = total_of(network, mspringi_property_of(property)->kind);
-    if (first > total || count > total - first)
-        return MSPRING_ERROR_ID;
-    get_values(network, property, &(mspringi_selection){.first = first, .count = count}, values, stride);
-    leave_out_what_is_gone(network, mspringi_property_of(property)->kind, first, count, values, stride);
+    const mspringi_kind kind = mspringi_property_of(property)->kind;
+    result = mspringi_look_up_range(network, kind, first, count, values, values, stride, &at);
+    if (result != MSPRING_OK)
+        return result;
+    get_values(network, property, &at, values, stride);
+    leave_out_what_is_gone(network, kind, first, count, values, stride);
     return MSPRING_OK;
 }
 
 mspring_result mspring_network_get_at(const mspring_network *network, mspring_property property,
                                       const mspring_id *ids, uint32_t count, float *values, uint32_t stride) {
-    mspring_result result = check(network, property, count, values, stride);
-    if (result != MSPRING_OK || count == 0)
-        return result;
-    if (!ids)
-        return MSPRING_ERROR_ARGUMENT;
-    const mspringi_kind kind = mspringi_property_of(property)->kind;
-    for (uint32_t i = 0; i < count; ++i)
-        if (ids[i] >= total_of(network, kind) || !exists(network, kind, ids[i]))
-            return MSPRING_ERROR_ID;
-    get_values(network, property, &(mspringi_selection){.list = ids, .count = count}, values, stride);
-    return MSPRING_OK;
+    mspringi_selection at;
+    mspring_result result = check(network, property);
+    if (result == MSPRING_OK)
+        result = mspringi_look_up_list(network, mspringi_property_of(property)->kind, ids, count, values, values,
+                                       stride, &at);
+    if (result == MSPRING_OK)
+        get_values(network, property, &at, values, stride);
+    return result;
 }

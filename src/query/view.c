@@ -15,9 +15,7 @@
     }
 
 mspring_result mspring_network_view(const mspring_network *network, mspring_view *view) {
-    if (!network)
-        return MSPRING_ERROR_ARGUMENT;
-    const mspring_result result = mspringi_check_output(NULL, "mspring_view", view, sizeof *view);
+    const mspring_result result = mspringi_check_report(network, "mspring_view", view, sizeof *view);
     if (result == MSPRING_OK)
         mspringi_put_struct(view, &(mspring_view)VIEW_OF(network), sizeof *view);
     return result;

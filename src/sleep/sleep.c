@@ -10,6 +10,7 @@
 
 #include "store/changed.h"
 #include "store/growth.h"
+#include "store/selection.h"
 #include "store/stages.h"
 #include "store/store.h"
 
@@ -498,18 +499,19 @@ mspring_result mspring_network_wake(mspring_network *network) {
 }
 
 mspring_result mspring_network_get_sleepers(const mspring_network *network, mspring_id first, uint32_t count,
-                                            uint8_t *asleep) {
-    if (!network || (count > 0 && !asleep))
-        return MSPRING_ERROR_ARGUMENT;
-    const uint32_t total = network->topology.particle_count;
-    if (first > total || count > total - first)
-        return MSPRING_ERROR_ID;
+                                            uint8_t *asleep, uint32_t stride) {
+    mspringi_selection at;
+    const mspring_result result =
+        mspringi_look_up_range(network, MSPRINGI_PARTICLES, first, count, asleep, asleep, stride, &at);
+    if (result != MSPRING_OK)
+        return result;
     const mspringi_sleep *s = &network->sleep;
     for (uint32_t i = 0; i < count; ++i)
-        asleep[i] = s->sleeping > 0 && mspringi_particle_exists(network, first + i) &&
-                            s->still[s->island[network->topology.slot_of_particle[first + i]]] < 0.0
-                        ? 1
-                        : 0;
+        asleep[(size_t)i * stride] =
+            s->sleeping > 0 && mspringi_particle_exists(network, first + i) &&
+                    s->still[s->island[network->topology.slot_of_particle[first + i]]] < 0.0
+                ? 1
+                : 0;
     return MSPRING_OK;
 }
 

@@ -5,27 +5,36 @@
 
 #include "store/sections.h"
 
-// Number, particle, 3 floats, a reserved word, 6 doubles.
+// The next id and a reserved word.
+#define HEAD_BYTES ((size_t)8)
+// Id, particle, 3 floats, a reserved word, 6 doubles.
 #define GRIP_BYTES ((size_t)72)
 
 #define STRONGEST 1e30f
 
+/// What a section begins with.
+typedef struct grips_head {
+    mspring_id next_id;
+    uint32_t reserved;
+} grips_head;
+
 /// One of them, as it is read.
 typedef struct grip_record {
-    uint32_t number, reserved;
+    uint32_t reserved;
     mspringi_grip grip;
 } grip_record;
 
+// Without it there has never been a grip.
 static size_t grips_size(const mspring_network *network) {
-    return network->grips.count * GRIP_BYTES;
+    return network->grips.next_id > 0 ? HEAD_BYTES + network->grips.count * GRIP_BYTES : 0;
 }
 
 static void grips_save(const mspring_network *network, mspringi_writer *to) {
-    for (uint32_t i = 0; i < MSPRING_MAX_GRIPS; ++i) {
+    const uint32_t head[] = {network->grips.next_id, 0};
+    mspringi_put(to, head, 2, sizeof head[0]);
+    for (uint32_t i = 0; i < network->grips.count; ++i) {
         const mspringi_grip *grip = &network->grips.list[i];
-        if (grip->particle == MSPRING_NONE)
-            continue;
-        const uint32_t ids[] = {i, grip->particle}, reserved = 0;
+        const uint32_t ids[] = {grip->id, grip->particle}, reserved = 0;
         const float floats[] = {grip->stiffness, grip->damping, grip->max_force};
         const double doubles[] = {grip->x, grip->y, grip->from_x, grip->from_y, grip->impulse_x, grip->impulse_y};
         mspringi_put(to, ids, 2, sizeof ids[0]);
@@ -35,12 +44,17 @@ static void grips_save(const mspring_network *network, mspringi_writer *to) {
     }
 }
 
+static const uint8_t *read_head(const uint8_t *from, grips_head *head) {
+    from = mspringi_get(from, &head->next_id, 1, sizeof head->next_id);
+    return mspringi_get(from, &head->reserved, 1, sizeof head->reserved);
+}
+
 static const uint8_t *read_grip(const uint8_t *from, grip_record *record) {
     mspringi_grip *grip = &record->grip;
     double *const doubles[] = {&grip->x,      &grip->y,         &grip->from_x,
                                &grip->from_y, &grip->impulse_x, &grip->impulse_y};
     float *const floats[] = {&grip->stiffness, &grip->damping, &grip->max_force};
-    from = mspringi_get(from, &record->number, 1, sizeof record->number);
+    from = mspringi_get(from, &grip->id, 1, sizeof grip->id);
     from = mspringi_get(from, &grip->particle, 1, sizeof grip->particle);
     for (size_t i = 0; i < 3; ++i)
         from = mspringi_get(from, floats[i], 1, sizeof *floats[i]);
@@ -58,44 +72,63 @@ static bool is_target(double value) {
     return fabs(value) <= MSPRING_MAX_COORDINATE;
 }
 
+static mspring_result check_grip(mspring_network *network, const grip_record *record) {
+    const mspringi_section *section = &mspringi_section_grips;
+    const mspringi_grip *grip = &record->grip;
+    if (record->reserved != 0 || grip->particle >= network->topology.reserve.particle_end)
+        return mspringi_section_fail(network, section, "grip %u holds particle %u", (unsigned)grip->id,
+                                     (unsigned)grip->particle);
+    if (!is_strength(grip->stiffness, STRONGEST) || !is_strength(grip->damping, STRONGEST) ||
+        !is_strength(grip->max_force, MSPRING_NEVER))
+        return mspringi_section_fail(network, section, "grip %u has stiffness %g, damping %g, max_force %g",
+                                     (unsigned)grip->id, (double)grip->stiffness, (double)grip->damping,
+                                     (double)grip->max_force);
+    if (!is_target(grip->x) || !is_target(grip->y) || !is_target(grip->from_x) || !is_target(grip->from_y) ||
+        !isfinite(grip->impulse_x) || !isfinite(grip->impulse_y))
+        return mspringi_section_fail(network, section, "grip %u pulls to (%g, %g) m", (unsigned)grip->id, grip->x,
+                                     grip->y);
+    return MSPRING_OK;
+}
+
 static mspring_result grips_check(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_section *section = &mspringi_section_grips;
-    const size_t count = size / GRIP_BYTES;
-    mspring_result result = mspringi_section_check_size(network, section, size, count * GRIP_BYTES);
+    const size_t count = size > HEAD_BYTES ? (size - HEAD_BYTES) / GRIP_BYTES : 0;
+    grips_head head;
+    if (size == 0)
+        return MSPRING_OK;
+    mspring_result result = mspringi_section_check_size(network, section, size, HEAD_BYTES + count * GRIP_BYTES);
+    if (result != MSPRING_OK)
+        return result;
+    from = read_head(from, &head);
+    if (head.reserved != 0 || count > MSPRING_MAX_GRIPS)
+        return mspringi_section_fail(network, section, "it has %zu grips", count);
     for (size_t i = 0, least = 0; result == MSPRING_OK && i < count; ++i) {
         grip_record record = {0};
-        const mspringi_grip *grip = &record.grip;
         from = read_grip(from, &record);
-        if (record.number < least || record.number >= MSPRING_MAX_GRIPS || record.reserved != 0 ||
-            grip->particle >= network->topology.reserve.particle_end)
-            result = mspringi_section_fail(network, section, "grip %u holds particle %u", (unsigned)record.number,
-                                           (unsigned)grip->particle);
-        else if (!is_strength(grip->stiffness, STRONGEST) || !is_strength(grip->damping, STRONGEST) ||
-                 !is_strength(grip->max_force, MSPRING_NEVER))
-            result = mspringi_section_fail(network, section, "grip %u has stiffness %g, damping %g, max_force %g",
-                                           (unsigned)record.number, (double)grip->stiffness, (double)grip->damping,
-                                           (double)grip->max_force);
-        else if (!is_target(grip->x) || !is_target(grip->y) || !is_target(grip->from_x) ||
-                 !is_target(grip->from_y) || !isfinite(grip->impulse_x) || !isfinite(grip->impulse_y))
-            result = mspringi_section_fail(network, section, "grip %u pulls to (%g, %g) m", (unsigned)record.number,
-                                           grip->x, grip->y);
-        least = (size_t)record.number + 1;
+        if (record.grip.id < least || record.grip.id >= head.next_id)
+            return mspringi_section_fail(network, section, "grip %u comes in the wrong order",
+                                         (unsigned)record.grip.id);
+        result = check_grip(network, &record);
+        least = (size_t)record.grip.id + 1;
     }
     return result;
 }
 
-// After the section of growth: a grip on what is not there lets go.
+// After the section of growth: a grip on what is not there is left out.
 static void grips_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_grips *grips = &network->grips;
+    grips_head head;
     mspringi_grips_clear(grips);
-    for (size_t i = 0; i < size / GRIP_BYTES; ++i) {
+    if (size == 0)
+        return;
+    from = read_head(from, &head);
+    grips->next_id = head.next_id;
+    for (size_t i = 0; i < (size - HEAD_BYTES) / GRIP_BYTES; ++i) {
         grip_record record = {0};
         from = read_grip(from, &record);
-        if (record.grip.particle >= network->topology.particle_count ||
-            !mspringi_particle_exists(network, record.grip.particle))
-            continue;
-        grips->list[record.number] = record.grip;
-        grips->count++;
+        if (record.grip.particle < network->topology.particle_count &&
+            mspringi_particle_exists(network, record.grip.particle))
+            grips->list[grips->count++] = record.grip;
     }
 }
 

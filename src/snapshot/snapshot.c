@@ -63,16 +63,25 @@ static size_t total_size(const mspring_network *network, mspring_snapshot_conten
     return mspringi_round_up(size, MSPRINGI_CHECKSUM_UNIT) + MSPRINGI_SNAPSHOT_CHECKSUM_BYTES;
 }
 
-static mspring_result check_contents(const mspring_network *network, mspring_snapshot_contents contents) {
-    if (!network || (contents != MSPRING_SNAPSHOT_ALL && contents != MSPRING_SNAPSHOT_FRAME))
+static mspring_result check_save(const mspring_network *network, mspring_snapshot_contents contents,
+                                 const void *out) {
+    if (!network)
         return MSPRING_ERROR_ARGUMENT;
-    return network->in_hook == MSPRINGI_IN_NO_HOOK ? MSPRING_OK : MSPRING_ERROR_BUSY;
+    mspringi_shared_message *shared = network->shared;
+    if (contents != MSPRING_SNAPSHOT_ALL && contents != MSPRING_SNAPSHOT_FRAME)
+        return mspringi_shared_fail(shared, MSPRING_ERROR_ARGUMENT, "a snapshot has no contents %d", (int)contents);
+    if (!out)
+        return mspringi_shared_fail(shared, MSPRING_ERROR_ARGUMENT,
+                                    "the place for the snapshot or its size is NULL");
+    return network->in_hook == MSPRINGI_IN_NO_HOOK
+               ? MSPRING_OK
+               : mspringi_shared_fail(shared, MSPRING_ERROR_BUSY, "no snapshot is saved inside a hook");
 }
 
 mspring_result mspring_network_snapshot_size(const mspring_network *network, mspring_snapshot_contents contents,
                                              size_t *size) {
     uint32_t count;
-    mspring_result result = size ? check_contents(network, contents) : MSPRING_ERROR_ARGUMENT;
+    mspring_result result = check_save(network, contents, size);
     if (result == MSPRING_OK)
         *size = total_size(network, contents, &count);
     return result;
@@ -90,7 +99,7 @@ static void put_section(const mspring_network *network, const mspringi_section *
 
 mspring_result mspring_network_save(const mspring_network *network, mspring_snapshot_contents contents,
                                     void *snapshot, size_t capacity, size_t *size) {
-    mspring_result result = snapshot ? check_contents(network, contents) : MSPRING_ERROR_ARGUMENT;
+    mspring_result result = check_save(network, contents, snapshot);
     if (result != MSPRING_OK)
         return result;
     mspringi_snapshot_header header = {
@@ -103,7 +112,8 @@ mspring_result mspring_network_save(const mspring_network *network, mspring_snap
     };
     const size_t total = total_size(network, contents, &header.section_count);
     if (capacity < total)
-        return MSPRING_ERROR_ARGUMENT;
+        return mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT,
+                                    "the snapshot has %zu bytes, there is room for %zu", total, capacity);
     header.size = total;
     mspringi_writer to = mspringi_writer_begin(snapshot, network->kernels);
     mspringi_put_header(&to, &header);

@@ -49,7 +49,7 @@ static mspring_result reserve_fields(mspring_network *network, const mspring_hoo
     return result == MSPRING_OK && def->period > 1 ? mspringi_field_reserve(network, held) : result;
 }
 
-mspring_result mspring_network_add_hook(mspring_network *network, const mspring_hook_def *def, uint32_t *hook) {
+mspring_result mspring_network_add_hook(mspring_network *network, const mspring_hook_def *def, mspring_id *hook) {
     mspring_result result = mspringi_enter(network);
     if (result == MSPRING_OK)
         result = check_hook(network, def);
@@ -73,7 +73,7 @@ mspring_result mspring_network_add_hook(mspring_network *network, const mspring_
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_remove_hook(mspring_network *network, uint32_t hook) {
+mspring_result mspring_network_remove_hook(mspring_network *network, mspring_id hook) {
     mspring_result result = mspringi_enter(network);
     if (result != MSPRING_OK)
         return result;

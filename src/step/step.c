@@ -364,6 +364,7 @@ static void note(mspring_network *network, double dt, mspring_result result) {
     steps->outcome = network->outcome;
     if (result != MSPRING_OK) {
         steps->outcome.flags = 0;
+        mspringi_shared_clear(network->shared); // of hooks: this one says why the step failed
         return;
     }
     steps->substeps = flags & MSPRING_STEP_FALLBACK ? 1 : network->substeps;

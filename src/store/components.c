@@ -8,6 +8,7 @@
 #include "store/events.h"
 #include "store/growth.h"
 #include "store/roots.h"
+#include "store/selection.h"
 #include "store/store.h"
 
 static mspring_result reserve(mspring_network *network) {
@@ -116,15 +117,19 @@ mspring_result mspring_network_update_components(mspring_network *network, uint3
 
 /* ----------------------------------------------------------------------------------------------------- reading */
 
+#define NO_UPDATE "the components are unknown: call mspring_network_update_components() first"
+
 mspring_result mspring_network_get_component_numbers(const mspring_network *network, mspring_id first,
-                                                     uint32_t count, uint32_t *component) {
-    if (!network || (count > 0 && !component) || network->components.count == 0)
-        return MSPRING_ERROR_ARGUMENT;
-    const uint32_t total = network->topology.particle_count;
-    if (first > total || count > total - first)
-        return MSPRING_ERROR_ID;
-    if (count > 0)
-        memcpy(component, network->components.number + first, count * sizeof *component);
+                                                     uint32_t count, uint32_t *numbers, uint32_t stride) {
+    mspringi_selection at;
+    mspring_result result =
+        mspringi_look_up_range(network, MSPRINGI_PARTICLES, first, count, numbers, numbers, stride, &at);
+    if (result == MSPRING_OK && network->components.count == 0)
+        result = mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT, NO_UPDATE);
+    if (result != MSPRING_OK)
+        return result;
+    for (uint32_t i = 0; i < count; ++i)
+        numbers[(size_t)i * stride] = network->components.number[first + i];
     return MSPRING_OK;
 }
 
@@ -166,19 +171,22 @@ static MSPRINGI_NOINLINE void measure(const mspring_network *network, uint32_t f
 
 mspring_result mspring_network_get_components(const mspring_network *network, uint32_t first, uint32_t count,
                                               mspring_component *components) {
-    if (!network || (count > 0 && !components) || network->components.count == 0)
+    if (!network)
         return MSPRING_ERROR_ARGUMENT;
+    mspringi_shared_message *shared = network->shared;
+    if (count > 0 && !components)
+        return mspringi_shared_fail(shared, MSPRING_ERROR_ARGUMENT, "the place for %u components is NULL",
+                                    (unsigned)count);
+    if (network->components.count == 0)
+        return mspringi_shared_fail(shared, MSPRING_ERROR_ARGUMENT, NO_UPDATE);
     if (first > network->components.count || count > network->components.count - first)
-        return MSPRING_ERROR_ID;
-    const size_t struct_size = count > 0 ? mspringi_struct_size(components) : 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        const void *component = mspringi_element(components, struct_size, i);
-        mspring_result result = mspringi_check_output(NULL, "mspring_component", component, sizeof *components);
-        if (result == MSPRING_OK)
-            result = mspringi_check_alike(NULL, component, struct_size);
-        if (result != MSPRING_OK)
-            return result;
-    }
+        return mspringi_shared_fail(shared, MSPRING_ERROR_ID, "%u components from %u on, but there are only %u",
+                                    (unsigned)count, (unsigned)first, (unsigned)network->components.count);
+    mspringi_message message;
+    const mspring_result result =
+        mspringi_check_outputs(components, count, "mspring_component", sizeof *components, &message);
+    if (result != MSPRING_OK)
+        return mspringi_shared_take(shared, result, &message);
     const mspringi_fp_state before = mspringi_fp_enter();
     measure(network, first, count, components);
     mspringi_fp_leave(before);

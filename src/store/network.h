@@ -155,7 +155,8 @@ typedef struct mspringi_any_shape {
 
 /// A particle that the host holds; see contact/grips.h.
 typedef struct mspringi_grip {
-    mspring_id particle; ///< MSPRING_NONE: it holds nothing
+    mspring_id id;       ///< of the grip
+    mspring_id particle; ///< that it holds
     float stiffness, damping, max_force;
     double x, y;                 ///< where the target is at the end of the next step, world coordinates
     double from_x, from_y;       ///< and at its start
@@ -167,8 +168,9 @@ typedef struct mspringi_grip {
 } mspringi_grip;
 
 typedef struct mspringi_grips {
-    mspringi_grip list[MSPRING_MAX_GRIPS];
-    uint32_t count; ///< that hold something
+    mspringi_grip list[MSPRING_MAX_GRIPS]; ///< in the order of ids; both are MSPRING_NONE of those behind the last
+    uint32_t count;
+    mspring_id next_id;
 
     // A step.
     bool were_asked; ///< they could act in it
@@ -321,8 +323,9 @@ typedef struct mspringi_extents {
 /// An array that is added here goes into store/network.def.
 struct mspring_network {
     mspringi_memory memory;       ///< the network itself and all that it holds, but for
-    mspringi_memory tasks_memory; ///< what its workers are, which a copy of the network has none of
+    mspringi_memory tasks_memory; ///< what a copy of the network has of its own: workers, and the shared message
     mspringi_message message;
+    mspringi_shared_message *shared; ///< of calls that only read; in tasks_memory
     mspringi_topology topology;
     mspringi_topology whole; ///< the one the network was created with, while it is compact; else empty
     bool is_compact;
@@ -402,6 +405,7 @@ struct mspring_network {
     mspringi_hook *hooks;
     size_t hook_count, hook_capacity;
     uint32_t next_hook;
+    mspring_id next_collider;
     mspringi_in_hook in_hook;
     bool was_in_hook;      ///< one was called in this step
     mspringi_extrema seen; ///< of what the substeps have led to, with bounds for what was not watched
@@ -444,6 +448,13 @@ static inline bool mspringi_particle_exists(const mspring_network *network, mspr
 static inline bool mspringi_spring_exists(const mspring_network *network, mspring_id spring) {
     return !network->growth.springs || network->growth.springs[spring] == MSPRINGI_THERE;
 }
+
+/// Allocate the message of calls that only read.
+mspring_result mspringi_shared_reserve(mspring_network *network);
+
+/// Check the struct that a call which only reads is to fill. A network NULL is MSPRING_ERROR_ARGUMENT.
+mspring_result mspringi_check_report(const mspring_network *network, const char *name, const void *out,
+                                     size_t known);
 
 /// Refuse NULL, and calls from inside a hook.
 mspring_result mspringi_enter(mspring_network *network);

@@ -28,4 +28,12 @@ mspring_result mspringi_select_list(mspring_network *network, mspringi_kind kind
                                     uint32_t count, const void *values, const void *more,
                                     mspringi_selection *selection);
 
+/// The same for a call that only reads: any number of them may run at once. Its values have a stride of at least 1.
+mspring_result mspringi_look_up_range(const mspring_network *network, mspringi_kind kind, mspring_id first,
+                                      uint32_t count, const void *values, const void *more, uint32_t stride,
+                                      mspringi_selection *selection);
+mspring_result mspringi_look_up_list(const mspring_network *network, mspringi_kind kind, const mspring_id *list,
+                                     uint32_t count, const void *values, const void *more, uint32_t stride,
+                                     mspringi_selection *selection);
+
 #endif

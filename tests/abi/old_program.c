@@ -104,7 +104,7 @@ int main(void) {
     printf("the view agrees: %d\n", view.y[view.slot_of_particle[9]] == (float)(y[9] - view.origin_y));
     memset(&plan, 0, sizeof plan);
     plan.struct_size = sizeof plan;
-    CALL(mspring_network_plan(network, &plan));
+    CALL(mspring_network_get_plan(network, &plan));
     printf("%u particles, %u springs, %u lattice\n", (unsigned)plan.particle_count, (unsigned)plan.spring_count,
            (unsigned)plan.lattice_count);
     memset(&info, 0, sizeof info);

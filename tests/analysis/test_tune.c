@@ -305,7 +305,7 @@ static void rows_are_the_same_everywhere(void **state) {
         for (uint32_t r = 0; r < out.count; r++) {
             const mspring_tune_row *a = &first.rows[r], *b = &out.rows[r];
             const uint32_t measured =
-                MSPRING_TUNE_HAS_COST | MSPRING_TUNE_HAS_TRAJECTORY | MSPRING_TUNE_HAS_REST | MSPRING_TUNE_REFUSED;
+                MSPRING_TUNE_HAS_COST | MSPRING_TUNE_HAS_TRAJECTORY | MSPRING_TUNE_HAS_REST | MSPRING_TUNE_REJECTED;
             assert_int_equal(a->flags & measured, b->flags & measured);
             assert_memory_equal(&a->trajectory_error, &b->trajectory_error,
                                 offsetof(mspring_tune_row, moving_cost) -
@@ -352,7 +352,7 @@ static void judge(const example_row *examples, uint32_t count, double max_error,
 
 static void recommended_is_what_is_asked_for(void **state) {
     (void)state;
-    enum { P = MSPRING_TUNE_PARETO, R = MSPRING_TUNE_RECOMMENDED, REFUSED = MSPRING_TUNE_REFUSED };
+    enum { P = MSPRING_TUNE_PARETO, R = MSPRING_TUNE_RECOMMENDED, REFUSED = MSPRING_TUNE_REJECTED };
     const example_row cheapest[] = {{1, 0.1, 0, P, 0},       {2, 0.01, 0, P | R, 0}, {3, 0.02, 0, 0, 0},
                                     {0.5, 0, REFUSED, 0, 0}, {4, 0.001, 0, P, 0},    {2, 0.01, 0, P, 0}};
     judge(cheapest, COUNT_OF(cheapest), 0.01, INFINITY);
@@ -382,7 +382,7 @@ static void settings_that_are_unstable_are_marked(void **state) {
     stands_in.guard = MSPRING_GUARD_IMPLICIT; // not while settings are measured
     mspring_network *network = tunes_bar(TUNES_STIFFNESS, 0, 0, &stands_in);
     const tunes_table out = tunes_run(network, &def);
-    assert_int_equal(out.rows[0].flags, MSPRING_TUNE_REFUSED);
+    assert_int_equal(out.rows[0].flags, MSPRING_TUNE_REJECTED);
     assert_true(out.rows[0].trajectory_share == 0 && out.rows[0].median_cost == 0);
     assert_true(
         tunes_has(&out.rows[1], MSPRING_TUNE_PARETO | MSPRING_TUNE_RECOMMENDED | MSPRING_TUNE_HAS_TRAJECTORY));
@@ -396,6 +396,8 @@ static void usual_settings_are_tried_where_none_are_given(void **state) {
     mspring_network *network = tunes_bar(TUNES_STIFFNESS, 0, 0, NULL);
     mspring_solver_def settings[TUNES_MOST];
     uint32_t count = 0, least = 0;
+    for (int i = 0; i < TUNES_MOST; i++)
+        settings[i].struct_size = sizeof settings[i];
     check_ok(mspring_tune_settings(network, 1.0 / 64, NULL, 0, &count));
     assert_in_range(count, 8, TUNES_MOST);
     check_error(mspring_tune_settings(network, 1.0 / 64, settings, count - 1, &count), MSPRING_ERROR_ARGUMENT);

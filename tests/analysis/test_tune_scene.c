@@ -286,7 +286,7 @@ static void a_scene_leaves_the_rest_as_it_is(void **state) {
         const tunes_table with = tunes_run(network, &def);
         assert_true(
             tunes_has(&with.rows[0], MSPRING_TUNE_HAS_SCENE | MSPRING_TUNE_HAS_TRAJECTORY | MSPRING_TUNE_HAS_REST));
-        assert_int_equal(with.rows[1].flags, MSPRING_TUNE_REFUSED);
+        assert_int_equal(with.rows[1].flags, MSPRING_TUNE_REJECTED);
         def.scene = NULL;
         def.measure = MSPRING_TUNE_BY_TRAJECTORY;
         const tunes_table without = tunes_run(network, &def);
@@ -316,7 +316,7 @@ static void who_is_rejected_is_out(void **state) {
     const mspring_tune_def def = def_of(&w, &scene, &setting, 1);
     runs_prepared = 0;
     const tunes_table out = tunes_run(network, &def);
-    assert_true(tunes_has(&out.rows[0], MSPRING_TUNE_REFUSED));
+    assert_true(tunes_has(&out.rows[0], MSPRING_TUNE_REJECTED));
     assert_false(tunes_has(&out.rows[0], MSPRING_TUNE_HAS_SCENE));
     assert_true(runs_prepared <= 2); // the first fine run, and the one that was rejected
     mspring_network_destroy(network);

@@ -39,7 +39,7 @@ typedef struct arguments {
 /// A function, the kinds of its arguments, what makes the struct that it is given, and the call.
 ///
 /// Kinds: capitals have to be refused when they are spoilt, small letters may be accepted.
-///   N  network, of a call that is refused inside a hook, and leaves a message     n  network of another call
+///   N  network, of a call that is refused inside a hook      n  network of another call; both leave messages
 ///   v  network or builder that may be NULL        B  builder
 ///   I  id        R  first and count       A  ids        C  count of structs (size)
 ///   X  x, Y  y   T  dt   L  safety   J  ramp            K  enumerator

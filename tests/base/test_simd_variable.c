@@ -13,7 +13,7 @@ static mspring_simd level_with(const char *variable, mspring_simd setting) {
     mspring_network *network = support_network(builder, &def);
     mspring_simd level = mspring_network_simd_level(network);
     mspring_plan plan = {.struct_size = sizeof plan};
-    check_ok(mspring_network_plan(network, &plan));
+    check_ok(mspring_network_get_plan(network, &plan));
     assert_int_equal(plan.simd_level, level);
     check_ok(mspring_network_step(network, 0.01)); // the machine does have it
     mspring_network_destroy(network);

@@ -146,7 +146,7 @@ static mspring_result give_contact(subject *s, void *given) {
 static mspring_result give_grip(subject *s, void *given) {
     mspring_grip_def *grip = given;
     grip->particle = 1;
-    return mspring_network_set_grip(s->network, 3, given);
+    return mspring_network_add_grip(s->network, given, NULL);
 }
 
 static mspring_result give_collider(subject *s, void *given) {
@@ -325,10 +325,17 @@ static mspring_result fill_contact(subject *s, void *out) {
     return mspring_network_get_contact(s->network, out);
 }
 static mspring_result fill_contact_info(subject *s, void *out) {
-    return mspring_network_contact_info(s->network, out);
+    return mspring_network_get_contact_info(s->network, out);
 }
 static mspring_result fill_grip(subject *s, void *out) {
-    return mspring_network_get_grip(s->network, 3, out);
+    mspring_grip_def def;
+    mspring_id id;
+    check_ok(mspring_grip_def_init(&def, sizeof def));
+    def.particle = 1;
+    check_ok(mspring_network_add_grip(s->network, &def, &id));
+    const mspring_result result = mspring_network_get_grip(s->network, id, out);
+    check_ok(mspring_network_remove_grip(s->network, id));
+    return result;
 }
 static mspring_result fill_collider(subject *s, void *out) {
     mspring_collider_def def;
@@ -345,7 +352,7 @@ static mspring_result fill_spring_info(subject *s, void *out) {
     return mspring_network_get_spring(s->network, 0, out);
 }
 static mspring_result fill_plan(subject *s, void *out) {
-    return mspring_network_plan(s->network, out);
+    return mspring_network_get_plan(s->network, out);
 }
 static mspring_result fill_settled(subject *s, void *out) {
     return mspring_network_settle(s->network, NULL, out);

@@ -107,7 +107,7 @@ static outcome collide(uint64_t trial, double fastest, float restitution, bool t
         support_steps(network, 1, dt);
         now = bodies_measured(b, network);
         o.gain = fmax(o.gain, now.energy / before.energy - 1);
-        check_ok(mspring_network_contact_info(network, &info));
+        check_ok(mspring_network_get_contact_info(network, &info));
         o.met |= info.touching > 0;
         if (touches)
             o.deepest = fmax(o.deepest, bodies_deepest(b, THICKNESS, &crossings));
@@ -165,7 +165,8 @@ static void what_bounces_gets_through_no_more(void **state) {
     check_trials(100000, trials / 20 * 3, 100, 0.5f, 0.1, 2e-3);
 }
 
-/// So fast they overlap deeply now and then, 4 of 10,000 by a quarter of the thickness, and still nothing gets through.
+/// So fast they overlap deeply now and then, 4 of 10,000 by a quarter of the thickness, and still nothing gets
+/// through.
 static void pieces_of_a_substep_hold_what_is_faster(void **state) {
     (void)state;
     check_trials(200000, trials / 20 * 2, 1000, 0, 0.99 * THICKNESS, 1e-2);

@@ -114,7 +114,7 @@ static void the_floor_leaves_alone_what_sleeps(void **state) {
     uint32_t count = 0;
     check_ok(mspring_network_get_positions(network, 0, STRANDS * LONG, x, y, 1));
     support_steps(network, 5, 1.0 / 64);
-    check_ok(mspring_network_get_sleepers(network, 0, STRANDS * LONG, sleeps));
+    check_ok(mspring_network_get_sleepers(network, 0, STRANDS * LONG, sleeps, 1));
     for (mspring_id p = 0; p < STRANDS * LONG; p++) {
         if (sleeps[p]) {
             check_near(support_position(network, p).x, x[p], 0);
@@ -130,7 +130,7 @@ static void the_floor_leaves_alone_what_sleeps(void **state) {
     check_near(support_position(network, pushed).x, x[pushed], 0);
     check_near(support_position(network, pushed).y, y[pushed], 0);
     check_near(support_velocity(network, pushed).y, -5, 0);
-    check_ok(mspring_network_get_sleepers(network, pushed, 1, sleeps));
+    check_ok(mspring_network_get_sleepers(network, pushed, 1, sleeps, 1));
     assert_int_equal(sleeps[0], 0);
     check_ok(mspring_network_remove_hook(network, hook));
     support_steps(network, 1, 1.0 / 64);

@@ -27,14 +27,29 @@ static mspring_grip_def grip_of(mspring_id particle, double x, double y) {
     return def;
 }
 
-static void hold(mspring_network *network, uint32_t number, mspring_id particle, double x, double y) {
-    const mspring_grip_def def = grip_of(particle, x, y);
-    check_ok(mspring_network_set_grip(network, number, &def));
+static bool exists(const mspring_network *network, mspring_id grip) {
+    mspring_grip_def def = {.struct_size = sizeof def};
+    return mspring_network_get_grip(network, grip, &def) == MSPRING_OK;
 }
 
-static mspring_grip_def read(const mspring_network *network, uint32_t number) {
+// Set a grip, or add the one that has this id.
+static void use(mspring_network *network, mspring_id grip, const mspring_grip_def *def) {
+    mspring_id added = grip;
+    if (exists(network, grip))
+        check_ok(mspring_network_set_grip(network, grip, def));
+    else
+        check_ok(mspring_network_add_grip(network, def, &added));
+    assert_int_equal(added, grip);
+}
+
+static void hold(mspring_network *network, mspring_id grip, mspring_id particle, double x, double y) {
+    const mspring_grip_def def = grip_of(particle, x, y);
+    use(network, grip, &def);
+}
+
+static mspring_grip_def read(const mspring_network *network, mspring_id grip) {
     mspring_grip_def def = {.struct_size = sizeof def};
-    check_ok(mspring_network_get_grip(network, number, &def));
+    check_ok(mspring_network_get_grip(network, grip, &def));
     return def;
 }
 
@@ -72,26 +87,32 @@ static mspring_network *make(making how) {
     return network;
 }
 
+// The hand is another grip every time it takes hold; grips 1 and 2 stay.
+static mspring_id hand_of(uint32_t frame) {
+    return frame < 16 ? 0 : 2 + frame / 16;
+}
+
 // A hand that does a bit of everything, as a function of the frame's number alone.
 static void run_frame(mspring_network *network, uint32_t frame) {
+    const mspring_id hand = hand_of(frame);
     const mspring_id loose = mspring_network_particle_count(network) - 1;
     switch (frame % 16) {
     case 1:
-        hold(network, 0, 3, 4, 5);
+        hold(network, hand, 3, 4, 5);
         break;
     case 3: {
         mspring_grip_def bounded = grip_of(40, 10, -4);
         bounded.max_force = 200;
-        check_ok(mspring_network_set_grip(network, 5, &bounded));
-        hold(network, 15, loose, -22, 19);
+        use(network, 1, &bounded);
+        hold(network, 2, loose, -22, 19);
         break;
     }
     case 12:
-        check_ok(mspring_network_set_grip(network, 0, NULL));
+        check_ok(mspring_network_remove_grip(network, hand));
         break;
     default:
-        if (read(network, 0).particle != MSPRING_NONE)
-            check_ok(mspring_network_move_grip(network, 0, 4 + 0.2 * frame, 5 - 0.1 * frame));
+        if (exists(network, hand))
+            check_ok(mspring_network_move_grip(network, hand, 4 + 0.2 * frame, 5 - 0.1 * frame));
     }
     support_steps(network, 1, DT);
 }
@@ -128,10 +149,10 @@ static void without_grips_nothing_changes(void **state) {
         mspring_network *network = make((making){.solver = solvers[i]}),
                         *other = make((making){.solver = solvers[i]});
         const size_t used = mspring_network_memory_used(network);
-        hold(network, 2, 7, 1, 1);
+        hold(network, 0, 7, 1, 1);
         assert_int_equal(mspring_network_memory_used(network), used); // it allocates nothing
-        check_ok(mspring_network_set_grip(network, 2, NULL));
-        check_ok(mspring_network_set_grip(network, 2, NULL));
+        check_ok(mspring_network_remove_grip(network, 0));
+        check_error(mspring_network_remove_grip(network, 0), MSPRING_ERROR_ID);
         support_kick(network, 3, 2);
         support_kick(other, 3, 2);
         support_steps(network, 20, DT);
@@ -156,16 +177,19 @@ static void snapshots_go_on_with_the_same_bits(void **state) {
                 if (frame % 5 != 4)
                     continue;
                 // With a target that is on its way.
-                if (read(network, 0).particle != MSPRING_NONE)
-                    check_ok(mspring_network_move_grip(network, 0, 2, 3));
+                if (exists(network, hand_of(frame)))
+                    check_ok(mspring_network_move_grip(network, hand_of(frame), 2, 3));
                 saved kept = snapshots_save(network, (mspring_snapshot_contents)contents);
                 snapshots_load(other, &kept);
-                for (uint32_t number = 0; number < MSPRING_MAX_GRIPS; number++) {
-                    const mspring_grip_def here = read(network, number), there = read(other, number);
+                for (mspring_id grip = 0; grip < 10; grip++) {
                     double impulse[4];
+                    assert_int_equal(exists(network, grip), exists(other, grip));
+                    if (!exists(network, grip))
+                        continue;
+                    const mspring_grip_def here = read(network, grip), there = read(other, grip);
                     assert_memory_equal(&here, &there, sizeof here);
-                    check_ok(mspring_network_get_grip_impulse(network, number, &impulse[0], &impulse[1]));
-                    check_ok(mspring_network_get_grip_impulse(other, number, &impulse[2], &impulse[3]));
+                    check_ok(mspring_network_get_grip_impulse(network, grip, &impulse[0], &impulse[1]));
+                    check_ok(mspring_network_get_grip_impulse(other, grip, &impulse[2], &impulse[3]));
                     assert_memory_equal(impulse, impulse + 2, 2 * sizeof impulse[0]);
                 }
                 mspring_network *clone;
@@ -195,12 +219,13 @@ static void snapshot_without_grips_lets_go(void **state) {
     hold(network, 0, 3, 4, 5);
     support_steps(network, 3, DT);
     snapshots_load(network, &kept);
-    assert_int_equal(read(network, 0).particle, MSPRING_NONE);
+    assert_false(exists(network, 0));
     support_steps(network, 3, DT);
     const uint64_t after = support_hash(network);
     snapshots_load(network, &kept);
     support_steps(network, 3, DT);
     assert_int_equal(support_hash(network), after);
+    hold(network, 0, 3, 4, 5); // ids are those of the snapshot, too
     free(kept.bytes);
     mspring_network_destroy(network);
 }
@@ -208,20 +233,28 @@ static void snapshot_without_grips_lets_go(void **state) {
 static void forged_grips_are_refused(void **state) {
     (void)state;
     mspring_network *network = make((making){0});
-    hold(network, 3, 3, 4, 5);
-    hold(network, 5, 6, 4, 5);
+    hold(network, 0, 3, 4, 5);
+    hold(network, 1, 6, 4, 5);
     support_steps(network, 2, DT);
     saved good = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
     uint64_t size;
     const size_t at = (size_t)(snapshots_section_of(&good, "grip", &size) - good.bytes);
-    assert_int_equal(size, 2 * 72);
+    assert_int_equal(size, 8 + 2 * 72);
     const struct {
         size_t at;
         uint32_t word;
         const char *part;
-    } words[] = {{0, 5, "grip 5 holds"},         {0, 16, "grip 16 holds"},      {72, 3, "grip 3 holds"},
-                 {4, 100000, "particle 100000"}, {4, MSPRING_NONE, "particle"}, {8, 0x7fc00000, "stiffness nan"},
-                 {12, 0xbf800000, "damping -1"}, {16, 0x7f800000, "max_force"}, {20, 1, "holds"}};
+    } words[] = {{0, 1, "grip 1 comes"},
+                 {4, 1, "has 2 grips"},
+                 {8, 1, "grip 1 comes"},
+                 {8, 16, "grip 16 comes"},
+                 {80, 0, "grip 0 comes"},
+                 {12, 100000, "particle 100000"},
+                 {12, MSPRING_NONE, "particle"},
+                 {16, 0x7fc00000, "stiffness nan"},
+                 {20, 0xbf800000, "damping -1"},
+                 {24, 0x7f800000, "max_force"},
+                 {28, 1, "holds"}};
     for (size_t i = 0; i < COUNT_OF(words); i++) {
         saved bad = snapshots_copy(&good);
         snapshots_put_word(bad.bytes + at + words[i].at, words[i].word);
@@ -229,11 +262,11 @@ static void forged_grips_are_refused(void **state) {
         free(bad.bytes);
     }
     const double numbers[] = {NAN, INFINITY, 1e13};
-    for (size_t offset = 24; offset < 72; offset += 8) {
-        for (size_t i = 0; i < (offset < 56 ? COUNT_OF(numbers) : 2); i++) {
+    for (size_t offset = 32; offset < 80; offset += 8) {
+        for (size_t i = 0; i < (offset < 64 ? COUNT_OF(numbers) : 2); i++) {
             saved bad = snapshots_copy(&good);
             snapshots_put_double(bad.bytes + at + offset, numbers[i]);
-            snapshots_check_refused(network, &bad, "grip 3 pulls");
+            snapshots_check_refused(network, &bad, "grip 0 pulls");
             free(bad.bytes);
         }
     }
@@ -268,7 +301,7 @@ static void sleeper_wakes(void **state) {
         assert_false(support_sleeps(network, 3));
         support_fall_asleep(network, DT);
         check_near(support_position(network, 3).y, 1.5, 0.05);
-        check_ok(mspring_network_set_grip(network, 0, NULL));
+        check_ok(mspring_network_remove_grip(network, 0));
         assert_false(support_sleeps(network, 3));
         mspring_network_destroy(network);
     }
@@ -300,7 +333,7 @@ static void woken_sleeper_is_held_in_the_same_step(void **state) {
     mspring_network_destroy(awake);
 }
 
-static void removed_particle_is_let_go(void **state) {
+static void removed_particle_takes_its_grip_along(void **state) {
     (void)state;
     for (size_t i = 0; i < 2; i++) {
         mspring_network *network = make((making){.solver = solvers[i], .spare = 3});
@@ -309,16 +342,16 @@ static void removed_particle_is_let_go(void **state) {
         check_ok(mspring_particle_def_init(&def, sizeof def));
         def.x = -30;
         check_ok(mspring_network_add_particles(network, &def, 1, &added));
-        hold(network, 1, added, -31, 0);
-        hold(network, 2, 3, 3, 1);
+        hold(network, 0, added, -31, 0);
+        hold(network, 1, 3, 3, 1);
         support_steps(network, 5, DT);
         assert_true(support_position(network, added).x < -30.001);
         check_ok(mspring_network_remove_particles(network, &added, 1));
-        assert_int_equal(read(network, 1).particle, MSPRING_NONE);
-        assert_int_equal(read(network, 2).particle, 3);
-        check_error(mspring_network_move_grip(network, 1, 0, 0), MSPRING_ERROR_ARGUMENT);
+        assert_int_equal(read(network, 1).particle, 3);
+        check_error(mspring_network_move_grip(network, 0, 0, 0), MSPRING_ERROR_ID);
         const mspring_grip_def gone = grip_of(added, 0, 0);
         check_error(mspring_network_set_grip(network, 1, &gone), MSPRING_ERROR_ID);
+        check_error(mspring_network_add_grip(network, &gone, NULL), MSPRING_ERROR_ID);
         // The id is another particle's, which nothing holds.
         check_ok(mspring_network_recycle(network));
         check_ok(mspring_network_add_particles(network, &def, 1, &added));
@@ -419,30 +452,33 @@ static void wrong_grips_are_refused(void **state) {
     for (size_t i = 0; i < COUNT_OF(wrong); i++) {
         def = grip_of(4, 0, 0);
         def.stiffness = wrong[i];
-        refuse(network, &def, MSPRING_ERROR_ARGUMENT, "stiffness of grip 0");
+        refuse(network, &def, MSPRING_ERROR_ARGUMENT, "stiffness is");
         def = grip_of(4, 0, 0);
         def.damping = wrong[i];
-        refuse(network, &def, MSPRING_ERROR_ARGUMENT, "damping of grip 0");
+        refuse(network, &def, MSPRING_ERROR_ARGUMENT, "damping is");
         def = grip_of(4, 0, 0);
         def.max_force = wrong[i];
-        refuse(network, &def, MSPRING_ERROR_ARGUMENT, "max_force of grip 0");
+        refuse(network, &def, MSPRING_ERROR_ARGUMENT, "max_force is");
         def = grip_of(4, 0, wrong[i] < 0 ? 2e12 : (double)wrong[i]);
-        refuse(network, &def, MSPRING_ERROR_ARGUMENT, "the target of grip 0");
+        refuse(network, &def, MSPRING_ERROR_ARGUMENT, "the target (");
     }
     def = grip_of(4, 0, 0);
-    check_error(mspring_network_set_grip(network, MSPRING_MAX_GRIPS, &def), MSPRING_ERROR_ARGUMENT);
-    check_contains(mspring_network_error(network), "number 16");
-    check_error(mspring_network_set_grip(network, MSPRING_MAX_GRIPS, NULL), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_move_grip(network, 1, 0, 0), MSPRING_ERROR_ARGUMENT);
-    check_contains(mspring_network_error(network), "grip 1 holds nothing");
+    check_error(mspring_network_set_grip(network, 1, &def), MSPRING_ERROR_ID);
+    check_contains(mspring_network_error(network), "there is no grip 1");
+    check_error(mspring_network_set_grip(network, 0, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_move_grip(network, 1, 0, 0), MSPRING_ERROR_ID);
     check_error(mspring_network_move_grip(network, 0, NAN, 0), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_move_grip(network, MSPRING_MAX_GRIPS, 0, 0), MSPRING_ERROR_ARGUMENT);
     double x = 7, y = 7;
-    check_error(mspring_network_get_grip_impulse(network, MSPRING_MAX_GRIPS, &x, &y), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_get_grip(network, MSPRING_MAX_GRIPS, &def), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_grip_impulse(network, 9, &x, &y), MSPRING_ERROR_ID);
+    check_contains(mspring_network_error(network), "there is no grip 9");
+    check_error(mspring_network_get_grip(network, MSPRING_NONE, &def), MSPRING_ERROR_ID);
     assert_true(x == 7 && y == 7);
-    check_ok(mspring_network_get_grip_impulse(network, 9, &x, &y));
-    assert_true(x == 0 && y == 0);
+    for (mspring_id grip = 1; grip < MSPRING_MAX_GRIPS; grip++)
+        hold(network, grip, 4, 0, 0);
+    check_error(mspring_network_add_grip(network, &def, NULL), MSPRING_ERROR_LIMIT);
+    check_ok(mspring_network_remove_grip(network, 7));
+    hold(network, MSPRING_MAX_GRIPS, 4, 0, 0);
+    check_error(mspring_network_move_grip(network, 7, 0, 0), MSPRING_ERROR_ID);
     mspring_network_destroy(network);
 }
 
@@ -450,7 +486,7 @@ static void MSPRING_CALL call_from_inside(const mspring_hook_args *args, void *u
     mspring_network *network = user;
     (void)args;
     const mspring_grip_def def = grip_of(3, 0, 0);
-    check_error(mspring_network_set_grip(network, 0, &def), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_add_grip(network, &def, NULL), MSPRING_ERROR_BUSY);
     check_error(mspring_network_move_grip(network, 0, 0, 0), MSPRING_ERROR_BUSY);
 }
 
@@ -491,7 +527,7 @@ int main(void) {
         cmocka_unit_test(forged_grips_are_refused),
         cmocka_unit_test(sleeper_wakes),
         cmocka_unit_test(woken_sleeper_is_held_in_the_same_step),
-        cmocka_unit_test(removed_particle_is_let_go),
+        cmocka_unit_test(removed_particle_takes_its_grip_along),
         cmocka_unit_test(pinned_particle_feels_nothing),
         cmocka_unit_test(compaction_keeps_grips),
         cmocka_unit_test(failed_step_changes_nothing),

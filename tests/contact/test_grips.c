@@ -29,7 +29,7 @@ static mspring_grip_def grip_of(mspring_id particle, double x, double y, double 
 static void hold(mspring_network *network, mspring_id particle, double x, double y, double stiffness,
                  double damping) {
     const mspring_grip_def def = grip_of(particle, x, y, stiffness, damping);
-    check_ok(mspring_network_set_grip(network, 0, &def));
+    check_ok(mspring_network_add_grip(network, &def, NULL));
 }
 
 static support_point impulse_of(const mspring_network *network) {
@@ -132,7 +132,7 @@ static void force_is_bounded(void **state) {
         const double mass = mass_of(network);
         mspring_grip_def def = grip_of(5, 3000, 4000, 1e7, 1e4);
         def.max_force = 100;
-        check_ok(mspring_network_set_grip(network, 0, &def));
+        check_ok(mspring_network_add_grip(network, &def, NULL));
         for (int step = 0; step < 50; step++) {
             support_steps(network, 1, DT);
             const support_point impulse = impulse_of(network);
@@ -235,7 +235,7 @@ static trial make_trial(uint64_t seed) {
                         k, support_random(&seed) % 2 ? 2 * sqrt(k * all) : 0);
     if (support_random(&seed) % 2)
         made.grip.max_force = (float)(k * pow(10, support_random_between(&seed, -2, 0.5)));
-    check_ok(mspring_network_set_grip(made.network, 0, &made.grip));
+    check_ok(mspring_network_add_grip(made.network, &made.grip, NULL));
     recipe_free(&lattice);
     return made;
 }
@@ -319,7 +319,7 @@ static void floor_stops_what_a_grip_pulls(void **state) {
             check_ok(mspring_network_set_floor(network, &floor));
             mspring_grip_def grip = grip_of(p, 0, -5, 1e4, 20);
             grip.max_force = 50;
-            check_ok(mspring_network_set_grip(network, 0, &grip));
+            check_ok(mspring_network_add_grip(network, &grip, NULL));
             for (int step = 0; step < 300; step++) {
                 support_steps(network, 1, DT);
                 assert_true(support_position(network, p).y > -1.0 - 1e-3);
@@ -341,7 +341,7 @@ static void many_grips_hold_at_once(void **state) {
         for (uint32_t number = 0; number < 8; number++) {
             const support_point at = support_position(network, 4 * number);
             mspring_grip_def grip = grip_of(4 * number, at.x, at.y, 1e5, 1e3);
-            check_ok(mspring_network_set_grip(network, number, &grip));
+            check_ok(mspring_network_add_grip(network, &grip, NULL));
         }
         support_steps(network, 300, DT);
         for (uint32_t number = 0; number < 8; number++) {

@@ -64,7 +64,7 @@ static void stack_comes_to_rest(void **state) {
 static uint32_t sleepers(const mspring_network *network, const bodies *b) {
     uint8_t *asleep = calloc(b->count, 1);
     assert_non_null(asleep);
-    check_ok(mspring_network_get_sleepers(network, 0, b->count, asleep));
+    check_ok(mspring_network_get_sleepers(network, 0, b->count, asleep, 1));
     uint32_t count = 0;
     for (uint32_t p = 0; p < b->count; p++)
         count += asleep[p];

@@ -53,7 +53,7 @@ static mspring_network *touching_crowd(mspring_simd level, uint32_t workers) {
 
 static mspring_contact_info info_of(const mspring_network *network) {
     mspring_contact_info info = {.struct_size = sizeof info};
-    check_ok(mspring_network_contact_info(network, &info));
+    check_ok(mspring_network_get_contact_info(network, &info));
     return info;
 }
 

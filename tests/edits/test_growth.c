@@ -479,7 +479,7 @@ static void components_events_and_strain_know_of_it(void **state) {
     assert_int_equal(count, 2);
     check_ok(mspring_network_read_events(network, events, 10, &event_count, NULL));
     assert_true(event_count == 1 && events[0].kind == MSPRING_EVENT_SPLIT && events[0].id == 2);
-    check_ok(mspring_network_get_component_numbers(network, 0, 4, numbers));
+    check_ok(mspring_network_get_component_numbers(network, 0, 4, numbers, 1));
     assert_true(numbers[0] == 0 && numbers[1] == 0 && numbers[2] == 1 && numbers[3] == MSPRING_NONE);
 
     // What takes its place inherits nothing.

@@ -61,7 +61,7 @@ static mspring_id add(mspring_network *network, double x, double y, float vx, fl
 
 static uint32_t loose_particles(const mspring_network *network) {
     mspring_plan plan = {.struct_size = sizeof plan};
-    check_ok(mspring_network_plan(network, &plan));
+    check_ok(mspring_network_get_plan(network, &plan));
     return plan.loose_particles;
 }
 

@@ -81,7 +81,7 @@ static mspring_plan shuffled_plan_of(recipe *made) {
     recipe_shuffle(made, &seed, NULL);
     mspring_network *network = recipe_network(made, NULL);
     mspring_plan plan = {.struct_size = sizeof plan};
-    check_ok(mspring_network_plan(network, &plan));
+    check_ok(mspring_network_get_plan(network, &plan));
     mspring_network_destroy(network);
     return plan;
 }

@@ -287,7 +287,7 @@ static void what_is_awake_moves_the_same_beside_sleepers(void **state) {
     uint32_t asleep = 0;
     uint8_t *sleeps = malloc(made.particle_count);
     assert_non_null(sleeps);
-    check_ok(mspring_network_get_sleepers(network, 0, made.particle_count, sleeps));
+    check_ok(mspring_network_get_sleepers(network, 0, made.particle_count, sleeps, 1));
     for (mspring_id id = 0; id < made.particle_count; id++) {
         const support_point p = support_position(network, id), q = support_position(restless, id);
         assert_true(sleeps[id] || (p.x == q.x && p.y == q.y));

@@ -15,7 +15,7 @@ static const recipe_stuff holed = {.mass = {1, 1}, .stiffness = {100, 100}, .hol
 static mspring_plan plan_of(const recipe *made) {
     mspring_network *network = recipe_network(made, NULL);
     mspring_plan plan = {.struct_size = sizeof plan};
-    check_ok(mspring_network_plan(network, &plan));
+    check_ok(mspring_network_get_plan(network, &plan));
     assert_int_equal(plan.particle_count, made->particle_count);
     assert_int_equal(plan.spring_count, made->spring_count);
     assert_int_equal(plan.lattice_particles + plan.chain_particles + plan.irregular_particles + plan.loose_particles,

@@ -248,7 +248,7 @@ static void plan_counts_what_is_there(void **state) {
     (void)state;
     mspring_network *network = support_network(triangle(), NULL);
     mspring_plan plan = {.struct_size = sizeof plan};
-    check_ok(mspring_network_plan(network, &plan));
+    check_ok(mspring_network_get_plan(network, &plan));
     assert_int_equal(plan.struct_size, sizeof plan);
     assert_int_equal(plan.particle_count, 3);
     assert_int_equal(plan.spring_count, 2);
@@ -260,12 +260,12 @@ static void plan_counts_what_is_there(void **state) {
     assert_true(plan.slot_count >= 3);
 
     mspring_plan before = plan;
-    check_error(mspring_network_plan(NULL, &plan), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_plan(network, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_plan(NULL, &plan), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_plan(network, NULL), MSPRING_ERROR_ARGUMENT);
     plan.struct_size = 0;
-    check_error(mspring_network_plan(network, &plan), MSPRING_ERROR_STRUCT);
+    check_error(mspring_network_get_plan(network, &plan), MSPRING_ERROR_STRUCT);
     plan.struct_size = sizeof plan + 2;
-    check_error(mspring_network_plan(network, &plan), MSPRING_ERROR_STRUCT);
+    check_error(mspring_network_get_plan(network, &plan), MSPRING_ERROR_STRUCT);
     plan.struct_size = sizeof plan;
     assert_memory_equal(&plan, &before, sizeof plan);
     mspring_network_destroy(network);

@@ -32,7 +32,7 @@ static mspring_network *eventful(double away) {
 
 static uint32_t particle_count(const mspring_network *network) {
     mspring_plan plan = {.struct_size = sizeof plan};
-    check_ok(mspring_network_plan(network, &plan));
+    check_ok(mspring_network_get_plan(network, &plan));
     return plan.particle_count;
 }
 
@@ -140,7 +140,7 @@ static uint32_t check_across(const mspring_network *network, const double way[4]
     static double fractions[MOST];
     mspring_plan plan = {.struct_size = sizeof plan};
     uint32_t count = 0, at = 0;
-    check_ok(mspring_network_plan(network, &plan));
+    check_ok(mspring_network_get_plan(network, &plan));
     check_ok(
         mspring_network_springs_across(network, way[0], way[1], way[2], way[3], found, fractions, MOST, &count));
     for (mspring_id i = 0; i < plan.spring_count; i++) {

@@ -43,7 +43,7 @@ static void slots_and_ids_are_inverse_maps(void **state) {
     mspring_view view = {.struct_size = sizeof view};
     mspring_plan plan = {.struct_size = sizeof plan};
     check_ok(mspring_network_view(network, &view));
-    check_ok(mspring_network_plan(network, &plan));
+    check_ok(mspring_network_get_plan(network, &plan));
     assert_int_equal(view.particle_count, mspring_network_particle_count(network));
     assert_int_equal(view.slot_count, plan.slot_count);
     assert_int_equal(view.reserved, 0);

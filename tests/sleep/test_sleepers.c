@@ -209,7 +209,7 @@ static uint64_t loose_session(mspring_simd level, uint32_t workers, uint32_t sub
     for (int frame = 0; frame < 90; frame++) { // from sqrt(2) m/s to 0.02 takes 46 of them
         support_kick(network, IN_A, 1);
         support_steps(network, 1, DT);
-        check_ok(mspring_network_get_sleepers(network, first, LOOSE, asleep));
+        check_ok(mspring_network_get_sleepers(network, first, LOOSE, asleep, 1));
         for (uint32_t i = 0; i < LOOSE; i++) {
             print = print * 3 + asleep[i];
         }
@@ -226,7 +226,7 @@ static uint64_t loose_session(mspring_simd level, uint32_t workers, uint32_t sub
         support_kick(network, IN_A, 1);
         support_steps(network, 1, DT);
     }
-    check_ok(mspring_network_get_sleepers(network, first, LOOSE, asleep));
+    check_ok(mspring_network_get_sleepers(network, first, LOOSE, asleep, 1));
     check_ok(mspring_network_get_positions(network, first, LOOSE, to_x, to_y, 1));
     for (uint32_t i = 0; i < LOOSE; i++) {
         const bool is_pushed = first + i == pushed;
@@ -294,7 +294,7 @@ static void a_spring_alone_moves_among_sleepers(void **state) {
         }
         uint8_t asleep[102];
         uint32_t sleepers = 0;
-        check_ok(mspring_network_get_sleepers(network, 0, COUNT_OF(asleep), asleep));
+        check_ok(mspring_network_get_sleepers(network, 0, COUNT_OF(asleep), asleep, 1));
         for (size_t p = 0; p < COUNT_OF(asleep); p++) {
             sleepers += asleep[p];
         }

@@ -402,9 +402,9 @@ static mspring_network *half_asleep(void) {
         }
     }
     assert_true(size > first);
-    check_ok(mspring_network_get_sleepers(network, 20, 1, &asleep));
+    check_ok(mspring_network_get_sleepers(network, 20, 1, &asleep, 1));
     assert_int_equal(asleep, 0);
-    check_ok(mspring_network_get_sleepers(network, 0, 1, &asleep));
+    check_ok(mspring_network_get_sleepers(network, 0, 1, &asleep, 1));
     assert_int_equal(asleep, 1);
     return network;
 }
@@ -451,7 +451,7 @@ static void forged_sleep_is_refused(void **state) {
     snapshots_load(network, &good);
     support_steps(network, 3, 0.01);
     uint8_t asleep = 0;
-    check_ok(mspring_network_get_sleepers(network, 0, 1, &asleep));
+    check_ok(mspring_network_get_sleepers(network, 0, 1, &asleep, 1));
     assert_int_equal(asleep, 1);
     free(good.bytes);
     mspring_network_destroy(network);

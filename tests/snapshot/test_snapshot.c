@@ -265,7 +265,7 @@ static void settings_may_be_all_that_they_can_be(void **state) {
             assert_int_equal(support_substeps(other), support_substeps(network));
             if (kind == MSPRING_SOLVER_IMPLICIT) {
                 mspring_plan plan = {.struct_size = sizeof plan};
-                check_ok(mspring_network_plan(other, &plan));
+                check_ok(mspring_network_get_plan(other, &plan));
                 assert_int_equal(plan.iterations, sets[i].iterations);
                 assert_int_equal(plan.coarse_period, sets[i].coarse_period);
             }
@@ -316,7 +316,7 @@ static void what_was_removed_comes_back(void **state) {
 static void describe(const mspring_network *network, char *text, size_t room) {
     mspring_plan plan = {.struct_size = sizeof plan};
     saved of = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
-    check_ok(mspring_network_plan(network, &plan));
+    check_ok(mspring_network_get_plan(network, &plan));
     mspringi_snapshot_header header;
     assert_true(mspringi_get_header(of.bytes, &header));
     const uint8_t *at = of.bytes + MSPRINGI_SNAPSHOT_HEADER_BYTES;

@@ -67,7 +67,7 @@ typedef struct sight {
 static void look(const mspring_network *network, sight *out) {
     check_ok(mspring_network_get_positions(network, 0, PARTICLES, out->x, out->y, 1));
     check_ok(mspring_network_get_velocities(network, 0, PARTICLES, out->vx, out->vy, 1));
-    check_ok(mspring_network_get_sleepers(network, 0, PARTICLES, out->sleeps));
+    check_ok(mspring_network_get_sleepers(network, 0, PARTICLES, out->sleeps, 1));
 }
 
 /// Between two sights of a network what slept in both has not moved.

@@ -85,7 +85,7 @@ static void tiles_of_a_random_graph_are_few(void **state) {
     assert_int_equal(support_hash(network), support_hash(twin));
     settings.tile_size = 0;
     check_ok(mspring_network_set_solver(network, &settings));
-    check_ok(mspring_network_plan(network, &plan));
+    check_ok(mspring_network_get_plan(network, &plan));
     assert_int_equal(plan.tile_size, 256);
     assert_int_equal(plan.tile_count, (2 * HALF + 32767) / 32768);
     assert_true(mspring_network_memory_used(network) < (uint64_t)100 << 20);

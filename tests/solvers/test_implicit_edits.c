@@ -70,7 +70,7 @@ static double mean_height(const mspring_network *network) {
 
 static uint32_t tile_count(const mspring_network *network) {
     mspring_plan plan = {.struct_size = sizeof plan};
-    check_ok(mspring_network_plan(network, &plan));
+    check_ok(mspring_network_get_plan(network, &plan));
     return plan.tile_count;
 }
 

@@ -214,7 +214,7 @@ static void relative_and_absolute_springs_live_together(void **state) {
     mspring_network_def def = support_def(0, 1);
     mspring_network *network = support_network(builder, &def);
     mspring_plan plan = {.struct_size = sizeof plan};
-    check_ok(mspring_network_plan(network, &plan));
+    check_ok(mspring_network_get_plan(network, &plan));
     assert_int_equal(plan.has_relative, 1);
     assert_int_equal(plan.has_damping, 1);
     check_ok(mspring_network_step(network, 0.125));

@@ -406,7 +406,7 @@ static void call_from_inside(const mspring_hook_args *args, void *user) {
     uint64_t hash;
     double energy;
     check_ok(mspring_network_view(network, &view));
-    check_ok(mspring_network_plan(network, &plan));
+    check_ok(mspring_network_get_plan(network, &plan));
     check_ok(mspring_network_get_spring(network, 0, &info));
     check_ok(mspring_network_get_positions(network, 0, 2, d, d, 1));
     check_ok(mspring_network_get_velocities(network, 0, 2, f, f, 1));

@@ -151,7 +151,7 @@ static void springs_break_and_are_stressed_by_the_rules(void **state) {
         assert_true(totals[MSPRING_EVENT_BROKEN] > 100 && totals[MSPRING_EVENT_STRESSED] > 200 &&
                     totals[MSPRING_EVENT_RELAXED] > 100);
         mspring_plan plan = {.struct_size = sizeof plan};
-        check_ok(mspring_network_plan(network, &plan));
+        check_ok(mspring_network_get_plan(network, &plan));
         assert_int_equal(plan.chain_springs, STRAND_SPRINGS);
         uint32_t broken_in_web = 0, broken_in_strand = 0;
         for (mspring_id s = first_of_web(made.spring_count); s < made.spring_count; s++) {

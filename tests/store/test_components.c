@@ -66,7 +66,7 @@ static void check_components(const mspring_network *network, const recipe *made,
     for (uint32_t i = 0; i < count; i++) {
         components[i].struct_size = sizeof *components;
     }
-    check_ok(mspring_network_get_component_numbers(network, 0, made->particle_count, number));
+    check_ok(mspring_network_get_component_numbers(network, 0, made->particle_count, number, 1));
     check_ok(mspring_network_get_components(network, 0, count, components));
     uint32_t heads = 0, particles = 0;
     for (mspring_id p = 0; p < made->particle_count; p++) {
@@ -261,14 +261,14 @@ static void bad_requests_are_refused(void **state) {
     uint32_t number = 77, count;
     mspring_component part = {.struct_size = sizeof part};
     check_error(mspring_network_update_components(NULL, &count, NULL), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_get_component_numbers(network, 0, 1, &number),
+    check_error(mspring_network_get_component_numbers(network, 0, 1, &number, 1),
                 MSPRING_ERROR_ARGUMENT); // no update yet
     check_error(mspring_network_get_components(network, 0, 1, &part), MSPRING_ERROR_ARGUMENT);
     check_ok(mspring_network_update_components(network, &count, NULL));
-    check_error(mspring_network_get_component_numbers(NULL, 0, 1, &number), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_get_component_numbers(network, 0, 1, NULL), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_get_component_numbers(network, made.particle_count, 1, &number), MSPRING_ERROR_ID);
-    check_error(mspring_network_get_component_numbers(network, 1, MSPRING_NONE, &number), MSPRING_ERROR_ID);
+    check_error(mspring_network_get_component_numbers(NULL, 0, 1, &number, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_component_numbers(network, 0, 1, NULL, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_component_numbers(network, made.particle_count, 1, &number, 1), MSPRING_ERROR_ID);
+    check_error(mspring_network_get_component_numbers(network, 1, MSPRING_NONE, &number, 1), MSPRING_ERROR_ID);
     check_error(mspring_network_get_components(NULL, 0, 1, &part), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_get_components(network, 0, 1, NULL), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_get_components(network, count, 1, &part), MSPRING_ERROR_ID);
@@ -277,10 +277,10 @@ static void bad_requests_are_refused(void **state) {
     check_error(mspring_network_get_components(network, 0, 1, &part), MSPRING_ERROR_STRUCT);
     assert_true(number == 77 && part.mass == 0);
     check_ok(mspring_network_get_components(network, count, 0, NULL));
-    check_ok(mspring_network_get_component_numbers(network, made.particle_count, 0, NULL));
-    check_error(mspring_network_get_component_numbers(network, made.particle_count + 1, 0, &number),
+    check_ok(mspring_network_get_component_numbers(network, made.particle_count, 0, NULL, 1));
+    check_error(mspring_network_get_component_numbers(network, made.particle_count + 1, 0, &number, 1),
                 MSPRING_ERROR_ID);
-    check_ok(mspring_network_get_component_numbers(network, 0, 1, &number));
+    check_ok(mspring_network_get_component_numbers(network, 0, 1, &number, 1));
     assert_int_equal(number, 0); // that of the lowest particle
     mspring_network_destroy(network);
     recipe_free(&made);

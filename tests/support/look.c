@@ -29,7 +29,7 @@ look look_at(mspring_network *network) {
                                          seen.by_spring[3]));
     check_ok(mspring_network_get(network, MSPRING_INVERSE_MASS_SCALE, 0, particles, seen.scale, 1));
     check_ok(mspring_network_update_components(network, &seen.component_count, NULL));
-    check_ok(mspring_network_get_component_numbers(network, 0, particles, seen.component));
+    check_ok(mspring_network_get_component_numbers(network, 0, particles, seen.component, 1));
     return seen;
 }
 

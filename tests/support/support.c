@@ -267,7 +267,7 @@ void support_bring(const mspring_network *from, mspring_network *to, mspring_sna
 
 bool support_sleeps(const mspring_network *network, mspring_id particle) {
     uint8_t asleep = 2;
-    check_ok(mspring_network_get_sleepers(network, particle, 1, &asleep));
+    check_ok(mspring_network_get_sleepers(network, particle, 1, &asleep, 1));
     assert_true(asleep <= 1);
     return asleep == 1;
 }

@@ -50,7 +50,7 @@ void wrecks_make(mspring_network *network, const recipe *made, wreck kind) {
 
 mspring_plan wrecks_plan(const mspring_network *network) {
     mspring_plan plan = {.struct_size = sizeof plan};
-    check_ok(mspring_network_plan(network, &plan));
+    check_ok(mspring_network_get_plan(network, &plan));
     return plan;
 }
 

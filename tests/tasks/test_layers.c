@@ -124,7 +124,7 @@ static uint64_t hash_after_steps(const recipe *made, content of, manner how) {
     // Ropes that hang on layers, or on a lattice, are no strands.
     assert_int_equal(network->topology.chain_count, of == WITH_CABLES ? 1 : of == IN_RIGGING ? 61 : 0);
     mspring_plan plan = {.struct_size = sizeof plan};
-    check_ok(mspring_network_plan(network, &plan));
+    check_ok(mspring_network_get_plan(network, &plan));
     assert_int_equal(plan.irregular_layers > 0, how.has_layers || of <= ON_A_RAFT);
     // The raft is part of the web, another lattice is not.
     assert_int_equal(network->topology.lattice_count, of == WITH_CABLES || of >= ON_A_RAFT ? of != IN_RIGGING : 0);

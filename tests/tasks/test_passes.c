@@ -17,7 +17,7 @@ static const recipe_stuff solid = {.mass = {1, 1}, .stiffness = {1000, 1000}};
 static mspring_plan plan_of(const recipe *made) {
     mspring_network *network = recipe_network(made, NULL);
     mspring_plan plan = {.struct_size = sizeof plan};
-    check_ok(mspring_network_plan(network, &plan));
+    check_ok(mspring_network_get_plan(network, &plan));
     mspring_network_destroy(network);
     return plan;
 }

@@ -66,7 +66,7 @@ static mspring_result count_affordable(mspringi_tuning *tuning, double *steps) {
     for (uint32_t i = 0; i < tuning->trial_count; ++i) {
         const mspringi_trial *trial = &tuning->trials[i];
         bool is_first = true;
-        if (trial->time_count == 0 || trial->row.flags & MSPRING_TUNE_REFUSED)
+        if (trial->time_count == 0 || trial->row.flags & MSPRING_TUNE_REJECTED)
             continue;
         for (uint32_t t = 0; t < trial->time_count; ++t)
             seconds += passes * trial->times[t] / (double)trial->time_count;

@@ -46,7 +46,7 @@ static bool is_measured(const mspring_tune_row *row, mspring_tune_measure measur
         MSPRING_TUNE_HAS_COST | (measure == MSPRING_TUNE_BY_TRAJECTORY ? (uint32_t)MSPRING_TUNE_HAS_TRAJECTORY
                                  : measure == MSPRING_TUNE_BY_SCENE    ? (uint32_t)MSPRING_TUNE_HAS_SCENE
                                                                        : (uint32_t)MSPRING_TUNE_HAS_REST);
-    return (row->flags & needed) == needed && !(row->flags & MSPRING_TUNE_REFUSED);
+    return (row->flags & needed) == needed && !(row->flags & MSPRING_TUNE_REJECTED);
 }
 
 static bool is_beaten(const mspringi_tuning *tuning, const mspring_tune_row *row) {

@@ -135,7 +135,7 @@ static mspring_result run_solver(mspringi_tuning *tuning, mspring_network *from,
 /* -------------------------------------------------------------------------------------------------- all of them */
 
 static bool is_in(const mspringi_trial *trial) {
-    return trial->row.flags & MSPRING_TUNE_HAS_COST && !(trial->row.flags & MSPRING_TUNE_REFUSED);
+    return trial->row.flags & MSPRING_TUNE_HAS_COST && !(trial->row.flags & MSPRING_TUNE_REJECTED);
 }
 
 // How the fine run is made; substeps 0: it cannot be.
@@ -177,7 +177,7 @@ static mspring_result run_start(mspringi_tuning *tuning, const mspring_solver_de
         if (how == WHOLE)
             trial->row.scene_starts = start + 1;
         else if (how == REJECTED && result == MSPRING_OK)
-            trial->row.flags |= MSPRING_TUNE_REFUSED;
+            trial->row.flags |= MSPRING_TUNE_REJECTED;
         else
             *end = CUT_SHORT;
     }

@@ -82,9 +82,11 @@ mspring_result mspring_tune_settings(mspring_network *network, double dt, msprin
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                              "there is room for %u settings, but %u of them", (unsigned)capacity,
                              (unsigned)s.count);
-    for (uint32_t i = 0; i < s.count; ++i)
-        list[i] = s.list[i];
-    return MSPRING_OK;
+    const size_t struct_size = mspringi_struct_size(list);
+    result = mspringi_check_outputs(list, s.count, "mspring_solver_def", sizeof *list, &network->message);
+    for (uint32_t i = 0; result == MSPRING_OK && i < s.count; ++i)
+        mspringi_put_struct((char *)list + struct_size * i, &s.list[i], sizeof s.list[i]);
+    return result;
 }
 
 mspring_result mspring_tune_row_solver(const mspring_tune_row *row, mspring_solver_def *solver) {

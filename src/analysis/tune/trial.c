@@ -66,7 +66,7 @@ static mspring_result begin(mspringi_tuning *tuning, mspringi_trial *trial, mspr
         return MSPRING_OK;
     }
     if (result == MSPRING_ERROR_LIMIT) {
-        trial->row.flags |= MSPRING_TUNE_REFUSED;
+        trial->row.flags |= MSPRING_TUNE_REJECTED;
         result = MSPRING_OK;
     } else {
         result = pass_on(tuning, trial, made, result);
@@ -82,7 +82,7 @@ static mspring_result step(mspringi_tuning *tuning, mspringi_trial *trial, mspri
     const mspring_result result = mspring_network_step(clone, def->dt);
     const double seconds = def->clock(def->user) - before;
     if (result == MSPRING_ERROR_UNSTABLE) {
-        trial->row.flags |= MSPRING_TUNE_REFUSED;
+        trial->row.flags |= MSPRING_TUNE_REJECTED;
         return MSPRING_OK;
     }
     if (result != MSPRING_OK)
@@ -96,7 +96,7 @@ static mspring_result step(mspringi_tuning *tuning, mspringi_trial *trial, mspri
 }
 
 static bool is_refused(const mspringi_trial *trial) {
-    return trial->row.flags & MSPRING_TUNE_REFUSED;
+    return trial->row.flags & MSPRING_TUNE_REJECTED;
 }
 
 /// What is done after a step; step counts from 1.

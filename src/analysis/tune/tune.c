@@ -113,15 +113,7 @@ static mspring_result check_rows(const mspring_tune_row *rows, uint32_t capacity
     if (capacity < needed)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "there is room for %u rows, but %u settings",
                              (unsigned)capacity, (unsigned)needed);
-    mspring_result result = MSPRING_OK;
-    const size_t struct_size = mspringi_struct_size(rows);
-    for (uint32_t i = 0; result == MSPRING_OK && i < needed; ++i) {
-        const mspring_tune_row *row = mspringi_element(rows, struct_size, i);
-        result = mspringi_check_output(message, "mspring_tune_row", row, sizeof *row);
-        if (result == MSPRING_OK)
-            result = mspringi_check_alike(message, row, struct_size);
-    }
-    return result;
+    return mspringi_check_outputs(rows, needed, "mspring_tune_row", sizeof *rows, message);
 }
 
 /* -------------------------------------------------------------------------------------------------------- time */
@@ -327,6 +319,8 @@ mspring_result mspring_network_tune(mspring_network *network, const mspring_tune
         result = check_scene(def->scene, def->dt, network);
     if (result == MSPRING_OK && !settings) {
         settings = usual;
+        for (int i = 0; i < MSPRINGI_TUNE_USUAL_SETTINGS; ++i)
+            usual[i].struct_size = sizeof usual[i];
         result = mspring_tune_settings(network, def->dt, usual, MSPRINGI_TUNE_USUAL_SETTINGS, &setting_count);
     }
     if (result == MSPRING_OK)

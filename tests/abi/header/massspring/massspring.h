@@ -36,7 +36,7 @@
 ///     step        network_step, _get_step_info; sleep: _is_asleep, _wake
 ///     forces      network_apply_force, _apply_forces(_at), _apply_impulses(_at)
 ///     floor       network_set_floor, _get_floor, _get_floor_impulses
-///     state       network_view, _view_mutable, _get_positions(_float), _get_velocities, _set_positions(_float)(_at),
+///     state       network_view, _get_positions(_float)(_at), _get_velocities(_at), _set_positions(_float)(_at),
 ///                 _set_velocities(_at), _state_hash
 ///     properties  network_set(_at), _get(_at), _get_ends, _get_spring_flags, _max_strain
 ///     edits       network_break_springs, _restore_springs, _detach_particles, _add_particles, _add_springs,
@@ -75,8 +75,8 @@
 /// mspring_network_state_hash().
 ///
 /// **Errors.** If a function can fail, it returns a mspring_result. A failed call changes nothing and leaves
-/// out-parameters alone. An exclusive call then sets the object's error message, which names the fault and the place.
-/// A shared call sets none. No function prints, exits or aborts. The library cannot detect one mistake: a handle that
+/// out-parameters alone. It sets the error message of its object, which names the fault and the place: see
+/// mspring_network_error(). No function prints, exits or aborts. The library cannot detect one mistake: a handle that
 /// was destroyed. "@errors" lists the results other than MSPRING_OK, without the prefix MSPRING_ERROR_. ARGUMENT is
 /// always a NULL that is not allowed, or a value outside its range, such as NaN.
 ///
@@ -135,9 +135,9 @@ MSPRING_API uint32_t MSPRING_CALL mspring_features(void);
 typedef enum mspring_result {
     MSPRING_OK = 0,
     MSPRING_ERROR_ARGUMENT = -1,          ///< NULL, NaN, infinite, or outside the range that the function states
-    MSPRING_ERROR_ID = -2,                ///< no such particle, spring, component, hook or collider
+    MSPRING_ERROR_ID = -2,                ///< no such particle, spring, component, hook, collider or grip
     MSPRING_ERROR_MEMORY = -3,            ///< the allocator returned NULL
-    MSPRING_ERROR_LIMIT = -4,             ///< more particles, springs, cells, pairs or points than fit
+    MSPRING_ERROR_LIMIT = -4,             ///< more particles, springs, cells, pairs, points or grips than fit
     MSPRING_ERROR_STRUCT = -5,            ///< struct_size is impossible, or what this version does not know is not 0
     MSPRING_ERROR_DUPLICATE = -6,         ///< two springs join the same two particles
     MSPRING_ERROR_UNSTABLE = -7,          ///< the step was unstable and has been rolled back
@@ -154,7 +154,8 @@ typedef enum mspring_result {
 MSPRING_API const char *MSPRING_CALL mspring_result_string(mspring_result result);
 
 /// Id of a particle or a spring: 0, 1, 2 ... in the order in which they were added. It never changes. After
-/// mspring_network_recycle(), added ones may get ids of removed ones. Colliders have ids of their own.
+/// mspring_network_recycle(), added ones may get ids of removed ones. Hooks, colliders and grips have ids of their own,
+/// which a network never gives twice.
 typedef uint32_t mspring_id;
 
 /// No particle, no spring.
@@ -411,26 +412,28 @@ typedef struct mspring_settings {
 } mspring_settings;
 
 /// A network at the start. Fill with mspring_network_def_init() first.
+///
+/// It has all fields of mspring_settings and of mspring_solver_def, with the same meanings and defaults.
 typedef struct mspring_network_def {
     uint32_t struct_size;
     mspring_simd simd_level; ///< highest level to use; default MSPRING_SIMD_AUTO. A level that this machine lacks is no
                              ///< limit. MSPRING_SIMD_SCALAR means the lowest level of this build. The environment
                              ///< variable MSPRING_SIMD (scalar, sse2, avx2, avx512, neon, wasm) can lower it further.
-    float gravity_x, gravity_y, global_damping, max_speed; ///< as in mspring_settings; default 0, -9.8, 0, 1e6
-    mspring_solver solver; ///< default MSPRING_SOLVER_EXPLICIT, with the defaults of mspring_solver_def_init()
-    uint32_t substeps;     ///< as in mspring_solver_def; default MSPRING_SUBSTEPS_AUTO
+    mspring_guard guard;     ///< from here to relax_fraction: as in mspring_settings
+    float gravity_x, gravity_y, global_damping, max_speed, sleep_speed, sleep_time, relax_fraction;
+    mspring_solver solver; ///< from here to coarse_period: as in mspring_solver_def
+    uint32_t substeps, max_substeps;
+    mspring_integrator integrator;
+    uint32_t iterations, tile_size, coarse_period;
+    uint32_t flags;                     ///< bits of MSPRING_NETWORK_; default 0
     const mspring_allocator *allocator; ///< default NULL: malloc and free
     const mspring_tasks *tasks;         ///< threads of the host; default NULL: threads of the library
     uint32_t worker_count;    ///< threads that step the network, the caller's included, 1 to MSPRING_MAX_WORKERS;
                               ///< default 1. They take no signals, and sleep between steps. Ignored if tasks is set.
-    uint32_t flags;           ///< bits of MSPRING_NETWORK_; default 0
-    uint32_t max_substeps;    ///< as in mspring_solver_def; default 1000
-    mspring_guard guard;      ///< as in mspring_settings; default MSPRING_GUARD_CLAMP
-    float sleep_speed;        ///< as in mspring_settings; default 0: never
-    float sleep_time;         ///< as in mspring_settings; default 0.5
     uint32_t spare_particles; ///< particles that may be added later, with the builder's at most
                               ///< MSPRING_MAX_PARTICLES; default 0. The network reserves memory for them.
     uint32_t spare_springs;   ///< the same for springs, at most MSPRING_MAX_SPRINGS; default 0
+    uint32_t reserved;        ///< 0
 } mspring_network_def;
 
 /// Most half-planes of a floor, and most heights.
@@ -553,8 +556,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_create
 /// @threads exclusive   @allocates never
 MSPRING_API void MSPRING_CALL mspring_network_destroy(mspring_network *network);
 
-/// Return the error message of the last exclusive call; "" if it succeeded.
-/// As mspring_builder_error(). Shared calls leave it alone, and so do concurrent hooks.
+/// Return the error message of the last call that failed.
+/// As mspring_builder_error(). An exclusive call clears it first, so "" follows if that succeeds. A shared call that
+/// fails sets it, unless one has done so since the last exclusive call. So it stays as it is until the next of these.
 /// @threads shared   @allocates never
 MSPRING_API const char *MSPRING_CALL mspring_network_error(const mspring_network *network);
 
@@ -732,37 +736,26 @@ typedef struct mspring_view {
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_view(
     const mspring_network *network, mspring_view *view);
 
-/// The same to write: positions and velocities may be changed until the next step. Set struct_size first.
-typedef struct mspring_mutable_view {
-    uint32_t struct_size;
-    uint32_t slot_count, particle_count, reserved; ///< all fields as in mspring_view
-    uint64_t layout_generation, origin_generation;
-    double origin_x, origin_y;
-    float *x, *y, *vx, *vy; ///< write finite values only, and velocities within MSPRING_MAX_SPEED
-    const float *inverse_mass;
-    const uint32_t *particle_of_slot, *slot_of_particle;
-    const void *reserved_pointer;
-} mspring_mutable_view;
-
-/// Fill a view to write. The next step checks what was written.
-/// Call it again before you write after that step. In a hook use its arrays.
-/// @threads exclusive   @allocates never   @errors ARGUMENT, STRUCT, BUSY
-MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_view_mutable(
-    mspring_network *network, mspring_mutable_view *view);
-
-/// Read world positions (m) of the particles first ... first + count - 1. The form with _float rounds them.
-/// @param x, y    receive those of particle first + i in x[i * stride] and y[i * stride]
+/// Read world positions (m) of particles. The forms with _float round them.
+/// They are the particles first ... first + count - 1, or those listed. In a range a removed one has the local origin.
+/// @param x, y    receive those of element i in x[i * stride] and y[i * stride]
 /// @param stride  elements from one to the next, at least 1: 1 for two arrays, 2 with y = x + 1 for one of points
 /// @threads shared   @allocates never   @errors ID, ARGUMENT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_positions(
     const mspring_network *network, mspring_id first, uint32_t count, double *x, double *y, uint32_t stride);
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_positions_float(
     const mspring_network *network, mspring_id first, uint32_t count, float *x, float *y, uint32_t stride);
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_positions_at(
+    const mspring_network *network, const mspring_id *particles, uint32_t count, double *x, double *y, uint32_t stride);
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_positions_float_at(
+    const mspring_network *network, const mspring_id *particles, uint32_t count, float *x, float *y, uint32_t stride);
 
 /// Read velocities (m/s), as mspring_network_get_positions(). They are single precision.
 /// @threads shared   @allocates never   @errors ID, ARGUMENT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_velocities(
     const mspring_network *network, mspring_id first, uint32_t count, float *vx, float *vy, uint32_t stride);
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_velocities_at(
+    const mspring_network *network, const mspring_id *particles, uint32_t count, float *vx, float *vy, uint32_t stride);
 
 /// Set world positions (m) of particles: all or, on error, none.
 /// They are the particles first ... first + count - 1, or those listed. Of an id that repeats, the last value counts.
@@ -1010,10 +1003,11 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_update
     mspring_network *network, uint32_t *count, uint32_t *changed);
 
 /// Read the component numbers of the particles first ... first + count - 1, as of the last update.
-/// @param component  [count]
+/// @param numbers  receives that of particle first + i in numbers[i * stride]
+/// @param stride   elements from one to the next, at least 1
 /// @threads shared   @allocates never   @errors ID; ARGUMENT also if there was no update yet
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_component_numbers(
-    const mspring_network *network, mspring_id first, uint32_t count, uint32_t *component);
+    const mspring_network *network, mspring_id first, uint32_t count, uint32_t *numbers, uint32_t stride);
 
 /// Report of a component. Set struct_size first.
 typedef struct mspring_component {

@@ -1,10 +1,10 @@
 /// @file massspring_contact.h
 /// Bodies that meet: contact between bodies, colliders of the host, and grips.
 ///
-///     contact     network_set_contact, _get_contact, _set_contact_groups, _contact_info; contact_def_init
+///     contact     network_set_contact, _get_contact, _set_contact_groups, _get_contact_info; contact_def_init
 ///     colliders   network_add_collider, _remove_collider, _move_collider, _place_collider, _get_collider,
 ///                 _get_collider_impulse; collider_def_init
-///     grips       network_set_grip, _move_grip, _get_grip, _get_grip_impulse; grip_def_init
+///     grips       network_add_grip, _remove_grip, _set_grip, _move_grip, _get_grip, _get_grip_impulse; grip_def_init
 ///
 /// These calls are not frozen yet: a later minor version may change them. massspring.h explains the notation. The floor
 /// is part of massspring.h.
@@ -98,7 +98,7 @@ typedef struct mspring_contact_info {
 
 /// Read the report of contact. Without contact, and before the first step with it, all numbers are 0.
 /// @threads shared   @allocates never   @errors ARGUMENT, STRUCT
-MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_contact_info(
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_contact_info(
     const mspring_network *network, mspring_contact_info *info);
 
 /* ----------------------------------------------------------------------------------------------------- colliders */
@@ -155,14 +155,14 @@ MSPRING_API mspring_result MSPRING_CALL mspring_collider_def_init(mspring_collid
 /// Snapshots leave colliders out, as they leave the floor. Before you load one, add the same colliders and place them.
 /// Clones have them. All bodies wake.
 /// @param def       copied, with its points
-/// @param collider  receives its id, which no other collider of the contact gets; may be NULL
+/// @param collider  receives its id; may be NULL
 /// @threads exclusive   @allocates yes; 2 to 4 kB for a point   @since 0.2   @errors ARGUMENT (also without
 ///          contact), STRUCT, MEMORY, BUSY, LIMIT for more than 0x1000000 points in all
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_add_collider(
     mspring_network *network, const mspring_collider_def *def, mspring_id *collider);
 
 /// Remove a collider. All bodies wake.
-/// @threads exclusive   @allocates never   @since 0.2   @errors ID, ARGUMENT without contact, BUSY
+/// @threads exclusive   @allocates never   @since 0.2   @errors ID, ARGUMENT, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_remove_collider(
     mspring_network *network, mspring_id collider);
 
@@ -172,7 +172,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_remove
 /// and none falls asleep on it.
 /// @param x, y, angle  as in mspring_collider_def. An angle of more than half a turn away makes it spin: it goes the
 ///                     whole way.
-/// @threads exclusive   @allocates never   @since 0.2   @errors ID, ARGUMENT (also without contact), BUSY
+/// @threads exclusive   @allocates never   @since 0.2   @errors ID, ARGUMENT, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_move_collider(
     mspring_network *network, mspring_id collider, double x, double y, double angle);
 
@@ -180,14 +180,14 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_move_c
 /// It touches nothing on its way. A body that it overlaps there is pushed apart from it. A body that it lies across
 /// stays so. A move that was set is dropped. All bodies wake.
 /// @param x, y, angle  as in mspring_collider_def
-/// @threads exclusive   @allocates never   @since 0.2   @errors ID, ARGUMENT (also without contact), BUSY
+/// @threads exclusive   @allocates never   @since 0.2   @errors ID, ARGUMENT, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_place_collider(
     mspring_network *network, mspring_id collider, double x, double y, double angle);
 
 /// Read a collider. Set struct_size first.
 /// Position and angle are those of now. points leads to the network's copy, valid until a collider is added or removed
 /// or contact is set.
-/// @threads shared   @allocates never   @since 0.2   @errors ID, ARGUMENT without contact, STRUCT
+/// @threads shared   @allocates never   @since 0.2   @errors ID, ARGUMENT, STRUCT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_collider(
     const mspring_network *network, mspring_id collider, mspring_collider_def *def);
 
@@ -196,7 +196,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_co
 /// momentum around its position. Both totals are then conserved. Bodies that sleep give nothing.
 /// @param x, y     impulse, N s
 /// @param angular  angular impulse around the position at the end of the step, N m s, counterclockwise
-/// @threads shared   @allocates never   @since 0.2   @errors ID, ARGUMENT (also without contact)
+/// @threads shared   @allocates never   @since 0.2   @errors ID, ARGUMENT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_collider_impulse(
     const mspring_network *network, mspring_id collider, double *x, double *y, double *angular);
 
@@ -225,43 +225,54 @@ typedef struct mspring_grip_def {
 /// @threads any   @allocates never   @errors ARGUMENT, STRUCT
 MSPRING_API mspring_result MSPRING_CALL mspring_grip_def_init(mspring_grip_def *def, size_t size);
 
-/// Hold a particle with a grip, change what it does, or let go.
-/// A new grip begins with its target at rest. If the grip holds the same particle already, its target moves as by
-/// mspring_network_move_grip(). The particle's component wakes.
+/// Add a grip: hold a particle.
+/// The target is at rest at first. The particle's component wakes. If the particle is removed, the grip is, too.
 ///
-/// A pinned particle does not feel a grip. A particle that is removed is let go. Snapshots and clones have the grips.
+/// A pinned particle does not feel a grip. Snapshots and clones have the grips, with their ids.
 /// mspring_network_settle() leaves them out. While a grip acts, the explicit solver takes substeps one by one, as with
 /// hooks.
 ///
 /// The target may be far away. Then a stiff grip without max_force throws the particle, as a stiff spring would. The
 /// guide examples/guides/grips.md has the details.
-/// @param number  0 to MSPRING_MAX_GRIPS - 1, chosen by the host
-/// @param def     copied; NULL lets go, also if the grip holds nothing
+/// @param def   copied
+/// @param grip  receives its id; may be NULL
+/// @threads exclusive   @allocates never   @errors ARGUMENT (the message names the field), ID, STRUCT, BUSY, LIMIT for
+///          more than MSPRING_MAX_GRIPS
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_add_grip(
+    mspring_network *network, const mspring_grip_def *def, mspring_id *grip);
+
+/// Remove a grip: let go. The particle's component wakes.
+/// @threads exclusive   @allocates never   @errors ID, ARGUMENT, BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_remove_grip(
+    mspring_network *network, mspring_id grip);
+
+/// Change what a grip does.
+/// If it holds the same particle as before, its target moves as by mspring_network_move_grip(). Otherwise it begins
+/// anew.
+/// @param def  copied
 /// @threads exclusive   @allocates never   @errors ARGUMENT (the message names the field), ID, STRUCT, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_grip(
-    mspring_network *network, uint32_t number, const mspring_grip_def *def);
+    mspring_network *network, mspring_id grip, const mspring_grip_def *def);
 
 /// Move the target of a grip.
 /// In the next step the target goes there in a straight line. It rests from then on.
-/// @param number  as of mspring_network_set_grip()
-/// @param x, y    world position, m, at most MSPRING_MAX_COORDINATE in size
-/// @threads exclusive   @allocates never   @errors ARGUMENT also for a grip that holds nothing; BUSY
+/// @param x, y  world position, m, at most MSPRING_MAX_COORDINATE in size
+/// @threads exclusive   @allocates never   @errors ID, ARGUMENT, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_move_grip(
-    mspring_network *network, uint32_t number, double x, double y);
+    mspring_network *network, mspring_id grip, double x, double y);
 
-/// Read a grip. Set struct_size first.
-/// The target is the one given last. The particle of a grip that holds nothing is MSPRING_NONE.
-/// @threads shared   @allocates never   @errors ARGUMENT, STRUCT
+/// Read a grip. Set struct_size first. The target is the one given last.
+/// @threads shared   @allocates never   @errors ID, ARGUMENT, STRUCT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_grip(
-    const mspring_network *network, uint32_t number, mspring_grip_def *def);
+    const mspring_network *network, mspring_id grip, mspring_grip_def *def);
 
 /// Read the impulse (N s) that a grip gave its particle in the last step.
 /// It is the sum of force times substep, and at most max_force times dt. While the particle sleeps, it is that of the
-/// last step before. The impulse of a grip that holds nothing is 0.
+/// last step before.
 /// @param x, y  receive the impulse
-/// @threads shared   @allocates never   @errors ARGUMENT
+/// @threads shared   @allocates never   @errors ID, ARGUMENT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_grip_impulse(
-    const mspring_network *network, uint32_t number, double *x, double *y);
+    const mspring_network *network, mspring_id grip, double *x, double *y);
 
 #ifdef __cplusplus
 }
