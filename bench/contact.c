@@ -20,20 +20,22 @@ typedef struct subject {
     uint32_t columns, rows, bodies; ///< bars, one above the other; rows 0: columns loose particles in a box
     double gap;                     ///< between them, m
     double aside;                   ///< share of its length that each lies aside of the one below
-    bool touches_itself;
+    bool touches_itself, on_collider;
     uint32_t settling; ///< steps before what is measured
     uint32_t steps;    ///< that are measured
 } subject;
 
 static const subject subjects[] = {
-    {"544x68, itself, nothing near", 544, 68, 1, 0, 0, true, 2, 10},
-    {"two 544x68, far apart", 544, 68, 2, 50, 0, false, 2, 8},
-    {"two 544x68, a tenth touches", 544, 68, 2, THICKNESS, 0.8, false, 32, 8},
-    {"two 544x68, one on the other", 544, 68, 2, THICKNESS, 0, false, 32, 4},
-    {"two 80x5, near each other", 80, 5, 2, THICKNESS + 0.2, 0, false, 0, 8},
-    {"two 80x5, dropped by 1 m", 80, 5, 2, THICKNESS + 1.0, 0, false, 0, 60},
-    {"two 80x5, at rest", 80, 5, 2, THICKNESS, 0, false, 300, 60},
-    {"10,000 loose, settling", 10000, 0, 1, 0, 0, false, 64, 4},
+    {"544x68, itself, nothing near", 544, 68, 1, 0, 0, true, false, 2, 10},
+    {"two 544x68, far apart", 544, 68, 2, 50, 0, false, false, 2, 8},
+    {"two 544x68, a tenth touches", 544, 68, 2, THICKNESS, 0.8, false, false, 32, 8},
+    {"two 544x68, one on the other", 544, 68, 2, THICKNESS, 0, false, false, 32, 4},
+    {"two 80x5, near each other", 80, 5, 2, THICKNESS + 0.2, 0, false, false, 0, 8},
+    {"two 80x5, dropped by 1 m", 80, 5, 2, THICKNESS + 1.0, 0, false, false, 0, 60},
+    {"two 80x5, at rest", 80, 5, 2, THICKNESS, 0, false, false, 300, 60},
+    {"544x68 high above a collider", 544, 68, 1, 50, 0, false, true, 2, 8},
+    {"80x5, at rest on a collider", 80, 5, 1, THICKNESS, 0, false, true, 300, 60},
+    {"10,000 loose, settling", 10000, 0, 1, 0, 0, false, false, 64, 4},
 };
 
 static const bench_column columns[] = {
@@ -131,6 +133,19 @@ static mspring_result set_contact(mspring_network *network, const subject *s) {
     return result == MSPRING_OK ? mspring_network_set_contact(network, &def) : result;
 }
 
+// A long, flat box, below the body by the gap.
+static mspring_result put_onto_collider(mspring_network *network, const subject *s) {
+    mspring_collider_def def;
+    const mspring_result result = mspring_collider_def_init(&def, sizeof def);
+    def.kind = MSPRING_COLLIDER_BOX;
+    def.width = 2 * s->columns;
+    def.height = 2;
+    def.x = s->columns / 2;
+    def.y = -1 - s->gap;
+    def.friction = 0.5f;
+    return result == MSPRING_OK ? mspring_network_add_collider(network, &def, NULL) : result;
+}
+
 /// Both start where the one with contact is after it has settled.
 static mspring_result make_players(const subject *s, mspring_simd level, player *without, player *with) {
     mspring_builder *builder = NULL;
@@ -151,6 +166,8 @@ static mspring_result make_players(const subject *s, mspring_simd level, player 
     mspring_builder_destroy(builder);
     if (result == MSPRING_OK)
         result = set_contact(with->network, s);
+    if (result == MSPRING_OK && s->on_collider)
+        result = put_onto_collider(with->network, s);
     for (int i = 0; i < 2 && result == MSPRING_OK && s->rows == 0; i++)
         result = put_into_box(both[i]->network);
     for (uint32_t i = 0; i < s->settling && result == MSPRING_OK; i++)

@@ -10,7 +10,8 @@
 
 #include <massspring/massspring.h>
 
-enum { MAP_PARTICLES = 64, MAP_SPRINGS = 320 };
+/// Of two bodies.
+enum { MAP_PARTICLES = 128, MAP_SPRINGS = 640 };
 
 /// Particles and springs, as they go into a builder.
 typedef struct map_body {

@@ -7,6 +7,8 @@
 
 #include "map/body.h"
 
+#include <massspring/massspring_contact.h>
+
 typedef enum map_family {
     MAP_BLAST,    ///< velocities at random
     MAP_HIT,      ///< one particle is hit
@@ -17,6 +19,7 @@ typedef enum map_family {
     MAP_WRECK,    ///< springs are broken on the way, parts fall asleep
     MAP_FAR,      ///< far from the world's origin, and from the local one
     MAP_SUBSTEPS, ///< the same motion with ever more substeps
+    MAP_MEET,     ///< two bodies collide
     MAP_FAMILIES
 } map_family;
 
@@ -45,8 +48,10 @@ typedef struct map_case {
     bool has_forces, by_hook; ///< constant forces, given before each step or by a hook
     float force_x[MAP_PARTICLES], force_y[MAP_PARTICLES];
     double drift_x, drift_y; ///< m/s: velocity of all pinned particles
-    uint32_t break_at;       ///< step before which springs are broken; 0: none
-    uint32_t break_every;    ///< which of them: every so many-th
+    uint32_t first_count;    ///< particles of the first of two bodies that meet; 0: there is no contact
+    mspring_contact_def contact;
+    uint32_t break_at;    ///< step before which springs are broken; 0: none
+    uint32_t break_every; ///< which of them: every so many-th
 } map_case;
 
 /// Draw a case.

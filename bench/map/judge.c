@@ -8,11 +8,12 @@
 #include <stdio.h>
 
 #include "map/bounce.h"
+#include "map/meet.h"
 
 const char *map_verdict_name(map_verdict verdict) {
-    static const char *const names[MAP_VERDICTS] = {"holds",      "guarded",  "violent", "rested",
-                                                    "not finite", "rejected", "energy",  "momentum",
-                                                    "angular",    "floor",    "bounce",  "substeps"};
+    static const char *const names[MAP_VERDICTS] = {"holds",    "guarded",  "violent",  "rested",  "not finite",
+                                                    "rejected", "energy",   "momentum", "angular", "floor",
+                                                    "bounce",   "substeps", "crossed"};
     return names[verdict];
 }
 
@@ -181,5 +182,7 @@ map_verdict map_judge_step(map_judge *judge, uint32_t substeps) {
         verdict = judge_flights(judge);
     if (verdict == MAP_HOLDS)
         verdict = map_bounce_judge(judge);
+    if (verdict == MAP_HOLDS)
+        verdict = map_meet_judge(judge);
     return verdict;
 }

@@ -22,6 +22,7 @@ typedef enum map_verdict {
     MAP_SUNK,       ///< a particle is below the floor
     MAP_BOUNCED,    ///< a loose particle bounced wrongly
     MAP_WORSE,      ///< more substeps were less accurate
+    MAP_CROSSED,    ///< a body got into another, or too deep
     MAP_VERDICTS
 } map_verdict;
 

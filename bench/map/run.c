@@ -41,6 +41,8 @@ static mspring_result set_up(const map_case *what, mspring_network *network) {
         const mspring_floor_def floor = map_case_floor(what);
         result = mspring_network_set_floor(network, &floor);
     }
+    if (result == MSPRING_OK && what->first_count > 0)
+        result = mspring_network_set_contact(network, &what->contact);
     if (result == MSPRING_OK && what->by_hook) {
         mspring_hook_def hook;
         mspring_hook_def_init(&hook, sizeof hook);

@@ -24,6 +24,9 @@ static void find_components(map_watch *watch) {
         const uint32_t a = root_of(parents, watch->springs[i].a), b = root_of(parents, watch->springs[i].b);
         parents[a > b ? a : b] = a < b ? a : b;
     }
+    if (watch->what->first_count > 0) // each other's push is from within
+        for (uint32_t i = 0; i < watch->count; i++)
+            parents[i] = 0;
     watch->component_count = 0;
     for (uint32_t i = 0; i < watch->count; i++) {
         const uint32_t root = root_of(parents, i);
