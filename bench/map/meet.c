@@ -48,7 +48,7 @@ map_verdict map_meet_judge(map_judge *judge) {
     mspring_contact_info info = {.struct_size = sizeof info};
     if (first == 0)
         return MAP_HOLDS;
-    if (mspring_network_contact_info(watch->network, &info) != MSPRING_OK)
+    if (mspring_network_get_contact_info(watch->network, &info) != MSPRING_OK)
         return MAP_REJECTED;
     if (info.deepest > deepest_share * watch->what->contact.thickness) {
         snprintf(judge->text, sizeof judge->text, "overlap of %.3g m at a thickness of %.3g m", info.deepest,
