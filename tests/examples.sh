@@ -420,6 +420,15 @@ programs() {
     echo 'skipped: 13_rollback, there is no C++ compiler'
   fi
 
+  # A rigid ball of 48 t comes at sqrt(2 g 22 m) = 20.8 m/s, less its damping, and the tower stops it.
+  bending=$folder/19_box2d
+  if [ -x "$bending" ]; then
+    succeed
+    grep -Eq 'the ball came at 20\.[0-9] m/s and goes on at [0-2]\.' "$scratch/out" || complain 'the ball of 19_box2d goes on'
+  else
+    echo 'skipped: 19_box2d, there is no Box2D 2.4'
+  fi
+
   bending=$folder/05_plan
   succeed "$source/examples/data/truss.msn"
   same "$(echo "$line" | tr -s ' ' | cut -d' ' -f1-3)" "truss $(head -n 20 "$source/examples/data/truss.msn" |

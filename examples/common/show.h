@@ -13,7 +13,7 @@ typedef struct show {
     int exit_code;
     bool is_ok; ///< false: something went wrong, and stderr says what
     network_shape shape;
-    film film;
+    struct film film; // C++, too, reads it so
 } show;
 
 /// Read a program's arguments, --out FOLDER or --help, and begin a film of its network. show_end() the show.
