@@ -18,11 +18,6 @@
 /// So many times the way of a substep, for rows are made as far as two points can come towards each other in two.
 #define SUBSTEPS_AHEAD 8.0
 
-/// Points may get faster than they are by this factor before the next look, and go this share of the thickness
-/// besides in a step.
-#define FASTER 1.5
-#define DRIFT 0.05
-
 /// Pairs that may touch within so many substeps are looked at in each of them, and found anew after that.
 #define HOT_SUBSTEPS 8
 
@@ -129,7 +124,11 @@ static void look_at_points(const mspring_network *network, mspringi_pairs *pairs
         moved = d <= moved ? moved : d;
     }
     compare_colliders(pairs, &mean, &speed, &moved);
+    pairs->mean_vx = mean.vx;
+    pairs->mean_vy = mean.vy;
     pairs->speed = sqrt(speed);
+    if (pairs->is_strict && pairs->thrown > pairs->speed)
+        pairs->speed = pairs->thrown;
     pairs->moved = sqrt(moved);
 }
 
@@ -291,7 +290,7 @@ static void activate_below(mspringi_pairs *pairs, mspring_id end) {
     mspringi_active *active = &pairs->active;
     const mspringi_outline *o = &pairs->outline;
     for (uint32_t i = 0; i < pairs->hot_count; ++i) {
-        const mspringi_pair *pair = &pairs->list[pairs->hot[i]];
+        const mspringi_pair *pair = &pairs->list[pairs->hot[i].pair];
         const mspring_id ends[] = {o->a[pair->edge], o->b[pair->edge]};
         if (pair->point < end)
             activate(active, pair->point);
@@ -313,6 +312,13 @@ static void activate_all(mspringi_pairs *pairs) {
     active->own = active->count;
     if (pairs->colliders.count > 0)
         activate_below(pairs, MSPRING_NONE);
+    for (uint32_t i = 0; i < pairs->hot_count; ++i) {
+        mspringi_candidate *c = &pairs->hot[i];
+        const mspringi_pair *pair = &pairs->list[c->pair];
+        c->p = active->number[pair->point];
+        c->a = active->number[pairs->outline.a[pair->edge]];
+        c->b = active->number[pairs->outline.b[pair->edge]];
+    }
 }
 
 // How far a look must answer for.
@@ -352,7 +358,7 @@ static bool make_list(const mspring_network *network, mspringi_pairs *pairs, dou
 // How far a point may come in a substep.
 static double way_of_substep(const mspringi_pairs *pairs) {
     const double h = (double)pairs->h;
-    return FASTER * h * pairs->speed + DRIFT * pairs->thickness * h / pairs->dt;
+    return MSPRINGI_FASTER * h * pairs->speed + MSPRINGI_DRIFT * pairs->thickness * h / pairs->dt;
 }
 
 // For how many substeps the list answers for all that can touch.
@@ -366,14 +372,14 @@ static uint32_t count_valid(const mspringi_pairs *pairs) {
 // Find the pairs that are hot, and the nearest one.
 static void look_at_pairs(mspringi_pairs *pairs) {
     const double most = pairs->thickness + 2.0 * HOT_SUBSTEPS * way_of_substep(pairs) +
-                        4.0 * FASTER * (double)pairs->h * pairs->speed;
+                        4.0 * MSPRINGI_FASTER * (double)pairs->h * pairs->speed;
     pairs->nearest = pairs->reach;
     pairs->hot_count = 0;
     for (uint32_t i = 0; i < pairs->count; ++i) {
         const double distance = distance_of(pairs, pairs->list[i].point, pairs->list[i].edge);
         pairs->nearest = distance >= pairs->nearest ? pairs->nearest : distance;
         if (!(distance > most))
-            pairs->hot[pairs->hot_count++] = i;
+            pairs->hot[pairs->hot_count++].pair = i;
     }
     activate_all(pairs);
 }

@@ -112,13 +112,18 @@ static const mspringi_column members[] = {
     VIEW(active.y),
     VIEW(active.from_vx),
     VIEW(active.from_vy),
+    VIEW(active.old_vx),
+    VIEW(active.old_vy),
     VIEW(active.vx),
     VIEW(active.vy),
     VIEW(active.weight),
     VIEW(active.way_x),
     VIEW(active.way_y),
+    ARRAY(active.is_thrown),
     ARRAY(touches),
     ARRAY(hot),
+    ARRAY(is_seen),
+    ARRAY(border),
     ARRAY(colliders.list),
     ARRAY(colliders.shape),
     VIEW(colliders.x),
@@ -156,18 +161,20 @@ static bool reserve_nodes(mspringi_pairs *made, mspringi_memory *memory, size_t 
     mspringi_active *k = &made->active;
     double **const shape[] = {&o->shape_x, &o->shape_y};
     double **const places[] = {&made->seen_x, &made->seen_y, &made->x, &made->y};
-    double **const motion[] = {&k->x,  &k->y,      &k->from_vx, &k->from_vy, &k->vx,
-                               &k->vy, &k->weight, &k->way_x,   &k->way_y};
+    double **const motion[] = {&k->x,      &k->y,  &k->from_vx, &k->from_vy, &k->old_vx,
+                               &k->old_vy, &k->vx, &k->vy,      &k->weight,  &k->way_x,
+                               &k->way_y};
     made->groups = mspringi_alloc(memory, 2 * nodes, sizeof *made->groups);
     made->stamp = mspringi_alloc(memory, particles, sizeof *made->stamp);
     o->is_known = mspringi_alloc(memory, particles, sizeof *o->is_known);
     k->particles = mspringi_alloc(memory, 2 * nodes, sizeof *k->particles);
-    if (!made->groups || !made->stamp || !o->is_known || !k->particles)
+    k->is_thrown = mspringi_alloc(memory, nodes, sizeof *k->is_thrown);
+    if (!made->groups || !made->stamp || !o->is_known || !k->particles || !k->is_thrown)
         return false;
     made->masks = made->groups + nodes;
     k->number = k->particles + nodes;
     return reserve_doubles(memory, particles, shape, 2) && reserve_doubles(memory, nodes, places, 4) &&
-           reserve_doubles(memory, nodes, motion, 9);
+           reserve_doubles(memory, nodes, motion, 11);
 }
 
 static bool reserve_edges(mspringi_pairs *made, mspringi_memory *memory, size_t nodes, size_t springs) {
@@ -214,7 +221,9 @@ static bool reserve_pairs(mspringi_pairs *made, mspringi_memory *memory, size_t 
     made->list = mspringi_alloc(memory, made->capacity, sizeof *made->list);
     made->hot = mspringi_alloc(memory, made->capacity, sizeof *made->hot);
     made->touches = mspringi_alloc(memory, made->capacity, sizeof *made->touches);
-    return made->list && made->hot && made->touches;
+    made->is_seen = mspringi_alloc(memory, made->capacity, sizeof *made->is_seen);
+    made->border = mspringi_alloc(memory, made->capacity, sizeof *made->border);
+    return made->list && made->hot && made->touches && made->is_seen && made->border;
 }
 
 static void set_def(mspringi_pairs *pairs, const mspring_contact_def *def) {

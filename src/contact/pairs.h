@@ -4,7 +4,8 @@
 ///   pairs.c      the definition, given by the host
 ///   outline.c    which springs and particles are the outline
 ///   near.c       which points are near which edges, and for how many substeps none of them can touch
-///   rows.c       what happens to those that touch in a substep
+///   rows.c       which of them touch in a substep, and how they move on
+///   sweeps.c     the impulses of those that touch
 ///   touching.c   the stage: when to look, and which islands sleep and wake together
 ///   colliders.c  shapes of the host: adding, moving, reading them
 ///   poses.c      where these are in the course of a step, and what they get in it
@@ -48,6 +49,11 @@ typedef struct mspringi_pair {
                                  ///< the edge, once that was asked
 } mspringi_pair;
 
+/// A pair that may touch before the list is looked at again, by active nodes.
+typedef struct mspringi_candidate {
+    uint32_t pair, p, a, b;
+} mspringi_candidate;
+
 /// Edges by cells, in buckets; see near.c.
 typedef struct mspringi_edge_cells {
     uint32_t *first;      ///< [bucket_count + 1]
@@ -63,14 +69,17 @@ typedef struct mspringi_active {
     uint32_t *number;          ///< [nodes] MSPRING_NONE if it is none of them
     double *x, *y;             ///< [particles] at the start of the substep, and of each of its pieces
     double *from_vx, *from_vy; ///< before the substep's forces
+    double *old_vx, *old_vy;   ///< before the piece's contact
     double *vx, *vy, *weight;  ///< inverse mass, 1/kg
     double *way_x, *way_y;     ///< what contact adds to the move
+    uint8_t *is_thrown;        ///< sweeps have changed the velocity much
     uint32_t own, count;       ///< particles, and with the points of colliders, which are behind these
 } mspringi_active;
 
 /// A point that touches an edge, or may do so in this piece of a substep.
 typedef struct mspringi_touch {
     uint32_t p, a, b;        ///< active nodes
+    uint32_t candidate;
     uint32_t collider;       ///< number of the collider that the point or the edge is of, MSPRING_NONE if none is
     double nx, ny;           ///< from the edge to the point, of length 1
     double share_a, share_b; ///< of the edge's nearest place
@@ -131,7 +140,7 @@ struct mspringi_pairs {
     // The list of all pairs that are near.
     mspringi_pair *list; ///< [capacity]
     uint32_t count, capacity;
-    uint32_t *hot; ///< [capacity] those of the list that may touch before it is looked at again
+    mspringi_candidate *hot; ///< [capacity] those of the list that may touch before it is looked at again
     uint32_t hot_count;
     bool is_listed, is_full;
     double reach;            ///< all pairs nearer than this were in the list when it was made, m
@@ -141,6 +150,7 @@ struct mspringi_pairs {
 
     // The last look.
     double *x, *y;        ///< [nodes] where points were
+    double mean_vx, mean_vy;
     double speed;         ///< of any of them beside their mean, at most, m/s
     double moved;         ///< since the list was made, likewise, m
     double nearest;       ///< distance of any pair, as far as the list tells, m
@@ -159,12 +169,15 @@ struct mspringi_pairs {
     bool has_sleepers;      ///< the step began with some: whatever may come to them in it wakes them
     uint32_t since_look;    ///< the last of them, which were quiet
     double room;            ///< that the nearest pair had at the last look, m
+    double thrown;          ///< speed that contact gave where the look did not expect it, m/s
     bool is_missed;         ///< pairs could touch where nothing should
     bool is_strict;         ///< so this time every substep is looked at
 
     mspringi_active active;
     mspringi_touch *touches; ///< [capacity]
-    uint32_t touch_count;
+    uint8_t *is_seen; ///< [capacity] of candidates, while rows are added
+    uint32_t *border; ///< [capacity] candidates that just miss a row
+    uint32_t touch_count, border_count;
     uint32_t touching; ///< pairs that pushed each other in a substep, at most
     double deepest;    ///< overlap, m
 };
@@ -186,6 +199,11 @@ void mspringi_outline_stamp(const mspring_network *network, mspringi_pairs *pair
 
 /* near.c */
 
+/// Points may get faster than they are by this factor before the next look, and go this share of the thickness
+/// besides in a step.
+#define MSPRINGI_FASTER 1.5
+#define MSPRINGI_DRIFT 0.05
+
 /// A place on an edge.
 typedef struct mspringi_nearest {
     double x, y;  ///< from there to the point
@@ -204,6 +222,16 @@ bool mspringi_near_look(const mspring_network *network, mspringi_pairs *pairs);
 void mspringi_rows_note(const mspring_network *network, mspringi_pairs *pairs);
 /// After it: let contact act. Returns whether anything touched, or could have.
 bool mspringi_rows_act(const mspring_network *network, mspringi_pairs *pairs);
+
+/* sweeps.c */
+
+/// How fast a point and its place on an edge part.
+static inline double mspringi_speed_across(const mspringi_touch *t, const double *vx, const double *vy) {
+    return t->nx * (vx[t->p] - t->share_a * vx[t->a] - t->share_b * vx[t->b]) +
+           t->ny * (vy[t->p] - t->share_a * vy[t->a] - t->share_b * vy[t->b]);
+}
+/// Give all rows of a piece of h seconds their impulses. False: some would still get much deeper.
+bool mspringi_rows_sweep(const mspringi_pairs *pairs, double h, uint32_t sweeps);
 
 /* poses.c */
 

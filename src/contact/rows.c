@@ -2,9 +2,9 @@
 /// ids.
 ///
 /// A row is a point and the nearest place on an edge. The gap at the end of the substep, gap + h v, is not to be
-/// negative; what overlaps already is pushed apart slowly, by a velocity. Sums of impulses are clamped, so a later
-/// sweep may take back what an earlier one gave (Catto 2005). Friction acts along the surface at a distance from
-/// the edge, so it turns the edge, too: else angular momentum would be lost.
+/// negative; what overlaps already is pushed apart slowly, by a velocity. A pair has a row if it may touch by the
+/// velocities that it has, or by those that the sweeps give it: what a third body throws at another is looked at
+/// again.
 ///
 /// An impulse J changes the energy by J times the mean of the speeds before the substep's forces and after contact.
 /// So restitution is of the speed before the forces: with the one after them contact would make energy.
@@ -24,11 +24,17 @@
 /// A substep is cut into pieces in which nothing moves further than the thickness; into so many at most.
 #define MOST_PIECES 64
 
-/// Where a collider presses, what gets deeper by this share of the thickness in a piece is swept again, so often at
-/// most: all of it, and then what gets into colliders.
-#define GIVEN_SHARE 1e-3
-#define MOST_PRESSING_SWEEPS 256
-#define MOST_COLLIDER_SWEEPS 64
+/// So many times at most, in all pieces of a substep.
+#define MOST_CUTS 6
+
+/// Rows of what is thrown are added, and all rows swept again, so many times at most.
+#define MOST_ROUNDS 8
+
+/// Further than this many thicknesses nothing may move in a piece as the sweeps have left it.
+#define FURTHEST 1.25
+
+/// Pairs that miss a row by less than this share of the thickness are remembered: small impulses may make it one.
+#define BORDER_SHARE 0.01
 
 /// Edges at a corner that are remembered by bits, at each end.
 #define REMEMBERED 8
@@ -133,11 +139,6 @@ static void add_friction(const mspringi_pairs *pairs, mspringi_touch *t) {
                            k->weight[t->b] * (t->bx * t->bx + t->by * t->by));
 }
 
-static double speed_across(const mspringi_touch *t, const double *vx, const double *vy) {
-    return t->nx * (vx[t->p] - t->share_a * vx[t->a] - t->share_b * vx[t->b]) +
-           t->ny * (vy[t->p] - t->share_a * vy[t->a] - t->share_b * vy[t->b]);
-}
-
 // The speed across that a row is to have at least, when it touches.
 static double wanted(const mspringi_pairs *pairs, const mspringi_touch *t, double restitution, double h) {
     double speed = -t->gap / h;
@@ -145,7 +146,7 @@ static double wanted(const mspringi_pairs *pairs, const mspringi_touch *t, doubl
         speed *= PUSHED_SHARE;
         speed = speed < pairs->push ? speed : pairs->push;
     }
-    const double before = speed_across(t, pairs->active.from_vx, pairs->active.from_vy);
+    const double before = mspringi_speed_across(t, pairs->active.from_vx, pairs->active.from_vy);
     const double bounce = before < -SLOWEST_BOUNCE ? -restitution * before : speed;
     return bounce > speed ? bounce : speed;
 }
@@ -170,152 +171,143 @@ static double resistance_of(const mspringi_active *k, const mspringi_touch *t) {
                          : t->share_a * t->share_a * k->weight[t->a] + t->share_b * t->share_b * k->weight[t->b]);
 }
 
-// The row of a pair in a piece of h seconds, if it may touch there by its own speed; or, if that is too slow for
-// it, by one that other rows may give to it.
-static void make_row(const mspring_network *network, mspringi_pairs *pairs, mspringi_pair *pair, double h,
-                     double given, double *fastest) {
-    const mspringi_outline *o = &pairs->outline;
-    const mspringi_active *k = &pairs->active;
-    const uint32_t p = k->number[pair->point], a = k->number[o->a[pair->edge]], b = k->number[o->b[pair->edge]];
-    const mspringi_nearest at = mspringi_nearest_on(k->x[p], k->y[p], k->x[a], k->y[a], k->x[b], k->y[b]);
-    const double square = at.x * at.x + at.y * at.y, of_a = square_of_speed(k, p, a),
-                 of_b = square_of_speed(k, p, b), speed = sqrt(of_a > of_b ? of_a : of_b);
-    const mspringi_collider *c = pairs->colliders.count > 0 ? collider_of_pair(pairs, pair) : NULL;
-    const double thickness = c ? pairs->thickness + c->radius : pairs->thickness;
-    const double own = thickness + 2.0 * h * speed, reach = given > 0.0 ? thickness + 2.0 * h * given : own;
-    if (!(square < reach * reach) || square == 0.0 || (given > 0.0 && square < own * own))
-        return;
-    if (a != b && (at.share <= 0.0 || at.share >= 1.0) &&
-        is_of_another(network, pairs, pair, at.share <= 0.0 ? 0 : 1))
-        return;
+static double speed_of(const mspringi_active *k, uint32_t p, uint32_t a, uint32_t b) {
+    const double of_a = square_of_speed(k, p, a), of_b = square_of_speed(k, p, b);
+    return sqrt(of_a > of_b ? of_a : of_b);
+}
+
+static void put_row(mspringi_pairs *pairs, uint32_t candidate, const mspringi_collider *collider,
+                    const mspringi_nearest *at, double thickness, double h) {
+    const mspringi_candidate *c = &pairs->hot[candidate];
+    const double distance = sqrt(at->x * at->x + at->y * at->y);
     mspringi_touch *t = &pairs->touches[pairs->touch_count];
-    const double distance = sqrt(square);
-    *t = (mspringi_touch){.p = p,
-                          .a = a,
-                          .b = b,
-                          .nx = at.x / distance,
-                          .ny = at.y / distance,
-                          .share_a = 1.0 - at.share,
-                          .share_b = at.share,
+    *t = (mspringi_touch){.p = c->p,
+                          .a = c->a,
+                          .b = c->b,
+                          .candidate = candidate,
+                          .nx = at->x / distance,
+                          .ny = at->y / distance,
+                          .share_a = 1.0 - at->share,
+                          .share_b = at->share,
                           .gap = distance - thickness,
                           .distance = distance,
-                          .collider = c ? (uint32_t)(c - pairs->colliders.list) : MSPRING_NONE};
-    const double resistance = resistance_of(k, t);
+                          .collider =
+                              collider ? (uint32_t)(collider - pairs->colliders.list) : MSPRING_NONE};
+    const double resistance = resistance_of(&pairs->active, t);
     if (!(resistance > 0.0))
         return;
     t->mass = 1.0 / resistance;
-    t->target = wanted(pairs, t, c ? c->restitution : pairs->restitution, h);
-    if ((c ? c->friction : pairs->friction) > 0.0)
+    t->target = wanted(pairs, t, collider ? collider->restitution : pairs->restitution, h);
+    if ((collider ? collider->friction : pairs->friction) > 0.0)
         add_friction(pairs, t);
-    *fastest = speed > *fastest ? speed : *fastest;
     ++pairs->touch_count;
 }
 
-// What another body may throw at a collider, which does not give way.
-static void make_more_rows(const mspring_network *network, mspringi_pairs *pairs, double h, double fastest) {
-    double slower = 0.0;
-    for (uint32_t i = 0; i < pairs->hot_count; ++i) {
-        mspringi_pair *pair = &pairs->list[pairs->hot[i]];
-        if (mspringi_is_of_collider(pairs, pair->point) ||
-            mspringi_is_of_collider(pairs, pairs->outline.a[pair->edge]))
-            make_row(network, pairs, pair, h, fastest, &slower);
+// The row of a pair in a piece of h seconds, if it may touch there. *fastest: of all that have rows.
+static void make_row(const mspring_network *network, mspringi_pairs *pairs, uint32_t candidate, double h,
+                     double *fastest) {
+    const mspringi_active *k = &pairs->active;
+    const mspringi_candidate *c = &pairs->hot[candidate];
+    const mspringi_nearest at =
+        mspringi_nearest_on(k->x[c->p], k->y[c->p], k->x[c->a], k->y[c->a], k->x[c->b], k->y[c->b]);
+    const double square = at.x * at.x + at.y * at.y, speed = speed_of(k, c->p, c->a, c->b);
+    mspringi_pair *pair = &pairs->list[c->pair];
+    const mspringi_collider *collider = pairs->colliders.count > 0 ? collider_of_pair(pairs, pair) : NULL;
+    const double thickness = collider ? pairs->thickness + collider->radius : pairs->thickness;
+    const double reach = thickness + 2.0 * h * speed, border = reach + BORDER_SHARE * pairs->thickness;
+    if (!(square < border * border) || square == 0.0)
+        return;
+    if (!(square < reach * reach)) {
+        pairs->border[pairs->border_count++] = candidate;
+        return;
     }
+    if (c->a != c->b && (at.share <= 0.0 || at.share >= 1.0) &&
+        is_of_another(network, pairs, pair, at.share <= 0.0 ? 0 : 1))
+        return;
+    const uint32_t before = pairs->touch_count;
+    put_row(pairs, candidate, collider, &at, thickness, h);
+    if (pairs->touch_count > before)
+        *fastest = speed > *fastest ? speed : *fastest;
 }
 
 static double make_rows(const mspring_network *network, mspringi_pairs *pairs, double h) {
     double fastest = 0.0;
-    pairs->touch_count = 0;
+    pairs->touch_count = pairs->border_count = 0;
     for (uint32_t i = 0; i < pairs->hot_count; ++i)
-        make_row(network, pairs, &pairs->list[pairs->hot[i]], h, 0.0, &fastest);
-    if (pairs->colliders.count > 0 && fastest > 0.0)
-        make_more_rows(network, pairs, h, fastest);
+        make_row(network, pairs, i, h, &fastest);
     return fastest;
 }
 
-/* ----------------------------------------------------------------------------------------------------- impulses */
+/* -------------------------------------------------------------------------------------------- what is thrown */
 
-MSPRINGI_ALWAYS_INLINE void push_apart(const mspringi_active *k, mspringi_touch *t, double h) {
-    const double speed = speed_across(t, k->vx, k->vy);
-    if (t->across == 0.0 && t->gap > 0.0 && t->gap + h * speed >= 0.0)
-        return;
-    const double sum = t->across + (t->target - speed) * t->mass, across = sum > 0.0 ? sum : 0.0;
-    const double x = (across - t->across) * t->nx, y = (across - t->across) * t->ny;
-    t->across = across;
-    k->vx[t->p] += k->weight[t->p] * x;
-    k->vy[t->p] += k->weight[t->p] * y;
-    k->vx[t->a] -= t->share_a * k->weight[t->a] * x;
-    k->vy[t->a] -= t->share_a * k->weight[t->a] * y;
-    k->vx[t->b] -= t->share_b * k->weight[t->b] * x;
-    k->vy[t->b] -= t->share_b * k->weight[t->b] * y;
-}
-
-MSPRINGI_ALWAYS_INLINE void rub(const mspringi_pairs *pairs, mspringi_touch *t) {
+// Mark the particles whose velocities the sweeps have changed by so much that pairs beyond the border may have come
+// into reach. Returns whether there are any.
+static bool mark_thrown(const mspringi_pairs *pairs, double h) {
     const mspringi_active *k = &pairs->active;
-    if (t->slide_mass == 0.0 || (t->across == 0.0 && t->along == 0.0))
-        return;
-    const double tx = -t->ny, ty = t->nx;
-    double speed = k->vx[t->p] * tx + k->vy[t->p] * ty + k->vx[t->a] * t->ax + k->vy[t->a] * t->ay +
-                   k->vx[t->b] * t->bx + k->vy[t->b] * t->by,
-           friction = pairs->friction;
-    if (t->collider != MSPRING_NONE) {
-        speed += mspringi_collider_drag(pairs, t);
-        friction = pairs->colliders.list[t->collider].friction;
+    const double least = 0.25 * BORDER_SHARE * pairs->thickness / h;
+    uint8_t any = 0;
+    for (uint32_t i = 0; i < k->own; ++i) {
+        const double x = k->vx[i] - k->old_vx[i], y = k->vy[i] - k->old_vy[i];
+        k->is_thrown[i] = x * x + y * y > least * least;
+        any |= k->is_thrown[i];
     }
-    const double most = friction * t->across, sum = t->along - speed * t->slide_mass;
-    const double along = sum > most ? most : sum < -most ? -most : sum, by = along - t->along;
-    t->along = along;
-    k->vx[t->p] += k->weight[t->p] * by * tx;
-    k->vy[t->p] += k->weight[t->p] * by * ty;
-    k->vx[t->a] += k->weight[t->a] * by * t->ax;
-    k->vy[t->a] += k->weight[t->a] * by * t->ay;
-    k->vx[t->b] += k->weight[t->b] * by * t->bx;
-    k->vy[t->b] += k->weight[t->b] * by * t->by;
-}
-
-// Whether a row would end deeper than it begins by more than rounding.
-static bool gives_way(const mspringi_pairs *pairs, const mspringi_touch *t, double h) {
-    const double speed = speed_across(t, pairs->active.vx, pairs->active.vy);
-    const double end = t->gap + h * speed, begin = t->gap < 0.0 ? t->gap : 0.0;
-    return end < begin - GIVEN_SHARE * pairs->thickness;
-}
-
-/// Rows of a sweep.
-typedef enum swept { SWEPT_ALL, SWEPT_GIVEN, SWEPT_GIVEN_OF_COLLIDERS } swept;
-
-// Returns whether there were any.
-MSPRINGI_ALWAYS_INLINE bool sweep_rows(const mspringi_pairs *pairs, double h, swept rows) {
-    bool any = false;
-    for (uint32_t i = 0; i < pairs->touch_count; ++i) {
-        mspringi_touch *t = &pairs->touches[i];
-        if (rows != SWEPT_ALL &&
-            ((rows == SWEPT_GIVEN_OF_COLLIDERS && t->collider == MSPRING_NONE) || !gives_way(pairs, t, h)))
-            continue;
-        push_apart(&pairs->active, t, h);
-        if (rows == SWEPT_ALL)
-            rub(pairs, t);
-        any = true;
-    }
+    memset(k->is_thrown + k->own, 0, k->count - k->own);
     return any;
 }
 
-// A collider presses a light body against a heavy one as hard as it takes, which the sweeps may not have come to.
-// At last nothing goes into the collider.
-static void press(const mspringi_pairs *pairs, double h) {
-    bool is_touched = false;
-    for (uint32_t i = 0; i < pairs->touch_count && pairs->colliders.count > 0; ++i)
-        is_touched |= pairs->touches[i].collider != MSPRING_NONE && pairs->touches[i].across > 0.0;
-    if (!is_touched)
-        return;
-    for (uint32_t n = 0; n < MOST_PRESSING_SWEEPS && sweep_rows(pairs, h, SWEPT_GIVEN); ++n) {
-    }
-    for (uint32_t n = 0; n < MOST_COLLIDER_SWEEPS && sweep_rows(pairs, h, SWEPT_GIVEN_OF_COLLIDERS); ++n) {
-    }
+static bool is_thrown(const mspringi_pairs *pairs, uint32_t p, uint32_t a, uint32_t b) {
+    const uint8_t *thrown = pairs->active.is_thrown;
+    return thrown[p] | thrown[a] | thrown[b];
 }
 
-static void solve(const mspringi_pairs *pairs, double h) {
-    for (uint32_t sweep = 0; sweep < pairs->def.sweeps; ++sweep)
-        (void)sweep_rows(pairs, h, SWEPT_ALL);
-    press(pairs, h);
+// Add rows of pairs that may touch by the velocities that the sweeps have left. Returns whether any of them does.
+static bool add_rows(const mspring_network *network, mspringi_pairs *pairs, double h, bool any_thrown) {
+    const uint32_t before = pairs->touch_count, border_count = pairs->border_count;
+    double fastest = 0.0;
+    memset(pairs->is_seen, 0, pairs->hot_count);
+    for (uint32_t i = 0; i < before; ++i)
+        pairs->is_seen[pairs->touches[i].candidate] = 1;
+    pairs->border_count = 0;
+    for (uint32_t i = 0; i < border_count; ++i) {
+        pairs->is_seen[pairs->border[i]] = 1;
+        make_row(network, pairs, pairs->border[i], h, &fastest);
+    }
+    for (uint32_t i = 0; i < pairs->hot_count && any_thrown; ++i) {
+        const mspringi_candidate *c = &pairs->hot[i];
+        if (!pairs->is_seen[i] && is_thrown(pairs, c->p, c->a, c->b))
+            make_row(network, pairs, i, h, &fastest);
+    }
+    for (uint32_t i = before; i < pairs->touch_count; ++i) {
+        const mspringi_touch *t = &pairs->touches[i];
+        if (t->gap + h * mspringi_speed_across(t, pairs->active.vx, pairs->active.vy) < 0.0)
+            return true;
+    }
+    return false;
+}
+
+// Whether nothing that touches, and was thrown, would move too far.
+static bool is_short(const mspringi_pairs *pairs, double h) {
+    const double most = FURTHEST * pairs->thickness / h;
+    for (uint32_t i = 0; i < pairs->touch_count; ++i) {
+        const mspringi_touch *t = &pairs->touches[i];
+        if (is_thrown(pairs, t->p, t->a, t->b) && speed_of(&pairs->active, t->p, t->a, t->b) > most)
+            return false;
+    }
+    return true;
+}
+
+// Solve a piece. False: it is too long for what the sweeps have made of it.
+static bool solve(const mspring_network *network, mspringi_pairs *pairs, double h) {
+    for (uint32_t round = 0;; ++round) {
+        const bool holds = mspringi_rows_sweep(pairs, h, round == 0 ? pairs->def.sweeps : 1);
+        const bool any_thrown = mark_thrown(pairs, h);
+        if (!any_thrown && pairs->border_count == 0)
+            return holds;
+        if (round == MOST_ROUNDS)
+            return false;
+        if (!add_rows(network, pairs, h, any_thrown))
+            return holds && (!any_thrown || is_short(pairs, h));
+    }
 }
 
 /* --------------------------------------------------------------------------------------------- the substep */
@@ -332,6 +324,16 @@ static void count_touching(mspringi_pairs *pairs) {
     pairs->touching = count > pairs->touching ? count : pairs->touching;
 }
 
+static void keep_velocities(const mspringi_active *k) {
+    memcpy(k->old_vx, k->vx, k->own * sizeof *k->vx);
+    memcpy(k->old_vy, k->vy, k->own * sizeof *k->vy);
+}
+
+static void restore_velocities(const mspringi_active *k) {
+    memcpy(k->vx, k->old_vx, k->own * sizeof *k->vx);
+    memcpy(k->vy, k->old_vy, k->own * sizeof *k->vy);
+}
+
 // Go along for a piece of h seconds. What contact adds to the move is counted apart.
 static void advance(const mspring_network *network, const mspringi_active *k, double h, bool is_last) {
     for (uint32_t i = 0; i < k->own; ++i) {
@@ -345,16 +347,57 @@ static void advance(const mspring_network *network, const mspringi_active *k, do
     }
 }
 
-static void put_back(const mspring_network *network, const mspringi_active *k) {
+// Returns the largest speed that contact has given beside the outline's mean, m/s.
+static double put_back(const mspring_network *network, const mspringi_pairs *pairs) {
     const mspringi_state *s = &network->state;
+    const mspringi_active *k = &pairs->active;
+    double most = 0.0;
     for (uint32_t i = 0; i < k->own; ++i) {
         const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
         if (k->way_x[i] == 0.0 && k->way_y[i] == 0.0 && k->vx[i] == (double)s->vx[slot] &&
             k->vy[i] == (double)s->vy[slot])
             continue;
+        const double x = k->vx[i] - pairs->mean_vx, y = k->vy[i] - pairs->mean_vy, square = x * x + y * y;
+        most = square > most ? square : most;
         s->vx[slot] = (float)k->vx[i];
         s->vy[slot] = (float)k->vy[i];
         mspringi_move_by(s, slot, (float)k->way_x[i], (float)k->way_y[i]);
+    }
+    return sqrt(most);
+}
+
+// Take pieces of even length, or more of them where that is too long.
+static void take_pieces(const mspring_network *network, mspringi_pairs *pairs, double h, uint32_t pieces) {
+    const mspringi_active *k = &pairs->active;
+    bool is_made = pieces == 1;
+    for (uint32_t left = pieces, cuts = 0; left > 0;) {
+        const double piece = h / left;
+        if (!is_made)
+            (void)make_rows(network, pairs, piece);
+        is_made = false;
+        keep_velocities(k);
+        if (!solve(network, pairs, piece) && cuts < MOST_CUTS && left < MOST_PIECES) {
+            restore_velocities(k);
+            left = 2 * left < MOST_PIECES ? 2 * left : MOST_PIECES;
+            ++cuts;
+            continue;
+        }
+        count_touching(pairs);
+        advance(network, k, piece, left == 1);
+        h -= piece;
+        --left;
+    }
+}
+
+// What contact has made faster than the last look allows for: the list is to be renewed. If pairs may be missing from
+// it in this substep already, the step is repeated with a look for such speeds.
+static void count_thrown(mspringi_pairs *pairs, double speed) {
+    const double spare = MSPRINGI_DRIFT * pairs->thickness / pairs->dt;
+    if (speed > MSPRINGI_FASTER * pairs->speed + spare)
+        pairs->valid = 1;
+    if (speed > 3.0 * pairs->speed + 0.25 * pairs->thickness / (double)pairs->h) {
+        pairs->is_missed = true;
+        pairs->thrown = speed > pairs->thrown ? speed : pairs->thrown;
     }
 }
 
@@ -365,14 +408,7 @@ bool mspringi_rows_act(const mspring_network *network, mspringi_pairs *pairs) {
     if (pairs->touch_count == 0)
         return false;
     const double thicknesses = h * fastest / pairs->thickness;
-    const uint32_t pieces = thicknesses < MOST_PIECES ? (uint32_t)thicknesses + 1 : MOST_PIECES;
-    for (uint32_t piece = 0; piece < pieces; ++piece) {
-        if (pieces > 1)
-            (void)make_rows(network, pairs, h / pieces);
-        solve(pairs, h / pieces);
-        count_touching(pairs);
-        advance(network, &pairs->active, h / pieces, piece + 1 == pieces);
-    }
-    put_back(network, &pairs->active);
+    take_pieces(network, pairs, h, thicknesses < MOST_PIECES ? (uint32_t)thicknesses + 1 : MOST_PIECES);
+    count_thrown(pairs, put_back(network, pairs));
     return true;
 }

@@ -128,7 +128,7 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
     pairs->is_missed = pairs->is_strict = pairs->is_full = false;
     pairs->taken = pairs->touching = 0;
     pairs->since_look = 0;
-    pairs->deepest = 0.0;
+    pairs->deepest = pairs->thrown = 0.0;
     pairs->has_sleepers = network->sleep.sleeping > 0;
     mspringi_colliders_begin(network, pairs, attempt->substeps);
     if (mspringi_near_look(network, pairs))

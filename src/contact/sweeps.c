@@ -1,0 +1,121 @@
+/// Impulses between what touches in a piece of a substep, one row after the other.
+///
+/// Sums of impulses are clamped, so a later sweep may take back what an earlier one gave (Catto 2005). Friction acts
+/// along the surface at a distance from the edge, so it turns the edge, too: else angular momentum would be lost.
+///
+/// A heavy body presses a light one against another as hard as it takes, which a few sweeps may not come to. So rows
+/// that would get deeper are swept on until none does. Where bodies lie on each other there are none.
+#include "base/cpu.h"
+#include "contact/pairs.h"
+
+/// An overlap of this share of the thickness is given. Beyond it, and in colliders, which do not give way, nothing may
+/// get deeper faster than by a share of the thickness in a substep.
+#define GIVEN_SHARE 0.05
+#define GIVEN_SPEED 1e-3
+
+/// So many sweeps at most, fewer of many rows: each row may be looked at so often in the mean; and of rows of
+/// colliders alone, at last.
+#define MOST_GIVEN_SWEEPS 256
+#define LEAST_GIVEN_SWEEPS 16
+#define MOST_LOOKS 16384
+#define MOST_COLLIDER_SWEEPS 64
+
+/// A piece is too long if a row would still end deeper than this share of the thickness.
+#define MOST_SHARE 0.1
+
+MSPRINGI_ALWAYS_INLINE void push_apart(const mspringi_active *k, mspringi_touch *t, double h) {
+    const double speed = mspringi_speed_across(t, k->vx, k->vy);
+    if (t->across == 0.0 && t->gap > 0.0 && t->gap + h * speed >= 0.0)
+        return;
+    const double sum = t->across + (t->target - speed) * t->mass, across = sum > 0.0 ? sum : 0.0;
+    const double x = (across - t->across) * t->nx, y = (across - t->across) * t->ny;
+    t->across = across;
+    k->vx[t->p] += k->weight[t->p] * x;
+    k->vy[t->p] += k->weight[t->p] * y;
+    k->vx[t->a] -= t->share_a * k->weight[t->a] * x;
+    k->vy[t->a] -= t->share_a * k->weight[t->a] * y;
+    k->vx[t->b] -= t->share_b * k->weight[t->b] * x;
+    k->vy[t->b] -= t->share_b * k->weight[t->b] * y;
+}
+
+MSPRINGI_ALWAYS_INLINE void rub(const mspringi_pairs *pairs, mspringi_touch *t) {
+    const mspringi_active *k = &pairs->active;
+    if (t->slide_mass == 0.0 || (t->across == 0.0 && t->along == 0.0))
+        return;
+    const double tx = -t->ny, ty = t->nx;
+    double speed = k->vx[t->p] * tx + k->vy[t->p] * ty + k->vx[t->a] * t->ax + k->vy[t->a] * t->ay +
+                   k->vx[t->b] * t->bx + k->vy[t->b] * t->by,
+           friction = pairs->friction;
+    if (t->collider != MSPRING_NONE) {
+        speed += mspringi_collider_drag(pairs, t);
+        friction = pairs->colliders.list[t->collider].friction;
+    }
+    const double most = friction * t->across, sum = t->along - speed * t->slide_mass;
+    const double along = sum > most ? most : sum < -most ? -most : sum, by = along - t->along;
+    t->along = along;
+    k->vx[t->p] += k->weight[t->p] * by * tx;
+    k->vy[t->p] += k->weight[t->p] * by * ty;
+    k->vx[t->a] += k->weight[t->a] * by * t->ax;
+    k->vy[t->a] += k->weight[t->a] * by * t->ay;
+    k->vx[t->b] += k->weight[t->b] * by * t->bx;
+    k->vy[t->b] += k->weight[t->b] * by * t->by;
+}
+
+/// What rows may still do in a piece when they have been swept.
+typedef struct allowance {
+    double h, speed; ///< s; m/s that a row may close at where it is too deep
+    double deepest;  ///< m
+} allowance;
+
+static allowance allow(const mspringi_pairs *pairs, double h, double share) {
+    return (allowance){h, GIVEN_SPEED * pairs->thickness / (double)pairs->h, share * pairs->thickness};
+}
+
+// Whether a row would end too deep, and deeper than it begins.
+MSPRINGI_ALWAYS_INLINE bool gives_way(const mspringi_pairs *pairs, const mspringi_touch *t, const allowance *most) {
+    const double speed = mspringi_speed_across(t, pairs->active.vx, pairs->active.vy),
+                 end = t->gap + most->h * (speed + most->speed);
+    return end < (t->gap < 0.0 ? t->gap : 0.0) && end < -most->deepest;
+}
+
+// Returns whether any row gave way.
+static bool sweep_given(const mspringi_pairs *pairs, double h, bool of_colliders) {
+    const allowance of_bodies = allow(pairs, h, GIVEN_SHARE), of_others = allow(pairs, h, 0.0);
+    bool any = false;
+    for (uint32_t i = 0; i < pairs->touch_count; ++i) {
+        mspringi_touch *t = &pairs->touches[i];
+        const bool is_of_collider = t->collider != MSPRING_NONE;
+        if ((of_colliders && !is_of_collider) || !gives_way(pairs, t, is_of_collider ? &of_others : &of_bodies))
+            continue;
+        push_apart(&pairs->active, t, h);
+        any = true;
+    }
+    return any;
+}
+
+// Sweep what gives way until nothing does. False: it takes too long.
+static bool press(const mspringi_pairs *pairs, double h) {
+    const uint32_t by_looks = LEAST_GIVEN_SWEEPS + MOST_LOOKS / (pairs->touch_count + 1);
+    const uint32_t most = by_looks < MOST_GIVEN_SWEEPS ? by_looks : MOST_GIVEN_SWEEPS;
+    for (uint32_t n = 0; n < most; ++n)
+        if (!sweep_given(pairs, h, false))
+            return true;
+    for (uint32_t n = 0; n < MOST_COLLIDER_SWEEPS && sweep_given(pairs, h, true); ++n) {
+    }
+    return false;
+}
+
+bool mspringi_rows_sweep(const mspringi_pairs *pairs, double h, uint32_t sweeps) {
+    for (uint32_t n = 0; n < sweeps; ++n)
+        for (uint32_t i = 0; i < pairs->touch_count; ++i) {
+            push_apart(&pairs->active, &pairs->touches[i], h);
+            rub(pairs, &pairs->touches[i]);
+        }
+    if (press(pairs, h))
+        return true;
+    const allowance most = allow(pairs, h, MOST_SHARE);
+    for (uint32_t i = 0; i < pairs->touch_count; ++i)
+        if (gives_way(pairs, &pairs->touches[i], &most))
+            return false;
+    return true;
+}
