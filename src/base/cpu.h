@@ -16,6 +16,13 @@ mspring_simd mspringi_cpu_choose(mspring_simd wanted);
 /// The calling thread's floating-point control word, as a step must find it again.
 typedef uint64_t mspringi_fp_state;
 
+/// Ask for memory that is read soon.
+#if defined(__GNUC__)
+#define MSPRINGI_PREFETCH(address) __builtin_prefetch(address)
+#else
+#define MSPRINGI_PREFETCH(address) ((void)(address))
+#endif
+
 /// Keeps a function a function: the compiler must not move its arithmetic to before mspringi_fp_enter() or to after
 /// mspringi_fp_leave().
 #if defined(_MSC_VER)

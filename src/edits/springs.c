@@ -25,6 +25,15 @@ static inline float *in_plane(const plane *from, mspringi_place place) {
     return &from->values[place + (size_t)(from->planes - 1) * (place & ~(mspringi_place)(MSPRINGI_WIDTH - 1))];
 }
 
+// Springs whose values are fetched before they are looked at: those of the next blocks, as steps leave none of them
+// in the near caches.
+#define AHEAD 256
+
+static inline void fetch(const plane *from, mspringi_place place) {
+    if (place < from->end)
+        MSPRINGI_PREFETCH(in_plane(from, place));
+}
+
 // The thresholds of all springs, or NULL.
 static float *thresholds_of(const mspring_network *network, mspring_property property) {
     const mspringi_strain *strain = &network->strain;
@@ -64,6 +73,8 @@ static inline uint32_t skip_equal(const mspringi_place *places, plane known, con
                                   uint32_t i, uint32_t count) {
     while (i < count && places[i] < known.end) {
         const float value = mspringi_kept_value(values[i * stride]);
+        if (count - i > AHEAD)
+            fetch(&known, places[i + AHEAD]);
         if (*in_plane(&known, places[i]) != value || value == 0.0f)
             break;
         ++i;
@@ -217,7 +228,19 @@ typedef struct lattice_setter {
     const float *mass; ///< that relative springs go by
     double rate;
     bool is_damping, has_relative;
+    float mass_a, mass_b; ///< of the relative spring that was set last
+    double reduced_mass;
 } lattice_setter;
+
+// Most springs are between masses as the one before.
+static inline double reduced_mass_of(lattice_setter *with, float a, float b) {
+    if (a != with->mass_a || b != with->mass_b) {
+        with->reduced_mass = mspringi_reduced_mass((double)a, (double)b);
+        with->mass_a = a;
+        with->mass_b = b;
+    }
+    return with->reduced_mass;
+}
 
 static lattice_setter lattice_setter_of(const mspring_network *network, mspring_property property) {
     return (lattice_setter){.records = plane_of(network, property),
@@ -227,30 +250,35 @@ static lattice_setter lattice_setter_of(const mspring_network *network, mspring_
                             .has_relative = network->fractions.values != NULL};
 }
 
-// Set stiffness or damping of a spring that is live, in a lattice. False: it had that.
-static inline bool set_in_lattice(mspring_network *network, const lattice_setter *with, mspring_id spring,
-                                  mspringi_place place, float value) {
+// Stiffness or damping in force of a spring in a lattice that gets this value.
+static inline float in_force(const mspring_network *network, lattice_setter *with, mspringi_place place,
+                             float value) {
     const mspringi_topology *t = &network->topology;
-    float *record = in_plane(&with->records, place), in_force = value;
-    bool is_relative = with->has_relative && mspringi_spring_is_relative(network, spring);
-    if (!is_relative && *record == value)
-        return false;
-    if (is_relative) {
-        mspringi_relative fractions = mspringi_fractions_of(&network->fractions, spring);
-        float *had = with->is_damping ? &fractions.damping : &fractions.stiffness;
+    uint32_t base, tip;
+    mspringi_lattice_ends(t, place, &base, &tip);
+    const double reduced_mass =
+        reduced_mass_of(with, with->mass[t->particle_of_slot[base]], with->mass[t->particle_of_slot[tip]]);
+    return with->is_damping ? mspringi_derived_damping(value, reduced_mass, with->rate)
+                            : mspringi_derived_stiffness(value, reduced_mass, with->rate);
+}
+
+// Set stiffness or damping of a spring that is live, in a lattice. False: it had that.
+static inline bool set_in_lattice(mspring_network *network, lattice_setter *with, mspring_id spring,
+                                  mspringi_place place, float value) {
+    float *record = in_plane(&with->records, place), force = value;
+    if (with->has_relative && mspringi_spring_is_relative(network, spring)) {
+        mspringi_relative *fractions = mspringi_fractions_at(&network->fractions, spring);
+        float *had = with->is_damping ? &fractions->damping : &fractions->stiffness;
         if (*had == value)
             return false;
+        MSPRINGI_ASSERT(!network->fractions.of_spring);
         *had = value;
-        mspringi_fractions_set(&network->fractions, spring, fractions);
-        uint32_t base, tip;
-        mspringi_lattice_ends(t, place, &base, &tip);
-        const double reduced_mass = mspringi_reduced_mass((double)with->mass[t->particle_of_slot[base]],
-                                                          (double)with->mass[t->particle_of_slot[tip]]);
-        in_force = with->is_damping ? mspringi_derived_damping(value, reduced_mass, with->rate)
-                                    : mspringi_derived_stiffness(value, reduced_mass, with->rate);
+        force = in_force(network, with, place, value);
+    } else if (*record == value) {
+        return false;
     }
     mspringi_alike_part(network, place);
-    *record = in_force;
+    *record = force;
     mspringi_changed(network, MSPRINGI_CHANGED_PLACE, place);
     return true;
 }
@@ -271,6 +299,49 @@ static inline bool set_in_plane(mspring_network *network, const plane *known, ms
     return true;
 }
 
+// Set stiffness or damping of springs from index i on, as long as they are live and lie in a lattice. Nobody but
+// the fingerprint is told of them one by one. Returns the index of the first that is left.
+MSPRINGI_ALWAYS_INLINE uint32_t set_run(mspring_network *network, const mspringi_selection *at,
+                                        const mspringi_values *values, lattice_setter *with, uint32_t i,
+                                        bool has_relative, uint64_t *traces) {
+    const mspringi_place *places = network->topology.place_of_spring;
+    const mspringi_alike alike = network->alike;
+    const plane records = with->records;
+    const uint32_t count = at->count;
+    uint64_t sum = 0, changes = 0;
+    for (; i < count; ++i) {
+        const mspring_id spring = mspringi_selected(at, i);
+        const mspringi_place place = places[spring];
+        const uint32_t block = place / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH);
+        float force = mspringi_kept_value(values->first[i * values->stride]);
+        const float value = force;
+        if (count - i > AHEAD)
+            fetch(&records, places[mspringi_selected(at, i + AHEAD)]);
+        if (place >= records.end)
+            break;
+        float *record = in_plane(&records, place);
+        if (has_relative && mspringi_spring_is_relative(network, spring)) {
+            mspringi_relative *fractions = mspringi_fractions_at(&network->fractions, spring);
+            float *had = with->is_damping ? &fractions->damping : &fractions->stiffness;
+            if (*had == value)
+                continue;
+            MSPRINGI_ASSERT(!network->fractions.of_spring);
+            *had = value;
+            force = in_force(network, with, place, value);
+        } else if (*record == value) {
+            continue;
+        }
+        if (alike.of_block[block] != block || alike.readers[block] > 0)
+            mspringi_alike_part_block(network, block);
+        *record = force;
+        ++changes;
+        sum += trace(i, spring, value);
+    }
+    network->alike.changes += changes;
+    *traces += sum;
+    return i;
+}
+
 // Set those that differ, from index i on.
 static MSPRINGI_NOINLINE void set_others(mspring_network *network, const mspringi_selection *at,
                                          const mspringi_values *values, uint32_t i) {
@@ -278,13 +349,21 @@ static MSPRINGI_NOINLINE void set_others(mspring_network *network, const mspring
     const mspring_property property = values->property;
     const bool may_sleep = network->sleep.count > 0;
     const bool is_part = property == MSPRING_STIFFNESS || property == MSPRING_DAMPING;
-    const lattice_setter lattice = lattice_setter_of(network, property);
+    lattice_setter lattice = lattice_setter_of(network, property);
+    const bool runs = is_part && !may_sleep && !network->job && !network->kept;
     uint64_t traces = 0;
     for (; i < at->count; ++i) {
+        if (runs)
+            i = lattice.has_relative ? set_run(network, at, values, &lattice, i, true, &traces)
+                                     : set_run(network, at, values, &lattice, i, false, &traces);
+        if (i == at->count)
+            break;
         const mspring_id spring = mspringi_selected(at, i);
         const mspringi_place place = places[spring];
         const float value = mspringi_value_of(values, i);
         bool is_new;
+        if (at->count - i > AHEAD)
+            fetch(&lattice.records, places[mspringi_selected(at, i + AHEAD)]);
         if (place < lattice.records.end && is_part && mspringi_place_is_live(network, place)) {
             is_new = set_in_lattice(network, &lattice, spring, place, value);
         } else if (place < lattice.records.end && !is_part && mspringi_spring_exists(network, spring)) {

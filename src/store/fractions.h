@@ -31,4 +31,9 @@ static inline void mspringi_fractions_set(const mspringi_fractions *fractions, m
         fractions->values[spring] = value;
 }
 
+/// Where a spring's fractions are: its own after mspringi_fractions_separate(), else not to be written.
+static inline mspringi_relative *mspringi_fractions_at(const mspringi_fractions *fractions, mspring_id spring) {
+    return &fractions->values[fractions->of_spring ? fractions->of_spring[spring] : spring];
+}
+
 #endif

@@ -4,17 +4,13 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/cpu.h"
+
 /// Numbers in a block of the matrix.
 #define BLOCK_VALUES ((size_t)MSPRINGI_RIGID * MSPRINGI_RIGID)
 
 /// Joints that memory is asked for ahead: their factors lie scattered over the rows' records.
 #define AHEAD 12
-
-#if defined(__GNUC__)
-#define MSPRINGI_PREFETCH(address) __builtin_prefetch(address)
-#else
-#define MSPRINGI_PREFETCH(address) ((void)(address))
-#endif
 
 /* --------------------------------------------------------------------------------------------------- envelope */
 
