@@ -6,7 +6,8 @@
 ///     m (v - v*) = h F,    F = k (t - p* - h (v - v*)) + c (u - v)
 ///     F = (k (t - p*) + c (u - v*)) / (1 + (h c + h^2 k) / m)
 ///
-/// t and u being place and velocity of the target at the end of the substep. It is the soft constraint of Box2D
+/// t and u being place and velocity of the target at the end of the substep. Of several that hold one particle k, c
+/// and forces add up. It is the soft constraint of Box2D
 /// (Catto, "Soft Constraints", 2011), with softness and bias written out. The particle is as if its mass were m + h
 /// c + h^2 k, so what is stable without the grip is stable with it. A force that is bounded is a smaller one,
 /// towards the same place: no particle overshoots by it that would not without.
@@ -67,21 +68,98 @@ static void collide(const mspring_network *network, uint32_t slot, mspringi_body
     floor->has_impulse |= body->vx != vx || body->vy != vy;
 }
 
-static void pull(mspring_network *network, mspringi_grip *grip, uint32_t slot) {
-    const mspringi_grips *grips = &network->grips;
+typedef struct mspringi_force {
+    double x, y;
+} mspringi_force;
+
+// Grips that hold one particle, and what it does but for them. They act together: one after another, each would
+// undo what stiffer ones did, and give energy.
+typedef struct mspringi_hold {
+    mspringi_grip *grips[MSPRING_MAX_GRIPS];
+    mspringi_aim aims[MSPRING_MAX_GRIPS];
+    mspringi_force forces[MSPRING_MAX_GRIPS];
+    bool is_bounded[MSPRING_MAX_GRIPS]; // its force is the most that it can exert
+    uint32_t count;
+    double x, y, vx, vy, by, h;
+} mspringi_hold;
+
+// What a grip resists velocity with, over a substep.
+static double resistance(const mspringi_hold *hold, uint32_t i) {
+    const mspringi_grip *grip = hold->grips[i];
+    return hold->is_bounded[i] ? 0.0
+                               : hold->h * ((double)grip->damping + hold->h * (double)grip->stiffness) * hold->by;
+}
+
+// The force of one grip at the end of the substep, out of what all would exert now: by others, so that none cancels
+// where grips are very stiff.
+static mspringi_force force_of(const mspringi_hold *hold, uint32_t which, const mspringi_force *now, double share) {
+    mspringi_force others = {0.0, 0.0};
+    double firmness = 0.0;
+    for (uint32_t i = 0; i < hold->count; ++i) {
+        if (i == which)
+            continue;
+        others.x += now[i].x;
+        others.y += now[i].y;
+        firmness += resistance(hold, i);
+    }
+    const double own = resistance(hold, which);
+    return (mspringi_force){share * (now[which].x + (firmness * now[which].x - own * others.x)),
+                            share * (now[which].y + (firmness * now[which].y - own * others.y))};
+}
+
+// All forces at the end of the substep. Returns their sum.
+static mspringi_force solve(mspringi_hold *hold) {
+    mspringi_force now[MSPRING_MAX_GRIPS], sum = {0.0, 0.0};
+    double firmness = 0.0;
+    for (uint32_t i = 0; i < hold->count; ++i) {
+        const double k = (double)hold->grips[i]->stiffness, c = (double)hold->grips[i]->damping;
+        const mspringi_aim *to = &hold->aims[i];
+        now[i] = hold->forces[i];
+        if (!hold->is_bounded[i])
+            now[i] = (mspringi_force){k * (to->x - hold->x) + c * (to->vx - hold->vx),
+                                      k * (to->y - hold->y) + c * (to->vy - hold->vy)};
+        sum.x += now[i].x;
+        sum.y += now[i].y;
+        firmness += resistance(hold, i);
+    }
+    const double share = 1.0 / (1.0 + firmness);
+    for (uint32_t i = 0; i < hold->count; ++i)
+        if (!hold->is_bounded[i])
+            hold->forces[i] = force_of(hold, i, now, share);
+    return (mspringi_force){share * sum.x, share * sum.y};
+}
+
+// Forces within their bounds: each pass finds more that are at theirs, so there is an end.
+static mspringi_force solve_bounded(mspringi_hold *hold) {
+    for (;;) {
+        const mspringi_force sum = solve(hold);
+        bool any = false;
+        for (uint32_t i = 0; i < hold->count; ++i)
+            if (!hold->is_bounded[i])
+                any |= hold->is_bounded[i] =
+                    mspringi_grip_bound(hold->grips[i], &hold->forces[i].x, &hold->forces[i].y);
+        if (!any)
+            return sum;
+    }
+}
+
+static void pull(mspring_network *network, mspringi_hold *hold, uint32_t slot) {
     const mspringi_state *s = &network->state;
-    const mspringi_aim to = mspringi_grip_aim(network, grip, grips->begin + grips->share);
-    const double h = (double)grips->h, k = (double)grip->stiffness, c = (double)grip->damping;
-    const double by = (double)mspringi_free_mass(network)[slot], share = 1.0 / (1.0 + h * (c + h * k) * by);
-    const double x = mspringi_x_of(s, slot), y = mspringi_y_of(s, slot);
-    const double vx = (double)s->vx[slot], vy = (double)s->vy[slot];
-    double fx = share * (k * (to.x - x) + c * (to.vx - vx)), fy = share * (k * (to.y - y) + c * (to.vy - vy));
-    (void)mspringi_grip_bound(grip, &fx, &fy);
-    mspringi_body body = {.start_x = x, .start_y = y, .vx = vx + h * by * fx, .vy = vy + h * by * fy};
-    body.x = x + h * (h * by * fx);
-    body.y = y + h * (h * by * fy);
-    grip->sum_x += h * fx;
-    grip->sum_y += h * fy;
+    const double h = hold->h = (double)network->grips.h;
+    hold->by = (double)mspringi_free_mass(network)[slot];
+    hold->x = mspringi_x_of(s, slot);
+    hold->y = mspringi_y_of(s, slot);
+    hold->vx = (double)s->vx[slot];
+    hold->vy = (double)s->vy[slot];
+    const mspringi_force force = solve_bounded(hold);
+    const double vx = h * hold->by * force.x, vy = h * hold->by * force.y;
+    mspringi_body body = {.start_x = hold->x, .start_y = hold->y, .vx = hold->vx + vx, .vy = hold->vy + vy};
+    body.x = hold->x + h * vx;
+    body.y = hold->y + h * vy;
+    for (uint32_t i = 0; i < hold->count; ++i) {
+        hold->grips[i]->sum_x += h * hold->forces[i].x;
+        hold->grips[i]->sum_y += h * hold->forces[i].y;
+    }
     if (network->floor)
         collide(network, slot, &body, h);
     s->vx[slot] = (float)body.vx;
@@ -90,15 +168,34 @@ static void pull(mspring_network *network, mspringi_grip *grip, uint32_t slot) {
     mspringi_set_y(s, slot, body.y);
 }
 
+// All that hold the particle of one, from that one on; none if an earlier one holds it, too.
+static void gather(mspring_network *network, uint32_t first, mspringi_hold *hold) {
+    mspringi_grips *grips = &network->grips;
+    hold->count = 0;
+    for (uint32_t i = 0; i < MSPRING_MAX_GRIPS; ++i) {
+        mspringi_grip *grip = &grips->list[i];
+        if (grip->particle != grips->list[first].particle)
+            continue;
+        if (i < first)
+            return;
+        hold->grips[hold->count] = grip;
+        hold->aims[hold->count] = mspringi_grip_aim(network, grip, grips->begin + grips->share);
+        hold->is_bounded[hold->count++] = false;
+    }
+}
+
 static void after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
     const mspringi_solver *solver = attempt->solver;
     uint32_t slot;
     (void)substep;
     for (uint32_t i = 0; i < MSPRING_MAX_GRIPS; ++i) {
-        mspringi_grip *grip = &network->grips.list[i];
-        if (mspringi_grip_acts(network, grip, &slot) &&
-            !(solver->ops->holds_grips && !solver->ops->is_alone(network, solver->object, slot)))
-            pull(network, grip, slot);
+        if (mspringi_grip_acts(network, &network->grips.list[i], &slot) &&
+            !(solver->ops->holds_grips && !solver->ops->is_alone(network, solver->object, slot))) {
+            mspringi_hold hold;
+            gather(network, i, &hold);
+            if (hold.count > 0)
+                pull(network, &hold, slot);
+        }
     }
 }
 

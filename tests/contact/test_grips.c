@@ -355,6 +355,53 @@ static void many_grips_hold_at_once(void **state) {
     }
 }
 
+// Grips of all stiffnesses on one particle, at rest at first: kinetic energy and that of their springs never rise.
+static void several_grips_on_one_particle_give_no_energy(void **state) {
+    (void)state;
+    uint64_t seed = 41;
+    for (uint32_t round = 0; round < 600; round++) {
+        mspring_builder *builder = support_builder();
+        const mspring_id p = support_particle(builder, 0, 0, 1);
+        const mspring_network_def def = support_def(0, 1 + round % 4);
+        mspring_network *network = support_network(builder, &def);
+        use_solver(network, solvers[round % 3], integrators[round / 3 % 3], 1 + round % 4);
+        double x[4], y[4], stiffness[4], start = 0;
+        const uint32_t count = 2 + round % 3;
+        for (uint32_t i = 0; i < count; i++) {
+            x[i] = support_random_between(&seed, -1, 1);
+            y[i] = support_random_between(&seed, -1, 1);
+            stiffness[i] = (double)(float)pow(10, support_random_between(&seed, -2, 12));
+            const double damping = i % 2 ? 0 : pow(10, support_random_between(&seed, -2, 12));
+            hold(network, p, x[i], y[i], stiffness[i], damping);
+            start += 0.5 * stiffness[i] * (x[i] * x[i] + y[i] * y[i]);
+        }
+        for (uint32_t step = 0; step < 60; step++) {
+            double at_x, at_y, energy;
+            support_steps(network, 1, support_random_between(&seed, 1e-3, 0.2));
+            check_ok(mspring_network_get_positions(network, p, 1, &at_x, &at_y, 1));
+            check_ok(mspring_network_energy(network, &energy, NULL, NULL));
+            for (uint32_t i = 0; i < count; i++)
+                energy += 0.5 * stiffness[i] * ((x[i] - at_x) * (x[i] - at_x) + (y[i] - at_y) * (y[i] - at_y));
+            // Positions are floats: 6e-8 of the way, with the force on it.
+            assert_true(energy <= start * (1 + 1e-6));
+        }
+        // What they report is the change of its momentum.
+        float vx, vy, was_x, was_y;
+        check_ok(mspring_network_get_velocities(network, p, 1, &was_x, &was_y, 1));
+        support_steps(network, 1, DT);
+        check_ok(mspring_network_get_velocities(network, p, 1, &vx, &vy, 1));
+        double off_x = (double)was_x - (double)vx, off_y = (double)was_y - (double)vy, scale = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            double px, py;
+            check_ok(mspring_network_get_grip_impulse(network, i, &px, &py));
+            off_x += px, off_y += py;
+            scale += hypot(px, py);
+        }
+        assert_true(hypot(off_x, off_y) <= 1e-6 * (scale + hypot((double)was_x, (double)was_y)));
+        mspring_network_destroy(network);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(particle_is_a_damped_oscillator),
@@ -367,6 +414,7 @@ int main(void) {
         cmocka_unit_test(explicit_border_stays_where_it_is),
         cmocka_unit_test(floor_stops_what_a_grip_pulls),
         cmocka_unit_test(many_grips_hold_at_once),
+        cmocka_unit_test(several_grips_on_one_particle_give_no_energy),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
