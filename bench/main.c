@@ -60,6 +60,9 @@ int main(int count, char **arguments) {
     case BENCH_CHECK:
         ok = bench_run_check(&options);
         break;
+    case BENCH_SPARE:
+        ok = bench_run_spare(&options);
+        break;
     case BENCH_LIST:
         bench_catalogue_print();
         break;

@@ -30,6 +30,7 @@ void bench_options_help(void) {
          "  --frames             how long the worst step takes next to the median\n"
          "  --alarms             whether the guard refuses any of a million ordinary steps\n"
          "  --guard              what the guard costs, and what a step costs beyond its substeps\n"
+         "  --spare              what a floor, spare particles and an empty hook cost a step\n"
          "  --check              compare positions with those of the naive step; measures nothing\n"
          "  --list               show the scenes\n"
          "  --help               show this\n"
@@ -57,7 +58,7 @@ void bench_options_help(void) {
          "  --out FOLDER         of --map: draw its pictures into this folder\n"
          "\n"
          "The map\n"
-         "  --family NAME        of --map: only the cases of this family\n"
+         "  --family NAME        of --map: only the cases of this family; of --spare: only this row\n"
          "  --shard I/N          of --map: every N-th part of the cases, the I-th of them, to run N at once\n"
          "  --map-case CASE      run one case, as a fault names it (family:number), and print its energies");
 }
@@ -128,11 +129,14 @@ static bool is_switch(const char *option, bench_options *out) {
     static const struct {
         const char *name;
         bench_mode mode;
-    } modes[] = {{"--features", BENCH_FEATURES}, {"--contact", BENCH_CONTACT}, {"--workers", BENCH_WORKERS},
-                 {"--session", BENCH_SESSION},   {"--linear", BENCH_LINEAR},   {"--solvers", BENCH_SOLVERS},
-                 {"--roofline", BENCH_ROOFLINE}, {"--map", BENCH_MAP},         {"--frames", BENCH_FRAMES},
-                 {"--alarms", BENCH_ALARMS},     {"--guard", BENCH_GUARD},     {"--check", BENCH_CHECK},
-                 {"--list", BENCH_LIST},         {"--help", BENCH_HELP},       {"-h", BENCH_HELP}};
+    } modes[] = {{"--features", BENCH_FEATURES}, {"--contact", BENCH_CONTACT},
+                 {"--workers", BENCH_WORKERS},   {"--session", BENCH_SESSION},
+                 {"--linear", BENCH_LINEAR},     {"--solvers", BENCH_SOLVERS},
+                 {"--roofline", BENCH_ROOFLINE}, {"--map", BENCH_MAP},
+                 {"--frames", BENCH_FRAMES},     {"--alarms", BENCH_ALARMS},
+                 {"--guard", BENCH_GUARD},       {"--check", BENCH_CHECK},
+                 {"--spare", BENCH_SPARE},       {"--list", BENCH_LIST},
+                 {"--help", BENCH_HELP},         {"-h", BENCH_HELP}};
     for (size_t i = 0; i < sizeof modes / sizeof *modes; i++) {
         if (strcmp(option, modes[i].name) == 0) {
             out->mode = modes[i].mode;

@@ -26,6 +26,7 @@ typedef enum bench_mode {
     BENCH_ALARMS,
     BENCH_GUARD,
     BENCH_CHECK,
+    BENCH_SPARE,
     BENCH_LIST,
     BENCH_HELP
 } bench_mode;
@@ -37,9 +38,9 @@ typedef struct bench_options {
     bench_format format;
     const char *scenes[BENCH_MAX_SCENES + 1]; ///< ended by NULL
     int scene_count;
-    const char *network;    ///< file, or NULL
-    const char *out;        ///< folder for the pictures of the map, or NULL
-    const char *family;     ///< of the map's cases, or NULL: all, and the networks at the extremes
+    const char *network; ///< file, or NULL
+    const char *out;     ///< folder for the pictures of the map, or NULL
+    const char *family; ///< of the map's cases, or NULL: all, and the networks at the extremes; or a row of --spare
     const char *map_case;   ///< one case, as family:number
     uint32_t shard, shards; ///< of the map's cases: 1 of 1
     bench_scene_settings settings;

@@ -8,8 +8,8 @@
 
 #define DEFAULT_ITERATIONS 8
 
-/// Most multiply-adds that factoring the coarse matrix may take, for each slot: about as long as one product with A
-/// takes.
+/// Most multiply-adds that factoring the coarse matrix may take, for each slot but spare ones: about as long as one
+/// product with A takes.
 #define COARSE_COST_PER_SLOT 20.0
 
 /// Most that it may take at all, a few seconds.
@@ -240,7 +240,8 @@ static mspring_result choose_tiles(making *m) {
 // to factor.
 static mspring_result cut_tiles(making *m) {
     mspringi_tiles *tiles = &m->made->tiles;
-    const double most = COARSE_COST_PER_SLOT * (double)mspringi_slot_count(m->network);
+    const mspringi_topology *t = &m->network->topology;
+    const double most = COARSE_COST_PER_SLOT * MSPRINGI_WIDTH * (double)(t->block_count - t->spare_blocks);
     const uint32_t size = tiles->cells.size;
     bool is_done;
     mspring_result result = mspringi_tiles_run(&m->tiling, &is_done);
