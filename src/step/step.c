@@ -51,10 +51,12 @@ static void run_substeps(mspring_network *network, const mspringi_attempt *attem
 }
 
 void mspringi_drop_stale_lows(const mspring_network *network) {
-    const mspringi_state *s = &network->state;
-    for (size_t slot = 0; slot < mspringi_used_slots(network); ++slot) {
-        s->low_x[slot] = mspringi_low_of(s->x[slot], s->low_x[slot]);
-        s->low_y[slot] = mspringi_low_of(s->y[slot], s->low_y[slot]);
+    const size_t slots = mspringi_used_slots(network);
+    const float *restrict x = network->state.x, *restrict y = network->state.y;
+    float *restrict low_x = network->state.low_x, *restrict low_y = network->state.low_y;
+    for (size_t slot = 0; slot < slots; ++slot) {
+        low_x[slot] = mspringi_low_of(x[slot], low_x[slot]);
+        low_y[slot] = mspringi_low_of(y[slot], low_y[slot]);
     }
 }
 
