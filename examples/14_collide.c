@@ -44,17 +44,27 @@ int main(int count, char **arguments) {
     mspring_contact_def_init(&contact, sizeof contact);
     contact.friction = 0.4f;
     result = result ? result : mspring_network_set_contact(network, &contact);
+    result = result ? result : mspring_network_reserve_contact_events(network, 1024);
     const float vx = 6, vy = -25; // m/s
     result = result ? result : mspring_network_set_velocities(network, COLUMNS * ROWS, BLOCK * BLOCK, &vx, &vy, 0);
     show shown;
     show_begin(&shown, count, arguments, "14_collide", "A block falls onto a beam.", network, 0.15);
     mspring_contact_info info = {.struct_size = sizeof info};
+    mspring_contact_event event = {.struct_size = sizeof event}, hardest = {.impulse = 0};
     double deepest = 0;
+    uint32_t began = 0;
     for (int step = 0; !result && step < STEPS; step++, show_step(&shown, network)) {
         result = mspring_network_step(network, dt);
         result = result ? result : mspring_network_get_contact_info(network, &info);
         deepest = info.deepest > deepest ? info.deepest : deepest;
+        for (uint32_t read = 1; !result && read > 0;) {
+            result = mspring_network_read_contact_events(network, &event, 1, &read, NULL);
+            began += read > 0 && event.kind == MSPRING_CONTACT_BEGAN;
+            hardest = read > 0 && event.impulse > hardest.impulse ? event : hardest;
+        }
     }
+    printf("%u contacts began, the hardest at (%.1f, %.1f) with %.0f N s\n", (unsigned)began, hardest.x, hardest.y,
+           hardest.impulse);
     printf("the bodies keep %.2f m apart, less %.4f m at most\n", 0.5, deepest);
     return show_end(&shown, result, builder, network);
 }

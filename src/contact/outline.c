@@ -237,22 +237,32 @@ static void judge_anew(const mspring_network *network, mspringi_outline *o) {
         judge_around(network, o, mspringi_edits_link(edits, n));
 }
 
+// Who asks which body a particle is of: contact that leaves bodies alone with themselves, and events.
+static void follow_bodies(const mspring_network *network, mspringi_pairs *pairs) {
+    if (pairs->outline.are_bodies_found || (pairs->touches_itself && pairs->meetings.capacity == 0))
+        return;
+    find_bodies(network, pairs->outline.body);
+    pairs->outline.are_bodies_found = true;
+}
+
 void mspringi_outline_follow(const mspring_network *network, mspringi_pairs *pairs) {
     mspringi_outline *o = &pairs->outline;
     const mspringi_edits *edits = &network->edits;
     const uint32_t nodes = pairs->particles + pairs->colliders.point_count;
-    if (o->is_found && o->links == edits->links && o->growth == edits->growth && !pairs->colliders.are_new)
+    if (o->is_found && o->links == edits->links && o->growth == edits->growth && !pairs->colliders.are_new) {
+        follow_bodies(network, pairs);
         return;
+    }
     judge_anew(network, o);
     list_edges(network, o, nodes);
     list_sides(pairs);
     list_points(o, nodes);
-    if (!pairs->touches_itself)
-        find_bodies(network, o->body);
+    o->are_bodies_found = false;
     memset(pairs->stamp, 0, pairs->particles * sizeof *pairs->stamp);
     o->is_found = true;
     o->links = edits->links;
     o->growth = edits->growth;
     pairs->colliders.are_new = false;
     pairs->is_listed = pairs->is_fresh = false;
+    follow_bodies(network, pairs);
 }

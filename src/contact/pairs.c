@@ -124,6 +124,8 @@ static const mspringi_column members[] = {
     ARRAY(hot),
     ARRAY(is_seen),
     ARRAY(border),
+    ARRAY(meetings.list),
+    ARRAY(meetings.ring),
     ARRAY(colliders.list),
     ARRAY(colliders.shape),
     VIEW(colliders.x),
@@ -161,9 +163,8 @@ static bool reserve_nodes(mspringi_pairs *made, mspringi_memory *memory, size_t 
     mspringi_active *k = &made->active;
     double **const shape[] = {&o->shape_x, &o->shape_y};
     double **const places[] = {&made->seen_x, &made->seen_y, &made->x, &made->y};
-    double **const motion[] = {&k->x,      &k->y,  &k->from_vx, &k->from_vy, &k->old_vx,
-                               &k->old_vy, &k->vx, &k->vy,      &k->weight,  &k->way_x,
-                               &k->way_y};
+    double **const motion[] = {&k->x,  &k->y,  &k->from_vx, &k->from_vy, &k->old_vx, &k->old_vy,
+                               &k->vx, &k->vy, &k->weight,  &k->way_x,   &k->way_y};
     made->groups = mspringi_alloc(memory, 2 * nodes, sizeof *made->groups);
     made->stamp = mspringi_alloc(memory, particles, sizeof *made->stamp);
     o->is_known = mspringi_alloc(memory, particles, sizeof *o->is_known);
@@ -263,8 +264,16 @@ static void take_over(mspringi_pairs *made, const mspringi_pairs *had, size_t sp
     }
     c->is_placed = false;
     c->are_new = true;
+    made->meetings = had->meetings;
     made->touching = had->touching;
     made->deepest = had->deepest;
+}
+
+// Another has the arrays that do not depend on how much room there is.
+static void hand_over(mspringi_pairs *pairs) {
+    pairs->colliders.list = NULL;
+    pairs->meetings.list = NULL;
+    pairs->meetings.ring = NULL;
 }
 
 // With room for so many points of colliders; had: what is to go on, or NULL. NULL if there is no memory.
@@ -295,7 +304,7 @@ static mspringi_pairs *make(mspring_network *network, const mspring_contact_def 
     if (ok)
         return made;
     if (had)
-        made->colliders.list = NULL; // it is still that of the other
+        hand_over(made); // they are still those of the other
     destroy(made, memory);
     return NULL;
 }
@@ -305,7 +314,7 @@ bool mspringi_pairs_widen(mspring_network *network, uint32_t points) {
     mspringi_pairs *made = make(network, &had->def, points, had);
     if (!made)
         return false;
-    had->colliders.list = NULL;
+    hand_over(had);
     destroy(had, &network->memory);
     network->pairs = made;
     return true;

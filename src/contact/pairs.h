@@ -7,6 +7,7 @@
 ///   rows.c       which of them touch in a substep, and how they move on
 ///   sweeps.c     the impulses of those that touch
 ///   touching.c   the stage: when to look, and which islands sleep and wake together
+///   meetings.c   contacts that begin and end, as events for the host
 ///   colliders.c  shapes of the host: adding, moving, reading them
 ///   poses.c      where these are in the course of a step, and what they get in it
 ///
@@ -38,6 +39,7 @@ typedef struct mspringi_outline {
     uint32_t *body;            ///< [nodes] the lowest of the same body, unless bodies touch themselves
     uint32_t edge_count, point_count;
     bool is_found;
+    bool are_bodies_found;  ///< body is right
     uint64_t links, growth; ///< edits that it has seen
 } mspringi_outline;
 
@@ -78,7 +80,7 @@ typedef struct mspringi_active {
 
 /// A point that touches an edge, or may do so in this piece of a substep.
 typedef struct mspringi_touch {
-    uint32_t p, a, b;        ///< active nodes
+    uint32_t p, a, b; ///< active nodes
     uint32_t candidate;
     uint32_t collider;       ///< number of the collider that the point or the edge is of, MSPRING_NONE if none is
     double nx, ny;           ///< from the edge to the point, of length 1
@@ -127,6 +129,33 @@ typedef struct mspringi_colliders {
     uint64_t reported;         ///< the step that the impulses are of
 } mspringi_colliders;
 
+/// What two had at a place, and where; world coordinates.
+typedef struct mspringi_meeting_place {
+    mspring_id a, b; ///< ends of the edge; MSPRING_NONE: a collider's
+    double x, y, nx, ny;
+} mspringi_meeting_place;
+
+/// A contact of a particle with another body or a collider, or of a collider's corners with a body.
+typedef struct mspringi_meeting {
+    mspring_id point;                 ///< MSPRING_NONE: the corners
+    mspring_id other;                 ///< lowest particle of the other body, MSPRING_NONE: a collider
+    mspring_id collider;              ///< its id, MSPRING_NONE: none
+    bool is_new;                      ///< it began in this step
+    double largest;                   ///< impulse of a row in a piece of this step, N s
+    double impulse, friction;         ///< of this step, sums of sizes, N s
+    mspringi_meeting_place now, last; ///< of the largest; of the last step that had one
+} mspringi_meeting;
+
+/// All that go on, in the order of point, collider and other, and the events that the host has not read: a ring.
+typedef struct mspringi_meetings {
+    mspringi_meeting *list;      ///< [capacity]
+    mspring_contact_event *ring; ///< [capacity]
+    uint32_t capacity, count, first, waiting;
+    uint32_t refused, most_refused; ///< rows that had no room in a piece; in any piece of the step
+    uint64_t lost;
+    bool is_known; ///< else what rests on each other has begun before
+} mspringi_meetings;
+
 struct mspringi_pairs {
     mspring_contact_def def;
     double thickness, friction, restitution, push;
@@ -136,6 +165,7 @@ struct mspringi_pairs {
     mspringi_outline outline;
     mspringi_edge_cells cells;
     mspringi_colliders colliders;
+    mspringi_meetings meetings;
 
     // The list of all pairs that are near.
     mspringi_pair *list; ///< [capacity]
@@ -149,7 +179,7 @@ struct mspringi_pairs {
     uint32_t stamp_of;
 
     // The last look.
-    double *x, *y;        ///< [nodes] where points were
+    double *x, *y; ///< [nodes] where points were
     double mean_vx, mean_vy;
     double speed;         ///< of any of them beside their mean, at most, m/s
     double moved;         ///< since the list was made, likewise, m
@@ -175,8 +205,8 @@ struct mspringi_pairs {
 
     mspringi_active active;
     mspringi_touch *touches; ///< [capacity]
-    uint8_t *is_seen; ///< [capacity] of candidates, while rows are added
-    uint32_t *border; ///< [capacity] candidates that just miss a row
+    uint8_t *is_seen;        ///< [capacity] of candidates, while rows are added
+    uint32_t *border;        ///< [capacity] candidates that just miss a row
     uint32_t touch_count, border_count;
     uint32_t touching; ///< pairs that pushed each other in a substep, at most
     double deepest;    ///< overlap, m
@@ -232,6 +262,25 @@ static inline double mspringi_speed_across(const mspringi_touch *t, const double
 }
 /// Give all rows of a piece of h seconds their impulses. False: some would still get much deeper.
 bool mspringi_rows_sweep(const mspringi_pairs *pairs, double h, uint32_t sweeps);
+
+/* touching.c */
+
+/// Whether a pair rests on each other, or may do so after so many metres.
+bool mspringi_pairs_rest(const mspring_network *network, const mspringi_pairs *pairs, const mspringi_pair *pair,
+                         double way);
+
+/* meetings.c */
+
+/// An attempt at a step begins: forget what another one has found.
+void mspringi_meetings_begin(const mspring_network *network, mspringi_pairs *pairs);
+void mspringi_meetings_forget_step(mspringi_pairs *pairs);
+/// Count what a row has given, at the beginning of a piece of a substep.
+void mspringi_meetings_begin_piece(mspringi_pairs *pairs);
+void mspringi_meetings_push(const mspring_network *network, mspringi_pairs *pairs, const mspringi_touch *touch);
+/// The step is taken: queue its events.
+void mspringi_meetings_end(const mspring_network *network, mspringi_pairs *pairs);
+/// The state is another: drop events, and take what rests on each other for begun.
+void mspringi_meetings_forget(mspringi_pairs *pairs);
 
 /* poses.c */
 

@@ -191,8 +191,7 @@ static void put_row(mspringi_pairs *pairs, uint32_t candidate, const mspringi_co
                           .share_b = at->share,
                           .gap = distance - thickness,
                           .distance = distance,
-                          .collider =
-                              collider ? (uint32_t)(collider - pairs->colliders.list) : MSPRING_NONE};
+                          .collider = collider ? (uint32_t)(collider - pairs->colliders.list) : MSPRING_NONE};
     const double resistance = resistance_of(&pairs->active, t);
     if (!(resistance > 0.0))
         return;
@@ -312,8 +311,12 @@ static bool solve(const mspring_network *network, mspringi_pairs *pairs, double 
 
 /* --------------------------------------------------------------------------------------------- the substep */
 
-static void count_touching(mspringi_pairs *pairs) {
+static void count_touching(const mspring_network *network, mspringi_pairs *pairs) {
     uint32_t count = 0;
+    for (uint32_t i = 0; i < pairs->touch_count && pairs->meetings.capacity > 0; ++i)
+        if (pairs->touches[i].across > 0.0)
+            mspringi_meetings_push(network, pairs, &pairs->touches[i]);
+    mspringi_meetings_begin_piece(pairs);
     for (uint32_t i = 0; i < pairs->touch_count; ++i) {
         const mspringi_touch *t = &pairs->touches[i];
         if (t->collider != MSPRING_NONE)
@@ -382,15 +385,15 @@ static void take_pieces(const mspring_network *network, mspringi_pairs *pairs, d
             ++cuts;
             continue;
         }
-        count_touching(pairs);
+        count_touching(network, pairs);
         advance(network, k, piece, left == 1);
         h -= piece;
         --left;
     }
 }
 
-// What contact has made faster than the last look allows for: the list is to be renewed. If pairs may be missing from
-// it in this substep already, the step is repeated with a look for such speeds.
+// What contact has made faster than the last look allows for: the list is to be renewed. If pairs may be missing
+// from it in this substep already, the step is repeated with a look for such speeds.
 static void count_thrown(mspringi_pairs *pairs, double speed) {
     const double spare = MSPRINGI_DRIFT * pairs->thickness / pairs->dt;
     if (speed > MSPRINGI_FASTER * pairs->speed + spare)

@@ -1,15 +1,16 @@
 /// Impulses between what touches in a piece of a substep, one row after the other.
 ///
-/// Sums of impulses are clamped, so a later sweep may take back what an earlier one gave (Catto 2005). Friction acts
-/// along the surface at a distance from the edge, so it turns the edge, too: else angular momentum would be lost.
+/// Sums of impulses are clamped, so a later sweep may take back what an earlier one gave (Catto 2005). Friction
+/// acts along the surface at a distance from the edge, so it turns the edge, too: else angular momentum would be
+/// lost.
 ///
-/// A heavy body presses a light one against another as hard as it takes, which a few sweeps may not come to. So rows
-/// that would get deeper are swept on until none does. Where bodies lie on each other there are none.
+/// A heavy body presses a light one against another as hard as it takes, which a few sweeps may not come to. So
+/// rows that would get deeper are swept on until none does. Where bodies lie on each other there are none.
 #include "base/cpu.h"
 #include "contact/pairs.h"
 
-/// An overlap of this share of the thickness is given. Beyond it, and in colliders, which do not give way, nothing may
-/// get deeper faster than by a share of the thickness in a substep.
+/// An overlap of this share of the thickness is given. Beyond it, and in colliders, which do not give way, nothing
+/// may get deeper faster than by a share of the thickness in a substep.
 #define GIVEN_SHARE 0.05
 #define GIVEN_SPEED 1e-3
 

@@ -46,9 +46,8 @@ static node_place place_of(const mspring_network *network, const mspringi_pairs 
     return (node_place){mspringi_x_of(s, slot), mspringi_y_of(s, slot)};
 }
 
-// Whether a pair rests on each other, or may do so by the end of the step.
-static bool is_touching(const mspring_network *network, const mspringi_pairs *pairs, const mspringi_pair *pair,
-                        double way) {
+bool mspringi_pairs_rest(const mspring_network *network, const mspringi_pairs *pairs, const mspringi_pair *pair,
+                         double way) {
     const mspringi_outline *o = &pairs->outline;
     const node_place p = place_of(network, pairs, pair->point), a = place_of(network, pairs, o->a[pair->edge]),
                      b = place_of(network, pairs, o->b[pair->edge]);
@@ -87,7 +86,7 @@ static void wake_touched(mspring_network *network, const mspringi_pairs *pairs) 
         for (uint32_t i = 0; i < pairs->count; ++i) {
             const pair_sides s = sides_of(network, pairs, &pairs->list[i]);
             if (!s.are_two || (s.still[0] < 0.0) == (s.still[1] < 0.0) ||
-                !is_touching(network, pairs, &pairs->list[i], 2.0 * pairs->dt * pairs->speed))
+                !mspringi_pairs_rest(network, pairs, &pairs->list[i], 2.0 * pairs->dt * pairs->speed))
                 continue;
             mspringi_sleep_rouse(network, s.island[s.still[0] < 0.0 ? 0 : 1]);
             again = true;
@@ -107,7 +106,7 @@ static void share_stillness(mspring_network *network, const mspringi_pairs *pair
         for (uint32_t i = 0; i < pairs->count; ++i) {
             const pair_sides s = sides_of(network, pairs, &pairs->list[i]);
             if (!s.are_two || s.still[0] == s.still[1] || s.still[0] < 0.0 || s.still[1] < 0.0 ||
-                !is_touching(network, pairs, &pairs->list[i], 0.0))
+                !mspringi_pairs_rest(network, pairs, &pairs->list[i], 0.0))
                 continue;
             const double least = s.still[0] < s.still[1] ? s.still[0] : s.still[1];
             for (int k = 0; k < 2; ++k)
@@ -133,6 +132,7 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
     mspringi_colliders_begin(network, pairs, attempt->substeps);
     if (mspringi_near_look(network, pairs))
         wake_touched(network, pairs);
+    mspringi_meetings_begin(network, pairs);
 }
 
 static bool is_quiet(const mspring_network *network, const mspringi_attempt *attempt) {
@@ -220,6 +220,7 @@ static void take_back(mspring_network *network) {
     pairs->is_fresh = false;
     pairs->taken = pairs->since_look = 0;
     mspringi_colliders_forget(pairs);
+    mspringi_meetings_forget_step(pairs);
     if (pairs->is_strict)
         (void)mspringi_near_look(network, pairs);
 }
@@ -230,6 +231,7 @@ static void after_step(mspring_network *network, double dt) {
     pairs->is_fresh &= !(network->outcome.flags & MSPRING_STEP_PUT_BACK);
     mspringi_colliders_place(network, pairs, pairs->colliders.substeps);
     share_stillness(network, pairs);
+    mspringi_meetings_end(network, pairs);
     mspringi_colliders_end(network, pairs);
 }
 

@@ -60,6 +60,7 @@ static void shape_load(mspring_network *network, const uint8_t *from, size_t siz
     mspringi_outline *o = &network->pairs->outline;
     double x, y;
     network->pairs->colliders.reported = UINT64_MAX; // colliders got nothing in a step of another run
+    mspringi_meetings_forget(network->pairs);
     if (size == 0)
         return;
     from = read_place(from, &x, &y);

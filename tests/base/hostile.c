@@ -123,6 +123,18 @@ static mspring_result get_collider(arguments *a, mspring_id id) {
     return mspring_network_get_collider(a->network, id, &def);
 }
 
+static mspring_result reserve_contact_events(arguments *a, mspring_id id) {
+    (void)id;
+    return mspring_network_reserve_contact_events(a->network, 100);
+}
+
+static mspring_result read_contact_events(arguments *a, mspring_id id) {
+    mspring_contact_event event = {.struct_size = sizeof event};
+    uint32_t count;
+    (void)id;
+    return mspring_network_read_contact_events(a->network, &event, 1, &count, NULL);
+}
+
 static mspring_result get_collider_impulse(arguments *a, mspring_id id) {
     double x, y, angular;
     return mspring_network_get_collider_impulse(a->network, id, &x, &y, &angular);
@@ -497,6 +509,8 @@ static void add_hook(arguments *a) {
       mspring_network_get_grip(a->network, a->id, a->out[0]))                                                      \
     X(mspring_network_get_grip_impulse, "nI01", make_grip(a),                                                      \
       mspring_network_get_grip_impulse(a->network, a->id, a->out[0], a->out[1]))                                   \
+    X(mspring_network_reserve_contact_events, "N", NOTHING, with_collider(a, reserve_contact_events))              \
+    X(mspring_network_read_contact_events, "N", NOTHING, with_collider(a, read_contact_events))                    \
     X(mspring_collider_def_init, "Z0", a->size = sizeof(mspring_collider_def),                                     \
       mspring_collider_def_init(a->out[0], a->size))                                                               \
     X(mspring_network_add_collider, "N", NOTHING, with_collider(a, add_collider))                                  \

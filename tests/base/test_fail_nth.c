@@ -267,6 +267,10 @@ static mspring_result add_colliders(life *l) {
     return result;
 }
 
+static mspring_result reserve_contact_events(life *l) {
+    return mspring_network_reserve_contact_events(l->network, 50);
+}
+
 static mspring_result drop_contact(life *l) {
     return mspring_network_set_contact(l->network, NULL);
 }
@@ -352,6 +356,7 @@ static const struct {
     {"step", step},
     {"no fallback", drop_fallback},
     {"contact", set_contact},
+    {"contact events", reserve_contact_events},
     {"colliders", add_colliders},
     {"step", step},
     {"compact", compact},

@@ -24,7 +24,7 @@ static double log_between(uint64_t *seed, double low, double high) {
 typedef struct scene {
     bodies *b;
     uint32_t first[MOST_BODIES + 1], count; ///< bodies
-    double speed, span; ///< of the fastest; way that it is followed for
+    double speed, span;                     ///< of the fastest; way that it is followed for
 } scene;
 
 /* ------------------------------------------------------------------------------------------------------ scenes */
@@ -221,8 +221,8 @@ static void check_trials(make_scene *make, uint32_t first, uint32_t count, doubl
     if (getenv("CONTACT_REPORT"))
         printf("%u trials to %g m/s, e %g: met %u, %u deeper than half the thickness, deepest %.3g, energy %.2g, "
                "momentum %.2g\n",
-               (unsigned)count, fastest, (double)restitution, (unsigned)met, (unsigned)deep, most.deepest, most.gain,
-               most.momentum);
+               (unsigned)count, fastest, (double)restitution, (unsigned)met, (unsigned)deep, most.deepest,
+               most.gain, most.momentum);
     assert_true(met > count / 2);
     assert_true(deep <= 1 + count / 100);
     assert_true(most.gain <= gain);

@@ -2,6 +2,7 @@
 /// Bodies that meet: contact between bodies, colliders of the host, and grips.
 ///
 ///     contact     network_set_contact, _get_contact, _set_contact_groups, _get_contact_info; contact_def_init
+///     events      network_reserve_contact_events, _read_contact_events
 ///     colliders   network_add_collider, _remove_collider, _move_collider, _place_collider, _get_collider,
 ///                 _get_collider_impulse; collider_def_init
 ///     grips       network_add_grip, _remove_grip, _set_grip, _move_grip, _get_grip, _get_grip_impulse; grip_def_init
@@ -100,6 +101,57 @@ typedef struct mspring_contact_info {
 /// @threads shared   @allocates never   @errors ARGUMENT, STRUCT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_contact_info(
     const mspring_network *network, mspring_contact_info *info);
+
+/* -------------------------------------------------------------------------------------------------------- events */
+
+/// Kind of a contact event.
+typedef enum mspring_contact_event_kind {
+    MSPRING_CONTACT_BEGAN = 0,                   ///< an impulse acted where there was no contact before
+    MSPRING_CONTACT_ENDED = 1,                   ///< they have parted
+    MSPRING_CONTACT_EVENT_INT = MSPRING_ENUM_INT ///< no value
+} mspring_contact_event_kind;
+
+/// A contact that began or ended in a step: of a particle with another body, of a particle with a collider, or of a
+/// collider's corners with a body. With MSPRING_CONTACT_SELF the other body may be the particle's own.
+/// Set struct_size first.
+typedef struct mspring_contact_event {
+    uint32_t struct_size;
+    mspring_contact_event_kind kind;
+    mspring_id point;          ///< the particle; MSPRING_NONE: corners of the collider
+    mspring_id a, b;           ///< ends of the spring that it touches, a <= b; both are a particle without springs;
+                               ///< MSPRING_NONE: the collider's sides
+    mspring_id collider;       ///< MSPRING_NONE: none
+    double x, y;               ///< where, on the spring or the collider's surface, m, world coordinates
+    double normal_x, normal_y; ///< of length 1, from the spring or the sides to the particle or the corner; 0, 0 if
+                               ///< a loaded contact ends without an impulse since
+    double impulse;            ///< across, of the step, sum of sizes, N s; 0 if kind is MSPRING_CONTACT_ENDED
+    double friction;           ///< along, likewise
+} mspring_contact_event;
+
+/// Reserve room for contact events, which are recorded from then on.
+/// A contact goes on while its particle slides from spring to spring of the same body. It ends after a step without an
+/// impulse, if they are further apart than 1.05 of the thickness. Bodies that sleep stay in contact. The floor has no
+/// contact events.
+///
+/// Snapshots hold none. After a load all that is nearer than 1.05 of the thickness counts as begun, and events that
+/// were not read are dropped. Clones have contacts and events. mspring_network_set_contact() ends the recording.
+/// @param capacity  events that may wait to be read, and contacts that are followed at a time, at most 0x1000000; 0:
+///                  record none. Events that were not read yet are dropped.
+/// @threads exclusive   @allocates yes; 200 bytes for each   @since 0.2
+/// @errors ARGUMENT (also without contact), MEMORY, BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_reserve_contact_events(
+    mspring_network *network, uint32_t capacity);
+
+/// Read and remove the oldest contact events.
+/// Those of a step come by rising particles, corners last: the order is the same on every machine. Contacts that go
+/// on come before new ones where there is no room for all, and of new ones those of the first substep.
+/// @param events    [capacity], struct_size set in each; may be NULL if capacity is 0
+/// @param count     receives how many were read
+/// @param lost      receives how many had no room since it was reserved, and in each step the most contacts at a
+///                  time that were not followed; may be NULL
+/// @threads exclusive   @allocates never   @since 0.2   @errors ARGUMENT (also without contact), STRUCT, BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_read_contact_events(
+    mspring_network *network, mspring_contact_event *events, uint32_t capacity, uint32_t *count, uint64_t *lost);
 
 /* ----------------------------------------------------------------------------------------------------- colliders */
 
