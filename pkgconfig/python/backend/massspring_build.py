@@ -1,0 +1,142 @@
+"""Builds the wheel: PEP 517, without setuptools, so that nothing has to be fetched.
+
+CMake builds the shared library, modules.py writes what follows from the headers, and both go into the wheel with the
+package. Environment: MASSSPRING_LIBRARY names a shared library to use instead of building one, CMAKE_ARGS has further
+options of CMake.
+
+SPDX-License-Identifier: MIT
+"""
+import base64
+import hashlib
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tempfile
+import zipfile
+from pathlib import Path
+
+PACKAGE = Path(__file__).resolve().parent.parent
+SOURCE = PACKAGE.parent.parent
+LIBRARY_NAMES = {"win32": "massspring.dll", "darwin": "libmassspring.dylib"}
+LIBRARY = LIBRARY_NAMES.get(sys.platform, "libmassspring.so")
+CMAKE_OPTIONS = ["-DCMAKE_BUILD_TYPE=Release", "-DMASSSPRING_TESTS=OFF", "-DMASSSPRING_EXAMPLES=OFF",
+                 "-DMASSSPRING_BENCH=OFF", "-DMASSSPRING_INSTALL=OFF"]
+METADATA = """Metadata-Version: 2.1
+Name: massspring
+Version: {version}
+Summary: Simulation of two-dimensional mass-spring-damper networks
+License: MIT
+Classifier: License :: OSI Approved :: MIT License
+Classifier: Programming Language :: Python :: 3
+Classifier: Programming Language :: C
+Classifier: Topic :: Scientific/Engineering :: Physics
+Classifier: Typing :: Typed
+Requires-Python: >=3.8
+Requires-Dist: numpy>=1.17
+Requires-Dist: cffi>=1.12
+Provides-Extra: plot
+Requires-Dist: matplotlib; extra == "plot"
+Provides-Extra: table
+Requires-Dist: pandas; extra == "table"
+Description-Content-Type: text/markdown
+
+{readme}"""
+
+
+def version():
+    text = (SOURCE / "include/massspring/version.h").read_text(encoding="utf-8")
+    return ".".join(re.search(rf"MSPRING_VERSION_{part} (\d+)", text).group(1) for part in ("MAJOR", "MINOR", "PATCH"))
+
+
+def isolated(*arguments):
+    """Run this Python as it is without pip's isolation, so that it sees the packages that are installed."""
+    return [sys.executable, "-I", *arguments]
+
+
+def get_requires_for_build_wheel(config_settings=None):
+    missing = []
+    if subprocess.run(isolated("-c", "import cffi, pycparser"), stderr=subprocess.DEVNULL, check=False).returncode:
+        missing.append("cffi")
+    if not shutil.which("cmake") and not os.environ.get("MASSSPRING_LIBRARY"):
+        missing.append("cmake")
+    return missing
+
+
+def write_metadata(folder):
+    info = Path(folder) / f"massspring-{version()}.dist-info"
+    info.mkdir(parents=True)
+    readme = (PACKAGE / "README.md").read_text(encoding="utf-8")
+    (info / "METADATA").write_text(METADATA.format(version=version(), readme=readme), encoding="utf-8")
+    (info / "WHEEL").write_text("Wheel-Version: 1.0\nGenerator: massspring_build\nRoot-Is-Purelib: false\n"
+                                f"Tag: {tag()}\n", encoding="utf-8")
+    shutil.copy(SOURCE / "LICENSE", info / "LICENSE")
+    return info.name
+
+
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    return write_metadata(metadata_directory)
+
+
+def tag():
+    return "py3-none-" + re.sub(r"[.-]", "_", sysconfig.get_platform())
+
+
+def build_library(folder):
+    """The path of the shared library."""
+    given = os.environ.get("MASSSPRING_LIBRARY")
+    if given:
+        return Path(given).resolve()
+    options = list(CMAKE_OPTIONS)
+    if sys.platform.startswith("linux"):
+        options.append("-DCMAKE_SHARED_LINKER_FLAGS_RELEASE=-s")
+    options += shlex.split(os.environ.get("CMAKE_ARGS", ""))
+    subprocess.run(["cmake", "-S", str(SOURCE), "-B", str(folder), *options], check=True)
+    subprocess.run(["cmake", "--build", str(folder), "--config", "Release", "--target", "massspring_shared",
+                    "--parallel", str(os.cpu_count() or 1)], check=True)
+    found = [path for path in folder.rglob(LIBRARY) if path.is_file()]
+    if not found:
+        raise FileNotFoundError(f"CMake has built no {LIBRARY} in {folder}")
+    return found[0].resolve()
+
+
+def write_wheel(path, root):
+    """All files of root, with their hashes, the same bytes whenever it is done."""
+    files = sorted(file for file in root.rglob("*") if file.is_file())
+    info = next(file.parent for file in files if file.name == "METADATA").name
+    rows = []
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as wheel:
+        def add(name, data, mode=0o644):
+            entry = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))
+            entry.compress_type, entry.external_attr = zipfile.ZIP_DEFLATED, (0o100000 | mode) << 16
+            wheel.writestr(entry, data)
+
+        for file in files:
+            name, data = file.relative_to(root).as_posix(), file.read_bytes()
+            digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
+            rows.append(f"{name},sha256={digest},{len(data)}\n")
+            add(name, data, 0o755 if file.name == LIBRARY else 0o644)
+        add(f"{info}/RECORD", "".join(rows) + f"{info}/RECORD,,\n")
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    if not (SOURCE / "CMakeLists.txt").is_file():
+        raise FileNotFoundError(f"{SOURCE} is no checkout of libmassspring: pip 21.3 or newer builds in place")
+    name = f"massspring-{version()}-{tag()}.whl"
+    with tempfile.TemporaryDirectory() as scratch:
+        root = Path(scratch) / "wheel"
+        shutil.copytree(PACKAGE / "massspring", root / "massspring", ignore=shutil.ignore_patterns("__pycache__"))
+        library = build_library(Path(scratch) / "build")
+        shutil.copyfile(library, root / "massspring" / LIBRARY)
+        subprocess.run(isolated(str(PACKAGE / "backend" / "modules.py"), str(SOURCE / "include/massspring"),
+                                str(root / "massspring")), check=True)
+        write_metadata(root)
+        write_wheel(Path(wheel_directory) / name, root)
+    return name
+
+
+def build_sdist(sdist_directory, config_settings=None):
+    raise NotImplementedError("the package is built from a checkout of libmassspring: pip install ./pkgconfig/python")

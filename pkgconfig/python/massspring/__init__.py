@@ -1,0 +1,45 @@
+"""Simulation of two-dimensional mass-spring-damper networks.
+
+    import massspring
+
+    builder = massspring.Builder()
+    builder.add_lattice(cells, materials)
+    network = massspring.Network(builder, global_damping=1.0)
+    network.step(1 / 64, 60 * 64)
+    network.positions
+
+Constants of the C headers are here without their prefix: massspring.PARTICLE_PINNED. Errors are massspring.Error and
+its subclasses, one for each mspring_result. massspring.lib and massspring.ffi (cffi) lead to every C function.
+
+SPDX-License-Identifier: MIT
+"""
+from . import _header
+from ._core import ffi, lib, text_of
+from ._header import *  # noqa: F401,F403
+from ._header import VERSION as __version__
+from ._measure import Bounds, Energy, Momentum
+from ._state import StateView
+from ._types import ClosedError, Error, Record, StaleViewError
+from .builder import Builder, material
+from .network import Network
+from .tuning import TuneTable
+
+
+def version() -> str:
+    """The version of the library that runs."""
+    return text_of(lib.mspring_version_string())
+
+
+def features() -> int:
+    """What the library that runs has: bits of FEATURE_."""
+    return lib.mspring_features()
+
+
+def simd_supported() -> str:
+    """The best instruction set that CPU, operating system and build offer."""
+    return text_of(lib.mspring_simd_name(lib.mspring_simd_supported()))
+
+
+__all__ = ["Bounds", "Builder", "ClosedError", "Energy", "Error", "Momentum", "Network", "Record", "StaleViewError",
+           "StateView", "TuneTable", "__version__", "features", "ffi", "lib", "material", "simd_supported", "version"]
+__all__ += _header.__all__

@@ -1,0 +1,173 @@
+"""The network: it is made of a builder, stepped, read and edited.
+
+SPDX-License-Identifier: MIT
+"""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Union
+
+import numpy as np
+
+from . import _header
+from ._bodies import BodyCalls
+from ._calls import count_of
+from ._core import bad_argument, enum_value, fail, ffi, filled, lib, pointer, text_of, with_keywords
+from ._edits import EditCalls
+from ._measure import MeasureCalls
+from ._state import StateCalls
+from .builder import Builder
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._header import (NetworkKeywords, Settings, SettingsKeywords, SnapshotContents, SolverDef, SolverKeywords,
+                          StepInfo)
+
+
+@with_keywords("mspring_network_def")
+class Network(StateCalls, EditCalls, BodyCalls, MeasureCalls):
+    """Masses joined by springs with dampers, in two dimensions. Units are SI; the y axis points up.
+
+    Network(builder, **settings) makes one of what the builder holds. Each keyword has the default of the C library.
+    gravity=(x, y) sets both. Enums may be given as text: solver="implicit".
+
+    Use it in a with statement, call close(), or let it be collected. Steps release the GIL: networks step in parallel
+    in threads. Calls on one network from several threads wait for each other. A call that fails changes nothing.
+    Hooks and compaction jobs of the C library are left out: massspring.lib and Network.pointer lead to them.
+    """
+
+    def __init__(self, builder: Builder, **settings: Unpack[NetworkKeywords]):
+        def_ = filled("mspring_network_def", dict(settings))
+        made = ffi.new("mspring_network **")
+        builder._call(lib.mspring_network_create, def_, made)
+        self._take(made[0])
+
+    def close(self) -> None:
+        """Free the network. Arrays of its views stay valid: the last of them frees the memory."""
+        if self._pointer is None:
+            return
+        with self._lock:
+            self._pointer = None
+
+    def __enter__(self) -> Network:
+        self._live()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        if self.closed:
+            return "Network(closed)"
+        return f"Network({self.particle_count} particles, {self.spring_count} springs)"
+
+    def clone(self, worker_count: int = 1) -> Network:
+        """Make an independent copy. The same calls on both give the same bits. It has no hooks."""
+        def_ = filled("mspring_clone_def", {"worker_count": worker_count})
+        made = ffi.new("mspring_network **")
+        self._read(lib.mspring_network_clone, def_, made)
+        copy = Network.__new__(Network)
+        copy._take(made[0])
+        copy._was_compacted, copy._event_capacity = self._was_compacted, self._event_capacity
+        return copy
+
+    def __copy__(self) -> Network:
+        return self.clone()
+
+    def __deepcopy__(self, memo: Any) -> Network:
+        return self.clone()
+
+    # ----------------------------------------------------------------------------------------------------- step
+
+    def step(self, dt: float, count: int = 1) -> None:
+        """Evolve the network by count steps of dt, s. The GIL is released in each.
+
+        A step that fails is rolled back. Its error has the particle or the spring that was the cause; the steps
+        before it count.
+        """
+        count, step = count_of("count", count), lib.mspring_network_step
+        with self._lock:
+            live = self._live()
+            self._changes += 1
+            for _ in range(count):
+                result = step(live, dt)
+                if result:
+                    self._fail_step(result, live)
+
+    def _fail_step(self, result: int, live: Any) -> None:
+        message = text_of(lib.mspring_network_error(live))
+        info = self.step_info
+        is_its = info.result == result
+        fail(result, message, info.particle if is_its else None, info.spring if is_its else None)
+
+    @property
+    def step_info(self) -> StepInfo:
+        """Report of the last step, and of all steps so far."""
+        return self._report(_header.StepInfo, "mspring_step_info", lib.mspring_network_get_step_info)
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+        return self.step_info.time
+
+    @property
+    def is_asleep(self) -> bool:
+        """Whether all of the network sleeps."""
+        return bool(self._value(lib.mspring_network_is_asleep))
+
+    def wake(self) -> None:
+        """Wake all of the network."""
+        self._change(lib.mspring_network_wake)
+
+    # ------------------------------------------------------------------------------------------------- settings
+
+    @property
+    def settings(self) -> Settings:
+        """The settings that the next step uses."""
+        return self._report(_header.Settings, "mspring_settings", lib.mspring_network_get_settings)
+
+    @with_keywords("mspring_settings")
+    def set_settings(self, **fields: Unpack[SettingsKeywords]) -> None:
+        """Change some settings: all that are given or, on error, none. gravity=(x, y) sets both."""
+        self._modify("mspring_settings", lib.mspring_network_get_settings, lib.mspring_network_set_settings,
+                     dict(fields))
+
+    @property
+    def solver(self) -> SolverDef:
+        """The solver and its settings."""
+        return self._report(_header.SolverDef, "mspring_solver_def", lib.mspring_network_get_solver)
+
+    @with_keywords("mspring_solver_def")
+    def set_solver(self, **fields: Unpack[SolverKeywords]) -> None:
+        """Change the solver, or some of its settings. The others stay."""
+        self._modify("mspring_solver_def", lib.mspring_network_get_solver, lib.mspring_network_set_solver, dict(fields))
+
+    # ------------------------------------------------------------------------------------------------ snapshots
+
+    def save(self, contents: Union[SnapshotContents, str] = "all") -> bytes:
+        """Save a snapshot: all that the following steps depend on, or a "frame" for quick rollback.
+
+        It fits networks that are made of the same particles and springs. Floor, contact and colliders are not in it.
+        """
+        number, size = enum_value("mspring_snapshot_contents", "contents", contents), ffi.new("size_t *")
+        with self._lock:
+            self._read(lib.mspring_network_snapshot_size, number, size)
+            room = np.empty(size[0], np.uint8)
+            self._read(lib.mspring_network_save, number, pointer("char", room), len(room), size)
+        return room[:size[0]].tobytes()
+
+    def load(self, snapshot: bytes) -> None:
+        """Load a snapshot: the following steps repeat those after it was saved, bit for bit."""
+        buffer = memoryview(snapshot)
+        if not buffer.c_contiguous:
+            raise bad_argument("the snapshot's bytes must lie together")
+        with self._lock:
+            self._change(lib.mspring_network_load, ffi.from_buffer(buffer), buffer.nbytes)
+
+    # ------------------------------------------------------------------------------------------------- pictures
+
+    def plot(self, ax: Any = None, color: Any = "strain", **options: Any) -> Any:
+        """Draw the springs with matplotlib, coloured by a property. See massspring.plotting.draw()."""
+        from .plotting import draw
+        return draw(self, ax, color, **options)
+
