@@ -45,7 +45,9 @@ class Arguments(unittest.TestCase):
             ("add_collider", "circle"), ("add_collider", "square"), ("add_grip", count), ("move_grip", 7, 0, 0),
             ("set_contact_groups", 1, 1 << 32), ("set_contact_groups", 1, 1, [3]),
             ("load", b""), ("load", b"x" * 1000), ("load", "text"), ("save", "most"), ("tune", []),
-            ("nearest_particle", NAN, 0), ("particles_in_circle", 0, 0, -1), ("suggest_substeps", NAN),
+            ("remove_grip", -1), ("reserve_events", -1),
+            ("remove_collider", 1 << 40), ("read_contact_events",), ("nearest_particle", NAN, 0),
+            ("particles_in_circle", 0, 0, -1), ("suggest_substeps", NAN),
             ("springs_across", (0, NAN), (1, 1)), ("update_components", 1)))
         for name, *arguments in wrong[1]:
             with self.subTest(call=name, arguments=str(arguments)[:60]):
@@ -55,7 +57,8 @@ class Arguments(unittest.TestCase):
                          {"struct_size": 1}, {"guard": 77}, {"gravity_y": "down"}):
             with self.subTest(settings=keywords):
                 self.rejected((Error, TypeError), network.set_settings, **keywords)
-        for keywords in ({"substeps": 0}, {"substeps": 1 << 40}, {"substeps": 1.5}, {"solver": "fast"}, {"substeps": -1}):
+        for keywords in ({"substeps": 0}, {"substeps": 1 << 40}, {"substeps": 1.5}, {"solver": "fast"},
+                         {"substeps": -1}):
             with self.subTest(solver=keywords):
                 self.rejected((Error, TypeError), network.set_solver, **keywords)
         self.assertEqual((network.settings.gravity_y, network.solver.substeps), (np.float32(-9.8), 30))
@@ -86,6 +89,7 @@ class Arguments(unittest.TestCase):
                 self.assertEqual((builder.particle_count, builder.spring_count), before)
         self.rejected(Error, massspring.Builder().network)
         self.rejected(TypeError, builder.network, worker_counts=2)
+        self.rejected(TypeError, massspring.Network, None)
         self.rejected(Error, massspring.material, "gold")
 
     def test_results_are_classes(self):

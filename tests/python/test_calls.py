@@ -115,6 +115,7 @@ class Calls(unittest.TestCase):
         square(builder, 0.5, 5)
         network = builder.network(substeps=20)
         network.set_contact(thickness=0.4, friction=0.5)
+        network.reserve_contact_events(1000)
         network.set_contact_groups(3, 0xFFFFFFFF, range(0, 16))
         ground = network.add_collider("chain", [[-10, -1], [10, -1]], friction=1)
         paddle = network.add_collider("box", width=2, height=1, x=-8)
@@ -128,6 +129,10 @@ class Calls(unittest.TestCase):
         network.remove_grip(grip)
         network.step(1 / 64, 200)
         self.assertGreater(network.contact_info.touching, 0)
+        events = network.read_contact_events()
+        began = events[events["kind"] == massspring.ContactEventKind.BEGAN]
+        self.assertIn(ground, began["collider"])
+        self.assertEqual((len(network.clone().read_contact_events()), network.contact_events_lost), (0, 0))
         self.assertLess(network.get_collider_impulse(ground)[1], 0)
         self.assertGreater(network.bounds().min_y, -1)
         self.assertEqual((network.contact.friction, network.get_collider(paddle).kind.name), (0.5, "BOX"))

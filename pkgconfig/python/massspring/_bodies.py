@@ -10,13 +10,15 @@ import numpy as np
 
 from . import _header
 from ._calls import NetworkCalls, Span
-from ._core import Ids, bad_argument, changed, empty, ffi, filled, lib, numbers, pointer, with_keywords
+from ._core import Ids, bad_argument, changed, dtype_of, empty, ffi, filled, lib, numbers, pointer, with_keywords
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._header import (ColliderDef, ColliderKeywords, ColliderKind, ContactDef, ContactInfo, ContactKeywords,
                           FloorDef, FloorKeywords, GripDef, GripKeywords)
+
+CONTACT_EVENT = dtype_of("mspring_contact_event")
 
 
 class BodyCalls(NetworkCalls):
@@ -91,6 +93,24 @@ class BodyCalls(NetworkCalls):
     def contact_info(self) -> ContactInfo:
         """What touched in the last step."""
         return self._report(_header.ContactInfo, "mspring_contact_info", lib.mspring_network_get_contact_info)
+
+    def reserve_contact_events(self, capacity: int) -> None:
+        """Reserve room for contact events, which are recorded from then on. It needs set_contact()."""
+        self._change(lib.mspring_network_reserve_contact_events, capacity)
+        self._contact_capacity = capacity
+
+    _contact_capacity = 0
+    contact_events_lost = 0  # events that had no room, as of the last read_contact_events()
+
+    def read_contact_events(self) -> np.ndarray:
+        """Read and remove all contact events that wait, oldest first, with the fields of mspring_contact_event."""
+        events = np.zeros(self._contact_capacity, CONTACT_EVENT)
+        events["struct_size"] = CONTACT_EVENT.itemsize
+        count, lost = ffi.new("uint32_t *"), ffi.new("uint64_t *")
+        self._change(lib.mspring_network_read_contact_events, pointer("mspring_contact_event", events), len(events),
+                     count, lost)
+        self.contact_events_lost = lost[0]
+        return events[:count[0]].copy()
 
     def set_contact_groups(self, groups: int, masks: int, ids: Ids = None) -> None:
         """Set which particles may touch: each one's group must have a bit of the other's mask. ids is a range."""

@@ -85,18 +85,25 @@ class NetworkCalls(Handle):
         with self._lock:
             return function(self._live(), *arguments)
 
+    @staticmethod
+    def _result(function: Any, live: Any, arguments: Tuple[Any, ...]) -> int:
+        try:
+            return function(live, *arguments)
+        except OverflowError as error:
+            raise bad_argument(str(error)) from None
+
     def _read(self, function: Any, *arguments: Any) -> None:
         """A shared call."""
         with self._lock:
             live = self._live()
-            self._check(function(live, *arguments), live)
+            self._check(self._result(function, live, arguments), live)
 
     def _change(self, function: Any, *arguments: Any) -> None:
         """An exclusive call."""
         with self._lock:
             live = self._live()
             self._changes += 1
-            self._check(function(live, *arguments), live)
+            self._check(self._result(function, live, arguments), live)
 
     def _relayout(self, function: Any, *arguments: Any) -> None:
         """A call that moves the state to other memory, which no array may show then."""

@@ -48,11 +48,12 @@ class StateView:
     def __getattr__(self, name: str) -> np.ndarray:
         if name not in self._ARRAYS:
             raise AttributeError(name)
-        struct = self._now()
-        count = struct.particle_count if name == "slot_of_particle" else struct.slot_count
-        export = Export(self._owner, getattr(struct, name), count, self._ARRAYS[name])
-        self._network._exports.add(export)
-        return np.asarray(export)
+        with self._network._lock:  # another thread might move the memory
+            struct = self._now()
+            count = struct.particle_count if name == "slot_of_particle" else struct.slot_count
+            export = Export(self._owner, getattr(struct, name), count, self._ARRAYS[name])
+            self._network._exports.add(export)
+            return np.asarray(export)
 
     @property
     def origin(self) -> Tuple[float, float]:
@@ -84,8 +85,8 @@ class StateCalls(NetworkCalls):
         span = Span(ids, self.particle_count)
         if out is not None and getattr(out, "dtype", None) == np.float32:
             out = output(out, (span.count, 2), "f4")
-            return self._pairs(lib.mspring_network_get_positions_float, lib.mspring_network_get_positions_float_at, span,
-                               "float", out)
+            return self._pairs(lib.mspring_network_get_positions_float, lib.mspring_network_get_positions_float_at,
+                               span, "float", out)
         out = output(out, (span.count, 2), "f8")
         return self._pairs(lib.mspring_network_get_positions, lib.mspring_network_get_positions_at, span, "double", out)
 

@@ -183,7 +183,7 @@ class Builder(Handle):
     @with_keywords("mspring_rope_def")
     def add_rope(self, from_: int, to: int, segment_count: int,
                  **fields: Unpack[RopeKeywords]) -> Tuple[np.ndarray, range]:
-        """Add a chain of equal springs between two particles. Returns the ids along it, ends included, and of springs."""
+        """Add a chain of equal springs between two particles. Returns the ids along it and those of its springs."""
         def_ = filled("mspring_rope_def", {"to": to, "segment_count": segment_count, **fields, "from": from_})
         ids, first = np.empty(min(max(segment_count, 0), MAX_SPRINGS) + 1, np.uint32), ffi.new("mspring_id *")
         self._call(lib.mspring_builder_add_rope, def_, pointer("mspring_id", ids), len(ids), first)
@@ -207,7 +207,7 @@ class Builder(Handle):
 
     @with_keywords("mspring_disc_def")
     def add_disc(self, x: float, y: float, radius: float, **fields: Unpack[DiscKeywords]) -> Tuple[range, range]:
-        """Add a disc of rings around (x, y), m. Returns the ids of its particles, the centre first, and of its springs."""
+        """Add a disc of rings around (x, y), m. Returns the ids of its particles, centre first, and springs."""
         return self._add_shape(lib.mspring_builder_add_disc,
                                filled("mspring_disc_def", {"x": x, "y": y, "radius": radius, **fields}))
 

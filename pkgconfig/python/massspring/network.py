@@ -37,6 +37,8 @@ class Network(StateCalls, EditCalls, BodyCalls, MeasureCalls):
     """
 
     def __init__(self, builder: Builder, **settings: Unpack[NetworkKeywords]):
+        if not isinstance(builder, Builder):
+            raise TypeError(f"builder is {builder!r}: it must be a massspring.Builder")
         def_ = filled("mspring_network_def", dict(settings))
         made = ffi.new("mspring_network **")
         builder._call(lib.mspring_network_create, def_, made)
@@ -69,6 +71,7 @@ class Network(StateCalls, EditCalls, BodyCalls, MeasureCalls):
         copy = Network.__new__(Network)
         copy._take(made[0])
         copy._was_compacted, copy._event_capacity = self._was_compacted, self._event_capacity
+        copy._contact_capacity, copy._component_count = self._contact_capacity, self._component_count
         return copy
 
     def __copy__(self) -> Network:
