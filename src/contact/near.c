@@ -29,16 +29,6 @@
 
 /* ----------------------------------------------------------------------------------------------------- distance */
 
-mspringi_nearest mspringi_nearest_on(double px, double py, double ax, double ay, double bx, double by) {
-    const double ex = bx - ax, ey = by - ay, square = ex * ex + ey * ey;
-    double share = 0.0;
-    if (square > 0.0) {
-        share = ((px - ax) * ex + (py - ay) * ey) / square;
-        share = share < 0.0 ? 0.0 : share > 1.0 ? 1.0 : share;
-    }
-    return (mspringi_nearest){px - ax - share * ex, py - ay - share * ey, share};
-}
-
 // Of the point from the edge, or from the surface of a collider.
 static double distance_of(const mspringi_pairs *pairs, mspring_id p, uint32_t edge) {
     const mspring_id a = pairs->outline.a[edge], b = pairs->outline.b[edge];

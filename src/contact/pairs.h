@@ -239,7 +239,16 @@ typedef struct mspringi_nearest {
     double x, y;  ///< from there to the point
     double share; ///< of the way from a to b
 } mspringi_nearest;
-mspringi_nearest mspringi_nearest_on(double px, double py, double ax, double ay, double bx, double by);
+static inline mspringi_nearest mspringi_nearest_on(double px, double py, double ax, double ay, double bx,
+                                                   double by) {
+    const double ex = bx - ax, ey = by - ay, square = ex * ex + ey * ey;
+    double share = 0.0;
+    if (square > 0.0) {
+        share = ((px - ax) * ex + (py - ay) * ey) / square;
+        share = share < 0.0 ? 0.0 : share > 1.0 ? 1.0 : share;
+    }
+    return (mspringi_nearest){px - ax - share * ex, py - ay - share * ey, share};
+}
 
 /// Make the list anew if it may lack pairs. False: there is no room for all of them.
 bool mspringi_near_renew(const mspring_network *network, mspringi_pairs *pairs);

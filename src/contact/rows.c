@@ -171,9 +171,10 @@ static double resistance_of(const mspringi_active *k, const mspringi_touch *t) {
                          : t->share_a * t->share_a * k->weight[t->a] + t->share_b * t->share_b * k->weight[t->b]);
 }
 
-static double speed_of(const mspringi_active *k, uint32_t p, uint32_t a, uint32_t b) {
+// The larger one of those towards the ends of an edge.
+static double square_to_ends(const mspringi_active *k, uint32_t p, uint32_t a, uint32_t b) {
     const double of_a = square_of_speed(k, p, a), of_b = square_of_speed(k, p, b);
-    return sqrt(of_a > of_b ? of_a : of_b);
+    return of_a > of_b ? of_a : of_b;
 }
 
 static void put_row(mspringi_pairs *pairs, uint32_t candidate, const mspringi_collider *collider,
@@ -209,11 +210,15 @@ static void make_row(const mspring_network *network, mspringi_pairs *pairs, uint
     const mspringi_candidate *c = &pairs->hot[candidate];
     const mspringi_nearest at =
         mspringi_nearest_on(k->x[c->p], k->y[c->p], k->x[c->a], k->y[c->a], k->x[c->b], k->y[c->b]);
-    const double square = at.x * at.x + at.y * at.y, speed = speed_of(k, c->p, c->a, c->b);
+    const double square = at.x * at.x + at.y * at.y, to_ends = square_to_ends(k, c->p, c->a, c->b);
     mspringi_pair *pair = &pairs->list[c->pair];
     const mspringi_collider *collider = pairs->colliders.count > 0 ? collider_of_pair(pairs, pair) : NULL;
     const double thickness = collider ? pairs->thickness + collider->radius : pairs->thickness;
-    const double reach = thickness + 2.0 * h * speed, border = reach + BORDER_SHARE * pairs->thickness;
+    const double still = thickness + BORDER_SHARE * pairs->thickness;
+    if (square >
+        2.0 * (still * still + 4.0 * h * h * to_ends)) // further than the border: most are, and need no root
+        return;
+    const double speed = sqrt(to_ends), reach = thickness + 2.0 * h * speed, border = still + 2.0 * h * speed;
     if (!(square < border * border) || square == 0.0)
         return;
     if (!(square < reach * reach)) {
@@ -289,7 +294,7 @@ static bool is_short(const mspringi_pairs *pairs, double h) {
     const double most = FURTHEST * pairs->thickness / h;
     for (uint32_t i = 0; i < pairs->touch_count; ++i) {
         const mspringi_touch *t = &pairs->touches[i];
-        if (is_thrown(pairs, t->p, t->a, t->b) && speed_of(&pairs->active, t->p, t->a, t->b) > most)
+        if (is_thrown(pairs, t->p, t->a, t->b) && square_to_ends(&pairs->active, t->p, t->a, t->b) > most * most)
             return false;
     }
     return true;
