@@ -7,11 +7,12 @@
 
 static mspringi_largest largest(const float *now, const float *before, size_t count) {
     vec value = zero(), change = zero();
-    for (size_t i = 0; i < count; i += LANES) {
+    for (size_t i = 0; !before && i < count; i += LANES)
+        value = larger_size(value, load(now + i));
+    for (size_t i = 0; before && i < count; i += LANES) {
         const vec v = load(now + i);
         value = larger_size(value, v);
-        if (before)
-            change = larger_size(change, sub(v, load(before + i)));
+        change = larger_size(change, sub(v, load(before + i)));
     }
     return (mspringi_largest){largest_lane(value), largest_lane(change)};
 }

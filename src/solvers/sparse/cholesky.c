@@ -22,9 +22,9 @@ const mspringi_cholesky_kernels *mspringi_cholesky_kernels_of(mspring_simd level
 
 // NOLINTBEGIN(bugprone-macro-parentheses): of a type
 #define MSPRINGI_CHOLESKY_DEFINE(real)                                                                             \
-    mspring_result mspringi_cholesky_##real##_create(mspringi_cholesky_##real *factor,                             \
-                                                     const mspringi_cholesky_plan *plan, mspring_simd level,       \
-                                                     mspringi_memory *memory, mspringi_message *message) {         \
+    mspring_result mspringi_cholesky_##real##_reserve(mspringi_cholesky_##real *factor,                            \
+                                                      const mspringi_cholesky_plan *plan, mspring_simd level,      \
+                                                      mspringi_memory *memory, mspringi_message *message) {        \
         const size_t size = mspringi_pad(2 * (size_t)plan->size) + MSPRINGI_PAD;                                   \
         const size_t first = plan->update_reals[0] + MSPRINGI_PAD, second = plan->update_reals[1] + MSPRINGI_PAD;  \
         const size_t panels = plan->panel_reals + MSPRINGI_PAD;                                                    \
@@ -39,14 +39,29 @@ const mspringi_cholesky_kernels *mspringi_cholesky_kernels_of(mspring_simd level
             .panels = at,                                                                                          \
             .updates = {at + panels, at + panels + first},                                                         \
             .reciprocal = at + panels + first + second,                                                            \
+            .rest = MSPRINGI_PAD + others,                                                                         \
         };                                                                                                         \
         factor->vector = factor->reciprocal + size;                                                                \
         factor->scaled = factor->vector + 2 * size;                                                                \
         factor->part = factor->scaled + plan->scaled_reals;                                                        \
         memset(factor->updates[0] - MSPRINGI_PAD, 0, MSPRINGI_PAD * sizeof(real));                                 \
         memset(factor->updates[1] - MSPRINGI_PAD, 0, MSPRINGI_PAD * sizeof(real));                                 \
-        memset(factor->reciprocal - MSPRINGI_PAD, 0, (MSPRINGI_PAD + others) * sizeof(real));                      \
         return MSPRING_OK;                                                                                         \
+    }                                                                                                              \
+                                                                                                                   \
+    void mspringi_cholesky_##real##_clear(const mspringi_cholesky_##real *factor, size_t first, size_t count) {    \
+        const size_t left = factor->rest > first ? factor->rest - first : 0;                                       \
+        if (left > 0)                                                                                              \
+            memset(factor->reciprocal - MSPRINGI_PAD + first, 0, (count < left ? count : left) * sizeof(real));    \
+    }                                                                                                              \
+                                                                                                                   \
+    mspring_result mspringi_cholesky_##real##_create(mspringi_cholesky_##real *factor,                             \
+                                                     const mspringi_cholesky_plan *plan, mspring_simd level,       \
+                                                     mspringi_memory *memory, mspringi_message *message) {         \
+        const mspring_result result = mspringi_cholesky_##real##_reserve(factor, plan, level, memory, message);    \
+        if (result == MSPRING_OK)                                                                                  \
+            mspringi_cholesky_##real##_clear(factor, 0, factor->rest);                                             \
+        return result;                                                                                             \
     }                                                                                                              \
                                                                                                                    \
     static const mspringi_column columns_##real[] = {                                                              \

@@ -100,10 +100,16 @@ typedef struct mspringi_cholesky_kernels mspringi_cholesky_kernels;
         real *scaled;     /**< L D of the present front */                                                         \
         real *vector;     /**< [2 size] in order of elimination */                                                 \
         real *part;       /**< the part of a vector that the present front sees */                                 \
+        size_t rest;      /**< numbers behind panels and updates */                                                \
     } mspringi_cholesky_##real;                                                                                    \
                                                                                                                    \
     /** Reserve all memory; panels and updates are only touched by a factorisation, which sets them. The plan */   \
     /** must outlive the factor. On failure the factor is as it was: zero. */                                      \
+    /** What lies behind panels and updates is cleared, in pieces if it was only reserved. */                      \
+    mspring_result mspringi_cholesky_##real##_reserve(mspringi_cholesky_##real *factor,                            \
+                                                      const mspringi_cholesky_plan *plan, mspring_simd level,      \
+                                                      mspringi_memory *memory, mspringi_message *message);         \
+    void mspringi_cholesky_##real##_clear(const mspringi_cholesky_##real *factor, size_t first, size_t count);     \
     mspring_result mspringi_cholesky_##real##_create(mspringi_cholesky_##real *factor,                             \
                                                      const mspringi_cholesky_plan *plan, mspring_simd level,       \
                                                      mspringi_memory *memory, mspringi_message *message);          \
