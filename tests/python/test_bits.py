@@ -3,6 +3,7 @@
 SPDX-License-Identifier: MIT
 """
 import copy
+import multiprocessing
 import os
 import unittest
 from concurrent.futures import ThreadPoolExecutor
@@ -29,6 +30,11 @@ def run_of_golden(network):
         network.step(1 / 64)
         value = ((value << 7 | value >> 57) & MASK) ^ network.state_hash()
     return value
+
+
+def run_with_workers(count):
+    with bar(worker_count=count) as network:
+        return run_of_golden(network)
 
 
 class Bits(unittest.TestCase):
@@ -85,6 +91,10 @@ class Bits(unittest.TestCase):
         with ThreadPoolExecutor(4) as pool:
             list(pool.map(lambda network: network.step(1 / 64, 64), networks))
         self.assertEqual(len({network.state_hash() for network in networks}), 1)
+
+    def test_processes_step_networks(self):
+        with multiprocessing.get_context("fork").Pool(2) as pool:
+            self.assertEqual(set(pool.map(run_with_workers, (1, 2, 3))), {golden("bar_80x5")})
 
     def test_equilibrium(self):
         """20.06 m, as test_settle and the README have it."""
