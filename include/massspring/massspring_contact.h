@@ -57,8 +57,8 @@ MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact
 /// later. So set contact before the network deforms. Overlaps at the start are pushed apart. Springs that cross at the
 /// start stay crossed.
 ///
-/// Contact needs the explicit solver; clamped steps (MSPRING_GUARD_CLAMP) have it, too. While it is set, the network
-/// rejects the implicit and the direct solver and MSPRING_GUARD_IMPLICIT. A network that has them rejects contact.
+/// All solvers have contact. With the implicit and the direct solver it is part of the linear system. Substeps in which
+/// bodies touch are then of implicit Euler, and keep the energy budget, whatever integrator and guard are set.
 /// mspring_network_tune() and mspring_network_settle() leave contact out.
 ///
 /// Snapshots leave contact as it is, as they leave the floor. They hold the outline's shape only. Before you load one,
@@ -67,7 +67,7 @@ MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact
 /// If more than capacity pairs are near each other, a step fails with MSPRING_ERROR_LIMIT and is rolled back.
 /// @param def  copied; NULL: no contact, the default. Groups of particles and colliders of the host are forgotten.
 /// @threads exclusive   @allocates yes; about 500 bytes for a particle, 1200 more for one of the outline, 40 for a
-///          spring   @errors ARGUMENT (the message names field or solver), STRUCT, MEMORY, BUSY
+///          spring   @errors ARGUMENT (the message names the field), STRUCT, MEMORY, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_contact(
     mspring_network *network, const mspring_contact_def *def);
 
@@ -201,8 +201,8 @@ MSPRING_API mspring_result MSPRING_CALL mspring_collider_def_init(mspring_collid
 /// infinite. The contact's sweeps and push_speed are theirs, too. The guide examples/guides/contact.md has the
 /// guarantees.
 ///
-/// Colliders need contact, so they need the explicit solver. If only colliders are to touch particles, set groups and
-/// masks by which particles do not touch each other.
+/// Colliders need contact. If only colliders are to touch particles, set groups and masks by which particles do not
+/// touch each other.
 ///
 /// Snapshots leave colliders out, as they leave the floor. Before you load one, add the same colliders and place them.
 /// Clones have them. All bodies wake.

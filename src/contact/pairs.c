@@ -19,17 +19,6 @@
 
 /* ----------------------------------------------------------------------------------------------------- checking */
 
-mspring_result mspringi_pairs_check(mspring_solver solver, mspring_guard guard, mspringi_message *message) {
-    if (solver != MSPRING_SOLVER_EXPLICIT)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
-                             "contact needs the explicit solver, and solver %d is another", (int)solver);
-    if (guard == MSPRING_GUARD_IMPLICIT)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
-                             "contact needs the explicit solver, and guard %d lets the implicit one take steps",
-                             (int)guard);
-    return MSPRING_OK;
-}
-
 static mspring_result check_numbers(const mspring_contact_def *def, mspringi_message *message) {
     const struct {
         const char *name;
@@ -73,9 +62,7 @@ static mspring_result check_def(const mspring_network *network, mspring_contact_
             "the contact's thickness is %g m, it must be at most 0.9 of the shortest spring, %g m, "
             "for bodies that touch themselves",
             def->thickness, shortest);
-    mspring_solver_def solver = {.struct_size = sizeof solver};
-    result = mspring_network_get_solver(network, &solver);
-    return result == MSPRING_OK ? mspringi_pairs_check(solver.solver, network->settings.guard, message) : result;
+    return MSPRING_OK;
 }
 
 /* ------------------------------------------------------------------------------------------------------ memory */
@@ -119,8 +106,11 @@ static const mspringi_column members[] = {
     VIEW(active.weight),
     VIEW(active.way_x),
     VIEW(active.way_y),
+    VIEW(active.gain_x),
+    VIEW(active.gain_y),
     ARRAY(active.is_thrown),
     ARRAY(touches),
+    ARRAY(holds),
     ARRAY(hot),
     ARRAY(is_seen),
     ARRAY(border),
@@ -163,8 +153,8 @@ static bool reserve_nodes(mspringi_pairs *made, mspringi_memory *memory, size_t 
     mspringi_active *k = &made->active;
     double **const shape[] = {&o->shape_x, &o->shape_y};
     double **const places[] = {&made->seen_x, &made->seen_y, &made->x, &made->y};
-    double **const motion[] = {&k->x,  &k->y,  &k->from_vx, &k->from_vy, &k->old_vx, &k->old_vy,
-                               &k->vx, &k->vy, &k->weight,  &k->way_x,   &k->way_y};
+    double **const motion[] = {&k->x,  &k->y,      &k->from_vx, &k->from_vy, &k->old_vx, &k->old_vy, &k->vx,
+                               &k->vy, &k->weight, &k->way_x,   &k->way_y,   &k->gain_x, &k->gain_y};
     made->groups = mspringi_alloc(memory, 2 * nodes, sizeof *made->groups);
     made->stamp = mspringi_alloc(memory, particles, sizeof *made->stamp);
     o->is_known = mspringi_alloc(memory, particles, sizeof *o->is_known);
@@ -175,7 +165,7 @@ static bool reserve_nodes(mspringi_pairs *made, mspringi_memory *memory, size_t 
     made->masks = made->groups + nodes;
     k->number = k->particles + nodes;
     return reserve_doubles(memory, particles, shape, 2) && reserve_doubles(memory, nodes, places, 4) &&
-           reserve_doubles(memory, nodes, motion, 11);
+           reserve_doubles(memory, nodes, motion, 13);
 }
 
 static bool reserve_edges(mspringi_pairs *made, mspringi_memory *memory, size_t nodes, size_t springs) {
@@ -224,7 +214,8 @@ static bool reserve_pairs(mspringi_pairs *made, mspringi_memory *memory, size_t 
     made->touches = mspringi_alloc(memory, made->capacity, sizeof *made->touches);
     made->is_seen = mspringi_alloc(memory, made->capacity, sizeof *made->is_seen);
     made->border = mspringi_alloc(memory, made->capacity, sizeof *made->border);
-    return made->list && made->hot && made->touches && made->is_seen && made->border;
+    made->holds = mspringi_alloc(memory, made->capacity, sizeof *made->holds);
+    return made->list && made->hot && made->touches && made->holds && made->is_seen && made->border;
 }
 
 static void set_def(mspringi_pairs *pairs, const mspring_contact_def *def) {

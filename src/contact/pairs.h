@@ -75,6 +75,7 @@ typedef struct mspringi_active {
     double *vx, *vy, *weight;  ///< inverse mass, 1/kg
     double *way_x, *way_y;     ///< what contact adds to the move
     uint8_t *is_thrown;        ///< sweeps have changed the velocity much
+    double *gain_x, *gain_y;   ///< what it adds to the velocity of what an implicit solver lets fly by itself
     uint32_t own, count;       ///< particles, and with the points of colliders, which are behind these
 } mspringi_active;
 
@@ -92,6 +93,22 @@ typedef struct mspringi_touch {
     double slide_mass;       ///< the same along; 0: no friction
     double across, along;    ///< impulses, N s
 } mspringi_touch;
+
+/// A row in the linear system of an implicit substep; see solvers/implicit/bodies.c. Of three: the point and the
+/// ends of the edge.
+typedef struct mspringi_row_hold {
+    uint32_t slots[3];                ///< MSPRING_NONE: not in the system
+    double across[3][2], along[3][2]; ///< how a unit of force is shared
+    double gap;                       ///< where all is predicted, beyond what there is to be at least, m
+    double spare;                     ///< that it may lack before it is held, as it bounces then, m
+    double ahead;                     ///< how far the point has slid there, m
+    double stiffness, grip;           ///< of what holds it across and along, in the units of the matrix
+    double friction;
+    double slip;           ///< it slides this way along, 1 or -1; 0: it sticks
+    double normal, braked; ///< what it gives across and along, in the units of the right-hand side
+    double answer[2], left[2], search[2]; ///< of the direct solver: forces across and along, and their iteration
+    bool is_active;                       ///< it is held
+} mspringi_row_hold;
 
 /// Where a collider is, world coordinates.
 typedef struct mspringi_pose {
@@ -208,6 +225,8 @@ struct mspringi_pairs {
     uint8_t *is_seen;        ///< [capacity] of candidates, while rows are added
     uint32_t *border;        ///< [capacity] candidates that just miss a row
     uint32_t touch_count, border_count;
+    mspringi_row_hold *holds;    ///< [capacity] the same rows, of an implicit substep
+    double passed; ///< of an implicit substep, in pieces, s
     uint32_t touching; ///< pairs that pushed each other in a substep, at most
     double deepest;    ///< overlap, m
 };
@@ -258,9 +277,17 @@ bool mspringi_near_look(const mspring_network *network, mspringi_pairs *pairs);
 /* rows.c */
 
 /// Before a substep: keep what contact needs of it.
+void mspringi_rows_begin(const mspring_network *network, mspringi_pairs *pairs);
+/// The same before a piece of it.
 void mspringi_rows_note(const mspring_network *network, mspringi_pairs *pairs);
 /// After it: let contact act. Returns whether anything touched, or could have.
 bool mspringi_rows_act(const mspring_network *network, mspringi_pairs *pairs);
+
+/// Make the rows of an implicit substep of h seconds, or of a piece of one, from what was noted: more of them, as
+/// springs and other bodies may push in it. Returns the speed of the fastest.
+double mspringi_rows_prepare(const mspring_network *network, mspringi_pairs *pairs, double h);
+/// Count what was given in it, once it is taken for good.
+void mspringi_rows_count(const mspring_network *network, mspringi_pairs *pairs);
 
 /* sweeps.c */
 
@@ -332,7 +359,5 @@ void mspringi_colliders_end(const mspring_network *network, mspringi_pairs *pair
 /// Make room for so many points of colliders. False: there is no memory, and nothing has changed.
 bool mspringi_pairs_widen(mspring_network *network, uint32_t points);
 void mspringi_pairs_relocate(mspringi_pairs *pairs, const mspringi_memory *from, const mspringi_memory *to);
-/// Refuse a solver, or a guard, with which contact does not act.
-mspring_result mspringi_pairs_check(mspring_solver solver, mspring_guard guard, mspringi_message *message);
 
 #endif

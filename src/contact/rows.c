@@ -36,6 +36,10 @@
 /// Pairs that miss a row by less than this share of the thickness are remembered: small impulses may make it one.
 #define BORDER_SHARE 0.01
 
+/// Half of how much nearer an implicit substep may bring two bodies than their speeds do, as a share of the
+/// thickness.
+#define THROWN_SHARE 0.1
+
 /// Edges at a corner that are remembered by bits, at each end.
 #define REMEMBERED 8
 
@@ -66,6 +70,14 @@ void mspringi_rows_note(const mspring_network *network, mspringi_pairs *pairs) {
     }
     for (uint32_t i = k->own; i < k->count; ++i)
         note_point(pairs, i);
+}
+
+void mspringi_rows_begin(const mspring_network *network, mspringi_pairs *pairs) {
+    const mspringi_active *k = &pairs->active;
+    mspringi_rows_note(network, pairs);
+    for (uint32_t i = 0; i < k->own; ++i)
+        k->way_x[i] = k->way_y[i] = k->gain_x[i] = k->gain_y[i] = 0.0;
+    pairs->passed = 0.0;
 }
 
 static void begin(const mspring_network *network, const mspringi_active *k) {
@@ -203,9 +215,10 @@ static void put_row(mspringi_pairs *pairs, uint32_t candidate, const mspringi_co
     ++pairs->touch_count;
 }
 
-// The row of a pair in a piece of h seconds, if it may touch there. *fastest: of all that have rows.
+// The row of a pair in a piece of h seconds, if it may touch there, by its own speed or by one that it may be given.
+// *fastest: of all that have rows.
 static void make_row(const mspring_network *network, mspringi_pairs *pairs, uint32_t candidate, double h,
-                     double *fastest) {
+                     double given, double *fastest) {
     const mspringi_active *k = &pairs->active;
     const mspringi_candidate *c = &pairs->hot[candidate];
     const mspringi_nearest at =
@@ -215,10 +228,11 @@ static void make_row(const mspring_network *network, mspringi_pairs *pairs, uint
     const mspringi_collider *collider = pairs->colliders.count > 0 ? collider_of_pair(pairs, pair) : NULL;
     const double thickness = collider ? pairs->thickness + collider->radius : pairs->thickness;
     const double still = thickness + BORDER_SHARE * pairs->thickness;
-    if (square >
-        2.0 * (still * still + 4.0 * h * h * to_ends)) // further than the border: most are, and need no root
+    const double square_way = 4.0 * h * h * (to_ends > given * given ? to_ends : given * given);
+    if (square > 2.0 * (still * still + square_way)) // further than the border: most are, and need no root
         return;
-    const double speed = sqrt(to_ends), reach = thickness + 2.0 * h * speed, border = still + 2.0 * h * speed;
+    const double speed = sqrt(to_ends), way = 2.0 * h * (speed > given ? speed : given);
+    const double reach = thickness + way, border = still + way;
     if (!(square < border * border) || square == 0.0)
         return;
     if (!(square < reach * reach)) {
@@ -234,11 +248,22 @@ static void make_row(const mspring_network *network, mspringi_pairs *pairs, uint
         *fastest = speed > *fastest ? speed : *fastest;
 }
 
-static double make_rows(const mspring_network *network, mspringi_pairs *pairs, double h) {
+static double make_rows(const mspring_network *network, mspringi_pairs *pairs, double h, double given) {
     double fastest = 0.0;
     pairs->touch_count = pairs->border_count = 0;
     for (uint32_t i = 0; i < pairs->hot_count; ++i)
-        make_row(network, pairs, i, h, &fastest);
+        make_row(network, pairs, i, h, given, &fastest);
+    return fastest;
+}
+
+double mspringi_rows_prepare(const mspring_network *network, mspringi_pairs *pairs, double h) {
+    const mspringi_active *k = &pairs->active;
+    for (uint32_t i = 0; i < k->own; ++i) {
+        k->vx[i] = k->from_vx[i];
+        k->vy[i] = k->from_vy[i];
+    }
+    const double fastest = make_rows(network, pairs, h, 0.0);
+    (void)make_rows(network, pairs, h, fastest + THROWN_SHARE * pairs->thickness / h);
     return fastest;
 }
 
@@ -274,12 +299,12 @@ static bool add_rows(const mspring_network *network, mspringi_pairs *pairs, doub
     pairs->border_count = 0;
     for (uint32_t i = 0; i < border_count; ++i) {
         pairs->is_seen[pairs->border[i]] = 1;
-        make_row(network, pairs, pairs->border[i], h, &fastest);
+        make_row(network, pairs, pairs->border[i], h, 0.0, &fastest);
     }
     for (uint32_t i = 0; i < pairs->hot_count && any_thrown; ++i) {
         const mspringi_candidate *c = &pairs->hot[i];
         if (!pairs->is_seen[i] && is_thrown(pairs, c->p, c->a, c->b))
-            make_row(network, pairs, i, h, &fastest);
+            make_row(network, pairs, i, h, 0.0, &fastest);
     }
     for (uint32_t i = before; i < pairs->touch_count; ++i) {
         const mspringi_touch *t = &pairs->touches[i];
@@ -316,7 +341,7 @@ static bool solve(const mspring_network *network, mspringi_pairs *pairs, double 
 
 /* --------------------------------------------------------------------------------------------- the substep */
 
-static void count_touching(const mspring_network *network, mspringi_pairs *pairs) {
+void mspringi_rows_count(const mspring_network *network, mspringi_pairs *pairs) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < pairs->touch_count && pairs->meetings.capacity > 0; ++i)
         if (pairs->touches[i].across > 0.0)
@@ -381,7 +406,7 @@ static void take_pieces(const mspring_network *network, mspringi_pairs *pairs, d
     for (uint32_t left = pieces, cuts = 0; left > 0;) {
         const double piece = h / left;
         if (!is_made)
-            (void)make_rows(network, pairs, piece);
+            (void)make_rows(network, pairs, piece, 0.0);
         is_made = false;
         keep_velocities(k);
         if (!solve(network, pairs, piece) && cuts < MOST_CUTS && left < MOST_PIECES) {
@@ -390,7 +415,7 @@ static void take_pieces(const mspring_network *network, mspringi_pairs *pairs, d
             ++cuts;
             continue;
         }
-        count_touching(network, pairs);
+        mspringi_rows_count(network, pairs);
         advance(network, k, piece, left == 1);
         h -= piece;
         --left;
@@ -412,7 +437,7 @@ static void count_thrown(mspringi_pairs *pairs, double speed) {
 bool mspringi_rows_act(const mspring_network *network, mspringi_pairs *pairs) {
     const double h = (double)pairs->h;
     begin(network, &pairs->active);
-    const double fastest = make_rows(network, pairs, h);
+    const double fastest = make_rows(network, pairs, h, 0.0);
     if (pairs->touch_count == 0)
         return false;
     const double thicknesses = h * fastest / pairs->thickness;

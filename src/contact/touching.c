@@ -151,7 +151,7 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
     pairs->first_substep = substep;
     if (pairs->quiet == 0) {
         mspringi_colliders_place(network, pairs, substep);
-        mspringi_rows_note(network, pairs);
+        mspringi_rows_begin(network, pairs);
     }
     return base;
 }
@@ -185,7 +185,7 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
         }
         return;
     }
-    if (!mspringi_rows_act(network, pairs) || pairs->is_strict)
+    if (network->running->ops->holds_bodies || !mspringi_rows_act(network, pairs) || pairs->is_strict)
         look(network, pairs);
     else if (--pairs->valid == 0)
         (void)mspringi_near_renew(network, pairs);

@@ -91,8 +91,6 @@ mspring_result mspring_network_set_solver(mspring_network *network, const msprin
     mspring_result result = mspringi_enter(network);
     if (result == MSPRING_OK)
         result = mspringi_check_solver(def, &network->message);
-    if (result == MSPRING_OK && network->pairs)
-        result = mspringi_pairs_check(def->solver, network->settings.guard, &network->message);
     if (result != MSPRING_OK)
         return result;
     const mspring_solver_def before = def_of(network);
@@ -169,8 +167,6 @@ mspring_result mspring_network_set_settings(mspring_network *network, const mspr
     result = mspringi_check_struct(&network->message, "mspring_settings", settings, sizeof *settings);
     if (result == MSPRING_OK)
         result = mspringi_check_settings(settings, &network->message);
-    if (result == MSPRING_OK && network->pairs)
-        result = mspringi_pairs_check(MSPRING_SOLVER_EXPLICIT, settings->guard, &network->message);
     if (result == MSPRING_OK)
         result = reserve_for(network, settings);
     if (result != MSPRING_OK)

@@ -54,6 +54,7 @@ struct mspringi_solver_ops {
     bool has_herds;      ///< sweeps small trees in herds
     bool can_add;        ///< springs may be added
     bool holds_grips;    ///< its substeps have grips in them, but for those of particles that are alone
+    bool holds_bodies;   ///< its substeps have contact between bodies in them
 
     // Life. create: for a network that is otherwise complete, or of which there are the layout and what springs and
     // masses are, which may be on another thread; tile_size is for one whose tiles go by plan, 0: by that of the

@@ -22,7 +22,7 @@ static void report(const char *format, double a, double c, double d) {
 }
 
 /// Bars on bars, each a little aside.
-static mspring_network *stack(bodies *b, uint32_t bars, float sleep_speed) {
+static mspring_network *stack(bodies *b, mspring_solver solver, uint32_t bars, float sleep_speed) {
     lay_ground(b, 40, -THICKNESS);
     for (uint32_t i = 0; i < bars; i++)
         (void)bodies_add(b, &(bodies_lattice){.width = 12,
@@ -32,7 +32,8 @@ static mspring_network *stack(bodies *b, uint32_t bars, float sleep_speed) {
                                               .spacing = 1,
                                               .mass = 73.4,
                                               .f = 0.5});
-    mspring_network_def def = support_def(-9.8f, 40);
+    mspring_network_def def = support_def(-9.8f, solver == MSPRING_SOLVER_EXPLICIT ? 40 : 2);
+    def.solver = solver;
     def.global_damping = 0.5f;
     def.sleep_speed = sleep_speed;
     def.sleep_time = 0.5f;
@@ -41,11 +42,10 @@ static mspring_network *stack(bodies *b, uint32_t bars, float sleep_speed) {
     return network;
 }
 
-static void stack_comes_to_rest(void **state) {
-    (void)state;
+static void rest_in_a_stack(mspring_solver solver) {
     bodies *b = bodies_begin(DT / 40);
-    mspring_network *network = stack(b, 5, 0);
-    support_steps(network, ROUNDS(1000), DT);
+    mspring_network *network = stack(b, solver, 5, 0);
+    support_steps(network, solver == MSPRING_SOLVER_EXPLICIT ? ROUNDS(1000) : 300, DT);
     double fastest = 0;
     uint32_t crossings;
     for (int i = 0; i < 20; i++) {
@@ -61,6 +61,12 @@ static void stack_comes_to_rest(void **state) {
     bodies_free(b);
 }
 
+static void stack_comes_to_rest(void **state) {
+    (void)state;
+    for (int solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++)
+        rest_in_a_stack((mspring_solver)solver);
+}
+
 static uint32_t sleepers(const mspring_network *network, const bodies *b) {
     uint8_t *asleep = calloc(b->count, 1);
     assert_non_null(asleep);
@@ -72,10 +78,9 @@ static uint32_t sleepers(const mspring_network *network, const bodies *b) {
     return count;
 }
 
-static void stack_sleeps_and_wakes_together(void **state) {
-    (void)state;
+static void sleep_in_a_stack(mspring_solver solver) {
     bodies *b = bodies_begin(DT / 40);
-    mspring_network *network = stack(b, 3, 0.05f);
+    mspring_network *network = stack(b, solver, 3, 0.05f);
     const uint32_t lowest = 40; // the first particle of the lowest bar
     uint32_t steps = 0;
     while (!mspring_network_is_asleep(network)) {
@@ -96,6 +101,12 @@ static void stack_sleeps_and_wakes_together(void **state) {
     assert_true(steps < 4000);
     mspring_network_destroy(network);
     bodies_free(b);
+}
+
+static void stack_sleeps_and_wakes_together(void **state) {
+    (void)state;
+    for (int solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++)
+        sleep_in_a_stack((mspring_solver)solver);
 }
 
 /// A block that falls asleep on the ground, and one that comes flying.
@@ -155,14 +166,15 @@ static void sleeper_takes_momentum(void **state) {
 
 /// How far a block comes in four seconds on a slope of share times what friction bears, and how fast it is then.
 /// The slope lies level, and gravity is tilted.
-static void slide(double share, double *way, double *speed) {
+static void slide(mspring_solver solver, double share, double *way, double *speed) {
     const double friction = 0.5, angle = atan(friction * share);
     bodies *b = bodies_begin(DT / 40);
     b->damping = 0.3;
     lay_ground(b, 60, -THICKNESS);
     const uint32_t first = bodies_add(
         b, &(bodies_lattice){.width = 8, .height = 3, .x = -15.3, .y = 1, .spacing = 1, .mass = 73.4, .f = 0.5});
-    const mspring_network_def def = support_def(0, 40);
+    mspring_network_def def = support_def(0, solver == MSPRING_SOLVER_EXPLICIT ? 40 : 4);
+    def.solver = solver;
     mspring_network *network = bodies_network(b, &def);
     check_ok(support_set_gravity(network, (float)(9.8 * sin(angle)), (float)(-9.8 * cos(angle))));
     check_ok(bodies_touch(network, THICKNESS, (float)friction, 0));
@@ -184,16 +196,21 @@ static void slide(double share, double *way, double *speed) {
     bodies_free(b);
 }
 
-static void block_slides_at_its_friction_angle(void **state) {
-    (void)state;
+static void slide_on_a_slope(mspring_solver solver) {
     double way, speed;
-    slide(0.95, &way, &speed);
+    slide(solver, 0.95, &way, &speed);
     report("slope 0.95: %.4f m, %.4f m/s%.0f\n", way, speed, 0);
     assert_true(fabs(way) < 0.01);
-    slide(1.05, &way, &speed);
+    slide(solver, 1.05, &way, &speed);
     const double angle = atan(0.5 * 1.05), expected = 4 * 9.8 * (sin(angle) - 0.5 * cos(angle));
     report("slope 1.05: %.4f m, %.4f m/s of %.4f\n", way, speed, expected);
     check_near(speed, expected, 0.05 * expected);
+}
+
+static void block_slides_at_its_friction_angle(void **state) {
+    (void)state;
+    for (int solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++)
+        slide_on_a_slope((mspring_solver)solver);
 }
 
 /* -------------------------------------------------------------------------------------------------- bounce */

@@ -255,6 +255,16 @@ static mspring_network *colliders(mspring_network_def *def) {
     return network;
 }
 
+static mspring_network *implicit_contact(mspring_network_def *def) {
+    def->solver = MSPRING_SOLVER_IMPLICIT;
+    return colliders(def);
+}
+
+static mspring_network *direct_contact(mspring_network_def *def) {
+    def->solver = MSPRING_SOLVER_DIRECT;
+    return colliders(def);
+}
+
 static void move_colliders(mspring_network *network, uint32_t step) {
     const double swing = step % 64 < 32 ? step % 32 / 8.0 : 4 - step % 32 / 8.0;
     check_ok(mspring_network_move_collider(network, 1, -3, 5, (step + 1) / 16.0));
@@ -284,6 +294,8 @@ const golden_scene golden_scenes[] = {
     {"precise_everything", precise_everything, push_some, 4, 100, 1.0 / 64},
     {"contact", contact, NULL, 20, 160, 1.0 / 64},
     {"colliders", colliders, move_colliders, 20, 160, 1.0 / 64},
+    {"implicit_contact", implicit_contact, move_colliders, 2, 80, 1.0 / 64},
+    {"direct_contact", direct_contact, move_colliders, 2, 80, 1.0 / 64},
 };
 const uint32_t golden_scene_count = COUNT_OF(golden_scenes);
 

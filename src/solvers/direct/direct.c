@@ -375,6 +375,10 @@ static bool solve_in_single(mspring_network *network) {
            MSPRING_NONE;
 }
 
+static void solve_more_in_single(const mspring_network *network, mspringi_field field) {
+    mspringi_cholesky_float_solve(&mspringi_implicit_of(network)->direct.single, field.x, field.y);
+}
+
 /* ------------------------------------------------------------------------------------------- double precision */
 
 // As mspringi_edges_fn, whatever the springs of a block join.
@@ -454,6 +458,21 @@ static bool solve_in_double(mspring_network *network) {
     return false;
 }
 
+static void solve_more_in_double(const mspring_network *network, mspringi_field field) {
+    mspringi_direct *d = &mspringi_implicit_of(network)->direct;
+    const size_t slots = mspringi_slot_count(network);
+    double *const x = d->solution, *const y = x + slots + 1;
+    for (size_t i = 0; i < slots; ++i) {
+        x[i] = (double)field.x[i];
+        y[i] = (double)field.y[i];
+    }
+    mspringi_cholesky_double_solve(&d->twice, x, y);
+    for (size_t i = 0; i < slots; ++i) {
+        field.x[i] = (float)x[i];
+        field.y[i] = (float)y[i];
+    }
+}
+
 /* --------------------------------------------------------------------------------------------------- the whole */
 
 static void hold_pinned(const mspringi_implicit *n, size_t slots) {
@@ -467,7 +486,8 @@ void mspringi_direct_solve(mspring_network *network) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const size_t slots = mspringi_slot_count(network);
     const bool is_soft = finish_diagonal(&n->system, slots);
-    if (!(is_soft && solve_in_single(network)) && !solve_in_double(network)) {
+    const bool in_single = is_soft && solve_in_single(network);
+    if (!in_single && !solve_in_double(network)) {
         // Numbers overflowed: see to it that the step is refused.
         mspring_id named = 0;
         while (!mspringi_particle_exists(network, named))
@@ -476,4 +496,5 @@ void mspringi_direct_solve(mspring_network *network) {
         return;
     }
     hold_pinned(n, slots);
+    mspringi_direct_hold_bodies(network, in_single ? solve_more_in_single : solve_more_in_double);
 }

@@ -36,6 +36,9 @@ typedef struct mspringi_direct {
     double *solution;                   ///< [slots + 1] x, then y
 } mspringi_direct;
 
+/// Solve with the factor that there is: what was the right-hand side is the solution.
+typedef void (*mspringi_solve_fn)(const mspring_network *network, mspringi_field field);
+
 /// One that is being made.
 typedef struct mspringi_direct_making {
     mspring_network *network;
@@ -59,6 +62,8 @@ void mspringi_direct_relocate(mspringi_direct *direct, const mspringi_memory *fr
 
 /// Solve the system that mspringi_assemble() has left in the network's implicit solver.
 void mspringi_direct_solve(mspring_network *network);
+/// Add to its solution what rows between bodies do; see touching.c.
+void mspringi_direct_hold_bodies(mspring_network *network, mspringi_solve_fn solve);
 #else // no table of solvers leads here
 static inline void mspringi_direct_begin(mspringi_direct_making *making, mspringi_direct *direct,
                                          mspring_network *network) {

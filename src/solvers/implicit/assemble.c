@@ -247,13 +247,15 @@ double mspringi_multiply(const mspringi_substep_of *substep, mspringi_mate *mate
     mspringi_implicit *n = mspringi_implicit_of(network);
     multiply_panels(network, mate);
     mspringi_meet(mate);
-    const bool has_terms = (network->floor && network->floor->contact_count > 0) || network->grips.count > 0;
+    const bool has_terms = (network->floor && network->floor->contact_count > 0) || network->grips.count > 0 ||
+                           mspringi_bodies_are_near(network);
     const bool has_others = network->topology.web_blocks > 0 || network->topology.leftover_count > 0 || has_terms;
     if (has_others) {
         if (mate->index == 0)
             n->leftover_product = multiply_leftover(network, n->direction, n->product) +
                                   mspringi_floor_multiply(network, n->direction, n->product) +
-                                  mspringi_grips_multiply(network, n->direction, n->product);
+                                  mspringi_grips_multiply(network, n->direction, n->product) +
+                                  mspringi_bodies_multiply(network, n->direction, n->product);
         mspringi_meet(mate);
     }
     double sum = has_others ? n->leftover_product : 0.0;

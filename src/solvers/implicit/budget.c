@@ -97,7 +97,7 @@ static void begin_account(const mspring_network *network, account *a) {
     for (size_t i = 0; i < 4; ++i)
         a->origin[i] = (double)state[i][a->first_slot];
     a->is_asleep = mspringi_slot_is_asleep(network, a->first_slot);
-    a->is_driven = a->is_stopped = a->is_held = false;
+    a->is_driven = a->is_stopped = a->is_held = a->is_touched = false;
     a->frame_x = a->frame_y = 0.0;
     a->frame_pin = MSPRING_NONE;
 }
@@ -244,7 +244,10 @@ static void judge_free(const mspring_network *network, account *a, const centre 
     a->turned = c->inertia > 0.0 ? 0.25 * o->h * (a->spin + spin) / c->inertia : 0.0;
     a->is_free = true;
     aim(a, c, vx - a->origin[2], vy - a->origin[3], turn);
-    fly(a, c, 0.5 * o->h * (a->origin[2] + a->vx + vx), 0.5 * o->h * (a->origin[3] + a->vy + vy));
+    // What another body gave it acts from the beginning of the substep on.
+    const double before = a->is_touched ? 0.0 : 0.5, after = 1.0 - before;
+    fly(a, c, o->h * (before * (a->origin[2] + a->vx) + after * vx),
+        o->h * (before * (a->origin[3] + a->vy) + after * vy));
 }
 
 static void judge_held(const mspring_network *network, account *a, const centre *c, double h) {

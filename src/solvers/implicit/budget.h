@@ -68,6 +68,7 @@ typedef struct mspringi_account {
     uint32_t first_slot;
     bool is_pinned, is_driven, is_asleep; ///< driven: its pinned particles do not all move alike
     bool is_held;                         ///< by a grip
+    bool is_touched;                      ///< by another body
     bool exceeds;                         ///< its springs alone have too much energy
     bool gains;                           ///< springs and velocities together have much too much
     double origin[4];                     ///< x, y, vx, vy of its first slot before the substep

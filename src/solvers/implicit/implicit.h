@@ -39,6 +39,10 @@ typedef struct mspringi_history {
     uint32_t restarts;     ///< substeps to come that are of implicit Euler, as there is none or it says nothing
 } mspringi_history;
 
+/// How contact between bodies acts in a substep: with friction; without, where friction and what presses bodies
+/// together would raise each other; after the substep alone, by impulses.
+typedef enum mspringi_holding { MSPRINGI_HOLD_ALL, MSPRINGI_HOLD_ACROSS, MSPRINGI_HOLD_AFTER } mspringi_holding;
+
 typedef struct mspringi_implicit {
     mspring_integrator integrator;
     uint32_t iterations, coarse_period;
@@ -77,6 +81,7 @@ typedef struct mspringi_implicit {
                                         ///< or motion is not to be followed as the integrator would
     bool hits_floor;                    ///< it is to be begun again, as one of implicit Euler
     bool again;                         ///< it is to be solved again, as floor or grips hold particles otherwise
+    mspringi_holding holding;           ///< how rows between bodies hold in the present substep
     bool is_piece;                      ///< it is a half of one that got energy from nowhere, or of such a half
     mspringi_system system;
     mspringi_iterate iterate;

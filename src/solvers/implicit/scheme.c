@@ -26,6 +26,7 @@
 /// flight, but the histories, which do not know of it, would make the whole first order.
 #include "contact/floor.h"
 #include "solvers/implicit/implicit.h"
+#include "solvers/implicit/terms.h"
 
 mspringi_scheme mspringi_scheme_of(mspring_integrator integrator) {
     switch (integrator) {
@@ -222,7 +223,8 @@ static void land_loose(const mspring_network *network, mspringi_slots slots) {
 // done at once. (Up to a hundredth of their momentum was, where iterations end early.) Above a floor they fly.
 static void land_broken_off(const mspring_network *network, mspringi_slots slots, float alpha) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
-    if (n->is_direct || network->floor || !n->budget.has_alone || !(alpha - alpha == 0.0f))
+    if (n->is_direct || network->floor || !n->budget.has_alone || !(alpha - alpha == 0.0f) ||
+        mspringi_bodies_are_held(network))
         return;
     const size_t loose = (size_t)network->topology.loose_first * MSPRINGI_WIDTH;
     for (size_t i = slots.first; i < slots.end && i < loose; ++i) {

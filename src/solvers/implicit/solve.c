@@ -21,6 +21,10 @@ typedef mspringi_substep_of substep_of;
 /// iteration.
 #define LEAST_PRODUCT 1e-30
 
+/// The same where rows join bodies, and so many times the usual iterations at most.
+#define LEAST_PRODUCT_WITH_ROWS 1e-9
+#define TIMES_WITH_ROWS 16
+
 /* ------------------------------------------------------------------------------------------------- coarse space */
 
 static mspringi_coarse_parts coarse_parts(const mspring_network *network) {
@@ -149,7 +153,9 @@ float mspringi_solve(const substep_of *substep, mspringi_mate *mate) {
     // Contacts are far stiffer than all else: with the usual iterations a bar on the floor trembles, at 0.01 m/s.
     // And what a substep is in pieces for may be that iterations end too early.
     const bool has_contacts = network->floor && network->floor->contact_count > 0;
-    const uint32_t times = has_contacts || n->is_piece ? 2 : 1;
+    // Rows that join bodies are not in the coarse matrix: each is found by an iteration or two.
+    const bool has_rows = mspringi_bodies_are_held(network);
+    const uint32_t times = has_rows ? TIMES_WITH_ROWS : has_contacts || n->is_piece ? 2 : 1;
     uint32_t left = times * n->iterations;
     invert(network, mspringi_slots_of(network, mate));
     assemble_coarse(network, mate);
@@ -158,7 +164,7 @@ float mspringi_solve(const substep_of *substep, mspringi_mate *mate) {
     double product = tiles_first ? solve_tiles(substep, mate) : begin_anew(substep, mate);
     left -= tiles_first;
     product += correct(substep, mate, !tiles_first);
-    const double least = LEAST_PRODUCT * product;
+    const double least = (has_rows ? LEAST_PRODUCT_WITH_ROWS : LEAST_PRODUCT) * product;
     turn(substep, mate, MSPRINGI_TURN_AFRESH, 0.0f);
     for (;;) {
         const double curvature = mspringi_multiply(substep, mate);

@@ -35,8 +35,9 @@ static float solve(const mspringi_substep_of *substep, mspringi_mate *mate) {
     return 0.0f;
 }
 
-// Most times that a substep is solved to find out which particles the floor holds.
+// Most times that a substep is solved to find out which particles the floor holds, and which rows of bodies do.
 #define MOST_PASSES 4
+#define MOST_PASSES_OF_BODIES 16
 
 // Add what floor and grips add. Returns false if particles hit the floor.
 static bool add_terms(const mspringi_substep_of *substep, uint32_t pass) {
@@ -44,20 +45,30 @@ static bool add_terms(const mspringi_substep_of *substep, uint32_t pass) {
     if (network->floor && !mspringi_floor_add_terms(network, substep->h, pass))
         return false;
     mspringi_grips_add_terms(network, substep->h, pass);
+    mspringi_bodies_add_terms(network, substep->h);
     return true;
+}
+
+// Whether a substep in which something hits is one of another integrator than it should be.
+static bool must_begin_anew(const mspringi_implicit *n) {
+    return !n->is_hit && n->integrator != MSPRING_INTEGRATOR_EULER;
 }
 
 // Returns whether other particles are to be held than were, or otherwise.
 static bool review_terms(mspring_network *network, float alpha, uint32_t pass) {
+    mspringi_implicit *n = mspringi_implicit_of(network);
     const bool by_floor = network->floor && mspringi_floor_review(network, alpha, pass);
-    return mspringi_grips_review(network, alpha) || by_floor;
+    const bool by_bodies = mspringi_bodies_review(network, alpha, pass);
+    n->hits_floor = by_bodies && must_begin_anew(n) && mspringi_bodies_are_held(network);
+    return mspringi_grips_review(network, alpha) || by_floor || by_bodies;
 }
 
 // Solve with what floor and grips add. Returns false if the substep is to be begun anew.
 static bool solve_with_terms(const mspringi_substep_of *substep, mspringi_mate *mate, float *alpha) {
     mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
-    for (uint32_t pass = 0; pass < MOST_PASSES; ++pass) {
+    const uint32_t passes = mspringi_bodies_are_near(network) ? MOST_PASSES_OF_BODIES : MOST_PASSES;
+    for (uint32_t pass = 0; pass < passes; ++pass) {
         if (pass > 0) {
             mspringi_predict(substep, mate);
             mspringi_assemble(substep, mate);
@@ -73,9 +84,14 @@ static bool solve_with_terms(const mspringi_substep_of *substep, mspringi_mate *
         if (mate->index == 0)
             n->again = review_terms(network, *alpha, pass);
         mspringi_meet(mate);
+        if (n->hits_floor)
+            return false;
         if (!n->again)
             break;
     }
+    if (mate->index == 0)
+        mspringi_bodies_hand_on(network, substep->h);
+    mspringi_meet(mate);
     return true;
 }
 
@@ -87,7 +103,8 @@ static void run_share(void *argument, uint32_t index, uint32_t worker) {
     mspringi_predict(substep, &mate);
     mspringi_assemble(substep, &mate);
     float alpha = 0.0f;
-    if (!substep->network->floor && substep->network->grips.count == 0)
+    if (!substep->network->floor && substep->network->grips.count == 0 &&
+        !mspringi_bodies_are_near(substep->network))
         alpha = solve(substep, &mate);
     else if (!solve_with_terms(substep, &mate, &alpha))
         return;
@@ -127,7 +144,8 @@ static void run_substep(mspringi_substep_of *substep, bool is_piece) {
     const uint32_t sleeps = mspringi_tasks_sleeps(network->tasks);
     choose_team(substep);
     n->is_piece = is_piece;
-    n->is_hit = n->hits_floor = false;
+    n->is_hit = mspringi_bodies_begin(network, substep->h);
+    n->hits_floor = false;
     run_team(substep);
     if (n->hits_floor) {
         n->is_hit = true;
@@ -141,6 +159,7 @@ static void run_substep(mspringi_substep_of *substep, bool is_piece) {
     n->age = n->age + 1 < n->coarse_period ? n->age + 1 : 0;
     if (network->floor)
         mspringi_floor_touch_all(network, substep->h);
+    mspringi_bodies_mend(network, substep->h);
 }
 
 static void take_halves(mspringi_substep_of *substep, uint32_t halvings);
@@ -150,21 +169,30 @@ static void take_halves(mspringi_substep_of *substep, uint32_t halvings);
 static void take_substep(mspringi_substep_of *substep, uint32_t tries) {
     mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
-    if (substep->watches)
+    const bool watches = substep->watches || mspringi_bodies_are_near(network);
+    const bool may_halve = tries <= MSPRINGI_MOST_HALVINGS;
+    if (tries == 0)
+        n->holding = MSPRINGI_HOLD_ALL;
+    if (watches)
         mspringi_budget_open(network);
     else
         n->budget.knows_elastic = false;
     run_substep(substep, tries > 0);
-    if (!substep->watches ||
-        mspringi_budget_close(network, substep->h, substep->base, tries <= MSPRINGI_MOST_HALVINGS)) {
+    const bool is_sound = mspringi_bodies_are_sound(network, substep->h);
+    const bool is_last = !may_halve && (is_sound || n->holding == MSPRINGI_HOLD_AFTER);
+    if (!watches || ((is_sound || is_last) &&
+                     mspringi_budget_close(network, substep->h, substep->base, may_halve))) {
         mspringi_grips_pass(network, substep->h);
+        mspringi_bodies_pass(network, substep->h);
         return;
     }
     mspringi_budget_undo(network);
     n->history.restarts = MSPRINGI_CALM_SUBSTEPS;
     n->age = 0;
-    if (tries == 0)
-        take_substep(substep, 1);
+    if (!is_sound)
+        n->holding = may_halve ? MSPRINGI_HOLD_ACROSS : MSPRINGI_HOLD_AFTER;
+    if (tries == 0 || !may_halve)
+        take_substep(substep, tries + (tries == 0));
     else
         take_halves(substep, tries + 1);
 }
@@ -183,18 +211,23 @@ static void take_halves(mspringi_substep_of *substep, uint32_t tries) {
     substep->h = h;
 }
 
-// Where particles would hit the floor hard, a substep is taken in pieces.
+// Where particles would hit the floor or other bodies hard, a substep is taken in pieces.
 static void take_pieces(mspringi_substep_of *substep) {
     mspring_network *network = substep->network;
     const float h = substep->h;
-    mspringi_floor_keep(network, h);
-    const uint32_t pieces = mspringi_floor_pieces(network, h);
+    const bool has_floor = network->floor != NULL;
+    if (has_floor)
+        mspringi_floor_keep(network, h);
+    const uint32_t by_floor = has_floor ? mspringi_floor_pieces(network, h) : 1;
+    const uint32_t by_bodies = mspringi_bodies_pieces(network, h);
+    const uint32_t pieces = by_floor > by_bodies ? by_floor : by_bodies;
     substep->h = h / (float)pieces;
     for (uint32_t i = 0; i < pieces; ++i) {
-        if (pieces > 1)
+        if (pieces > 1 && has_floor)
             mspringi_floor_keep(network, substep->h);
         take_substep(substep, 0);
-        mspringi_floor_brake_all(network, substep->h);
+        if (has_floor)
+            mspringi_floor_brake_all(network, substep->h);
     }
     substep->h = h;
 }
@@ -207,11 +240,13 @@ void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_fiel
     mspringi_substep_of substep = {
         .network = network, .base = base, .h = h, .watches = mspringi_guard_looks(network->settings.guard)};
     for (uint32_t i = 0; i < count; ++i) {
-        if (network->floor)
+        if (network->floor || mspringi_bodies_are_near(network))
             take_pieces(&substep);
         else
             take_substep(&substep, 0);
     }
-    if (network->floor)
-        mspringi_floor_fly_alone(network, h, base, count);
+    if (!network->floor)
+        return;
+    mspringi_floor_fly_alone(network, h, base, count);
+    mspringi_bodies_fly(network);
 }

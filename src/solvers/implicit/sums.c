@@ -223,6 +223,7 @@ void mspringi_budget_measure(measuring *all) {
     if (all->is_after) {
         add_contacts(network);
         mspringi_grips_account(all);
+        mspringi_bodies_account(all);
     }
     if (!all->knows_elastic)
         add_springs(all);

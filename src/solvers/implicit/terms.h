@@ -1,15 +1,17 @@
 /// @file terms.h
-/// The floor and grips in the linear system of an implicit substep. Those of the floor that take a const network do
+/// The floor, grips and contact between bodies in the linear system of an implicit substep. Those of the floor that take a const network do
 /// nothing without a floor, and those of grips nothing without grips.
 ///
 ///   terms.c      the floor
 ///   held.c       grips
+///   bodies.c     contact between bodies
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_TERMS_H
 #define MSPRINGI_TERMS_H
 
 #include "contact/floor.h"
+#include "contact/pairs.h"
 #include "solvers/implicit/budget.h"
 #include "solvers/implicit/implicit.h"
 
@@ -43,5 +45,37 @@ bool mspringi_grips_review(mspring_network *network, float alpha);
 void mspringi_grips_pass(mspring_network *network, float h);
 /// Add what they have given to components to the sums after a substep.
 void mspringi_grips_account(const mspringi_measuring *all);
+
+/// Of contact between bodies: whether any may touch in this substep.
+static inline bool mspringi_bodies_are_near(const mspring_network *network) {
+    return network->pairs && network->pairs->quiet == 0;
+}
+/// Before a substep of h, or a piece of one: make its rows. Returns whether any holds. How
+/// many pieces it is better divided into.
+bool mspringi_bodies_begin(mspring_network *network, float h);
+uint32_t mspringi_bodies_pieces(mspring_network *network, float h);
+/// Add them to the system and to a product; whether any holds; look at the solution.
+void mspringi_bodies_add_terms(mspring_network *network, float h);
+double mspringi_bodies_multiply(const mspring_network *network, mspringi_field from, mspringi_field to);
+bool mspringi_bodies_are_held(const mspring_network *network);
+bool mspringi_bodies_review(mspring_network *network, float alpha, uint32_t pass);
+/// The last solution is it: keep impulses, and give particles without springs theirs.
+void mspringi_bodies_hand_on(mspring_network *network, float h);
+/// After a substep: push apart what is too deep still.
+void mspringi_bodies_mend(const mspring_network *network, float h);
+/// Whether contact only pushed, and gave no energy.
+bool mspringi_bodies_are_sound(const mspring_network *network, float h);
+/// Once it has been taken for good: count what was given; and what particles got that fly past the floor since.
+void mspringi_bodies_pass(mspring_network *network, float h);
+void mspringi_bodies_fly(const mspring_network *network);
+/// Add what components were given to the sums after a substep.
+void mspringi_bodies_account(const mspringi_measuring *all);
+
+/// Whether friction holds a row; what a field comes to along it; a force along it, added to a field.
+bool mspringi_row_sticks(const mspringi_row_hold *hold);
+double mspringi_bodies_gather(const mspring_network *network, mspringi_row_hold *hold, double (*shares)[2],
+                              mspringi_field field);
+void mspringi_bodies_spread(const mspring_network *network, mspringi_row_hold *hold, double (*shares)[2],
+                            double force, mspringi_field to);
 
 #endif

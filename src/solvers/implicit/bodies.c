@@ -1,0 +1,508 @@
+/// Contact between bodies in the linear system of an implicit substep.
+///
+/// A row is what contact/rows.c makes of a point that is near an edge: directions and shares of the start of the
+/// substep. What is nearer at its end than the thickness is held apart by a spring across, and by one along as long
+/// as friction bears that. They join two bodies, so they are added to products of the matrix, or to the solution of
+/// its factor, and to the blocks on its diagonal. Which rows hold is found by solving again, as of the floor: what
+/// pulls is let go. The springs are about as stiff as the network is at the row, so that iterations find them, and
+/// give way by about as much as it does. If a row gives way by more, impulses after the substep mend it.
+///
+/// A particle without springs is no unknown of the system. What it hits feels its mass: a row that it is in gives
+/// way like a spring and a mass in a line.
+///
+/// A substep in which bodies touch is one of implicit Euler, and so is the next: see terms.c.
+#include <math.h>
+
+#include "base/cpu.h"
+#include "contact/pairs.h"
+#include "solvers/implicit/terms.h"
+
+/// Stiffness of a row, in that of the network at it and its own inertia.
+#define PENALTY 4.0
+
+/// Times that a substep is solved before rows are only added, and not let go or made to slide.
+#define FREE_PASSES 12
+
+/// Change of a normal force, as a part of it, that friction is worth another solution for.
+#define SAME_FORCE 0.1
+
+/// Depth that says nothing, and depth that is mended after the substep, as shares of the thickness.
+#define UNSEEN_SHARE 1e-6
+#define MENDED_SHARE 0.02
+
+/// Work of contact, and pull, that may be rounding, as shares of the largest work and push.
+#define GIVEN_SHARE 1e-3
+
+/// Times that all rows are mended.
+#define MOST_MENDING_SWEEPS 32
+
+/// Nothing in a row moves further than this share of the thickness in a piece of a substep; so many pieces at most.
+#define PIECE_SHARE 1.0
+#define MOST_PIECES 40u
+
+typedef mspringi_row_hold hold;
+
+static mspringi_pairs *pairs_of(const mspring_network *network) {
+    return network->pairs && network->pairs->quiet == 0 ? network->pairs : NULL;
+}
+
+// The rows of the present substep; 0 of those that have none.
+static uint32_t count_of(const mspring_network *network) {
+    const mspringi_pairs *pairs = network->pairs;
+    return pairs && pairs->quiet == 0 ? pairs->touch_count : 0;
+}
+
+static uint32_t node_of(const mspringi_touch *t, int i) {
+    return i == 0 ? t->p : i == 1 ? t->a : t->b;
+}
+
+static uint32_t slot_of(const mspring_network *network, uint32_t node) {
+    return network->topology.slot_of_particle[network->pairs->active.particles[node]];
+}
+
+// Whether a particle is alone in the loose row: its row of the system is its mass.
+static bool flies(const mspring_network *network, size_t slot) {
+    return slot >= (size_t)network->topology.loose_first * MSPRINGI_WIDTH &&
+           !mspringi_is_solved(network, mspringi_implicit_of(network), slot);
+}
+
+/* -------------------------------------------------------------------------------------------------------- rows */
+
+static void share_forces(const mspring_network *network, const mspringi_touch *t, hold *to) {
+    const mspringi_active *k = &network->pairs->active;
+    const double shares[] = {1.0, -t->share_a, -t->share_b};
+    const double along[3][2] = {{-t->ny, t->nx}, {t->ax, t->ay}, {t->bx, t->by}};
+    for (int i = 0; i < 3; ++i) {
+        const uint32_t node = node_of(t, i);
+        to->slots[i] = k->weight[node] > 0.0 ? slot_of(network, node) : MSPRING_NONE;
+        to->across[i][0] = shares[i] * t->nx;
+        to->across[i][1] = shares[i] * t->ny;
+        to->along[i][0] = along[i][0];
+        to->along[i][1] = along[i][1];
+    }
+}
+
+static double product(double (*shares)[2], double (*vectors)[2]) {
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i)
+        sum += shares[i][0] * vectors[i][0] + shares[i][1] * vectors[i][1];
+    return sum;
+}
+
+// Where a row would be at the end without springs and contact.
+static void begin_row(const mspring_network *network, const mspringi_touch *t, double h, hold *to) {
+    const mspringi_pairs *pairs = network->pairs;
+    const mspringi_active *k = &pairs->active;
+    double way[3][2];
+    const bool is_slick = t->slide_mass == 0.0 || mspringi_implicit_of(network)->holding != MSPRINGI_HOLD_ALL;
+    *to = (hold){.friction = is_slick                      ? 0.0
+                             : t->collider == MSPRING_NONE ? pairs->friction
+                                                           : pairs->colliders.list[t->collider].friction};
+    share_forces(network, t, to);
+    for (int i = 0; i < 3; ++i) {
+        const uint32_t node = node_of(t, i);
+        const double fall = to->slots[i] == MSPRING_NONE ? 0.0 : h * h;
+        way[i][0] = h * k->from_vx[node] + fall * (double)network->settings.gravity_x;
+        way[i][1] = h * k->from_vy[node] + fall * (double)network->settings.gravity_y;
+    }
+    to->spare = t->gap > 0.0 ? t->gap + h * t->target : 0.0;
+    to->is_active = product(to->across, way) - h * t->target + to->spare < 0.0;
+}
+
+bool mspringi_bodies_begin(mspring_network *network, float h) {
+    mspringi_pairs *pairs = pairs_of(network);
+    bool any = false;
+    if (!pairs)
+        return false;
+    mspringi_rows_note(network, pairs);
+    for (uint32_t i = pairs->active.own; i < pairs->active.count; ++i) {
+        pairs->active.x[i] += pairs->passed * pairs->active.vx[i];
+        pairs->active.y[i] += pairs->passed * pairs->active.vy[i];
+    }
+    (void)mspringi_rows_prepare(network, pairs, (double)h);
+    for (uint32_t i = 0; i < pairs->touch_count; ++i) {
+        begin_row(network, &pairs->touches[i], (double)h, &pairs->holds[i]);
+        pairs->holds[i].is_active &= mspringi_implicit_of(network)->holding != MSPRINGI_HOLD_AFTER;
+        any |= pairs->holds[i].is_active;
+    }
+    return any;
+}
+
+uint32_t mspringi_bodies_pieces(mspring_network *network, float h) {
+    mspringi_pairs *pairs = pairs_of(network);
+    if (!pairs)
+        return 1;
+    mspringi_rows_note(network, pairs);
+    const double fastest = mspringi_rows_prepare(network, pairs, (double)h);
+    const double pieces = 1.0 + (double)h * fastest / (PIECE_SHARE * pairs->thickness);
+    return pieces < (double)MOST_PIECES ? (uint32_t)pieces : MOST_PIECES;
+}
+
+/* --------------------------------------------------------------------------------------------------- the terms */
+
+// How far a node comes without its springs.
+static void predict(const mspring_network *network, hold *c, const mspringi_touch *t, int i, double h,
+                    double way[2]) {
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    const mspringi_active *k = &network->pairs->active;
+    const uint32_t node = node_of(t, i), slot = c->slots[i];
+    if (slot == MSPRING_NONE) {
+        way[0] = h * k->from_vx[node];
+        way[1] = h * k->from_vy[node];
+        return;
+    }
+    way[0] = n->x[slot] - k->x[node];
+    way[1] = n->y[slot] - k->y[node];
+    if (flies(network, slot)) {
+        way[0] += (double)n->residual.x[slot] / (double)n->mass[slot];
+        way[1] += (double)n->residual.y[slot] / (double)n->mass[slot];
+    }
+}
+
+// What a row holds with: springs in a line with how stiff the network is at each end.
+static double stiffness_of(const mspring_network *network, hold *c, double (*shares)[2]) {
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    double give = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        const uint32_t slot = c->slots[i];
+        if (slot == MSPRING_NONE)
+            continue;
+        const double square = shares[i][0] * shares[i][0] + shares[i][1] * shares[i][1];
+        const double mass = (double)n->mass[slot];
+        const double own = mass + (double)n->system.xx[slot] + (double)n->system.yy[slot];
+        give += flies(network, slot) ? square / mass : square / (PENALTY * own);
+    }
+    return give > 0.0 ? 1.0 / give : 0.0;
+}
+
+static void predict_row(const mspring_network *network, const mspringi_touch *t, double h, hold *c) {
+    const mspringi_pairs *pairs = network->pairs;
+    double way[3][2];
+    for (int i = 0; i < 3; ++i)
+        predict(network, c, t, i, h, way[i]);
+    c->gap = product(c->across, way) - h * t->target;
+    c->ahead = product(c->along, way);
+    if (t->collider != MSPRING_NONE)
+        c->ahead += h * mspringi_collider_drag(pairs, t);
+    c->stiffness = stiffness_of(network, c, c->across);
+    c->grip = stiffness_of(network, c, c->along);
+}
+
+// Add what a row along some shares does to the system.
+static void add_row(mspring_network *network, hold *c, double (*shares)[2], double stiffness, double force) {
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    for (int i = 0; i < 3; ++i) {
+        const uint32_t slot = c->slots[i];
+        if (slot == MSPRING_NONE || flies(network, slot))
+            continue;
+        const double x = shares[i][0], y = shares[i][1];
+        n->residual.x[slot] += (float)(force * x);
+        n->residual.y[slot] += (float)(force * y);
+        if (n->is_direct)
+            continue;
+        n->system.xx[slot] += (float)(stiffness * x * x);
+        n->system.xy[slot] += (float)(stiffness * x * y);
+        n->system.yy[slot] += (float)(stiffness * y * y);
+    }
+}
+
+bool mspringi_row_sticks(const hold *c) {
+    return c->is_active && c->slip == 0.0 && c->friction > 0.0;
+}
+
+// The factor of the direct solver has no rows: it solves for their forces.
+void mspringi_bodies_add_terms(mspring_network *network, float h) {
+    const uint32_t count = count_of(network);
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    for (uint32_t i = 0; i < count; ++i)
+        predict_row(network, &network->pairs->touches[i], (double)h, &network->pairs->holds[i]);
+    for (uint32_t i = 0; i < count; ++i) {
+        hold *c = &network->pairs->holds[i];
+        if (c->is_active && !n->is_direct)
+            add_row(network, c, c->across, c->stiffness, -c->stiffness * c->gap);
+        if (mspringi_row_sticks(c) && !n->is_direct)
+            add_row(network, c, c->along, c->grip, -c->grip * c->ahead);
+        else if (c->is_active && c->slip != 0.0)
+            add_row(network, c, c->along, 0.0, -c->friction * c->slip * c->normal);
+    }
+}
+
+double mspringi_bodies_gather(const mspring_network *network, hold *c, double (*shares)[2], mspringi_field field) {
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i)
+        if (c->slots[i] != MSPRING_NONE && !flies(network, c->slots[i]))
+            sum += shares[i][0] * (double)field.x[c->slots[i]] + shares[i][1] * (double)field.y[c->slots[i]];
+    return sum;
+}
+
+void mspringi_bodies_spread(const mspring_network *network, hold *c, double (*shares)[2], double force,
+                            mspringi_field to) {
+    for (int i = 0; i < 3; ++i) {
+        if (c->slots[i] == MSPRING_NONE || flies(network, c->slots[i]))
+            continue;
+        to.x[c->slots[i]] += (float)(shares[i][0] * force);
+        to.y[c->slots[i]] += (float)(shares[i][1] * force);
+    }
+}
+
+double mspringi_bodies_multiply(const mspring_network *network, mspringi_field from, mspringi_field to) {
+    const uint32_t count = count_of(network);
+    double sum = 0.0;
+    for (uint32_t i = 0; i < count; ++i) {
+        hold *c = &network->pairs->holds[i];
+        if (!c->is_active)
+            continue;
+        const double way = mspringi_bodies_gather(network, c, c->across, from);
+        mspringi_bodies_spread(network, c, c->across, c->stiffness * way, to);
+        sum += c->stiffness * way * way;
+        if (!mspringi_row_sticks(c))
+            continue;
+        const double slide = mspringi_bodies_gather(network, c, c->along, from);
+        mspringi_bodies_spread(network, c, c->along, c->grip * slide, to);
+        sum += c->grip * slide * slide;
+    }
+    return sum;
+}
+
+bool mspringi_bodies_are_held(const mspring_network *network) {
+    const uint32_t count = count_of(network);
+    bool any = false;
+    for (uint32_t i = 0; i < count; ++i)
+        any |= network->pairs->holds[i].is_active;
+    return any;
+}
+
+/* -------------------------------------------------------------------------------------------------- the review */
+
+// Where a row came to. Of the direct solver displacement is all of it.
+static double end_of(const mspring_network *network, hold *c, double (*shares)[2], float alpha) {
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    const double way = mspringi_bodies_gather(network, c, shares, n->displacement);
+    return n->is_direct ? way : way + (double)alpha * mspringi_bodies_gather(network, c, shares, n->direction);
+}
+
+// Look at what a row came to. Returns whether that is other than what was assumed.
+static bool review(const mspring_network *network, hold *c, float alpha, bool is_free) {
+    const double end = c->gap + end_of(network, c, c->across, alpha), before = c->normal, slipped = c->slip;
+    const bool was_active = c->is_active;
+    c->normal = was_active ? -c->stiffness * end : 0.0;
+    c->is_active = was_active ? end <= 0.0 || !is_free : end + c->spare < -UNSEEN_SHARE * network->pairs->thickness;
+    c->braked = 0.0;
+    if (c->friction == 0.0 || !was_active)
+        return c->is_active != was_active;
+    const double ahead = c->ahead + end_of(network, c, c->along, alpha), needed = -c->grip * ahead;
+    const double most = c->friction * (c->normal > 0.0 ? c->normal : 0.0);
+    c->braked = slipped != 0.0 ? -c->friction * slipped * before : needed;
+    if (is_free && slipped == 0.0 && fabs(needed) > most)
+        c->slip = needed < 0.0 ? 1.0 : -1.0;
+    else if (is_free && slipped * ahead < 0.0)
+        c->slip = 0.0;
+    const bool other_force = is_free && c->slip != 0.0 && fabs(c->normal - before) > SAME_FORCE * fabs(c->normal);
+    return c->is_active != was_active || (c->is_active && (c->slip != slipped || other_force));
+}
+
+bool mspringi_bodies_review(mspring_network *network, float alpha, uint32_t pass) {
+    const uint32_t count = count_of(network);
+    bool again = false;
+    if (mspringi_implicit_of(network)->holding == MSPRINGI_HOLD_AFTER)
+        return false;
+    for (uint32_t i = 0; i < count; ++i)
+        again |= review(network, &network->pairs->holds[i], alpha, pass < FREE_PASSES);
+    return again;
+}
+
+void mspringi_bodies_hand_on(mspring_network *network, float h) {
+    mspringi_pairs *pairs = network->pairs;
+    const uint32_t count = count_of(network);
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    const double per_force = (double)h / n->system.force_scale;
+    for (uint32_t i = 0; i < count; ++i) {
+        hold *c = &pairs->holds[i];
+        mspringi_touch *t = &pairs->touches[i];
+        t->across = c->normal * per_force;
+        t->along = c->braked * per_force;
+        for (int k = 0; k < 3; ++k) {
+            if (c->slots[k] == MSPRING_NONE || !flies(network, c->slots[k]))
+                continue;
+            n->residual.x[c->slots[k]] += (float)(c->across[k][0] * c->normal + c->along[k][0] * c->braked);
+            n->residual.y[c->slots[k]] += (float)(c->across[k][1] * c->normal + c->along[k][1] * c->braked);
+        }
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------- mending */
+
+// What is too deep is pushed apart by as much as it is too deep. Returns whether it was.
+static bool mend(const mspringi_pairs *pairs, mspringi_touch *t, double h) {
+    const mspringi_active *k = &pairs->active;
+    const double speed = t->nx * (k->vx[t->p] - t->share_a * k->vx[t->a] - t->share_b * k->vx[t->b]) +
+                         t->ny * (k->vy[t->p] - t->share_a * k->vy[t->a] - t->share_b * k->vy[t->b]);
+    const double least = (t->gap < 0.0 ? t->gap : 0.0) - MENDED_SHARE * pairs->thickness;
+    const double lacks = least - (t->gap + h * speed);
+    if (!(lacks > UNSEEN_SHARE * pairs->thickness))
+        return false;
+    const double impulse = t->mass * lacks / h, x = impulse * t->nx, y = impulse * t->ny;
+    t->across += impulse;
+    k->vx[t->p] += k->weight[t->p] * x;
+    k->vy[t->p] += k->weight[t->p] * y;
+    k->vx[t->a] -= t->share_a * k->weight[t->a] * x;
+    k->vy[t->a] -= t->share_a * k->weight[t->a] * y;
+    k->vx[t->b] -= t->share_b * k->weight[t->b] * x;
+    k->vy[t->b] -= t->share_b * k->weight[t->b] * y;
+    return true;
+}
+
+void mspringi_bodies_mend(const mspring_network *network, float step) {
+    mspringi_pairs *pairs = pairs_of(network);
+    const mspringi_state *s = &network->state;
+    const double h = (double)step;
+    bool any = false;
+    if (!pairs || pairs->touch_count == 0)
+        return;
+    const mspringi_active *k = &pairs->active;
+    for (uint32_t i = 0; i < k->own; ++i) {
+        const uint32_t slot = slot_of(network, i);
+        k->vx[i] = (mspringi_x_of(s, slot) - k->x[i]) / h;
+        k->vy[i] = (mspringi_y_of(s, slot) - k->y[i]) / h;
+    }
+    for (uint32_t sweep = 0, again = 1; sweep < MOST_MENDING_SWEEPS && again; ++sweep) {
+        again = 0;
+        for (uint32_t i = 0; i < pairs->touch_count; ++i)
+            again |= mend(pairs, &pairs->touches[i], h);
+        any |= again;
+    }
+    for (uint32_t i = 0; i < k->own && any; ++i) {
+        const uint32_t slot = slot_of(network, i);
+        const double vx = k->vx[i] - (mspringi_x_of(s, slot) - k->x[i]) / h;
+        const double vy = k->vy[i] - (mspringi_y_of(s, slot) - k->y[i]) / h;
+        if (vx == 0.0 && vy == 0.0)
+            continue;
+        s->vx[slot] = (float)((double)s->vx[slot] + vx);
+        s->vy[slot] = (float)((double)s->vy[slot] + vy);
+        mspringi_move_by(s, slot, (float)(h * vx), (float)(h * vy));
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------- the check */
+
+// The speed across a row at the start of the substep.
+static double speed_before(const mspringi_pairs *pairs, const mspringi_touch *t) {
+    const mspringi_active *k = &pairs->active;
+    return t->nx * (k->from_vx[t->p] - t->share_a * k->from_vx[t->a] - t->share_b * k->from_vx[t->b]) +
+           t->ny * (k->from_vy[t->p] - t->share_a * k->from_vy[t->a] - t->share_b * k->from_vy[t->b]);
+}
+
+// The speed of a row along some shares at the end of the substep, by how far it came.
+static double speed_of(const mspring_network *network, const mspringi_touch *t, hold *c, double (*shares)[2],
+                       double h) {
+    const mspringi_active *k = &network->pairs->active;
+    const mspringi_state *s = &network->state;
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        const uint32_t node = node_of(t, i), slot = c->slots[i];
+        const bool is_known = slot == MSPRING_NONE;
+        const double x = is_known ? k->from_vx[node] : (mspringi_x_of(s, slot) - k->x[node]) / h;
+        const double y = is_known ? k->from_vy[node] : (mspringi_y_of(s, slot) - k->y[node]) / h;
+        sum += shares[i][0] * x + shares[i][1] * y;
+    }
+    return sum;
+}
+
+// A row that should push gives energy to what it pushes apart, as long as that is no faster than it should be.
+bool mspringi_bodies_are_sound(const mspring_network *network, float h) {
+    const mspringi_pairs *pairs = network->pairs;
+    const uint32_t count = count_of(network);
+    double given = 0.0, taken = 0.0, most = 0.0, least = 0.0;
+    for (uint32_t i = 0; i < count; ++i) {
+        const mspringi_touch *t = &pairs->touches[i];
+        hold *c = &pairs->holds[i];
+        if (t->across == 0.0 && t->along == 0.0)
+            continue;
+        const double before = speed_before(pairs, t);
+        const double after = speed_of(network, t, c, c->across, (double)h);
+        const double allowed = t->target > 0.0 ? t->target : 0.0;
+        const double drag = t->collider == MSPRING_NONE ? 0.0 : mspringi_collider_drag(pairs, t);
+        const double slide = c->friction > 0.0 ? speed_of(network, t, c, c->along, (double)h) + drag : 0.0;
+        given += t->across * (after - allowed) + t->along * slide;
+        taken += fabs(t->across) * (fabs(before) + fabs(after));
+        most = t->across > most ? t->across : most;
+        least = t->across < least ? t->across : least;
+    }
+    return given <= GIVEN_SHARE * taken && -least <= GIVEN_SHARE * most;
+}
+
+/* --------------------------------------------------------------------------------------------- once it is taken */
+
+// What rows gave to particles that are flown past the floor by themselves.
+static void gain(const mspring_network *network, const mspringi_touch *t, hold *c, double h) {
+    const mspringi_active *k = &network->pairs->active;
+    for (int i = 0; i < 3; ++i) {
+        const uint32_t node = node_of(t, i);
+        if (c->slots[i] == MSPRING_NONE || !mspringi_floor_is_alone(network, c->slots[i]))
+            continue;
+        const double x = k->weight[node] * (c->across[i][0] * t->across + c->along[i][0] * t->along);
+        const double y = k->weight[node] * (c->across[i][1] * t->across + c->along[i][1] * t->along);
+        k->gain_x[node] += x;
+        k->gain_y[node] += y;
+        k->way_x[node] += h * x;
+        k->way_y[node] += h * y;
+    }
+}
+
+void mspringi_bodies_pass(mspring_network *network, float h) {
+    mspringi_pairs *pairs = pairs_of(network);
+    if (!pairs)
+        return;
+    pairs->passed += (double)h;
+    mspringi_rows_count(network, pairs);
+    for (uint32_t i = 0; network->floor && i < pairs->touch_count; ++i)
+        gain(network, &pairs->touches[i], &pairs->holds[i], (double)h);
+}
+
+void mspringi_bodies_fly(const mspring_network *network) {
+    const mspringi_pairs *pairs = pairs_of(network);
+    const mspringi_state *s = &network->state;
+    for (uint32_t i = 0; pairs && i < pairs->active.own; ++i) {
+        const mspringi_active *k = &pairs->active;
+        const uint32_t slot = slot_of(network, i);
+        if (k->gain_x[i] == 0.0 && k->gain_y[i] == 0.0)
+            continue;
+        s->vx[slot] = (float)((double)s->vx[slot] + k->gain_x[i]);
+        s->vy[slot] = (float)((double)s->vy[slot] + k->gain_y[i]);
+        mspringi_move_by(s, slot, (float)k->way_x[i], (float)k->way_y[i]);
+    }
+}
+
+/* ----------------------------------------------------------------------------------------------------- the work */
+
+// Moments of a component's forces are told from half the way of its mass centre. Those of contact act at the
+// beginning of the way, where bodies that touch have the same lever arms.
+static void account(const mspringi_measuring *all, const mspringi_touch *t, hold *c, int i) {
+    const mspring_network *network = all->network;
+    const mspringi_active *k = &network->pairs->active;
+    mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
+    const uint32_t slot = c->slots[i], node = node_of(t, i);
+    if (slot == MSPRING_NONE || budget->of_slot[slot] == MSPRINGI_NO_ACCOUNT)
+        return;
+    mspringi_account *a = &budget->accounts[budget->of_slot[slot]];
+    const double fx = (c->across[i][0] * t->across + c->along[i][0] * t->along) / (double)all->h;
+    const double fy = (c->across[i][1] * t->across + c->along[i][1] * t->along) / (double)all->h;
+    const double mass = a->sums[MSPRINGI_MOMENT_MASS];
+    const double x = (double)all->motion.x[slot] + (double)all->motion.low_x[slot] - k->x[node];
+    const double y = (double)all->motion.y[slot] + (double)all->motion.low_y[slot] - k->y[node];
+    const double rx = k->x[node] - a->origin[0] + 0.5 * (a->sums[MSPRINGI_MOMENT_X] / mass - a->x);
+    const double ry = k->y[node] - a->origin[1] + 0.5 * (a->sums[MSPRINGI_MOMENT_Y] / mass - a->y);
+    a->sums[MSPRINGI_EFFECT_X] += fx;
+    a->sums[MSPRINGI_EFFECT_Y] += fy;
+    a->sums[MSPRINGI_EFFECT_TORQUE] += rx * fy - ry * fx;
+    a->sums[MSPRINGI_EFFECT_WORK] += fx * x + fy * y;
+    a->is_touched = true;
+}
+
+void mspringi_bodies_account(const mspringi_measuring *all) {
+    const mspringi_pairs *pairs = all->network->pairs;
+    const uint32_t count = count_of(all->network);
+    for (uint32_t i = 0; i < count; ++i)
+        for (int k = 0; k < 3 && (pairs->touches[i].across != 0.0 || pairs->touches[i].along != 0.0); ++k)
+            account(all, &pairs->touches[i], &pairs->holds[i], k);
+}
