@@ -1,0 +1,296 @@
+// The package as a user has it: the golden hashes, with and without SIMD, and every call, used well and badly.
+//
+//   node check.mjs hash                writes the hashes of the golden bars
+//   node --expose-gc check.mjs calls  handles networks
+import assert from 'node:assert';
+import * as massspring from 'massspring';
+import { goldenBars } from './golden.mjs';
+
+const { load, MassSpringError, CELL_EMPTY, PARTICLE_PINNED } = massspring;
+
+const refused = (body, result, words) => assert.throws(body, (error) => {
+  assert(error instanceof MassSpringError, `${error.stack}`);
+  assert.strictEqual(error.result, result, error.message);
+  assert.match(error.message, words);
+  return true;
+});
+
+function bar(ms, width = 20, height = 4, options = {}) {
+  const builder = new ms.Builder(), cells = new Uint16Array(width * height);
+  for (let i = 0; i < height; i++) cells[i * width] = 1;
+  const iron = { mass: 73.4, stiffness: 6.76e7 };
+  const ids = builder.addLattice({ width, height, cells, materials: [iron, { ...iron, particleFlags: PARTICLE_PINNED }] });
+  assert.strictEqual(ids.length, width * height);
+  const network = new ms.Network(builder, { substeps: 30, ...options });
+  builder.free();
+  return network;
+}
+
+function shapes(ms) {
+  const builder = new ms.Builder();
+  assert.strictEqual(builder.addParticle({ x: 0, y: 0, flags: PARTICLE_PINNED }), 0);
+  assert.strictEqual(builder.addParticles({ x: [1, 2, 3], y: new Float64Array([0, 0, 0]), mass: 2 }), 1);
+  assert.strictEqual(builder.addSpring({ a: 0, b: 1, stiffness: 100 }), 0);
+  assert.strictEqual(builder.addSprings({ a: [1, 2], b: [2, 3], stiffness: [100, 200], damping: 1 }), 1);
+  const { particles, firstSpring } = builder.addRope({ from: 0, to: 3, segmentCount: 5, stiffness: 50, slack: 1.2 });
+  assert.deepStrictEqual([...particles], [0, 4, 5, 6, 7, 3]);
+  assert.strictEqual(firstSpring, 3);
+  const disc = builder.addDisc({ x: 20, y: 5, radius: 2, ringCount: 3, stiffness: 1e3 });
+  assert.deepStrictEqual(disc, { firstParticle: 8, firstSpring: 8 });
+  const mesh = builder.addMesh({ x: [30, 31, 30], y: [0, 0, 1], triangles: [0, 1, 2], stiffness: 10 });
+  assert.deepStrictEqual(mesh, { firstParticle: builder.particleCount - 3, firstSpring: builder.springCount - 3 });
+  const network = new ms.Network(builder, { solver: 'implicit', gravityY: -1, worldly: undefined });
+  network.step(1 / 60, 10);
+  assert.strictEqual(network.getSolver().solver, 'implicit');
+  assert.deepStrictEqual([...network.ends({ first: 0, count: 2 })], [0, 1, 1, 2]);
+  assert.deepStrictEqual([...network.get('stiffness', { ids: [2, 1] })], [200, 100]);
+  network.free();
+  builder.free();
+}
+
+function reading(ms) {
+  const network = bar(ms);
+  network.step(1 / 64, 64);
+  const { particleCount: count } = network, view = network.view(), positions = network.positions();
+  assert.strictEqual(positions.length, 2 * count);
+  for (let i = 0; i < count; i++) {
+    const slot = view.slotOfParticle[i];
+    // Views show the first of a position's two words, and a float's last place at 4 m is 5e-7 m.
+    assert(Math.abs(positions[2 * i + 1] - view.originY - view.y[slot]) < 5e-7);
+    assert.strictEqual(view.particleOfSlot[slot], i);
+  }
+  const into = new Float32Array(4);
+  assert.strictEqual(network.positions({ ids: [3, 19], into }), into);
+  assert.strictEqual(into[0], Math.fround(positions[6]));
+  assert.strictEqual(network.velocities({ first: 1, count: 1 }).length, 2);
+  const { kinetic, elastic } = network.energy();
+  assert(kinetic > 0 && elastic > 0);
+  const strains = network.strains(), { strain, spring } = network.maxStrain();
+  assert.strictEqual(Math.abs(strains[spring]), strain);
+  assert.strictEqual(network.stepInfo().stepCount, 64);
+  assert(network.bounds().maxX < 20 && network.momentum().y !== 0 && network.stableDt().now > network.stableDt().anyShape);
+  assert(network.suggestSubsteps(1 / 64) > 1 && network.memoryUsed > 1000);
+  assert.strictEqual(network.plan().latticeCount, 1);
+  const [x, y] = positions.subarray(20, 22);
+  assert.deepStrictEqual(network.nearestParticle(x, y), { particle: 10, distance: 0 });
+  assert.strictEqual(network.nearestParticle(x, y + 1e6, 1), null);
+  assert.deepStrictEqual([...network.particlesInCircle(x, y, 0.1)], [10]);
+  assert.strictEqual(network.particlesInBox(-Infinity, -Infinity, Infinity, Infinity).length, count);
+  assert.strictEqual(network.settle().isStable, 1);
+  network.free();
+}
+
+function editing(ms) {
+  const network = bar(ms, 20, 4, { gravityY: 0, spareParticles: 4, spareSprings: 4 });
+  network.reserveEvents(64);
+  network.breakSprings([3, 5]);
+  const { events, lost } = network.readEvents();
+  assert.deepStrictEqual([events.map(({ kind, id }) => [kind, id]), lost], [[['broken', 3], ['broken', 5]], 0]);
+  assert.strictEqual(network.springFlags()[3] & massspring.SPRING_BROKEN, massspring.SPRING_BROKEN);
+  network.restoreSprings(new Uint32Array([3, 5]), 0.1);
+  network.pin([19, 39]);
+  network.applyForces([0, 1e5], { ids: [18, 19] });
+  network.step(1 / 64);
+  const v = network.velocities();
+  assert(v[37] > 0 && v[39] === 0, 'a pinned particle feels no force');
+  network.unpin(19);
+  network.applyForce(19, 0, 1e5);
+  network.applyImpulses([1, 2]);
+  network.step(1 / 64);
+  network.detachParticles([30]);
+  assert.deepStrictEqual(network.updateComponents(), { count: 2, changed: true });
+  assert.strictEqual(network.components(1, 1)[0].particleCount, 1);
+  assert.strictEqual(network.componentNumbers()[30], 1);
+  const added = network.addParticles({ x: [50, 51], y: 0 });
+  assert.deepStrictEqual([...added], [80, 81]);
+  const [spring] = network.addSprings({ a: [80], b: [81], stiffness: 10 });
+  network.removeSprings(spring);
+  network.removeParticles([80, 81]);
+  assert(!network.hasParticle(80) && !network.hasSpring(spring) && network.hasParticle(79));
+  network.compact();
+  network.setPositions([0, 100], { ids: [30] });
+  network.setVelocities([1, 1]);
+  network.set('restLength', 1.01, { first: 0, count: 3 });
+  network.setSettings({ globalDamping: 3 });
+  assert.strictEqual(network.getSettings().globalDamping, 3);
+  network.free();
+}
+
+function meeting(ms) {
+  const builder = new ms.Builder();
+  for (const y of [1, 4])
+    builder.addLattice({ width: 6, height: 2, x: 0.3 * y, y, cells: new Array(12).fill(0), materials: [{ stiffness: 5000, damping: 5 }] });
+  const network = new ms.Network(builder, { substeps: 30, globalDamping: 1, sleepSpeed: 0.01 });
+  network.setFloor({ planes: [0, 0, 0, 1], heights: [-1, -1], friction: 0.5, planeFrictions: [0.4] });
+  network.setContact({ friction: 0.3 });
+  network.setContactGroups(1, 0xffffffff);
+  network.reserveContactEvents(64);
+  const box = network.addCollider({ kind: 'box', x: 12, y: 1, width: 2, height: 2 });
+  const wall = network.addCollider({ points: [-4, 0, -4, 9] });
+  network.moveCollider(box, 10, 1);
+  network.step(1 / 60, 240);
+  assert(network.contactInfo().touching > 0 && network.bounds().minY > -0.01, 'two bodies lie on each other and the floor');
+  const { events } = network.readContactEvents();
+  assert(events.length > 0 && events[0].kind === 'began' && events[0].impulse > 0);
+  assert.strictEqual(network.getCollider(box).x, 10);
+  assert.strictEqual(network.colliderImpulse(wall).x, 0);
+  network.placeCollider(box, 20, 1, 0.5);
+  network.removeCollider(wall);
+  assert(network.floorImpulses().some((value) => value > 0));
+  const grip = network.addGrip({ particle: 0, x: 0, y: 9, stiffness: 500, damping: 50 });
+  network.setGrip(grip, { ...network.getGrip(grip), maxForce: 1e4 });
+  network.moveGrip(grip, 0, 10);
+  network.step(1 / 60, 60);
+  const [, held] = network.positions({ ids: [0] });
+  assert(network.gripImpulse(grip).y !== 0 && held > 3, `the grip lifts its particle from 2 m: ${held}`);
+  network.removeGrip(grip);
+  assert(network.getContact().thickness > 0);
+  refused(() => network.setSolver({ solver: 'implicit' }), 'argument', /contact/);
+  network.setContact(null);
+  network.setFloor(null);
+  assert.strictEqual(network.getContact(), null);
+  network.wake();
+  assert.strictEqual(network.isAsleep, false);
+}
+
+function goingBack(ms) {
+  const network = bar(ms);
+  network.step(1 / 64, 10);
+  const snapshot = network.save('frame'), clone = network.clone();
+  assert(snapshot instanceof Uint8Array && clone instanceof ms.Network);
+  network.step(1 / 64, 10);
+  const hash = network.stateHash();
+  network.load(snapshot);
+  assert.notStrictEqual(network.stateHash(), hash);
+  network.step(1 / 64, 10);
+  clone.step(1 / 64, 10);
+  assert.deepStrictEqual([network.stateHash(), clone.stateHash()], [hash, hash]);
+  refused(() => network.load(snapshot.subarray(0, 100)), 'snapshot', /./);
+  snapshot[200] ^= 1;
+  refused(() => network.load(snapshot), 'snapshot', /./);
+  refused(() => network.load('snapshot'), 'argument', /Uint8Array/);
+  assert.strictEqual(network.stateHash(), hash, 'calls that fail change nothing');
+}
+
+function hostile(ms) {
+  const builder = new ms.Builder();
+  refused(() => new ms.Network(builder), 'argument', /particle/);
+  builder.addParticles({ x: [0, 1], y: 0 });
+  refused(() => builder.addParticle({ x: NaN }), 'argument', /position/);
+  refused(() => builder.addParticle({ x: '1' }), 'argument', /x is 1, it must be a number/);
+  refused(() => builder.addParticle({ z: 1 }), 'argument', /no option z/);
+  refused(() => builder.addParticle(null), 'argument', /object/);
+  refused(() => builder.addParticles({ x: [0, 1], y: [0] }), 'argument', /column y has 1/);
+  refused(() => builder.addParticles({ x: [0, 1, NaN], y: 0 }), 'argument', /definition 2/);
+  refused(() => builder.addSpring({ a: 0, b: 9 }), 'id', /9/);
+  refused(() => builder.addSpring({ a: 0, b: NaN }), 'argument', /b is NaN/);
+  refused(() => builder.addSprings({ a: [0], b: [-1] }), 'argument', /b\[0\] is -1/);
+  refused(() => builder.addLattice({ width: 3, height: 1, cells: [0, 0], materials: [{}] }), 'argument', /cells has 2/);
+  refused(() => builder.addLattice({ width: 1e5, height: 1e5, cells: [0], materials: [{}] }), 'argument', /cells/);
+  refused(() => builder.addLattice({ width: 1, height: 1, cells: [7], materials: [{}] }), 'argument', /cell/);
+  refused(() => builder.addLattice({}), 'argument', /width/);
+  refused(() => builder.addRope({ from: 0, to: 1, segmentCount: 4e9 }), 'memory', /memory/);
+  refused(() => builder.addMesh({ x: [0], y: [0, 1], triangles: [0, 0, 0] }), 'argument', /y has 2/);
+  refused(() => builder.addDisc({ radius: Infinity }), 'argument', /./);
+  refused(() => new ms.Network(builder, { solver: 'magic' }), 'argument', /explicit, implicit, direct/);
+  refused(() => new ms.Network(builder, { solver: 'constructor' }), 'argument', /explicit, implicit, direct/);
+  refused(() => new ms.Network(builder, { substeps: -1 }), 'argument', /substeps is -1/);
+  refused(() => new ms.Network(builder, { gravityY: Infinity }), 'argument', /gravity_y/);
+  refused(() => new ms.Network({}), 'argument', /Builder/);
+  builder.addSprings({ a: [0, 1], b: [1, 0], stiffness: 1 });
+  assert.throws(() => new ms.Network(builder), (error) => {
+    assert.deepStrictEqual([error.name, error.result, error.code, error.particles], ['MassSpringError', 'duplicate', -6, [0, 1]]);
+    return error.springs.length > 0;
+  });
+
+  const network = bar(ms), hash = network.stateHash();
+  for (const dt of [NaN, -1, 0, Infinity, '1', undefined]) refused(() => network.step(dt), 'argument', /dt/);
+  refused(() => network.step(1, 0.5), 'argument', /count/);
+  refused(() => network.breakSprings([1, 1e6]), 'id', /index 1/);
+  refused(() => network.breakSprings([0.5]), 'argument', /ids\[0\]/);
+  refused(() => network.setPositions([1, 2, 3]), 'argument', /3 numbers/);
+  refused(() => network.setPositions([1, 2, 3, 4], { ids: [1] }), 'argument', /4 numbers/);
+  refused(() => network.setPositions([NaN, 0], { ids: [4] }), 'argument', /./);
+  refused(() => network.setPositions('ab'), 'argument', /array/);
+  refused(() => network.positions({ first: 79, count: 2 }), 'id', /./);
+  refused(() => network.positions({ particle: 1 }), 'argument', /no meaning/);
+  refused(() => network.positions({ into: new Float64Array(3) }), 'argument', /into has 3/);
+  refused(() => network.positions({ into: [] }), 'argument', /Float64Array/);
+  refused(() => network.set('strain', 1), 'argument', /read/);
+  refused(() => network.set('mass', [1, NaN]), 'argument', /mass/);
+  refused(() => network.get('colour'), 'argument', /one of/);
+  refused(() => network.setFloor({ planes: [0, 0, 0] }), 'argument', /multiple of 4/);
+  refused(() => network.setFloor({ heightFrictions: [1] }), 'argument', /needs heights/);
+  refused(() => network.setFloor({ heights: [1, 2], heightFrictions: [1, 1] }), 'argument', /must have 1/);
+  refused(() => network.setFloor({ planes: [0, 0, 0, 0] }), 'argument', /plane 0/);
+  refused(() => network.addCollider({ kind: 'circle', radius: 1 }), 'argument', /contact/);
+  refused(() => network.moveGrip(3, 0, 0), 'id', /./);
+  refused(() => network.addParticles({ x: [1] }), 'limit', /./);
+  refused(() => network.components(0, 1), 'argument', /./);
+  assert.strictEqual(network.stateHash(), hash, 'calls that fail change nothing');
+
+  network.setSolver({ substeps: 1 });
+  network.setSettings({ guard: 'growth' });
+  assert.throws(() => network.step(1, 5), (error) => {
+    assert(error.result === 'unstable' && error.particles.length + error.springs.length > 0, error.message);
+    return error.steps < 5;
+  });
+  network.free();
+  network.free();
+  refused(() => network.step(1 / 64), 'argument', /freed/);
+  refused(() => network.positions(), 'argument', /freed/);
+  builder.free();
+  refused(() => builder.addParticle({}), 'argument', /freed/);
+  refused(() => new ms.Network(builder), 'argument', /freed/);
+}
+
+// Memory grows while a view is held, and while arrays are copied in, and is used again.
+function memory(ms) {
+  const builder = new ms.Builder(), cells = new Uint16Array(4e6).fill(CELL_EMPTY);
+  cells[0] = 0;
+  builder.addLattice({ width: 2000, height: 2000, cells, materials: [{}] });
+  assert.strictEqual(builder.particleCount, 1);
+  builder.free();
+
+  const first = bar(ms), before = ms.memoryUsed, { x } = first.view();
+  let large = bar(ms, 1500, 300);
+  assert(ms.memoryUsed > before && x.length === 0, 'an old view is empty after growth');
+  assert(first.view().x.length > 0);
+  large.free();
+  const grown = ms.memoryUsed;
+  for (let i = 0; i < 4; i++) {
+    large = bar(ms, 1500, 300);
+    large.step(1 / 64);
+    large.free();
+  }
+  assert(ms.memoryUsed <= 2 * grown, 'what is freed is used again');
+}
+
+// What nobody frees, the garbage collector does: with --expose-gc.
+async function forgotten(ms) {
+  const before = ms.memoryUsed;
+  let most = 0;
+  for (let i = 0; i < 20; i++) {
+    bar(ms, 544, 68);
+    most = Math.max(most, (i + 1) * 8e6); // each takes more than that
+    globalThis.gc();
+    await new Promise((done) => setTimeout(done));
+  }
+  assert(ms.memoryUsed - before < most / 2, `memory has grown by ${ms.memoryUsed - before} bytes`);
+}
+
+if (process.argv[2] === 'hash')
+  for (const simd of [true, false]) {
+    const ms = await load({ simd });
+    assert.strictEqual(ms.simd, simd);
+    for (const line of goldenBars(ms, massspring)) console.log(line);
+  }
+else
+  for (const simd of [true, false]) {
+    const ms = await load({ simd });
+    assert.strictEqual(CELL_EMPTY, 0xffff);
+    for (const part of [shapes, reading, editing, meeting, goingBack, hostile, memory]) part(ms);
+    await forgotten(await load({ simd }));
+    const other = await load();
+    refused(() => new ms.Network(new other.Builder()), 'argument', /same module/);
+  }
