@@ -20,6 +20,7 @@ typedef enum map_family {
     MAP_FAR,      ///< far from the world's origin, and from the local one
     MAP_SUBSTEPS, ///< the same motion with ever more substeps
     MAP_MEET,     ///< two bodies collide
+    MAP_SILT,     ///< a body falls into silt above heights, which differ in friction and restitution
     MAP_FAMILIES
 } map_family;
 
@@ -45,6 +46,8 @@ typedef struct map_case {
     mspring_floor_def floor; ///< its pointers are set by map_case_floor()
     double planes[MAP_PLANES][4];
     float heights[MAP_HEIGHTS];
+    bool has_stretches; ///< each part of the heights has friction and restitution of its own
+    float frictions[MAP_HEIGHTS], restitutions[MAP_HEIGHTS];
     bool has_forces, by_hook; ///< constant forces, given before each step or by a hook
     float force_x[MAP_PARTICLES], force_y[MAP_PARTICLES];
     double drift_x, drift_y; ///< m/s: velocity of all pinned particles

@@ -349,11 +349,29 @@ static void draw_meet(map_case *drawn, uint64_t *seed) {
     drawn->steps = (uint32_t)fmin(2000, fmax(20, 4 * gap / (speed * fmin(step, 0.25))));
 }
 
+static void draw_silt(map_case *drawn, uint64_t *seed) {
+    begin(drawn, seed);
+    draw_gravity(drawn, seed);
+    do
+        draw_floor(drawn, seed);
+    while (drawn->floor.height_count == 0);
+    drawn->has_stretches = true;
+    for (uint32_t i = 0; i < MAP_HEIGHTS; i++) {
+        drawn->frictions[i] = one_in(seed, 4) ? 0 : (float)map_decades(seed, 0.01, 10);
+        drawn->restitutions[i] = one_in(seed, 4) ? 1 : (float)random_unit(seed);
+    }
+    drawn->floor.silt_depth = (float)map_decades(seed, 0.01, 30);
+    drawn->floor.silt_rate = (float)map_decades(seed, 0.01, 1e6);
+    lift_body(drawn, map_decades(seed, 0.01, 40));
+    if (one_in(seed, 3))
+        draw_velocities(drawn, map_decades(seed, 0.1, 20), seed);
+}
+
 static const family families[MAP_FAMILIES] = {
     {"blast", 60000, draw_blast}, {"hit", 45000, draw_hit},       {"spin", 20000, draw_spin},
     {"drop", 60000, draw_drop},   {"bounce", 18000, draw_bounce}, {"hang", 30000, draw_hang},
     {"wreck", 20000, draw_wreck}, {"far", 16000, draw_far},       {"substeps", 3000, draw_substeps},
-    {"meet", 20000, draw_meet},
+    {"meet", 20000, draw_meet},   {"silt", 10000, draw_silt},
 };
 
 const char *map_family_name(map_family of) {
@@ -379,6 +397,10 @@ mspring_floor_def map_case_floor(const map_case *what) {
     mspring_floor_def floor = what->floor;
     floor.planes = &what->planes[0][0];
     floor.heights = what->heights;
+    if (what->has_stretches) {
+        floor.height_frictions = what->frictions;
+        floor.height_restitutions = what->restitutions;
+    }
     return floor;
 }
 

@@ -259,7 +259,10 @@ static map_verdict judge_gain(const map_case *run, const map_judge *judge) {
         return MAP_GAINED;
     if (run->share <= calm_share)
         return growth_of(run) <= calm_growth || holds_with_shorter(run) ? MAP_VIOLENT : MAP_GAINED;
-    return !run->has_floor || gains_by_itself(run) ? MAP_VIOLENT : MAP_GAINED;
+    // A copy without a floor has no silt either, so what the surface gives cannot be told apart.
+    const bool is_own =
+        run->floor.silt_rate > 0 ? holds_with_shorter(run) : !run->has_floor || gains_by_itself(run);
+    return is_own ? MAP_VIOLENT : MAP_GAINED;
 }
 
 map_verdict map_run_case(const map_case *what, char text[MAP_TEXT]) {
