@@ -21,21 +21,24 @@ typedef struct subject {
     double gap;                     ///< between them, m
     double aside;                   ///< share of its length that each lies aside of the one below
     bool touches_itself, on_collider;
-    uint32_t settling; ///< steps before what is measured
-    uint32_t steps;    ///< that are measured
+    uint32_t settling;     ///< steps before what is measured
+    uint32_t steps;        ///< that are measured
+    mspring_solver solver; ///< not explicit: one substep
 } subject;
 
 static const subject subjects[] = {
-    {"544x68, itself, nothing near", 544, 68, 1, 0, 0, true, false, 2, 10},
-    {"two 544x68, far apart", 544, 68, 2, 50, 0, false, false, 2, 8},
-    {"two 544x68, a tenth touches", 544, 68, 2, THICKNESS, 0.8, false, false, 32, 8},
-    {"two 544x68, one on the other", 544, 68, 2, THICKNESS, 0, false, false, 32, 4},
-    {"two 80x5, near each other", 80, 5, 2, THICKNESS + 0.2, 0, false, false, 0, 8},
-    {"two 80x5, dropped by 1 m", 80, 5, 2, THICKNESS + 1.0, 0, false, false, 0, 60},
-    {"two 80x5, at rest", 80, 5, 2, THICKNESS, 0, false, false, 300, 60},
-    {"544x68 high above a collider", 544, 68, 1, 50, 0, false, true, 2, 8},
-    {"80x5, at rest on a collider", 80, 5, 1, THICKNESS, 0, false, true, 300, 60},
-    {"10,000 loose, settling", 10000, 0, 1, 0, 0, false, false, 64, 4},
+    {"544x68, itself, nothing near", 544, 68, 1, 0, 0, true, false, 2, 10, MSPRING_SOLVER_EXPLICIT},
+    {"two 544x68, far apart", 544, 68, 2, 50, 0, false, false, 2, 8, MSPRING_SOLVER_EXPLICIT},
+    {"two 544x68, a tenth touches", 544, 68, 2, THICKNESS, 0.8, false, false, 32, 8, MSPRING_SOLVER_EXPLICIT},
+    {"two 544x68, one on the other", 544, 68, 2, THICKNESS, 0, false, false, 32, 4, MSPRING_SOLVER_EXPLICIT},
+    {"two 80x5, near each other", 80, 5, 2, THICKNESS + 0.2, 0, false, false, 0, 8, MSPRING_SOLVER_EXPLICIT},
+    {"two 80x5, dropped by 1 m", 80, 5, 2, THICKNESS + 1.0, 0, false, false, 0, 60, MSPRING_SOLVER_EXPLICIT},
+    {"two 80x5, at rest", 80, 5, 2, THICKNESS, 0, false, false, 300, 60, MSPRING_SOLVER_EXPLICIT},
+    {"two 80x5, at rest, implicit", 80, 5, 2, THICKNESS, 0, false, false, 300, 60, MSPRING_SOLVER_IMPLICIT},
+    {"two 80x5, at rest, direct", 80, 5, 2, THICKNESS, 0, false, false, 300, 60, MSPRING_SOLVER_DIRECT},
+    {"544x68 high above a collider", 544, 68, 1, 50, 0, false, true, 2, 8, MSPRING_SOLVER_EXPLICIT},
+    {"80x5, at rest on a collider", 80, 5, 1, THICKNESS, 0, false, true, 300, 60, MSPRING_SOLVER_EXPLICIT},
+    {"10,000 loose, settling", 10000, 0, 1, 0, 0, false, false, 64, 4, MSPRING_SOLVER_EXPLICIT},
 };
 
 static const bench_column columns[] = {
@@ -156,7 +159,8 @@ static mspring_result make_players(const subject *s, mspring_simd level, player 
     if (result == MSPRING_OK)
         result = mspring_network_def_init(&def, sizeof def);
     def.simd_level = level;
-    def.substeps = SUBSTEPS;
+    def.solver = s->solver;
+    def.substeps = s->solver == MSPRING_SOLVER_EXPLICIT ? SUBSTEPS : 1;
     def.guard = MSPRING_GUARD_GROWTH;
     def.global_damping = BENCH_GLOBAL_DAMPING;
     def.gravity_y = s->gap > 0 || s->rows == 0 ? -9.8f : 0;

@@ -110,6 +110,7 @@ static const mspringi_column members[] = {
     VIEW(active.gain_y),
     ARRAY(active.is_thrown),
     ARRAY(touches),
+    ARRAY(bearings),
     ARRAY(holds),
     ARRAY(hot),
     ARRAY(is_seen),
@@ -160,7 +161,8 @@ static bool reserve_nodes(mspringi_pairs *made, mspringi_memory *memory, size_t 
     o->is_known = mspringi_alloc(memory, particles, sizeof *o->is_known);
     k->particles = mspringi_alloc(memory, 2 * nodes, sizeof *k->particles);
     k->is_thrown = mspringi_alloc(memory, nodes, sizeof *k->is_thrown);
-    if (!made->groups || !made->stamp || !o->is_known || !k->particles || !k->is_thrown)
+    made->bearings = mspringi_alloc(memory, MSPRINGI_BEARINGS * nodes, sizeof *made->bearings);
+    if (!made->groups || !made->stamp || !o->is_known || !k->particles || !k->is_thrown || !made->bearings)
         return false;
     made->masks = made->groups + nodes;
     k->number = k->particles + nodes;

@@ -94,6 +94,19 @@ typedef struct mspringi_touch {
     double across, along;    ///< impulses, N s
 } mspringi_touch;
 
+/// A row of a particle that contact may press into the floor.
+typedef struct mspringi_bearing {
+    uint32_t p, slot; ///< number in mspringi_active
+    double nx, ny, friction;
+    double room;          ///< m to the surface at the end of the substep, without contact
+    double own;           ///< speed away from it then, m/s
+    double least;         ///< that it is to have at least, m/s
+    double across, along; ///< what the row gives, m/s
+} mspringi_bearing;
+
+/// Of a particle: to two surfaces, where they meet.
+#define MSPRINGI_BEARINGS 2u
+
 /// A row in the linear system of an implicit substep; see solvers/implicit/bodies.c. Of three: the point and the
 /// ends of the edge.
 typedef struct mspringi_row_hold {
@@ -104,8 +117,8 @@ typedef struct mspringi_row_hold {
     double ahead;                     ///< how far the point has slid there, m
     double stiffness, grip;           ///< of what holds it across and along, in the units of the matrix
     double friction;
-    double slip;           ///< it slides this way along, 1 or -1; 0: it sticks
-    double normal, braked; ///< what it gives across and along, in the units of the right-hand side
+    double slip;                          ///< it slides this way along, 1 or -1; 0: it sticks
+    double normal, braked;                ///< what it gives across and along, in the units of the right-hand side
     double answer[2], left[2], search[2]; ///< of the direct solver: forces across and along, and their iteration
     bool is_active;                       ///< it is held
 } mspringi_row_hold;
@@ -225,8 +238,10 @@ struct mspringi_pairs {
     uint8_t *is_seen;        ///< [capacity] of candidates, while rows are added
     uint32_t *border;        ///< [capacity] candidates that just miss a row
     uint32_t touch_count, border_count;
-    mspringi_row_hold *holds;    ///< [capacity] the same rows, of an implicit substep
-    double passed; ///< of an implicit substep, in pieces, s
+    mspringi_row_hold *holds;   ///< [capacity] the same rows, of an implicit substep
+    double passed;              ///< of an implicit substep, in pieces, s
+    mspringi_bearing *bearings; ///< [MSPRINGI_BEARINGS * nodes]
+    uint32_t bearing_count;
     uint32_t touching; ///< pairs that pushed each other in a substep, at most
     double deepest;    ///< overlap, m
 };
@@ -288,6 +303,17 @@ bool mspringi_rows_act(const mspring_network *network, mspringi_pairs *pairs);
 double mspringi_rows_prepare(const mspring_network *network, mspringi_pairs *pairs, double h);
 /// Count what was given in it, once it is taken for good.
 void mspringi_rows_count(const mspring_network *network, mspringi_pairs *pairs);
+
+/* bearing.c */
+
+/// Find what is near the floor, at the end of a substep of which contact has rows.
+void mspringi_bearing_find(const mspring_network *network, mspringi_pairs *pairs);
+/// Begin a piece of h seconds.
+void mspringi_bearing_begin(const mspringi_pairs *pairs, double h);
+/// Let the floor resist once.
+void mspringi_bearing_sweep(const mspringi_pairs *pairs);
+/// Count what it gave in the piece.
+void mspringi_bearing_end(const mspring_network *network, const mspringi_pairs *pairs);
 
 /* sweeps.c */
 

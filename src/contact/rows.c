@@ -215,8 +215,8 @@ static void put_row(mspringi_pairs *pairs, uint32_t candidate, const mspringi_co
     ++pairs->touch_count;
 }
 
-// The row of a pair in a piece of h seconds, if it may touch there, by its own speed or by one that it may be given.
-// *fastest: of all that have rows.
+// The row of a pair in a piece of h seconds, if it may touch there, by its own speed or by one that it may be
+// given. *fastest: of all that have rows.
 static void make_row(const mspring_network *network, mspringi_pairs *pairs, uint32_t candidate, double h,
                      double given, double *fastest) {
     const mspringi_active *k = &pairs->active;
@@ -327,6 +327,7 @@ static bool is_short(const mspringi_pairs *pairs, double h) {
 
 // Solve a piece. False: it is too long for what the sweeps have made of it.
 static bool solve(const mspring_network *network, mspringi_pairs *pairs, double h) {
+    mspringi_bearing_begin(pairs, h);
     for (uint32_t round = 0;; ++round) {
         const bool holds = mspringi_rows_sweep(pairs, h, round == 0 ? pairs->def.sweeps : 1);
         const bool any_thrown = mark_thrown(pairs, h);
@@ -416,6 +417,7 @@ static void take_pieces(const mspring_network *network, mspringi_pairs *pairs, d
             continue;
         }
         mspringi_rows_count(network, pairs);
+        mspringi_bearing_end(network, pairs);
         advance(network, k, piece, left == 1);
         h -= piece;
         --left;
@@ -440,6 +442,7 @@ bool mspringi_rows_act(const mspring_network *network, mspringi_pairs *pairs) {
     const double fastest = make_rows(network, pairs, h, 0.0);
     if (pairs->touch_count == 0)
         return false;
+    mspringi_bearing_find(network, pairs);
     const double thicknesses = h * fastest / pairs->thickness;
     take_pieces(network, pairs, h, thicknesses < MOST_PIECES ? (uint32_t)thicknesses + 1 : MOST_PIECES);
     count_thrown(pairs, put_back(network, pairs));

@@ -98,20 +98,24 @@ static bool sweep_given(const mspringi_pairs *pairs, double h, bool of_colliders
 static bool press(const mspringi_pairs *pairs, double h) {
     const uint32_t by_looks = LEAST_GIVEN_SWEEPS + MOST_LOOKS / (pairs->touch_count + 1);
     const uint32_t most = by_looks < MOST_GIVEN_SWEEPS ? by_looks : MOST_GIVEN_SWEEPS;
-    for (uint32_t n = 0; n < most; ++n)
+    for (uint32_t n = 0; n < most; ++n) {
         if (!sweep_given(pairs, h, false))
             return true;
-    for (uint32_t n = 0; n < MOST_COLLIDER_SWEEPS && sweep_given(pairs, h, true); ++n) {
+        mspringi_bearing_sweep(pairs);
     }
+    for (uint32_t n = 0; n < MOST_COLLIDER_SWEEPS && sweep_given(pairs, h, true); ++n)
+        mspringi_bearing_sweep(pairs);
     return false;
 }
 
 bool mspringi_rows_sweep(const mspringi_pairs *pairs, double h, uint32_t sweeps) {
-    for (uint32_t n = 0; n < sweeps; ++n)
+    for (uint32_t n = 0; n < sweeps; ++n) {
         for (uint32_t i = 0; i < pairs->touch_count; ++i) {
             push_apart(&pairs->active, &pairs->touches[i], h);
             rub(pairs, &pairs->touches[i]);
         }
+        mspringi_bearing_sweep(pairs);
+    }
     if (press(pairs, h))
         return true;
     const allowance most = allow(pairs, h, MOST_SHARE);

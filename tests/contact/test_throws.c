@@ -252,6 +252,58 @@ static void nothing_gets_through_others_where_several_meet(void **state) {
     check_trials(cluster, 200001, trials, 1000, 0.5f, 1e-2);
 }
 
+// A light strip lies on the floor, and a heavy block falls on it: neither gets through, nor through the floor. The
+// floor and contact each press it, so they are to be solved together. Without, overlaps were as deep as the
+// thickness.
+static double squeezed(double ratio, double speed, bool is_loose) {
+    bodies *b = bodies_begin(1.0 / 64 / 40);
+    if (is_loose)
+        for (uint32_t i = 0; i < 10; i++)
+            (void)bodies_add(
+                b, &(bodies_lattice){.width = 1, .height = 1, .x = i - 4.2, .spacing = 1, .mass = 1, .f = 0.1});
+    else
+        (void)bodies_add(b,
+                         &(bodies_lattice){.width = 10, .height = 2, .y = 0.5, .spacing = 1, .mass = 1, .f = 0.1});
+    const uint32_t block =
+        bodies_add(b, &(bodies_lattice){.width = 10, .height = 4, .y = 3.7, .spacing = 1, .mass = ratio, .f = 0.1});
+    for (uint32_t i = block; i < b->count; i++)
+        b->vy[i] = (float)-speed;
+    const mspring_network_def def = support_def(-9.8f, 40);
+    mspring_network *network = bodies_network(b, &def);
+    const double plane[4] = {0, 0, 0, 1};
+    mspring_floor_def floor;
+    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    floor.planes = plane;
+    floor.plane_count = 1;
+    floor.friction = 0.3f;
+    check_ok(mspring_network_set_floor(network, &floor));
+    check_ok(bodies_touch(network, THICKNESS, 0.3f, 0));
+    double deepest = 0;
+    for (uint32_t step = 0; step < 64; step++) {
+        mspring_contact_info info = {.struct_size = sizeof info};
+        support_steps(network, 1, 1.0 / 64);
+        check_ok(mspring_network_get_contact_info(network, &info));
+        deepest = fmax(deepest, info.deepest);
+        for (uint32_t i = 0; i < b->count; i++) {
+            double x, y;
+            check_ok(mspring_network_get_positions(network, i, 1, &x, &y, 1));
+            assert_true(y > -1e-4);
+        }
+    }
+    mspring_network_destroy(network);
+    bodies_free(b);
+    return deepest;
+}
+
+static void nothing_is_squeezed_on_the_floor(void **state) {
+    (void)state;
+    double deepest = 0;
+    for (uint32_t i = 0; i < 18; i++)
+        deepest = fmax(deepest, squeezed(pow(30, i % (i < 9 ? 3 : 2)), 5 * pow(5, i / 3 % 3), i >= 9));
+    print_message("deepest of what is squeezed: %.4f m\n", deepest);
+    assert_true(deepest < 0.5 * THICKNESS);
+}
+
 int main(int argc, char **argv) {
     if (argc > 1)
         trials = (uint32_t)strtoul(argv[1], NULL, 10);
@@ -259,6 +311,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(nothing_is_thrown_through_the_next_in_a_row),
         cmocka_unit_test(nothing_bounces_through_the_next_in_a_row),
         cmocka_unit_test(nothing_gets_through_others_where_several_meet),
+        cmocka_unit_test(nothing_is_squeezed_on_the_floor),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
