@@ -46,8 +46,8 @@
 ///     measure     network_energy, _momentum, _bounds
 ///     snapshots   network_snapshot_size, _save, _load
 ///
-/// massspring_contact.h has contact between bodies, colliders and grips. massspring_tools.h has the rest: ropes, meshes,
-/// clones, hooks, queries, stability limits, equilibrium, tuning and compaction. See examples/guides.
+/// massspring_contact.h: contact between bodies, colliders, grips; massspring_laws.h: springs that yield;
+/// massspring_tools.h: the rest, as ropes, meshes, clones, hooks, queries, stability, equilibrium, tuning, compaction.
 ///
 /// **Words.** A slot is an index into the arrays of a view; an id is another number. A hook is a function of yours that
 /// steps call. A component is all particles that unbroken springs connect, or a lone one. The plan is how a network
@@ -266,6 +266,7 @@ typedef struct mspring_spring_def {
     float break_strain;  ///< as MSPRING_BREAK_STRAIN; default MSPRING_NEVER
     float stress_strain; ///< as MSPRING_STRESS_STRAIN; default MSPRING_NEVER
     float relax_strain;  ///< as MSPRING_RELAX_STRAIN; default MSPRING_RELAX_STRAIN_DEFAULT
+    float yield_strain, hardening, plastic_limit; ///< as the properties in massspring_laws.h; default: it never yields
 } mspring_spring_def;
 
 /// Material of a lattice's cells. Fill with mspring_material_init() or mspring_material_preset() first.
@@ -274,8 +275,8 @@ typedef struct mspring_material {
     uint32_t particle_flags; ///< MSPRING_PARTICLE_PINNED or 0; default 0
     uint32_t spring_flags;   ///< as flags of mspring_spring_def; the same in all materials of a lattice; default 0
     float mass;              ///< kg per cell, 1e-30 to 1e30; default 1
-    float stiffness;         ///< this and the next four: as in mspring_spring_def, with the same defaults
-    float damping, break_strain, stress_strain, relax_strain;
+    float stiffness;         ///< this and all that follows: as in mspring_spring_def, with the same defaults
+    float damping, break_strain, stress_strain, relax_strain, yield_strain, hardening, plastic_limit;
 } mspring_material;
 
 /// Cell of a lattice with nothing in it.
@@ -828,7 +829,11 @@ typedef enum mspring_property {
     MSPRING_FORCE = 10, ///< along a spring, N, damper included; > 0 pulls its ends together; read only
     /// Stiffness in force of a spring, N/m; of a relative spring that of the last step; 0 if it is broken. Read only.
     MSPRING_ACTIVE_STIFFNESS = 11,
-    MSPRING_ACTIVE_DAMPING = 12,            ///< the same for damping, N s/m; read only
+    MSPRING_ACTIVE_DAMPING = 12, ///< the same for damping, N s/m; read only
+    MSPRING_YIELD_STRAIN = 13,   ///< this and the next three, of springs: see massspring_laws.h
+    MSPRING_HARDENING = 14,
+    MSPRING_PLASTIC_LIMIT = 15,
+    MSPRING_PLASTIC_STRAIN = 16,
     MSPRING_PROPERTY_INT = MSPRING_ENUM_INT ///< no value
 } mspring_property;
 
@@ -969,6 +974,7 @@ typedef enum mspring_event_kind {
     MSPRING_EVENT_DETACHED = 4, ///< particle id was detached; after the events of its springs
     MSPRING_EVENT_SPLIT = 5,    ///< the component whose lowest particle is other split off from that of id
     MSPRING_EVENT_JOINED = 6,   ///< the component whose lowest particle was id is now part of that of other
+    MSPRING_EVENT_YIELDED = 7,  ///< spring id yielded in a step; strain is its plastic strain
     MSPRING_EVENT_KIND_INT = MSPRING_ENUM_INT ///< no value
 } mspring_event_kind;
 
@@ -1035,7 +1041,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_co
 /// Compute the energies, J, in double precision. Any of them may be NULL.
 ///   kinetic    sum of m v^2 / 2 over particles that are not pinned
 ///   elastic    sum of stiffness (L - rest_length)^2 / 2 over springs; relative springs with the stiffness of the last
-///              step, before the first 0
+///              step, before the first 0; springs that have yielded with what hardening stores (massspring_laws.h)
 ///   potential  - sum of m (gravity . p) over particles that are not pinned, p in world coordinates
 /// @threads shared   @allocates never   @errors ARGUMENT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_energy(

@@ -59,6 +59,7 @@ typedef struct mspring_rope_def {
     float damping;          ///< of each spring, as in mspring_spring_def; default 0
     float slack;            ///< rest length of the whole rope / distance of its ends, 0.001 to 1000; default 1
     float break_strain, stress_strain, relax_strain; ///< of each spring, as in mspring_spring_def
+    float yield_strain, hardening, plastic_limit;    ///< likewise
 } mspring_rope_def;
 
 /// A mesh of triangles. Fill with mspring_mesh_def_init() first.
@@ -80,7 +81,7 @@ typedef struct mspring_mesh_def {
                                ///< springs not relative; default 0: stiffness counts
     float damping;             ///< of each spring, as in mspring_spring_def; default 0
     float break_strain, stress_strain, relax_strain; ///< of each spring, as in mspring_spring_def
-    uint32_t reserved;                               ///< 0
+    float yield_strain, hardening, plastic_limit;    ///< likewise
 } mspring_mesh_def;
 
 /// A disc: a mesh of rings around a centre. Fill with mspring_disc_def_init() first.
@@ -95,7 +96,7 @@ typedef struct mspring_disc_def {
     double radius;         ///< m, 1e-9 to 1e12; default 1
     float area_density;    ///< this and what follows: as in mspring_mesh_def
     float stiffness, young_modulus, damping, break_strain, stress_strain, relax_strain;
-    uint32_t reserved; ///< 0
+    float yield_strain, hardening, plastic_limit;
 } mspring_disc_def;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
@@ -231,12 +232,12 @@ enum {
 /// A hook's definition. Fill with mspring_hook_def_init() first.
 typedef struct mspring_hook_def {
     uint32_t struct_size;
-    mspring_phase phase; ///< default MSPRING_PHASE_BEFORE_STEP
-    mspring_hook_fn fn;  ///< must be set
-    void *user;          ///< passed to fn; default NULL
-    uint32_t period;     ///< substeps in a group, at least 1; must be 1 for MSPRING_PHASE_BEFORE_STEP; default 1. Its
-                         ///< forces act unchanged in the whole group. Longer periods make a step faster.
-    uint32_t flags;      ///< bits of MSPRING_HOOK_; default 0: one call for all slots, on the thread that steps
+    mspring_phase phase;  ///< default MSPRING_PHASE_BEFORE_STEP
+    mspring_hook_fn fn;   ///< must be set
+    void *user;           ///< passed to fn; default NULL
+    uint32_t period;      ///< substeps in a group, at least 1; must be 1 for MSPRING_PHASE_BEFORE_STEP; default 1. Its
+                          ///< forces act unchanged in the whole group. Longer periods make a step faster.
+    uint32_t flags;       ///< bits of MSPRING_HOOK_; default 0: one call for all slots, on the thread that steps
     uint32_t range_slots; ///< slots in a range of a concurrent hook, rounded up to whole blocks; default 0: one range
                           ///< for each worker
     uint32_t reserved;    ///< 0
@@ -569,7 +570,7 @@ enum {
     MSPRING_TUNE_HAS_COST = 1u << 0,       ///< costs are measured
     MSPRING_TUNE_HAS_TRAJECTORY = 1u << 1, ///< trajectory_error, trajectory_share and energy_drift are measured
     MSPRING_TUNE_HAS_REST = 1u << 2,       ///< bending, rest_error and rest_share are measured
-    MSPRING_TUNE_REJECTED = 1u << 3,        ///< a step was rejected as unstable, or the solver rejects the network
+    MSPRING_TUNE_REJECTED = 1u << 3,       ///< a step was rejected as unstable, or the solver rejects the network
     MSPRING_TUNE_PARETO = 1u << 4,         ///< no other row has both less cost and less error
     MSPRING_TUNE_RECOMMENDED = 1u << 5,    ///< the recommended row
     MSPRING_TUNE_HAS_SCENE = 1u << 6       ///< the numbers of the scene are measured, from at least four starts

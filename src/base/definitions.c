@@ -2,14 +2,17 @@
 #include <math.h>
 
 #include <massspring/massspring_contact.h>
+#include <massspring/massspring_laws.h>
 #include <massspring/massspring_tools.h>
 
 #include "base/definitions.h"
 #include "base/message.h"
 
-// Springs neither break nor are stressed.
+// Springs neither break nor are stressed, nor do they yield.
 #define NO_LIMITS                                                                                                  \
-    .break_strain = MSPRING_NEVER, .stress_strain = MSPRING_NEVER, .relax_strain = MSPRING_RELAX_STRAIN_DEFAULT
+    .break_strain = MSPRING_NEVER, .stress_strain = MSPRING_NEVER, .relax_strain = MSPRING_RELAX_STRAIN_DEFAULT,   \
+    .yield_strain = MSPRING_NEVER, .hardening = MSPRING_HARDENING_DEFAULT,                                         \
+    .plastic_limit = MSPRING_PLASTIC_LIMIT_DEFAULT
 
 mspring_result mspring_allocator_init(mspring_allocator *allocator, size_t size) {
     const mspring_allocator defaults = {.struct_size = sizeof defaults};

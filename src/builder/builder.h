@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 
+#include <massspring/massspring_laws.h>
 #include <massspring/massspring_tools.h>
 
 typedef struct mspringi_particle {
@@ -49,9 +50,17 @@ typedef struct mspringi_spring {
 /// The strains at which something happens to a spring, as its definition gives them.
 typedef struct mspringi_limits {
     float break_strain, stress_strain, relax_strain;
+    float yield_strain, hardening, plastic_limit;
+    float nominal_length; ///< rest length before any flow, m; 0: it has not flowed
 } mspringi_limits;
 
-#define MSPRINGI_LIMITS_OF(def) ((mspringi_limits){(def)->break_strain, (def)->stress_strain, (def)->relax_strain})
+#define MSPRINGI_LIMITS_OF(def)                                                                                    \
+    ((mspringi_limits){(def)->break_strain, (def)->stress_strain, (def)->relax_strain, (def)->yield_strain,        \
+                       (def)->hardening, (def)->plastic_limit, 0.0f})
+
+/// Most plastic strain, and most hardening.
+#define MSPRINGI_MOST_PLASTIC_STRAIN 0.9f
+#define MSPRINGI_MOST_HARDENING 10.0f
 
 struct mspring_builder {
     mspringi_memory memory;
@@ -99,6 +108,7 @@ mspring_result mspringi_builder_reserve_springs(mspring_builder *builder, size_t
 mspring_result mspringi_check_limits(mspringi_message *message, const char *what, size_t index,
                                      mspringi_limits limits);
 bool mspringi_has_limits(mspringi_limits limits);
+bool mspringi_has_plasticity(mspringi_limits limits);
 /// Make room for those of count springs more, if these are any; give them to all springs from one on.
 mspring_result mspringi_builder_reserve_limits(mspring_builder *builder, size_t count, mspringi_limits limits);
 void mspringi_builder_put_limits(mspring_builder *builder, size_t first, mspringi_limits limits);

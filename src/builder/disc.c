@@ -22,7 +22,7 @@ static mspring_result check_disc(mspringi_message *message, const mspring_disc_d
     if (def->centre_flags & ~(uint32_t)MSPRING_PARTICLE_PINNED)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "disc has unknown centre_flags 0x%x",
                              (unsigned)def->centre_flags);
-    return mspringi_check_reserved(message, "mspring_disc_def", def->reserved);
+    return MSPRING_OK;
 }
 
 // Particle number k of a ring, counted round and round.
@@ -103,7 +103,10 @@ static mspring_result fill_disc(mspring_builder *builder, const mspring_disc_def
                                    .damping = def->damping,
                                    .break_strain = def->break_strain,
                                    .stress_strain = def->stress_strain,
-                                   .relax_strain = def->relax_strain};
+                                   .relax_strain = def->relax_strain,
+                                   .yield_strain = def->yield_strain,
+                                   .hardening = def->hardening,
+                                   .plastic_limit = def->plastic_limit};
     mspring_result result = mspringi_builder_add_mesh(builder, &mesh);
     if (result == MSPRING_OK)
         builder->particles[centre].flags = def->centre_flags;

@@ -122,8 +122,13 @@ static mspring_result check_lattice(mspring_builder *builder, const mspring_latt
 // The limits of springs between two materials: those of the weaker one.
 static mspringi_limits join_limits(const mspring_material *a, const mspring_material *b) {
     const mspring_material *stressed = b->stress_strain < a->stress_strain ? b : a;
-    return (mspringi_limits){b->break_strain < a->break_strain ? b->break_strain : a->break_strain,
-                             stressed->stress_strain, stressed->relax_strain};
+    const mspring_material *yields = b->yield_strain < a->yield_strain ? b : a;
+    return (mspringi_limits){.break_strain = b->break_strain < a->break_strain ? b->break_strain : a->break_strain,
+                             .stress_strain = stressed->stress_strain,
+                             .relax_strain = stressed->relax_strain,
+                             .yield_strain = yields->yield_strain,
+                             .hardening = yields->hardening,
+                             .plastic_limit = yields->plastic_limit};
 }
 
 // Make room for the limits of springs, if any of the materials has some.

@@ -1,7 +1,14 @@
-/// Strains at which springs break, are stressed and relax. Most builders have none: then nothing is kept of them.
+/// Strains at which springs break, are stressed, relax and yield. Most builders have none: then nothing is kept of
+/// them.
 #include "builder/builder.h"
 
-static const mspringi_limits none = {MSPRING_NEVER, MSPRING_NEVER, MSPRING_RELAX_STRAIN_DEFAULT};
+static const mspringi_limits none = {MSPRING_NEVER,
+                                     MSPRING_NEVER,
+                                     MSPRING_RELAX_STRAIN_DEFAULT,
+                                     MSPRING_NEVER,
+                                     MSPRING_HARDENING_DEFAULT,
+                                     MSPRING_PLASTIC_LIMIT_DEFAULT,
+                                     0.0f};
 
 mspring_result mspringi_check_limits(mspringi_message *message, const char *what, size_t index,
                                      mspringi_limits limits) {
@@ -14,6 +21,11 @@ mspring_result mspringi_check_limits(mspringi_message *message, const char *what
         {"stress strain", "> 0", limits.stress_strain, mspringi_is_threshold(limits.stress_strain)},
         {"relax strain", ">= 0 or MSPRING_RELAX_STRAIN_DEFAULT", limits.relax_strain,
          mspringi_is_relax_strain(limits.relax_strain)},
+        {"yield strain", "> 0", limits.yield_strain, mspringi_is_threshold(limits.yield_strain)},
+        {"hardening", "0 to 10", limits.hardening,
+         mspringi_in_range(limits.hardening, 0.0f, MSPRINGI_MOST_HARDENING)},
+        {"plastic limit", "0 to 0.9", limits.plastic_limit,
+         mspringi_in_range(limits.plastic_limit, 0.0f, MSPRINGI_MOST_PLASTIC_STRAIN)},
     };
     for (size_t i = 0; i < sizeof all / sizeof all[0]; ++i)
         if (!all[i].is_good)
@@ -22,9 +34,14 @@ mspring_result mspringi_check_limits(mspringi_message *message, const char *what
     return MSPRING_OK;
 }
 
+bool mspringi_has_plasticity(mspringi_limits limits) {
+    return limits.yield_strain < MSPRING_NEVER || limits.hardening != MSPRING_HARDENING_DEFAULT ||
+           limits.plastic_limit != MSPRING_PLASTIC_LIMIT_DEFAULT || limits.nominal_length > 0.0f;
+}
+
 bool mspringi_has_limits(mspringi_limits limits) {
-    return limits.break_strain < MSPRING_NEVER || limits.stress_strain < MSPRING_NEVER ||
-           limits.relax_strain != MSPRING_RELAX_STRAIN_DEFAULT;
+    return mspringi_has_plasticity(limits) || limits.break_strain < MSPRING_NEVER ||
+           limits.stress_strain < MSPRING_NEVER || limits.relax_strain != MSPRING_RELAX_STRAIN_DEFAULT;
 }
 
 mspring_result mspringi_builder_reserve_limits(mspring_builder *builder, size_t count, mspringi_limits limits) {

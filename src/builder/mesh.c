@@ -78,7 +78,7 @@ static mspring_result check_values(mspringi_message *message, const mspring_mesh
         mspringi_check_coefficients(message, "mesh spring", 0, def->stiffness, def->damping, def->spring_flags);
     if (result == MSPRING_OK)
         result = mspringi_check_limits(message, "mesh spring", 0, MSPRINGI_LIMITS_OF(def));
-    return result == MSPRING_OK ? mspringi_check_reserved(message, "mspring_mesh_def", def->reserved) : result;
+    return result;
 }
 
 static mspring_result check_triangle(mspringi_message *message, const mspring_mesh_def *def, uint32_t triangle,

@@ -8,6 +8,7 @@
 #include "layout/emit/spare.h"
 #include "step/breaking.h"
 #include "step/origin.h"
+#include "step/plastic.h"
 #include "step/ramps.h"
 #include "step/strain.h"
 #include "store/changed.h"
@@ -224,6 +225,8 @@ static void put_spring(mspring_network *network, mspring_id s, const mspring_spr
     mspringi_spring_set_nominal(network, s, place, (mspringi_relative){def->stiffness, damping});
     mspringi_strain_forget(network, s);
     mspringi_strain_put_limits(network, s, MSPRINGI_LIMITS_OF(def));
+    mspringi_plastic_forget(network, s);
+    mspringi_plastic_put_limits(network, s, MSPRINGI_LIMITS_OF(def));
     mspringi_extents_turn(network, s);
     mspringi_fingerprint(network, relative ? MSPRINGI_EDIT_ADDED_RELATIVE : MSPRINGI_EDIT_ADDED_SPRING, s);
     mspringi_fingerprint(network, def->a, def->b);
@@ -253,6 +256,8 @@ static MSPRINGI_NOINLINE mspring_result add_springs(mspring_network *network, co
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
         const mspring_spring_def *def = mspringi_element(defs, struct_size, i);
         result = mspringi_strain_reserve_limits(network, MSPRINGI_LIMITS_OF(def));
+        if (result == MSPRING_OK)
+            result = mspringi_plastic_reserve_limits(network, MSPRINGI_LIMITS_OF(def));
     }
     if (result != MSPRING_OK) {
         for (id = g->lowest_spring; linked > 0; --linked, ++id) {

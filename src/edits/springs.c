@@ -1,4 +1,4 @@
-/// Setting stiffness, damping, rest lengths and thresholds of springs.
+/// Setting stiffness, damping, rest lengths, thresholds and what springs yield at.
 ///
 /// Most springs of most networks lie in lattices: their values are compared, and set, where they lie. A spring that
 /// has its value already costs that comparison.
@@ -6,6 +6,7 @@
 #include "base/cpu.h"
 #include "base/mix.h"
 #include "edits/values.h"
+#include "step/plastic.h"
 #include "step/ramps.h"
 #include "step/strain.h"
 #include "store/alike.h"
@@ -40,6 +41,9 @@ static float *thresholds_of(const mspring_network *network, mspring_property pro
     return property == MSPRING_BREAK_STRAIN    ? strain->break_strain
            : property == MSPRING_STRESS_STRAIN ? strain->stress_strain
            : property == MSPRING_RELAX_STRAIN  ? strain->relax_strain
+           : property == MSPRING_YIELD_STRAIN  ? network->plastic.yield_strain
+           : property == MSPRING_HARDENING     ? network->plastic.hardening
+           : property == MSPRING_PLASTIC_LIMIT ? network->plastic.plastic_limit
                                                : NULL;
 }
 
@@ -158,9 +162,32 @@ static uint32_t edit_of(mspring_property property) {
         return MSPRINGI_EDIT_BREAK_STRAIN;
     case MSPRING_STRESS_STRAIN:
         return MSPRINGI_EDIT_STRESS_STRAIN;
+    case MSPRING_YIELD_STRAIN:
+        return MSPRINGI_EDIT_YIELD_STRAIN;
+    case MSPRING_HARDENING:
+        return MSPRINGI_EDIT_HARDENING;
+    case MSPRING_PLASTIC_LIMIT:
+        return MSPRINGI_EDIT_PLASTIC_LIMIT;
     default:
         return MSPRINGI_EDIT_RELAX_STRAIN;
     }
+}
+
+static bool is_plastic(mspring_property property) {
+    return property >= MSPRING_YIELD_STRAIN && property <= MSPRING_PLASTIC_STRAIN;
+}
+
+static void store_limit(mspring_network *network, mspringi_place place, mspring_property property, float value) {
+    if (is_plastic(property))
+        mspringi_plastic_store(network, place, property, value);
+    else
+        mspringi_strain_store(network, place, property, value);
+}
+
+// After a rest length has been set.
+static void follow_rest_length(mspring_network *network, mspringi_place place, float had) {
+    if (network->plastic.nominal)
+        mspringi_plastic_follow(network, place, had);
 }
 
 static mspring_result check_room_for_damping(mspring_network *network, const mspringi_selection *at,
@@ -187,6 +214,8 @@ static mspring_result reserve(mspring_network *network, const mspringi_selection
                               uint32_t i) {
     const mspring_property property = values->property;
     const bool is_rest_length = property == MSPRING_REST_LENGTH;
+    if (is_plastic(property))
+        return mspringi_plastic_reserve(network);
     if (!is_rest_length && property != MSPRING_STIFFNESS && property != MSPRING_DAMPING)
         return mspringi_strain_reserve_for(network, property);
     if (is_rest_length ? network->rests.shared_count == 0 : !network->fractions.of_spring)
@@ -201,6 +230,7 @@ static mspring_result reserve(mspring_network *network, const mspringi_selection
 static MSPRINGI_NOINLINE void set_one(mspring_network *network, mspring_property property, mspring_id spring,
                                       mspringi_place place, float value) {
     mspringi_relative nominal;
+    float had;
     switch (property) {
     case MSPRING_STIFFNESS:
     case MSPRING_DAMPING:
@@ -210,10 +240,14 @@ static MSPRINGI_NOINLINE void set_one(mspring_network *network, mspring_property
         break;
     case MSPRING_REST_LENGTH:
         mspringi_ramp_drop(network, spring);
+        had = mspringi_place_get(network, place).rest_length;
         mspringi_place_set_rest_length(network, place, value);
+        follow_rest_length(network, place, had);
         break;
     default:
-        mspringi_strain_store(network, place, property, value);
+        if (property == MSPRING_PLASTIC_STRAIN)
+            mspringi_ramp_drop(network, spring);
+        store_limit(network, place, property, value);
     }
 }
 
@@ -286,15 +320,17 @@ static inline bool set_in_lattice(mspring_network *network, lattice_setter *with
 // Set a rest length or threshold in its plane. False: it had that.
 static inline bool set_in_plane(mspring_network *network, const plane *known, mspring_property property,
                                 mspringi_place place, float value) {
-    float *had = in_plane(known, place);
-    if (*had == value)
+    float *at = in_plane(known, place);
+    const float had = *at;
+    if (had == value)
         return false;
     if (property != MSPRING_REST_LENGTH) {
-        mspringi_strain_store(network, place, property, value);
+        store_limit(network, place, property, value);
         return true;
     }
-    *had = value;
+    *at = value;
     network->has_welds |= value == MSPRINGI_WELD;
+    follow_rest_length(network, place, had);
     mspringi_changed(network, MSPRINGI_CHANGED_PLACE, place);
     return true;
 }
@@ -379,9 +415,11 @@ static MSPRINGI_NOINLINE void set_others(mspring_network *network, const mspring
         if (may_sleep)
             mspringi_changed(network, MSPRINGI_CHANGED_SPRING, spring);
     }
-    mspringi_fingerprint(network, edit_of(property), at->count);
-    network->parameter_fingerprint = mspringi_mix(network->parameter_fingerprint, traces);
-    if (is_part || property == MSPRING_REST_LENGTH)
+    if (property != MSPRING_PLASTIC_STRAIN) { // which is state
+        mspringi_fingerprint(network, edit_of(property), at->count);
+        network->parameter_fingerprint = mspringi_mix(network->parameter_fingerprint, traces);
+    }
+    if (is_part || property == MSPRING_REST_LENGTH || property == MSPRING_PLASTIC_STRAIN)
         mspringi_changed(network, MSPRINGI_CHANGED_SPRING_VALUES, 0);
 }
 

@@ -205,6 +205,22 @@ typedef struct mspringi_strain_hit {
 typedef uint32_t (*mspringi_strain_fn)(const mspringi_strain_sweep *sweep, uint32_t first, uint32_t end,
                                        mspringi_strain_hit *hits);
 
+/// What a look for springs that may yield works on: arrays by slot and, by place, the squares of the lengths
+/// between which nothing happens to a spring.
+typedef struct mspringi_yield_sweep {
+    const float *x, *y;
+    const uint32_t *up_of_block; ///< as in mspringi_strain_sweep, like the next three and live
+    uint32_t lattice_first, chain_first;
+    uint32_t chain_word;
+    const float *low, *high; ///< [places]
+    const uint16_t *live;
+} mspringi_yield_sweep;
+
+/// List, of the blocks first ... end - 1, the live springs that are shorter or longer than that, as
+/// mspringi_strain_fn does.
+typedef uint32_t (*mspringi_yield_fn)(const mspringi_yield_sweep *sweep, uint32_t first, uint32_t end,
+                                      mspringi_strain_hit *hits);
+
 /// What every spring adds to the stability border: see border.h. Arrays by slot, and springs as in mspringi_sweep.
 typedef struct mspringi_border {
     const float *x, *y, *inverse_mass;
@@ -254,6 +270,7 @@ typedef struct mspringi_kernels {
     mspringi_touch_fn touch, fly_past; ///< of particles with and without springs
     mspringi_brake_fn brake;
     mspringi_strain_fn lattice_strain, chain_strain;
+    mspringi_yield_fn lattice_yield, chain_yield;
     mspringi_border_fn bound_lattice, bound_chain, image_lattice, image_chain;
     mspringi_checksum_fn checksum;
     mspringi_system_kernels system;

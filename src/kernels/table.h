@@ -1,6 +1,6 @@
 /// @file table.h
 /// The variants of an instruction set's lattice(), chain(), web(), herd(), loose(), attached(), pack(), largest(),
-/// extrema_of(), touch(), fly_past(), brake(), lattice_strain(), chain_strain(), bound_ and image_lattice() and
+/// extrema_of(), touch(), fly_past(), brake(), lattice_strain(), chain_strain(), lattice_yield(), chain_yield(), bound_ and image_lattice() and
 /// _chain() and take_checksum(), and the table of them. Included at the end of each kernel file, which defines
 /// MSPRINGI_TABLE and MSPRINGI_LEVEL.
 ///
@@ -14,6 +14,7 @@
 #include "kernels/silt.h"
 #include "kernels/strain.h"
 #include "kernels/system_table.h"
+#include "kernels/yield.h"
 
 static inline mspringi_variant variant_found(const mspringi_sweep *sweep) {
     const mspringi_variant damped = sweep->parts > MSPRINGI_DAMPING ? MSPRINGI_DAMPED : 0;
@@ -98,6 +99,8 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .brake = brake,
     .lattice_strain = lattice_strain,
     .chain_strain = chain_strain,
+    .lattice_yield = lattice_yield,
+    .chain_yield = chain_yield,
     .bound_lattice = bound_lattice,
     .bound_chain = bound_chain,
     .image_lattice = image_lattice,

@@ -86,9 +86,16 @@ static mspring_result append_particle(mspring_builder *builder, const mspring_ne
 }
 
 static mspringi_limits limits_of(const mspring_network *network, mspring_id s) {
-    return (mspringi_limits){mspringi_spring_property(network, MSPRING_BREAK_STRAIN, s),
-                             mspringi_spring_property(network, MSPRING_STRESS_STRAIN, s),
-                             mspringi_spring_property(network, MSPRING_RELAX_STRAIN, s)};
+    const mspringi_place place = mspringi_place_of(&network->topology, s);
+    const float *nominal = network->plastic.nominal;
+    const bool is_bent = nominal && nominal[place] != mspringi_place_own_length(network, place);
+    return (mspringi_limits){.break_strain = mspringi_spring_property(network, MSPRING_BREAK_STRAIN, s),
+                             .stress_strain = mspringi_spring_property(network, MSPRING_STRESS_STRAIN, s),
+                             .relax_strain = mspringi_spring_property(network, MSPRING_RELAX_STRAIN, s),
+                             .yield_strain = mspringi_spring_property(network, MSPRING_YIELD_STRAIN, s),
+                             .hardening = mspringi_spring_property(network, MSPRING_HARDENING, s),
+                             .plastic_limit = mspringi_spring_property(network, MSPRING_PLASTIC_LIMIT, s),
+                             .nominal_length = is_bent ? nominal[place] : 0.0f};
 }
 
 static void append_spring(mspring_builder *builder, const mspring_network *network, const id_maps *maps,

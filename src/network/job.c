@@ -67,9 +67,10 @@ static bool copy_topologies(mspring_job *job, const mspring_network *network) {
 
 // What springs are, and what tells which there are; for a solver also what particles are.
 static bool copy_arrays(mspring_job *job, const mspring_network *network) {
-    static const mspringi_group groups[] = {MSPRINGI_STORE_ROWS,   MSPRINGI_STORE_WEB,    MSPRINGI_STORE_RESTS,
-                                            MSPRINGI_STORE_STRAIN, MSPRINGI_STORE_STRESS, MSPRINGI_STORE_MARKS,
-                                            MSPRINGI_STORE_ENDS,   MSPRINGI_STORE_MASS,   MSPRINGI_STORE_FRACTIONS};
+    static const mspringi_group groups[] = {MSPRINGI_STORE_ROWS,    MSPRINGI_STORE_WEB,      MSPRINGI_STORE_RESTS,
+                                            MSPRINGI_STORE_STRAIN,  MSPRINGI_STORE_STRESS,   MSPRINGI_STORE_RELAX,
+                                            MSPRINGI_STORE_PLASTIC, MSPRINGI_STORE_MARKS,    MSPRINGI_STORE_ENDS,
+                                            MSPRINGI_STORE_MASS,    MSPRINGI_STORE_FRACTIONS};
     mspring_network *from = &job->from;
     const bool has_solver = network->solver.object || network->fallback.object;
     for (size_t i = 0; i < sizeof groups / sizeof groups[0] - (has_solver ? 0 : 2); ++i)

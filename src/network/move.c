@@ -9,6 +9,7 @@
 #include "network/job.h"
 #include "sleep/sleep.h"
 #include "stability/border.h"
+#include "step/plastic.h"
 #include "step/strain.h"
 #include "store/changed.h"
 #include "store/springs.h"
@@ -46,7 +47,9 @@ mspring_result mspringi_move_reserve_springs(mspring_job *job) {
                                         &to->message);
     if (result == MSPRING_OK && job->from.rests.shared_count == 0)
         result = mspringi_rests_separate(to);
-    return result == MSPRING_OK ? mspringi_strain_match_layout(to, &job->from) : result;
+    if (result == MSPRING_OK)
+        result = mspringi_strain_match_layout(to, &job->from);
+    return result == MSPRING_OK ? mspringi_plastic_match_layout(to, &job->from) : result;
 }
 
 // Copy all that there is of a spring, from its place here to its place there, whatever is there.
@@ -55,7 +58,7 @@ static void copy_spring(mspring_network *to, mspringi_place place, const mspring
     mspringi_place_copy(from, before, to, place);
     mspringi_store_copy_spring(to, place, from, before);
     if (to->strain.least)
-        to->strain.least[place] = fminf(to->strain.break_strain[place], to->strain.stress_strain[place]);
+        to->strain.least[place] = from->strain.least[before];
 }
 
 mspring_result mspringi_move_copy_springs(mspring_job *job, uint32_t first, uint32_t end) {
@@ -159,6 +162,8 @@ static mspring_result make_others(mspring_network *to, const mspring_network *fr
         result = mspringi_rests_separate(to);
     if (result == MSPRING_OK)
         result = mspringi_strain_match_layout(to, from);
+    if (result == MSPRING_OK)
+        result = mspringi_plastic_match_layout(to, from);
     if (result == MSPRING_OK && from->looks)
         result = mspringi_border_reserve(to);
     if (result == MSPRING_OK && !mspringi_store_match_layout(to, from))

@@ -14,6 +14,7 @@
 #include "stability/border.h"
 #include "stability/guard.h"
 #include "step/origin.h"
+#include "step/plastic.h"
 #include "step/strain.h"
 #include "store/alike.h"
 #include "store/fractions.h"
@@ -234,7 +235,11 @@ static mspring_result set_limits(mspring_network *network, const mspring_builder
     for (size_t s = 0; result == MSPRING_OK && s < builder->limit_count; ++s)
         result = mspringi_strain_reserve_limits(network, builder->limits[s]);
     for (size_t s = 0; result == MSPRING_OK && s < builder->limit_count; ++s)
+        result = mspringi_plastic_reserve_limits(network, builder->limits[s]);
+    for (size_t s = 0; result == MSPRING_OK && s < builder->limit_count; ++s) {
         mspringi_strain_put_limits(network, (mspring_id)s, builder->limits[s]);
+        mspringi_plastic_put_limits(network, (mspring_id)s, builder->limits[s]);
+    }
     return result;
 }
 

@@ -7,6 +7,7 @@
 #include "store/changed.h"
 #include "store/network.h"
 #include "store/selection.h"
+#include "store/springs.h"
 
 /* ---------------------------------------------------------------------------------------------------------- get */
 
@@ -243,6 +244,18 @@ mspring_result mspring_network_set_velocities_at(mspring_network *network, const
 
 /* -------------------------------------------------------------------------------------------------------- hash */
 
+// Add the rest lengths of springs that have flowed.
+static uint64_t hash_rest_lengths(const mspring_network *network, uint64_t sum) {
+    const mspringi_topology *t = &network->topology;
+    for (mspring_id s = 0; s < t->spring_count; ++s) {
+        const mspringi_place place = mspringi_place_of(t, s);
+        const float own = mspringi_place_own_length(network, place);
+        if (mspringi_spring_exists(network, s) && own != network->plastic.nominal[place])
+            sum = mspringi_mix_floats(mspringi_mix(sum, s), own, 0.0f);
+    }
+    return sum;
+}
+
 mspring_result mspring_network_state_hash(const mspring_network *network, uint64_t *hash) {
     if (!network)
         return MSPRING_ERROR_ARGUMENT;
@@ -265,6 +278,6 @@ mspring_result mspring_network_state_hash(const mspring_network *network, uint64
                 sum = mspringi_mix_floats(sum, 0.0f, 0.0f);
         }
     }
-    *hash = sum;
+    *hash = network->plastic.is_bent ? hash_rest_lengths(network, sum) : sum;
     return MSPRING_OK;
 }

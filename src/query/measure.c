@@ -1,6 +1,8 @@
 /// Measurements of the state, summed in double precision in id order.
 #include <math.h>
 
+#include <massspring/massspring_laws.h>
+
 #include "kernels/spring_law.h"
 #include "query/measure.h"
 #include "store/springs.h"
@@ -50,6 +52,28 @@ float mspringi_spring_force(const mspring_network *network, mspring_id spring) {
     return length > 0.0 ? (float)(pull + MSPRINGI_LAW_DAMPING_FORCE(MSPRINGI_TIMES, damping, rate)) : 0.0f;
 }
 
+// What a spring that has flowed has stored by its hardening.
+static double hardening_energy(const mspring_network *network, mspring_id spring, double stiffness) {
+    const mspringi_place place = mspringi_place_of(&network->topology, spring);
+    const double flow = (double)mspringi_place_own_length(network, place) - (double)network->plastic.nominal[place];
+    return 0.5 * stiffness * (double)network->plastic.hardening[place] * flow * flow;
+}
+
+mspring_result mspring_network_get_plasticity(const mspring_network *network, mspring_plasticity *report) {
+    const mspring_result result = mspringi_check_report(network, "mspring_plasticity", report, sizeof *report);
+    if (result != MSPRING_OK)
+        return result;
+    const mspringi_plastic *p = &network->plastic;
+    mspring_plasticity made = {.yield_count = p->count, .dissipated = p->dissipated};
+    for (mspring_id s = 0; p->is_bent && s < network->topology.spring_count; ++s) {
+        const mspringi_place place = mspringi_place_of(&network->topology, s);
+        made.bent_springs +=
+            mspringi_spring_exists(network, s) && mspringi_place_own_length(network, place) != p->nominal[place];
+    }
+    mspringi_put_struct(report, &made, sizeof made);
+    return MSPRING_OK;
+}
+
 mspring_result mspring_network_energy(const mspring_network *network, double *kinetic, double *elastic,
                                       double *potential) {
     if (!network)
@@ -71,6 +95,8 @@ mspring_result mspring_network_energy(const mspring_network *network, double *ki
         double rate;
         const double stretch = spring_length(network, &r, &rate) - (double)r.rest_length;
         elastic_sum += 0.5 * (double)r.stiffness * stretch * stretch;
+        if (network->plastic.nominal)
+            elastic_sum += hardening_energy(network, i, (double)r.stiffness);
     }
     if (kinetic)
         *kinetic = kinetic_sum;

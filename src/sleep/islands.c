@@ -199,3 +199,17 @@ bool mspringi_next_swept(const mspring_network *network, const mspringi_span *sp
     *at = end * MSPRINGI_WIDTH;
     return true;
 }
+
+bool mspringi_next_awake(const mspring_network *network, uint32_t base, uint32_t count, uint32_t *first,
+                         uint32_t *end) {
+    const mspringi_sleep *sleep = &network->sleep;
+    *end = count;
+    if (sleep->sleeping == 0)
+        return *first < count;
+    while (*first < count && !sleep->swept[base + *first])
+        ++*first;
+    *end = *first;
+    while (*end < count && sleep->swept[base + *end])
+        ++*end;
+    return *first < count;
+}

@@ -53,6 +53,11 @@ bool mspringi_is_any_swept(const mspring_network *network, size_t first, size_t 
 bool mspringi_next_swept(const mspring_network *network, const mspringi_span *span, uint32_t *at,
                          mspringi_span part[2]);
 
+/// The next of count blocks, of which the first has number base, that are swept: *first to *end - 1, counted from
+/// base. Returns false if there is none. What sleeps was looked at when it fell asleep.
+bool mspringi_next_awake(const mspring_network *network, uint32_t base, uint32_t count, uint32_t *first,
+                         uint32_t *end);
+
 /* ---------------------------------------------------------------------------------------------------- waking */
 
 /// Nothing sleeps any more.

@@ -14,6 +14,9 @@
 #include "store/stages.h"
 #include "store/store.h"
 
+/// Room for rounding in the least strain of a spring that has flowed.
+#define ROUNDING (1.0f - 1e-5f)
+
 /* ---------------------------------------------------------------------------------------------------- the pass */
 
 static float stretch_of(const mspring_network *network, const mspringi_spring_values *values) {
@@ -54,27 +57,26 @@ static uint32_t leftover_strain(const mspring_network *network, mspringi_strain_
     return count;
 }
 
-// The next of so many blocks from one on that have to be looked at: *first to *end - 1, counted from base. What
-// sleeps was looked at when it fell asleep.
-static bool next_swept(const mspring_network *network, uint32_t base, uint32_t count, uint32_t *first,
-                       uint32_t *end) {
-    const mspringi_sleep *sleep = &network->sleep;
-    *end = count;
-    if (sleep->sleeping == 0)
-        return *first < count;
-    while (*first < count && !sleep->swept[base + *first])
-        ++*first;
-    *end = *first;
-    while (*end < count && sleep->swept[base + *end])
-        ++*end;
-    return *first < count;
-}
-
 // The stretch below which a stressed spring relaxes.
 static float relaxes_at(const mspring_network *network, mspringi_place place, float whole, float stress_at) {
     const mspringi_strain *strain = &network->strain;
     const float own = strain->relax_strain ? strain->relax_strain[place] : MSPRING_RELAX_STRAIN_DEFAULT;
     return own >= 0.0f ? fminf(own * whole, stress_at) : stress_at * network->settings.relax_fraction;
+}
+
+// The rest length before any flow, of a spring that has flowed: it breaks by the strain that it has in all.
+static float nominal_of(const mspring_network *network, mspringi_place place, float rest_length) {
+    const float *nominal = network->plastic.nominal;
+    return !nominal || nominal[place] == rest_length || mspringi_place_ramp(network, place) ? rest_length
+                                                                                            : nominal[place];
+}
+
+// How much a spring's length differs from that.
+static float total_stretch(const mspring_network *network, const mspringi_spring_values *values, float stretch,
+                           float nominal) {
+    mspringi_spring_values whole = *values;
+    whole.rest_length = nominal;
+    return nominal == values->rest_length ? stretch : stretch_of(network, &whole);
 }
 
 // Break, stress or relax the spring in this place, if it is time for that.
@@ -85,8 +87,10 @@ static void look_at(mspring_network *network, mspringi_place place) {
     const float stretch = stretch_of(network, &values), whole = mspringi_strain_length(values.rest_length);
     const float stress_at = strain->stress_strain ? strain->stress_strain[place] * whole : INFINITY;
     const bool is_stressed = has_bit(strain->stressed, place);
+    const float nominal = nominal_of(network, place, values.rest_length);
+    const float total = total_stretch(network, &values, stretch, nominal);
     mspring_event event = {.other = MSPRING_NONE};
-    if (stretch > strain->break_strain[place] * whole)
+    if (total > strain->break_strain[place] * mspringi_strain_length(nominal))
         event.kind = MSPRING_EVENT_BROKEN;
     else if (!is_stressed && stretch > stress_at)
         event.kind = MSPRING_EVENT_STRESSED;
@@ -126,10 +130,11 @@ static void compare(mspring_network *network, double dt) {
     };
     mspringi_strain_hit *hits = strain->hits;
     uint32_t count = 0;
-    for (uint32_t first = 0, end; next_swept(network, t->lattice_first, t->lattice_blocks, &first, &end);
+    for (uint32_t first = 0, end; mspringi_next_awake(network, t->lattice_first, t->lattice_blocks, &first, &end);
          first = end)
         count += network->kernels->lattice_strain(&sweep, first, end, hits + count);
-    for (uint32_t first = 0, end; next_swept(network, t->chain_first, t->chain_blocks, &first, &end); first = end)
+    for (uint32_t first = 0, end; mspringi_next_awake(network, t->chain_first, t->chain_blocks, &first, &end);
+         first = end)
         count += network->kernels->chain_strain(&sweep, first, end, hits + count);
     count += leftover_strain(network, hits + count);
     for (const mspringi_strain_hit *hit = hits; hit < hits + count; ++hit)
@@ -148,13 +153,15 @@ static void fill(const mspring_network *network, float *thresholds, float value)
 
 mspring_result mspringi_strain_reserve(mspring_network *network) {
     const mspringi_strain *strain = &network->strain;
-    if (strain->break_strain)
+    if (strain->break_strain && (strain->least || !network->plastic.nominal))
         return MSPRING_OK;
     mspring_result result = mspringi_breaking_reserve(network);
     if (result == MSPRING_OK)
         result = mspringi_incidence_reserve(network);
     if (result == MSPRING_OK)
         result = mspringi_strain_reserve_layout(network);
+    if (result == MSPRING_OK && network->plastic.nominal)
+        result = mspringi_strain_reserve_stress(network);
     if (result == MSPRING_OK)
         mspringi_changed(network, MSPRINGI_CHANGED_PLACES, 0);
     return result;
@@ -214,6 +221,22 @@ mspring_result mspringi_strain_match_layout(mspring_network *to, const mspring_n
     return result == MSPRING_OK && from->strain.relax_strain ? mspringi_strain_reserve_relax(to) : result;
 }
 
+// Of a spring that has flowed, what is left of its break strain: the pass compares with the rest length in force.
+static float least_to_break(const mspring_network *network, mspringi_place place) {
+    const float break_strain = network->strain.break_strain[place], *nominal = network->plastic.nominal;
+    const float own = nominal ? mspringi_place_own_length(network, place) : 0.0f;
+    if (!nominal || own == nominal[place] || break_strain == INFINITY)
+        return break_strain;
+    return fmaxf(0.0f, (break_strain * nominal[place] - fabsf(own - nominal[place])) / own * ROUNDING);
+}
+
+void mspringi_strain_renew_least(mspring_network *network, mspringi_place place) {
+    const mspringi_strain *strain = &network->strain;
+    if (strain->least)
+        // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): one is there if the other is
+        strain->least[place] = fminf(least_to_break(network, place), strain->stress_strain[place]);
+}
+
 void mspringi_strain_store(mspring_network *network, mspringi_place place, mspring_property property, float value) {
     mspringi_strain *strain = &network->strain;
     if (property == MSPRING_RELAX_STRAIN) {
@@ -229,9 +252,7 @@ void mspringi_strain_store(mspring_network *network, mspringi_place place, mspri
             strain->break_strain[place] = value;
         strain->stresses = strain->stresses || (stress && value < INFINITY);
         strain->breaks = strain->breaks || (!stress && value < INFINITY);
-        if (strain->stress_strain)
-            // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): its callers have looked for it
-            strain->least[place] = fminf(strain->break_strain[place], strain->stress_strain[place]);
+        mspringi_strain_renew_least(network, place);
     }
     mspringi_changed(network, MSPRINGI_CHANGED_PLACE, place);
 }

@@ -27,6 +27,9 @@ void mspringi_strain_store(mspring_network *network, mspringi_place place, mspri
 mspring_result mspringi_strain_reserve_limits(mspring_network *network, mspringi_limits limits);
 void mspringi_strain_put_limits(mspring_network *network, mspring_id spring, mspringi_limits limits);
 
+/// Find the least strain that anything happens at, after what it follows from has changed.
+void mspringi_strain_renew_least(mspring_network *network, mspringi_place place);
+
 /// Let nothing happen to a spring by its strain.
 void mspringi_strain_forget(mspring_network *network, mspring_id spring);
 

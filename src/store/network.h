@@ -197,6 +197,24 @@ typedef struct mspringi_strain {
     bool relaxes;              ///< so with a relax strain that is not the default
 } mspringi_strain;
 
+/// What springs yield at, and what has become of them, by place; NULL as long as none yields. See step/yielding.c.
+typedef struct mspringi_plastic {
+    float *yield_strain, *hardening, *plastic_limit;
+    float *nominal;    ///< rest length before any flow, m; the one in force is among the spring's values
+    float *low, *high; ///< squares of the lengths between which the spring is cold, m^2
+    float *before;     ///< rest length before the step, where it has changed in it
+    uint16_t
+        *has_flowed; ///< [places / MSPRINGI_WIDTH] a bit for each place: its rest length has changed in the step
+    mspringi_strain_hit *hits; ///< [places / MSPRINGI_WIDTH] springs that were warm at the last look
+    uint32_t hit_count;
+    bool yields;                  ///< a yield strain has been finite: there is something to save
+    bool is_bent;                 ///< some rest length may be another than the nominal one
+    bool flows;                   ///< some bit of has_flowed is set
+    uint64_t flows_seen;          ///< times that a rest length has changed by flow
+    uint64_t count, count_before; ///< springs that flowed in a step, summed over the steps; before this step
+    double dissipated, dissipated_before; ///< J
+} mspringi_plastic;
+
 /// What came of a step beside its result: see mspring_step_info.
 typedef struct mspringi_outcome {
     mspring_id particle, spring; ///< to blame
@@ -391,6 +409,7 @@ struct mspring_network {
     mspringi_ramps ramps;
     mspringi_grips grips;
     mspringi_strain strain;
+    mspringi_plastic plastic;
     mspringi_events events;
     mspringi_components components;
     mspringi_extents extents;

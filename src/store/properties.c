@@ -18,6 +18,10 @@ static const mspringi_property list[] = {
     [MSPRING_FORCE] = {"force", " N", "", MSPRINGI_SPRINGS, false},
     [MSPRING_ACTIVE_STIFFNESS] = {"stiffness in force", " N/m", "", MSPRINGI_SPRINGS, false},
     [MSPRING_ACTIVE_DAMPING] = {"damping in force", " N s/m", "", MSPRINGI_SPRINGS, false},
+    [MSPRING_YIELD_STRAIN] = {"yield strain", "", "> 0", MSPRINGI_SPRINGS, true},
+    [MSPRING_HARDENING] = {"hardening", "", "0 to 10", MSPRINGI_SPRINGS, true},
+    [MSPRING_PLASTIC_LIMIT] = {"plastic limit", "", "0 to 0.9", MSPRINGI_SPRINGS, true},
+    [MSPRING_PLASTIC_STRAIN] = {"plastic strain", "", "-0.9 to 0.9", MSPRINGI_SPRINGS, true},
 };
 
 const mspringi_property *mspringi_property_of(mspring_property property) {
@@ -39,6 +43,10 @@ const mspringi_property *mspringi_property_of(mspring_property property) {
         return others == 0;                                                                                        \
     }
 #define IS_REST_LENGTH(value) ((value >= 0.0f) & (value <= 4e12f))
+#define IS_HARDENING(value) ((value >= 0.0f) & (value <= MSPRINGI_MOST_HARDENING))
+#define IS_PLASTIC_LIMIT(value) ((value >= 0.0f) & (value <= MSPRINGI_MOST_PLASTIC_STRAIN))
+#define IS_PLASTIC_STRAIN(value)                                                                                   \
+    ((value >= -MSPRINGI_MOST_PLASTIC_STRAIN) & (value <= MSPRINGI_MOST_PLASTIC_STRAIN))
 #define IS_COEFFICIENT(value) mspringi_is_spring_value(MSPRINGI_STIFFNESS, value)
 
 bool mspringi_are_allowed(mspring_property property, const float *values, uint32_t count, size_t stride) {
@@ -55,9 +63,16 @@ bool mspringi_are_allowed(mspring_property property, const float *values, uint32
         ALL(IS_REST_LENGTH)
     case MSPRING_BREAK_STRAIN:
     case MSPRING_STRESS_STRAIN:
+    case MSPRING_YIELD_STRAIN:
         ALL(mspringi_is_threshold)
     case MSPRING_RELAX_STRAIN:
         ALL(mspringi_is_relax_strain)
+    case MSPRING_HARDENING:
+        ALL(IS_HARDENING)
+    case MSPRING_PLASTIC_LIMIT:
+        ALL(IS_PLASTIC_LIMIT)
+    case MSPRING_PLASTIC_STRAIN:
+        ALL(IS_PLASTIC_STRAIN)
     default:
         return false;
     }
@@ -73,9 +88,19 @@ float mspringi_particle_property(const mspring_network *network, mspring_propert
     return network->inverse_mass[network->topology.slot_of_particle[particle]] > 0.0f ? 1.0f : 0.0f;
 }
 
+// Of a weld it is 0, and of one on a ramp that which it will have.
+static float plastic_strain(const mspring_network *network, mspringi_place place) {
+    const float *nominal = network->plastic.nominal;
+    if (!nominal || nominal[place] == MSPRINGI_WELD)
+        return 0.0f;
+    const double own = (double)mspringi_place_own_length(network, place);
+    return (float)((own - (double)nominal[place]) / (double)nominal[place]);
+}
+
 float mspringi_spring_property(const mspring_network *network, mspring_property property, mspring_id spring) {
     const mspringi_place place = mspringi_place_of(&network->topology, spring);
     const mspringi_strain *strain = &network->strain;
+    const mspringi_plastic *plastic = &network->plastic;
     switch (property) {
     case MSPRING_STIFFNESS:
         return mspringi_spring_get_nominal(network, spring, place).stiffness;
@@ -87,6 +112,14 @@ float mspringi_spring_property(const mspring_network *network, mspring_property 
         return strain->break_strain ? strain->break_strain[place] : INFINITY;
     case MSPRING_STRESS_STRAIN:
         return strain->stress_strain ? strain->stress_strain[place] : INFINITY;
+    case MSPRING_YIELD_STRAIN:
+        return plastic->nominal ? plastic->yield_strain[place] : INFINITY;
+    case MSPRING_HARDENING:
+        return plastic->nominal ? plastic->hardening[place] : MSPRING_HARDENING_DEFAULT;
+    case MSPRING_PLASTIC_LIMIT:
+        return plastic->nominal ? plastic->plastic_limit[place] : MSPRING_PLASTIC_LIMIT_DEFAULT;
+    case MSPRING_PLASTIC_STRAIN:
+        return plastic_strain(network, place);
     default:
         return strain->relax_strain ? strain->relax_strain[place] : MSPRING_RELAX_STRAIN_DEFAULT;
     }

@@ -62,6 +62,10 @@ extern const mspringi_section mspringi_section_relax_strains;
 extern const mspringi_section mspringi_section_stressed;
 extern const mspringi_section mspringi_section_ramps;
 
+// In plastic.c.
+extern const mspringi_section mspringi_section_yielding;
+extern const mspringi_section mspringi_section_bent;
+
 /// Fail with what is wrong with a section.
 mspring_result mspringi_section_fail(mspring_network *network, const mspringi_section *section, const char *format,
                                      ...) MSPRINGI_PRINTF(3, 4);

@@ -57,6 +57,19 @@ mspringi_spring_values mspringi_place_get(const mspring_network *network, msprin
     return values;
 }
 
+const mspringi_ramp *mspringi_place_ramp(const mspring_network *network, mspringi_place place) {
+    const mspringi_ramps *ramps = &network->ramps;
+    for (size_t i = 0; i < ramps->count; ++i)
+        if (mspringi_place_of(&network->topology, ramps->list[i].spring) == place)
+            return &ramps->list[i];
+    return NULL;
+}
+
+float mspringi_place_own_length(const mspring_network *network, mspringi_place place) {
+    const mspringi_ramp *ramp = mspringi_place_ramp(network, place);
+    return ramp ? ramp->to : *find_records(network, place).ends[0].rest_length;
+}
+
 // Whether a spring was given with the higher id first.
 static bool is_turned(const mspring_network *network, mspring_id spring) {
     const uint32_t first_spare = network->topology.reserve.first_spring;

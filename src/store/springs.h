@@ -27,6 +27,10 @@ typedef struct mspringi_ends {
 } mspringi_ends;
 mspringi_ends mspringi_spring_ends(const mspring_network *network, mspring_id spring);
 
+/// The ramp of the spring in a place, or NULL; and its rest length once that has come to its end.
+const mspringi_ramp *mspringi_place_ramp(const mspring_network *network, mspringi_place place);
+float mspringi_place_own_length(const mspring_network *network, mspringi_place place);
+
 /// MSPRING_SPRING_RELATIVE, _BROKEN, _STRESSED.
 uint32_t mspringi_spring_flags(const mspring_network *network, mspring_id spring);
 

@@ -6,6 +6,7 @@
 ///
 /// SPDX-License-Identifier: MIT
 #include <massspring/massspring_contact.h>
+#include <massspring/massspring_laws.h>
 #include <massspring/massspring_tools.h>
 
 #define SIZE(type, on_64_bits, on_32_bits)                                                                         \
@@ -17,12 +18,12 @@
 SIZE(mspring_allocator, 32, 20)
 SIZE(mspring_tasks, 32, 24)
 SIZE(mspring_particle_def, 40, 40)
-SIZE(mspring_spring_def, 40, 40)
-SIZE(mspring_material, 36, 36)
+SIZE(mspring_spring_def, 52, 52)
+SIZE(mspring_material, 48, 48)
 SIZE(mspring_lattice_def, 64, 56)
-SIZE(mspring_rope_def, 48, 48)
-SIZE(mspring_mesh_def, 72, 60)
-SIZE(mspring_disc_def, 72, 72)
+SIZE(mspring_rope_def, 60, 60)
+SIZE(mspring_mesh_def, 80, 68)
+SIZE(mspring_disc_def, 80, 80)
 SIZE(mspring_solver_def, 32, 32)
 SIZE(mspring_settings, 36, 36)
 SIZE(mspring_network_def, 104, 96)
@@ -38,6 +39,7 @@ SIZE(mspring_collider_def, 96, 88)
 SIZE(mspring_view, 112, 80)
 SIZE(mspring_mutable_view, 112, 80)
 SIZE(mspring_event, 16, 16)
+SIZE(mspring_plasticity, 24, 24)
 SIZE(mspring_component, 56, 56)
 SIZE(mspring_spring_info, 48, 48)
 SIZE(mspring_settle_def, 32, 32)

@@ -458,6 +458,8 @@ static void add_hook(arguments *a) {
     X(mspring_network_get_components, "nRP", (a->count = 1, a->first = 0, OUT_STRUCT(0, component)),               \
       mspring_network_get_components(a->network, a->first, a->count, a->out[0]))                                   \
     X(mspring_network_energy, "no", NOTHING, mspring_network_energy(a->network, a->out[0], a->out[1], a->out[2]))  \
+    X(mspring_network_get_plasticity, "nP", OUT_STRUCT(0, plasticity),                                             \
+      mspring_network_get_plasticity(a->network, a->out[0]))                                                       \
     X(mspring_network_momentum, "no", NOTHING,                                                                     \
       mspring_network_momentum(a->network, a->out[0], a->out[1], a->out[2]))                                       \
     X(mspring_network_bounds, "n0123", NOTHING,                                                                    \

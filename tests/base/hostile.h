@@ -6,6 +6,7 @@
 #define TEST_HOSTILE_H
 
 #include <massspring/massspring_contact.h>
+#include <massspring/massspring_laws.h>
 #include <massspring/massspring_tools.h>
 
 enum { OUTS = 6, OUT_BYTES = 512, STRUCT_BYTES = 512, SNAPSHOT_BYTES = 8192 };

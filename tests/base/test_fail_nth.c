@@ -207,6 +207,11 @@ static mspring_result set_stress_strains(life *l) {
     return mspring_network_set(l->network, MSPRING_STRESS_STRAIN, 3, 2, strains, 1);
 }
 
+static mspring_result set_yield_strains(life *l) {
+    const float strains[2] = {0.01f, 0.02f};
+    return mspring_network_set(l->network, MSPRING_YIELD_STRAIN, 3, 2, strains, 1);
+}
+
 static mspring_result reserve_events(life *l) {
     return mspring_network_reserve_events(l->network, 50);
 }
@@ -344,6 +349,7 @@ static const struct {
     {"rest lengths", set_rest_lengths},
     {"break strains", set_break_strains},
     {"stress strains", set_stress_strains},
+    {"yield strains", set_yield_strains},
     {"events", reserve_events},
     {"break", break_springs},
     {"step", step},

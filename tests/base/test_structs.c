@@ -228,8 +228,8 @@ static const struct input {
     INPUT(lattice_def, NO_FIELD, give_lattice),
     INPUT(material, NO_FIELD, give_material),
     INPUT(rope_def, NO_FIELD, give_rope),
-    INPUT(mesh_def, offsetof(mspring_mesh_def, reserved), give_mesh),
-    INPUT(disc_def, offsetof(mspring_disc_def, reserved), give_disc),
+    INPUT(mesh_def, NO_FIELD, give_mesh),
+    INPUT(disc_def, NO_FIELD, give_disc),
     INPUT(network_def, NO_FIELD, give_network_def),
     INPUT(clone_def, offsetof(mspring_clone_def, reserved), give_clone_def),
     INPUT(solver_def, NO_FIELD, give_solver),
@@ -345,6 +345,10 @@ static mspring_result fill_collider(subject *s, void *out) {
     check_ok(mspring_network_add_collider(s->network, &def, &id));
     return mspring_network_get_collider(s->network, id, out);
 }
+static mspring_result fill_plasticity(subject *s, void *out) {
+    return mspring_network_get_plasticity(s->network, out);
+}
+
 static mspring_result fill_step_info(subject *s, void *out) {
     return mspring_network_get_step_info(s->network, out);
 }
@@ -395,6 +399,7 @@ static const struct output {
     OUTPUT(mspring_grip_def, fill_grip),
     OUTPUT(mspring_collider_def, fill_collider),
     OUTPUT(mspring_step_info, fill_step_info),
+    OUTPUT(mspring_plasticity, fill_plasticity),
     OUTPUT(mspring_spring_info, fill_spring_info),
     OUTPUT(mspring_plan, fill_plan),
     OUTPUT(mspring_settle_result, fill_settled),

@@ -271,6 +271,19 @@ static void move_colliders(mspring_network *network, uint32_t step) {
     check_ok(mspring_network_move_collider(network, 2, 7 - swing, 3, -(double)step / 8));
 }
 
+/// Lattice, ropes and irregular springs that yield; some harden, and some come to their limit.
+static mspring_network *yielding(mspring_network_def *def) {
+    static const float yield_strains[2] = {0.01f, 0.04f}, hardenings[3] = {0, 0.1f, 1}, limit = 0.1f;
+    mspring_network *network = everything_damped(def);
+    const uint32_t count = mspring_network_spring_count(network);
+    for (mspring_id s = 0; s < count; s++) {
+        check_ok(mspring_network_set(network, MSPRING_YIELD_STRAIN, s, 1, &yield_strains[s % 2], 1));
+        check_ok(mspring_network_set(network, MSPRING_HARDENING, s, 1, &hardenings[s % 3], 1));
+    }
+    check_ok(mspring_network_set(network, MSPRING_PLASTIC_LIMIT, 0, count, &limit, 0));
+    return network;
+}
+
 const golden_scene golden_scenes[] = {
     {"bar_80x5", bar_80x5, NULL, 30, 64, 1.0 / 64},
     {"bar_544x68", bar_544x68, NULL, 30, 3, 1.0 / 64},
@@ -296,6 +309,8 @@ const golden_scene golden_scenes[] = {
     {"colliders", colliders, move_colliders, 20, 160, 1.0 / 64},
     {"implicit_contact", implicit_contact, move_colliders, 2, 80, 1.0 / 64},
     {"direct_contact", direct_contact, move_colliders, 2, 80, 1.0 / 64},
+    {"yielding", yielding, push_some, 10, 100, 1.0 / 64},
+    {"implicit_yielding", yielding, push_and_change_solver, 2, 80, 1.0 / 64},
 };
 const uint32_t golden_scene_count = COUNT_OF(golden_scenes);
 

@@ -14,6 +14,7 @@
 
 #include <cmocka.h>
 #include <massspring/massspring_contact.h>
+#include <massspring/massspring_laws.h>
 #include <massspring/massspring_tools.h>
 
 #define COUNT_OF(array) (sizeof(array) / sizeof((array)[0]))

@@ -134,6 +134,9 @@ static double extent_of(const mspringi_statics *statics, const mspring_network *
     return fmax(extent, fmax(box.max_x - box.min_x, box.max_y - box.min_y));
 }
 
+/// Part of its yield strain that a spring which is at the border may be strained by.
+#define TOLERATED_YIELD (1.0 + 1e-5)
+
 static mspring_result check_rest(const mspringi_statics *statics, const mspringi_rest *rest,
                                  mspring_network *network) {
     if (!rest->found)
@@ -147,6 +150,30 @@ static mspring_result check_rest(const mspringi_statics *statics, const mspringi
             return mspringi_fail(&network->message, MSPRING_ERROR_EQUILIBRIUM,
                                  "particle %u would come to rest at (%g, %g) m, out of bounds", (unsigned)p,
                                  network->origin_x + x, network->origin_y + y);
+    }
+    return MSPRING_OK;
+}
+
+// The equilibrium is that of springs which are elastic. Where one would yield on the way there is another.
+static mspring_result check_yields(const mspringi_statics *statics, mspring_network *network) {
+    const mspringi_plastic *p = &network->plastic;
+    for (mspring_id spring = 0; p->yields && spring < network->topology.spring_count; ++spring) {
+        const mspringi_place place = mspringi_place_of(&network->topology, spring);
+        const mspringi_spring_values values = mspringi_place_get(network, place);
+        if (!(values.stiffness > 0.0f))
+            continue;
+        const uint32_t a = network->topology.particle_of_slot[values.base],
+                       b = network->topology.particle_of_slot[values.tip];
+        const double x = (statics->start.x[b] + statics->moved.x[b]) - (statics->start.x[a] + statics->moved.x[a]);
+        const double y = (statics->start.y[b] + statics->moved.y[b]) - (statics->start.y[a] + statics->moved.y[a]);
+        const double rest = (double)values.rest_length, nominal = (double)p->nominal[place];
+        const double strain = (sqrt(x * x + y * y) - rest) / nominal,
+                     hardened = (double)p->hardening[place] * (rest - nominal) / nominal;
+        if (fabs(strain - hardened) > TOLERATED_YIELD * (double)p->yield_strain[place])
+            return mspringi_fail(&network->message, MSPRING_ERROR_EQUILIBRIUM,
+                                 "at rest the strain of spring %u would be %g, so it would yield first (yield "
+                                 "strain %g): let it come to rest in steps",
+                                 (unsigned)spring, strain, (double)p->yield_strain[place]);
     }
     return MSPRING_OK;
 }
@@ -186,6 +213,8 @@ static mspring_result solve(mspringi_statics *statics, mspring_network *network,
     const mspringi_rest rest =
         mspringi_statics_rest(statics, def->max_iterations, def->tolerance, extent_of(statics, network));
     result = check_rest(statics, &rest, network);
+    if (result == MSPRING_OK)
+        result = check_yields(statics, network);
     if (result == MSPRING_OK)
         *out = (mspring_settle_result){
             .struct_size = sizeof *out,

@@ -143,6 +143,7 @@ void mspringi_tune_expose(mspring_network *clone) {
 void mspringi_tune_make_unbreakable(mspring_network *clone) {
     for (mspring_id spring = 0; clone->strain.break_strain && spring < clone->topology.spring_count; ++spring)
         mspringi_strain_store(clone, mspringi_place_of(&clone->topology, spring), MSPRING_BREAK_STRAIN, INFINITY);
+    clone->plastic.yields = false;
 }
 
 // A clone that only springs, gravity and the forces given move: ramps stand still, springs do not break, and there

@@ -47,7 +47,7 @@
 #define MSPRINGI_CALM_SUBSTEPS 15u
 
 /// Counters of edits that may change elastic energy.
-#define MSPRINGI_BUDGET_EDITS 6
+#define MSPRINGI_BUDGET_EDITS 7
 
 /// No component, and several.
 #define MSPRINGI_NO_ACCOUNT MSPRING_NONE
