@@ -1,8 +1,8 @@
 /// @file table.h
 /// The variants of an instruction set's lattice(), chain(), web(), herd(), loose(), attached(), pack(), largest(),
-/// extrema_of(), touch(), fly_past(), brake(), lattice_strain(), chain_strain(), lattice_yield(), chain_yield(), bound_ and image_lattice() and
-/// _chain() and take_checksum(), and the table of them. Included at the end of each kernel file, which defines
-/// MSPRINGI_TABLE and MSPRINGI_LEVEL.
+/// extrema_of(), touch(), fly_past(), brake(), lattice_strain(), chain_strain(), lattice_yield(), chain_yield(),
+/// bound_ and image_lattice() and _chain() and take_checksum(), and the table of them. Included at the end of each
+/// kernel file, which defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
 ///
 /// SPDX-License-Identifier: MIT
 
