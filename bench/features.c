@@ -19,7 +19,8 @@ typedef struct variant {
     bool snapshots;   ///< one of a frame before every step
     bool hooked;
     mspring_phase hook;
-    uint32_t period; ///< of the hook; 0: 1
+    uint32_t period;    ///< of the hook; 0: 1
+    float yield_strain; ///< of all springs; 0: none yields
 } variant;
 
 static const variant variants[] = {
@@ -32,6 +33,8 @@ static const variant variants[] = {
     {.name = "empty hook after substeps", .hooked = true, .hook = MSPRING_PHASE_AFTER_SUBSTEP},
     {.name = "empty hook before every 8", .hooked = true, .hook = MSPRING_PHASE_BEFORE_SUBSTEP, .period = 8},
     {.name = "empty hook after every 8", .hooked = true, .hook = MSPRING_PHASE_AFTER_SUBSTEP, .period = 8},
+    {.name = "springs that could yield", .yield_strain = 10},
+    {.name = "springs near yield", .yield_strain = 1e-9f},
     {.name = "force on every particle", .held_forces = true},
     {.name = "snapshot of every step", .snapshots = true},
     {.name = "4 ropes", .ropes = 4},
@@ -97,6 +100,15 @@ static bool create_variant(const variant *kind, const bench_scene *subject, cons
     if (kind->held_forces && !bench_network_hold_forces(out, error)) {
         bench_network_free(out);
         return false;
+    }
+    if (kind->yield_strain > 0) {
+        const mspring_result result =
+            mspring_network_set(out->network, MSPRING_YIELD_STRAIN, 0, out->spring_count, &kind->yield_strain, 0);
+        if (result != MSPRING_OK) {
+            bench_library_error(error, "letting springs yield", result, mspring_network_error(out->network));
+            bench_network_free(out);
+            return false;
+        }
     }
     out->saves_frames = kind->snapshots;
     if (kind->hooked) {

@@ -66,7 +66,7 @@ MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact
 ///
 /// If more than capacity pairs are near each other, a step fails with MSPRING_ERROR_LIMIT and is rolled back.
 /// @param def  copied; NULL: no contact, the default. Groups of particles and colliders of the host are forgotten.
-/// @threads exclusive   @allocates yes; about 500 bytes for a particle, 1400 more for one of the outline, 40 for a
+/// @threads exclusive   @allocates yes; about 1300 bytes for a particle, 3400 more for one of the outline, 40 for a
 ///          spring   @errors ARGUMENT (the message names the field), STRUCT, MEMORY, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_contact(
     mspring_network *network, const mspring_contact_def *def);
