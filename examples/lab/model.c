@@ -84,7 +84,7 @@ static void make_stable(lab_model *model) {
     }
 }
 
-// Contact needs explicit substeps. More of them show what they change.
+// While bodies touch, explicit substeps cost least. More of them show what they change.
 static void choose_solvers(const lab_model *model, const lab_stage *stage, lab_solver chosen[2]) {
     for (int i = 0; i < 2; i++) {
         chosen[i] = model->solvers[i];

@@ -90,7 +90,7 @@ PAGE_EXPORT(blast) mspring_result page_blast(double x, double y, double radius, 
 PAGE_EXPORT(repair) mspring_result page_repair(void);
 /// A floor at this height; below -1e11 none.
 PAGE_EXPORT(floor) mspring_result page_set_floor(double height);
-/// Whether bodies meet each other and themselves, which takes the explicit solver.
+/// Whether bodies meet each other and themselves.
 PAGE_EXPORT(collide) mspring_result page_set_collide(uint32_t on);
 
 /* check.c: the same bits as elsewhere */
