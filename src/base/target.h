@@ -34,4 +34,11 @@
 #define MSPRINGI_BIG_ENDIAN_HOST 0
 #endif
 
+// For small functions of inner loops: a compiler that has seen many uses may call them otherwise.
+#if defined(_MSC_VER) && !defined(__clang__)
+#define MSPRINGI_INLINE static __forceinline
+#else
+#define MSPRINGI_INLINE static inline __attribute__((always_inline))
+#endif
+
 #endif

@@ -7,14 +7,9 @@
 #include <float.h>
 #include <string.h>
 
+#include "base/target.h"
 #include "solvers/sparse/kernels.h"
 #include "solvers/sparse/plan.h"
-
-#if defined(_MSC_VER) && !defined(__clang__)
-#define MSPRINGI_INLINE static __forceinline
-#else
-#define MSPRINGI_INLINE static inline __attribute__((always_inline))
-#endif
 
 #if defined(__clang__)
 #define MSPRINGI_UNROLL _Pragma("unroll")
