@@ -342,8 +342,7 @@ typedef struct mspring_solver_def {
     uint32_t max_substeps;         ///< most that MSPRING_SUBSTEPS_AUTO or MSPRING_GUARD_RETRY may choose, 1 to
                                    ///< MSPRING_MAX_SUBSTEPS; default 1000. If a step needs more, the guard decides.
     mspring_integrator integrator; ///< of the implicit and the direct solver; default MSPRING_INTEGRATOR_GA0
-    uint32_t iterations;    ///< of conjugate gradients in a substep, at most 10000; with 1, springs hardly act; 0, the
-                            ///< default: 8
+    uint32_t iterations;    ///< of conjugate gradients in a substep, at most 10000; with 1, springs hardly act; default 0: 8
     uint32_t tile_size;     ///< of the implicit solver's tiles, in rows and columns of a lattice: 8, 16, 32, 64, 128 or
                             ///< 256; 0, the default: chosen by the plan
     uint32_t coarse_period; ///< substeps between factorisations of the tiles' matrix, at most 10000; more are cheaper
@@ -463,8 +462,7 @@ typedef struct mspring_floor_def {
     const float *plane_frictions, *plane_restitutions;   ///< [plane_count]
     const float *height_frictions, *height_restitutions; ///< [height_count - 1]
     float silt_depth; ///< m of silt above the heights, straight up, 0 to 1e12: a soft layer that brakes; default 0
-    float silt_rate;  ///< 1/s, 0 to 1e6: dv/dt = -silt_rate v at the heights, falling evenly to 0 at the silt's top;
-                      ///< default 0
+    float silt_rate;  ///< 1/s, 0 to 1e6: dv/dt = -silt_rate v at the heights, less above, 0 at its top; default 0
 } mspring_floor_def;
 
 /// Fill a definition with its defaults. Pass the size that your header gives it: sizeof *def.
@@ -533,8 +531,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_add_sp
 
 /// Add a lattice: all of it or, on error, nothing.
 /// Particle ids follow the cells, row by row from the top, left to right. Spring ids follow the particles: each
-/// brings those to its right, lower left, lower and lower right neighbour. Bend springs come last, to the right and
-/// below.
+/// brings those to its right, lower left, lower and lower right neighbour. Bend springs, right and down, come last.
 /// @param cell_ids  [height][width], receives each cell's particle id or MSPRING_NONE; may be NULL
 /// @threads exclusive   @allocates yes   @errors ARGUMENT (the message names cell or material), STRUCT, LIMIT,
 ///          MEMORY
@@ -648,8 +645,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_st
 /// Return 1 if all of the network sleeps, else 0. NULL gives 0.
 /// Each component sleeps by itself; the guide calls it an island. It falls asleep after a step if it has been slower
 /// than mspring_settings.sleep_speed for sleep_time. Its velocities become 0. Steps do not move it, and cost only
-/// what is awake. It wakes if an edit, a force or a setting changes it. The guide examples/guides/sleep.md has the
-/// rules.
+/// what is awake. It wakes if an edit, a force or a setting changes it. The rules: examples/guides/sleep.md.
 /// @threads shared   @allocates never
 MSPRING_API uint32_t MSPRING_CALL mspring_network_is_asleep(const mspring_network *network);
 
@@ -722,8 +718,7 @@ typedef struct mspring_view {
     uint32_t slot_count;     ///< length of the arrays by slot; some slots hold no particle
     uint32_t particle_count; ///< length of slot_of_particle
     uint32_t reserved;       ///< 0
-    /// Changes if particles or springs are added or removed, also by a snapshot, or the network is compacted or
-    /// expanded.
+    /// Changes if particles or springs are added or removed, also by a snapshot, or a job changes the layout.
     uint64_t layout_generation;
     uint64_t origin_generation;       ///< changes if the origin moves
     double origin_x, origin_y;        ///< world position = origin + (x, y), m

@@ -8,12 +8,6 @@
 #ifndef MSPRINGI_BORDER_H
 #define MSPRINGI_BORDER_H
 
-#if defined(_MSC_VER)
-#define MSPRINGI_BORDER_INLINE static __forceinline
-#else
-#define MSPRINGI_BORDER_INLINE static inline __attribute__((always_inline))
-#endif
-
 /// LANES ends of springs: where they are, and what is read of them.
 typedef struct border_end {
     vec x, y, in_x, in_y;
@@ -25,7 +19,7 @@ typedef struct border_fraction {
     vec sums[3];
 } border_fraction;
 
-MSPRINGI_BORDER_INLINE border_end border_end_at(const mspringi_border *b, size_t slot, bool is_image) {
+MSPRINGI_INLINE border_end border_end_at(const mspringi_border *b, size_t slot, bool is_image) {
     border_end end = {load_unaligned(b->x + slot), load_unaligned(b->y + slot), load_unaligned(b->in[0] + slot),
                       zero()};
     if (is_image)
@@ -34,7 +28,7 @@ MSPRINGI_BORDER_INLINE border_end border_end_at(const mspringi_border *b, size_t
 }
 
 // See stability/certificate.c. A spring that is pressed counts as if it were as long as at rest.
-MSPRINGI_BORDER_INLINE border_fraction border_bound(border_end base, border_end tip, vec nx, vec ny, vec along,
+MSPRINGI_INLINE border_fraction border_bound(border_end base, border_end tip, vec nx, vec ny, vec along,
                                                  vec across, vec inverse) {
     const vec both = add(base.in_x, tip.in_x), half = mul(set(0.5f), both);
     const vec stretched = choose_positive(across, across, zero()), turned = mul(half, sub(along, stretched));
@@ -44,7 +38,7 @@ MSPRINGI_BORDER_INLINE border_fraction border_bound(border_end base, border_end 
 }
 
 // What springs do against a displacement.
-MSPRINGI_BORDER_INLINE border_fraction border_pull(border_end base, border_end tip, vec nx, vec ny, vec along,
+MSPRINGI_INLINE border_fraction border_pull(border_end base, border_end tip, vec nx, vec ny, vec along,
                                                 vec across) {
     const vec dx = sub(tip.in_x, base.in_x), dy = sub(tip.in_y, base.in_y);
     const vec pull = mul(along, add(mul(nx, dx), mul(ny, dy)));
@@ -53,7 +47,7 @@ MSPRINGI_BORDER_INLINE border_fraction border_pull(border_end base, border_end t
 }
 
 // record is where the springs' stiffness is, with their damping behind.
-MSPRINGI_BORDER_INLINE border_fraction share_of_springs(const mspringi_border *b, border_end base, border_end tip,
+MSPRINGI_INLINE border_fraction share_of_springs(const mspringi_border *b, border_end base, border_end tip,
                                                      const float *rests, const float *record, bool damped,
                                                      bool is_image) {
     const vec dx = sub(tip.x, base.x), dy = sub(tip.y, base.y);
@@ -69,7 +63,7 @@ MSPRINGI_BORDER_INLINE border_fraction share_of_springs(const mspringi_border *b
 }
 
 // Add shares at the bases and at the tips of springs; an image by inverse masses.
-MSPRINGI_BORDER_INLINE void add_shares(const mspringi_border *b, size_t sum, size_t slot, vec bases, vec tips,
+MSPRINGI_INLINE void add_shares(const mspringi_border *b, size_t sum, size_t slot, vec bases, vec tips,
                                        bool is_image) {
     const vec share = is_image ? mul(load(b->inverse_mass + slot), sub(tips, bases)) : add(bases, tips);
     store(b->out[sum] + slot, add(load(b->out[sum] + slot), share));
@@ -77,7 +71,7 @@ MSPRINGI_BORDER_INLINE void add_shares(const mspringi_border *b, size_t sum, siz
 
 // The springs of LANES slots of a lattice; before: what those of the slots before hand on to the right, and to the
 // right above.
-MSPRINGI_BORDER_INLINE void border_slots(const mspringi_border *b, size_t slot, size_t up, const float *rests,
+MSPRINGI_INLINE void border_slots(const mspringi_border *b, size_t slot, size_t up, const float *rests,
                                          const float *records, border_fraction before[2], bool damped, bool is_image) {
     const size_t part = (size_t)(damped ? 2 : 1) * MSPRINGI_WIDTH;
     const border_end here = border_end_at(b, slot, is_image), next = border_end_at(b, slot + 1, is_image);
@@ -102,7 +96,7 @@ MSPRINGI_BORDER_INLINE void border_slots(const mspringi_border *b, size_t slot, 
     }
 }
 
-MSPRINGI_BORDER_INLINE void border_lattice(const mspringi_border *border, bool damped, bool is_image) {
+MSPRINGI_INLINE void border_lattice(const mspringi_border *border, bool damped, bool is_image) {
     const mspringi_border copy = *border, *const b = &copy; // of its own, so that no store can change it
     border_fraction before[2] = {{{zero(), zero(), zero()}}, {{zero(), zero(), zero()}}};
     for (size_t block = 0; block < b->lattice_blocks; ++block) {
@@ -117,7 +111,7 @@ MSPRINGI_BORDER_INLINE void border_lattice(const mspringi_border *border, bool d
     }
 }
 
-MSPRINGI_BORDER_INLINE void border_chain(const mspringi_border *border, bool damped, bool is_image) {
+MSPRINGI_INLINE void border_chain(const mspringi_border *border, bool damped, bool is_image) {
     const mspringi_border copy = *border, *const b = &copy;
     const size_t parts = damped ? 3 : 2;
     border_fraction before = {{zero(), zero(), zero()}};

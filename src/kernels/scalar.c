@@ -8,12 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-#if defined(_MSC_VER)
-#define MSPRINGI_INLINE static __forceinline
-#else
-#define MSPRINGI_INLINE static inline __attribute__((always_inline))
-#endif
-
 typedef struct vector {
     float x, y;
 } vector;

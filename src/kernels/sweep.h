@@ -14,12 +14,6 @@
 #include "base/cpu.h"
 #include "kernels/spring_law.h"
 
-#if defined(_MSC_VER)
-#define MSPRINGI_INLINE static __forceinline
-#else
-#define MSPRINGI_INLINE static inline __attribute__((always_inline))
-#endif
-
 /// Springs of a herd that are computed together.
 #define HERD_BATCH (LANES == 16 ? 4 : 2)
 
