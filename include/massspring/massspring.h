@@ -342,7 +342,7 @@ typedef struct mspring_solver_def {
     uint32_t max_substeps;         ///< most that MSPRING_SUBSTEPS_AUTO or MSPRING_GUARD_RETRY may choose, 1 to
                                    ///< MSPRING_MAX_SUBSTEPS; default 1000. If a step needs more, the guard decides.
     mspring_integrator integrator; ///< of the implicit and the direct solver; default MSPRING_INTEGRATOR_GA0
-    uint32_t iterations;    ///< of conjugate gradients in a substep, at most 10000; with 1, springs hardly act; default 0: 8
+    uint32_t iterations;    ///< of conjugate gradients in a substep, at most 10000; 1: springs hardly act; default 0: 8
     uint32_t tile_size;     ///< of the implicit solver's tiles, in rows and columns of a lattice: 8, 16, 32, 64, 128 or
                             ///< 256; 0, the default: chosen by the plan
     uint32_t coarse_period; ///< substeps between factorisations of the tiles' matrix, at most 10000; more are cheaper
