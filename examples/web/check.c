@@ -29,6 +29,8 @@ static const check_scene scenes[] = {
     {60, 20, 8, 40, MSPRING_SOLVER_EXPLICIT, 6.7643e7f, 500, 73.3975f},
     {60, 20, 8, 1, MSPRING_SOLVER_IMPLICIT, 6.7643e7f, 500, 73.3975f},
     {40, 10, 4, 1, MSPRING_SOLVER_DIRECT, 6.7643e7f, 500, 73.3975f},
+    {80, 5, 0, 1, MSPRING_SOLVER_IMPLICIT, 6.7643e7f, 0, 73.3975f},
+    {40, 10, 4, 1, MSPRING_SOLVER_DIRECT, 6.7643e7f, 0, 73.3975f},
 };
 enum { SCENES = sizeof scenes / sizeof *scenes, MOST_CELLS = 1200 };
 

@@ -360,7 +360,7 @@ function frame(now) {
 
 function writeChecks() {
   const lines = [];
-  for (const [scene, steps] of [[0, 64], [0, 1000], [1, 1000], [2, 200], [3, 100]])
+  for (const [scene, steps] of [[0, 64], [0, 1000], [1, 1000], [2, 200], [3, 100], [4, 300], [5, 200]])
     for (const level of [1, 0]) {
       const result = core.check(scene, steps, level);
       lines.push(`check ${scene} ${steps} ${level ? 'scalar' : 'best'} ${result || hashText(core.check_hash)}`);

@@ -67,7 +67,7 @@ typedef struct linearised {
 } linearised;
 
 // The springs from the slots base ... to the slots tip ...
-MSPRINGI_PART_INLINE void find_inverses(const linearised *s, size_t base, size_t tip, spring_lanes *restrict to) {
+MSPRINGI_INLINE void find_inverses(const linearised *s, size_t base, size_t tip, spring_lanes *restrict to) {
     const double *const x = s->x, *const y = s->y;
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const double dx = x[tip + i] - x[base + i], dy = y[tip + i] - y[base + i];
@@ -76,8 +76,8 @@ MSPRINGI_PART_INLINE void find_inverses(const linearised *s, size_t base, size_t
 }
 
 // By a step of Newton's method for the inverse, and one more for the length.
-MSPRINGI_PART_INLINE void find_forces(const linearised *s, size_t base, size_t tip, const float *rest_lengths,
-                                      const float *stiffnesses, spring_lanes *restrict to, bool damped) {
+MSPRINGI_INLINE void find_forces(const linearised *s, size_t base, size_t tip, const float *rest_lengths,
+                                 const float *stiffnesses, spring_lanes *restrict to, bool damped) {
     const double *const x = s->x, *const y = s->y;
     const float *const vx = s->vx, *const vy = s->vy, *const dampings = stiffnesses + MSPRINGI_WIDTH;
     const float scale = s->scale;
@@ -103,8 +103,8 @@ MSPRINGI_PART_INLINE void find_forces(const linearised *s, size_t base, size_t t
     }
 }
 
-MSPRINGI_PART_INLINE void find_factors(const linearised *s, const float *stiffnesses, float *restrict factors,
-                                       spring_lanes *restrict to, bool damped) {
+MSPRINGI_INLINE void find_factors(const linearised *s, const float *stiffnesses, float *restrict factors,
+                                  spring_lanes *restrict to, bool damped) {
     const float *const dampings = stiffnesses + MSPRINGI_WIDTH;
     const float scale = s->scale, damping_rate = s->damping_rate;
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
@@ -134,8 +134,8 @@ MSPRINGI_PART_INLINE void find_factors(const linearised *s, const float *stiffne
         to->part.right[MSPRINGI_WIDTH + at + i] = east->value[i] + south_east->value[i];                           \
     }
 
-MSPRINGI_PART_INLINE void put_block(const spring_lanes *lanes, size_t at, spring_strip *restrict to,
-                                    bool only_hand_on) {
+MSPRINGI_INLINE void put_block(const spring_lanes *lanes, size_t at, spring_strip *restrict to,
+                               bool only_hand_on) {
     const spring_lanes *const east = &lanes[MSPRINGI_EAST], *const north = &lanes[MSPRINGI_NORTH];
     const spring_lanes *const north_east = &lanes[MSPRINGI_NORTH_EAST], *const south_east =
                                                                             &lanes[MSPRINGI_SOUTH_EAST];
@@ -149,9 +149,9 @@ MSPRINGI_PART_INLINE void put_block(const spring_lanes *lanes, size_t at, spring
 #undef MSPRINGI_PUT
 
 // The lattice springs of the slots slot ..., below the slots up ..., into a strip's slots at ...
-MSPRINGI_PART_INLINE void assemble_block(const linearised *s, size_t slot, size_t up, const float *rests,
-                                         const float *springs, float *restrict factors, size_t at,
-                                         spring_strip *restrict to, bool damped, bool only_hand_on) {
+MSPRINGI_INLINE void assemble_block(const linearised *s, size_t slot, size_t up, const float *rests,
+                                    const float *springs, float *restrict factors, size_t at,
+                                    spring_strip *restrict to, bool damped, bool only_hand_on) {
     const size_t part = (size_t)(damped ? 2 : 1) * MSPRINGI_WIDTH,
                  factor = (size_t)MSPRINGI_FACTORS * MSPRINGI_WIDTH;
     const size_t bases[] = {
@@ -173,9 +173,9 @@ MSPRINGI_PART_INLINE void assemble_block(const linearised *s, size_t slot, size_
 }
 
 // The same of a chain's springs, or those of a row that has east springs only.
-MSPRINGI_PART_INLINE void assemble_east(const linearised *s, size_t slot, const float *rests, const float *springs,
-                                        float *restrict factors, size_t at, spring_strip *restrict to,
-                                        bool damped) {
+MSPRINGI_INLINE void assemble_east(const linearised *s, size_t slot, const float *rests, const float *springs,
+                                   float *restrict factors, size_t at, spring_strip *restrict to,
+                                   bool damped) {
     spring_lanes east;
     find_inverses(s, slot, slot + 1, &east);
     find_forces(s, slot, slot + 1, rests, springs, &east, damped);
@@ -255,8 +255,8 @@ static inline void begin_strips(spring_strip *strip) {
     strip->yy.right[before] = strip->yy.diagonal[before] = 0.0f;
 }
 
-MSPRINGI_PART_INLINE void assemble_lattice_rows(const mspringi_system *system, const mspringi_span *spans,
-                                                uint32_t count, bool damped, bool only_hand_on) {
+MSPRINGI_INLINE void assemble_lattice_rows(const mspringi_system *system, const mspringi_span *spans,
+                                           uint32_t count, bool damped, bool only_hand_on) {
     const mspringi_system copy = *system, *const s = &copy;
     const size_t springs = (size_t)(damped ? 2 : 1) * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
     const size_t factors = (size_t)MSPRINGI_FACTORS * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
@@ -283,19 +283,19 @@ MSPRINGI_PART_INLINE void assemble_lattice_rows(const mspringi_system *system, c
     }
 }
 
-MSPRINGI_PART_INLINE void assemble_lattice(const mspringi_system *system, const mspringi_span *spans,
-                                           uint32_t count, bool damped) {
+MSPRINGI_INLINE void assemble_lattice(const mspringi_system *system, const mspringi_span *spans,
+                                      uint32_t count, bool damped) {
     assemble_lattice_rows(system, spans, count, damped, false);
 }
 
-MSPRINGI_PART_INLINE void hand_on_forces(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
-                                         bool damped) {
+MSPRINGI_INLINE void hand_on_forces(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
+                                    bool damped) {
     assemble_lattice_rows(system, spans, count, damped, true);
 }
 
 // East springs only.
-MSPRINGI_PART_INLINE void assemble_chain(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
-                                         bool damped) {
+MSPRINGI_INLINE void assemble_chain(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
+                                    bool damped) {
     const mspringi_system copy = *system, *const s = &copy;
     const linearised linear = {s->x, s->y, s->vx, s->vy, (float)s->force_scale, (float)s->damping_rate};
     spring_strip strip;

@@ -78,9 +78,9 @@ add_elastic_lanes(const float *restrict ax, const float *restrict ay, const floa
 }
 
 // The springs of a row's block.
-MSPRINGI_PART_INLINE void put_elastic(const mspringi_motion *m, size_t slot, size_t up, size_t directions,
-                                      const float *rest_lengths, const float *stiffnesses, size_t stride,
-                                      mspringi_elastic *to) {
+MSPRINGI_INLINE void put_elastic(const mspringi_motion *m, size_t slot, size_t up, size_t directions,
+                                 const float *rest_lengths, const float *stiffnesses, size_t stride,
+                                 mspringi_elastic *to) {
     const size_t bases[MSPRINGI_DIRECTIONS] = {
         [MSPRINGI_EAST] = slot, [MSPRINGI_NORTH] = slot, [MSPRINGI_NORTH_EAST] = slot, [MSPRINGI_SOUTH_EAST] = up};
     const size_t tips[MSPRINGI_DIRECTIONS] = {[MSPRINGI_EAST] = slot + 1,

@@ -32,12 +32,6 @@ static inline part_vec part_mul(part_vec a, part_vec b) {
 }
 #endif
 
-#if defined(_MSC_VER)
-#define MSPRINGI_PART_INLINE static __forceinline
-#else
-#define MSPRINGI_PART_INLINE static inline __attribute__((always_inline))
-#endif
-
 /* -------------------------------------------------------------------------------------------------- by slot */
 
 static inline float sum_block_lanes(float *lanes) {
@@ -66,12 +60,12 @@ static void invert(const mspringi_system *s, size_t first, size_t end) {
 }
 
 // The parameters are what compilers know to be apart from each other.
-MSPRINGI_PART_INLINE float advance_chunk(size_t slots, float alpha, bool is_first, const float *restrict px,
-                                         const float *restrict py, const float *restrict qx,
-                                         const float *restrict qy, const float *restrict xx,
-                                         const float *restrict xy, const float *restrict yy, float *restrict dx,
-                                         float *restrict dy, float *restrict rx, float *restrict ry,
-                                         float *restrict zx, float *restrict zy) {
+MSPRINGI_INLINE float advance_chunk(size_t slots, float alpha, bool is_first, const float *restrict px,
+                                    const float *restrict py, const float *restrict qx,
+                                    const float *restrict qy, const float *restrict xx,
+                                    const float *restrict xy, const float *restrict yy, float *restrict dx,
+                                    float *restrict dy, float *restrict rx, float *restrict ry,
+                                    float *restrict zx, float *restrict zy) {
     float sums[MSPRINGI_WIDTH] = {0.0f};
     for (size_t slot = 0; slot < slots; slot += MSPRINGI_WIDTH) {
         for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
@@ -90,8 +84,8 @@ MSPRINGI_PART_INLINE float advance_chunk(size_t slots, float alpha, bool is_firs
     return sum_block_lanes(sums);
 }
 
-MSPRINGI_PART_INLINE void advance_chunks(const mspringi_system *s, const mspringi_iterate *n, float alpha,
-                                         bool is_first, size_t first, size_t end, float *sums) {
+MSPRINGI_INLINE void advance_chunks(const mspringi_system *s, const mspringi_iterate *n, float alpha,
+                                    bool is_first, size_t first, size_t end, float *sums) {
     for (size_t at = first; at < end; at += MSPRINGI_CHUNK) {
         const size_t slots = end - at < MSPRINGI_CHUNK ? end - at : MSPRINGI_CHUNK;
         sums[at / MSPRINGI_CHUNK] = advance_chunk(
@@ -114,7 +108,7 @@ static void advance(const mspringi_system *s, const mspringi_iterate *n, float a
 /// Vectors in a part.
 #define PART_VECTORS (MSPRINGI_PART / PART_LANES)
 
-MSPRINGI_PART_INLINE double sum_part(const part_vec *sums) {
+MSPRINGI_INLINE double sum_part(const part_vec *sums) {
     _Alignas(64) float lanes[MSPRINGI_PART];
     for (size_t v = 0; v < PART_VECTORS; ++v)
         part_store(lanes + v * PART_LANES, sums[v]);
@@ -174,8 +168,8 @@ static inline bool begins_group(const mspringi_tile_part *parts, size_t p) {
 
 // The slots of a tile's part get its body's motion; those of other tiles at the same slots theirs, when their turn
 // comes.
-MSPRINGI_PART_INLINE void turn(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
-                               const double (*bodies)[3], float beta, mspringi_turn what) {
+MSPRINGI_INLINE void turn(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
+                          const double (*bodies)[3], float beta, mspringi_turn what) {
     const part_vec betas = part_set(beta);
     for (size_t p = 0; p < count; ++p) {
         const double *body = bodies[parts[p].tile];

@@ -23,8 +23,8 @@ typedef struct tile_moments {
     part_vec sums[7][PART_VECTORS];
 } tile_moments;
 
-MSPRINGI_PART_INLINE void add_moments(tile_moments *to, const mspringi_flight *f, const mspringi_tile_part *part,
-                                      const mspringi_tile_flight *t) {
+MSPRINGI_INLINE void add_moments(tile_moments *to, const mspringi_flight *f, const mspringi_tile_part *part,
+                                 const mspringi_tile_flight *t) {
     for (size_t v = 0; v < PART_VECTORS; ++v) {
         const size_t at = part->first_slot + v * PART_LANES;
         const part_vec m =
@@ -78,7 +78,7 @@ static void aim_tile(const mspringi_flight *f, const mspringi_tile_part *parts, 
 }
 
 // Slots of a part's vectors that are not the tile's get 0, unless others of the same slots have been there.
-MSPRINGI_PART_INLINE void put_part(float *to, part_vec weight, part_vec value, bool begins) {
+MSPRINGI_INLINE void put_part(float *to, part_vec weight, part_vec value, bool begins) {
     const part_vec own = part_mul(weight, value);
     part_store(to, begins ? own : part_add(part_load(to), own));
 }
@@ -131,8 +131,8 @@ static void predict(const mspringi_flight *f, size_t first, size_t end) {
                        f->first_share, f->rate, f->to_y, f->start_vy);
 }
 
-MSPRINGI_PART_INLINE void add_some_outside(const mspringi_outside *outside, float *restrict residual, size_t first,
-                                           size_t end, bool forced, bool second) {
+MSPRINGI_INLINE void add_some_outside(const mspringi_outside *outside, float *restrict residual, size_t first,
+                                      size_t end, bool forced, bool second) {
     const mspringi_outside o = *outside;
     const float *restrict const mass = o.mass, *restrict const velocity = o.velocity;
     const float *restrict const turned = o.turned, *restrict const force = o.force;
@@ -160,16 +160,16 @@ static void add_outside(const mspringi_outside *o, float *residual, size_t first
 }
 
 // A pinned particle has d = 0.
-MSPRINGI_PART_INLINE void land(size_t count, const double *restrict predicted, const float *restrict start,
-                               const float *restrict inverse_mass, const float *restrict solution,
-                               const float *restrict direction, const float *low, const float *history, float alpha,
-                               float h, float rate, float *restrict position, float *restrict velocity,
-                               float *restrict to_low, float *restrict to_first, float *restrict to_second,
-                               mspringi_memory_of memory) {
+MSPRINGI_INLINE void land(size_t count, const double *restrict predicted, const float *restrict start,
+                          const float *restrict inverse_mass, const float *restrict solution,
+                          const float *restrict direction, const float *from, const float *low,
+                          const float *history, float alpha, float h, float rate, float *restrict position,
+                          float *restrict velocity, float *restrict to_low, float *restrict to_first,
+                          float *restrict to_second, mspringi_memory_of memory) {
     const float per_h = 1.0f / h;
     for (size_t i = 0; i < count; ++i) {
         const float d = solution[i] + alpha * direction[i], v = velocity[i];
-        const double straight = ((double)position[i] + (double)low[i]) + (double)h * (double)v;
+        const double straight = ((double)from[i] + (double)low[i]) + (double)h * (double)v;
         const double end = predicted[i] + (double)d;
         const float rounded = (float)end, beyond = (float)(end - straight);
         const float moved = start[i] + rate * d, after = inverse_mass[i] > 0.0f ? moved : v, change = after - v;
@@ -193,17 +193,19 @@ MSPRINGI_PART_INLINE void land(size_t count, const double *restrict predicted, c
     }
 }
 
-// In whole blocks and by way of the stack, so that the history may be written to where it was read.
+// In whole blocks and by way of the stack, so that the history may be written to where it was read. Positions go that
+// way, too, because V8 11.3 (node 20) reads one that it converts to double after it has been written.
 #define MSPRINGI_LAND(name, memory)                                                                                \
     static void land_##name(const mspringi_landing *l, size_t first, size_t end) {                                 \
         for (size_t i = first; i < end; i += MSPRINGI_WIDTH) {                                                     \
-            float low[MSPRINGI_WIDTH], history[MSPRINGI_WIDTH], unused[MSPRINGI_WIDTH];                            \
+            float from[MSPRINGI_WIDTH], low[MSPRINGI_WIDTH], history[MSPRINGI_WIDTH], unused[MSPRINGI_WIDTH];      \
             for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {                                                 \
+                from[lane] = l->position[i + lane];                                                                \
                 low[lane] = l->low[i + lane];                                                                      \
                 history[lane] = l->first[i + lane];                                                                \
             }                                                                                                      \
             land(MSPRINGI_WIDTH, l->predicted + i, l->start + i, l->inverse_mass + i, l->solution + i,             \
-                 l->direction + i, low, history, l->alpha, l->h, l->rate, l->position + i, l->velocity + i,        \
+                 l->direction + i, from, low, history, l->alpha, l->h, l->rate, l->position + i, l->velocity + i,  \
                  l->to_low + i, l->to_first + i, memory == MSPRINGI_REMEMBER_BOTH ? l->to_second + i : unused,     \
                  memory);                                                                                          \
         }                                                                                                          \

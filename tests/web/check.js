@@ -12,7 +12,7 @@ const compiled = new WebAssembly.Module(readFileSync(file));
 assert.deepStrictEqual(WebAssembly.Module.imports(compiled), [], 'the module needs nothing');
 const core = new WebAssembly.Instance(compiled, {}).exports;
 
-for (const [scene, steps] of [[0, 64], [0, 1000], [1, 1000], [2, 200], [3, 100]])
+for (const [scene, steps] of [[0, 64], [0, 1000], [1, 1000], [2, 200], [3, 100], [4, 300], [5, 200]])
   for (const level of [1, 0]) {
     assert.strictEqual(core.check(scene, steps, level), 0);
     console.log(`check ${scene} ${steps} ${level ? 'scalar' : 'best'} ${hashText(core.check_hash)}`);
