@@ -87,6 +87,11 @@ mspring_result mspring_contact_def_init(mspring_contact_def *def, size_t size) {
     return mspringi_init_struct(def, size, &defaults, sizeof defaults);
 }
 
+mspring_result mspring_area_def_init(mspring_area_def *def, size_t size) {
+    const mspring_area_def defaults = {.struct_size = sizeof defaults, .kind = MSPRING_AREA_ELASTIC, .fill = 1.0f};
+    return mspringi_init_struct(def, size, &defaults, sizeof defaults);
+}
+
 mspring_result mspring_grip_def_init(mspring_grip_def *def, size_t size) {
     const mspring_grip_def defaults = {
         .struct_size = sizeof defaults, .particle = MSPRING_NONE, .max_force = MSPRING_NEVER};

@@ -2,6 +2,7 @@
 #include "contact/grips.h"
 #include "layout/emit/spare.h"
 #include "step/breaking.h"
+#include "store/areas.h"
 #include "store/changed.h"
 #include "store/events.h"
 #include "store/growth.h"
@@ -25,6 +26,7 @@ static void remove_particle(mspring_network *network, mspring_id particle) {
     for (mspring_id s; (s = mspringi_around_next(network, &around)) != MSPRING_NONE;)
         remove_spring(network, s, particle);
     mspringi_grips_forget(network, particle);
+    mspringi_areas_forget(network, particle);
     mspringi_growth_take_particle(network, particle);
     network->growth.particles[particle] = MSPRINGI_GONE;
     mspringi_fingerprint(network, MSPRINGI_EDIT_REMOVED_PARTICLE, particle);

@@ -18,9 +18,10 @@
 /// What a sweep has to do, bits of these. Where they are known to a compiler, a kernel's code is for them alone.
 typedef uint32_t mspringi_variant;
 enum {
-    MSPRINGI_DAMPED = 1u << 0, ///< springs have damping
-    MSPRINGI_FORCED = 1u << 1, ///< there are forces from outside
-    MSPRINGI_PRECISE = 1u << 2 ///< low words count in the lengths of springs
+    MSPRINGI_DAMPED = 1u << 0,  ///< springs have damping
+    MSPRINGI_FORCED = 1u << 1,  ///< there are forces from outside
+    MSPRINGI_PRECISE = 1u << 2, ///< low words count in the lengths of springs
+    MSPRINGI_CELLS = 1u << 3    ///< lattice cells keep their area
 };
 
 /// The parts of a spring record, each one value per slot; damping only if the network has any.
@@ -49,7 +50,9 @@ typedef struct mspringi_sweep {
     const uint32_t *springs_of_block; ///< [block] which of these it has
     const float *rest_lengths;        ///< of lattice springs: [block of rest lengths][direction][lane]
     const uint32_t *rests_of_block;   ///< [block] which of these it has
-    const float *chain_springs;       ///< records: [block][part][lane]
+    const float *cells; ///< [block][2][lane] half the force of an area per distance at area 0, and by how much it
+                        ///< falls with the cross product of the diagonals; 0 where no cell is; read with areas only
+    const float *chain_springs; ///< records: [block][part][lane]
     const mspringi_web *web;
     const float *web_springs;       ///< records: [rung][part][lane]
     const float *gathered;          ///< [node][4] x, y, vx, vy of the web's nodes at the start of the substep; of
@@ -248,7 +251,7 @@ typedef void (*mspringi_checksum_fn)(uint8_t *to, const uint8_t *from, size_t un
 /// Those in which low words count. They look for themselves whether there are dampers (parts) and forces (force_x
 /// not NULL): all of them take 50 kB in the four levels of x86, a copy of each of the others 104.
 typedef struct mspringi_precise_kernels {
-    mspringi_row_fn lattice, chain, web;
+    mspringi_row_fn lattice, cells, chain, web;
     mspringi_herd_fn herd;
     mspringi_attached_fn attached;
 } mspringi_precise_kernels;
@@ -257,6 +260,7 @@ typedef struct mspringi_kernels {
     mspring_simd level;
     uint32_t lanes;                ///< that rows are swept by, at least MSPRINGI_QUARTER
     mspringi_row_fn lattice[2][2]; ///< [with damping][with forces]
+    mspringi_row_fn cells[2][2];   ///< lattices with areas
     mspringi_row_fn chain[2][2];
     mspringi_row_fn web[2][2];
     mspringi_herd_fn herd[2][2];

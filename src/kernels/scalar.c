@@ -21,18 +21,23 @@ static inline motion at(const mspringi_sweep *s, size_t slot) {
     return (motion){s->x[slot], s->y[slot], s->vx[slot], s->vy[slot], s->low_x[slot], s->low_y[slot]};
 }
 
+// The difference of two near positions is exact, but it lacks what they have beyond single precision: half a unit
+// in the last place of a position of 900 m is 3e-5 m, the strain of 2 kN of iron.
+static inline vector way_between(motion base, motion tip, mspringi_variant of) {
+    const vector way = {base.x - tip.x, base.y - tip.y};
+    if (!(of & MSPRINGI_PRECISE))
+        return way;
+    return (vector){way.x + (base.low_x - tip.low_x), way.y + (base.low_y - tip.low_y)};
+}
+
 // The force of one spring on its tip; that on its base is the opposite. With d from the tip to the base
 //     F = ((L - rest_length) (k L) + c (dv . d)) / L^2 * d
 // so that the root and the division do not wait for each other. record is where its stiffness is, with its damping
-// behind. The difference of two near positions is exact, but it lacks what they have beyond single precision: half
-// a unit in the last place of a position of 900 m is 3e-5 m, the strain of 2 kN of iron.
+// behind.
 static inline vector spring_force(motion base, motion tip, float rest_length, const float *record,
                                   mspringi_variant of) {
-    float dx = base.x - tip.x, dy = base.y - tip.y;
-    if (of & MSPRINGI_PRECISE) {
-        dx = dx + (base.low_x - tip.low_x);
-        dy = dy + (base.low_y - tip.low_y);
-    }
+    const vector way = way_between(base, tip, of);
+    const float dx = way.x, dy = way.y;
     const float square = dx * dx + dy * dy, length = sqrtf(square);
     const float inverse = square > MSPRINGI_NO_DIRECTION ? 1.0f / square : 0.0f;
     float force = MSPRINGI_LAW_FORCE(MSPRINGI_TIMES, length * record[0], length - rest_length);
@@ -142,6 +147,20 @@ static inline vector lattice_force(motion base, motion tip, lattice_springs spri
                         springs.records + direction * parts * MSPRINGI_WIDTH, of);
 }
 
+// What the area of a slot's cell adds to the forces of its diagonals: with D and D' the ways along them, from tips
+// to bases, f = f0 - f1 D x D' along the normals. See store/areas.h.
+static inline void press(const mspringi_sweep *s, const mspringi_span *span, size_t slot, vector to_north_east,
+                         vector to_south_east, vector *north_east, vector *south_east) {
+    const size_t block = span->first_record + (slot / MSPRINGI_WIDTH - span->first_slot / MSPRINGI_WIDTH);
+    const float *cells = s->cells + 2 * block * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH;
+    const float cross = to_north_east.x * to_south_east.y - to_north_east.y * to_south_east.x;
+    const float force = cells[0] - cells[MSPRINGI_WIDTH] * cross;
+    north_east->x = north_east->x - force * to_south_east.y;
+    north_east->y = north_east->y + force * to_south_east.x;
+    south_east->x = south_east->x + force * to_north_east.y;
+    south_east->y = south_east->y - force * to_north_east.x;
+}
+
 static inline void lattice(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count,
                            mspringi_variant of) {
     handed_on before = {{0.0f, 0.0f}, {0.0f, 0.0f}};
@@ -152,8 +171,11 @@ static inline void lattice(const mspringi_sweep *s, const mspringi_span *spans, 
             const motion here = at(s, slot), next = at(s, slot + 1), above = at(s, up), above_next = at(s, up + 1);
             const vector east = lattice_force(here, next, springs, MSPRINGI_EAST, of);
             const vector north = lattice_force(here, above, springs, MSPRINGI_NORTH, of);
-            const vector north_east = lattice_force(here, above_next, springs, MSPRINGI_NORTH_EAST, of);
-            const vector south_east = lattice_force(next, above, springs, MSPRINGI_SOUTH_EAST, of);
+            vector north_east = lattice_force(here, above_next, springs, MSPRINGI_NORTH_EAST, of);
+            vector south_east = lattice_force(next, above, springs, MSPRINGI_SOUTH_EAST, of);
+            if (of & MSPRINGI_CELLS)
+                press(s, span, slot, way_between(here, above_next, of), way_between(next, above, of), &north_east,
+                      &south_east);
 
             const vector force = {((s->carry_x[carry] + before.right.x) - (east.x + north.x)) - north_east.x,
                                   ((s->carry_y[carry] + before.right.y) - (east.y + north.y)) - north_east.y};

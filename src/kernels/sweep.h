@@ -89,6 +89,17 @@ MSPRINGI_INLINE vector spring_force(extent e, vec inverse, motion base, motion t
     return result;
 }
 
+// The areas of cells push along pairs that the diagonals join: see store/areas.h.
+MSPRINGI_INLINE void press(const float *cells, extent to_north_east, extent to_south_east, vector *north_east,
+                           vector *south_east) {
+    const vec cross = sub(mul(to_north_east.dx, to_south_east.dy), mul(to_north_east.dy, to_south_east.dx));
+    const vec force = sub(load(cells), mul(load(cells + MSPRINGI_WIDTH), cross));
+    north_east->x = sub(north_east->x, mul(force, to_south_east.dy));
+    north_east->y = add(north_east->y, mul(force, to_south_east.dx));
+    south_east->x = add(south_east->x, mul(force, to_north_east.dy));
+    south_east->y = sub(south_east->y, mul(force, to_north_east.dx));
+}
+
 // Before the first substep of a whole step, and after its last: half hidden behind the divisions, as reading and
 // writing the state for this alone is not (96 x 96 at AVX-512, one substep: 2.2 instead of 3.7 us, with 12.4 for
 // the rest; 1.4 where coordinates need not be watched). Changes of velocities instead of speeds take 0.2 us more,
@@ -216,16 +227,19 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *s
                 const vector east =
                     spring_force(to_east, per_east, here, next, rests + MSPRINGI_EAST * MSPRINGI_WIDTH,
                                  springs + MSPRINGI_EAST * part, of);
-                const vector south_east = spring_force(to_south_east, per_south_east, next, above,
-                                                       rests + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH,
-                                                       springs + MSPRINGI_SOUTH_EAST * part, of);
+                vector south_east = spring_force(to_south_east, per_south_east, next, above,
+                                                 rests + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH,
+                                                 springs + MSPRINGI_SOUTH_EAST * part, of);
                 const vec per_north_east = inverse_or_zero(to_north_east.square);
                 const vector north =
                     spring_force(to_north, per_north, here, above, rests + MSPRINGI_NORTH * MSPRINGI_WIDTH,
                                  springs + MSPRINGI_NORTH * part, of);
-                const vector north_east = spring_force(to_north_east, per_north_east, here, above_next,
-                                                       rests + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH,
-                                                       springs + MSPRINGI_NORTH_EAST * part, of);
+                vector north_east = spring_force(to_north_east, per_north_east, here, above_next,
+                                                 rests + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH,
+                                                 springs + MSPRINGI_NORTH_EAST * part, of);
+                if (of & MSPRINGI_CELLS)
+                    press(s->cells + 2 * block * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH, to_north_east,
+                          to_south_east, &north_east, &south_east);
 
                 const vector right = {sub(east.x, south_east.x), sub(east.y, south_east.y)};
                 const vector known = {add(load(s->carry_x + carry), shift_in(before.right.x, right.x)),

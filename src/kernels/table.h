@@ -41,6 +41,24 @@ static void lattice_precise(const mspringi_sweep *sweep, const mspringi_span *sp
         lattice(sweep, spans, count, of);
 }
 
+#define MSPRINGI_CELLS_VARIANT(name, of)                                                                           \
+    static void cells_##name(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count) {            \
+        lattice(sweep, spans, count, MSPRINGI_CELLS | (of));                                                       \
+    }
+
+MSPRINGI_CELLS_VARIANT(plain, 0)
+MSPRINGI_CELLS_VARIANT(forced, MSPRINGI_FORCED)
+MSPRINGI_CELLS_VARIANT(damped, MSPRINGI_DAMPED)
+MSPRINGI_CELLS_VARIANT(damped_forced, MSPRINGI_DAMPED | MSPRINGI_FORCED)
+
+static void cells_precise(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count) {
+    const mspringi_variant of = MSPRINGI_CELLS | MSPRINGI_PRECISE | (sweep->force_x ? MSPRINGI_FORCED : 0);
+    if (sweep->parts > MSPRINGI_DAMPING)
+        lattice(sweep, spans, count, of | MSPRINGI_DAMPED);
+    else
+        lattice(sweep, spans, count, of);
+}
+
 MSPRINGI_ROW_VARIANT(chain, plain, 0)
 MSPRINGI_ROW_VARIANT(chain, forced, MSPRINGI_FORCED)
 MSPRINGI_ROW_VARIANT(chain, damped, MSPRINGI_DAMPED)
@@ -84,13 +102,14 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .level = MSPRINGI_LEVEL,
     .lanes = LANES > MSPRINGI_QUARTER ? LANES : MSPRINGI_QUARTER,
     .lattice = {{lattice_plain, lattice_forced}, {lattice_damped, lattice_damped_forced}},
+    .cells = {{cells_plain, cells_forced}, {cells_damped, cells_damped_forced}},
     .chain = {{chain_plain, chain_forced}, {chain_damped, chain_damped_forced}},
     .loose = {loose_plain, loose_forced},
     .web = {{web_plain, web_forced}, {web_damped, web_damped_forced}},
     .herd = {{herd_plain, herd_forced}, {herd_damped, herd_damped_forced}},
     .pack = pack,
     .attached = {attached_plain, attached_damped},
-    .precise = {lattice_precise, chain_precise, web_precise, herd_precise, attached_precise},
+    .precise = {lattice_precise, cells_precise, chain_precise, web_precise, herd_precise, attached_precise},
     .largest = largest,
     .extrema_of = extrema_of,
     .beyond = beyond,

@@ -1,10 +1,9 @@
 /// Measurements of the state, summed in double precision in id order.
 #include <math.h>
 
-#include <massspring/massspring_laws.h>
-
 #include "kernels/spring_law.h"
 #include "query/measure.h"
+#include "store/areas.h"
 #include "store/springs.h"
 
 static bool is_pinned(const mspring_network *network, mspring_id particle) {
@@ -97,6 +96,11 @@ mspring_result mspring_network_energy(const mspring_network *network, double *ki
         elastic_sum += 0.5 * (double)r.stiffness * stretch * stretch;
         if (network->plastic.nominal)
             elastic_sum += hardening_energy(network, i, (double)r.stiffness);
+    }
+    for (size_t i = 0; elastic && i < network->areas.count; ++i) {
+        const mspringi_area *area = &network->areas.list[i];
+        if (!mspringi_area_is_open(network, area))
+            elastic_sum += mspringi_area_energy(area, mspringi_area_size(network, area));
     }
     if (kinetic)
         *kinetic = kinetic_sum;

@@ -62,6 +62,7 @@ void mspringi_border_bound(const mspring_network *network, const mspringi_border
             b->out[sum][s.tip] += sums[sum];
         }
     }
+    mspringi_areas_bound(network, b);
 }
 
 void mspringi_border_image(const mspring_network *network, const mspringi_border *b) {
@@ -80,4 +81,5 @@ void mspringi_border_image(const mspring_network *network, const mspringi_border
         b->out[0][s.tip] += b->inverse_mass[s.tip] * x;
         b->out[1][s.tip] += b->inverse_mass[s.tip] * y;
     }
+    mspringi_areas_image(network, b);
 }

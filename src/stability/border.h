@@ -29,6 +29,10 @@ mspringi_border mspringi_border_at(const mspring_network *network, double h);
 void mspringi_border_bound(const mspring_network *network, const mspringi_border *border);
 void mspringi_border_image(const mspring_network *network, const mspringi_border *border);
 
+/// What areas add to both (areas.c).
+void mspringi_areas_bound(const mspring_network *network, const mspringi_border *border);
+void mspringi_areas_image(const mspring_network *network, const mspringi_border *border);
+
 /// Slots of room that looks work in: so many arrays.
 #define MSPRINGI_BORDER_ROOM 4
 

@@ -115,6 +115,12 @@ static mspringi_extrema put_back(mspring_network *network) {
 static mspring_result explain_border(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_topology *t = &network->topology;
     const mspring_id spring = mspringi_tightest_spring(network, (double)attempt->h);
+    if (spring == MSPRING_NONE)
+        return mspringi_fail(
+            &network->message, MSPRING_ERROR_UNSTABLE,
+            "unstable: the substep of %g s exceeds the stability limit of the areas. Use a shorter "
+            "dt, more substeps, or less stiffness or pressure.",
+            (double)attempt->h);
     uint32_t base, tip;
     mspringi_topology_ends(t, mspringi_place_of(t, spring), &base, &tip);
     const float at_base = network->inverse_mass[base], at_tip = network->inverse_mass[tip];
@@ -174,6 +180,20 @@ mspring_result mspringi_guard_reserve(mspring_network *network, mspring_guard po
                                                                     : result;
 }
 
+// Solvers without a border have forces of areas from the start of a substep; but one whose speeds are clamped takes
+// any step.
+static mspring_result check_areas(mspring_network *network, const mspringi_attempt *attempt) {
+    const mspringi_areas *areas = &network->areas;
+    if (areas->swept + areas->unswept == 0 || (double)attempt->h <= areas->longest ||
+        attempt->solver == &mspringi_clamped)
+        return MSPRING_OK;
+    return mspringi_fail(
+        &network->message, MSPRING_ERROR_UNSTABLE,
+        "unstable: the substep of %g s exceeds the stability limit of the areas, %g s. Use a shorter "
+        "dt, more substeps, or less stiffness or pressure.",
+        (double)attempt->h, areas->longest);
+}
+
 mspring_result mspringi_guard_begin(mspring_network *network, const mspringi_attempt *attempt) {
     const float h = attempt->h;
     mspringi_guard *guard = &network->guard;
@@ -182,7 +202,9 @@ mspring_result mspringi_guard_begin(mspring_network *network, const mspringi_att
     const bool is_same = guard->state == network->edits.state && !network->is_open;
     guard->knows_speed = is_same && guard->speed <= network->settings.max_speed;
     guard->knows_place = is_same && guard->place <= (float)MSPRING_MAX_COORDINATE && attempt->substeps == 1;
-    if (!mspringi_guard_looks(network->settings.guard) || !attempt->solver->ops->has_border)
+    if (!attempt->solver->ops->has_border)
+        return check_areas(network, attempt);
+    if (!mspringi_guard_looks(network->settings.guard))
         return MSPRING_OK;
     const mspringi_any_shape *any_shape = &network->any_shape;
     if (same && (any_shape->masses != network->edits.masses || any_shape->values != network->edits.values)) {

@@ -66,6 +66,7 @@ static mspringi_seen see_safely(const mspring_network *network, mspring_id sprin
 
 void mspringi_pencil_set(mspringi_pencil *pencil, double h) {
     const mspring_network *network = pencil->network;
+    pencil->square = h * h;
     for (mspring_id p = 0; p < network->topology.particle_count; ++p)
         pencil->root[p] = sqrt((double)network->inverse_mass[network->topology.slot_of_particle[p]]);
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
@@ -101,6 +102,7 @@ void mspringi_pencil_apply(const void *context, const double *in, double *out) {
         out[b] += root_b * fx;
         out[b + 1] += root_b * fy;
     }
+    mspringi_areas_apply(pencil, in, out);
 }
 
 mspringi_quotient mspringi_pencil_quotient(const mspringi_pencil *pencil, const double *vector) {
@@ -120,5 +122,6 @@ mspringi_quotient mspringi_pencil_quotient(const mspringi_pencil *pencil, const 
         }
         mspringi_quotient_add(&sum, &s, dx, dy);
     }
+    sum.stiffness += mspringi_areas_quotient(pencil, vector);
     return sum;
 }

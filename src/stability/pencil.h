@@ -48,12 +48,17 @@ void mspringi_quotient_add(mspringi_quotient *quotient, const mspringi_seen *see
 /// The springs' share in the matrices.
 typedef struct mspringi_pencil {
     const mspring_network *network;
-    double *root; ///< [particles] 1 / sqrt(mass), 0 if pinned
+    double square; ///< of the substep
+    double *root;  ///< [particles] 1 / sqrt(mass), 0 if pinned
     struct mspringi_pencil_term {
         uint32_t a, b; ///< particles
         double xx, xy, yy;
     } * terms; ///< [springs] for A + 2 D at some h
 } mspringi_pencil;
+
+/// What areas add (stability/areas.c) to the image of a vector, and to the stiffness of its quotient.
+void mspringi_areas_apply(const mspringi_pencil *pencil, const double *in, double *out);
+double mspringi_areas_quotient(const mspringi_pencil *pencil, const double *vector);
 
 /// Take the shape of now. A spring that is shorter than its rest length counts as if it were as long: its pull
 /// sideways is outwards and makes no substep unstable. Springs of length 0 count in all directions, as they may

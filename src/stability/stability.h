@@ -15,15 +15,20 @@ typedef struct mspringi_strength {
 } mspringi_strength;
 mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring, mspringi_place place);
 
+/// What areas add to the sums of springs' stiffness by slot (areas.c), in the shape that they were added in, and
+/// the largest quotient of these sums that one of them takes part in.
+void mspringi_areas_sum(const mspring_network *network, float *sums);
+double mspringi_areas_largest(const mspring_network *network, const float *sums);
+
 /// The longest substep that is stable in whatever shape the network gets into, and the spring that sets it
-/// (MSPRING_NONE: none does, and it is infinite). Broken springs count as whole, as they may be restored. Kept
-/// until springs or masses are edited. Works where the guard looks; without such room in the backup of the state, so
-/// between steps only.
+/// (MSPRING_NONE: none does). Broken springs count as whole, as they may be restored. Kept
+/// until springs or masses are edited. Works where the guard looks; without such room in the backup of the state,
+/// so between steps only.
 double mspringi_stable_in_any_shape(mspring_network *network, mspring_id *spring);
 
-/// A substep for MSPRING_SUBSTEPS_AUTO where relative springs leave the others no room in the bound above: as if they
-/// took at most half of it. Other substeps would be no more stable, as relative springs follow them: whether this one
-/// is stable in the present shape, the guard sees. Infinite if all springs are relative.
+/// A substep for MSPRING_SUBSTEPS_AUTO where relative springs leave the others no room in the bound above: as if
+/// they took at most half of it. Other substeps would be no more stable, as relative springs follow them: whether
+/// this one is stable in the present shape, the guard sees. Infinite if all springs are relative.
 double mspringi_stable_with_relative(mspring_network *network);
 
 /// The spring to name where substeps of h are too long: of those that share an end with the one that sets the

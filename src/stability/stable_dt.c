@@ -85,7 +85,9 @@ static MSPRINGI_NOINLINE mspring_result find_now(mspring_network *network, doubl
     if (result != MSPRING_OK)
         return result;
     const double any_shape = mspringi_stable_in_any_shape(network, &spring);
-    *now = any_shape < INFINITY ? fmax(find_border(network, &work, any_shape), any_shape) : INFINITY;
+    *now = any_shape < INFINITY ? find_border(network, &work, any_shape) : INFINITY;
+    if (network->areas.count == 0) // whose stiffness grows with the network
+        *now = fmax(*now, any_shape);
     release(network, &work);
     return MSPRING_OK;
 }

@@ -88,11 +88,17 @@ uint32_t mspringi_stages_free_substeps(const mspring_network *network, const msp
 }
 
 mspringi_field mspringi_stages_before_substep(mspring_network *network, const mspringi_attempt *attempt,
-                                              uint32_t substep, mspringi_field base) {
+                                              uint32_t substep, mspringi_field base, mspringi_field *outside) {
     const mspringi_stages *stages = attempt->stages;
-    for (size_t i = 0; i < stages->count; ++i)
-        if (stages->used[i]->before_substep)
-            base = stages->used[i]->before_substep(network, attempt, substep, base);
+    *outside = base;
+    for (size_t i = 0; i < stages->count; ++i) {
+        if (!stages->used[i]->before_substep)
+            continue;
+        const mspringi_field made = stages->used[i]->before_substep(network, attempt, substep, base);
+        if (made.x != base.x && !stages->used[i]->is_inner)
+            *outside = made;
+        base = made;
+    }
     return base;
 }
 

@@ -37,9 +37,10 @@ static void run_substeps(mspring_network *network, const mspringi_attempt *attem
     const mspringi_stages *stages = attempt->stages;
     for (uint32_t substep = 0, count; substep < attempt->substeps; substep += count) {
         count = mspringi_stages_free_substeps(network, attempt, substep);
-        const mspringi_field force = mspringi_stages_before_substep(network, attempt, substep, base);
+        mspringi_field outside;
+        const mspringi_field force = mspringi_stages_before_substep(network, attempt, substep, base, &outside);
         if (substep == 0 && is_cut)
-            mspringi_stages_forces_known(network, attempt, force);
+            mspringi_stages_forces_known(network, attempt, outside);
         if (stages->follow_substeps)
             mspringi_sleep_hold(network);
         if (!mspringi_sleep_is_whole(network))

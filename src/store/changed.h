@@ -41,7 +41,10 @@ typedef enum mspringi_edit {
     MSPRINGI_EDIT_ADDED_RELATIVE = 18,
     MSPRINGI_EDIT_REMOVED_PARTICLE = 20,
     MSPRINGI_EDIT_REMOVED_SPRING = 21,
-    MSPRINGI_EDIT_RECYCLED = 22
+    MSPRINGI_EDIT_RECYCLED = 22,
+    MSPRINGI_EDIT_ADDED_AREA = 24,
+    MSPRINGI_EDIT_SET_AREA = 25,
+    MSPRINGI_EDIT_REMOVED_AREA = 26
 } mspringi_edit;
 
 void mspringi_fingerprint(mspring_network *network, uint32_t edit, mspring_id id);

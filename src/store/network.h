@@ -6,6 +6,7 @@
 #define MSPRINGI_NETWORK_H
 
 #include <massspring/massspring_contact.h>
+#include <massspring/massspring_laws.h>
 
 #include "base/assert.h"
 #include "kernels/kernels.h"
@@ -215,6 +216,46 @@ typedef struct mspringi_plastic {
     double dissipated, dissipated_before; ///< J
 } mspringi_plastic;
 
+/// A closed polygon of particles that resists a change of its area, see store/areas.h.
+typedef struct mspringi_area {
+    mspring_id id;
+    mspring_area_kind kind;
+    uint32_t first, count; ///< of its corners
+    float stiffness, pressure, fill;
+    bool is_open;  ///< a spring of its outline was not whole when the step began
+    uint32_t cell; ///< where in areas.cells the sweep finds it; MSPRINGI_NO_CELL: nowhere
+    double rest_area;
+} mspringi_area;
+#define MSPRINGI_NO_CELL UINT32_MAX
+
+typedef struct mspringi_corner {
+    mspring_id particle;
+    mspring_id spring; ///< to the next corner when the area was added; MSPRING_NONE: there was none
+    float reach;       ///< by how much the area grew then where the particle moved outwards, m
+} mspringi_corner;
+
+/// Counters of edits, see mspringi_edits.
+typedef struct mspringi_areas_seen {
+    uint64_t changes, links, growth, layouts, masses;
+} mspringi_areas_seen;
+
+/// All of them.
+typedef struct mspringi_areas {
+    mspringi_area *list; ///< [count] in the order of ids
+    size_t count, capacity;
+    mspringi_corner *corners; ///< [corner_count] of the first area, of the second, and so on
+    size_t corner_count, corner_capacity;
+    mspring_id next_id;
+    uint64_t changes; ///< times that any was edited
+
+    // What follows from these, the springs and the layout; see mspringi_areas_refresh().
+    mspringi_areas_seen seen;
+    uint32_t swept, unswept; ///< closed areas that the explicit solver's sweeps have in them, and others
+    double longest;          ///< substep that is stable with forces of areas alone, s
+    float *cells;            ///< [lattice blocks][2][lane] half the force per distance at area 0, and its slope
+    mspringi_field force;    ///< from outside and of areas, in a substep
+} mspringi_areas;
+
 /// What came of a step beside its result: see mspring_step_info.
 typedef struct mspringi_outcome {
     mspring_id particle, spring; ///< to blame
@@ -410,6 +451,7 @@ struct mspring_network {
     mspringi_grips grips;
     mspringi_strain strain;
     mspringi_plastic plastic;
+    mspringi_areas areas;
     mspringi_events events;
     mspringi_components components;
     mspringi_extents extents;

@@ -66,6 +66,9 @@ extern const mspringi_section mspringi_section_ramps;
 extern const mspringi_section mspringi_section_yielding;
 extern const mspringi_section mspringi_section_bent;
 
+// In areas.c.
+extern const mspringi_section mspringi_section_areas;
+
 /// Fail with what is wrong with a section.
 mspring_result mspringi_section_fail(mspring_network *network, const mspringi_section *section, const char *format,
                                      ...) MSPRINGI_PRINTF(3, 4);

@@ -26,6 +26,7 @@ typedef struct mspringi_stage {
     bool (*is_used)(const mspring_network *network); ///< NULL: always
     bool (*moves)(
         const mspring_network *network); ///< something of it moves though all may sleep; NULL: nothing does
+    bool is_inner;                       ///< what before_substep adds are forces within bodies, which wake nothing
     bool writes_state; ///< before or between substeps: the backup is made before its forces are asked for
 
     void (*before_step)(mspring_network *network, const mspringi_attempt *attempt);
@@ -82,7 +83,8 @@ void mspringi_stages_forces_known(mspring_network *network, const mspringi_attem
 uint32_t mspringi_stages_free_substeps(const mspring_network *network, const mspringi_attempt *attempt,
                                        uint32_t substep);
 mspringi_field mspringi_stages_before_substep(mspring_network *network, const mspringi_attempt *attempt,
-                                              uint32_t substep, mspringi_field base);
+                                              uint32_t substep, mspringi_field base,
+                                              mspringi_field *outside); ///< outside: without those within bodies
 void mspringi_stages_after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep);
 bool mspringi_stages_have_missed(mspring_network *network, const mspringi_attempt *attempt);
 mspring_result mspringi_stages_judge(mspring_network *network, const mspringi_attempt *attempt);

@@ -71,6 +71,25 @@ static void make_grip(arguments *a) {
     check_ok(mspring_network_add_grip(a->network, def, &a->id));
 }
 
+static void fill_area(arguments *a) {
+    mspring_area_def *def = (mspring_area_def *)(void *)a->given_bytes;
+    (void)mspring_area_def_init(def, sizeof *def);
+    def->stiffness = 100;
+    a->id = 4;
+}
+
+static mspring_result add_area(arguments *a) {
+    const mspring_id particles[3] = {0, 1, a->id};
+    return mspring_network_add_area(a->network, a->given, particles, 3, a->out[0]);
+}
+
+static void make_area(arguments *a) {
+    const mspring_id particles[3] = {0, 1, 4};
+    fill_area(a);
+    check_ok(mspring_network_add_area(a->network, (const mspring_area_def *)(const void *)a->given_bytes, particles,
+                                      3, &a->id));
+}
+
 // Colliders go with their contact.
 static mspring_result with_collider(arguments *a, mspring_result (*call)(arguments *a, mspring_id id)) {
     mspring_contact_def contact;
@@ -458,6 +477,16 @@ static void add_hook(arguments *a) {
     X(mspring_network_get_components, "nRP", (a->count = 1, a->first = 0, OUT_STRUCT(0, component)),               \
       mspring_network_get_components(a->network, a->first, a->count, a->out[0]))                                   \
     X(mspring_network_energy, "no", NOTHING, mspring_network_energy(a->network, a->out[0], a->out[1], a->out[2]))  \
+    X(mspring_area_def_init, "Z0", a->size = sizeof(mspring_area_def), mspring_area_def_init(a->out[0], a->size))  \
+    X(mspring_network_add_area, "NSWIo", fill_area(a), add_area(a))                                                \
+    X(mspring_network_add_cell_areas, "NSWo", fill_area(a),                                                        \
+      mspring_network_add_cell_areas(a->network, a->given, a->out[0], a->out[1]))                                  \
+    X(mspring_network_remove_area, "NI", make_area(a), mspring_network_remove_area(a->network, a->id))             \
+    X(mspring_network_set_area, "NISW", make_area(a), mspring_network_set_area(a->network, a->id, a->given))       \
+    X(mspring_network_get_area, "nIP", (make_area(a), OUT_STRUCT(0, area_def)),                                    \
+      mspring_network_get_area(a->network, a->id, a->out[0]))                                                      \
+    X(mspring_network_get_area_info, "nIP", (make_area(a), OUT_STRUCT(0, area_info)),                              \
+      mspring_network_get_area_info(a->network, a->id, a->out[0]))                                                 \
     X(mspring_network_get_plasticity, "nP", OUT_STRUCT(0, plasticity),                                             \
       mspring_network_get_plasticity(a->network, a->out[0]))                                                       \
     X(mspring_network_momentum, "no", NOTHING,                                                                     \

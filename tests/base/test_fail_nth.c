@@ -212,6 +212,33 @@ static mspring_result set_yield_strains(life *l) {
     return mspring_network_set(l->network, MSPRING_YIELD_STRAIN, 3, 2, strains, 1);
 }
 
+static mspring_result add_area(life *l) {
+    const mspring_id first = l->made.particle_count;
+    const mspring_id corners[3] = {first + 1, first + 2, first + 25};
+    mspring_area_def def;
+    check_ok(mspring_area_def_init(&def, sizeof def));
+    def.stiffness = 10;
+    return mspring_network_add_area(l->network, &def, corners, 3, NULL);
+}
+
+static mspring_result add_cell_areas(life *l) {
+    mspring_area_def def;
+    check_ok(mspring_area_def_init(&def, sizeof def));
+    def.stiffness = 10;
+    return mspring_network_add_cell_areas(l->network, &def, NULL, NULL);
+}
+
+// Neither equilibria nor the reference of tuning have areas.
+static mspring_result remove_areas(life *l) {
+    mspring_result result = MSPRING_OK;
+    for (mspring_id area = 0; area < 1000; area++) {
+        result = mspring_network_remove_area(l->network, area);
+        if (result != MSPRING_OK && result != MSPRING_ERROR_ID)
+            return result;
+    }
+    return MSPRING_OK;
+}
+
 static mspring_result reserve_events(life *l) {
     return mspring_network_reserve_events(l->network, 50);
 }
@@ -350,6 +377,8 @@ static const struct {
     {"break strains", set_break_strains},
     {"stress strains", set_stress_strains},
     {"yield strains", set_yield_strains},
+    {"area", add_area},
+    {"areas of cells", add_cell_areas},
     {"events", reserve_events},
     {"break", break_springs},
     {"step", step},
@@ -384,6 +413,7 @@ static const struct {
     {"step", step},
     {"direct", use_direct},
     {"step", step},
+    {"no areas", remove_areas},
     {"settle", settle},
     {"step", step},
     {"network", add_network},

@@ -149,6 +149,10 @@ static mspring_result give_grip(subject *s, void *given) {
     return mspring_network_add_grip(s->network, given, NULL);
 }
 
+static mspring_result give_area(subject *s, void *given) {
+    return mspring_network_add_cell_areas(s->network, given, NULL, NULL);
+}
+
 static mspring_result give_collider(subject *s, void *given) {
     mspring_collider_def *collider = given;
     mspring_contact_def contact;
@@ -206,6 +210,7 @@ INIT(hook_def)
 INIT(floor_def)
 INIT(contact_def)
 INIT(grip_def)
+INIT(area_def)
 INIT(collider_def)
 INIT(settle_def)
 INIT(tune_def)
@@ -238,6 +243,7 @@ static const struct input {
     INPUT(floor_def, offsetof(mspring_floor_def, reserved), give_floor),
     INPUT(contact_def, offsetof(mspring_contact_def, reserved), give_contact),
     INPUT(grip_def, offsetof(mspring_grip_def, reserved), give_grip),
+    INPUT(area_def, offsetof(mspring_area_def, reserved), give_area),
     INPUT(collider_def, offsetof(mspring_collider_def, reserved_pointer), give_collider),
     INPUT(settle_def, offsetof(mspring_settle_def, reserved), give_settle),
     INPUT(tune_def, offsetof(mspring_tune_def, reserved_pointer), give_tune),
@@ -249,6 +255,7 @@ static subject make_subject(void) {
     subject made = {.builder = support_builder()};
     support_spring(made.builder, support_pinned(made.builder, 0, 0, 1), support_particle(made.builder, 1, 0, 1), 10,
                    0);
+    (void)support_pinned(made.builder, 0, 1, 1);
     check_ok(mspring_network_create(made.builder, NULL, &made.network));
     return made;
 }
@@ -337,6 +344,23 @@ static mspring_result fill_grip(subject *s, void *out) {
     check_ok(mspring_network_remove_grip(s->network, id));
     return result;
 }
+static mspring_result fill_area(subject *s, void *out, bool is_info) {
+    static const mspring_id corners[3] = {0, 1, 2};
+    mspring_area_def def;
+    mspring_id id;
+    check_ok(mspring_area_def_init(&def, sizeof def));
+    check_ok(mspring_network_add_area(s->network, &def, corners, 3, &id));
+    const mspring_result result = is_info ? mspring_network_get_area_info(s->network, id, out)
+                                          : mspring_network_get_area(s->network, id, out);
+    check_ok(mspring_network_remove_area(s->network, id));
+    return result;
+}
+static mspring_result fill_area_def(subject *s, void *out) {
+    return fill_area(s, out, false);
+}
+static mspring_result fill_area_info(subject *s, void *out) {
+    return fill_area(s, out, true);
+}
 static mspring_result fill_collider(subject *s, void *out) {
     mspring_collider_def def;
     mspring_id id;
@@ -397,6 +421,8 @@ static const struct output {
     OUTPUT(mspring_contact_def, fill_contact),
     OUTPUT(mspring_contact_info, fill_contact_info),
     OUTPUT(mspring_grip_def, fill_grip),
+    OUTPUT(mspring_area_def, fill_area_def),
+    OUTPUT(mspring_area_info, fill_area_info),
     OUTPUT(mspring_collider_def, fill_collider),
     OUTPUT(mspring_step_info, fill_step_info),
     OUTPUT(mspring_plasticity, fill_plasticity),

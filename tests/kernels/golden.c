@@ -284,6 +284,33 @@ static mspring_network *yielding(mspring_network_def *def) {
     return network;
 }
 
+/// The same springs with areas: cells in the sweeps.
+static mspring_network *areas(mspring_network_def *def) {
+    mspring_network *network = everything_damped(def);
+    mspring_area_def area;
+    check_ok(mspring_area_def_init(&area, sizeof area));
+    area.stiffness = 20;
+    check_ok(mspring_network_add_cell_areas(network, &area, NULL, NULL));
+    return network;
+}
+
+static mspring_network *precise_areas(mspring_network_def *def) {
+    def->flags = MSPRING_NETWORK_PRECISE;
+    return areas(def);
+}
+
+/// And a gas, which no sweep has in it.
+static mspring_network *all_areas(mspring_network_def *def) {
+    static const mspring_id corners[5] = {0, 3, 40, 41, 90};
+    mspring_network *network = areas(def);
+    mspring_area_def area;
+    check_ok(mspring_area_def_init(&area, sizeof area));
+    area.kind = MSPRING_AREA_GAS;
+    area.pressure = 3;
+    check_ok(mspring_network_add_area(network, &area, corners, 5, NULL));
+    return network;
+}
+
 const golden_scene golden_scenes[] = {
     {"bar_80x5", bar_80x5, NULL, 30, 64, 1.0 / 64},
     {"bar_544x68", bar_544x68, NULL, 30, 3, 1.0 / 64},
@@ -311,6 +338,10 @@ const golden_scene golden_scenes[] = {
     {"direct_contact", direct_contact, move_colliders, 2, 80, 1.0 / 64},
     {"yielding", yielding, push_some, 10, 100, 1.0 / 64},
     {"implicit_yielding", yielding, push_and_change_solver, 2, 80, 1.0 / 64},
+    {"areas", areas, push_some, 10, 100, 1.0 / 64},
+    {"precise_areas", precise_areas, push_some, 10, 100, 1.0 / 64},
+    {"all_areas", all_areas, push_some, 10, 100, 1.0 / 64},
+    {"implicit_areas", all_areas, push_and_change_solver, 10, 80, 1.0 / 64},
 };
 const uint32_t golden_scene_count = COUNT_OF(golden_scenes);
 

@@ -57,6 +57,7 @@ typedef struct arena {
     float records[RECORDS];
     uint32_t after_records[GUARD];
     float rest_lengths[ROW * MSPRINGI_DIRECTIONS * W];
+    float cells[ROW * 2 * W];
     uint32_t rests_of_block[ROW];
     uint32_t springs_of_block[ROW];
     uint32_t back[GUARD];
@@ -166,6 +167,12 @@ static void fill(arena *a, const setup *s) {
             stiffness[W] = spring ? random_float(&seed, 0, 30) : 0;
         }
     }
+    for (uint32_t column = 0; column < ROW * W; column++) {
+        const bool cell = column >= s->idle && column < s->idle + s->live && s->has_above && column % 5 != 4;
+        float *first = a->cells + (size_t)column / W * 2 * W + column % W;
+        first[0] = cell ? random_float(&seed, -300, 300) : 0;
+        first[W] = cell ? random_float(&seed, 0, 300) : 0;
+    }
 }
 
 static void run(arena *a, const setup *s, mspringi_row_fn kernel, mspringi_extrema_fn extrema_of) {
@@ -185,6 +192,7 @@ static void run(arena *a, const setup *s, mspringi_row_fn kernel, mspringi_extre
         .rest_lengths = a->rest_lengths,
         .rests_of_block = a->rests_of_block,
         .springs_of_block = a->springs_of_block,
+        .cells = a->cells,
         .chain_springs = a->records,
         .parts = s->parts,
         .h = 0.01f,
@@ -326,6 +334,10 @@ static void lattice_kernels(void **state) {
                         mspringi_kernels_scalar.lattice[damped][forced]);
             compare_all(MSPRINGI_ROW_LATTICE, parts, record_slots, forced, kernels->precise.lattice,
                         mspringi_kernels_scalar.precise.lattice);
+            compare_all(MSPRINGI_ROW_LATTICE, parts, record_slots, forced, kernels->cells[damped][forced],
+                        mspringi_kernels_scalar.cells[damped][forced]);
+            compare_all(MSPRINGI_ROW_LATTICE, parts, record_slots, forced, kernels->precise.cells,
+                        mspringi_kernels_scalar.precise.cells);
         }
     }
 }

@@ -281,6 +281,10 @@ mspring_result mspringi_settle_watched(mspring_network *network, const mspring_s
         def = &defaults;
     }
     outcome = check_def(def, &network->message);
+    if (outcome == MSPRING_OK && network->areas.count > 0)
+        outcome =
+            mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                          "the network has %zu areas, whose equilibrium is not looked for", network->areas.count);
     if (outcome == MSPRING_OK && result)
         outcome = mspringi_check_output(&network->message, "mspring_settle_result", result, sizeof *result);
     if (outcome != MSPRING_OK)

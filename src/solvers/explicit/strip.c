@@ -36,6 +36,7 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
                 .carry_y = carry + carry_slots,
                 .lattice_springs = network->lattice_springs,
                 .springs_of_block = network->alike.of_block,
+                .cells = network->areas.cells,
                 .rest_lengths = network->rests.lengths,
                 .rests_of_block = network->rests.of_block,
                 .chain_springs = network->chain_springs,

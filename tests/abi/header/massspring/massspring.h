@@ -46,7 +46,7 @@
 ///     measure     network_energy, _momentum, _bounds
 ///     snapshots   network_snapshot_size, _save, _load
 ///
-/// massspring_contact.h: contact between bodies, colliders, grips; massspring_laws.h: springs that yield;
+/// massspring_contact.h: contact between bodies, colliders, grips; massspring_laws.h: springs that yield, areas;
 /// massspring_tools.h: the rest, as ropes, meshes, clones, hooks, queries, stability, equilibrium, tuning, compaction.
 ///
 /// **Words.** A slot is an index into the arrays of a view; an id is another number. A hook is a function of yours that
@@ -1036,7 +1036,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_co
 /// Compute the energies, J, in double precision. Any of them may be NULL.
 ///   kinetic    sum of m v^2 / 2 over particles that are not pinned
 ///   elastic    sum of stiffness (L - rest_length)^2 / 2 over springs; relative springs with the stiffness of the last
-///              step, before the first 0; springs that have yielded with what hardening stores (massspring_laws.h)
+///              step, before the first 0; with what hardening and areas store (massspring_laws.h)
 ///   potential  - sum of m (gravity . p) over particles that are not pinned, p in world coordinates
 /// @threads shared   @allocates never   @errors ARGUMENT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_energy(

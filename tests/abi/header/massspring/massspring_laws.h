@@ -1,7 +1,9 @@
 /// @file massspring_laws.h
-/// Material laws beyond the linear spring: springs that yield, so that what bends stays bent.
+/// Material laws beyond the linear spring: springs that yield, so that what bends stays bent; areas that keep jelly
+/// from turning inside out, and balloons inflated.
 ///
 ///     plasticity  network_get_plasticity
+///     areas       network_add_area, _add_cell_areas, _remove_area, _set_area, _get_area, _get_area_info; area_def_init
 ///
 /// These calls are not frozen yet: a later minor version may change them. massspring.h explains the notation.
 ///
@@ -59,6 +61,99 @@ typedef struct mspring_plasticity {
 /// @threads shared   @allocates never   @errors ARGUMENT, STRUCT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_plasticity(
     const mspring_network *network, mspring_plasticity *report);
+
+/* --------------------------------------------------------------------------------------------------------- areas */
+
+/// Most particles of an area.
+#define MSPRING_MAX_AREA_PARTICLES 4096u
+
+/// Laws of areas. A is the area now, A0 the rest area; p pushes outwards, in N/m.
+typedef enum mspring_area_kind {
+    MSPRING_AREA_ELASTIC = 0,           ///< p = pressure + stiffness * (fill - A / A0)
+    MSPRING_AREA_GAS = 1,               ///< p = pressure * fill * A0 / A: p * A stays, as in a gas of one temperature
+    MSPRING_AREA_INT = MSPRING_ENUM_INT ///< no value
+} mspring_area_kind;
+
+/// An area: a closed polygon of particles with a pressure inside. Fill with mspring_area_def_init() first.
+typedef struct mspring_area_def {
+    uint32_t struct_size;
+    mspring_area_kind kind; ///< default MSPRING_AREA_ELASTIC
+    float stiffness;        ///< N/m, 0 to 1e30; 0 for a gas; default 0. Of lattice cells k / 2 to k, with springs of k.
+    float pressure;         ///< N/m, at most 1e30 in size; of a gas >= 0; default 0
+    float fill;             ///< part of the rest area that it is filled to, 0.01 to 100; default 1
+    uint32_t reserved;      ///< 0
+    double rest_area;       ///< A0, m^2, 1e-24 to 1e24; default 0: the area that the polygon has at this call
+} mspring_area_def;
+
+/// An area now. Set struct_size first.
+typedef struct mspring_area_info {
+    uint32_t struct_size;
+    uint32_t particle_count;
+    uint32_t is_open; ///< 1: a spring of its outline is broken or removed, so it has no pressure
+    uint32_t reserved;
+    double area;     ///< m^2; below 0 if the polygon is inside out
+    double pressure; ///< p, N/m
+    double energy;   ///< J, part of the elastic energy of mspring_network_energy(); 0 at fill * rest_area
+} mspring_area_info;
+
+/// Fill a definition with its defaults, as mspring_network_def_init().
+/// @threads any   @allocates never   @errors ARGUMENT, STRUCT
+MSPRING_API mspring_result MSPRING_CALL mspring_area_def_init(mspring_area_def *def, size_t size);
+
+/// Add an area: a balloon, a tyre, a muscle.
+/// The particles are the corners of the polygon, in either order around it. No particle may be there twice. At this
+/// call the polygon must have an area. That side is its positive one: turned inside out, the area is negative, and the
+/// pressure turns it back. A gas has at most 20 times its pressure.
+///
+/// The outline consists of the springs that join one corner to the next at this call. If one of them is broken or
+/// removed, the area is open: it exerts no force and has no energy until all are whole. If a corner is removed, the
+/// area is, too.
+///
+/// Snapshots and clones have the areas, with their ids. mspring_builder_add_network() leaves them out. A frame
+/// (MSPRING_SNAPSHOT_FRAME) fits a network with the same areas.
+///
+/// An elastic area around a lattice cell is part of the explicit solver's sweeps. With others the explicit solver takes
+/// substeps one by one, as with a hook. mspring_network_stable_dt() counts areas; its bound for any shape counts those
+/// in the shape that they were added in. Implicit and direct substeps have forces of areas from their start: a
+/// substep that is too long for those is rejected as unstable. mspring_network_settle() and mspring_network_tune()
+/// reject networks with areas.
+///
+/// @param count  3 to MSPRING_MAX_AREA_PARTICLES
+/// @param area   receives its id, which is never given again; may be NULL
+/// @threads exclusive access to network   @allocates yes
+/// @errors ARGUMENT, STRUCT, ID if there is no such particle, LIMIT, MEMORY, BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_add_area(mspring_network *network,
+    const mspring_area_def *def, const mspring_id *particles, uint32_t count, mspring_id *area);
+
+/// Add an area to each cell of the network's lattices.
+/// A cell is four particles with four whole springs around it, as mspring_builder_add_lattice() makes them. The rest
+/// area in def must be 0. Cells get consecutive ids. Without cells nothing is added.
+/// @param first_area  receives the first id; may be NULL
+/// @param count       receives the number of areas added; may be NULL
+/// @threads exclusive access to network   @allocates yes   @errors ARGUMENT, STRUCT, LIMIT, MEMORY, BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_add_cell_areas(
+    mspring_network *network, const mspring_area_def *def, mspring_id *first_area, uint32_t *count);
+
+/// Remove an area.
+/// @threads exclusive access to network   @allocates never   @errors ARGUMENT, ID, BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_remove_area(
+    mspring_network *network, mspring_id area);
+
+/// Change an area: inflate it, or let it down.
+/// If rest_area is 0, the polygon must have an area on its positive side.
+/// @threads exclusive access to network   @allocates never   @errors ARGUMENT, STRUCT, ID, BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_area(
+    mspring_network *network, mspring_id area, const mspring_area_def *def);
+
+/// Read what an area is like. Set struct_size first.
+/// @threads shared   @allocates never   @errors ARGUMENT, STRUCT, ID
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_area(
+    const mspring_network *network, mspring_id area, mspring_area_def *def);
+
+/// Measure an area. Set struct_size first.
+/// @threads shared   @allocates never   @errors ARGUMENT, STRUCT, ID
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_area_info(
+    const mspring_network *network, mspring_id area, mspring_area_info *info);
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,311 @@
+/// Areas as the host defines them.
+#include "store/areas.h"
+
+#include <math.h>
+
+#include "base/cpu.h"
+#include "store/changed.h"
+
+#define STRONGEST 1e30f
+#define LEAST_FILL 0.01f
+#define MOST_FILL 100.0f
+#define LEAST_AREA 1e-24
+#define MOST_AREA 1e24
+
+/* ------------------------------------------------------------------------------------------------------- checks */
+
+static mspring_result check_numbers(const mspring_area_def *def, mspringi_message *message) {
+    const bool is_gas = def->kind == MSPRING_AREA_GAS;
+    const struct {
+        const char *name;
+        float value, least, most;
+    } values[] = {{"stiffness", def->stiffness, 0.0f, is_gas ? 0.0f : STRONGEST},
+                  {"pressure", def->pressure, is_gas ? 0.0f : -STRONGEST, STRONGEST},
+                  {"fill", def->fill, LEAST_FILL, MOST_FILL}};
+    for (size_t i = 0; i < sizeof values / sizeof values[0]; ++i)
+        if (!(values[i].value >= values[i].least && values[i].value <= values[i].most))
+            return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the area's %s is %g, it must be %g to %g",
+                                 values[i].name, (double)values[i].value, (double)values[i].least,
+                                 (double)values[i].most);
+    return MSPRING_OK;
+}
+
+static mspring_result check_def(mspring_network *network, const mspring_area_def *def) {
+    mspringi_message *message = &network->message;
+    if (!def)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the area's definition is NULL");
+    mspring_result result = mspringi_check_struct(message, "mspring_area_def", def, sizeof *def);
+    if (result == MSPRING_OK)
+        result = mspringi_check_reserved(message, "mspring_area_def", def->reserved);
+    if (result != MSPRING_OK)
+        return result;
+    if (def->kind != MSPRING_AREA_ELASTIC && def->kind != MSPRING_AREA_GAS)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the area's kind is %d, which is none",
+                             (int)def->kind);
+    return check_numbers(def, message);
+}
+
+// The rest area of a definition, by what the polygon has now.
+static mspring_result choose_rest_area(mspring_network *network, const mspring_area_def *def, double size,
+                                       double *rest_area) {
+    *rest_area = def->rest_area == 0.0 ? size : def->rest_area;
+    if (!(*rest_area >= LEAST_AREA && *rest_area <= MOST_AREA))
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "the rest area is %g m^2, it must be 1e-24 to 1e24", *rest_area);
+    return (double)def->stiffness / *rest_area <= (double)STRONGEST
+               ? MSPRING_OK
+               : mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                               "the area's stiffness is %g N/m for %g m^2, at most 1e30 N/m^3",
+                               (double)def->stiffness, *rest_area);
+}
+
+static mspring_result check_corners(mspring_network *network, const mspring_id *particles, uint32_t count) {
+    mspringi_message *message = &network->message;
+    if (!particles || count < 3 || count > MSPRING_MAX_AREA_PARTICLES)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "the area has %u particles, it must have 3 to %u, and the list must not be NULL",
+                             (unsigned)count, (unsigned)MSPRING_MAX_AREA_PARTICLES);
+    for (uint32_t i = 0; i < count; ++i) {
+        if (particles[i] >= network->topology.particle_count || !mspringi_particle_exists(network, particles[i]))
+            return mspringi_fail(message, MSPRING_ERROR_ID, "the area has particle %u, which does not exist",
+                                 (unsigned)particles[i]);
+        for (uint32_t j = 0; j < i; ++j)
+            if (particles[j] == particles[i])
+                return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the area has particle %u twice",
+                                     (unsigned)particles[i]);
+    }
+    return MSPRING_OK;
+}
+
+static mspring_result check_room(mspring_network *network, size_t areas, size_t corners) {
+    const mspringi_areas *a = &network->areas;
+    if (areas >= MSPRING_NONE - a->next_id || corners >= MSPRING_NONE - a->corner_count)
+        return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT, "there are %zu areas already, of %u ever made",
+                             a->count, (unsigned)a->next_id);
+    return mspringi_areas_reserve(network, areas, corners);
+}
+
+/* ------------------------------------------------------------------------------------------------- adding them */
+
+static void fill(mspringi_area *area, const mspring_area_def *def, double rest_area) {
+    area->kind = def->kind;
+    area->stiffness = def->stiffness;
+    area->pressure = def->pressure;
+    area->fill = def->fill;
+    area->rest_area = rest_area;
+}
+
+// Tell that an area is another one from now on.
+static void tell(mspring_network *network, uint32_t edit, const mspringi_area *area) {
+    mspringi_fingerprint(network, edit, area->id);
+    mspringi_fingerprint_floats(network, area->stiffness, area->pressure);
+    mspringi_fingerprint_floats(network, area->fill, (float)area->rest_area);
+    mspringi_changed(network, MSPRINGI_CHANGED_AREA, 0);
+}
+
+// Add an area for which there is room.
+static void add(mspring_network *network, const mspring_area_def *def, double rest_area,
+                const mspring_id *particles, uint32_t count) {
+    mspringi_areas *a = &network->areas;
+    mspringi_area made = {.id = a->next_id++, .count = count};
+    fill(&made, def, rest_area);
+    mspringi_areas_append(network, &made, particles);
+    for (uint32_t i = 0; i < count; ++i)
+        mspringi_fingerprint(network, MSPRINGI_EDIT_ADDED_AREA, particles[i]);
+    tell(network, MSPRINGI_EDIT_ADDED_AREA, &made);
+}
+
+// The area within particles, in their order.
+static double size_of(const mspring_network *network, const mspring_id *particles, uint32_t count) {
+    const mspringi_state *s = &network->state;
+    const uint32_t *slots = network->topology.slot_of_particle;
+    const double x = mspringi_x_of(s, slots[particles[0]]), y = mspringi_y_of(s, slots[particles[0]]);
+    double twice = 0.0;
+    for (uint32_t i = 1; i + 1 < count; ++i) {
+        const uint32_t here = slots[particles[i]], next = slots[particles[i + 1]];
+        twice += (mspringi_x_of(s, here) - x) * (mspringi_y_of(s, next) - y) -
+                 (mspringi_y_of(s, here) - y) * (mspringi_x_of(s, next) - x);
+    }
+    return 0.5 * twice;
+}
+
+mspring_result mspring_network_add_area(mspring_network *network, const mspring_area_def *def,
+                                        const mspring_id *particles, uint32_t count, mspring_id *area) {
+    mspring_id ordered[MSPRING_MAX_AREA_PARTICLES];
+    double rest_area;
+    mspring_result result = mspringi_enter(network);
+    if (result == MSPRING_OK)
+        result = check_def(network, def);
+    if (result == MSPRING_OK)
+        result = check_corners(network, particles, count);
+    if (result != MSPRING_OK)
+        return result;
+    const double size = size_of(network, particles, count);
+    if (!(fabs(size) >= LEAST_AREA))
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "the particles from %u on are around %g m^2, which is no area", (unsigned)particles[0],
+                             size);
+    result = choose_rest_area(network, def, fabs(size), &rest_area);
+    if (result == MSPRING_OK)
+        result = check_room(network, 1, count);
+    if (result != MSPRING_OK)
+        return result;
+    for (uint32_t i = 0; i < count; ++i)
+        ordered[i] = particles[size > 0.0 ? i : count - 1 - i];
+    if (area)
+        *area = network->areas.next_id;
+    add(network, def, rest_area, ordered, count);
+    return MSPRING_OK;
+}
+
+// The cell above and right of a particle, in the order in which it is around an area. False: there is none.
+static bool find_cell(const mspring_network *network, mspring_id particle, mspring_id corners[4]) {
+    uint32_t slots[4];
+    if (!mspringi_particle_exists(network, particle) ||
+        !mspringi_cell_at(network, network->topology.slot_of_particle[particle], slots))
+        return false;
+    for (int i = 0; i < 4; ++i)
+        corners[i] = network->topology.particle_of_slot[slots[i]];
+    if (size_of(network, corners, 4) < 0.0) {
+        const mspring_id second = corners[1];
+        corners[1] = corners[3];
+        corners[3] = second;
+    }
+    return true;
+}
+
+static mspring_result check_cells(mspring_network *network, const mspring_area_def *def, uint32_t *count) {
+    mspring_id corners[4];
+    double rest_area;
+    mspring_result result = def->rest_area == 0.0
+                                ? MSPRING_OK
+                                : mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                                                "the cells' rest area is %g m^2, it must be 0", def->rest_area);
+    *count = 0;
+    for (mspring_id p = 0; result == MSPRING_OK && p < network->topology.particle_count; ++p) {
+        if (!find_cell(network, p, corners))
+            continue;
+        ++*count;
+        result = choose_rest_area(network, def, size_of(network, corners, 4), &rest_area);
+    }
+    return result;
+}
+
+mspring_result mspring_network_add_cell_areas(mspring_network *network, const mspring_area_def *def,
+                                              mspring_id *first_area, uint32_t *count) {
+    mspring_id corners[4];
+    uint32_t cells = 0;
+    mspring_result result = mspringi_enter(network);
+    if (result == MSPRING_OK)
+        result = check_def(network, def);
+    if (result == MSPRING_OK)
+        result = check_cells(network, def, &cells);
+    if (result == MSPRING_OK && cells > 0)
+        result = check_room(network, cells, (size_t)4 * cells);
+    if (result != MSPRING_OK)
+        return result;
+    if (first_area)
+        *first_area = network->areas.next_id;
+    if (count)
+        *count = cells;
+    for (mspring_id p = 0; cells > 0 && p < network->topology.particle_count; ++p)
+        if (find_cell(network, p, corners))
+            add(network, def, size_of(network, corners, 4), corners, 4);
+    return MSPRING_OK;
+}
+
+/* ------------------------------------------------------------------------------------------- changing, reading */
+
+// NULL if there is none.
+static mspringi_area *find(const mspring_network *network, mspring_id id) {
+    const mspringi_areas *a = &network->areas;
+    size_t low = 0, high = a->count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (a->list[middle].id < id)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < a->count && a->list[low].id == id ? &a->list[low] : NULL;
+}
+
+#define NO_AREA "there is no area %u"
+
+static mspring_result find_or_fail(mspring_network *network, mspring_id id, mspringi_area **found) {
+    const mspring_result result = mspringi_enter(network);
+    if (result != MSPRING_OK)
+        return result;
+    *found = find(network, id);
+    return *found ? MSPRING_OK : mspringi_fail(&network->message, MSPRING_ERROR_ID, NO_AREA, (unsigned)id);
+}
+
+mspring_result mspring_network_remove_area(mspring_network *network, mspring_id area) {
+    mspringi_area *found;
+    const mspring_result result = find_or_fail(network, area, &found);
+    if (result != MSPRING_OK)
+        return result;
+    const mspringi_area had = *found;
+    mspringi_areas_drop(network, found);
+    tell(network, MSPRINGI_EDIT_REMOVED_AREA, &had);
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_set_area(mspring_network *network, mspring_id area, const mspring_area_def *def) {
+    mspringi_area *found;
+    double rest_area = 0.0;
+    mspring_result result = find_or_fail(network, area, &found);
+    if (result == MSPRING_OK)
+        result = check_def(network, def);
+    if (result == MSPRING_OK)
+        result = choose_rest_area(network, def, mspringi_area_size(network, found), &rest_area);
+    if (result != MSPRING_OK)
+        return result;
+    fill(found, def, rest_area);
+    network->areas.changes++;
+    tell(network, MSPRINGI_EDIT_SET_AREA, found);
+    return MSPRING_OK;
+}
+
+// The same for calls that only read: NULL if there is none, with a message.
+static const mspringi_area *look_up(const mspring_network *network, mspring_id id) {
+    const mspringi_area *found = find(network, id);
+    if (!found)
+        (void)mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, NO_AREA, (unsigned)id);
+    return found;
+}
+
+mspring_result mspring_network_get_area(const mspring_network *network, mspring_id area, mspring_area_def *def) {
+    const mspring_result result = mspringi_check_report(network, "mspring_area_def", def, sizeof *def);
+    if (result != MSPRING_OK)
+        return result;
+    const mspringi_area *found = look_up(network, area);
+    if (!found)
+        return MSPRING_ERROR_ID;
+    const mspring_area_def had = {.kind = found->kind,
+                                  .stiffness = found->stiffness,
+                                  .pressure = found->pressure,
+                                  .fill = found->fill,
+                                  .rest_area = found->rest_area};
+    mspringi_put_struct(def, &had, sizeof had);
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_get_area_info(const mspring_network *network, mspring_id area,
+                                             mspring_area_info *info) {
+    const mspring_result result = mspringi_check_report(network, "mspring_area_info", info, sizeof *info);
+    if (result != MSPRING_OK)
+        return result;
+    const mspringi_area *found = look_up(network, area);
+    if (!found)
+        return MSPRING_ERROR_ID;
+    const bool is_open = mspringi_area_is_open(network, found);
+    const double size = mspringi_area_size(network, found);
+    const mspring_area_info made = {.particle_count = found->count,
+                                    .is_open = is_open,
+                                    .area = size,
+                                    .pressure = is_open ? 0.0 : mspringi_area_pressure(found, size),
+                                    .energy = is_open ? 0.0 : mspringi_area_energy(found, size)};
+    mspringi_put_struct(info, &made, sizeof made);
+    return MSPRING_OK;
+}

@@ -1,0 +1,71 @@
+/// @file areas.h
+/// Areas: closed polygons of particles with a pressure inside.
+///
+/// With A the area (shoelace formula), a = A / A0, k the stiffness, f the fill:
+///
+///     elastic  p = P + k (f - a)        E = k A0 (f - a)^2 / 2 + P A0 (f - a)
+///     gas      p = P f / a              E = -P f A0 ln(a / f);  below a = 1 / 20 p stays what it is there
+///     force    p g,  g = dA/dx: half the vector from the corner before to the corner behind, turned outwards
+///     tangent  c g g',  c = -dp/dA;  the other part, of the size of p, only where a bound counts it
+///
+/// An elastic area of four corners that a lattice row's sweep has in its registers is computed there: with both
+/// diagonals D, D' of the cell, A = D x D' / 2, and the forces act along pairs that the diagonals join (kernels/).
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_AREAS_H
+#define MSPRINGI_AREAS_H
+
+#include "store/network.h"
+
+/// Room for so many more areas and corners, and for what steps need of them.
+mspring_result mspringi_areas_reserve(mspring_network *network, size_t areas, size_t corners);
+
+/// Add one to the list, for which there is room: its corners in the order in which its area is positive. Its rest
+/// area is set.
+void mspringi_areas_append(mspring_network *network, const mspringi_area *area, const mspring_id *particles);
+/// Take one out of the list.
+void mspringi_areas_drop(mspring_network *network, mspringi_area *area);
+/// Take out those that a particle which is removed is a corner of.
+void mspringi_areas_forget(mspring_network *network, mspring_id particle);
+/// There is none any more.
+void mspringi_areas_clear(mspring_network *network);
+
+/// Find out which areas are open, which ones sweeps have in them, and the substep that they are stable with.
+void mspringi_areas_refresh(mspring_network *network);
+
+/// The slots of a lattice's cell, in their order around it: here, to the right, above that, above. False: there is
+/// none at this slot.
+bool mspringi_cell_at(const mspring_network *network, uint32_t slot, uint32_t corners[4]);
+
+/* ------------------------------------------------------------------------------------------------ one area */
+
+bool mspringi_area_is_open(const mspring_network *network, const mspringi_area *area);
+/// A, m^2.
+double mspringi_area_size(const mspring_network *network, const mspringi_area *area);
+/// p, and c, in N/m and N/m^3, by A.
+double mspringi_area_pressure(const mspringi_area *area, double size);
+double mspringi_area_stiffness(const mspringi_area *area, double size);
+double mspringi_area_energy(const mspringi_area *area, double size);
+
+static inline uint32_t mspringi_area_slot(const mspring_network *network, const mspringi_area *area,
+                                          uint32_t corner) {
+    return network->topology.slot_of_particle[network->areas.corners[area->first + corner].particle];
+}
+
+/// Add the forces of an area to a field.
+void mspringi_area_push(const mspring_network *network, const mspringi_area *area, mspringi_field field);
+
+/// A corner's slot, and its gradient now.
+typedef struct mspringi_area_end {
+    uint32_t slot;
+    double x, y;
+} mspringi_area_end;
+mspringi_area_end mspringi_area_end_of(const mspring_network *network, const mspringi_area *area, uint32_t corner);
+
+/// The sums of the weights of springs that bound an area in the shape that it was added in, N/m, added to those by
+/// slot.
+void mspringi_area_weigh(const mspring_network *network, const mspringi_area *area, float *sums);
+/// The largest sum of such quotients, sums times inverse masses, of two corners that share a weight.
+double mspringi_area_largest(const mspring_network *network, const mspringi_area *area, const float *sums);
+
+#endif

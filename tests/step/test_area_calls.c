@@ -1,0 +1,105 @@
+/// @file test_area_calls.c
+/// Areas that are none: calls and snapshots are refused, and change nothing.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdlib.h>
+
+#include "support.h"
+
+static mspring_area_def elastic(float stiffness) {
+    mspring_area_def def;
+    check_ok(mspring_area_def_init(&def, sizeof def));
+    def.stiffness = stiffness;
+    return def;
+}
+
+// 4 x 4 particles.
+static mspring_network *lattice(void) {
+    mspring_builder *builder = support_builder();
+    for (uint32_t i = 0; i < 16; i++)
+        (void)support_particle(builder, i % 4, i / 4, 1);
+    for (uint32_t i = 0; i < 16; i++) {
+        if (i % 4 < 3)
+            (void)support_spring(builder, i, i + 1, 100, 0);
+        if (i < 12)
+            (void)support_spring(builder, i, i + 4, 100, 0);
+    }
+    const mspring_network_def def = support_def(0, 12);
+    return support_network(builder, &def);
+}
+
+static void bad_areas_are_refused(void **state) {
+    (void)state;
+    mspring_network *network = lattice();
+    const mspring_id corners[] = {0, 1, 5, 4}, line[] = {0, 1, 2}, twice[] = {0, 1, 5, 1}, gone[] = {0, 1, 100};
+    const mspring_area_def good = elastic(100);
+    mspring_area_def bad[] = {good, good, good, good, good, good, good, good, good, good};
+    bad[0].stiffness = -1;
+    bad[1].stiffness = NAN;
+    bad[2].pressure = INFINITY;
+    bad[3].fill = 0;
+    bad[4].rest_area = -1;
+    bad[5].rest_area = NAN;
+    bad[6].kind = bad[7].kind = MSPRING_AREA_GAS;
+    bad[6].stiffness = 0;
+    bad[6].pressure = -1;
+    bad[8].kind = (mspring_area_kind)7;
+    bad[9].reserved = 1;
+    const uint64_t hash = support_hash(network);
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        check_error(mspring_network_add_area(network, &bad[i], corners, 4, NULL), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_add_cell_areas(network, &bad[i], NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    }
+    check_error(mspring_network_add_area(network, &good, line, 3, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_add_area(network, &good, twice, 4, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_add_area(network, &good, gone, 3, NULL), MSPRING_ERROR_ID);
+    check_contains(mspring_network_error(network), "100");
+    check_error(mspring_network_add_area(network, &good, corners, 2, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_add_area(network, &good, NULL, 4, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_add_area(network, NULL, corners, 4, NULL), MSPRING_ERROR_ARGUMENT);
+    assert_true(support_hash(network) == hash);
+    mspring_id area;
+    check_ok(mspring_network_add_area(network, &good, corners, 4, &area));
+    for (size_t i = 0; i < COUNT_OF(bad); i++)
+        check_error(mspring_network_set_area(network, area, &bad[i]), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_area(network, area + 1, &good), MSPRING_ERROR_ID);
+    check_error(mspring_network_settle(network, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_network_error(network), "area");
+    mspring_network_destroy(network);
+}
+
+// A snapshot that is cut, or has a byte changed, is refused or loaded, and nothing else happens.
+static void damaged_snapshots_are_refused(void **state) {
+    (void)state;
+    static const mspring_id corners[] = {0, 1, 4};
+    mspring_area_def def = elastic(0);
+    mspring_id area;
+    mspring_network *network = lattice();
+    def.kind = MSPRING_AREA_GAS;
+    def.pressure = 40;
+    check_ok(mspring_network_add_area(network, &def, corners, 3, &area));
+    size_t size;
+    check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &size));
+    uint8_t *bytes = malloc(size);
+    assert_non_null(bytes);
+    check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_ALL, bytes, size, NULL));
+    const uint64_t hash = support_hash(network);
+    for (size_t cut = 0; cut < size; cut += 1 + size / 97)
+        check_error(mspring_network_load(network, bytes, cut), MSPRING_ERROR_SNAPSHOT);
+    assert_true(support_hash(network) == hash);
+    check_ok(mspring_network_load(network, bytes, size));
+    mspring_area_info info = {.struct_size = sizeof info};
+    check_ok(mspring_network_get_area_info(network, area, &info));
+    check_near(info.pressure, 40, 1e-4);
+    free(bytes);
+    mspring_network_destroy(network);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bad_areas_are_refused),
+        cmocka_unit_test(damaged_snapshots_are_refused),
+    };
+    return cmocka_run_group_tests_name("area_calls", tests, NULL, NULL);
+}

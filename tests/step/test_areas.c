@@ -1,0 +1,563 @@
+/// @file test_areas.c
+/// Areas: jelly no longer stays inside out, balloons keep pressure times area, a bar is as stiff as its homogenised
+/// moduli say, sweeps have cells as the plain law has them, and books, clones, snapshots and levels agree.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdio.h>
+
+#include "support.h"
+
+/// A lattice of so many particles, with springs of `stiffness`, shear springs included.
+typedef struct sheet {
+    uint32_t width, height;
+    double x, y, spacing;
+    float stiffness, shear_share, damping, mass;
+} sheet;
+
+static mspring_id at(const sheet *s, uint32_t column, uint32_t row) {
+    return row * s->width + column;
+}
+
+// Particles by rows from below, whatever the library's own lattices do.
+static void build(mspring_builder *builder, const sheet *s, bool is_clamped) {
+    static const int directions[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
+    const mspring_id first = mspring_builder_particle_count(builder);
+    for (uint32_t j = 0; j < s->height; j++)
+        for (uint32_t i = 0; i < s->width; i++) {
+            const double x = s->x + i * s->spacing, y = s->y + j * s->spacing;
+            (void)(is_clamped && i == 0 ? support_pinned(builder, x, y, s->mass)
+                                        : support_particle(builder, x, y, s->mass));
+        }
+    for (uint32_t j = 0; j < s->height; j++)
+        for (uint32_t i = 0; i < s->width; i++)
+            for (int d = 0; d < 4; d++) {
+                const uint32_t u = i + (uint32_t)directions[d][0], v = j + (uint32_t)directions[d][1];
+                const float share = d < 2 ? 1 : s->shear_share;
+                if (u < s->width && v < s->height)
+                    (void)support_spring(builder, first + at(s, i, j), first + at(s, u, v), share * s->stiffness,
+                                         share * s->damping);
+            }
+}
+
+static mspring_area_def elastic(float stiffness) {
+    mspring_area_def def;
+    check_ok(mspring_area_def_init(&def, sizeof def));
+    def.stiffness = stiffness;
+    return def;
+}
+
+static mspring_area_def gas(float pressure) {
+    mspring_area_def def = elastic(0);
+    def.kind = MSPRING_AREA_GAS;
+    def.pressure = pressure;
+    return def;
+}
+
+static uint32_t add_cells(mspring_network *network, float stiffness) {
+    const mspring_area_def def = elastic(stiffness);
+    uint32_t count;
+    check_ok(mspring_network_add_cell_areas(network, &def, NULL, &count));
+    return count;
+}
+
+static mspring_area_info info_of(const mspring_network *network, mspring_id area) {
+    mspring_area_info info = {.struct_size = sizeof info};
+    check_ok(mspring_network_get_area_info(network, area, &info));
+    return info;
+}
+
+static mspring_network *sheet_network(const sheet *s, const mspring_network_def *def) {
+    mspring_builder *builder = support_builder();
+    build(builder, s, false);
+    return support_network(builder, def);
+}
+
+/* ---------------------------------------------------------------------------------------------------------- jelly
+ */
+
+static double twice_triangle(const mspring_network *network, mspring_id a, mspring_id b, mspring_id c) {
+    const support_point p = support_position(network, a), q = support_position(network, b),
+                        r = support_position(network, c);
+    return (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
+}
+
+static uint32_t inverted(const mspring_network *network, const sheet *s) {
+    uint32_t count = 0;
+    for (uint32_t j = 0; j + 1 < s->height; j++)
+        for (uint32_t i = 0; i + 1 < s->width; i++) {
+            const mspring_id here = at(s, i, j), across = at(s, i + 1, j + 1);
+            count += twice_triangle(network, here, at(s, i + 1, j), across) <= 0;
+            count += twice_triangle(network, here, across, at(s, i, j + 1)) <= 0;
+        }
+    return count;
+}
+
+static const sheet jelly = {.width = 10,
+                            .height = 10,
+                            .y = 2,
+                            .spacing = 0.1,
+                            .stiffness = 200,
+                            .shear_share = 1,
+                            .damping = 0.2f,
+                            .mass = 0.1f};
+
+static mspring_network *dropped(float area_stiffness) {
+    mspring_network_def def = support_def(-9.8f, 16);
+    mspring_floor_def floor;
+    def.guard = MSPRING_GUARD_BOUNDS;
+    mspring_network *network = sheet_network(&jelly, &def);
+    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    const double ground[4] = {0, 0, 0, 1};
+    floor.planes = ground;
+    floor.plane_count = 1;
+    floor.friction = 0.5f;
+    check_ok(mspring_network_set_floor(network, &floor));
+    if (area_stiffness > 0)
+        assert_int_equal(add_cells(network, area_stiffness), 81);
+    support_steps(network, 60 * 10, 1.0 / 60);
+    return network;
+}
+
+// Without areas it lands inside out, and stays so.
+static void a_dropped_jelly_unfolds(void **state) {
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        mspring_network *network = dropped(100.0f * (float)i);
+        const uint32_t count = inverted(network, &jelly);
+        printf("jelly with areas of %d N/m: %u of 162 triangles are inverted\n", 100 * i, count);
+        if (i == 0)
+            assert_true(count > 20);
+        else
+            assert_int_equal(count, 0);
+        mspring_network_destroy(network);
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------- balloon
+ */
+
+enum { SKIN = 32 };
+
+// A ring of particles around a gas, in one order around it or the other.
+static mspring_network *balloon(float pressure, bool is_clockwise, mspring_network_def def, mspring_id *area) {
+    mspring_builder *builder = support_builder();
+    mspring_id ring[SKIN];
+    for (uint32_t i = 0; i < SKIN; i++) {
+        const double turn = 2 * 3.14159265358979 * i / SKIN;
+        ring[is_clockwise ? SKIN - 1 - i : i] = support_particle(builder, cos(turn), sin(turn), 0.05f);
+    }
+    for (uint32_t i = 0; i < SKIN; i++)
+        (void)support_spring(builder, i, (i + 1) % SKIN, 1000, 0.1f);
+    mspring_network *network = support_network(builder, &def);
+    const mspring_area_def inside = gas(pressure);
+    check_ok(mspring_network_add_area(network, &inside, ring, SKIN, area));
+    return network;
+}
+
+static void a_balloon_keeps_pressure_times_area(void **state) {
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        const float pressure = i % 2 ? 400 : 40;
+        mspring_network_def def = support_def(0, 40);
+        mspring_id area;
+        def.global_damping = 4;
+        mspring_network *network = balloon(pressure, i / 2, def, &area);
+        const mspring_area_info start = info_of(network, area);
+        check_near(start.pressure, (double)pressure, 1e-6 * (double)pressure);
+        for (int step = 0; step < 600; step++) {
+            support_steps(network, 1, 1.0 / 64);
+            const mspring_area_info now = info_of(network, area);
+            check_near(now.pressure * now.area, (double)pressure * start.area, 1e-6 * (double)pressure);
+        }
+        // At rest the skin's pull balances the gas: with c the chord and r the radius, k (c - c0) = p r cos(pi /
+        // n).
+        const mspring_area_info end = info_of(network, area);
+        const support_point p = support_position(network, 0), q = support_position(network, 1);
+        const double radius = hypot(p.x, p.y), chord = hypot(q.x - p.x, q.y - p.y);
+        const double pull = 1000 * (chord - 2 * sin(3.14159265358979 / SKIN));
+        check_near(pull / (end.pressure * radius * cos(3.14159265358979 / SKIN)), 1, 1e-3);
+        assert_true(end.area > 1.03 * start.area);
+        mspring_network_destroy(network);
+    }
+}
+
+static void fill_inflates(void **state) {
+    (void)state;
+    mspring_network_def def = support_def(0, 40);
+    mspring_id area;
+    def.global_damping = 8;
+    mspring_network *network = balloon(40, false, def, &area);
+    support_steps(network, 300, 1.0 / 64);
+    const mspring_area_info before = info_of(network, area);
+    mspring_area_def now = {.struct_size = sizeof now};
+    check_ok(mspring_network_get_area(network, area, &now));
+    now.fill = 3;
+    check_ok(mspring_network_set_area(network, area, &now));
+    support_steps(network, 600, 1.0 / 64);
+    const mspring_area_info after = info_of(network, area);
+    assert_true(after.area > 1.05 * before.area);
+    check_near(after.pressure * after.area, 3 * before.pressure * before.area, 1e-4 * before.pressure);
+    // -P f A0 ln(A / (f A0))
+    check_near(after.energy, -40 * 3 * now.rest_area * log(after.area / (3 * now.rest_area)), 1e-9);
+    // An elastic one that nothing else holds is filled to its fill.
+    now = elastic(100);
+    now.rest_area = 2.5;
+    now.fill = 1.2f;
+    check_ok(mspring_network_set_area(network, area, &now));
+    const float slack = 1e-3f;
+    check_ok(mspring_network_set(network, MSPRING_STIFFNESS, 0, SKIN, &slack, 0));
+    support_steps(network, 3000, 1.0 / 64);
+    check_near(info_of(network, area).area, 3.0, 1e-3);
+    mspring_network_destroy(network);
+}
+
+/* ---------------------------------------------------------------------------------------------------------- books
+ */
+
+// Without damping energy stays, momentum and angular momentum to rounding; at this substep the drift of symplectic
+// Euler is below 1 %.
+static void energy_and_momentum_stay(void **state) {
+    (void)state;
+    for (int law = 0; law < 2; law++) {
+        sheet s = jelly;
+        s.damping = 0;
+        s.width = 6;
+        mspring_network_def def = support_def(0, 1600);
+        mspring_network *network = sheet_network(&s, &def);
+        if (law == 0) {
+            assert_int_equal(add_cells(network, 150), 5 * 9);
+        } else {
+            const mspring_id corners[] = {at(&s, 0, 0), at(&s, 5, 0), at(&s, 5, 9), at(&s, 0, 9)};
+            const mspring_area_def inside = gas(100);
+            check_ok(mspring_network_add_area(network, &inside, corners, 4, NULL));
+        }
+        for (uint32_t i = 0; i < s.width * s.height; i += 3)
+            support_kick(network, i, i % 2 ? 0.3f : -0.2f);
+        double x, y, angular, end_x, end_y, end_angular;
+        check_ok(mspring_network_momentum(network, &x, &y, &angular));
+        const double energy = support_energy(network);
+        support_steps(network, 64, 1.0 / 64);
+        check_ok(mspring_network_momentum(network, &end_x, &end_y, &end_angular));
+        check_near(support_energy(network), energy, 0.01 * fabs(energy));
+        check_near(end_x, x, 1e-5);
+        check_near(end_y, y, 1e-5);
+        check_near(end_angular, angular, 1e-5);
+        mspring_network_destroy(network);
+    }
+}
+
+// Two areas around a cell, of which the sweeps can have one, are one of both their stiffness. Positions are to some
+// units in the last place.
+static void sweeps_have_the_law(void **state) {
+    (void)state;
+    for (int is_turned = 0; is_turned < 2; is_turned++) {
+        sheet s = jelly;
+        s.width = is_turned ? 5 : 23; // by columns or by rows
+        s.height = is_turned ? 23 : 5;
+        mspring_network_def def = support_def(0, 20);
+        mspring_network *swept = sheet_network(&s, &def), *both = sheet_network(&s, &def);
+        assert_int_equal(add_cells(swept, 180), 22 * 4);
+        assert_int_equal(add_cells(both, 120), 22 * 4);
+        assert_int_equal(add_cells(both, 60), 22 * 4);
+        for (uint32_t i = 0; i < s.width * s.height; i += 3) {
+            support_kick(swept, i, 1);
+            support_kick(both, i, 1);
+        }
+        support_steps(swept, 20, 1.0 / 64);
+        support_steps(both, 20, 1.0 / 64);
+        for (uint32_t i = 0; i < s.width * s.height; i++) {
+            const support_point p = support_position(swept, i), q = support_position(both, i);
+            check_near(p.x, q.x, 2e-5);
+            check_near(p.y, q.y, 2e-5);
+        }
+        mspring_network_destroy(swept);
+        mspring_network_destroy(both);
+    }
+}
+
+// Gravity sag of a clamped bar 20:1 of n cells in height, plane moduli C11 = k + kd + kA, C12 = kd + kA, G = kd,
+// with outline springs of k, against Timoshenko's beam with the lattice's edge: stiffer by 1 + (3k/E - 1)/n^2 +
+// 3k/(E n).
+enum { SUBSTEPS = 64 };
+static double sag_share(uint32_t n, double k, double shear, double area) {
+    const sheet s = {.width = 20 * n + 1,
+                     .height = n + 1,
+                     .spacing = 1.0 / n,
+                     .stiffness = (float)k,
+                     .shear_share = (float)(shear / k),
+                     .mass = (float)(0.02 / ((n + 1) * 20.0 * n))};
+    mspring_builder *builder = support_builder();
+    build(builder, &s, true);
+    mspring_network_def def = support_def(-0.05f, SUBSTEPS);
+    def.flags = MSPRING_NETWORK_PRECISE;
+    mspring_network *network = support_network(builder, &def);
+    if (area > 0)
+        assert_int_equal(add_cells(network, (float)area), 20 * n * n);
+    double stable;
+    check_ok(mspring_network_stable_dt(network, &stable, NULL));
+    // Slowest: f1 = 0.56 h / l^2 sqrt(E / (12 rho)); damped near critically, settled in some ten periods.
+    const double e = k * (k + 2 * shear + 2 * area) / (k + shear + area);
+    const double stiffer = 1 + (3 * k / e - 1) / (n * n) + 3 * k / (e * n), bending = e / 12 * stiffer;
+    const double line = 0.02 / 20, omega = 3.516 / 400 * sqrt(bending / line);
+    check_ok(support_set_global_damping(network, (float)(2 * omega)));
+    const uint32_t steps = (uint32_t)(20 / omega / (0.9 * stable * SUBSTEPS)) + 1;
+    support_steps(network, steps, 0.9 * stable * SUBSTEPS);
+    double sag = 0;
+    for (uint32_t j = 0; j <= n; j++)
+        sag -= (support_position(network, at(&s, 20 * n, j)).y - j * s.spacing) / (n + 1);
+    mspring_network_destroy(network);
+    const double load = 0.05 * line;
+    // With half a column's weight more at the end than a beam has.
+    const double end = load / (2 * n);
+    const double expected = load * 160000 / (8 * bending) + load * 400 / (2 * shear * 5 / 6) +
+                            end * 8000 / (3 * bending) + end * 20 / (shear * 5 / 6);
+    return sag / expected;
+}
+
+static void bars_are_as_stiff_as_their_moduli(void **state) {
+    (void)state;
+    for (uint32_t n = 2; n <= 8; n *= 2)
+        for (int i = 0; i < 2; i++) {
+            const double share = sag_share(n, 100, 50, i * 100);
+            printf("bar 20:1 of %u cells, areas of %d N/m: sag %.4f of the beam's\n", n, i * 100, share);
+            check_near(share, 1, 0.01);
+        }
+}
+
+/* ------------------------------------------------------------------------------------------------------ stability
+ */
+
+// omega^2 of a full grid is 4 (k + kd + kA) / m; the border of one of 24 cells is within 2 % above.
+static void stable_dt_counts_areas(void **state) {
+    (void)state;
+    sheet s = jelly;
+    s.width = s.height = 24;
+    s.damping = 0;
+    for (int i = 0; i < 3; i++) {
+        const double area = 200.0 * i;
+        mspring_network_def def = support_def(0, 1);
+        mspring_network *network = sheet_network(&s, &def);
+        double now, any_shape;
+        if (i > 0)
+            (void)add_cells(network, (float)area);
+        check_ok(mspring_network_stable_dt(network, &now, &any_shape));
+        check_near(now / sqrt(0.1 / (400 + area)), 1.01, 0.01);
+        assert_true(any_shape <= 1.001 * now && any_shape > 0.65 * now);
+        // Just below it is stable, just above the guard finds it.
+        support_kick(network, 5, 0.01f);
+        support_steps(network, 400, 0.99 * now);
+        mspring_result result = MSPRING_OK;
+        for (int step = 0; step < 400 && result == MSPRING_OK; step++)
+            result = mspring_network_step(network, 1.06 * now);
+        assert_int_equal(result, MSPRING_ERROR_UNSTABLE);
+        mspring_network_destroy(network);
+    }
+}
+
+static void a_balloons_border_is_found(void **state) {
+    (void)state;
+    mspring_network_def def = support_def(0, 1);
+    double now, any_shape;
+    mspring_network *network = balloon(400, false, def, NULL);
+    check_ok(mspring_network_stable_dt(network, &now, &any_shape));
+    assert_true(any_shape <= now);
+    support_kick(network, 3, 0.01f);
+    support_steps(network, 2000, 0.99 * any_shape);
+    mspring_network_destroy(network);
+}
+
+// Implicit and direct substeps have these forces from their start, up to a limit that they tell.
+static void other_solvers_have_areas(void **state) {
+    (void)state;
+    static const mspring_solver solvers[] = {MSPRING_SOLVER_IMPLICIT, MSPRING_SOLVER_DIRECT};
+    for (size_t i = 0; i < COUNT_OF(solvers); i++) {
+        mspring_network_def def = support_def(0, 1);
+        def.global_damping = 4;
+        mspring_network *explicit_one = balloon(100, false, def, NULL);
+        def.solver = solvers[i];
+        mspring_network *other = balloon(100, false, def, NULL);
+        support_steps(explicit_one, 4000, 0.004);
+        support_steps(other, 1000, 0.016);
+        for (uint32_t p = 0; p < SKIN; p++)
+            check_near(support_position(other, p).x, support_position(explicit_one, p).x, 1e-4);
+        check_error(mspring_network_step(other, 10), MSPRING_ERROR_UNSTABLE);
+        check_contains(mspring_network_error(other), "areas");
+        mspring_network_destroy(explicit_one);
+        mspring_network_destroy(other);
+    }
+}
+
+/* ----------------------------------------------------------------------------------------------------- the outline
+ */
+
+static void a_break_opens_an_area(void **state) {
+    (void)state;
+    mspring_network_def def = support_def(0, 20);
+    mspring_network *network = sheet_network(&jelly, &def);
+    const mspring_id broken = 0;
+    (void)add_cells(network, 100);
+    assert_int_equal(info_of(network, 0).is_open, 0);
+    check_ok(mspring_network_break_springs(network, &broken, 1));
+    assert_int_equal(info_of(network, 0).is_open, 1);
+    check_near(info_of(network, 0).pressure, 0, 0);
+    support_steps(network, 1, 1.0 / 64);
+    check_ok(mspring_network_restore_springs(network, &broken, 1, 0));
+    assert_int_equal(info_of(network, 0).is_open, 0);
+    const mspring_id corner = 0;
+    check_ok(mspring_network_remove_particles(network, &corner, 1));
+    mspring_area_info info = {.struct_size = sizeof info};
+    check_error(mspring_network_get_area_info(network, 0, &info), MSPRING_ERROR_ID);
+    check_ok(mspring_network_get_area_info(network, 1, &info));
+    check_ok(mspring_network_remove_area(network, 1));
+    check_error(mspring_network_remove_area(network, 1), MSPRING_ERROR_ID);
+    support_steps(network, 10, 1.0 / 64);
+    mspring_network_destroy(network);
+}
+
+/* -------------------------------------------------------------------------------------------------- the same bits
+ */
+
+// Lattices large and small, a balloon, a rope with an area across, areas that sweeps cannot have; some break.
+static mspring_network *mixture(mspring_network_def def) {
+    mspring_builder *builder = support_builder();
+    sheet s = jelly;
+    s.width = 70;
+    s.height = 40;
+    build(builder, &s, false);
+    const mspring_id second = mspring_builder_particle_count(builder);
+    s.x = 20;
+    s.width = 7;
+    s.height = 9;
+    build(builder, &s, false);
+    const mspring_id ring = mspring_builder_particle_count(builder);
+    mspring_id corners[SKIN];
+    for (uint32_t i = 0; i < SKIN; i++)
+        corners[i] = support_particle(builder, 30 + cos(i * 0.19634954), sin(i * 0.19634954), 0.05f);
+    for (uint32_t i = 0; i < SKIN; i++)
+        (void)support_spring(builder, ring + i, ring + (i + 1) % SKIN, 300, 0.1f);
+    mspring_network *network = support_network(builder, &def);
+    const mspring_area_def inside = gas(30), across = elastic(40);
+    const mspring_id four[] = {second, second + 6, second + 60, second + 56};
+    assert_int_equal(add_cells(network, 120), 69 * 39 + 6 * 8);
+    check_ok(mspring_network_add_area(network, &inside, corners, SKIN, NULL));
+    check_ok(mspring_network_add_area(network, &across, four, 4, NULL));
+    for (uint32_t i = 0; i < ring; i += 3)
+        support_kick(network, i, i % 2 ? 1 : -1.5f);
+    return network;
+}
+
+static void go_on(mspring_network *network) {
+    for (mspring_id step = 0; step < 6; step++) {
+        const mspring_id broken[] = {37 * step + 5, 53 * step + 700};
+        check_ok(mspring_network_break_springs(network, broken, 2));
+        support_steps(network, 3, 1.0 / 64);
+    }
+}
+
+static void all_levels_have_the_same_bits(void **state) {
+    (void)state;
+    mspring_simd levels[MSPRING_SIMD_AVX512];
+    const uint32_t count = support_levels(levels);
+    for (int is_precise = 0; is_precise < 2; is_precise++) {
+        uint64_t hash = 0;
+        for (uint32_t i = 0; i < 2 * count; i++) {
+            mspring_network_def def = support_def(-9.8f, 12);
+            def.simd_level = levels[i / 2];
+            def.worker_count = 1 + 2 * (i % 2);
+            def.flags = is_precise ? MSPRING_NETWORK_PRECISE : 0;
+            mspring_network *network = mixture(def);
+            go_on(network);
+            assert_true(i == 0 || support_hash(network) == hash);
+            hash = support_hash(network);
+            mspring_network_destroy(network);
+        }
+    }
+}
+
+static void clones_snapshots_and_layouts_go_on(void **state) {
+    (void)state;
+    mspring_network_def def = support_def(-9.8f, 12);
+    mspring_network *network = mixture(def), *other = mixture(def), *clone;
+    mspring_job *job = NULL;
+    go_on(network);
+    support_bring(network, other, MSPRING_SNAPSHOT_ALL);
+    check_ok(mspring_network_clone(network, NULL, &clone));
+    support_steps(network, 20, 1.0 / 64);
+    support_steps(other, 20, 1.0 / 64);
+    support_steps(clone, 20, 1.0 / 64);
+    assert_true(support_hash(network) == support_hash(other));
+    assert_true(support_hash(network) == support_hash(clone));
+    // A frame goes back; without areas it does not fit.
+    support_bring(network, clone, MSPRING_SNAPSHOT_FRAME);
+    support_steps(network, 5, 1.0 / 64);
+    support_steps(clone, 5, 1.0 / 64);
+    assert_true(support_hash(network) == support_hash(clone));
+    // A layout of what is left computes other bits, but the same motion.
+    support_compact(clone, 0, &job);
+    assert_null(job);
+    support_steps(network, 5, 1.0 / 64);
+    support_steps(clone, 5, 1.0 / 64);
+    for (mspring_id p = 0; p < 2800; p += 7)
+        check_near(support_position(network, p).y, support_position(clone, p).y, 1e-3);
+    mspring_network_destroy(network);
+    mspring_network_destroy(other);
+    mspring_network_destroy(clone);
+}
+
+// A network that had areas has the bits of one that never had any.
+static void without_areas_nothing_changes(void **state) {
+    (void)state;
+    mspring_network_def def = support_def(-9.8f, 12);
+    mspring_network *never = sheet_network(&jelly, &def), *had = sheet_network(&jelly, &def);
+    const uint32_t count = add_cells(had, 100);
+    for (mspring_id area = 0; area < count; area++)
+        check_ok(mspring_network_remove_area(had, area));
+    support_kick(never, 3, 1);
+    support_kick(had, 3, 1);
+    support_steps(never, 20, 1.0 / 64);
+    support_steps(had, 20, 1.0 / 64);
+    assert_true(support_hash(never) == support_hash(had));
+    mspring_network_destroy(never);
+    mspring_network_destroy(had);
+}
+
+static void sleepers_keep_their_areas(void **state) {
+    (void)state;
+    mspring_network_def def = support_def(0, 40);
+    def.global_damping = 20;
+    def.sleep_speed = 0.02f;
+    mspring_id area;
+    mspring_network *network = balloon(100, false, def, &area);
+    support_fall_asleep(network, 1.0 / 64);
+    const double size = info_of(network, area).area;
+    support_steps(network, 20, 1.0 / 64);
+    check_near(info_of(network, area).area, size, 0);
+    mspring_area_def more = gas(200);
+    more.rest_area = 3;
+    check_ok(mspring_network_set_area(network, area, &more));
+    assert_false(mspring_network_is_asleep(network));
+    support_steps(network, 60, 1.0 / 64);
+    assert_true(info_of(network, area).area > 1.02 * size);
+    mspring_network_destroy(network);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_dropped_jelly_unfolds),
+        cmocka_unit_test(a_balloon_keeps_pressure_times_area),
+        cmocka_unit_test(fill_inflates),
+        cmocka_unit_test(energy_and_momentum_stay),
+        cmocka_unit_test(sweeps_have_the_law),
+        cmocka_unit_test(bars_are_as_stiff_as_their_moduli),
+        cmocka_unit_test(stable_dt_counts_areas),
+        cmocka_unit_test(a_balloons_border_is_found),
+        cmocka_unit_test(other_solvers_have_areas),
+        cmocka_unit_test(a_break_opens_an_area),
+        cmocka_unit_test(all_levels_have_the_same_bits),
+        cmocka_unit_test(clones_snapshots_and_layouts_go_on),
+        cmocka_unit_test(without_areas_nothing_changes),
+        cmocka_unit_test(sleepers_keep_their_areas),
+    };
+    return cmocka_run_group_tests_name("areas", tests, NULL, NULL);
+}
