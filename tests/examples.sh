@@ -232,6 +232,16 @@ errors() {
   head -c 5000 /dev/urandom >"$network"
   refused 1 'net.msn' "$network"
 
+  # Files of other kinds, by name or by what is in them.
+  for other in 'cart.truck|Rigs of Rods|load --write' 'car.jbeam|BeamNG' 'hull.obj|Wavefront' 'ship.shp2|PNG image' \
+    'photo.jpg|save it as PNG' 'all.zip|unpack'; do
+    lines 'nothing of ours'
+    mv "$network" "$scratch/${other%%|*}"
+    refused 1 "$other" "$scratch/${other%%|*}"
+  done
+  printf '2 1\0binary' >"$scratch/saved"
+  refused 1 'saved|neither an image' "$scratch/saved"
+
   # What goes wrong later.
   lines '2 1' '0 0 1 1 0' '0 -1 1 0 1' '0 1 1 1e9 0'
   refused 1 'unstable|particle 1|substeps' "$network"

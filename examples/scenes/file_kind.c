@@ -1,8 +1,8 @@
 /// @file file_kind.c
-/// Image or text network?
+/// Image, text network, or neither?
 ///
 /// SPDX-License-Identifier: MIT
-#include "scenes/scene.h"
+#include "scenes/internal.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -29,4 +29,35 @@ bool scene_file_is_image(const char *path) {
         fclose(stream);
     return length == sizeof start && (memcmp(start, "\x89PNG", 4) == 0 || memcmp(start, "BM", 2) == 0 ||
                                       (start[0] == 'P' && start[1] >= '1' && start[1] <= '6'));
+}
+
+// What other files are, by the endings of their names, and what to do with them.
+typedef struct other_kind {
+    const char *endings[8];
+    const char *what, *advice;
+} other_kind;
+
+static const other_kind other_kinds[] = {
+    {{".truck", ".trailer", ".load", ".boat", ".airplane", ".machine"},
+     "a structure of Rigs of Rods",
+     "let load --write FILE.msn make a text network of it"},
+    {{".jbeam"}, "a structure of BeamNG", "let load --write FILE.msn make a text network of it"},
+    {{".obj", ".OBJ"}, "a Wavefront model", "let load --write FILE.msn make a text network of it"},
+    {{".shp", ".shp2"}, "a ship of Floating Sandbox", "take the PNG image of its structure"},
+    {{".jpg", ".jpeg", ".JPG", ".gif", ".webp", ".svg"},
+     "a picture whose colours are not kept, or no pixels",
+     "save it as PNG, BMP or PNM"},
+    {{".zip", ".gz", ".7z"}, "an archive", "unpack it"},
+};
+
+bool scene_file_is_other(const char *path, const char *data, size_t size, scene_error *error) {
+    for (size_t i = 0; i < sizeof other_kinds / sizeof *other_kinds; i++)
+        if (has_ending(path, other_kinds[i].endings))
+            return !scene_fail(error, "%.200s is %s: %s", path, other_kinds[i].what, other_kinds[i].advice);
+    if (size > 0 && memchr(data, 0, size))
+        return !scene_fail(error,
+                           "%.200s is neither an image (PNG, BMP, PNM) nor a text network: it has bytes that no "
+                           "text has",
+                           path);
+    return false;
 }

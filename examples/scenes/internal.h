@@ -36,6 +36,11 @@ bool scene_options_check(const scene_options *options, bool from_file, scene_err
 /// Read a whole file, which the caller frees. Files over 1 GiB are refused.
 bool file_read(const char *path, char **data, size_t *size, scene_error *error);
 
+/* file_kind.c */
+
+/// Whether a file that is to be read as a text network is something else, which the message then names.
+bool scene_file_is_other(const char *path, const char *data, size_t size, scene_error *error);
+
 /* random.c */
 
 /// A stream of random numbers (splitmix64): the seed is the state.

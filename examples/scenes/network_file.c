@@ -248,7 +248,8 @@ bool scene_network_file(const char *path, const scene_options *options, scene *o
     size_t length = 0;
     if (!file_read(path, &text, &length, error))
         return false;
-    bool ok = scene_network_parse(text, length, path, options, out, error);
+    const bool ok = !scene_file_is_other(path, text, length, error) &&
+                    scene_network_parse(text, length, path, options, out, error);
     free(text);
     return ok;
 }
