@@ -34,7 +34,7 @@ static const variant variants[] = {
     {.name = "empty hook before every 8", .hooked = true, .hook = MSPRING_PHASE_BEFORE_SUBSTEP, .period = 8},
     {.name = "empty hook after every 8", .hooked = true, .hook = MSPRING_PHASE_AFTER_SUBSTEP, .period = 8},
     {.name = "springs that could yield", .yield_strain = 10},
-    {.name = "every spring tested always", .yield_strain = 1e-9f},
+    {.name = "every spring always flows", .yield_strain = 1e-9f},
     {.name = "force on every particle", .held_forces = true},
     {.name = "snapshot of every step", .snapshots = true},
     {.name = "4 ropes", .ropes = 4},

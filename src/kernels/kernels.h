@@ -10,6 +10,7 @@
 
 #include "base/target.h"
 #include "kernels/system.h"
+#include "kernels/yield_law.h"
 #include "layout/topology.h"
 
 /// Squared length, m^2, up to which a spring has no direction, and so no force: above, its inverse is finite.
@@ -21,7 +22,8 @@ enum {
     MSPRINGI_DAMPED = 1u << 0,  ///< springs have damping
     MSPRINGI_FORCED = 1u << 1,  ///< there are forces from outside
     MSPRINGI_PRECISE = 1u << 2, ///< low words count in the lengths of springs
-    MSPRINGI_CELLS = 1u << 3    ///< lattice cells keep their area
+    MSPRINGI_CELLS = 1u << 3,   ///< lattice cells keep their area
+    MSPRINGI_TESTED = 1u << 4   ///< springs that yield are looked for
 };
 
 /// The parts of a spring record, each one value per slot; damping only if the network has any.
@@ -38,6 +40,46 @@ typedef struct mspringi_extrema {
     float place, speed, change;
 } mspringi_extrema;
 typedef mspringi_extrema (*mspringi_extrema_fn)(const mspringi_watch *watch);
+
+/// Substeps from one look for warm springs to the next, counted from the first of a step.
+#define MSPRINGI_YIELD_PERIOD 4u
+
+/// What a strip was found to be: a spring is near to what it yields at, one has been in this step, one has flowed.
+enum { MSPRINGI_WARM = 1, MSPRINGI_WAS_WARM = 2, MSPRINGI_HAS_FLOWED = 4 };
+
+/// What a tested sweep looks at, and writes to, by place. Bounds are squares of lengths.
+typedef struct mspringi_yield_test {
+    bool looks;                        ///< for springs that are warm; else for those that flow
+    bool maps;                         ///< what flows gets another rest length
+    const float *test_low, *test_high; ///< what is not between these is looked at closer
+    float *low, *high, *flow_low, *flow_high;
+    const float *nominal, *yield_strain, *hardening, *plastic_limit, *gain; ///< see yield_law.h
+    float *lattice_rests;                                                   ///< [lattice places]
+    float *chain_springs;                                                   ///< records: [block][part][lane]
+    const uint16_t *live;                                                   ///< [places / MSPRINGI_WIDTH] bits
+    size_t chain_place;                                                     ///< first place of a chain
+    float *heat;          ///< what flow has dissipated in the step, J
+    float *before;        ///< rest lengths before the step of those that have flowed in it
+    uint16_t *has_flowed; ///< [places / MSPRINGI_WIDTH] bits
+    uint8_t *warmth;      ///< of the strip: MSPRINGI_WARM, ...
+} mspringi_yield_test;
+
+/// Note which springs of a word are warm.
+static inline void mspringi_yield_note(const mspringi_yield_test *test, size_t word, uint32_t warm) {
+    if (test->looks && warm & test->live[word])
+        *test->warmth |= MSPRINGI_WARM | MSPRINGI_WAS_WARM;
+}
+
+/// Keep the rest lengths of springs of a word that flow, if they have not in this step.
+static inline void mspringi_yield_keep(const mspringi_yield_test *test, size_t word, uint32_t flow,
+                                       const float *rests) {
+    uint32_t left = flow & ~(uint32_t)test->has_flowed[word];
+    test->has_flowed[word] |= (uint16_t)flow;
+    *test->warmth |= MSPRINGI_HAS_FLOWED;
+    for (uint32_t lane = 0; left; left >>= 1, ++lane)
+        if (left & 1)
+            test->before[word * MSPRINGI_WIDTH + lane] = rests[lane];
+}
 
 /// What a sweep works on: arrays by slot, and what is the same for all of them.
 typedef struct mspringi_sweep {
@@ -67,6 +109,7 @@ typedef struct mspringi_sweep {
     const float *before;   ///< vx of before the step, vy behind, to watch changes by, which is where keep has them
                            ///< put if there is both; or NULL
     bool watches_place, watches_speed; ///< whether coordinates and speeds are watched
+    const mspringi_yield_test *test;   ///< read by the kernels that test only
 } mspringi_sweep;
 
 /// Floats that four values of each of a web's nodes take.
@@ -268,6 +311,7 @@ typedef struct mspringi_kernels {
     mspringi_pack_fn pack;
     mspringi_attached_fn attached[2]; ///< [with damping]
     mspringi_precise_kernels precise;
+    mspringi_row_fn tested_lattice[2], tested_chain[2]; ///< [precise]; like these they look for the rest themselves
     mspringi_largest_fn largest;
     mspringi_extrema_fn extrema_of;
     mspringi_beyond_fn beyond;

@@ -133,11 +133,68 @@ typedef struct lattice_springs {
     const float *records;      ///< [direction][part after the rest length][lane]
 } lattice_springs;
 
+static inline size_t record_of(const mspringi_span *span, size_t slot) {
+    return span->first_record + (slot / MSPRINGI_WIDTH - span->first_slot / MSPRINGI_WIDTH);
+}
+
+static inline size_t place_in_lattice(const mspringi_span *span, size_t slot) {
+    return record_of(span, slot) * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH;
+}
+
 static inline lattice_springs springs_of(const mspringi_sweep *s, const mspringi_span *span, size_t slot) {
-    const size_t block = span->first_record + (slot / MSPRINGI_WIDTH - span->first_slot / MSPRINGI_WIDTH);
+    const size_t block = record_of(span, slot);
     const size_t places = (size_t)MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH, lane = slot % MSPRINGI_WIDTH;
     return (lattice_springs){s->rest_lengths + s->rests_of_block[block] * places + lane,
                              s->lattice_springs + s->springs_of_block[block] * places * (s->parts - 1) + lane};
+}
+
+static inline mspringi_yield_values yield_values(const mspringi_yield_test *t, size_t place) {
+    return (mspringi_yield_values){t->nominal[place], t->yield_strain[place], t->hardening[place],
+                                   t->plastic_limit[place], t->gain[place]};
+}
+
+// Look at a spring that is warm, and map it if it flows. What is broken has no stiffness.
+static void let_yield(const mspringi_yield_test *t, size_t place, float square, float *rest, float stiffness) {
+    const mspringi_yield_bounds bounds = {t->low[place], t->high[place], t->flow_low[place], t->flow_high[place]};
+    const uint32_t lane = place % MSPRINGI_WIDTH, bit = 1u << lane;
+    const float length = sqrtf(square);
+    if (square > bounds.high || bounds.low > square)
+        mspringi_yield_note(t, place / MSPRINGI_WIDTH, bit);
+    if (!t->maps || !(stiffness > 0.0f))
+        return;
+    const mspringi_yield_values values = yield_values(t, place);
+    const float to = mspringi_yield_rest(values, bounds, square, length, *rest);
+    if (!(to > *rest || *rest > to))
+        return;
+    mspringi_yield_keep(t, place / MSPRINGI_WIDTH, bit, rest - lane);
+    t->heat[place] = t->heat[place] + mspringi_yield_heat(values, stiffness, length, *rest, to);
+    *rest = to;
+    const mspringi_yield_bounds renewed = mspringi_yield_bounds_of(values, to);
+    t->low[place] = renewed.low;
+    t->high[place] = renewed.high;
+    t->flow_low[place] = renewed.flow_low;
+    t->flow_high[place] = renewed.flow_high;
+}
+
+// A spring is looked at before the force that its rest length gives.
+static inline void test_spring(const mspringi_yield_test *t, size_t place, motion base, motion tip, float *rest,
+                               float stiffness, mspringi_variant of) {
+    float dx = base.x - tip.x, dy = base.y - tip.y;
+    if (of & MSPRINGI_PRECISE) {
+        dx = dx + (base.low_x - tip.low_x);
+        dy = dy + (base.low_y - tip.low_y);
+    }
+    const float square = dx * dx + dy * dy;
+    if (square > t->test_high[place] || t->test_low[place] > square)
+        let_yield(t, place, square, rest, stiffness);
+}
+
+static inline void test_in_lattice(const mspringi_sweep *s, const mspringi_span *span, size_t slot,
+                                   mspringi_direction direction, motion base, motion tip, mspringi_variant of) {
+    const size_t place = place_in_lattice(span, slot) + (size_t)direction * MSPRINGI_WIDTH;
+    const float *records = springs_of(s, span, slot).records;
+    test_spring(s->test, place, base, tip, s->test->lattice_rests + place,
+                records[direction * (s->parts - 1) * MSPRINGI_WIDTH], of);
 }
 
 static inline vector lattice_force(motion base, motion tip, lattice_springs springs, mspringi_direction direction,
@@ -169,6 +226,12 @@ static inline void lattice(const mspringi_sweep *s, const mspringi_span *spans, 
             const size_t up = (size_t)((int64_t)slot + span->up), carry = (size_t)((int64_t)slot + span->carry);
             const lattice_springs springs = springs_of(s, span, slot);
             const motion here = at(s, slot), next = at(s, slot + 1), above = at(s, up), above_next = at(s, up + 1);
+            if (of & MSPRINGI_TESTED) {
+                test_in_lattice(s, span, slot, MSPRINGI_EAST, here, next, of);
+                test_in_lattice(s, span, slot, MSPRINGI_NORTH, here, above, of);
+                test_in_lattice(s, span, slot, MSPRINGI_NORTH_EAST, here, above_next, of);
+                test_in_lattice(s, span, slot, MSPRINGI_SOUTH_EAST, next, above, of);
+            }
             const vector east = lattice_force(here, next, springs, MSPRINGI_EAST, of);
             const vector north = lattice_force(here, above, springs, MSPRINGI_NORTH, of);
             vector north_east = lattice_force(here, above_next, springs, MSPRINGI_NORTH_EAST, of);
@@ -192,10 +255,17 @@ static inline void lattice(const mspringi_sweep *s, const mspringi_span *spans, 
 static inline vector chain_force(const mspringi_sweep *s, const mspringi_span *span, size_t slot,
                                  mspringi_variant of) {
     const motion here = at(s, slot), next = at(s, slot + 1);
-    if (span->record_slots != MSPRINGI_WIDTH)
+    if (span->record_slots != MSPRINGI_WIDTH) {
+        if (of & MSPRINGI_TESTED)
+            test_in_lattice(s, span, slot, MSPRINGI_EAST, here, next, of);
         return lattice_force(here, next, springs_of(s, span, slot), MSPRINGI_EAST, of);
-    const size_t block = span->first_record + (slot / MSPRINGI_WIDTH - span->first_slot / MSPRINGI_WIDTH);
-    const float *record = s->chain_springs + block * s->parts * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH;
+    }
+    const size_t block = record_of(span, slot), lane = slot % MSPRINGI_WIDTH;
+    const size_t at_record = block * s->parts * MSPRINGI_WIDTH + lane;
+    const float *record = s->chain_springs + at_record;
+    if (of & MSPRINGI_TESTED)
+        test_spring(s->test, s->test->chain_place + block * MSPRINGI_WIDTH + lane, here, next,
+                    s->test->chain_springs + at_record, record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH], of);
     return spring_force(here, next, record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
                         record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
 }

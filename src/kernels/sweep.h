@@ -100,6 +100,8 @@ MSPRINGI_INLINE void press(const float *cells, extent to_north_east, extent to_s
     south_east->y = sub(south_east->y, mul(force, to_north_east.dx));
 }
 
+#include "kernels/yield_sweep.h"
+
 // Before the first substep of a whole step, and after its last: half hidden behind the divisions, as reading and
 // writing the state for this alone is not (96 x 96 at AVX-512, one substep: 2.2 instead of 3.7 us, with 12.4 for
 // the rest; 1.4 where coordinates need not be watched). Changes of velocities instead of speeds take 0.2 us more,
@@ -224,6 +226,10 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *s
                 const vec per_south_east = inverse_or_zero(to_south_east.square);
                 const vec per_north = inverse_or_zero(to_north.square);
                 const extent to_north_east = spring_extent(here, above_next, of);
+                if (of & MSPRINGI_TESTED)
+                    test_lattice(s->test, block * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH,
+                                 to_east.square, to_north.square, to_north_east.square, to_south_east.square,
+                                 springs, part);
                 const vector east =
                     spring_force(to_east, per_east, here, next, rests + MSPRINGI_EAST * MSPRINGI_WIDTH,
                                  springs + MSPRINGI_EAST * part, of);
@@ -304,6 +310,15 @@ MSPRINGI_INLINE void chain(const mspringi_sweep *sweep, const mspringi_span *spa
                                                  lane;
             const motion here = load_motion(s, slot, of), next = load_motion_unaligned(s, slot + 1, of);
             const extent to_east = spring_extent(here, next, of);
+            if (of & MSPRINGI_TESTED) {
+                const mspringi_yield_test *t = s->test;
+                const size_t place = is_chain ? t->chain_place + block * MSPRINGI_WIDTH + lane
+                                              : block * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + lane;
+                float *own = is_chain ? t->chain_springs + (rests - s->chain_springs) : t->lattice_rests + place;
+                const vec square = to_east.square;
+                if (bits_outside(square, t->test_low + place, t->test_high + place))
+                    let_yield(t, place, 1, &square, own, record, 0);
+            }
             const vector east =
                 spring_force(to_east, inverse_or_zero(to_east.square), here, next, rests, record, of);
             const vector force = {add(sub(load(s->carry_x + carry), east.x), shift_in(before.x, east.x)),

@@ -21,6 +21,7 @@ static inline mspringi_variant variant_found(const mspringi_sweep *sweep) {
     return MSPRINGI_PRECISE | damped | (sweep->force_x ? MSPRINGI_FORCED : 0);
 }
 #define MSPRINGI_VARIANT_FOUND variant_found(sweep)
+#define MSPRINGI_VARIANT_TESTED ((variant_found(sweep) & ~(mspringi_variant)MSPRINGI_PRECISE) | MSPRINGI_TESTED)
 
 #define MSPRINGI_ROW_VARIANT(kind, name, of)                                                                       \
     static void kind##_##name(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count) {           \
@@ -59,11 +60,31 @@ static void cells_precise(const mspringi_sweep *sweep, const mspringi_span *span
         lattice(sweep, spans, count, of);
 }
 
+static void lattice_tested(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count) {
+    const mspringi_variant of =
+        MSPRINGI_TESTED | (sweep->force_x ? MSPRINGI_FORCED : 0) | (sweep->cells ? MSPRINGI_CELLS : 0);
+    if (sweep->parts > MSPRINGI_DAMPING)
+        lattice(sweep, spans, count, of | MSPRINGI_DAMPED);
+    else
+        lattice(sweep, spans, count, of);
+}
+
+static void lattice_tested_precise(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count) {
+    const mspringi_variant of = MSPRINGI_TESTED | MSPRINGI_PRECISE | (sweep->force_x ? MSPRINGI_FORCED : 0) |
+                                (sweep->cells ? MSPRINGI_CELLS : 0);
+    if (sweep->parts > MSPRINGI_DAMPING)
+        lattice(sweep, spans, count, of | MSPRINGI_DAMPED);
+    else
+        lattice(sweep, spans, count, of);
+}
+
 MSPRINGI_ROW_VARIANT(chain, plain, 0)
 MSPRINGI_ROW_VARIANT(chain, forced, MSPRINGI_FORCED)
 MSPRINGI_ROW_VARIANT(chain, damped, MSPRINGI_DAMPED)
 MSPRINGI_ROW_VARIANT(chain, damped_forced, MSPRINGI_DAMPED | MSPRINGI_FORCED)
 MSPRINGI_ROW_VARIANT(chain, precise, MSPRINGI_VARIANT_FOUND)
+MSPRINGI_ROW_VARIANT(chain, tested, MSPRINGI_VARIANT_TESTED)
+MSPRINGI_ROW_VARIANT(chain, tested_precise, MSPRINGI_VARIANT_FOUND | MSPRINGI_TESTED)
 MSPRINGI_ROW_VARIANT(web, plain, 0)
 MSPRINGI_ROW_VARIANT(web, forced, MSPRINGI_FORCED)
 MSPRINGI_ROW_VARIANT(web, damped, MSPRINGI_DAMPED)
@@ -110,6 +131,8 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .pack = pack,
     .attached = {attached_plain, attached_damped},
     .precise = {lattice_precise, cells_precise, chain_precise, web_precise, herd_precise, attached_precise},
+    .tested_lattice = {lattice_tested, lattice_tested_precise},
+    .tested_chain = {chain_tested, chain_tested_precise},
     .largest = largest,
     .extrema_of = extrema_of,
     .beyond = beyond,

@@ -299,9 +299,10 @@ static void ramps_load(mspring_network *network, const uint8_t *from, size_t siz
     // One of a spring that is not there can only be forged: it has no ends to wake.
     network->ramps.count = 0;
     for (size_t i = 0; i < size / RAMP_BYTES; ++i) {
-        mspringi_ramp *ramp = &network->ramps.list[network->ramps.count];
-        from = read_ramp(from, ramp);
-        network->ramps.count += mspringi_spring_exists(network, ramp->spring);
+        mspringi_ramp ramp;
+        from = read_ramp(from, &ramp);
+        if (mspringi_spring_exists(network, ramp.spring))
+            mspringi_ramp_add(network, &ramp);
     }
     mspringi_ramps_apply(network, 0.0);
 }

@@ -1,7 +1,6 @@
 /// What springs yield at, and the bounds that follow from it.
 #include "step/plastic.h"
 
-#include <float.h>
 #include <math.h>
 
 #include "step/breaking.h"
@@ -12,9 +11,6 @@
 #include "store/rests.h"
 #include "store/springs.h"
 #include "store/store.h"
-
-/// Share of the yield strain from which on a spring is warm, so that it is looked at in each substep.
-#define WARM 0.7
 
 /* ----------------------------------------------------------------------------------------------------- memory */
 
@@ -29,11 +25,11 @@ static bool reserve_layout(mspring_network *network) {
     }
     const size_t places = mspringi_place_words(&network->topology) * MSPRINGI_WIDTH;
     for (size_t place = 0; place < places; ++place) {
-        p->yield_strain[place] = p->high[place] = INFINITY;
-        p->low[place] = -1.0f;
+        p->yield_strain[place] = p->high[place] = p->flow_high[place] = INFINITY;
+        p->low[place] = p->flow_low[place] = -1.0f;
         p->hardening[place] = MSPRING_HARDENING_DEFAULT;
         p->plastic_limit[place] = MSPRING_PLASTIC_LIMIT_DEFAULT;
-        p->nominal[place] = 1.0f;
+        p->nominal[place] = p->gain[place] = 1.0f;
     }
     return true;
 }
@@ -67,20 +63,28 @@ mspring_result mspringi_plastic_reserve(mspring_network *network) {
 
 /* ----------------------------------------------------------------------------------------------------- bounds */
 
-static float square(double length) {
-    return length > sqrt((double)FLT_MAX) ? INFINITY : (float)(length * length);
+mspringi_yield_values mspringi_yield_values_of(const mspring_network *network, mspringi_place place) {
+    const mspringi_plastic *p = &network->plastic;
+    return (mspringi_yield_values){.nominal = p->nominal[place],
+                                   .yield_strain = p->yield_strain[place],
+                                   .hardening = p->hardening[place],
+                                   .plastic_limit = p->plastic_limit[place],
+                                   .gain = p->gain[place]};
 }
 
+// One on a ramp does not flow: that sets its rest length.
 void mspringi_plastic_renew(mspring_network *network, mspringi_place place) {
     const mspringi_plastic *p = &network->plastic;
-    const float own = mspringi_place_own_length(network, place);
-    const double rest = (double)own, nominal = (double)p->nominal[place], yield = (double)p->yield_strain[place];
-    const double limit = (double)p->plastic_limit[place] * nominal;
-    const double centre = rest + (double)p->hardening[place] * (rest - nominal);
-    const bool yields = p->yield_strain[place] < INFINITY && own != MSPRINGI_WELD;
-    const double low = centre - WARM * yield * nominal, high = centre + WARM * yield * nominal;
-    p->low[place] = yields && low > 0.0 && nominal - rest < limit ? square(low) : -1.0f;
-    p->high[place] = !yields || rest - nominal >= limit ? INFINITY : high > 0.0 ? square(high) : 0.0f;
+    const float rest = mspringi_place_own_length(network, place);
+    p->gain[place] = 1.0f / (1.0f + p->hardening[place]);
+    mspringi_yield_values values = mspringi_yield_values_of(network, place);
+    if (rest == MSPRINGI_WELD || mspringi_place_ramp(network, place))
+        values.yield_strain = INFINITY;
+    const mspringi_yield_bounds bounds = mspringi_yield_bounds_of(values, rest);
+    p->low[place] = bounds.low;
+    p->high[place] = bounds.high;
+    p->flow_low[place] = bounds.flow_low;
+    p->flow_high[place] = bounds.flow_high;
     if (network->strain.break_strain)
         mspringi_strain_renew_least(network, place);
 }

@@ -29,6 +29,9 @@ void mspringi_plastic_store(mspring_network *network, mspringi_place place, mspr
 /// Follow a rest length that was set: the plastic strain that the spring has, had being its rest length, stays.
 void mspringi_plastic_follow(mspring_network *network, mspringi_place place, float had);
 
+/// What a spring yields at.
+mspringi_yield_values mspringi_yield_values_of(const mspring_network *network, mspringi_place place);
+
 /// Compute the bounds between which a spring is cold, and the strain that anything happens at.
 void mspringi_plastic_renew(mspring_network *network, mspringi_place place);
 

@@ -3,12 +3,19 @@
 
 #include <math.h>
 
+#include "step/plastic.h"
 #include "store/rests.h"
 #include "store/springs.h"
 #include "store/stages.h"
 
 /// Shortest rest length that a ramp starts from, as a fraction of the spring's own: strain divides by it.
 #define SHORTEST_START 1e-3
+
+// A spring yields again, or no more.
+static void follow(mspring_network *network, mspring_id spring) {
+    if (network->plastic.nominal)
+        mspringi_plastic_renew(network, mspringi_place_of(&network->topology, spring));
+}
 
 mspring_result mspringi_ramps_reserve(mspring_network *network, size_t count) {
     mspringi_ramps *ramps = &network->ramps;
@@ -24,6 +31,11 @@ mspring_result mspringi_ramps_reserve(mspring_network *network, size_t count) {
                                  count);
 }
 
+void mspringi_ramp_add(mspring_network *network, const mspringi_ramp *ramp) {
+    network->ramps.list[network->ramps.count++] = *ramp;
+    follow(network, ramp->spring);
+}
+
 void mspringi_ramp_begin(mspring_network *network, mspring_id spring, double seconds) {
     const mspringi_state *s = &network->state;
     const mspringi_spring_values values = mspringi_spring_get(network, spring);
@@ -36,7 +48,7 @@ void mspringi_ramp_begin(mspring_network *network, mspring_id spring, double sec
                                 .from = length > shortest ? length : shortest,
                                 .to = values.rest_length,
                                 .seconds = seconds};
-    network->ramps.list[network->ramps.count++] = ramp;
+    mspringi_ramp_add(network, &ramp);
     mspringi_place_set_rest_length(network, mspringi_place_of(&network->topology, spring), (float)ramp.from);
 }
 
@@ -55,16 +67,20 @@ void mspringi_ramp_drop(mspring_network *network, mspring_id spring) {
             continue;
         mspringi_place_set_rest_length(network, mspringi_place_of(&network->topology, spring), ramps->list[i].to);
         ramps->list[i] = ramps->list[--ramps->count];
+        follow(network, spring);
         return;
     }
 }
 
 void mspringi_ramps_clear(mspring_network *network) {
     mspringi_ramps *ramps = &network->ramps;
-    for (size_t i = 0; i < ramps->count; ++i)
+    const size_t count = ramps->count;
+    for (size_t i = 0; i < count; ++i)
         mspringi_place_set_rest_length(network, mspringi_place_of(&network->topology, ramps->list[i].spring),
                                        ramps->list[i].to);
     ramps->count = 0;
+    for (size_t i = 0; i < count; ++i)
+        follow(network, ramps->list[i].spring);
 }
 
 void mspringi_ramps_apply(mspring_network *network, double dt) {
@@ -80,14 +96,18 @@ void mspringi_ramps_apply(mspring_network *network, double dt) {
 // Let dt seconds pass, and forget the ramps that have come to their end.
 static void pass(mspring_network *network, double dt) {
     mspringi_ramps *ramps = &network->ramps;
+    const size_t count = ramps->count;
     size_t kept = 0;
-    for (size_t i = 0; i < ramps->count; ++i) {
+    for (size_t i = 0; i < count; ++i) {
         mspringi_ramp ramp = ramps->list[i];
         ramp.passed += dt;
-        if (ramp.passed < ramp.seconds)
-            ramps->list[kept++] = ramp;
+        ramps->list[i] = ramps->list[kept];
+        ramps->list[kept] = ramp;
+        kept += ramp.passed < ramp.seconds;
     }
     ramps->count = kept;
+    for (size_t i = kept; i < count; ++i)
+        follow(network, ramps->list[i].spring);
 }
 
 static bool is_used(const mspring_network *network) {

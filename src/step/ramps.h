@@ -16,6 +16,9 @@
 /// Make room for count ramps more.
 mspring_result mspringi_ramps_reserve(mspring_network *network, size_t count);
 
+/// Add a ramp as it is; after mspringi_ramps_reserve().
+void mspringi_ramp_add(mspring_network *network, const mspringi_ramp *ramp);
+
 /// Begin a ramp of a live spring from its present length; after mspringi_ramps_reserve(). A weld has none.
 void mspringi_ramp_begin(mspring_network *network, mspring_id spring, double seconds);
 

@@ -1,14 +1,20 @@
 /// The stage in which springs yield.
 ///
 /// A look over all springs finds those that are warm: near to what they yield at. It is due before each
-/// PERIOD-th substep of a step, counted from its first, and costs less than testing them, as it knows of bounds
-/// only. Those that are warm are tested before each substep until the next look. So what a step does follows from
-/// the state that it begins with, and nothing has to be remembered from step to step. As long as nothing is warm,
-/// substeps are taken PERIOD at a time.
+/// MSPRINGI_YIELD_PERIOD-th substep of a step, counted from its first. Where it finds some, springs are tested
+/// before each substep until the next look, and those that are over their yield strain are mapped. So what a step
+/// does follows from the state that it begins with, and nothing has to be remembered from step to step.
+///
+/// In the explicit solver the sweeps of lattice and chain rows look and test, strip by strip: see test_lattice() in
+/// kernels/sweep.h. With several workers they first take a step in which they only look. If any spring was warm,
+/// that step is taken once more with one worker, who maps as well. The next step begins with that, as it is likely
+/// to be warm, too: both have the same bits where nothing is. Springs of the web, and those of all other solvers,
+/// are looked at and mapped here, between substeps.
 ///
 /// Longer periods than 4 lose yields: with 20, a blow of 8 ms left a dent 13 % too small. Without a border of
 /// stability substeps are long, and each of them begins with a look.
 #include <math.h>
+#include <string.h>
 
 #include "sleep/sleep.h"
 #include "step/plastic.h"
@@ -18,11 +24,10 @@
 #include "store/growth.h"
 #include "store/springs.h"
 #include "store/stages.h"
-
-#define PERIOD 4u
+#include "tasks/tasks.h"
 
 static uint32_t period_of(const mspringi_attempt *attempt) {
-    return attempt->solver->ops->has_border ? PERIOD : 1u;
+    return attempt->solver->ops->has_border ? MSPRINGI_YIELD_PERIOD : 1u;
 }
 
 static bool is_used(const mspring_network *network) {
@@ -31,7 +36,7 @@ static bool is_used(const mspring_network *network) {
 
 static bool is_quiet(const mspring_network *network, const mspringi_attempt *attempt) {
     (void)attempt;
-    return mspringi_sleep_is_whole(network);
+    return mspringi_sleep_is_whole(network) || (network->plastic.is_swept && !network->plastic.web_yields);
 }
 
 /* ------------------------------------------------------------------------------------------------------- a look */
@@ -73,6 +78,9 @@ static void look(mspring_network *network) {
                                         .high = p->high,
                                         .live = network->live};
     mspringi_strain_hit *hits = p->hits;
+    p->hit_count = p->is_swept ? look_at_leftover(network, hits) : 0;
+    if (p->is_swept)
+        return;
     for (uint32_t first = 0, end; mspringi_next_awake(network, t->lattice_first, t->lattice_blocks, &first, &end);
          first = end)
         hits += network->kernels->lattice_yield(&sweep, first, end, hits);
@@ -93,33 +101,28 @@ static void keep(mspringi_plastic *p, mspringi_place place, float rest_length) {
     p->before[place] = rest_length;
     *word |= bit;
     p->flows = p->is_bent = true;
-    p->count++;
 }
 
-// Map one spring back onto its yield surface: see plastic.h. One on a ramp does not flow: that sets its rest
-// length.
+// Map one spring back onto its yield surface, as the sweeps of rows do.
 static void map(mspring_network *network, mspringi_place place) {
-    mspringi_plastic *p = &network->plastic;
+    const mspringi_plastic *p = &network->plastic;
     const mspringi_state *s = &network->state;
-    const mspringi_spring_values values = mspringi_place_get(network, place);
-    const double dx = mspringi_x_of(s, values.tip) - mspringi_x_of(s, values.base);
-    const double dy = mspringi_y_of(s, values.tip) - mspringi_y_of(s, values.base);
-    const double length = sqrt(dx * dx + dy * dy), rest = (double)values.rest_length;
-    const double nominal = (double)p->nominal[place], hardening = (double)p->hardening[place];
-    const double strain = (rest - nominal) / nominal, limit = (double)p->plastic_limit[place];
-    const double t = (length - rest) / nominal - hardening * strain, size = fabs(t);
-    const double over = size - (double)p->yield_strain[place], sign = t > 0.0 ? 1.0 : -1.0;
-    if (!(over > 0.0 && length <= (double)MSPRINGI_LARGEST_LENGTH) || mspringi_place_ramp(network, place))
+    const mspringi_spring_values spring = mspringi_place_get(network, place);
+    const mspringi_yield_values values = mspringi_yield_values_of(network, place);
+    const mspringi_yield_bounds bounds = {p->low[place], p->high[place], p->flow_low[place], p->flow_high[place]};
+    const double dx = mspringi_x_of(s, spring.tip) - mspringi_x_of(s, spring.base);
+    const double dy = mspringi_y_of(s, spring.tip) - mspringi_y_of(s, spring.base);
+    const double square = dx * dx + dy * dy;
+    const float length = (float)sqrt(square);
+    if (!(spring.stiffness > 0.0f))
         return;
-    const double flowed = fmin(sign * strain + over / (1.0 + hardening), limit);
-    const float made = (float)(nominal * (1.0 + sign * flowed));
-    const double step = sign * ((double)made - rest) / nominal;
-    if (!(step > 0.0))
+    const float to = mspringi_yield_rest(values, bounds, (float)square, length, spring.rest_length);
+    if (to == spring.rest_length)
         return;
-    keep(p, place, values.rest_length);
-    p->dissipated += (double)values.stiffness * nominal * nominal * step * (size - 0.5 * (1.0 + hardening) * step);
-    p->flows_seen++;
-    mspringi_place_set_rest_length(network, place, made);
+    keep(&network->plastic, place, spring.rest_length);
+    p->heat[place] += mspringi_yield_heat(values, spring.stiffness, length, spring.rest_length, to);
+    network->plastic.flows_seen++;
+    mspringi_place_set_rest_length(network, place, to);
     mspringi_plastic_renew(network, place);
 }
 
@@ -133,23 +136,57 @@ static void map_warm(mspring_network *network) {
 
 /* -------------------------------------------------------------------------------------------------- the stage */
 
+static bool does_web_yield(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_plastic *p = &network->plastic;
+    for (mspringi_place place = t->chain_places, end = place + t->leftover_count; place < end; ++place)
+        if (p->high[place] < INFINITY || p->low[place] >= 0.0f)
+            return true;
+    return false;
+}
+
 static void before_step(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_plastic *p = &network->plastic;
-    (void)attempt;
     p->hit_count = 0;
-    p->count_before = p->count;
-    p->dissipated_before = p->dissipated;
+    p->substep = 0;
+    p->is_swept = attempt->solver->ops->has_border;
+    p->maps = p->is_swept && (p->was_warm || mspringi_tasks_concurrency(network->tasks) == 1);
+    p->web_yields = p->is_swept && does_web_yield(network);
+    memset(p->warmth, 0, network->topology.strip_count);
+}
+
+static uint32_t warmth_of_all(const mspring_network *network) {
+    uint32_t warmth = 0;
+    for (uint32_t strip = 0; strip < network->topology.strip_count; ++strip)
+        warmth |= network->plastic.warmth[strip];
+    return warmth;
+}
+
+static bool has_missed(mspring_network *network, const mspringi_attempt *attempt) {
+    mspringi_plastic *p = &network->plastic;
+    (void)attempt;
+    if (!p->is_swept || p->maps || !(warmth_of_all(network) & MSPRINGI_WAS_WARM))
+        return false;
+    p->maps = true;
+    return true;
 }
 
 // The first substep stands alone: what it begins with is known only when it does.
 static uint32_t free_substeps(const mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
+    const mspringi_plastic *p = &network->plastic;
     const uint32_t period = period_of(attempt), left = attempt->substeps - substep;
-    const uint32_t most = substep == 0 || network->plastic.hit_count > 0 ? 1 : period - substep % period;
+    if (p->is_swept && !p->web_yields)
+        return left;
+    const uint32_t most = substep == 0 || p->hit_count > 0 ? 1 : period - substep % period;
     return most < left ? most : left;
 }
 
 static mspringi_field before_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
                                      mspringi_field base) {
+    mspringi_plastic *p = &network->plastic;
+    p->substep = substep;
+    if (p->is_swept && !p->web_yields)
+        return base;
     if (substep == 0)
         look(network);
     (void)attempt;
@@ -158,6 +195,8 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
 }
 
 static void after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
+    if (network->plastic.is_swept && !network->plastic.web_yields)
+        return;
     if ((substep + 1) % period_of(attempt) == 0 && substep + 1 < attempt->substeps)
         look(network);
 }
@@ -165,18 +204,23 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
 // Go through the springs that have flowed in the step, and forget that they have.
 static void end_flow(mspring_network *network, void (*end)(mspring_network *network, mspringi_place place)) {
     mspringi_plastic *p = &network->plastic;
-    const size_t words = p->flows ? mspringi_place_words(&network->topology) : 0;
+    const bool flows = p->flows || warmth_of_all(network) & MSPRINGI_HAS_FLOWED;
+    const size_t words = flows ? mspringi_place_words(&network->topology) : 0;
     for (size_t word = 0; word < words; ++word) {
-        for (uint32_t bits = p->has_flowed[word], lane = 0; bits; bits >>= 1, ++lane)
-            if (bits & 1)
-                end(network, (mspringi_place)(word * MSPRINGI_WIDTH + lane));
+        for (uint32_t bits = p->has_flowed[word], lane = 0; bits; bits >>= 1, ++lane) {
+            const mspringi_place place = (mspringi_place)(word * MSPRINGI_WIDTH + lane);
+            if (!(bits & 1))
+                continue;
+            end(network, place);
+            p->heat[place] = 0.0f;
+        }
         p->has_flowed[word] = 0;
     }
     p->flows = false;
+    p->flows_seen += flows;
 }
 
 static void straighten(mspring_network *network, mspringi_place place) {
-    network->plastic.flows_seen++;
     mspringi_place_set_rest_length(network, place, network->plastic.before[place]);
     mspringi_plastic_renew(network, place);
 }
@@ -185,13 +229,22 @@ static void take_back(mspring_network *network) {
     mspringi_plastic *p = &network->plastic;
     end_flow(network, straighten);
     p->hit_count = 0;
-    p->count = p->count_before;
-    p->dissipated = p->dissipated_before;
+    memset(p->warmth, 0, network->topology.strip_count);
 }
 
-static void report(mspring_network *network, mspringi_place place) {
+// Heat is summed place by place, so that no order of rows or lanes changes the sum.
+static void book(mspring_network *network, mspringi_place place) {
+    mspringi_plastic *p = &network->plastic;
+    p->count++;
+    p->dissipated += (double)p->heat[place];
+    p->is_bent = true;
+    if (network->strain.break_strain)
+        mspringi_strain_renew_least(network, place);
+    mspringi_changed(network, MSPRINGI_CHANGED_PLACE, place);
+    if (network->events.capacity == 0)
+        return;
     const mspringi_spring_values values = mspringi_place_get(network, place);
-    const double nominal = (double)network->plastic.nominal[place];
+    const double nominal = (double)p->nominal[place];
     mspringi_events_push(
         network,
         (mspring_event){.kind = MSPRING_EVENT_YIELDED,
@@ -202,7 +255,8 @@ static void report(mspring_network *network, mspringi_place place) {
 
 static void after_step(mspring_network *network, double dt) {
     (void)dt;
-    end_flow(network, report);
+    network->plastic.was_warm = warmth_of_all(network) & MSPRINGI_WAS_WARM;
+    end_flow(network, book);
 }
 
 const mspringi_stage mspringi_stage_yielding = {.is_used = is_used,
@@ -211,5 +265,6 @@ const mspringi_stage mspringi_stage_yielding = {.is_used = is_used,
                                                 .free_substeps = free_substeps,
                                                 .before_substep = before_substep,
                                                 .after_substep = after_substep,
+                                                .has_missed = has_missed,
                                                 .take_back = take_back,
                                                 .after_step = after_step};

@@ -8,10 +8,13 @@
 
 #include "store/network.h"
 
-/// What sweeps rows of that kind, with or without forces from outside.
+/// What sweeps rows of that kind, with or without forces from outside, and looks for springs that yield or not.
 static inline mspringi_row_fn mspringi_row_kernel(const mspring_network *network, mspringi_row_kind kind,
-                                                  bool forced) {
+                                                  bool forced, bool tested) {
     const mspringi_kernels *k = network->kernels;
+    if (tested && kind <= MSPRINGI_ROW_CHAIN)
+        return kind == MSPRINGI_ROW_CHAIN ? k->tested_chain[network->is_precise]
+                                          : k->tested_lattice[network->is_precise];
     const bool damped = network->parts > MSPRINGI_DAMPING;
     switch (kind) {
     case MSPRINGI_ROW_LATTICE:

@@ -523,7 +523,9 @@ static void sweep_grafted(mspring_network *network, float h, mspringi_field base
     const bool has_loose = t->row_count > 0 && t->rows[t->row_count - 1].kind == MSPRINGI_ROW_LOOSE;
     const job loose = {.network = network, .base = base, .h = h};
     const mspringi_substep substep = mspringi_substep_prepare(network, h, base, 0, 1, 0);
+    const uint32_t first = network->plastic.substep;
     for (uint32_t i = 0; i < count; ++i) {
+        network->plastic.substep = first + i;
         mspringi_graft_begin(network, &substep.sweep);
         sweep_wavefront(network, h, base, 1, NULL);
         sweep_rest(network, h, base, 1, NULL);

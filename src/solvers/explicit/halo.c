@@ -142,7 +142,7 @@ static void sweep_copy(const mspring_network *network, const mspringi_substep *s
                        mspringi_sweep *sweep, const mspringi_row *below, bool is_partly) {
     const mspringi_span *spans = &network->topology.spans[below->first_span];
     const bool forced = substep->base.x != NULL;
-    const mspringi_row_fn lattice = mspringi_row_kernel(network, MSPRINGI_ROW_LATTICE, forced);
+    const mspringi_row_fn lattice = mspringi_row_kernel(network, MSPRINGI_ROW_LATTICE, forced, sweep->test != NULL);
     sweep->x = copy->state.x;
     sweep->y = copy->state.y;
     sweep->vx = copy->state.vx;

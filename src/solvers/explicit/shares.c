@@ -121,6 +121,9 @@ mspringi_shares mspringi_shares_plan(const mspring_network *network, const mspri
                               .count = count,
                               .workers = mspringi_tasks_concurrency(network->tasks),
                               .borders = network->halos.borders};
+    // Both workers at a border compute the forces there: a rest length must not change in between.
+    if (!web && network->plastic.yields && network->plastic.maps)
+        shares.workers = 1;
     const uint32_t least = mspringi_shares_least(shares.skew);
     const uint32_t most = shares.strips / (least > FEWEST_STRIPS ? least : FEWEST_STRIPS);
     const uint64_t springs = mspringi_swept_count(t);

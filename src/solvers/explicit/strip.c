@@ -17,8 +17,11 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
     const size_t carry_slots = (size_t)t->carry_blocks * MSPRINGI_WIDTH;
     const size_t gathered_floats = (size_t)mspringi_gathered_values(network) * t->web.group_count * MSPRINGI_WIDTH;
     float *carry = network->carry + 2 * carry_number * carry_slots;
+    const bool tests = network->plastic.yields && network->plastic.is_swept;
     return (mspringi_substep){
         .base = base,
+        .tests = tests,
+        .looks = tests && (network->plastic.substep + i) % MSPRINGI_YIELD_PERIOD == 0,
         .gathered = network->gathered + i % 2 * gathered_floats,
         .next_gathered = i + 1 < count ? network->gathered + (i + 1) % 2 * gathered_floats : NULL,
         .sweep =
@@ -36,7 +39,7 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
                 .carry_y = carry + carry_slots,
                 .lattice_springs = network->lattice_springs,
                 .springs_of_block = network->alike.of_block,
-                .cells = network->areas.cells,
+                .cells = network->areas.swept > 0 ? network->areas.cells : NULL,
                 .rest_lengths = network->rests.lengths,
                 .rests_of_block = network->rests.of_block,
                 .chain_springs = network->chain_springs,
@@ -127,7 +130,8 @@ static void sweep_rows(const mspring_network *network, const mspringi_substep *s
     const mspringi_sweep *sweep = &substep->sweep;
     if (rows->kind == MSPRINGI_ROW_LOOSE)
         return; // moved apart, see explicit.c
-    const mspringi_row_fn sweep_spans = mspringi_row_kernel(network, rows->kind, substep->base.x != NULL);
+    const mspringi_row_fn sweep_spans =
+        mspringi_row_kernel(network, rows->kind, substep->base.x != NULL, sweep->test != NULL);
     if (is_partly) {
         for (const mspringi_row *row = rows; row <= last; ++row)
             mspringi_partly_sweep_row(network, substep, sweep_spans, row);
@@ -152,7 +156,7 @@ void mspringi_web_pack_next(const mspring_network *network, const mspringi_subst
 
 void mspringi_web_sweep(const mspring_network *network, const mspringi_substep *substep,
                         const mspringi_span *span) {
-    const mspringi_row_fn web = mspringi_row_kernel(network, MSPRINGI_ROW_WEB, substep->base.x != NULL);
+    const mspringi_row_fn web = mspringi_row_kernel(network, MSPRINGI_ROW_WEB, substep->base.x != NULL, false);
     if (network->sleep.sleeping > 0)
         mspringi_partly_sweep_web(network, substep, web, span);
     else
@@ -169,8 +173,41 @@ void mspringi_strip_pack(const mspring_network *network, const mspringi_substep 
         mspringi_web_pack(network, substep, &t->spans[strip->home_span]);
 }
 
-void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep *substep,
-                          const mspringi_strip *strip, const mspringi_halo *halo) {
+// What a strip tests in a substep: in a look all its springs, and after one that found some of them warm as well.
+static bool begin_test(const mspring_network *network, const mspringi_substep *substep, const mspringi_strip *strip,
+                       mspringi_yield_test *test) {
+    const mspringi_plastic *p = &network->plastic;
+    uint8_t *warmth = &p->warmth[strip - network->topology.strips];
+    if (substep->looks)
+        *warmth &= (uint8_t)~MSPRINGI_WARM;
+    else if (!(p->maps && *warmth & MSPRINGI_WARM))
+        return false;
+    *test = (mspringi_yield_test){.looks = substep->looks,
+                                  .maps = p->maps,
+                                  .test_low = substep->looks ? p->low : p->flow_low,
+                                  .test_high = substep->looks ? p->high : p->flow_high,
+                                  .low = p->low,
+                                  .high = p->high,
+                                  .flow_low = p->flow_low,
+                                  .flow_high = p->flow_high,
+                                  .nominal = p->nominal,
+                                  .yield_strain = p->yield_strain,
+                                  .hardening = p->hardening,
+                                  .plastic_limit = p->plastic_limit,
+                                  .gain = p->gain,
+                                  .lattice_rests = network->rests.lengths,
+                                  .chain_springs = network->chain_springs,
+                                  .live = network->live,
+                                  .chain_place = network->topology.lattice_places,
+                                  .heat = p->heat,
+                                  .before = p->before,
+                                  .has_flowed = p->has_flowed,
+                                  .warmth = warmth};
+    return true;
+}
+
+static void sweep_strip(const mspring_network *network, const mspringi_substep *substep,
+                        const mspringi_strip *strip, const mspringi_halo *halo) {
     const mspringi_row *rows = &network->topology.rows[strip->first_row], *last = rows + strip->row_count - 1;
     const bool is_partly = mspringi_share_of_strip(network, strip) == MSPRINGI_PARTLY;
     const bool has_halo = halo && last->kind == MSPRINGI_ROW_LATTICE;
@@ -203,6 +240,18 @@ void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep
     mspringi_floor_touch(network, strip, span, 1, substep->sweep.h);
     if (substep->next_gathered)
         pack_span(network, &substep->sweep, span, substep->next_gathered);
+}
+
+void mspringi_strip_sweep(const mspring_network *network, const mspringi_substep *substep,
+                          const mspringi_strip *strip, const mspringi_halo *halo) {
+    mspringi_yield_test test;
+    if (substep->tests && begin_test(network, substep, strip, &test)) {
+        mspringi_substep tested = *substep;
+        tested.sweep.test = &test;
+        sweep_strip(network, &tested, strip, halo);
+    } else {
+        sweep_strip(network, substep, strip, halo);
+    }
 }
 
 /* -------------------------------------------------------------------------------------- before and after a step */

@@ -14,6 +14,7 @@ typedef struct mspringi_substep {
     mspringi_field base;  ///< forces from outside; x NULL if there are none
     float *gathered;      ///< the web's nodes before the substep
     float *next_gathered; ///< where those of a strip go after it; NULL if nobody will read them there
+    bool tests, looks;    ///< strips test warm springs, and look which are
 } mspringi_substep;
 
 /// Substep i of count that are swept together, with the carry row of that number to itself.

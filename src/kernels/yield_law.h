@@ -1,0 +1,70 @@
+/// @file yield_law.h
+/// The law of springs that yield, in single precision, as the kernels have it: see step/plastic.h. Solved for the
+/// rest length r that a spring of length L has after it has flowed,
+///
+///     stretched    r = (L + (H - y) r0) / (1 + H),  at most   (1 + P) r0
+///     compressed   r = (L + (H + y) r0) / (1 + H),  at least  (1 - P) r0
+///
+/// so there is no division if 1 / (1 + H) is known. sweep.h does the same for vectors, in the same order.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_YIELD_LAW_H
+#define MSPRINGI_YIELD_LAW_H
+
+#include <math.h>
+#include <stdbool.h>
+
+/// Share of the yield strain from which on a spring is warm, so that its strip is tested in each substep.
+#define MSPRINGI_WARM_SHARE 0.7f
+
+/// What a spring yields at.
+typedef struct mspringi_yield_values {
+    float nominal, yield_strain, hardening, plastic_limit;
+    float gain; ///< 1 / (1 + hardening)
+} mspringi_yield_values;
+
+/// Squares of lengths: between low and high a spring is cold, between the others it does not flow.
+typedef struct mspringi_yield_bounds {
+    float low, high, flow_low, flow_high;
+} mspringi_yield_bounds;
+
+/// The rest length that a spring has after its return to the yield surface; rest if it does not flow.
+static inline float mspringi_yield_rest(mspringi_yield_values v, mspringi_yield_bounds bounds, float square,
+                                        float length, float rest) {
+    const float slope = v.gain * length;
+    const float most = v.nominal * (1.0f + v.plastic_limit), least = v.nominal * (1.0f - v.plastic_limit);
+    float up = slope + ((v.hardening - v.yield_strain) * v.nominal) * v.gain;
+    float down = slope + ((v.hardening + v.yield_strain) * v.nominal) * v.gain;
+    up = up - most > 0.0f ? most : up;
+    down = least - down > 0.0f ? least : down;
+    if (bounds.flow_low - square > 0.0f)
+        return rest - down > 0.0f ? down : rest;
+    return square - bounds.flow_high > 0.0f && up - rest > 0.0f ? up : rest;
+}
+
+/// What a spring of that stiffness turns into heat when its rest length goes from rest to another.
+static inline float mspringi_yield_heat(mspringi_yield_values v, float stiffness, float length, float rest,
+                                        float to) {
+    const float moved = to - rest, whole = 1.0f + v.hardening;
+    const float excess = (length + v.hardening * v.nominal) - whole * rest;
+    return stiffness * (moved * (excess - (0.5f * whole) * moved));
+}
+
+/// The bounds of a spring with that rest length.
+static inline mspringi_yield_bounds mspringi_yield_bounds_of(mspringi_yield_values v, float rest) {
+    const float most = v.nominal * (1.0f + v.plastic_limit), least = v.nominal * (1.0f - v.plastic_limit);
+    const float centre = (1.0f + v.hardening) * rest - v.hardening * v.nominal;
+    const float half = v.yield_strain * v.nominal, warm = MSPRINGI_WARM_SHARE * half;
+    const float low = centre - warm, high = centre + warm, flow_low = centre - half, flow_high = centre + half;
+    const bool shrinks = rest - least > 0.0f, grows = most - rest > 0.0f;
+    return (mspringi_yield_bounds){.low = shrinks && low > 0.0f ? low * low : -1.0f,
+                                   .high = !grows        ? INFINITY
+                                           : high > 0.0f ? high * high
+                                                         : 0.0f,
+                                   .flow_low = shrinks && flow_low > 0.0f ? flow_low * flow_low : -1.0f,
+                                   .flow_high = !grows             ? INFINITY
+                                                : flow_high > 0.0f ? flow_high * flow_high
+                                                                   : 0.0f};
+}
+
+#endif
