@@ -46,6 +46,7 @@ static const bench_column columns[] = {
     {"springs", "springs", 8},
     {"outline_points", "points", 8},
     {"touching", "touching", 8},
+    {"contact_kb", "kB", 8},
     {"us_per_step_without", "us/step without", 16},
     {"us_per_step_with", "us/step with", 14},
     {"step_time_ratio_median", "with/without", 12},
@@ -212,6 +213,11 @@ static bool compare(player *without, player *with, uint32_t steps, uint32_t repe
     return true;
 }
 
+/// With the colliders.
+static size_t memory_of_contact(const player *without, const player *with) {
+    return mspring_network_memory_used(with->network) - mspring_network_memory_used(without->network);
+}
+
 static bool measure(const subject *s, const bench_options *options, mspring_simd level) {
     player without = {0}, with = {0};
     scene_error error;
@@ -230,6 +236,7 @@ static bool measure(const subject *s, const bench_options *options, mspring_simd
             bench_cell_of("%u", mspring_network_spring_count(with.network)),
             bench_cell_of("%u", info.points),
             bench_cell_of("%u", info.touching),
+            bench_cell_of("%.0f", 1e-3 * (double)memory_of_contact(&without, &with)),
             bench_cell_of("%.1f", 1e6 * turns.first_median),
             bench_cell_of("%.1f", 1e6 * turns.second_median),
             bench_cell_of("%.3f", turns.ratio_median),

@@ -14,8 +14,18 @@
 #define MOST_SWEEPS 64
 #define MOST_PAIRS ((uint32_t)1 << 26)
 
-/// That there is room for besides, for each point of a collider.
+/// Pairs that there is room for: for each particle, for each one of the outline, and besides. (Soft discs that fall
+/// at 25 m/s with one or two substeps a step have 45 for a particle of the outline.)
+#define PAIRS_OF_PARTICLE 2
+#define PAIRS_OF_OUTLINE 64
+#define PAIRS_BESIDES 4096
+
+/// For each point of a collider.
 #define PAIRS_OF_POINT 8
+
+/// Rows that there is room for, as a part of the pairs, and besides.
+#define PAIRS_OF_ROW 8
+#define ROWS_BESIDES 1024
 
 /* ----------------------------------------------------------------------------------------------------- checking */
 
@@ -205,19 +215,32 @@ static bool reserve_points(mspringi_pairs *made, mspringi_memory *memory, uint32
     return c->shape && c->owner && reserve_doubles(memory, points, motion, 4);
 }
 
-// By what the outline is, and what it may come to be.
+static bool needs_holds(const mspring_network *network) {
+    const mspringi_solver_ops *fallback = network->fallback.ops;
+    return network->solver.ops->holds_bodies || (fallback && fallback->holds_bodies);
+}
+
+static bool reserve_holds(mspringi_pairs *pairs, mspringi_memory *memory) {
+    if (!pairs->holds)
+        pairs->holds = mspringi_alloc(memory, pairs->row_capacity, sizeof *pairs->holds);
+    return pairs->holds != NULL;
+}
+
+// By what the outline is, and what it may come to be. Most pairs that are near do not touch.
 static bool reserve_pairs(mspringi_pairs *made, mspringi_memory *memory, size_t particles) {
-    const uint64_t usual = 8 * (uint64_t)made->outline.point_count + 2 * (uint64_t)particles + 4096;
+    const uint64_t usual = PAIRS_OF_OUTLINE * (uint64_t)made->outline.point_count +
+                           PAIRS_OF_PARTICLE * (uint64_t)particles + PAIRS_BESIDES;
     if (made->def.capacity == 0)
         made->def.capacity = usual < MOST_PAIRS ? (uint32_t)usual : MOST_PAIRS;
     made->capacity = made->def.capacity + PAIRS_OF_POINT * made->colliders.point_capacity;
+    const uint32_t rows = made->capacity / PAIRS_OF_ROW + ROWS_BESIDES;
+    made->row_capacity = rows < made->capacity ? rows : made->capacity;
     made->list = mspringi_alloc(memory, made->capacity, sizeof *made->list);
     made->hot = mspringi_alloc(memory, made->capacity, sizeof *made->hot);
-    made->touches = mspringi_alloc(memory, made->capacity, sizeof *made->touches);
     made->is_seen = mspringi_alloc(memory, made->capacity, sizeof *made->is_seen);
     made->border = mspringi_alloc(memory, made->capacity, sizeof *made->border);
-    made->holds = mspringi_alloc(memory, made->capacity, sizeof *made->holds);
-    return made->list && made->hot && made->touches && made->holds && made->is_seen && made->border;
+    made->touches = mspringi_alloc(memory, made->row_capacity, sizeof *made->touches);
+    return made->list && made->hot && made->touches && made->is_seen && made->border;
 }
 
 static void set_def(mspringi_pairs *pairs, const mspring_contact_def *def) {
@@ -293,7 +316,7 @@ static mspringi_pairs *make(mspring_network *network, const mspring_contact_def 
         take_over(made, had, springs);
     if (ok)
         mspringi_outline_follow(network, made);
-    ok = ok && reserve_pairs(made, memory, particles);
+    ok = ok && reserve_pairs(made, memory, particles) && (!needs_holds(network) || reserve_holds(made, memory));
     if (ok)
         return made;
     if (had)
@@ -311,6 +334,12 @@ bool mspringi_pairs_widen(mspring_network *network, uint32_t points) {
     destroy(had, &network->memory);
     network->pairs = made;
     return true;
+}
+
+mspring_result mspringi_pairs_reserve_holds(mspring_network *network) {
+    if (!network->pairs || reserve_holds(network->pairs, &network->memory))
+        return MSPRING_OK;
+    return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for contact in the solver's system");
 }
 
 /* ------------------------------------------------------------------------------------------------- the setting */

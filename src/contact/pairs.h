@@ -234,11 +234,12 @@ struct mspringi_pairs {
     bool is_strict;         ///< so this time every substep is looked at
 
     mspringi_active active;
-    mspringi_touch *touches; ///< [capacity]
+    mspringi_touch *touches; ///< [row_capacity]
     uint8_t *is_seen;        ///< [capacity] of candidates, while rows are added
     uint32_t *border;        ///< [capacity] candidates that just miss a row
-    uint32_t touch_count, border_count;
-    mspringi_row_hold *holds;   ///< [capacity] the same rows, of an implicit substep
+    uint32_t touch_count, border_count, row_capacity;
+    bool is_crowded;            ///< a row had no room
+    mspringi_row_hold *holds;   ///< [row_capacity] the same rows, of an implicit substep; NULL: no solver has such
     double passed;              ///< of an implicit substep, in pieces, s
     mspringi_bearing *bearings; ///< [MSPRINGI_BEARINGS * nodes]
     uint32_t bearing_count;
@@ -384,6 +385,8 @@ void mspringi_colliders_end(const mspring_network *network, mspringi_pairs *pair
 
 /// Make room for so many points of colliders. False: there is no memory, and nothing has changed.
 bool mspringi_pairs_widen(mspring_network *network, uint32_t points);
+/// Make room for what solvers need that have contact in their system. Nothing without contact.
+mspring_result mspringi_pairs_reserve_holds(mspring_network *network);
 void mspringi_pairs_relocate(mspringi_pairs *pairs, const mspringi_memory *from, const mspringi_memory *to);
 
 #endif

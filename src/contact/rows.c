@@ -243,6 +243,10 @@ static void make_row(const mspring_network *network, mspringi_pairs *pairs, uint
         is_of_another(network, pairs, pair, at.share <= 0.0 ? 0 : 1))
         return;
     const uint32_t before = pairs->touch_count;
+    if (before == pairs->row_capacity) {
+        pairs->is_crowded = true;
+        return;
+    }
     put_row(pairs, candidate, collider, &at, thickness, h);
     if (pairs->touch_count > before)
         *fastest = speed > *fastest ? speed : *fastest;

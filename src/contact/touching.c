@@ -124,7 +124,7 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
     mspringi_outline_follow(network, pairs);
     pairs->h = attempt->h;
     pairs->dt = attempt->dt;
-    pairs->is_missed = pairs->is_strict = pairs->is_full = false;
+    pairs->is_missed = pairs->is_strict = pairs->is_full = pairs->is_crowded = false;
     pairs->taken = pairs->touching = 0;
     pairs->since_look = 0;
     pairs->deepest = pairs->thrown = 0.0;
@@ -206,12 +206,13 @@ static bool has_missed(mspring_network *network, const mspringi_attempt *attempt
 
 static mspring_result judge(mspring_network *network) {
     const mspringi_pairs *pairs = network->pairs;
-    if (!pairs->is_full)
+    if (!pairs->is_full && !pairs->is_crowded)
         return MSPRING_OK;
     return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
-                         "more than %u pairs of an outline point and an outline edge are near each other: set "
+                         "more than %u pairs of an outline point and an outline edge %s each other: set "
                          "contact with a larger capacity, or less thickness",
-                         (unsigned)pairs->capacity);
+                         (unsigned)(pairs->is_full ? pairs->capacity : pairs->row_capacity),
+                         pairs->is_full ? "are near" : "may touch");
 }
 
 // The state is that of before the step. If the step is repeated, it begins with a look.

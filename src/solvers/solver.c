@@ -1,6 +1,7 @@
 /// The solvers that there are, and what is done to any of them.
 #include "store/solver.h"
 
+#include "contact/pairs.h"
 #include "store/network.h"
 
 const mspringi_solver_ops *mspringi_solver_ops_of(mspring_solver name) {
@@ -26,6 +27,8 @@ mspring_result mspringi_solver_make(mspringi_solver *solver, mspring_network *ne
                                     const mspring_solver_def *def, uint32_t tile_size) {
     const mspringi_solver_ops *ops = solver->ops;
     mspring_result result = ops->create ? ops->create(network, def, tile_size, &solver->object) : MSPRING_OK;
+    if (result == MSPRING_OK && ops->holds_bodies)
+        result = mspringi_pairs_reserve_holds(network);
     for (bool is_done = !ops->build; result == MSPRING_OK && !is_done;)
         result = ops->build(solver->object, &is_done);
     if (result != MSPRING_OK && solver->object)

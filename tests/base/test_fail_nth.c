@@ -409,6 +409,7 @@ static const struct {
     {"create again", create},
     {"load", load},
     {"step", step},
+    {"contact in implicit steps", set_contact},
     {"implicit", use_implicit},
     {"step", step},
     {"direct", use_direct},

@@ -473,6 +473,54 @@ static void too_many_pairs_are_told(void **state) {
     mspring_network_destroy(same);
 }
 
+/// Soft blocks that fall 30 m onto each other, with as few substeps as they need: what is fast has long lists.
+static void falling_blocks_have_room_by_default(void **state) {
+    (void)state;
+    bodies *b = bodies_begin(DT / 2);
+    (void)bodies_add(b, &(bodies_lattice){.width = 60, .height = 1, .y = -1, .spacing = 1, .f = 0.1});
+    for (uint32_t i = 0; i < 24; i++)
+        (void)bodies_add(b, &(bodies_lattice){.width = 7,
+                                              .height = 7,
+                                              .x = -18.0 + 7.5 * (i % 6),
+                                              .y = 27.0 + 8 * (i / 6),
+                                              .angle = 0.3 * i,
+                                              .spacing = 1,
+                                              .mass = 10,
+                                              .f = 0.3});
+    const mspring_network_def def = support_def(-9.8f, MSPRING_SUBSTEPS_AUTO);
+    mspring_network *network = bodies_network(b, &def);
+    check_ok(bodies_touch(network, THICKNESS, 0.2f, 0));
+    uint32_t touching = 0;
+    for (int step = 0; step < 300; step++) {
+        check_ok(mspring_network_step(network, DT));
+        touching = info_of(network).touching > touching ? info_of(network).touching : touching;
+    }
+    assert_true(touching > 50);
+    mspring_network_destroy(network);
+    bodies_free(b);
+}
+
+/// Rows of implicit systems have room only once a solver asks for it.
+static void explicit_contact_takes_less_memory(void **state) {
+    (void)state;
+    mspring_network *network = crowd_network(14, 12, MSPRING_SIMD_AUTO, 1, 0);
+    const size_t before = mspring_network_memory_used(network);
+    check_ok(bodies_touch(network, THICKNESS, 0.2f, 0));
+    const size_t by_contact = mspring_network_memory_used(network) - before;
+    mspring_solver_def def;
+    check_ok(mspring_solver_def_init(&def, sizeof def));
+    def.solver = MSPRING_SOLVER_IMPLICIT;
+    check_ok(mspring_network_set_solver(network, &def));
+    const size_t with_solver = mspring_network_memory_used(network);
+    check_ok(mspring_network_set_contact(network, NULL));
+    const size_t solver_alone = mspring_network_memory_used(network);
+    // A row is 240 bytes beside 144, and 33 for each of the eight pairs that it stands for.
+    assert_true(with_solver - solver_alone > by_contact + by_contact / 5);
+    check_ok(bodies_touch(network, THICKNESS, 0.2f, 0));
+    assert_int_equal(mspring_network_memory_used(network), with_solver);
+    mspring_network_destroy(network);
+}
+
 static void memory_is_given_back(void **state) {
     (void)state;
     watched_allocator watched = {0};
@@ -521,6 +569,8 @@ int main(void) {
         cmocka_unit_test(bad_definitions_are_refused),
         cmocka_unit_test(all_solvers_take_contact),
         cmocka_unit_test(too_many_pairs_are_told),
+        cmocka_unit_test(falling_blocks_have_room_by_default),
+        cmocka_unit_test(explicit_contact_takes_less_memory),
         cmocka_unit_test(memory_is_given_back),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -39,7 +39,7 @@ typedef struct mspring_contact_def {
     float push_speed;  ///< overlaps are pushed apart at this speed at most, m/s, 0 to 1e6; default 3
     uint32_t sweeps;   ///< over all contacts in a substep, 1 to 64; default 4. With more, stacks lie stiller.
     uint32_t capacity; ///< pairs of a point and a spring that may be near each other, at most 2^26; default 0: 4096
-                       ///< + 2 for each particle + 8 for each particle of the outline
+                       ///< + 2 for each particle + 64 for each particle of the outline
     uint32_t reserved; ///< 0
 } mspring_contact_def;
 
@@ -64,10 +64,11 @@ MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact
 /// Snapshots leave contact as it is, as they leave the floor. They hold the outline's shape only. Before you load one,
 /// set the same contact and the same groups. Then the next steps have the same bits.
 ///
-/// If more than capacity pairs are near each other, a step fails with MSPRING_ERROR_LIMIT and is rolled back.
+/// If more than capacity pairs are near each other, a step fails with MSPRING_ERROR_LIMIT and is rolled back. It also
+/// does if more than an eighth of capacity and 1024 may touch in a substep.
 /// @param def  copied; NULL: no contact, the default. Groups of particles and colliders of the host are forgotten.
-/// @threads exclusive   @allocates yes; about 1300 bytes for a particle, 3400 more for one of the outline, 40 for a
-///          spring   @errors ARGUMENT (the message names the field), STRUCT, MEMORY, BUSY
+/// @threads exclusive   @allocates yes; about 530 bytes for a particle, 3300 more for one of the outline, 40 for a
+///          spring. With an implicit or a direct solver, also as the fallback, 60 and 1900 more.   @errors ARGUMENT (the message names the field), STRUCT, MEMORY, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_contact(
     mspring_network *network, const mspring_contact_def *def);
 
@@ -208,7 +209,7 @@ MSPRING_API mspring_result MSPRING_CALL mspring_collider_def_init(mspring_collid
 /// Clones have them. All bodies wake.
 /// @param def       copied, with its points
 /// @param collider  receives its id; may be NULL
-/// @threads exclusive   @allocates yes; 2 to 4 kB for a point   @since 0.2   @errors ARGUMENT (also without
+/// @threads exclusive   @allocates yes; 1 to 3 kB for a point   @since 0.2   @errors ARGUMENT (also without
 ///          contact), STRUCT, MEMORY, BUSY, LIMIT for more than 0x1000000 points in all
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_add_collider(
     mspring_network *network, const mspring_collider_def *def, mspring_id *collider);
