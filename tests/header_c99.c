@@ -1,5 +1,6 @@
 // The public headers alone, as strict C99: they name everything that they use, and need no other header before
 // them. SPDX-License-Identifier: MIT
+#include <massspring/massspring_batch.h>
 #include <massspring/massspring_contact.h>
 #include <massspring/massspring_laws.h>
 #include <massspring/massspring_tools.h>

@@ -68,7 +68,7 @@ if python3 -c 'import cffi' 2>/dev/null; then
   # The whole of all headers, in four lines.
   python3 - "$source" <<'END'
 import cffi, re, subprocess, sys
-text = "".join(open(f"{sys.argv[1]}/include/massspring/{name}.h").read() for name in ("export", "massspring", "massspring_contact", "massspring_laws", "massspring_tools"))
+text = "".join(open(f"{sys.argv[1]}/include/massspring/{name}.h").read() for name in ("export", "massspring", "massspring_batch", "massspring_contact", "massspring_laws", "massspring_tools"))
 flat = subprocess.run(["cc", "-E", "-P", "-DMSPRING_API=", "-DMSPRING_NODISCARD=", "-"], text=True, check=True,
                       input=re.sub('#include.*|__attribute__.*', '', text), capture_output=True).stdout
 ffi = cffi.FFI()

@@ -46,7 +46,7 @@
 ///     measure     network_energy, _momentum, _bounds
 ///     snapshots   network_snapshot_size, _save, _load
 ///
-/// massspring_contact.h: contact between bodies, colliders, grips; massspring_laws.h: springs that yield, areas;
+/// massspring_contact.h: contact, colliders, grips; massspring_laws.h: yielding, areas; massspring_batch.h: groups;
 /// massspring_tools.h: the rest, as ropes, meshes, clones, hooks, queries, stability, equilibrium, tuning, compaction.
 ///
 /// **Words.** A slot is an index into the arrays of a view; an id is another number. A hook is a function of yours that
@@ -71,7 +71,7 @@
 /// position has a second, smaller word, so no substep rounds away what it adds. Views show the first word only.
 ///
 /// **Many small bodies.** Put them in one network: it sweeps them side by side, several times faster than a network for
-/// each. They share one local origin, one solver and one dt. A step that is rejected is rejected for all.
+/// each. They share one local origin, solver and dt and, unless they are groups (massspring_batch.h), rejected steps.
 ///
 /// **Same bits.** The same calls give the same state, bit for bit. SIMD level, number of workers, compiler and
 /// optimisation level make no difference. This holds within one minor version (0.2.x). Compare by

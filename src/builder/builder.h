@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 
+#include <massspring/massspring_batch.h>
 #include <massspring/massspring_laws.h>
 #include <massspring/massspring_tools.h>
 

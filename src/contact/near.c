@@ -162,7 +162,15 @@ static double size_cells(mspringi_pairs *pairs, double reach) {
     return 0.5 * longest + reach;
 }
 
-static void fill_cells(mspringi_pairs *pairs, double size) {
+// Groups that stand in the same place lie in other cells, unless there are colliders, which they share.
+static int32_t column_of(const mspring_network *network, const mspringi_pairs *pairs, mspring_id node, double x,
+                         double size) {
+    const uint32_t *group = network->groups.of_particle, column = (uint32_t)cell_of(x, size);
+    const bool is_apart = group && pairs->colliders.count == 0;
+    return (int32_t)(is_apart ? column + group[node] * 0x9E3779B1u : column);
+}
+
+static void fill_cells(const mspring_network *network, mspringi_pairs *pairs, double size) {
     mspringi_edge_cells *cells = &pairs->cells;
     const mspringi_outline *o = &pairs->outline;
     cells->bucket_count = 1;
@@ -174,7 +182,7 @@ static void fill_cells(mspringi_pairs *pairs, double size) {
             ++l;
             continue;
         }
-        cells->x[e] = cell_of(0.5 * (pairs->x[o->a[e]] + pairs->x[o->b[e]]), size);
+        cells->x[e] = column_of(network, pairs, o->a[e], 0.5 * (pairs->x[o->a[e]] + pairs->x[o->b[e]]), size);
         cells->y[e] = cell_of(0.5 * (pairs->y[o->a[e]] + pairs->y[o->b[e]]), size);
         cells->first[bucket_of(cells, cells->x[e], cells->y[e])]++;
     }
@@ -190,8 +198,16 @@ static void fill_cells(mspringi_pairs *pairs, double size) {
 
 /* -------------------------------------------------------------------------------------------------------- list */
 
-static bool may_touch(const mspringi_pairs *pairs, mspring_id p, mspring_id q) {
-    return pairs->groups[p] & pairs->masks[q] && pairs->groups[q] & pairs->masks[p];
+// Points of colliders are in no group of particles: what is may touch them.
+static bool are_in_one_group(const mspring_network *network, mspring_id p, mspring_id q) {
+    const uint32_t *group = network->groups.of_particle, particles = network->topology.particle_count;
+    return !group || p >= particles || q >= particles || group[p] == group[q];
+}
+
+static bool may_touch(const mspring_network *network, mspring_id p, mspring_id q) {
+    const mspringi_pairs *pairs = network->pairs;
+    return pairs->groups[p] & pairs->masks[q] && pairs->groups[q] & pairs->masks[p] &&
+           are_in_one_group(network, p, q);
 }
 
 // Two particles without springs are one pair, and one with a corner is it with the corner's edges.
@@ -220,7 +236,7 @@ static bool try_pair(const mspring_network *network, mspringi_pairs *pairs, uint
     const mspringi_outline *o = &pairs->outline;
     const mspring_id a = o->a[edge], b = o->b[edge];
     if (p == a || p == b || !(distance_of(pairs, p, edge) < pairs->reach) || is_counted_otherwise(o, p, edge) ||
-        !may_touch(pairs, p, a) || !may_touch(pairs, p, b) || is_apart(network, pairs, p, edge))
+        !may_touch(network, p, a) || !may_touch(network, p, b) || is_apart(network, pairs, p, edge))
         return true;
     if (pairs->count == pairs->capacity)
         return false;
@@ -243,9 +259,11 @@ static bool try_cells(const mspring_network *network, mspringi_pairs *pairs, msp
             return false;
     if (is_wide)
         return true;
-    const int32_t x = cell_of(pairs->x[p], size), y = cell_of(pairs->y[p], size), most = (int32_t)away;
+    const int32_t y = cell_of(pairs->y[p], size), most = (int32_t)away;
+    const uint32_t first_column = (uint32_t)column_of(network, pairs, p, pairs->x[p], size) - (uint32_t)most;
     for (int32_t j = y - most; j <= y + most; ++j)
-        for (int32_t i = x - most; i <= x + most; ++i) {
+        for (uint32_t n = 0; n <= 2 * (uint32_t)most; ++n) {
+            const int32_t i = (int32_t)(first_column + n);
             const uint32_t bucket = bucket_of(cells, i, j);
             for (uint32_t k = cells->first[bucket]; k < cells->first[bucket + 1]; ++k) {
                 const uint32_t edge = cells->sorted[k];
@@ -333,7 +351,7 @@ static bool make_list(const mspring_network *network, mspringi_pairs *pairs, dou
     pairs->moved = 0.0;
     if (o->edge_count > 0) {
         const double size = size_cells(pairs, pairs->reach);
-        fill_cells(pairs, size);
+        fill_cells(network, pairs, size);
         for (uint32_t i = 0; i < o->point_count; ++i) {
             const mspring_id p = o->points[i];
             pairs->seen_x[p] = pairs->x[p];

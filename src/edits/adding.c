@@ -27,6 +27,9 @@ static mspring_result check_arrays(mspring_network *network, const void *defs, u
     if (result == MSPRING_OK && count > 0 && (!defs || !ids))
         result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "an array of %u elements is NULL",
                                (unsigned)count);
+    if (result == MSPRING_OK && network->groups.count > 0)
+        result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                               "nothing is added to groups of particles: set no groups before");
     return result;
 }
 

@@ -69,6 +69,10 @@ static mspring_result check_corners(mspring_network *network, const mspring_id *
         if (particles[i] >= network->topology.particle_count || !mspringi_particle_exists(network, particles[i]))
             return mspringi_fail(message, MSPRING_ERROR_ID, "the area has particle %u, which does not exist",
                                  (unsigned)particles[i]);
+        const uint32_t *group = network->groups.of_particle;
+        if (group && group[particles[i]] != group[particles[0]])
+            return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the area has particles %u and %u of two groups",
+                                 (unsigned)particles[0], (unsigned)particles[i]);
         for (uint32_t j = 0; j < i; ++j)
             if (particles[j] == particles[i])
                 return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the area has particle %u twice",

@@ -7,6 +7,7 @@
 #include "sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
 #include "stability/guard.h"
+#include "step/groups.h"
 #include "store/changed.h"
 #include "store/network.h"
 
@@ -91,6 +92,8 @@ mspring_result mspring_network_set_solver(mspring_network *network, const msprin
     mspring_result result = mspringi_enter(network);
     if (result == MSPRING_OK)
         result = mspringi_check_solver(def, &network->message);
+    if (result == MSPRING_OK)
+        result = mspringi_groups_check_solver(network, def);
     if (result != MSPRING_OK)
         return result;
     const mspring_solver_def before = def_of(network);
@@ -167,6 +170,8 @@ mspring_result mspring_network_set_settings(mspring_network *network, const mspr
     result = mspringi_check_struct(&network->message, "mspring_settings", settings, sizeof *settings);
     if (result == MSPRING_OK)
         result = mspringi_check_settings(settings, &network->message);
+    if (result == MSPRING_OK)
+        result = mspringi_groups_check_settings(network, settings);
     if (result == MSPRING_OK)
         result = reserve_for(network, settings);
     if (result != MSPRING_OK)

@@ -84,9 +84,14 @@ void mspringi_origin_follow(mspring_network *network) {
     network->recentre_distance = SMALLEST_RECENTRE_DISTANCE;
 }
 
+// Groups are to have the same bits wherever others go.
+static bool is_used(const mspring_network *network) {
+    return network->groups.count == 0;
+}
+
 static void follow(mspring_network *network, double dt) {
     (void)dt;
     mspringi_origin_follow(network);
 }
 
-const mspringi_stage mspringi_stage_origin = {.after_step = follow};
+const mspringi_stage mspringi_stage_origin = {.is_used = is_used, .after_step = follow};

@@ -7,6 +7,7 @@
 #include "sleep/sleep.h"
 #include "stability/guard.h"
 #include "stability/stability.h"
+#include "step/groups.h"
 #include "store/growth.h"
 #include "store/network.h"
 #include "store/stages.h"
@@ -197,13 +198,15 @@ static mspringi_extrema run(mspring_network *network, const mspringi_attempt *at
     return run_once(network, attempt);
 }
 
-// Make an attempt whose substeps are numbers, or leave everything as it is.
-static mspring_result carry_out(mspring_network *network, const mspringi_attempt *attempt) {
-    mspringi_sleep_begin(network, attempt);
-    if (is_idle(network, attempt->stages)) {
-        tidy(network);
-        return MSPRING_OK;
-    }
+// Put back what an attempt that led to this has done. guard is that of before.
+static void put_back(mspring_network *network, const mspringi_attempt *attempt, const mspringi_guard *guard) {
+    go_back(network, attempt);
+    network->guard = *guard;
+    mspringi_stages_undo(network, attempt);
+}
+
+// Make an attempt, or leave everything as it is.
+static mspring_result try_once(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_guard guard = network->guard;
     mspringi_stages_before_step(network, attempt);
     mspring_result result = mspringi_guard_begin(network, attempt);
@@ -212,13 +215,54 @@ static mspring_result carry_out(mspring_network *network, const mspringi_attempt
         result = mspringi_stages_judge(network, attempt);
         if (result == MSPRING_OK)
             result = mspringi_guard_end(network, attempt, extrema);
+        if (result == MSPRING_OK)
+            return MSPRING_OK;
+        if (network->groups.count > 0)
+            mspringi_groups_suspect(network);
+        go_back(network, attempt);
+    }
+    network->guard = guard;
+    mspringi_stages_undo(network, attempt);
+    return result;
+}
+
+// Try with all groups held that went wrong. Then release, one by one, those that may have done so because of
+// others.
+static mspring_result try_without_some(mspring_network *network, const mspringi_attempt *attempt) {
+    const mspringi_guard guard = network->guard;
+    mspring_result result = MSPRING_ERROR_UNSTABLE;
+    while (result == MSPRING_ERROR_UNSTABLE && mspringi_groups_hold_suspects(network))
+        result = try_once(network, attempt);
+    if (result != MSPRING_OK)
+        return result;
+    const uint32_t count = network->groups.count;
+    for (uint32_t group = 0; (group = mspringi_groups_next_doubtful(network, group)) < count; ++group) {
+        if (result == MSPRING_OK)
+            put_back(network, attempt, &guard);
+        mspringi_groups_release(network, group);
+        result = try_once(network, attempt);
         if (result != MSPRING_OK)
-            go_back(network, attempt);
+            mspringi_groups_hold(network, group);
     }
-    if (result != MSPRING_OK) {
-        network->guard = guard;
-        mspringi_stages_undo(network, attempt);
+    return result == MSPRING_OK ? result : try_once(network, attempt);
+}
+
+// Make an attempt whose substeps are numbers, or leave everything as it is.
+static mspring_result carry_out(mspring_network *network, const mspringi_attempt *attempt) {
+    mspringi_sleep_begin(network, attempt);
+    if (is_idle(network, attempt->stages)) {
+        tidy(network);
+        return MSPRING_OK;
     }
+    if (network->groups.count == 0)
+        return try_once(network, attempt);
+    mspringi_groups_begin(network);
+    mspring_result result = try_once(network, attempt);
+    if (result == MSPRING_ERROR_UNSTABLE)
+        result = try_without_some(network, attempt);
+    mspringi_groups_end(network, result == MSPRING_OK);
+    if (result == MSPRING_OK)
+        network->outcome = mspringi_outcome_none();
     return result;
 }
 

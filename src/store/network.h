@@ -13,6 +13,7 @@
 #include "layout/topology.h"
 #include "store/components.h"
 #include "store/graft.h"
+#include "store/groups.h"
 #include "store/solver.h"
 #include "tasks/tasks.h"
 
@@ -468,6 +469,8 @@ struct mspring_network {
     mspringi_incidence incidence; ///< made when it is needed first, of the springs that are not spare ones
     mspringi_growth growth;
     mspringi_graft graft;
+    mspringi_groups groups;
+    mspringi_actuators actuators;
     mspringi_any_shape any_shape;
     mspringi_any_shape last_shape; ///< found last, maybe in a step that was refused: to find it again costs nothing
 
@@ -496,9 +499,11 @@ static inline size_t mspringi_used_slots(const mspring_network *network) {
                                 : t->spans[t->rows[t->row_count - 1].first_span].end_slot;
 }
 
-/// Inverse masses as a step sees them, 0 of what sleeps.
+/// Inverse masses as a step sees them, 0 of what sleeps or is held.
 static inline const float *mspringi_free_mass(const mspring_network *network) {
-    return network->sleep.sleeping > 0 ? network->sleep.free_mass : network->inverse_mass;
+    return network->sleep.sleeping > 0 ? network->sleep.free_mass
+           : network->groups.held > 0  ? network->groups.free_mass
+                                       : network->inverse_mass;
 }
 
 /// Whether the log still has everything from change number seen on; if not, any spring may have changed.

@@ -43,6 +43,10 @@ extern const mspringi_section mspringi_section_shape;
 // In grips.c.
 extern const mspringi_section mspringi_section_grips;
 
+// In groups.c.
+extern const mspringi_section mspringi_section_held;
+extern const mspringi_section mspringi_section_actuators;
+
 // In sleep.c.
 extern const mspringi_section mspringi_section_sleep;
 

@@ -5,6 +5,7 @@
 /// and what an old program left there is never read.
 ///
 /// SPDX-License-Identifier: MIT
+#include <massspring/massspring_batch.h>
 #include <massspring/massspring_contact.h>
 #include <massspring/massspring_laws.h>
 #include <massspring/massspring_tools.h>
@@ -66,3 +67,4 @@ ENUM(mspring_numbering)
 ENUM(mspring_snapshot_contents)
 ENUM(mspring_tune_measure)
 ENUM(mspring_layout)
+ENUM(mspring_reset)

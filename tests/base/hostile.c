@@ -159,6 +159,29 @@ static mspring_result get_collider_impulse(arguments *a, mspring_id id) {
     return mspring_network_get_collider_impulse(a->network, id, &x, &y, &angular);
 }
 
+static void make_groups(arguments *a) {
+    const uint32_t firsts[] = {0, mspring_network_particle_count(a->network)};
+    check_ok(support_set_guard(a->network, MSPRING_GUARD_BOUNDS));
+    check_ok(mspring_network_set_groups(a->network, firsts, 1));
+    a->id_values[0] = a->id = a->first = 0;
+    a->id_values[1] = firsts[1];
+    a->count = 1;
+}
+
+static void make_actuators(arguments *a) {
+    const mspring_id springs[] = {1, 3};
+    check_ok(mspring_network_set_actuators(a->network, springs, 2, 1));
+}
+
+static mspring_result add_copies(arguments *a) {
+    mspring_builder *one = support_builder();
+    (void)support_particle(one, 1, 2, 3);
+    const mspring_result result =
+        mspring_builder_add_copies(a->builder, one, 2, a->d, a->e, 1, a->out[0], a->out[1]);
+    mspring_builder_destroy(one);
+    return result;
+}
+
 static mspring_result destroy_nothing(void) {
     mspring_builder_destroy(NULL);
     mspring_network_destroy(NULL);
@@ -531,6 +554,20 @@ static void add_hook(arguments *a) {
       mspring_network_get_contact(a->network, a->out[0]))                                                          \
     X(mspring_network_get_contact_info, "nP", OUT_STRUCT(0, contact_info),                                         \
       mspring_network_get_contact_info(a->network, a->out[0]))                                                     \
+    X(mspring_builder_add_copies, "BDE", NOTHING, add_copies(a))                                                   \
+    X(mspring_network_set_groups, "NA", make_groups(a), mspring_network_set_groups(a->network, a->ids, 1))         \
+    X(mspring_network_group_count, "v", NOTHING, note_size(mspring_network_group_count(a->network)))               \
+    X(mspring_network_get_group_flags, "nR0", make_groups(a),                                                      \
+      mspring_network_get_group_flags(a->network, a->first, a->count, a->out[0], 1))                               \
+    X(mspring_network_mark_groups, "NI", make_groups(a), mspring_network_mark_groups(a->network, &a->id, 1))       \
+    X(mspring_network_reset_groups, "NIK", (make_groups(a), a->kind = MSPRING_RESET_MARK),                         \
+      mspring_network_reset_groups(a->network, &a->id, 1, (mspring_reset)a->kind))                                 \
+    X(mspring_network_observe_groups, "nRI0", make_groups(a),                                                      \
+      mspring_network_observe_groups(a->network, a->first, a->count, &a->id, 1, a->out[0], 13))                    \
+    X(mspring_network_set_actuators, "NA", NOTHING, mspring_network_set_actuators(a->network, a->ids, 2, 1))       \
+    X(mspring_network_actuator_count, "v", NOTHING, note_size(mspring_network_actuator_count(a->network)))         \
+    X(mspring_network_set_signals, "NRF", (make_actuators(a), a->first = 0),                                       \
+      mspring_network_set_signals(a->network, a->first, a->count, a->f, 1))                                        \
     X(mspring_grip_def_init, "Z0", a->size = sizeof(mspring_grip_def), mspring_grip_def_init(a->out[0], a->size))  \
     X(mspring_network_add_grip, "NSWo", make_grip(a), mspring_network_add_grip(a->network, a->given, a->out[0]))   \
     X(mspring_network_remove_grip, "NI", make_grip(a), mspring_network_remove_grip(a->network, a->id))             \

@@ -5,6 +5,7 @@
 #ifndef TEST_HOSTILE_H
 #define TEST_HOSTILE_H
 
+#include <massspring/massspring_batch.h>
 #include <massspring/massspring_contact.h>
 #include <massspring/massspring_laws.h>
 #include <massspring/massspring_tools.h>

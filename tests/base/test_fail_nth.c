@@ -276,6 +276,44 @@ static mspring_result set_floor(life *l) {
     return mspring_network_set_floor(l->network, &def);
 }
 
+static mspring_result set_groups(life *l) {
+    const uint32_t firsts[] = {0, mspring_network_particle_count(l->network)};
+    return mspring_network_set_groups(l->network, firsts, 1);
+}
+
+static mspring_result mark_groups(life *l) {
+    return mspring_network_mark_groups(l->network, NULL, 0);
+}
+
+static mspring_result reset_groups(life *l) {
+    return mspring_network_reset_groups(l->network, NULL, 0, MSPRING_RESET_START);
+}
+
+static mspring_result drop_groups(life *l) {
+    return mspring_network_set_groups(l->network, NULL, 0);
+}
+
+static mspring_result set_actuators(life *l) {
+    const mspring_id springs[2] = {3, 11};
+    return mspring_network_set_actuators(l->network, springs, 2, 2);
+}
+
+static mspring_result set_signals(life *l) {
+    return mspring_network_set_signals(l->network, 0, 2, &(float){1.01f}, 0);
+}
+
+static mspring_result drop_actuators(life *l) {
+    return mspring_network_set_actuators(l->network, NULL, 0, 1);
+}
+
+static mspring_result add_copies(life *l) {
+    mspring_builder *one = support_builder();
+    (void)support_particle(one, 200, 2, 3);
+    const mspring_result result = mspring_builder_add_copies(l->builder, one, 100, NULL, NULL, 0, NULL, NULL);
+    mspring_builder_destroy(one);
+    return result;
+}
+
 static mspring_result drop_fallback(life *l) {
     return support_set_guard(l->network, MSPRING_GUARD_BOUNDS);
 }
@@ -390,6 +428,16 @@ static const struct {
     {"floor", set_floor},
     {"step", step},
     {"no fallback", drop_fallback},
+    {"actuators", set_actuators},
+    {"signals", set_signals},
+    {"step", step},
+    {"groups", set_groups},
+    {"mark", mark_groups},
+    {"step", step},
+    {"reset", reset_groups},
+    {"step", step},
+    {"no actuators", drop_actuators},
+    {"no groups", drop_groups},
     {"contact", set_contact},
     {"contact events", reserve_contact_events},
     {"colliders", add_colliders},
@@ -418,6 +466,7 @@ static const struct {
     {"settle", settle},
     {"step", step},
     {"network", add_network},
+    {"copies", add_copies},
 };
 
 /* --------------------------------------------------------------------------------------------------- the lives */

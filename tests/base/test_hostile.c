@@ -442,8 +442,8 @@ static bool is_in_table(const char *name, size_t length) {
 
 static char *read_headers(void) {
     enum { MOST = 1 << 20 };
-    static const char *const paths[] = {HOSTILE_HEADERS "massspring.h", HOSTILE_HEADERS "massspring_contact.h",
-                                        HOSTILE_HEADERS "massspring_laws.h",
+    static const char *const paths[] = {HOSTILE_HEADERS "massspring.h", HOSTILE_HEADERS "massspring_batch.h",
+                                        HOSTILE_HEADERS "massspring_contact.h", HOSTILE_HEADERS "massspring_laws.h",
                                         HOSTILE_HEADERS "massspring_tools.h"};
     char *text = test_malloc(MOST);
     size_t size = 0;

@@ -13,6 +13,7 @@
 #include <setjmp.h>
 
 #include <cmocka.h>
+#include <massspring/massspring_batch.h>
 #include <massspring/massspring_contact.h>
 #include <massspring/massspring_laws.h>
 #include <massspring/massspring_tools.h>

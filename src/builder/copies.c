@@ -1,0 +1,113 @@
+/// Copies of all that a builder holds, in another one.
+#include "base/cpu.h"
+#include "builder/builder.h"
+
+typedef struct offsets {
+    const double *x, *y;
+    size_t stride;
+} offsets;
+
+static double x_of(const offsets *by, uint32_t i) {
+    return by->x ? by->x[i * by->stride] : 0.0;
+}
+
+static double y_of(const offsets *by, uint32_t i) {
+    return by->y ? by->y[i * by->stride] : 0.0;
+}
+
+// A box around all particles, of at least one.
+static void find_bounds(const mspring_builder *from, double low[2], double high[2]) {
+    const mspringi_particle *p = from->particles;
+    low[0] = high[0] = p->x;
+    low[1] = high[1] = p->y;
+    for (size_t i = 1; i < from->particle_count; ++i) {
+        low[0] = p[i].x < low[0] ? p[i].x : low[0];
+        low[1] = p[i].y < low[1] ? p[i].y : low[1];
+        high[0] = p[i].x > high[0] ? p[i].x : high[0];
+        high[1] = p[i].y > high[1] ? p[i].y : high[1];
+    }
+}
+
+static mspring_result check(mspring_builder *builder, const mspring_builder *from, uint32_t count,
+                            const offsets *by) {
+    mspringi_message *message = &builder->message;
+    double low[2], high[2];
+    if (!from || from == builder)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the builder to copy is %s",
+                             from ? "the one that gets the copies" : "NULL");
+    if (count == 0 || !by->x != !by->y)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s",
+                             count == 0 ? "there are 0 copies, at least 1 is needed"
+                                        : "one of the arrays of offsets is NULL");
+    if (from->particle_count == 0)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the builder to copy has no particle");
+    find_bounds(from, low, high);
+    for (uint32_t i = 0; i < count; ++i)
+        if (!mspringi_is_coordinate(low[0] + x_of(by, i)) || !mspringi_is_coordinate(low[1] + y_of(by, i)) ||
+            !mspringi_is_coordinate(high[0] + x_of(by, i)) || !mspringi_is_coordinate(high[1] + y_of(by, i)))
+            return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                                 "copy %u: with an offset of (%g, %g) m it is not within 1e12", (unsigned)i,
+                                 x_of(by, i), y_of(by, i));
+    return MSPRING_OK;
+}
+
+static mspring_result reserve(mspring_builder *builder, const mspring_builder *from, uint32_t count) {
+    const uint64_t particles = (uint64_t)from->particle_count * count,
+                   springs = (uint64_t)from->spring_count * count;
+    if (particles > MSPRING_MAX_PARTICLES || springs > MSPRING_MAX_SPRINGS)
+        return mspringi_fail(&builder->message, MSPRING_ERROR_LIMIT,
+                             "%u copies of %zu particles and %zu springs are over the limits", (unsigned)count,
+                             from->particle_count, from->spring_count);
+    mspring_result result = mspringi_builder_reserve_particles(builder, (size_t)particles);
+    if (result == MSPRING_OK)
+        result = mspringi_builder_reserve_springs(builder, (size_t)springs);
+    for (size_t i = 0; result == MSPRING_OK && i < from->limit_count; ++i)
+        result = mspringi_builder_reserve_limits(builder, (size_t)springs, from->limits[i]);
+    return result;
+}
+
+static void append(mspring_builder *builder, const mspring_builder *from, double x, double y) {
+    const mspring_id first = (mspring_id)builder->particle_count;
+    for (size_t i = 0; i < from->particle_count; ++i) {
+        mspringi_particle *made = &builder->particles[builder->particle_count++];
+        *made = from->particles[i];
+        made->x += x;
+        made->y += y;
+    }
+    for (size_t i = 0; i < from->spring_count; ++i) {
+        mspringi_spring *made = &builder->springs[builder->spring_count++];
+        *made = from->springs[i];
+        made->a += first;
+        made->b += first;
+        if (i < from->limit_count)
+            mspringi_builder_put_limits(builder, builder->spring_count - 1, from->limits[i]);
+    }
+}
+
+static MSPRINGI_NOINLINE mspring_result add_copies(mspring_builder *builder, const mspring_builder *from,
+                                                   uint32_t count, const offsets *by) {
+    mspring_result result = check(builder, from, count, by);
+    if (result == MSPRING_OK)
+        result = reserve(builder, from, count);
+    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
+        append(builder, from, x_of(by, i), y_of(by, i));
+    return result;
+}
+
+mspring_result mspring_builder_add_copies(mspring_builder *builder, const mspring_builder *from, uint32_t count,
+                                          const double *x, const double *y, uint32_t stride,
+                                          mspring_id *first_particle, mspring_id *first_spring) {
+    if (!builder)
+        return MSPRING_ERROR_ARGUMENT;
+    mspringi_message_clear(&builder->message);
+    const mspring_id particle = (mspring_id)builder->particle_count, spring = (mspring_id)builder->spring_count;
+    const offsets by = {x, y, stride};
+    const mspringi_fp_state before = mspringi_fp_enter();
+    const mspring_result result = add_copies(builder, from, count, &by);
+    mspringi_fp_leave(before);
+    if (result == MSPRING_OK && first_particle)
+        *first_particle = particle;
+    if (result == MSPRING_OK && first_spring)
+        *first_spring = spring;
+    return result;
+}

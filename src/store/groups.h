@@ -1,0 +1,58 @@
+/// @file groups.h
+/// Groups of particles that are judged, held and put back singly, and springs that follow signals.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_GROUPS_STORE_H
+#define MSPRINGI_GROUPS_STORE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <massspring/massspring_batch.h>
+
+/// Numbers that a mark has of a particle: a state's.
+#define MSPRINGI_MARKED_VALUES 6
+
+/// What groups may be put back to. Springs are in the order of mspringi_groups.springs.
+typedef struct mspringi_mark {
+    float *motion;  ///< [particles][MSPRINGI_MARKED_VALUES] as the arrays of a state follow each other
+    float *lengths; ///< [springs][2] rest length, and the one before any flow, m
+    uint8_t *live;  ///< [springs] 1: not broken
+    double *origin; ///< [groups][2] that positions are relative to, m
+} mspringi_mark;
+
+/// What is known of a group.
+enum {
+    MSPRINGI_HELD = 1,     ///< it stays where it is
+    MSPRINGI_SUSPECT = 2,  ///< it is out of bounds where the last attempt has led to
+    MSPRINGI_DOUBTFUL = 4, ///< so with numbers that are none, which may come from elsewhere
+    MSPRINGI_NEWLY = 8     ///< held in this step
+};
+
+typedef struct mspringi_groups {
+    uint32_t count;         ///< 0: there are none
+    uint32_t held;          ///< of these held
+    mspring_id *first;      ///< [count + 1] particles
+    uint32_t *first_spring; ///< [count + 1] of springs
+    mspring_id *springs;    ///< [springs] of each group
+    mspring_id *changing;   ///< [springs] room for those that a reset breaks or restores
+    uint32_t *of_particle;  ///< [particles] the group, or count
+    uint8_t *flags;         ///< [count]
+    float *velocity;        ///< [particles][2] of groups that are held newly, m/s
+    float *free_mass;       ///< [slots] inverse mass, 0 of what is held
+    mspringi_mark start, mark;
+} mspringi_groups;
+
+typedef struct mspringi_actuators {
+    uint32_t count;      ///< 0: there are none
+    uint32_t changes;    ///< in a step
+    bool are_pending;    ///< signals came since the last step
+    bool have_moved;     ///< some came ever
+    mspring_id *spring;  ///< [count]
+    uint32_t *of_spring; ///< [springs] number of the actuator, or MSPRING_NONE
+    float *nominal;      ///< [count] rest length at signal 1, m
+    float *to;           ///< [count] at the end of the next step
+    float *from;         ///< [count] at the beginning of the step that is being made, if signals came before it
+} mspringi_actuators;
+
+#endif
