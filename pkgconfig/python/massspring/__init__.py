@@ -20,6 +20,7 @@ from ._header import VERSION as __version__
 from ._measure import Bounds, Energy, Momentum
 from ._state import StateView
 from ._types import ClosedError, Error, Record, StaleViewError
+from .batch import Batch
 from .builder import Builder, material
 from .network import Network
 from .tuning import TuneTable
@@ -40,6 +41,6 @@ def simd_supported() -> str:
     return text_of(lib.mspring_simd_name(lib.mspring_simd_supported()))
 
 
-__all__ = ["Bounds", "Builder", "ClosedError", "Energy", "Error", "Momentum", "Network", "Record", "StaleViewError",
+__all__ = ["Batch", "Bounds", "Builder", "ClosedError", "Energy", "Error", "Momentum", "Network", "Record", "StaleViewError",
            "StateView", "TuneTable", "__version__", "features", "ffi", "lib", "material", "simd_supported", "version"]
 __all__ += _header.__all__
