@@ -4,6 +4,7 @@
 /// SPDX-License-Identifier: MIT
 #include <stdio.h>
 
+#include <massspring/massspring_laws.h>
 #include <massspring/massspring_tools.h>
 
 #include "copy.h"
@@ -21,6 +22,7 @@ typedef struct variant {
     mspring_phase hook;
     uint32_t period;    ///< of the hook; 0: 1
     float yield_strain; ///< of all springs; 0: none yields
+    uint32_t areas;     ///< of each lattice cell; sweeps have one of them, others are forces
 } variant;
 
 static const variant variants[] = {
@@ -35,6 +37,8 @@ static const variant variants[] = {
     {.name = "empty hook after every 8", .hooked = true, .hook = MSPRING_PHASE_AFTER_SUBSTEP, .period = 8},
     {.name = "springs that could yield", .yield_strain = 10},
     {.name = "every spring always flows", .yield_strain = 1e-9f},
+    {.name = "areas of cells", .areas = 1},
+    {.name = "areas of cells as forces", .areas = 2},
     {.name = "force on every particle", .held_forces = true},
     {.name = "snapshot of every step", .snapshots = true},
     {.name = "4 ropes", .ropes = 4},
@@ -73,6 +77,20 @@ static bool create_absolute(const bench_network *plain, mspring_simd level, uint
     return ok;
 }
 
+/// Add an area to each cell, of a stiffness that is nothing to that of springs.
+static bool add_areas(bench_network *out, scene_error *error) {
+    mspring_area_def def;
+    mspring_result result = mspring_area_def_init(&def, sizeof def);
+    def.stiffness = 1; // N/m
+    if (result == MSPRING_OK) {
+        result = mspring_network_add_cell_areas(out->network, &def, NULL, NULL);
+    }
+    if (result != MSPRING_OK) {
+        bench_library_error(error, "adding areas", result, mspring_network_error(out->network));
+    }
+    return result == MSPRING_OK;
+}
+
 /// Make the network of a variant of the plain scene.
 static bool create_variant(const variant *kind, const bench_scene *subject, const bench_options *options,
                            const bench_network *plain, mspring_simd level, bench_network *out, scene_error *error) {
@@ -106,6 +124,12 @@ static bool create_variant(const variant *kind, const bench_scene *subject, cons
             mspring_network_set(out->network, MSPRING_YIELD_STRAIN, 0, out->spring_count, &kind->yield_strain, 0);
         if (result != MSPRING_OK) {
             bench_library_error(error, "letting springs yield", result, mspring_network_error(out->network));
+            bench_network_free(out);
+            return false;
+        }
+    }
+    for (uint32_t i = 0; i < kind->areas; i++) {
+        if (!add_areas(out, error)) {
             bench_network_free(out);
             return false;
         }

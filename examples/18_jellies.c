@@ -1,15 +1,40 @@
 /// @file 18_jellies.c
-/// A pit of jellies that a bar stirs: a collider of the host moves, soft bodies give way.
+/// A pit of jellies that a bar stirs: a collider of the host moves, soft bodies give way. Each triangle of a jelly
+/// has an area, so none stays inside out.
 ///
 /// SPDX-License-Identifier: MIT
 #include "common/show.h"
 #include "scenes/scene.h"
 
 #include <massspring/massspring_contact.h>
+#include <massspring/massspring_laws.h>
 #include <math.h>
 #include <stdio.h>
 
 enum { JELLIES = 24, STEPS = 64 * 20, STIRRED = 64 * 3 };
+
+// Rings of a jelly, around a particle, and the particles of all: those of ring r begin with 1 + 3 r (r - 1).
+enum { RINGS = 3, PARTICLES = 1 + 3 * RINGS * (RINGS + 1) };
+
+static mspring_id vertex(uint32_t ring, uint32_t number) {
+    return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1) + number % (6 * ring);
+}
+
+// Give an area to each triangle between two rings of a jelly: those with a side outside, and those with one inside.
+static mspring_result add_areas(mspring_network *network, mspring_id jelly, const mspring_area_def *area) {
+    mspring_result result = MSPRING_OK;
+    for (uint32_t ring = 1; ring <= RINGS; ring++)
+        for (uint32_t i = 0; !result && i < 6 * ring; i++) {
+            const uint32_t inner = i / ring * (ring - 1) + i % ring;
+            const mspring_id next = jelly + vertex(ring, i + 1), in = jelly + vertex(ring - 1, inner);
+            const mspring_id outside[] = {jelly + vertex(ring, i), next, in};
+            const mspring_id inside[] = {in, next, jelly + vertex(ring - 1, inner + 1)};
+            result = mspring_network_add_area(network, area, outside, 3, NULL);
+            if (!result && i % ring < ring - 1)
+                result = mspring_network_add_area(network, area, inside, 3, NULL);
+        }
+    return result;
+}
 
 int main(int count, char **arguments) {
     static const double bar[] = {-1, -5, 1, -5, 1, 5, -1, 5};
@@ -26,6 +51,12 @@ int main(int count, char **arguments) {
     settings.substeps = 20;
     mspring_network *network = NULL;
     mspring_result result = mspring_network_create(jellies.builder, &settings, &network);
+    mspring_area_def area;
+    mspring_area_def_init(&area, sizeof area);
+    area.stiffness = 4e5f; // N/m, half of the springs'
+    const uint32_t particles = result ? 0 : mspring_network_particle_count(network);
+    for (uint32_t i = 1; !result && i <= JELLIES; i++) // the pit is made first
+        result = add_areas(network, particles - i * PARTICLES, &area);
     mspring_contact_def contact;
     mspring_contact_def_init(&contact, sizeof contact);
     contact.friction = 0.2f;

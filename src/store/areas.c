@@ -81,22 +81,33 @@ static float bounded(double value) {
 
 void mspringi_area_push(const mspring_network *network, const mspringi_area *area, mspringi_field field) {
     const mspringi_state *s = &network->state;
-    const double half = 0.5 * mspringi_area_pressure(area, mspringi_area_size(network, area));
-    const uint32_t last = mspringi_area_slot(network, area, area->count - 1);
-    uint32_t slot = mspringi_area_slot(network, area, 0);
-    const uint32_t first = slot;
-    double before_x = mspringi_x_of(s, last), before_y = mspringi_y_of(s, last);
-    double x = mspringi_x_of(s, slot), y = mspringi_y_of(s, slot);
-    for (uint32_t i = 1; i <= area->count; ++i) {
-        const uint32_t next = i < area->count ? mspringi_area_slot(network, area, i) : first;
-        const double next_x = mspringi_x_of(s, next), next_y = mspringi_y_of(s, next);
+    const mspringi_corner *corners = network->areas.corners + area->first;
+    const uint32_t first = corners[0].slot, last = corners[area->count - 1].slot;
+    const double first_x = mspringi_x_of(s, first), first_y = mspringi_y_of(s, first);
+    const double last_x = mspringi_x_of(s, last), last_y = mspringi_y_of(s, last);
+    double before_x = 0.0, before_y = 0.0, twice = 0.0;
+    for (uint32_t i = 1; i < area->count; ++i) {
+        const double x = mspringi_x_of(s, corners[i].slot) - first_x,
+                     y = mspringi_y_of(s, corners[i].slot) - first_y;
+        twice += before_x * y - before_y * x;
+        before_x = x;
+        before_y = y;
+    }
+    const double half = 0.5 * mspringi_area_pressure(area, 0.5 * twice);
+    double x = first_x, y = first_y;
+    before_x = last_x;
+    before_y = last_y;
+    for (uint32_t i = 0; i < area->count; ++i) {
+        const bool is_last = i + 1 == area->count;
+        const uint32_t slot = corners[i].slot;
+        const double next_x = is_last ? first_x : mspringi_x_of(s, corners[i + 1].slot);
+        const double next_y = is_last ? first_y : mspringi_y_of(s, corners[i + 1].slot);
         field.x[slot] += bounded(half * (next_y - before_y));
         field.y[slot] += bounded(half * (before_x - next_x));
         before_x = x;
         before_y = y;
         x = next_x;
         y = next_y;
-        slot = next;
     }
 }
 
@@ -321,6 +332,8 @@ void mspringi_areas_refresh(mspring_network *network) {
     const size_t cells = (size_t)2 * MSPRINGI_WIDTH * network->topology.lattice_blocks;
     for (size_t i = 0; i < cells; ++i)
         a->cells[i] = 0.0f;
+    for (size_t i = 0; i < a->corner_count; ++i)
+        a->corners[i].slot = network->topology.slot_of_particle[a->corners[i].particle];
     for (size_t i = 0; i < a->count; ++i) {
         mspringi_area *area = &a->list[i];
         area->cell = MSPRINGI_NO_CELL;

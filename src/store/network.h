@@ -241,6 +241,7 @@ typedef struct mspringi_area {
 typedef struct mspringi_corner {
     mspring_id particle;
     mspring_id spring; ///< to the next corner when the area was added; MSPRING_NONE: there was none
+    uint32_t slot;     ///< of the particle; see mspringi_areas_refresh()
     float reach;       ///< by how much the area grew then where the particle moved outwards, m
 } mspringi_corner;
 
