@@ -12,7 +12,7 @@
 #define LEAST_AREA 1e-24
 #define MOST_AREA 1e24
 
-/* ------------------------------------------------------------------------------------------------------- checks */
+/* ------------------------------------------------------------------------------------------------------ checks */
 
 static mspring_result check_numbers(const mspring_area_def *def, mspringi_message *message) {
     const bool is_gas = def->kind == MSPRING_AREA_GAS;

@@ -115,7 +115,7 @@ void mspringi_areas_image(const mspring_network *network, const mspringi_border 
     }
 }
 
-/* -------------------------------------------------------------------------------------------- the one asked for */
+/* ------------------------------------------------------------------------------------------- the one asked for */
 
 // By how much an area grows with a displacement, which is divided by the roots of inverse masses.
 static double growth(const mspringi_pencil *pencil, const mspringi_area *area, const double *vector) {

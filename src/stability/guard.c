@@ -180,12 +180,11 @@ mspring_result mspringi_guard_reserve(mspring_network *network, mspring_guard po
                                                                     : result;
 }
 
-// Solvers without a border have forces of areas from the start of a substep; but one whose speeds are clamped takes
-// any step.
+// Solvers without a border have forces of areas without springs all around from the start of a substep; but one
+// whose speeds are clamped takes any step.
 static mspring_result check_areas(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_areas *areas = &network->areas;
-    if (areas->swept + areas->unswept == 0 || (double)attempt->h <= areas->longest ||
-        attempt->solver == &mspringi_clamped)
+    if (areas->unringed == 0 || (double)attempt->h <= areas->longest || attempt->solver == &mspringi_clamped)
         return MSPRING_OK;
     return mspringi_fail(
         &network->message, MSPRING_ERROR_UNSTABLE,

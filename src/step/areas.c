@@ -28,20 +28,23 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
             wake_corners(network, &a->list[i]);
 }
 
-// Whether the solver's sweeps have areas of cells in them.
-static bool sweeps_cells(const mspringi_attempt *attempt) {
-    return attempt->solver->ops->has_border;
+// Whether the solver's substeps have an area in them: the sweeps that of a cell, a linear system any with springs
+// all around.
+static bool is_held(const mspringi_attempt *attempt, const mspringi_area *area) {
+    return (attempt->solver->ops->has_border && area->cell != MSPRINGI_NO_CELL) ||
+           (attempt->solver->ops->holds_areas && area->is_ringed);
 }
 
 static bool is_quiet(const mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_areas *a = &network->areas;
-    return (a->unswept == 0 && (a->swept == 0 || sweeps_cells(attempt))) || mspringi_sleep_is_whole(network);
+    const mspringi_solver_ops *ops = attempt->solver->ops;
+    const uint32_t forces = ops->has_border ? a->unswept : ops->holds_areas ? a->unringed : a->swept + a->unswept;
+    return forces == 0 || mspringi_sleep_is_whole(network);
 }
 
 static mspringi_field before_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
                                      mspringi_field base) {
     const mspringi_areas *a = &network->areas;
-    const bool is_swept = sweeps_cells(attempt);
     (void)substep;
     if (is_quiet(network, attempt))
         return base;
@@ -50,7 +53,7 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
     else
         mspringi_field_clear(network, a->force);
     for (size_t i = 0; i < a->count; ++i)
-        if (!a->list[i].is_open && !(is_swept && a->list[i].cell != MSPRINGI_NO_CELL))
+        if (!a->list[i].is_open && !is_held(attempt, &a->list[i]))
             mspringi_area_push(network, &a->list[i], a->force);
     return a->force;
 }

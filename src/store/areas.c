@@ -111,8 +111,7 @@ void mspringi_area_push(const mspring_network *network, const mspringi_area *are
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------- outline
- */
+/* ----------------------------------------------------------------------------------------------------- outline */
 
 bool mspringi_area_is_open(const mspring_network *network, const mspringi_area *area) {
     const mspringi_topology *t = &network->topology;
@@ -133,6 +132,13 @@ bool mspringi_area_is_open(const mspring_network *network, const mspringi_area *
     return false;
 }
 
+static bool is_ringed(const mspring_network *network, const mspringi_area *area) {
+    for (uint32_t i = 0; i < area->count; ++i)
+        if (network->areas.corners[area->first + i].spring == MSPRING_NONE)
+            return false;
+    return true;
+}
+
 static mspring_id spring_between(const mspring_network *network, mspring_id a, mspring_id b) {
     const uint32_t there = network->topology.slot_of_particle[b];
     mspringi_around around = mspringi_around_begin(network, a);
@@ -144,8 +150,7 @@ static mspring_id spring_between(const mspring_network *network, mspring_id a, m
     return MSPRING_NONE;
 }
 
-/* -------------------------------------------------------------------------------------------------------- bounds
- */
+/* ------------------------------------------------------------------------------------------------------ bounds */
 
 // In the shape that it was added in g . u is the sum of g_i . (u_i - u'), whatever u' is, as all g add up to 0.
 // With the mean of u by the sizes |g| for u', (g . u)^2 is at most the sum of |g_i| |g_j| (u_i - u_j)^2 over all
@@ -178,8 +183,7 @@ double mspringi_area_largest(const mspring_network *network, const mspringi_area
     return first + second;
 }
 
-/* ------------------------------------------------------------------------------------------------------ the list
- */
+/* ---------------------------------------------------------------------------------------------------- the list */
 
 mspring_result mspringi_areas_reserve(mspring_network *network, size_t areas, size_t corners) {
     mspringi_areas *a = &network->areas;
@@ -245,8 +249,7 @@ void mspringi_areas_clear(mspring_network *network) {
     network->areas.changes++;
 }
 
-/* ------------------------------------------------------------------------------------------- what follows of them
- */
+/* ---------------------------------------------------------------------------------------- what follows of them */
 
 bool mspringi_cell_at(const mspring_network *network, uint32_t slot, uint32_t corners[4]) {
     const mspringi_topology *t = &network->topology;
@@ -312,9 +315,11 @@ static void find_longest(mspring_network *network) {
     double largest = 0.0;
     mspringi_field_clear(network, a->force);
     for (size_t i = 0; i < a->count; ++i)
-        mspringi_area_weigh(network, &a->list[i], a->force.x);
+        if (!a->list[i].is_ringed)
+            mspringi_area_weigh(network, &a->list[i], a->force.x);
     for (size_t i = 0; i < a->count; ++i)
-        largest = fmax(largest, mspringi_area_largest(network, &a->list[i], a->force.x));
+        if (!a->list[i].is_ringed)
+            largest = fmax(largest, mspringi_area_largest(network, &a->list[i], a->force.x));
     a->longest = largest > 0.0 ? 2.0 / sqrt(largest) : INFINITY;
 }
 
@@ -326,7 +331,7 @@ void mspringi_areas_refresh(mspring_network *network) {
         now.layouts == seen->layouts && now.masses == seen->masses)
         return;
     a->seen = now;
-    a->swept = a->unswept = 0;
+    a->swept = a->unswept = a->unringed = 0;
     if (!a->cells)
         return;
     const size_t cells = (size_t)2 * MSPRINGI_WIDTH * network->topology.lattice_blocks;
@@ -338,8 +343,10 @@ void mspringi_areas_refresh(mspring_network *network) {
         mspringi_area *area = &a->list[i];
         area->cell = MSPRINGI_NO_CELL;
         area->is_open = mspringi_area_is_open(network, area);
+        area->is_ringed = is_ringed(network, area);
         if (area->is_open)
             continue;
+        a->unringed += !area->is_ringed;
         if (enter_cell(network, area))
             a->swept++;
         else

@@ -37,7 +37,7 @@ void mspringi_areas_refresh(mspring_network *network);
 /// none at this slot.
 bool mspringi_cell_at(const mspring_network *network, uint32_t slot, uint32_t corners[4]);
 
-/* ------------------------------------------------------------------------------------------------ one area */
+/* ---------------------------------------------------------------------------------------------------- one area */
 
 bool mspringi_area_is_open(const mspring_network *network, const mspringi_area *area);
 /// A, m^2.

@@ -232,8 +232,9 @@ typedef struct mspringi_area {
     mspring_area_kind kind;
     uint32_t first, count; ///< of its corners
     float stiffness, pressure, fill;
-    bool is_open;  ///< a spring of its outline was not whole when the step began
-    uint32_t cell; ///< where in areas.cells the sweep finds it; MSPRINGI_NO_CELL: nowhere
+    bool is_open;   ///< a spring of its outline was not whole when the step began
+    bool is_ringed; ///< each side of its outline has a spring
+    uint32_t cell;  ///< where in areas.cells the sweep finds it; MSPRINGI_NO_CELL: nowhere
     double rest_area;
 } mspringi_area;
 #define MSPRINGI_NO_CELL UINT32_MAX
@@ -262,7 +263,8 @@ typedef struct mspringi_areas {
     // What follows from these, the springs and the layout; see mspringi_areas_refresh().
     mspringi_areas_seen seen;
     uint32_t swept, unswept; ///< closed areas that the explicit solver's sweeps have in them, and others
-    double longest;          ///< substep that is stable with forces of areas alone, s
+    uint32_t unringed;       ///< and those without springs all around
+    double longest;          ///< substep that is stable with forces of these alone, s
     float *cells;            ///< [lattice blocks][2][lane] half the force per distance at area 0, and its slope
     mspringi_field force;    ///< from outside and of areas, in a substep
 } mspringi_areas;

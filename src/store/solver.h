@@ -54,6 +54,7 @@ struct mspringi_solver_ops {
     bool has_herds;      ///< sweeps small trees in herds
     bool can_add;        ///< springs may be added
     bool holds_grips;    ///< its substeps have grips in them, but for those of particles that are alone
+    bool holds_areas;    ///< its substeps have areas in them that springs are all around
     bool holds_bodies;   ///< its substeps have contact between bodies in them
 
     // Life. create: for a network that is otherwise complete, or of which there are the layout and what springs and

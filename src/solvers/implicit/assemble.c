@@ -231,9 +231,11 @@ void mspringi_assemble(const mspringi_substep_of *substep, mspringi_mate *mate) 
     assemble_panels(network, mate);
     clear_others(network, slots);
     mspringi_meet(mate);
-    if (network->topology.leftover_count > 0) {
-        if (mate->index == 0)
+    if (network->topology.leftover_count > 0 || network->areas.count > 0) {
+        if (mate->index == 0) {
             assemble_leftover(network);
+            mspringi_areas_add_terms(network);
+        }
         mspringi_meet(mate);
     }
     for (size_t at = slots.first; mspringi_next_slots(network, slots, &at, &run);) {

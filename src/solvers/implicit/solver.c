@@ -179,7 +179,7 @@ static void load(mspring_network *network, void *object, const uint8_t *from, si
 }
 
 #define BOTH                                                                                                       \
-    .takes_one = true, .holds_grips = true, .holds_bodies = true, .create = create, .build = build, .fits = fits, .adjust = adjust,      \
+    .takes_one = true, .holds_grips = true, .holds_bodies = true, .holds_areas = true, .create = create, .build = build, .fits = fits, .adjust = adjust,      \
     .destroy = destroy, .relocate = relocate, .reserve = reserve, .get_def = get_def, .take_over = take_over,      \
     .get_basis = get_basis, .set_basis = set_basis, .substeps = substeps, .keep = keep, .restore = restore,        \
     .forget = forget, .clear_slot = clear_slot, .rest_slot = rest_slot, .clear_spring = clear_spring,              \

@@ -225,8 +225,10 @@ void mspringi_budget_measure(measuring *all) {
         mspringi_grips_account(all);
         mspringi_bodies_account(all);
     }
-    if (!all->knows_elastic)
-        add_springs(all);
+    if (all->knows_elastic)
+        return;
+    add_springs(all);
+    mspringi_areas_account(network);
 }
 
 /* -------------------------------------------------------------------------------------------- work of pins */

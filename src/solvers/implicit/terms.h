@@ -5,6 +5,7 @@
 ///   terms.c      the floor
 ///   held.c       grips
 ///   bodies.c     contact between bodies
+///   areas.c      areas
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_TERMS_H
@@ -45,6 +46,11 @@ bool mspringi_grips_review(mspring_network *network, float alpha);
 void mspringi_grips_pass(mspring_network *network, float h);
 /// Add what they have given to components to the sums after a substep.
 void mspringi_grips_account(const mspringi_measuring *all);
+
+/// Add areas that springs are all around to the system, once the springs are assembled; and their energies to those of
+/// components.
+void mspringi_areas_add_terms(const mspring_network *network);
+void mspringi_areas_account(const mspring_network *network);
 
 /// Of contact between bodies: whether any may touch in this substep.
 static inline bool mspringi_bodies_are_near(const mspring_network *network) {

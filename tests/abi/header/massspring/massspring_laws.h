@@ -114,9 +114,11 @@ MSPRING_API mspring_result MSPRING_CALL mspring_area_def_init(mspring_area_def *
 ///
 /// An elastic area around a lattice cell is part of the explicit solver's sweeps. With others the explicit solver takes
 /// substeps one by one, as with a hook. mspring_network_stable_dt() counts areas; its bound for any shape counts those
-/// in the shape that they were added in. Implicit and direct substeps have forces of areas from their start: a
-/// substep that is too long for those is rejected as unstable. mspring_network_settle() and mspring_network_tune()
-/// reject networks with areas.
+/// in the shape that they were added in.
+///
+/// The implicit and the direct solver have an area in their linear system if a spring was on each side of its outline
+/// when it was added. Forces of others they take from the start of a substep, and reject one that is too long for these
+/// as unstable. mspring_network_settle() and mspring_network_tune() reject networks with areas.
 ///
 /// @param count  3 to MSPRING_MAX_AREA_PARTICLES
 /// @param area   receives its id, which is never given again; may be NULL

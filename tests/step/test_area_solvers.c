@@ -1,0 +1,121 @@
+/// @file test_area_solvers.c
+/// Areas in the linear systems of the implicit and the direct solver: the same rest, the same motion, and stable.
+///
+/// SPDX-License-Identifier: MIT
+#include <stdio.h>
+
+#include "areas.h"
+
+static const mspring_solver linear_solvers[] = {MSPRING_SOLVER_IMPLICIT, MSPRING_SOLVER_DIRECT};
+
+static double radius_of(const mspring_network *network, mspring_id particle) {
+    const support_point p = support_position(network, particle);
+    return hypot(p.x, p.y);
+}
+
+// A balloon comes to rest where that of the explicit solver does, whatever the substep.
+static void other_solvers_have_areas(void **state) {
+    (void)state;
+    for (size_t i = 0; i < COUNT_OF(linear_solvers); i++) {
+        mspring_network_def def = support_def(0, 1);
+        def.global_damping = 4;
+        mspring_network *explicit_one = balloon(100, false, def, NULL);
+        def.solver = linear_solvers[i];
+        mspring_network *other = balloon(100, false, def, NULL), *slow = balloon(100, false, def, NULL);
+        support_steps(explicit_one, 4000, 0.004);
+        support_steps(other, 1000, 0.016);
+        support_steps(slow, 1000, 1);
+        for (uint32_t p = 0; p < SKIN; p++) {
+            check_near(radius_of(other, p), radius_of(explicit_one, p), 1e-5);
+            check_near(radius_of(slow, p), radius_of(explicit_one, p), 1e-5);
+        }
+        mspring_network_destroy(explicit_one);
+        mspring_network_destroy(other);
+        mspring_network_destroy(slow);
+    }
+}
+
+// With the substep the way of a kicked block comes near to that of the explicit solver; of order 2.
+static void other_solvers_follow_motion(void **state) {
+    (void)state;
+    for (size_t i = 0; i < COUNT_OF(linear_solvers); i++) {
+        double errors[2] = {0, 0};
+        mspring_network_def def = support_def(0, 400);
+        mspring_network *networks[3];
+        for (int n = 0; n < 3; n++) {
+            def.substeps = n == 0 ? 400 : 8u << n;
+            def.solver = n == 0 ? MSPRING_SOLVER_EXPLICIT : linear_solvers[i];
+            def.iterations = 200;
+            networks[n] = sheet_network(&jelly, &def);
+            (void)add_cells(networks[n], 200);
+            support_kick(networks[n], 0, 3);
+            support_kick(networks[n], 99, -2);
+            support_steps(networks[n], 6, 1.0 / 64);
+        }
+        for (mspring_id p = 0; p < 100; p++)
+            for (int n = 1; n < 3; n++)
+                errors[n - 1] = fmax(errors[n - 1],
+                                     fabs(support_position(networks[n], p).x - support_position(networks[0], p).x));
+        printf("solver %d: %g m off with 16 substeps, %g with 32\n", (int)linear_solvers[i], errors[0], errors[1]);
+        assert_true(errors[1] < 1e-3 && errors[1] < 0.5 * errors[0]);
+        for (int n = 0; n < 3; n++)
+            mspring_network_destroy(networks[n]);
+    }
+}
+
+// However stiff, a block that spins and swells gets no energy from nowhere, and keeps its momenta.
+static void stiff_areas_are_stable_in_any_substep(void **state) {
+    (void)state;
+    for (int i = 0; i < 6; i++) {
+        sheet s = jelly;
+        s.stiffness = 1e6f;
+        mspring_network_def def = support_def(0, 1);
+        def.solver = linear_solvers[i % 2];
+        def.integrator = (mspring_integrator)(i / 2);
+        mspring_network *network = sheet_network(&s, &def);
+        (void)add_cells(network, i % 3 == 0 ? 3e6f : 7e5f);
+        for (uint32_t p = 0; p < 100; p++) {
+            const float vx = -(float)(p / 10) + 4.5f, vy = (float)(p % 10) - 4.5f;
+            check_ok(mspring_network_set_velocities(network, p, 1, &vx, &vy, 1));
+        }
+        support_kick(network, 0, 5);
+        double least = support_energy(network), x, y, spin, end_x, end_y, end_spin;
+        check_ok(mspring_network_momentum(network, &x, &y, &spin));
+        for (int step = 0; step < 200; step++) {
+            support_steps(network, 1, 1.0 / 64);
+            const double energy = support_energy(network);
+            assert_true(energy <= least * (1 + 1e-5));
+            least = energy;
+        }
+        check_ok(mspring_network_momentum(network, &end_x, &end_y, &end_spin));
+        check_near(end_x, x, 1e-4); // of 10 kg at some 5 m/s
+        check_near(end_spin, spin, 1e-4 * fabs(spin));
+        assert_int_equal(inverted(network, &s), 0);
+        mspring_network_destroy(network);
+    }
+}
+
+// Areas without springs all around are forces from the start of a substep, up to a limit that the error tells.
+static void others_are_forces(void **state) {
+    (void)state;
+    static const mspring_id corners[] = {0, 9, 99, 90};
+    mspring_network_def def = support_def(0, 1);
+    def.solver = MSPRING_SOLVER_DIRECT;
+    mspring_network *network = sheet_network(&jelly, &def);
+    const mspring_area_def area = elastic(1000);
+    check_ok(mspring_network_add_area(network, &area, corners, 4, NULL));
+    support_steps(network, 10, 0.004);
+    check_error(mspring_network_step(network, 0.1), MSPRING_ERROR_UNSTABLE);
+    check_contains(mspring_network_error(network), "areas");
+    mspring_network_destroy(network);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(other_solvers_have_areas),
+        cmocka_unit_test(other_solvers_follow_motion),
+        cmocka_unit_test(stiff_areas_are_stable_in_any_substep),
+        cmocka_unit_test(others_are_forces),
+    };
+    return cmocka_run_group_tests_name("area_solvers", tests, NULL, NULL);
+}
