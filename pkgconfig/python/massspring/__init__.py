@@ -23,6 +23,7 @@ from ._types import ClosedError, Error, Record, StaleViewError
 from .batch import Batch
 from .builder import Builder, material
 from .network import Network
+from .sweeps import SweepResult, sweep
 from .tuning import TuneTable
 
 
@@ -41,6 +42,7 @@ def simd_supported() -> str:
     return text_of(lib.mspring_simd_name(lib.mspring_simd_supported()))
 
 
-__all__ = ["Batch", "Bounds", "Builder", "ClosedError", "Energy", "Error", "Momentum", "Network", "Record", "StaleViewError",
-           "StateView", "TuneTable", "__version__", "features", "ffi", "lib", "material", "simd_supported", "version"]
+__all__ = ["Batch", "Bounds", "Builder", "ClosedError", "Energy", "Error", "Momentum", "Network", "Record",
+           "StaleViewError", "StateView", "SweepResult", "TuneTable", "__version__", "features", "ffi", "lib", "material",
+           "simd_supported", "sweep", "version"]
 __all__ += _header.__all__
