@@ -109,9 +109,13 @@ mspring_result mspringi_check_coefficients(mspringi_message *message, const char
     if (!mspringi_in_range(stiffness, 0.0f, LARGEST_VALUE))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s %zu: stiffness is %g, it must be 0 to 1e30", what,
                              index, (double)stiffness);
-    if (flags & ~(uint32_t)(MSPRING_SPRING_RELATIVE | MSPRING_SPRING_DAMPING_RATIO))
+    if (flags & ~(uint32_t)(MSPRINGI_KEPT_SPRING_FLAGS | MSPRING_SPRING_DAMPING_RATIO))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s %zu: unknown spring flags 0x%x", what, index,
                              (unsigned)flags);
+    if (flags & MSPRING_SPRING_PULL_ONLY && flags & MSPRING_SPRING_PUSH_ONLY)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "%s %zu: MSPRING_SPRING_PULL_ONLY and MSPRING_SPRING_PUSH_ONLY exclude each other",
+                             what, index);
     const bool is_ratio = flags & MSPRING_SPRING_DAMPING_RATIO;
     if (!mspringi_in_range(damping, 0.0f, is_ratio ? LARGEST_RATIO : LARGEST_VALUE))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s %zu: damping%s is %g, it must be 0 to %s", what,
@@ -218,7 +222,7 @@ static void append_spring(mspring_builder *builder, const mspring_spring_def *de
         .stiffness = def->stiffness,
         .damping = mspringi_find_damping(def->stiffness, def->damping, def->flags, mass_a, mass_b),
         .rest_length = rest_length,
-        .flags = def->flags & MSPRING_SPRING_RELATIVE};
+        .flags = def->flags & MSPRINGI_KEPT_SPRING_FLAGS};
     mspringi_builder_put_limits(builder, builder->spring_count - 1, MSPRINGI_LIMITS_OF(def));
 }
 

@@ -42,6 +42,9 @@ static inline float mspringi_strain_of(float length, float kept) {
     return (length - mspringi_read_length(kept)) / mspringi_strain_length(kept);
 }
 
+/// Flags of definitions that a spring keeps.
+#define MSPRINGI_KEPT_SPRING_FLAGS (MSPRING_SPRING_RELATIVE | MSPRING_SPRING_PULL_ONLY | MSPRING_SPRING_PUSH_ONLY)
+
 typedef struct mspringi_spring {
     mspring_id a, b;
     float stiffness, damping, rest_length;

@@ -157,7 +157,7 @@ static void join_cells(mspring_builder *builder, const mspring_lattice_def *def,
                           .stiffness = stiffness,
                           .damping = mspringi_find_damping(stiffness, damping, flags, ma->mass, mb->mass),
                           .rest_length = (float)(def->spacing * cells[kind]),
-                          .flags = flags & MSPRING_SPRING_RELATIVE};
+                          .flags = flags & MSPRINGI_KEPT_SPRING_FLAGS};
     mspringi_builder_put_limits(builder, builder->spring_count - 1, join_limits(ma, mb));
 }
 

@@ -208,7 +208,7 @@ static mspring_result append_edge(mspring_builder *builder, const mspring_mesh_d
         .stiffness = stiffness,
         .damping = mspringi_find_damping(stiffness, def->damping, def->spring_flags, mass_low, mass_high),
         .rest_length = rest_length,
-        .flags = def->spring_flags & MSPRING_SPRING_RELATIVE};
+        .flags = def->spring_flags & MSPRINGI_KEPT_SPRING_FLAGS};
     return MSPRING_OK;
 }
 

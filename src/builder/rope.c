@@ -82,7 +82,7 @@ static MSPRINGI_NOINLINE mspring_result add_rope(mspring_builder *builder, const
             .stiffness = def->stiffness,
             .damping = mspringi_find_damping(def->stiffness, def->damping, def->spring_flags, mass_a, mass_b),
             .rest_length = segment_length,
-            .flags = def->spring_flags & MSPRING_SPRING_RELATIVE};
+            .flags = def->spring_flags & MSPRINGI_KEPT_SPRING_FLAGS};
     }
     mspringi_builder_put_limits(builder, spring, MSPRINGI_LIMITS_OF(def));
     for (uint32_t i = 0; i < capacity && i <= segments; ++i)

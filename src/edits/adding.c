@@ -171,6 +171,9 @@ static mspring_result check_kind(mspring_network *network, mspring_id id, const 
                              "spring %u is relative, but the network was created without any that is "
                              "(MSPRING_NETWORK_RESERVE_RELATIVE)",
                              (unsigned)id);
+    if (def->flags & (MSPRING_SPRING_PULL_ONLY | MSPRING_SPRING_PUSH_ONLY))
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "spring %u: springs that only pull or only push come from a builder", (unsigned)id);
     if (def->damping > 0.0f && network->parts <= MSPRINGI_DAMPING)
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                              "spring %u: damping is %g, but the network was created without room for any "

@@ -1,6 +1,7 @@
 /// What a network holds, put into a builder: to store it, to join it to others, to split it.
 #include "base/cpu.h"
 #include "builder/builder.h"
+#include "store/one_way.h"
 #include "store/properties.h"
 #include "store/springs.h"
 
@@ -111,7 +112,8 @@ static void append_spring(mspring_builder *builder, const mspring_network *netwo
         .stiffness = nominal.stiffness,
         .damping = nominal.damping,
         .rest_length = mspringi_place_get(network, place).rest_length,
-        .flags = mspringi_spring_is_relative(network, s) ? MSPRING_SPRING_RELATIVE : 0,
+        .flags = (mspringi_spring_is_relative(network, s) ? MSPRING_SPRING_RELATIVE : 0u) |
+                 mspringi_side_flags(network, s),
     };
     mspringi_builder_put_limits(builder, builder->spring_count - 1, limits);
 }

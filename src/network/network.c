@@ -19,6 +19,7 @@
 #include "store/alike.h"
 #include "store/fractions.h"
 #include "store/growth.h"
+#include "store/one_way.h"
 #include "store/rests.h"
 #include "store/springs.h"
 #include "store/store.h"
@@ -231,7 +232,7 @@ static mspring_result note_turned(mspring_network *network, const mspring_builde
 
 // Give springs the strains at which something happens to them.
 static mspring_result set_limits(mspring_network *network, const mspring_builder *builder) {
-    mspring_result result = MSPRING_OK;
+    mspring_result result = mspringi_one_way_create(network, builder);
     for (size_t s = 0; result == MSPRING_OK && s < builder->limit_count; ++s)
         result = mspringi_strain_reserve_limits(network, builder->limits[s]);
     for (size_t s = 0; result == MSPRING_OK && s < builder->limit_count; ++s)

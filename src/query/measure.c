@@ -4,6 +4,7 @@
 #include "kernels/spring_law.h"
 #include "query/measure.h"
 #include "store/areas.h"
+#include "store/one_way.h"
 #include "store/springs.h"
 
 static bool is_pinned(const mspring_network *network, mspring_id particle) {
@@ -48,7 +49,11 @@ float mspringi_spring_force(const mspring_network *network, mspring_id spring) {
     double rate;
     const double length = spring_length(network, &r, &rate), stretch = length - (double)r.rest_length;
     const double pull = MSPRINGI_LAW_FORCE(MSPRINGI_TIMES, stiffness, stretch);
-    return length > 0.0 ? (float)(pull + MSPRINGI_LAW_DAMPING_FORCE(MSPRINGI_TIMES, damping, rate)) : 0.0f;
+    const double force = pull + MSPRINGI_LAW_DAMPING_FORCE(MSPRINGI_TIMES, damping, rate);
+    const int side = mspringi_side_of(network, spring);
+    if (mspringi_is_slack(side, stretch) || mspringi_is_slack(side, force))
+        return 0.0f;
+    return length > 0.0 ? (float)force : 0.0f;
 }
 
 // What a spring that has flowed has stored by its hardening.
@@ -93,7 +98,8 @@ mspring_result mspring_network_energy(const mspring_network *network, double *ki
         const mspringi_spring_values r = mspringi_spring_get(network, i);
         double rate;
         const double stretch = spring_length(network, &r, &rate) - (double)r.rest_length;
-        elastic_sum += 0.5 * (double)r.stiffness * stretch * stretch;
+        if (!mspringi_is_slack(mspringi_side_of(network, i), stretch))
+            elastic_sum += 0.5 * (double)r.stiffness * stretch * stretch;
         if (network->plastic.nominal)
             elastic_sum += hardening_energy(network, i, (double)r.stiffness);
     }

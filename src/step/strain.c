@@ -9,6 +9,7 @@
 #include "store/changed.h"
 #include "store/events.h"
 #include "store/growth.h"
+#include "store/one_way.h"
 #include "store/properties.h"
 #include "store/springs.h"
 #include "store/stages.h"
@@ -79,16 +80,26 @@ static float total_stretch(const mspring_network *network, const mspringi_spring
     return nominal == values->rest_length ? stretch : stretch_of(network, &whole);
 }
 
+static bool is_slack(const mspring_network *network, mspringi_place place, const mspringi_spring_values *values) {
+    if (!network->one_way.side)
+        return false;
+    const mspring_id id = mspringi_around_find(network, network->topology.particle_of_slot[values->base], place);
+    return mspringi_is_slack(mspringi_side_of(network, id), (double)mspringi_spring_strain(network, id));
+}
+
 // Break, stress or relax the spring in this place, if it is time for that.
 static void look_at(mspring_network *network, mspringi_place place) {
     const mspringi_topology *t = &network->topology;
     mspringi_strain *strain = &network->strain;
     const mspringi_spring_values values = mspringi_place_get(network, place);
-    const float stretch = stretch_of(network, &values), whole = mspringi_strain_length(values.rest_length);
+    const float whole = mspringi_strain_length(values.rest_length);
+    float stretch = stretch_of(network, &values);
     const float stress_at = strain->stress_strain ? strain->stress_strain[place] * whole : INFINITY;
     const bool is_stressed = has_bit(strain->stressed, place);
     const float nominal = nominal_of(network, place, values.rest_length);
-    const float total = total_stretch(network, &values, stretch, nominal);
+    const bool slack = is_slack(network, place, &values); // what it does not feel neither breaks nor stresses it
+    stretch = slack ? 0.0f : stretch;
+    const float total = slack ? 0.0f : total_stretch(network, &values, stretch, nominal);
     mspring_event event = {.other = MSPRING_NONE};
     if (total > strain->break_strain[place] * mspringi_strain_length(nominal))
         event.kind = MSPRING_EVENT_BROKEN;

@@ -199,6 +199,23 @@ typedef struct mspringi_strain {
     bool relaxes;              ///< so with a relax strain that is not the default
 } mspringi_strain;
 
+/// A spring that only pulls or only pushes, in a step.
+typedef struct mspringi_one_way_spring {
+    mspringi_place place;
+    float stiffness, damping; ///< where it acts
+    uint32_t due;             ///< substep in which it acts whatever is expected; MSPRING_NONE: in none
+    int32_t side;             ///< 1: it pulls; -1: it pushes
+    bool acts;                ///< its records have these values, not 0
+} mspringi_one_way_spring;
+
+/// Springs that only pull or only push; side is NULL if there is none.
+typedef struct mspringi_one_way {
+    int8_t *side;                  ///< [reserve.first_spring] see mspringi_side_of()
+    mspringi_one_way_spring *list; ///< [count] those of the step that are live
+    uint32_t count, listed;
+    bool has_missed; ///< one did not act in a substep in which it should have
+} mspringi_one_way;
+
 /// What springs yield at, and what has become of them, by place; NULL as long as none yields. See step/yielding.c.
 typedef struct mspringi_plastic {
     float *yield_strain, *hardening, *plastic_limit;
@@ -464,6 +481,7 @@ struct mspring_network {
     mspringi_grips grips;
     mspringi_strain strain;
     mspringi_plastic plastic;
+    mspringi_one_way one_way;
     mspringi_areas areas;
     mspringi_events events;
     mspringi_components components;

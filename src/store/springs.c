@@ -3,6 +3,7 @@
 
 #include "store/alike.h"
 #include "store/changed.h"
+#include "store/one_way.h"
 #include "store/rests.h"
 #include "store/stages.h"
 
@@ -91,6 +92,7 @@ mspringi_ends mspringi_spring_ends(const mspring_network *network, mspring_id sp
 uint32_t mspringi_spring_flags(const mspring_network *network, mspring_id spring) {
     const mspringi_place place = mspringi_place_of(&network->topology, spring);
     return (mspringi_spring_is_relative(network, spring) ? MSPRING_SPRING_RELATIVE : 0u) |
+           mspringi_side_flags(network, spring) |
            (mspringi_place_is_live(network, place) ? 0u : MSPRING_SPRING_BROKEN) |
            (mspringi_place_is_stressed(network, place) ? MSPRING_SPRING_STRESSED : 0u);
 }

@@ -19,6 +19,7 @@ typedef struct mspringi_statics_springs {
     uint32_t count;
     uint32_t *a, *b;                 ///< [count] particles
     double *stiffness, *rest_length; ///< [count]
+    double *side;                    ///< [count] 1: it only pulls; -1: it only pushes; 0: it does both
     double *x, *y;        ///< [count] from a to b at the start. Kept apart from the displacements, these and
                           ///< their small differences are exact to more digits than positions would be.
     double *xx, *xy, *yy; ///< [count] blocks of the stiffness matrix

@@ -8,6 +8,7 @@
 #include "step/origin.h"
 #include "store/changed.h"
 #include "store/network.h"
+#include "store/one_way.h"
 #include "store/springs.h"
 
 /* ----------------------------------------------------------------------------------------------------- filling */
@@ -50,6 +51,7 @@ static void fill_springs(mspringi_statics *statics, const mspring_network *netwo
         const uint32_t b = s->b[i] = network->topology.particle_of_slot[values.tip];
         s->stiffness[i] = (double)values.stiffness;
         s->rest_length[i] = (double)mspringi_read_length(values.rest_length);
+        s->side[i] = (double)mspringi_side_of(network, spring);
         s->x[i] = statics->start.x[b] - statics->start.x[a];
         s->y[i] = statics->start.y[b] - statics->start.y[a];
     }

@@ -1,5 +1,5 @@
 /// @file massspring_laws.h
-/// Material laws beyond the linear spring: springs that yield, so that what bends stays bent; areas that keep jelly
+/// Material laws beyond the linear spring: springs that yield, so that what bends stays bent; ropes that only pull; areas that keep jelly
 /// from turning inside out, and balloons inflated.
 ///
 ///     plasticity  network_get_plasticity
@@ -34,6 +34,22 @@
 /// a spring would yield on the way to rest. mspring_network_tune() compares as if they did not, unless a scene has
 /// MSPRING_TUNE_SCENE_BREAKING. The guide examples/guides/materials.md has examples.
 ///
+/// **Springs that only pull, or only push.** Give a definition the flag MSPRING_SPRING_PULL_ONLY or
+/// MSPRING_SPRING_PUSH_ONLY: a slack cable does not push, a prop that stands on the ground does not hold it. With L the
+/// length, r the rest length:
+///
+///     it pulls    max(0, k (L - r) + c dL/dt) where L > r, else 0
+///     it pushes   max(0, k (r - L) - c dL/dt) where L < r, else 0
+///
+/// Slack springs have no elastic energy, no force, and neither break nor yield; their strain is what it is. They stay
+/// live: stable_dt, components and sleep take them as all others. mspring_network_settle() knows them.
+/// mspring_network_tune() compares trajectories as if they did both. mspring_network_get_spring_flags() reports the
+/// flags. They are given at creation: mspring_network_add_springs() rejects them.
+///
+/// Explicit substeps have the forces of their start, implicit and direct ones those of their end: such a step is taken
+/// twice where a slack spring tightens in it. While one is awake, the explicit solver takes substeps one by one, as with
+/// a hook, and looks at all of them before each.
+///
 /// SPDX-License-Identifier: MIT
 #ifndef MASSSPRING_MASSSPRING_LAWS_H
 #define MASSSPRING_MASSSPRING_LAWS_H
@@ -43,6 +59,12 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/// More flags of mspring_spring_def, and of all that has spring_flags. A spring has at most one of them.
+enum {
+    MSPRING_SPRING_PULL_ONLY = 1u << 2, ///< no force where it is shorter than its rest length: rope, cable, string
+    MSPRING_SPRING_PUSH_ONLY = 1u << 3  ///< no force where it is longer: prop, stop
+};
 
 /// Hardening and plastic limit of springs for which none was given.
 #define MSPRING_HARDENING_DEFAULT 0.1f
