@@ -22,7 +22,7 @@ typedef struct jbeam_file {
 
 // What holds for the rows that follow: BeamNG's defaults at first (kg, N/m, N s/m, N).
 typedef struct jbeam_state {
-    double weight, spring, damping, strength, precompression;
+    double weight, spring, damping, deform, strength, precompression;
     bool fixed, optional;
     text_span type;
 } jbeam_state;
@@ -31,6 +31,7 @@ static const jbeam_state defaults = {
     .weight = 25,
     .spring = 4300000,
     .damping = 580,
+    .deform = 220000,
     .strength = 1e38,
     .precompression = 1,
 };
@@ -107,6 +108,8 @@ static bool read_setting(const jbeam_file *file, const json_value *from, jbeam_s
         return read_number(file, from, 0, MODEL_MAX_VALUE, &state->spring);
     if (json_is(from->key, "beamDamp"))
         return read_number(file, from, 0, MODEL_MAX_VALUE, &state->damping);
+    if (json_is(from->key, "beamDeform"))
+        return read_number(file, from, 0, 1e38, &state->deform);
     if (json_is(from->key, "beamStrength"))
         return read_number(file, from, 0, 1e38, &state->strength);
     if (json_is(from->key, "beamPrecompression"))
@@ -176,12 +179,13 @@ static bool read_beam(jbeam_file *file, const json_value *row, const uint32_t co
                        .stiffness = state->spring,
                        .damping = state->damping,
                        .rest = state->precompression};
-    double length = model_distance(file->made, beam.a, beam.b);
-    if (state->strength < unbreakable && length > 0 && beam.stiffness > 0)
-        beam.break_strain = state->strength / (beam.stiffness * length);
-    if (!(beam.break_strain <= MODEL_MAX_VALUE))
-        beam.break_strain = 0;
-    if (state->type.length && !json_is(state->type, "|NORMAL")) {
+    if (state->strength < unbreakable)
+        beam.break_strain = model_strain_at(file->made, &beam, state->strength);
+    if (state->deform < unbreakable)
+        beam.yield_strain = model_strain_at(file->made, &beam, state->deform);
+    if (json_is(state->type, "|SUPPORT")) {
+        beam.side = MSPRING_SPRING_PUSH_ONLY;
+    } else if (state->type.length && !json_is(state->type, "|NORMAL")) {
         char type[24];
         char note[64];
         snprintf(note, sizeof note, "taken as plain springs: %s", text_quote(state->type, type, sizeof type));

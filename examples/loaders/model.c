@@ -51,6 +51,12 @@ double model_distance(const model *of, uint32_t a, uint32_t b) {
     return sqrt(sum);
 }
 
+double model_strain_at(const model *of, const model_beam *beam, double force) {
+    double length = model_distance(of, beam->a, beam->b);
+    double strain = length > 0 && beam->stiffness > 0 ? force / (beam->stiffness * length) : 0;
+    return strain <= MODEL_MAX_VALUE ? strain : 0;
+}
+
 void model_free(model *unwanted) {
     free(unwanted->nodes);
     free(unwanted->beams);

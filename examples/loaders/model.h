@@ -5,6 +5,8 @@
 #ifndef LOADERS_MODEL_H
 #define LOADERS_MODEL_H
 
+#include <massspring/massspring_laws.h>
+
 #include "loaders/structure.h"
 #include "scenes/internal.h"
 
@@ -25,6 +27,8 @@ typedef struct model_beam {
     uint32_t a, b;
     double stiffness, damping; // N/m, N s/m; of a relative model fractions
     double break_strain;       // 0: never
+    double yield_strain;       // 0: never
+    uint32_t side;             // MSPRING_SPRING_PULL_ONLY, MSPRING_SPRING_PUSH_ONLY or 0
     double rest;               // rest length over the distance of its ends, > 0
 } model_beam;
 
@@ -41,6 +45,8 @@ typedef struct model {
 bool model_add_node(model *made, const model_node *node, scene_error *error);
 bool model_add_beam(model *made, const model_beam *beam, scene_error *error);
 double model_distance(const model *of, uint32_t a, uint32_t b);
+/// The strain of a beam at which its spring has that force, N; 0 if it never has.
+double model_strain_at(const model *of, const model_beam *beam, double force);
 void model_free(model *unwanted);
 
 /// Make room for one item more.

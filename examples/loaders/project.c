@@ -94,15 +94,18 @@ static bool flatten_beam(const model *from, const model_beam *beam, mspring_id a
     mspring_spring_def_init(def, sizeof *def);
     def->a = a;
     def->b = b;
-    def->flags = from->relative ? MSPRING_SPRING_RELATIVE : 0;
+    def->flags = (from->relative ? MSPRING_SPRING_RELATIVE : 0u) | beam->side;
     def->stiffness = (float)(beam->stiffness * share);
     def->damping = (float)(beam->damping * share);
     def->rest_length = (float)(rest * length);
     *break_strain = (float)(beam->break_strain / share);
+    float yield_strain = (float)fmin(beam->yield_strain / share, MSPRING_NEVER);
+    if (yield_strain > 0)
+        def->yield_strain = yield_strain;
     return true;
 }
 
-// Two springs side by side: forces add up.
+// Two springs side by side: forces add up. They act on one side only if both do, and yield only if both do.
 static void merge_springs(mspring_spring_def *into, float *break_strain, const mspring_spring_def *other,
                           float other_break_strain) {
     double k = into->stiffness;
@@ -113,6 +116,12 @@ static void merge_springs(mspring_spring_def *into, float *break_strain, const m
                             ? 0
                             : (float)((k * *break_strain + more * other_break_strain) / (k + more));
     }
+    if (k + more > 0 && into->yield_strain < MSPRING_NEVER && other->yield_strain < MSPRING_NEVER)
+        into->yield_strain = (float)((k * into->yield_strain + more * other->yield_strain) / (k + more));
+    else
+        into->yield_strain = MSPRING_NEVER;
+    if ((into->flags ^ other->flags) & (MSPRING_SPRING_PULL_ONLY | MSPRING_SPRING_PUSH_ONLY))
+        into->flags &= ~(uint32_t)(MSPRING_SPRING_PULL_ONLY | MSPRING_SPRING_PUSH_ONLY);
     into->stiffness = (float)(k + more);
     into->damping += other->damping;
 }

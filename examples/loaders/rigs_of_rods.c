@@ -12,6 +12,7 @@ static const line_style style = {.separators = ",:|", .comments = ";", .slashes 
 // What Rigs of Rods takes where a file says nothing: N/m, N s/m, N, kg.
 static const double default_stiffness = 9e6;
 static const double default_damping = 12000;
+static const double default_deform = 4e5;
 static const double default_strength = 1e6;
 static const double default_minimum_mass = 50;
 static const double camera_mass = 20;
@@ -164,17 +165,20 @@ static bool read_directive(ror_file *file, scene_error *error) {
     if (word_is(word, "set_beam_defaults")) {
         file->stiffness = default_stiffness;
         file->damping = default_damping;
+        file->deform = default_deform;
         file->strength = default_strength;
         tally_add(&file->made->used, word, 1);
         return read_setting(file, 1, "spring, N/m", &file->stiffness, error) &&
                read_setting(file, 2, "damping, N s/m", &file->damping, error) &&
+               read_setting(file, 3, "deform, N", &file->deform, error) &&
                read_setting(file, 4, "strength, N", &file->strength, error);
     }
     if (word_is(word, "set_beam_defaults_scale")) {
-        file->stiffness_scale = file->damping_scale = file->strength_scale = 1;
+        file->stiffness_scale = file->damping_scale = file->deform_scale = file->strength_scale = 1;
         tally_add(&file->made->used, word, 1);
         return read_setting(file, 1, "factor", &file->stiffness_scale, error) &&
                read_setting(file, 2, "factor", &file->damping_scale, error) &&
+               read_setting(file, 3, "factor", &file->deform_scale, error) &&
                read_setting(file, 4, "factor", &file->strength_scale, error);
     }
     if (word_is(word, "set_node_defaults")) {
@@ -234,16 +238,14 @@ static bool read_spring(ror_file *file, const spring_section *kind, scene_error 
         return false;
     if (beam.stiffness > MODEL_MAX_VALUE || beam.damping > MODEL_MAX_VALUE)
         return line_fail(reader, 0, error, "its spring or damping is above %g", MODEL_MAX_VALUE);
-    bool rope = strcmp(kind->name, "ropes") == 0;
-    bool one_way = kind->has_options && reader->word_count > 2 &&
-                   (has_letter(reader->words[2], 'r') || has_letter(reader->words[2], 's'));
-    if (rope || one_way)
-        tally_add_text(&file->made->notes, "ropes and supports, which act both ways here", 1);
-    double length = model_distance(file->made, beam.a, beam.b);
-    if (length > 0 && beam.stiffness > 0)
-        beam.break_strain = file->strength * file->strength_scale / (beam.stiffness * length);
-    if (!(beam.break_strain <= MODEL_MAX_VALUE))
-        beam.break_strain = 0;
+    bool has_options = kind->has_options && reader->word_count > 2;
+    if (strcmp(kind->name, "ropes") == 0 || (has_options && has_letter(reader->words[2], 'r')))
+        beam.side = MSPRING_SPRING_PULL_ONLY;
+    else if (has_options && has_letter(reader->words[2], 's'))
+        beam.side = MSPRING_SPRING_PUSH_ONLY;
+    beam.break_strain = model_strain_at(file->made, &beam, file->strength * file->strength_scale);
+    if (kind->has_options) // beams bend, shocks and the like do not
+        beam.yield_strain = model_strain_at(file->made, &beam, file->deform * file->deform_scale);
     return model_add_beam(file->made, &beam, error);
 }
 
@@ -393,9 +395,11 @@ bool model_read_rigs_of_rods(const char *text, size_t length, const char *name, 
         .minimum_mass = default_minimum_mass,
         .stiffness = default_stiffness,
         .damping = default_damping,
+        .deform = default_deform,
         .strength = default_strength,
         .stiffness_scale = 1,
         .damping_scale = 1,
+        .deform_scale = 1,
         .strength_scale = 1,
         .node_default = {.weight = -1},
     };

@@ -38,9 +38,9 @@ typedef struct ror_file {
     ror_wheel *wheels;
     ror_camera *cameras;
     size_t load_capacity, wheel_count, wheel_capacity, camera_count, camera_capacity;
-    double dry_mass, cargo_mass, minimum_mass; // kg; dry mass < 0: not given
-    double stiffness, damping, strength;       // set_beam_defaults: < 0: the program's own
-    double stiffness_scale, damping_scale, strength_scale;
+    double dry_mass, cargo_mass, minimum_mass;   // kg; dry mass < 0: not given
+    double stiffness, damping, deform, strength; // set_beam_defaults: < 0: the program's own
+    double stiffness_scale, damping_scale, deform_scale, strength_scale;
     ror_load node_default;
 } ror_file;
 

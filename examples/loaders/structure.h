@@ -85,8 +85,8 @@ void structure_free(structure *unwanted);
 
 /// Make a scene of it, without a probe; name is the path that the scene is named after.
 bool structure_scene(const structure *from, const char *name, scene *out, scene_error *error);
-/// Write it as a text network, which scene_network_file() reads. Break strains and relative springs have no place
-/// there: relative springs are refused.
+/// Write it as a text network, which scene_network_file() reads. Break and yield strains, one-way and relative
+/// springs have no place there: relative springs are refused.
 bool structure_write(const structure *from, const char *path, scene_error *error);
 
 #endif

@@ -189,9 +189,34 @@ static void what_is_not_read_is_counted(void **state) {
     assert_int_equal(tally_of(&made.report.ignored, "fileinfo"), 1);
     assert_int_equal(tally_of(&made.report.ignored, "other variants"), 1);
     assert_int_equal(tally_of(&made.report.used, "nodes"), 5);
-    assert_int_equal(tally_of(&made.report.notes, "ropes and supports, which act both ways here"), 1);
     assert_int_equal(made.report.pinned_particles, 1);
     assert_int_equal(made.spring_count, 2);
+    structure_free(&made);
+}
+
+static void beams_bend_pull_and_push(void **state) {
+    (void)state;
+    structure made = loaded(STRUCTURE_RIGS_OF_RODS,
+                            CART_NODES "set_beam_defaults 1e6, 100, 5e4, 2e5\nset_beam_defaults_scale 1, 1, 2, 1\n"
+                                       "beams\n0, 1, r\n1, 4, s\n0, 4\n");
+    assert_int_equal(made.spring_count, 3);
+    assert_int_equal(made.springs[0].flags, MSPRING_SPRING_PULL_ONLY);
+    assert_int_equal(made.springs[1].flags, MSPRING_SPRING_PUSH_ONLY);
+    assert_int_equal(made.springs[2].flags, 0);
+    // Twice 5e4 N is half of what breaks it.
+    for (int i = 0; i < 3; i++)
+        check_near((double)made.springs[i].yield_strain, 0.5 * (double)made.break_strain[i], 1e-6);
+    structure_free(&made);
+    made =
+        loaded(STRUCTURE_JBEAM, "{\"p\":{\"nodes\":[[\"id\",\"posX\",\"posY\",\"posZ\"],[\"a\",0,0,0],"
+                                "[\"b\",0,2,0],[\"c\",0,0,2]],\"beams\":[[\"id1:\",\"id2:\"],{\"beamSpring\":1e6},"
+                                "{\"beamDeform\":1e5},{\"beamType\":\"|SUPPORT\"},[\"a\",\"b\"],"
+                                "{\"beamType\":\"|NORMAL\"},{\"beamDeform\":\"FLT_MAX\"},[\"b\",\"c\"]]}}");
+    assert_int_equal(made.spring_count, 2);
+    assert_int_equal(made.springs[0].flags, MSPRING_SPRING_PUSH_ONLY);
+    check_near((double)made.springs[0].yield_strain, 1e5 / (1e6 * 2), 1e-7);
+    assert_int_equal(made.springs[1].flags, 0);
+    assert_true(made.springs[1].yield_strain >= MSPRING_NEVER);
     structure_free(&made);
 }
 
@@ -420,6 +445,7 @@ int main(void) {
         cmocka_unit_test_setup(broken_vehicles_are_refused_with_line_and_column, start),
         cmocka_unit_test_setup(a_jbeam_is_read_however_loosely_written, start),
         cmocka_unit_test_setup(variables_stand_for_their_defaults, start),
+        cmocka_unit_test_setup(beams_bend_pull_and_push, start),
         cmocka_unit_test_setup(broken_jbeams_are_refused_with_line_and_column, start),
         cmocka_unit_test_setup(lines_of_an_obj_become_springs, start),
         cmocka_unit_test_setup(colours_of_a_ship_are_looked_up_in_the_games_materials, start),

@@ -54,10 +54,13 @@ static recipe make_recipe(fuzz_bytes *bytes, bool mild) {
     uint64_t seed = 1 + fuzz_byte(bytes) * 256u + fuzz_byte(bytes);
     const uint8_t kinds = fuzz_byte(bytes);
     const double stiffness = exp(fuzz_byte(bytes) / 20.0);
+    const uint32_t side = (kinds >> 2 & 3) < 3 ? 0u
+                          : kinds & 1          ? MSPRING_SPRING_PULL_ONLY
+                                               : MSPRING_SPRING_PUSH_ONLY;
     const recipe_stuff stuff = {.mass = {1, 1 + (kinds & 3)},
                                 .stiffness = {stiffness, stiffness * (1 + (kinds >> 2 & 3))},
                                 .damping = {0, kinds & 16 ? sqrt(stiffness) : 0},
-                                .spring_flags = !mild && kinds & 32 ? MSPRING_SPRING_RELATIVE : 0,
+                                .spring_flags = mild ? 0 : (kinds & 32 ? MSPRING_SPRING_RELATIVE : 0u) | side,
                                 .pinned = kinds & 64 ? 0.05 : 0,
                                 .holes = kinds & 128 ? 0.3 : 0};
     for (int piece = 1 + fuzz_byte(bytes) % 3; piece > 0; piece--) {
@@ -506,6 +509,9 @@ static mspring_result make_call(mspring_network *network, const call *c) {
     case 43:
     case 46:
         return change_collider(network, c);
+    case 47:
+        return mspring_network_set(network, (int32_t)(MSPRING_YIELD_STRAIN + c->particle % 4), c->spring, c->count,
+                                   pair, 1);
     default:
         return mspring_network_step(network, c->dt);
     }
