@@ -1,6 +1,6 @@
 /// @file massspring_laws.h
-/// Material laws beyond the linear spring: springs that yield, so that what bends stays bent; ropes that only pull; areas that keep jelly
-/// from turning inside out, and balloons inflated.
+/// Material laws beyond the linear spring: springs that yield, so that what bends stays bent; ropes that only pull;
+/// areas that keep jelly from turning inside out, and balloons inflated.
 ///
 ///     plasticity  network_get_plasticity
 ///     areas       network_add_area, _add_cell_areas, _remove_area, _set_area, _get_area, _get_area_info; area_def_init
@@ -29,9 +29,9 @@
 /// a ramp.
 ///
 /// Springs yield in each substep of any solver. Where the explicit solver is used, a blow leaves the same dent whatever
-/// the number of substeps. Implicit and direct substeps damp a blow before it can dent: they follow slow loads, and
-/// blows that last 16 substeps or more. mspring_network_settle() gives MSPRING_ERROR_EQUILIBRIUM where
-/// a spring would yield on the way to rest. mspring_network_tune() compares as if they did not, unless a scene has
+/// the number of substeps. Implicit and direct substeps damp a blow before it can dent. They follow slow loads. A blow
+/// that lasts 16 substeps leaves nine tenths of its dent, a shorter one less. mspring_network_settle() gives
+/// MSPRING_ERROR_EQUILIBRIUM where a spring would yield on the way to rest. mspring_network_tune() compares as if they did not, unless a scene has
 /// MSPRING_TUNE_SCENE_BREAKING. The guide examples/guides/materials.md has examples.
 ///
 /// **Springs that only pull, or only push.** Give a definition the flag MSPRING_SPRING_PULL_ONLY or
@@ -47,8 +47,8 @@
 /// flags. They are given at creation: mspring_network_add_springs() rejects them.
 ///
 /// Explicit substeps have the forces of their start, implicit and direct ones those of their end: such a step is taken
-/// twice where a slack spring tightens in it. While one is awake, the explicit solver takes substeps one by one, as with
-/// a hook, and looks at all of them before each.
+/// twice where a slack spring tightens in it. While one is awake, the explicit solver takes substeps one by one, as
+/// with a hook, and looks at all of them before each.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MASSSPRING_MASSSPRING_LAWS_H
