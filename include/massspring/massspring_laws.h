@@ -31,8 +31,8 @@
 /// Springs yield in each substep of any solver. Where the explicit solver is used, a blow leaves the same dent whatever
 /// the number of substeps. Implicit and direct substeps damp a blow before it can dent. They follow slow loads. A blow
 /// that lasts 16 substeps leaves nine tenths of its dent, a shorter one less. mspring_network_settle() gives
-/// MSPRING_ERROR_EQUILIBRIUM where a spring would yield on the way to rest. mspring_network_tune() compares as if they did not, unless a scene has
-/// MSPRING_TUNE_SCENE_BREAKING. The guide examples/guides/materials.md has examples.
+/// MSPRING_ERROR_EQUILIBRIUM where a spring would yield on the way to rest. mspring_network_tune() compares as if they
+/// did not, unless a scene has MSPRING_TUNE_SCENE_BREAKING. The guide examples/guides/materials.md has examples.
 ///
 /// **Springs that only pull, or only push.** Give a definition the flag MSPRING_SPRING_PULL_ONLY or
 /// MSPRING_SPRING_PUSH_ONLY: a slack cable does not push, a prop that stands on the ground does not hold it. With L the
