@@ -284,6 +284,41 @@ static mspring_network *yielding(mspring_network_def *def) {
     return network;
 }
 
+/// A lattice alone, whose springs yield within the sweeps.
+static mspring_network *yielding_rows(mspring_network_def *def) {
+    const recipe_stuff stuff = {
+        .mass = {1, 2}, .stiffness = {2000, 3000}, .damping = {1, 3}, .pinned = 0.02, .holes = 0.1};
+    const float yield_strain = 0.03f;
+    uint64_t seed = 2027;
+    recipe made = {0};
+    recipe_lattice(&made, 70, 40, 0, 0, 1, &stuff, &seed);
+    recipe_disturb(&made, 0.02, 3, &seed);
+    mspring_network *network = recipe_network(&made, def);
+    recipe_free(&made);
+    check_ok(mspring_network_set(network, MSPRING_YIELD_STRAIN, 0, mspring_network_spring_count(network),
+                                 &yield_strain, 0));
+    return network;
+}
+
+/// Cloth, rope and irregular springs that only pull.
+static mspring_network *one_way(mspring_network_def *def) {
+    const recipe_stuff stuff = {.mass = {1, 2},
+                                .stiffness = {2000, 3000},
+                                .damping = {1, 3},
+                                .spring_flags = MSPRING_SPRING_PULL_ONLY,
+                                .pinned = 0.05};
+    uint64_t seed = 2028;
+    recipe made = {0};
+    const mspring_id first = recipe_lattice(&made, 30, 20, 0, 0, 1, &stuff, &seed);
+    const mspring_id other = recipe_lattice(&made, 10, 10, 40, 0, 1, &stuff, &seed);
+    recipe_rope(&made, first + 5, other + 9, 40, &stuff, &seed);
+    recipe_random_springs(&made, 20, &stuff, &seed);
+    recipe_disturb(&made, 0.02, 1, &seed);
+    mspring_network *network = recipe_network(&made, def);
+    recipe_free(&made);
+    return network;
+}
+
 /// The same springs with areas: cells in the sweeps.
 static mspring_network *areas(mspring_network_def *def) {
     mspring_network *network = everything_damped(def);
@@ -338,6 +373,9 @@ const golden_scene golden_scenes[] = {
     {"direct_contact", direct_contact, move_colliders, 2, 80, 1.0 / 64},
     {"yielding", yielding, push_some, 10, 100, 1.0 / 64},
     {"implicit_yielding", yielding, push_and_change_solver, 2, 80, 1.0 / 64},
+    {"yielding_rows", yielding_rows, NULL, 10, 60, 1.0 / 64},
+    {"one_way", one_way, NULL, 10, 60, 1.0 / 64},
+    {"implicit_one_way", one_way, push_and_change_solver, 2, 60, 1.0 / 64},
     {"areas", areas, push_some, 10, 100, 1.0 / 64},
     {"precise_areas", precise_areas, push_some, 10, 100, 1.0 / 64},
     {"all_areas", all_areas, push_some, 10, 100, 1.0 / 64},
