@@ -140,7 +140,8 @@ MSPRING_API mspring_result MSPRING_CALL mspring_area_def_init(mspring_area_def *
 ///
 /// The implicit and the direct solver have an area in their linear system if a spring was on each side of its outline
 /// when it was added. Forces of others they take from the start of a substep, and reject one that is too long for these
-/// as unstable. mspring_network_settle() and mspring_network_tune() reject networks with areas.
+/// as unstable. mspring_network_settle() rejects areas with a side without a spring. Its is_stable does not see where
+/// pressure alone makes a shape unstable. mspring_network_tune() rejects networks with areas.
 ///
 /// @param count  3 to MSPRING_MAX_AREA_PARTICLES
 /// @param area   receives its id, which is never given again; may be NULL

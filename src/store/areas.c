@@ -41,19 +41,23 @@ double mspringi_area_stiffness(const mspringi_area *area, double size) {
     return share > SMALLEST ? mspringi_area_pressure(area, size) / size : 0.0;
 }
 
-// The natural logarithm of a number > 0, by that of a part m of it between sqrt(1 / 2) and sqrt(2), as
-// ln m = 2 artanh((m - 1) / (m + 1)): not every host has libm's.
+// ln m = 2 artanh((m - 1) / (m + 1)), by that quotient, of at most 0.1716 in size. Not every host has libm's.
+static double logarithm_by(double quotient) {
+    double sum = 0.0;
+    for (int power = 21; power > 0; power -= 2)
+        sum = sum * quotient * quotient + 2.0 / (double)power;
+    return sum * quotient;
+}
+
+// Of a number > 0, by that of a part of it between sqrt(1 / 2) and sqrt(2).
 static double logarithm(double x) {
     const double ln2 = 0.693147180559945309417;
-    double powers = 0.0, sum = 0.0;
+    double powers = 0.0;
     for (; x > 1.4142135623730951 && x < INFINITY; x *= 0.5)
         powers += 1.0;
     for (; x < 0.70710678118654752; x *= 2.0)
         powers -= 1.0;
-    const double z = (x - 1.0) / (x + 1.0);
-    for (int power = 21; power > 0; power -= 2)
-        sum = sum * z * z + 2.0 / (double)power;
-    return powers * ln2 + sum * z;
+    return powers * ln2 + logarithm_by((x - 1.0) / (x + 1.0));
 }
 
 double mspringi_area_energy(const mspringi_area *area, double size) {
@@ -63,6 +67,15 @@ double mspringi_area_energy(const mspringi_area *area, double size) {
         return lacks * (0.5 * (double)area->stiffness * area->rest_area * lacks + pressure);
     const double down_to = fmax(share, SMALLEST);
     return pressure * fill * ((down_to - share) / SMALLEST - logarithm(down_to / fill));
+}
+
+double mspringi_area_energy_change(const mspringi_area *area, double size, double growth) {
+    const double pressure = mspringi_area_pressure(area, size), part = growth / size, after = size + growth;
+    if (area->kind == MSPRING_AREA_ELASTIC)
+        return growth * (0.5 * (double)area->stiffness / area->rest_area * growth - pressure);
+    if (!(fabs(part) < 0.3) || !(fmin(size, after) > SMALLEST * area->rest_area))
+        return mspringi_area_energy(area, after) - mspringi_area_energy(area, size);
+    return -pressure * size * logarithm_by(part / (2.0 + part));
 }
 
 mspringi_area_end mspringi_area_end_of(const mspring_network *network, const mspringi_area *area, uint32_t corner) {

@@ -46,6 +46,8 @@ double mspringi_area_size(const mspring_network *network, const mspringi_area *a
 double mspringi_area_pressure(const mspringi_area *area, double size);
 double mspringi_area_stiffness(const mspringi_area *area, double size);
 double mspringi_area_energy(const mspringi_area *area, double size);
+/// By how much the energy changes where the area grows, exact where that is little, too.
+double mspringi_area_energy_change(const mspringi_area *area, double size, double growth);
 
 static inline uint32_t mspringi_area_slot(const mspring_network *network, const mspringi_area *area,
                                           uint32_t corner) {

@@ -228,15 +228,9 @@ static mspring_result add_cell_areas(life *l) {
     return mspring_network_add_cell_areas(l->network, &def, NULL, NULL);
 }
 
-// Neither equilibria nor the reference of tuning have areas.
-static mspring_result remove_areas(life *l) {
-    mspring_result result = MSPRING_OK;
-    for (mspring_id area = 0; area < 1000; area++) {
-        result = mspring_network_remove_area(l->network, area);
-        if (result != MSPRING_OK && result != MSPRING_ERROR_ID)
-            return result;
-    }
-    return MSPRING_OK;
+// No equilibrium is looked for of one with sides that have no springs.
+static mspring_result remove_area(life *l) {
+    return mspring_network_remove_area(l->network, 0);
 }
 
 static mspring_result reserve_events(life *l) {
@@ -462,7 +456,7 @@ static const struct {
     {"step", step},
     {"direct", use_direct},
     {"step", step},
-    {"no areas", remove_areas},
+    {"no area", remove_area},
     {"settle", settle},
     {"step", step},
     {"network", add_network},

@@ -53,6 +53,7 @@ void mspringi_statics_destroy(mspringi_statics *statics, mspringi_memory *memory
     mspringi_free(memory, statics->block);
     mspringi_free(memory, statics->spring_block);
     mspringi_free(memory, statics->end_block);
+    mspringi_free(memory, statics->areas.sides);
 }
 
 mspring_result mspringi_statics_prepare(mspringi_statics *statics, mspring_simd level, mspringi_memory *memory,
@@ -114,6 +115,7 @@ mspringi_residual mspringi_statics_forces(mspringi_statics *statics) {
         force.y[s->b[i]] -= each * now.y;
         residual.scale = fmax(residual.scale, fabs(pull));
     }
+    residual.scale = fmax(residual.scale, mspringi_statics_area_forces(statics));
     for (uint32_t p = 0; p < statics->particle_count; ++p) {
         if (statics->fixed[p])
             continue;
@@ -143,7 +145,7 @@ static double half_square(double stretch) {
 double mspringi_statics_energy_change(const mspringi_statics *statics, double t, double *error) {
     const mspringi_statics_springs *s = &statics->springs;
     const mspringi_vectors step = statics->step, bend = statics->bend;
-    double change = 0.0, size = 0.0;
+    double size = 0.0, change = mspringi_statics_area_change(statics, t, &size);
     for (uint32_t i = 0; i < s->count; ++i) {
         const uint32_t a = s->a[i], b = s->b[i];
         const lie now = lie_of(statics, i);
@@ -214,6 +216,7 @@ bool mspringi_statics_factor(mspringi_statics *statics, bool clamped, double shi
     memset(statics->xx, 0, 4 * (size_t)count * sizeof *statics->xx); // and xy, yy, scale, which lie behind it
     for (uint32_t i = 0; i < s->count; ++i)
         add_spring(statics, i, clamped);
+    mspringi_statics_area_stiffness(statics);
     double stiffest = 0.0;
     for (uint32_t p = 0; p < count; ++p)
         stiffest = statics->fixed[p] ? stiffest : fmax(stiffest, statics->scale[p]);

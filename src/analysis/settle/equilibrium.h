@@ -8,6 +8,7 @@
 
 #include "analysis/settle/settle.h"
 #include "solvers/sparse/cholesky.h"
+#include "store/network.h"
 
 /// Two numbers for each particle.
 typedef struct mspringi_vectors {
@@ -24,6 +25,12 @@ typedef struct mspringi_statics_springs {
                           ///< their small differences are exact to more digits than positions would be.
     double *xx, *xy, *yy; ///< [count] blocks of the stiffness matrix
 } mspringi_statics_springs;
+
+/// The areas that have a pressure (areas.c).
+typedef struct mspringi_statics_areas {
+    const mspringi_areas *of; ///< NULL: there are none
+    uint32_t *sides;          ///< [corners] the spring of each side
+} mspringi_statics_areas;
 
 typedef struct mspringi_statics {
     uint32_t particle_count;
@@ -42,6 +49,7 @@ typedef struct mspringi_statics {
     uint32_t *end_block;
     mspringi_watcher watcher; ///< asked before each iteration
     mspringi_statics_springs springs;
+    mspringi_statics_areas areas;
     mspringi_cholesky_plan plan;
     mspringi_cholesky_double factor;
 } mspringi_statics;
@@ -50,6 +58,13 @@ typedef struct mspringi_statics {
 bool mspringi_statics_create(mspringi_statics *statics, uint32_t particle_count, uint32_t spring_count,
                              mspringi_memory *memory);
 void mspringi_statics_destroy(mspringi_statics *statics, mspringi_memory *memory);
+
+/// Have the network's areas, once springs are filled in. They stay the network's.
+mspring_result mspringi_statics_add_areas(mspringi_statics *statics, mspring_network *network);
+/// What they add: to forces, returning the largest; to a change of energy and the sum of such; to the stiffness.
+double mspringi_statics_area_forces(mspringi_statics *statics);
+double mspringi_statics_area_change(const mspringi_statics *statics, double t, double *size);
+void mspringi_statics_area_stiffness(mspringi_statics *statics);
 
 /// Analyse the stiffness matrix, once particles and springs are filled in.
 mspring_result mspringi_statics_prepare(mspringi_statics *statics, mspring_simd level, mspringi_memory *memory,

@@ -207,7 +207,9 @@ static mspring_result solve(mspringi_statics *statics, mspring_network *network,
     statics->watcher = watcher;
     fill_particles(statics, network);
     fill_springs(statics, network);
-    mspring_result result = check_parts(statics, def, &left_alone, network);
+    mspring_result result = mspringi_statics_add_areas(statics, network);
+    if (result == MSPRING_OK)
+        result = check_parts(statics, def, &left_alone, network);
     if (result == MSPRING_OK)
         result = mspringi_statics_prepare(statics, network->kernels->level, &network->memory, &network->message);
     if (result != MSPRING_OK)
@@ -283,10 +285,6 @@ mspring_result mspringi_settle_watched(mspring_network *network, const mspring_s
         def = &defaults;
     }
     outcome = check_def(def, &network->message);
-    if (outcome == MSPRING_OK && network->areas.count > 0)
-        outcome =
-            mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                          "the network has %zu areas, whose equilibrium is not looked for", network->areas.count);
     if (outcome == MSPRING_OK && result)
         outcome = mspringi_check_output(&network->message, "mspring_settle_result", result, sizeof *result);
     if (outcome != MSPRING_OK)
