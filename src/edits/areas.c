@@ -1,9 +1,10 @@
 /// Areas as the host defines them.
-#include "store/areas.h"
+#include "edits/areas.h"
 
 #include <math.h>
 
 #include "base/cpu.h"
+#include "store/areas.h"
 #include "store/changed.h"
 
 #define STRONGEST 1e30f
@@ -16,10 +17,13 @@
 
 static mspring_result check_numbers(const mspring_area_def *def, mspringi_message *message) {
     const bool is_gas = def->kind == MSPRING_AREA_GAS;
+    if (is_gas && def->stiffness != 0.0f)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the area's stiffness is %g, but a gas has none",
+                             (double)def->stiffness);
     const struct {
         const char *name;
         float value, least, most;
-    } values[] = {{"stiffness", def->stiffness, 0.0f, is_gas ? 0.0f : STRONGEST},
+    } values[] = {{"stiffness", def->stiffness, 0.0f, STRONGEST},
                   {"pressure", def->pressure, is_gas ? 0.0f : -STRONGEST, STRONGEST},
                   {"fill", def->fill, LEAST_FILL, MOST_FILL}};
     for (size_t i = 0; i < sizeof values / sizeof values[0]; ++i)
@@ -49,6 +53,9 @@ static mspring_result check_def(mspring_network *network, const mspring_area_def
 static mspring_result choose_rest_area(mspring_network *network, const mspring_area_def *def, double size,
                                        double *rest_area) {
     *rest_area = def->rest_area == 0.0 ? size : def->rest_area;
+    if (def->rest_area == 0.0 && size < 0.0)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "the polygon is inside out, with %g m^2: give a rest area", size);
     if (!(*rest_area >= LEAST_AREA && *rest_area <= MOST_AREA))
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                              "the rest area is %g m^2, it must be 1e-24 to 1e24", *rest_area);
@@ -119,8 +126,7 @@ static void add(mspring_network *network, const mspring_area_def *def, double re
     tell(network, MSPRINGI_EDIT_ADDED_AREA, &made);
 }
 
-// The area within particles, in their order.
-static double size_of(const mspring_network *network, const mspring_id *particles, uint32_t count) {
+double mspringi_area_within(const mspring_network *network, const mspring_id *particles, uint32_t count) {
     const mspringi_state *s = &network->state;
     const uint32_t *slots = network->topology.slot_of_particle;
     const double x = mspringi_x_of(s, slots[particles[0]]), y = mspringi_y_of(s, slots[particles[0]]);
@@ -144,7 +150,7 @@ mspring_result mspring_network_add_area(mspring_network *network, const mspring_
         result = check_corners(network, particles, count);
     if (result != MSPRING_OK)
         return result;
-    const double size = size_of(network, particles, count);
+    const double size = mspringi_area_within(network, particles, count);
     if (!(fabs(size) >= LEAST_AREA))
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                              "the particles from %u on are around %g m^2, which is no area", (unsigned)particles[0],
@@ -162,60 +168,45 @@ mspring_result mspring_network_add_area(mspring_network *network, const mspring_
     return MSPRING_OK;
 }
 
-// The cell above and right of a particle, in the order in which it is around an area. False: there is none.
-static bool find_cell(const mspring_network *network, mspring_id particle, mspring_id corners[4]) {
-    uint32_t slots[4];
-    if (!mspringi_particle_exists(network, particle) ||
-        !mspringi_cell_at(network, network->topology.slot_of_particle[particle], slots))
-        return false;
-    for (int i = 0; i < 4; ++i)
-        corners[i] = network->topology.particle_of_slot[slots[i]];
-    if (size_of(network, corners, 4) < 0.0) {
-        const mspring_id second = corners[1];
-        corners[1] = corners[3];
-        corners[3] = second;
-    }
-    return true;
+/// What is added to each cell, and how many cells there are.
+typedef struct cell_areas {
+    const mspring_area_def *def;
+    uint32_t count;
+} cell_areas;
+
+static mspring_result check_cell(mspring_network *network, const mspring_id corners[4], void *user) {
+    cell_areas *all = user;
+    double rest_area;
+    all->count++;
+    return choose_rest_area(network, all->def, mspringi_area_within(network, corners, 4), &rest_area);
 }
 
-static mspring_result check_cells(mspring_network *network, const mspring_area_def *def, uint32_t *count) {
-    mspring_id corners[4];
-    double rest_area;
-    mspring_result result = def->rest_area == 0.0
-                                ? MSPRING_OK
-                                : mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                                                "the cells' rest area is %g m^2, it must be 0", def->rest_area);
-    *count = 0;
-    for (mspring_id p = 0; result == MSPRING_OK && p < network->topology.particle_count; ++p) {
-        if (!find_cell(network, p, corners))
-            continue;
-        ++*count;
-        result = choose_rest_area(network, def, size_of(network, corners, 4), &rest_area);
-    }
-    return result;
+static mspring_result add_to_cell(mspring_network *network, const mspring_id corners[4], void *user) {
+    const cell_areas *all = user;
+    add(network, all->def, mspringi_area_within(network, corners, 4), corners, 4);
+    return MSPRING_OK;
 }
 
 mspring_result mspring_network_add_cell_areas(mspring_network *network, const mspring_area_def *def,
                                               mspring_id *first_area, uint32_t *count) {
-    mspring_id corners[4];
-    uint32_t cells = 0;
+    cell_areas cells = {.def = def};
     mspring_result result = mspringi_enter(network);
     if (result == MSPRING_OK)
         result = check_def(network, def);
+    if (result == MSPRING_OK && def->rest_area != 0.0)
+        result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                               "the cells' rest area is %g m^2, it must be 0", def->rest_area);
     if (result == MSPRING_OK)
-        result = check_cells(network, def, &cells);
-    if (result == MSPRING_OK && cells > 0)
-        result = check_room(network, cells, (size_t)4 * cells);
+        result = mspringi_each_cell(network, check_cell, &cells);
+    if (result == MSPRING_OK && cells.count > 0)
+        result = check_room(network, cells.count, (size_t)4 * cells.count);
     if (result != MSPRING_OK)
         return result;
     if (first_area)
         *first_area = network->areas.next_id;
     if (count)
-        *count = cells;
-    for (mspring_id p = 0; cells > 0 && p < network->topology.particle_count; ++p)
-        if (find_cell(network, p, corners))
-            add(network, def, size_of(network, corners, 4), corners, 4);
-    return MSPRING_OK;
+        *count = cells.count;
+    return mspringi_each_cell(network, add_to_cell, &cells);
 }
 
 /* ------------------------------------------------------------------------------------------- changing, reading */

@@ -184,7 +184,8 @@ mspring_result mspringi_guard_reserve(mspring_network *network, mspring_guard po
 // whose speeds are clamped takes any step.
 static mspring_result check_areas(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_areas *areas = &network->areas;
-    if (areas->unringed == 0 || (double)attempt->h <= areas->longest || attempt->solver == &mspringi_clamped)
+    if (areas->unringed == 0 || network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS ||
+        (double)attempt->h <= areas->longest || attempt->solver == &mspringi_clamped)
         return MSPRING_OK;
     return mspringi_fail(
         &network->message, MSPRING_ERROR_UNSTABLE,

@@ -42,9 +42,21 @@ static bool is_quiet(const mspring_network *network, const mspringi_attempt *att
     return forces == 0 || mspringi_sleep_is_whole(network);
 }
 
+/// Part of the square of the longest substep that softened areas leave room to.
+#define CALM 0.25
+
+// How much of their forces areas exert. Strain rates are clamped where a substep is too long for springs: then
+// areas are softened until it is not too long for them, either.
+static double share_of(const mspring_network *network, const mspringi_attempt *attempt) {
+    const double longest = network->areas.longest_of_all, h = (double)attempt->h;
+    const double share = CALM * (longest / h) * (longest / h);
+    return attempt->solver == &mspringi_clamped && share < 1.0 ? share : 1.0;
+}
+
 static mspringi_field before_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
                                      mspringi_field base) {
     const mspringi_areas *a = &network->areas;
+    const double share = share_of(network, attempt);
     (void)substep;
     if (is_quiet(network, attempt))
         return base;
@@ -54,7 +66,7 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
         mspringi_field_clear(network, a->force);
     for (size_t i = 0; i < a->count; ++i)
         if (!a->list[i].is_open && !is_held(attempt, &a->list[i]))
-            mspringi_area_push(network, &a->list[i], a->force);
+            mspringi_area_push(network, &a->list[i], share, a->force);
     return a->force;
 }
 

@@ -92,7 +92,8 @@ static float bounded(double value) {
     return (float)fmin(fmax(value, -(double)FLT_MAX), (double)FLT_MAX);
 }
 
-void mspringi_area_push(const mspring_network *network, const mspringi_area *area, mspringi_field field) {
+void mspringi_area_push(const mspring_network *network, const mspringi_area *area, double share,
+                        mspringi_field field) {
     const mspringi_state *s = &network->state;
     const mspringi_corner *corners = network->areas.corners + area->first;
     const uint32_t first = corners[0].slot, last = corners[area->count - 1].slot;
@@ -106,7 +107,7 @@ void mspringi_area_push(const mspring_network *network, const mspringi_area *are
         before_x = x;
         before_y = y;
     }
-    const double half = 0.5 * mspringi_area_pressure(area, 0.5 * twice);
+    const double half = 0.5 * share * mspringi_area_pressure(area, 0.5 * twice);
     double x = first_x, y = first_y;
     before_x = last_x;
     before_y = last_y;
@@ -323,17 +324,18 @@ static bool enter_cell(mspring_network *network, mspringi_area *area) {
     return false;
 }
 
-static void find_longest(mspring_network *network) {
+// The substep that is stable with forces of areas alone: of all, or of those without springs all around.
+static double find_longest(mspring_network *network, bool of_all) {
     mspringi_areas *a = &network->areas;
     double largest = 0.0;
     mspringi_field_clear(network, a->force);
     for (size_t i = 0; i < a->count; ++i)
-        if (!a->list[i].is_ringed)
+        if (of_all || !a->list[i].is_ringed)
             mspringi_area_weigh(network, &a->list[i], a->force.x);
     for (size_t i = 0; i < a->count; ++i)
-        if (!a->list[i].is_ringed)
+        if (of_all || !a->list[i].is_ringed)
             largest = fmax(largest, mspringi_area_largest(network, &a->list[i], a->force.x));
-    a->longest = largest > 0.0 ? 2.0 / sqrt(largest) : INFINITY;
+    return largest > 0.0 ? 2.0 / sqrt(largest) : INFINITY;
 }
 
 void mspringi_areas_refresh(mspring_network *network) {
@@ -365,5 +367,6 @@ void mspringi_areas_refresh(mspring_network *network) {
         else
             a->unswept++;
     }
-    find_longest(network);
+    a->longest = find_longest(network, false);
+    a->longest_of_all = find_longest(network, true);
 }

@@ -54,8 +54,9 @@ static inline uint32_t mspringi_area_slot(const mspring_network *network, const 
     return network->topology.slot_of_particle[network->areas.corners[area->first + corner].particle];
 }
 
-/// Add the forces of an area to a field.
-void mspringi_area_push(const mspring_network *network, const mspringi_area *area, mspringi_field field);
+/// Add the forces of an area, or a share of them, to a field.
+void mspringi_area_push(const mspring_network *network, const mspringi_area *area, double share,
+                        mspringi_field field);
 
 /// A corner's slot, and its gradient now.
 typedef struct mspringi_area_end {

@@ -282,6 +282,7 @@ typedef struct mspringi_areas {
     uint32_t swept, unswept; ///< closed areas that the explicit solver's sweeps have in them, and others
     uint32_t unringed;       ///< and those without springs all around
     double longest;          ///< substep that is stable with forces of these alone, s
+    double longest_of_all;   ///< and with those of all
     float *cells;            ///< [lattice blocks][2][lane] half the force per distance at area 0, and its slope
     mspringi_field force;    ///< from outside and of areas, in a substep
 } mspringi_areas;

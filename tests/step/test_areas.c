@@ -406,6 +406,59 @@ static void sleepers_keep_their_areas(void **state) {
     mspring_network_destroy(network);
 }
 
+// Lattices that are too small for rows, alone and among others, have all of their cells.
+static void small_lattices_have_cells(void **state) {
+    (void)state;
+    for (uint32_t width = 2; width < 7; width++)
+        for (uint32_t height = 2; height < 7; height++) {
+            sheet s = jelly;
+            s.width = width;
+            s.height = height;
+            const mspring_network_def def = support_def(0, 20);
+            mspring_network *network = sheet_network(&s, &def);
+            assert_int_equal(add_cells(network, 100), (width - 1) * (height - 1));
+            support_kick(network, 0, 0.1f);
+            support_steps(network, 20, 1.0 / 64);
+            check_near(info_of(network, 0).area, 0.01, 0.002);
+            mspring_network_destroy(network);
+        }
+    mspring_builder *builder = support_builder();
+    const mspring_network_def def = support_def(0, 20);
+    for (int i = 0; i < 40; i++) {
+        sheet s = jelly;
+        s.x = i;
+        s.width = i ? 4 : 5;
+        s.height = 4;
+        build(builder, &s, false);
+    }
+    mspring_network *network = support_network(builder, &def);
+    assert_int_equal(add_cells(network, 100), 39 * 9 + 12);
+    mspring_network_destroy(network);
+}
+
+// Where a guard softens steps that are too long, it softens areas, too: small motion stays small.
+static void guards_that_clamp_have_areas(void **state) {
+    (void)state;
+    static const mspring_guard guards[] = {MSPRING_GUARD_CLAMP, MSPRING_GUARD_CLAMP_BOUNDS};
+    for (int i = 0; i < 6; i++) {
+        sheet s = {.width = 8, .height = 8, .spacing = 1, .stiffness = 1e6f, .shear_share = 1, .mass = 1};
+        mspring_network_def def = support_def(0, 4);
+        def.guard = guards[i / 3];
+        def.solver = (mspring_solver)(i % 3);
+        mspring_network *network = sheet_network(&s, &def);
+        (void)add_cells(network, 1e6f);
+        support_kick(network, 5, 0.1f);
+        if (def.guard == MSPRING_GUARD_CLAMP_BOUNDS && def.solver == MSPRING_SOLVER_EXPLICIT)
+            s.width = 0; // it only keeps what has grown within bounds
+        for (int step = 0; step < 300; step++) {
+            support_steps(network, 1, 1.0 / 60);
+            for (mspring_id p = 0; s.width > 0 && p < 64; p++)
+                assert_true(hypot(support_velocity(network, p).x, support_velocity(network, p).y) < 0.2);
+        }
+        mspring_network_destroy(network);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_dropped_jelly_unfolds),
@@ -420,6 +473,8 @@ int main(void) {
         cmocka_unit_test(all_levels_have_the_same_bits),
         cmocka_unit_test(clones_snapshots_and_layouts_go_on),
         cmocka_unit_test(without_areas_nothing_changes),
+        cmocka_unit_test(small_lattices_have_cells),
+        cmocka_unit_test(guards_that_clamp_have_areas),
         cmocka_unit_test(sleepers_keep_their_areas),
     };
     return cmocka_run_group_tests_name("areas", tests, NULL, NULL);

@@ -113,7 +113,7 @@ typedef struct mspring_area_info {
     uint32_t particle_count;
     uint32_t is_open; ///< 1: a spring of its outline is broken or removed, so it has no pressure
     uint32_t reserved;
-    double area;     ///< m^2; below 0 if the polygon is inside out
+    double area;     ///< m^2; below 0 if the polygon is inside out; of one that crosses itself, the sum of its parts
     double pressure; ///< p, N/m
     double energy;   ///< J, part of the elastic energy of mspring_network_energy(); 0 at fill * rest_area
 } mspring_area_info;
@@ -150,9 +150,11 @@ MSPRING_API mspring_result MSPRING_CALL mspring_area_def_init(mspring_area_def *
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_add_area(mspring_network *network,
     const mspring_area_def *def, const mspring_id *particles, uint32_t count, mspring_id *area);
 
-/// Add an area to each cell of the network's lattices.
-/// A cell is four particles with four whole springs around it, as mspring_builder_add_lattice() makes them. The rest
-/// area in def must be 0. Cells get consecutive ids. Without cells nothing is added.
+/// Add an area to each cell.
+/// Where the layout has lattice rows, a cell is four particles with four whole springs around it. Elsewhere, as in
+/// small lattices, it is four particles that whole springs join each to each, two of which cross. The rest area in def
+/// must be 0. Ids are consecutive, by rising id of a corner. Without cells nothing is added. A second call adds all of
+/// them again.
 /// @param first_area  receives the first id; may be NULL
 /// @param count       receives the number of areas added; may be NULL
 /// @threads exclusive access to network   @allocates yes   @errors ARGUMENT, STRUCT, LIMIT, MEMORY, BUSY
