@@ -197,7 +197,8 @@ static spring_case *bad_springs(size_t *count) {
     BAD(rest_length, -0.5f, MSPRING_ERROR_ARGUMENT, "rest length");
     BAD(rest_length, -2, MSPRING_ERROR_ARGUMENT, "rest length");
     BAD(rest_length, 4.1e12f, MSPRING_ERROR_ARGUMENT, "rest length");
-    BAD(flags, MSPRING_SPRING_DAMPING_RATIO << 1, MSPRING_ERROR_ARGUMENT, "flags");
+    BAD(flags, MSPRING_SPRING_PUSH_ONLY << 1, MSPRING_ERROR_ARGUMENT, "flags");
+    BAD(flags, MSPRING_SPRING_PULL_ONLY | MSPRING_SPRING_PUSH_ONLY, MSPRING_ERROR_ARGUMENT, "exclude");
     BAD(b, 2, MSPRING_ERROR_ARGUMENT, "particle 2");   // to itself
     BAD(b, 10, MSPRING_ERROR_ID, "10");                // to nowhere
     BAD(a, 12345, MSPRING_ERROR_ID, "12345");          // from nowhere
@@ -365,7 +366,7 @@ static void bad_material_is_refused_and_named(void **state) {
     REFUSED(stiffness, -3, MSPRING_ERROR_ARGUMENT, "material 1: stiffness");
     REFUSED(damping, -3, MSPRING_ERROR_ARGUMENT, "material 1: damping");
     REFUSED(particle_flags, 2, MSPRING_ERROR_ARGUMENT, "material 1");
-    REFUSED(spring_flags, 4, MSPRING_ERROR_ARGUMENT, "material 1");
+    REFUSED(spring_flags, 16, MSPRING_ERROR_ARGUMENT, "material 1");
     REFUSED(spring_flags, MSPRING_SPRING_RELATIVE, MSPRING_ERROR_ARGUMENT, "material 1"); // material 0 is not
     REFUSED(struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_material");
     REFUSED(struct_size, sizeof materials[0] + 2, MSPRING_ERROR_STRUCT, "mspring_material");
@@ -400,7 +401,7 @@ static void bad_rope_is_refused(void **state) {
     REFUSED(slack, 0, MSPRING_ERROR_ARGUMENT, "slack");
     REFUSED(slack, 0.0009f, MSPRING_ERROR_ARGUMENT, "slack");
     REFUSED(slack, 1001, MSPRING_ERROR_ARGUMENT, "slack");
-    REFUSED(spring_flags, 4, MSPRING_ERROR_ARGUMENT, "flags");
+    REFUSED(spring_flags, 16, MSPRING_ERROR_ARGUMENT, "flags");
     REFUSED(segment_count, 0, MSPRING_ERROR_ARGUMENT, "segment");
     REFUSED(segment_count, MSPRING_MAX_PARTICLES + 2, MSPRING_ERROR_LIMIT, "limit");
     REFUSED(segment_count, UINT32_MAX, MSPRING_ERROR_LIMIT, "limit");

@@ -354,7 +354,7 @@ static void bad_mesh_is_refused(void **state) {
     REFUSED(def.young_modulus = 1e30f, MSPRING_ERROR_ARGUMENT, "edge of vertices 1 and 2");
     REFUSED(def.stiffness = 1, MSPRING_ERROR_ARGUMENT, "one of them");
     REFUSED(def.spring_flags = MSPRING_SPRING_RELATIVE, MSPRING_ERROR_ARGUMENT, "one of them");
-    REFUSED(def.spring_flags = 4, MSPRING_ERROR_ARGUMENT, "flags");
+    REFUSED(def.spring_flags = 16, MSPRING_ERROR_ARGUMENT, "flags");
     REFUSED((def.young_modulus = 0, def.stiffness = -1), MSPRING_ERROR_ARGUMENT, "stiffness");
     REFUSED(def.damping = -1, MSPRING_ERROR_ARGUMENT, "damping");
     REFUSED(def.struct_size = 0, MSPRING_ERROR_STRUCT, "mspring_mesh_def");
@@ -453,7 +453,7 @@ static void bad_disc_is_refused(void **state) {
     REFUSED(x, 1e12, MSPRING_ERROR_ARGUMENT, "disc of 3 rings: vertex");
     REFUSED(area_density, -1, MSPRING_ERROR_ARGUMENT, "area_density");
     REFUSED(centre_flags, 2, MSPRING_ERROR_ARGUMENT, "centre_flags");
-    REFUSED(spring_flags, 4, MSPRING_ERROR_ARGUMENT, "flags");
+    REFUSED(spring_flags, 16, MSPRING_ERROR_ARGUMENT, "flags");
     REFUSED(stiffness, 5, MSPRING_ERROR_ARGUMENT, "one of them");
     REFUSED(struct_size, 4, MSPRING_ERROR_STRUCT, "mspring_disc_def");
 #undef REFUSED
