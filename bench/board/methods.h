@@ -1,0 +1,43 @@
+/// @file methods.h
+/// Methods that move a network, ours and those of others, as each is usually written.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef BOARD_METHODS_H
+#define BOARD_METHODS_H
+
+#include "board/model.h"
+
+/// State of a method between frames.
+typedef struct motion {
+    const model *m;
+    uint32_t effort;         ///< substeps or iterations in a frame: see the method
+    double damping;          ///< 1/s: velocities decay by exp(-damping t)
+    double *x, *y, *vx, *vy; ///< [particle_count]; of ours NULL
+    double *old_x, *old_y;   ///< [particle_count] work space
+    double *goal_x, *goal_y; ///< [particle_count] work space
+    void *own;               ///< what else the method has
+} motion;
+
+typedef struct method {
+    const char *name;                      ///< in pictures
+    const char *effort;                    ///< what its effort counts
+    bool (*begin)(motion *run, double dt); ///< make own; NULL: nothing to make. false: out of memory or refused
+    void (*frame)(motion *run, double dt);
+    void (*positions)(const motion *run, double *x, double *y); ///< NULL: x and y
+    void (*end)(motion *run);                                   ///< NULL: nothing to free
+    uint32_t efforts[6];                                        ///< ended by 0
+    bool by_stability; ///< efforts are in the least stable number of substeps
+} method;
+
+bool motion_begin(motion *run, const method *by, const model *m, uint32_t effort, double damping, double dt);
+void motion_positions(const motion *run, const method *by, double *x, double *y);
+void motion_end(motion *run, const method *by);
+
+extern const method board_ours[3];    ///< explicit, implicit, direct
+extern const method board_naive;      ///< symplectic Euler, a loop over springs
+extern const method board_pbd;        ///< position-based dynamics (Mueller 2007)
+extern const method board_xpbd;       ///< extended, in small steps (Macklin 2019)
+extern const method board_vbd;        ///< vertex block descent with Chebyshev's acceleration (Chen 2024)
+extern const method board_projective; ///< projective dynamics, its matrix factored at the start (Liu 2013)
+
+#endif
