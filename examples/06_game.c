@@ -14,6 +14,7 @@
 #include "game/ship.h"
 #include "game/strip.h"
 
+#include <massspring/massspring_contact.h>
 #include <massspring/massspring_tools.h>
 #include <math.h>
 #include <stdio.h>
@@ -136,6 +137,16 @@ static mspring_result make_floor(mspring_network *network) {
     return result == MSPRING_OK ? mspring_network_set_floor(network, &def) : result;
 }
 
+// Wreckage stays apart, and ropes lie on the hull. What a break leaves too near each other is pushed apart slowly: a
+// push gives energy.
+static mspring_result let_meet(mspring_network *network) {
+    mspring_contact_def def;
+    const mspring_result result = mspring_contact_def_init(&def, sizeof def);
+    def.friction = 0.4f;
+    def.push_speed = 0.1f;
+    return result == MSPRING_OK ? mspring_network_set_contact(network, &def) : result;
+}
+
 /* -------------------------------------------------------------------------------------------------- the start */
 
 static const double anchor_x = 80; // m
@@ -178,6 +189,8 @@ static bool start(game *played, mspring_builder *builder, const options *asked, 
          "read positions", played);
     must(add_float_hook(played), "add the float hook", played);
     must(make_floor(played->network), "make the sea floor", played);
+    if (!asked->implicit)
+        must(let_meet(played->network), "let bodies meet", played);
     played->last_blast = 60 * asked->minutes - sinking;
     books_open(&played->accounts, played->network);
     return true;
@@ -427,17 +440,15 @@ static bool check_rigging(const game *played) {
     return false;
 }
 
-// The largest piece lies on the sea floor, which bears what the water does not carry.
+// All pieces lie on the sea floor, or on each other, and it bears what the water does not carry.
 static bool check_end(const game *played, double seconds) {
     mspring_component hull;
-    const uint32_t piece = find_largest_piece(played, &hull);
+    (void)find_largest_piece(played, &hull);
     double borne = 0, weight = 0;
-    for (uint32_t i = 0; i < played->particles; i++)
-        if (played->piece[i] == piece) {
-            borne += played->borne[i] / seconds;
-            weight -=
-                ((double)played->wet[i] - (double)ship_materials[played->vessel.part_of[i]].displaced) * gravity;
-        }
+    for (uint32_t i = 0; i < played->particles; i++) {
+        borne += played->borne[i] / seconds;
+        weight -= ((double)played->wet[i] - (double)ship_materials[played->vessel.part_of[i]].displaced) * gravity;
+    }
     const double speed = sqrt(hull.px * hull.px + hull.py * hull.py) / hull.mass;
     printf(
         "the end:  %u particles lie at %.2f m, at %.2g m/s; the floor bears %.1f kN, they weigh %.1f kN in water\n",
