@@ -21,6 +21,7 @@ typedef enum map_family {
     MAP_SUBSTEPS, ///< the same motion with ever more substeps
     MAP_MEET,     ///< two bodies collide
     MAP_SILT,     ///< a body falls into silt above heights, which differ in friction and restitution
+    MAP_PRESS,    ///< two bodies collide, with the implicit and the direct solver
     MAP_FAMILIES
 } map_family;
 

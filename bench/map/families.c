@@ -317,36 +317,60 @@ static void draw_substeps(map_case *drawn, uint64_t *seed) {
         add_distant_pin(drawn, map_decades(seed, 20, 2e3));
 }
 
-/// The first flies, the second rests; half a turn of angle and some height apart, so that they graze, too.
-static void draw_meet(map_case *drawn, uint64_t *seed) {
-    drawn->index *= 8; // explicit
-    const map_stuff stuff = begin(drawn, seed);
-    drawn->index /= 8;
+/// The first flies, the second rests; half a turn of angle and some height apart, so that they graze, too. Returns
+/// how far they are apart.
+static double draw_second(map_case *drawn, const map_stuff *stuff, uint64_t *seed) {
     map_body second;
     const map_shape shape = (map_shape)random_below(seed, MAP_SHAPES + 1);
-    map_draw_body(&second, shape, &stuff, seed);
+    map_draw_body(&second, shape, stuff, seed);
     for (uint32_t i = 0; i < second.particle_count && shape == MAP_LOOSE; i++) // none overlap at first
-        second.particles[i].x = i * stuff.spacing;
+        second.particles[i].x = i * stuff->spacing;
     mspring_contact_def_init(&drawn->contact, sizeof drawn->contact);
-    drawn->contact.thickness = 0.4 * stuff.spacing;
+    drawn->contact.thickness = 0.4 * stuff->spacing;
     drawn->contact.flags = 0;
     drawn->contact.friction = one_in(seed, 2) ? 0 : (float)map_decades(seed, 0.1, 3);
     drawn->contact.restitution = one_in(seed, 2) ? 0 : (float)random_unit(seed);
-    const double gap = stuff.spacing * map_between(seed, 0.5, 1.5);
+    const double gap = stuff->spacing * map_between(seed, 0.5, 1.5);
     double left, bottom, right, top;
     map_body_box(&drawn->body, &left, &bottom, &right, &top);
-    map_move_body(&second, 0, map_between(seed, -0.8, 0.8) * (top - bottom + stuff.spacing));
+    map_move_body(&second, 0, map_between(seed, -0.8, 0.8) * (top - bottom + stuff->spacing));
     map_add_body(drawn, &second, gap);
-    // In substeps of a spring's own time, as far as it takes to meet and part.
-    const double heaviest = stuff.mass_ratio, time = sqrt(heaviest / stuff.stiffness);
-    const double speed = stuff.spacing / time * map_decades(seed, 1e-3, 0.1);
+    return gap;
+}
+
+static void let_first_fly(map_case *drawn, double speed, uint64_t *seed) {
     const double angle = map_between(seed, -0.3, 0.3);
     for (uint32_t i = 0; i < drawn->first_count; i++) {
         drawn->body.particles[i].vx = (float)(speed * cos(angle));
         drawn->body.particles[i].vy = (float)(speed * sin(angle));
     }
+}
+
+static void draw_meet(map_case *drawn, uint64_t *seed) {
+    drawn->index *= 8; // explicit
+    const map_stuff stuff = begin(drawn, seed);
+    drawn->index /= 8;
+    const double gap = draw_second(drawn, &stuff, seed);
+    // In substeps of a spring's own time, as far as it takes to meet and part.
+    const double heaviest = stuff.mass_ratio, time = sqrt(heaviest / stuff.stiffness);
+    const double speed = stuff.spacing / time * map_decades(seed, 1e-3, 0.1);
+    let_first_fly(drawn, speed, seed);
     const double step = drawn->share * drawn->solver.substeps * 0.5 * time / sqrt(heaviest);
     drawn->steps = (uint32_t)fmin(2000, fmax(20, 4 * gap / (speed * fmin(step, 0.25))));
+}
+
+static void draw_press(map_case *drawn, uint64_t *seed) {
+    const uint32_t index = drawn->index;
+    drawn->index = 2 + index % 6; // implicit or direct
+    const map_stuff stuff = begin(drawn, seed);
+    drawn->index = index;
+    const double gap = draw_second(drawn, &stuff, seed);
+    // Up to two springs' length in a substep, and not so fast that springs are crushed.
+    const double heaviest = stuff.mass_ratio, time = sqrt(heaviest / stuff.stiffness);
+    const double speed =
+        stuff.spacing * fmin(drawn->solver.substeps / drawn->dt * map_decades(seed, 1e-3, 2), 0.1 / time);
+    let_first_fly(drawn, speed, seed);
+    drawn->steps = (uint32_t)fmin(400, fmax(20, 4 * gap / (speed * drawn->dt)));
 }
 
 static void draw_silt(map_case *drawn, uint64_t *seed) {
@@ -371,7 +395,7 @@ static const family families[MAP_FAMILIES] = {
     {"blast", 60000, draw_blast}, {"hit", 45000, draw_hit},       {"spin", 20000, draw_spin},
     {"drop", 60000, draw_drop},   {"bounce", 18000, draw_bounce}, {"hang", 30000, draw_hang},
     {"wreck", 20000, draw_wreck}, {"far", 16000, draw_far},       {"substeps", 3000, draw_substeps},
-    {"meet", 20000, draw_meet},   {"silt", 10000, draw_silt},
+    {"meet", 20000, draw_meet},   {"silt", 10000, draw_silt},     {"press", 12000, draw_press},
 };
 
 const char *map_family_name(map_family of) {

@@ -332,12 +332,12 @@ void mspringi_bodies_hand_on(mspring_network *network, float h) {
 
 /* ---------------------------------------------------------------------------------------------------- mending */
 
-// What is too deep is pushed apart by as much as it is too deep. Returns whether it was.
-static bool mend(const mspringi_pairs *pairs, mspringi_touch *t, double h) {
+// What would get too deep by more than is given is pushed apart by as much. Returns whether it was.
+static bool mend(const mspringi_pairs *pairs, mspringi_touch *t, double h, double given) {
     const mspringi_active *k = &pairs->active;
     const double speed = t->nx * (k->vx[t->p] - t->share_a * k->vx[t->a] - t->share_b * k->vx[t->b]) +
                          t->ny * (k->vy[t->p] - t->share_a * k->vy[t->a] - t->share_b * k->vy[t->b]);
-    const double least = (t->gap < 0.0 ? t->gap : 0.0) - MENDED_SHARE * pairs->thickness;
+    const double least = (t->gap < 0.0 ? t->gap : 0.0) - given;
     const double lacks = least - (t->gap + h * speed);
     if (!(lacks > UNSEEN_SHARE * pairs->thickness))
         return false;
@@ -359,6 +359,9 @@ void mspringi_bodies_mend(const mspring_network *network, float step) {
     bool any = false;
     if (!pairs || pairs->touch_count == 0)
         return;
+    // Where rows hold by this alone, many pieces of a substep would each give some.
+    const bool is_alone = mspringi_implicit_of(network)->holding == MSPRINGI_HOLD_AFTER;
+    const double given = is_alone ? 0.0 : MENDED_SHARE * pairs->thickness;
     const mspringi_active *k = &pairs->active;
     for (uint32_t i = 0; i < k->own; ++i) {
         const uint32_t slot = slot_of(network, i);
@@ -368,7 +371,7 @@ void mspringi_bodies_mend(const mspring_network *network, float step) {
     for (uint32_t sweep = 0, again = 1; sweep < MOST_MENDING_SWEEPS && again; ++sweep) {
         again = 0;
         for (uint32_t i = 0; i < pairs->touch_count; ++i)
-            again |= mend(pairs, &pairs->touches[i], h);
+            again |= mend(pairs, &pairs->touches[i], h, given);
         any |= again;
     }
     for (uint32_t i = 0; i < k->own && any; ++i) {
@@ -496,12 +499,16 @@ static void account(const mspringi_measuring *all, const mspringi_touch *t, hold
     a->sums[MSPRINGI_EFFECT_Y] += fy;
     a->sums[MSPRINGI_EFFECT_TORQUE] += rx * fy - ry * fx;
     a->sums[MSPRINGI_EFFECT_WORK] += fx * x + fy * y;
+    a->pushed += fx * x + fy * y;
     a->is_touched = true;
 }
 
 void mspringi_bodies_account(const mspringi_measuring *all) {
     const mspringi_pairs *pairs = all->network->pairs;
     const uint32_t count = count_of(all->network);
+    mspringi_budget *budget = &mspringi_implicit_of(all->network)->budget;
+    for (uint32_t i = 0; i < budget->count; ++i)
+        budget->accounts[i].pushed = 0.0;
     for (uint32_t i = 0; i < count; ++i)
         for (int k = 0; k < 3 && (pairs->touches[i].across != 0.0 || pairs->touches[i].along != 0.0); ++k)
             account(all, &pairs->touches[i], &pairs->holds[i], k);

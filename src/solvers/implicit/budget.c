@@ -65,12 +65,9 @@ static mspringi_motion motion_before(const mspring_network *network) {
 
 /* ------------------------------------------------------------------------------------------------- mass centres */
 
-/// A component about its mass centre, which is told from the origin.
-typedef struct centre {
-    double mass, x, y, vx, vy, inertia, spin, kinetic;
-} centre;
+typedef mspringi_centre centre;
 
-static centre centre_of(const account *a) {
+centre mspringi_centre_of(const account *a) {
     const double *s = a->sums, mass = s[MSPRINGI_MOMENT_MASS];
     const double x = s[MSPRINGI_MOMENT_X] / mass, y = s[MSPRINGI_MOMENT_Y] / mass;
     const double vx = s[MSPRINGI_MOMENT_PX] / mass, vy = s[MSPRINGI_MOMENT_PY] / mass;
@@ -150,7 +147,7 @@ void mspringi_budget_open(mspring_network *network) {
     budget->knows_elastic = false;
     mspringi_budget_measure(&all);
     for (account *a = budget->accounts; a < budget->accounts + budget->count; ++a) {
-        const centre c = centre_of(a);
+        const centre c = mspringi_centre_of(a);
         a->x = c.x;
         a->y = c.y;
         a->vx = c.vx;
@@ -220,7 +217,7 @@ static void judge(account *a, const balance *b) {
     a->keep = keep_of(b->room, b->motion);
 }
 
-static double rounding_of(const account *a, double energy) {
+double mspringi_account_rounding(const account *a, double energy) {
     return TOLERATED * energy + 0.5 * LENGTH_ROUNDING * LENGTH_ROUNDING * a->length;
 }
 
@@ -242,7 +239,7 @@ static void judge_free(const mspring_network *network, account *a, const centre 
                         .motion = rest,
                         .had = had,
                         .has = a->elastic + c->kinetic,
-                        .rounding = rounding_of(a, a->internal)});
+                        .rounding = mspringi_account_rounding(a, a->internal)});
     a->turned = c->inertia > 0.0 ? 0.25 * o->h * (a->spin + spin) / c->inertia : 0.0;
     a->is_free = true;
     aim(a, c, vx - a->origin[2], vy - a->origin[3], turn);
@@ -269,7 +266,7 @@ static void judge_held(const mspring_network *network, account *a, const centre 
                         .had = before + work,
                         .has = a->elastic + motion,
                         .fall = 0.5 * mass * (gx * gx + gy * gy) * (h * h),
-                        .rounding = rounding_of(a, before) + PLACE_ROUNDING * places});
+                        .rounding = mspringi_account_rounding(a, before) + PLACE_ROUNDING * places});
     a->add_x = (1.0 - a->keep) * a->frame_x;
     a->add_y = (1.0 - a->keep) * a->frame_y;
     a->turn = 0.0;
@@ -309,7 +306,7 @@ static void find_in_the_way(const mspring_network *network) {
 }
 
 static void judge_account(const mspring_network *network, account *a, const outside *o) {
-    const centre c = centre_of(a);
+    const centre c = mspringi_centre_of(a);
     a->exceeds = a->gains = false;
     a->keep = 1.0;
     a->add_x = a->add_y = a->turn = a->shift_x = a->shift_y = 0.0;
@@ -437,7 +434,7 @@ static bool place_back(const mspring_network *network, const mspringi_motion *be
     const account *a = &budget->accounts[budget->of_slot[slot]];
     if (!a->exceeds)
         return false;
-    const centre c = centre_of(a);
+    const centre c = mspringi_centre_of(a);
     *x = (double)before->x[slot] + (double)before->low_x[slot];
     *y = (double)before->y[slot] + (double)before->low_y[slot];
     hold_place(a, &c, h, x, y);
@@ -479,7 +476,7 @@ static void step_back(mspring_network *network, const mspringi_motion *before, d
 
 // What the floor has given a component in a substep, from what its momentum has changed by.
 static void find_owed(const mspring_network *network, account *a, const outside *o) {
-    const centre c = centre_of(a);
+    const centre c = mspringi_centre_of(a);
     const double fx = a->sums[MSPRINGI_EFFECT_X], fy = a->sums[MSPRINGI_EFFECT_Y];
     const double vx = a->keep * (a->origin[2] + c.vx) + a->add_x - o->left * (a->origin[2] + a->vx);
     const double vy = a->keep * (a->origin[3] + c.vy) + a->add_y - o->left * (a->origin[3] + a->vy);
@@ -573,6 +570,8 @@ bool mspringi_budget_close(mspring_network *network, float h, mspringi_field bas
         mspringi_budget_add_given(&all);
         const bool gains = judge_all(network, &o, &exceeds);
         if ((gains || (exceeds && step > MOST_STEPS_BACK)) && may_halve)
+            return false;
+        if (mspringi_implicit_of(network)->holding != MSPRINGI_HOLD_AFTER && mspringi_bodies_gain(network, o.h))
             return false;
         if (!exceeds || step > MOST_STEPS_BACK)
             break;

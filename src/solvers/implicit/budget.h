@@ -77,6 +77,7 @@ typedef struct mspringi_account {
     double frame_x, frame_y; ///< m/s: of its pins if they move alike, else 0
     uint32_t frame_pin;      ///< slot of one of them
     double given;            ///< work of pins that do not, J
+    double pushed;           ///< work of other bodies, J
     double x, y, vx, vy;     ///< mass centre before, from the origin
     double spin;             ///< about it before, kg m^2/s
     double turned;           ///< half the angle that it would turn by as a rigid body, rad
@@ -152,5 +153,16 @@ typedef struct mspringi_measuring {
 /// extra.
 void mspringi_budget_measure(mspringi_measuring *measuring);
 void mspringi_budget_add_given(const mspringi_measuring *measuring);
+
+/// A component about its mass centre, which is told from the origin.
+typedef struct mspringi_centre {
+    double mass, x, y, vx, vy, inertia, spin, kinetic;
+} mspringi_centre;
+mspringi_centre mspringi_centre_of(const mspringi_account *account);
+/// What of an energy may be rounding, J.
+double mspringi_account_rounding(const mspringi_account *account, double energy);
+/// Whether components that touch would have more energy together than before a substep of h, but for work from
+/// outside.
+bool mspringi_bodies_gain(const mspring_network *network, double h);
 
 #endif

@@ -189,7 +189,7 @@ static void take_substep(mspringi_substep_of *substep, uint32_t tries) {
     mspringi_budget_undo(network);
     n->history.restarts = MSPRINGI_CALM_SUBSTEPS;
     n->age = 0;
-    if (!is_sound)
+    if (!is_sound || !may_halve)
         n->holding = may_halve ? MSPRINGI_HOLD_ACROSS : MSPRINGI_HOLD_AFTER;
     if (tries == 0 || !may_halve)
         take_substep(substep, tries + (tries == 0));
