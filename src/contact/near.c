@@ -24,6 +24,12 @@
 /// An edge this many times as long as the mean is a long one.
 #define LONG 4.0
 
+/// A list goes so many times as far beyond the thickness as is needed. Where few may touch soon, one in SPARSE of
+/// the outline's points, it goes further, and is made less often.
+#define FAR 2.0
+#define FARTHER 6.0
+#define SPARSE 4u
+
 /// Beyond this many cells all lies in one.
 #define MOST_CELLS 1e9
 
@@ -224,10 +230,18 @@ static bool is_apart(const mspring_network *network, mspringi_pairs *pairs, mspr
         return mspringi_is_of_collider(pairs, a) && mspringi_is_of_collider(pairs, p);
     if (!pairs->touches_itself)
         return pairs->outline.body[a] == pairs->outline.body[p];
+    uint32_t *known = pairs->apart + (size_t)MSPRINGI_KNOWN_APART * p;
+    for (uint32_t k = 0; k < MSPRINGI_KNOWN_APART; ++k)
+        if (known[k] == edge)
+            return true;
     if (pairs->stamp_of != p)
         mspringi_outline_stamp(network, pairs, p);
     pairs->stamp_of = p;
-    return pairs->stamp[a] == p + 1 || pairs->stamp[b] == p + 1;
+    if (pairs->stamp[a] != p + 1 && pairs->stamp[b] != p + 1)
+        return false;
+    memmove(known + 1, known, (MSPRINGI_KNOWN_APART - 1) * sizeof *known);
+    known[0] = edge;
+    return true;
 }
 
 // False: there is no room.
@@ -395,7 +409,9 @@ static void look_at_pairs(mspringi_pairs *pairs) {
 bool mspringi_near_renew(const mspring_network *network, mspringi_pairs *pairs) {
     look_at_points(network, pairs);
     if (!pairs->is_listed || !(answered(pairs) >= needed(pairs))) {
-        const double most = needed(pairs), more = pairs->thickness + 2.0 * (most - pairs->thickness);
+        const bool is_sparse = pairs->is_listed && SPARSE * (uint64_t)pairs->hot_count < pairs->outline.point_count;
+        const double most = needed(pairs),
+                     more = pairs->thickness + (is_sparse ? FARTHER : FAR) * (most - pairs->thickness);
         pairs->is_listed = make_list(network, pairs, more) || make_list(network, pairs, most);
         pairs->is_full = !pairs->is_listed;
     }

@@ -262,6 +262,7 @@ void mspringi_outline_follow(const mspring_network *network, mspringi_pairs *pai
     o->is_found = true;
     o->links = edits->links;
     o->growth = edits->growth;
+    memset(pairs->apart, 0xff, MSPRINGI_KNOWN_APART * (size_t)pairs->particles * sizeof *pairs->apart);
     pairs->colliders.are_new = false;
     pairs->is_listed = pairs->is_fresh = false;
     follow_bodies(network, pairs);

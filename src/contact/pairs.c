@@ -103,6 +103,7 @@ static const mspringi_column members[] = {
     VIEW(x),
     VIEW(y),
     ARRAY(stamp),
+    ARRAY(apart),
     ARRAY(active.particles),
     VIEW(active.number),
     ARRAY(active.x),
@@ -168,11 +169,13 @@ static bool reserve_nodes(mspringi_pairs *made, mspringi_memory *memory, size_t 
                                &k->vy, &k->weight, &k->way_x,   &k->way_y,   &k->gain_x, &k->gain_y};
     made->groups = mspringi_alloc(memory, 2 * nodes, sizeof *made->groups);
     made->stamp = mspringi_alloc(memory, particles, sizeof *made->stamp);
+    made->apart = mspringi_alloc(memory, MSPRINGI_KNOWN_APART * particles, sizeof *made->apart);
     o->is_known = mspringi_alloc(memory, particles, sizeof *o->is_known);
     k->particles = mspringi_alloc(memory, 2 * nodes, sizeof *k->particles);
     k->is_thrown = mspringi_alloc(memory, nodes, sizeof *k->is_thrown);
     made->bearings = mspringi_alloc(memory, MSPRINGI_BEARINGS * nodes, sizeof *made->bearings);
-    if (!made->groups || !made->stamp || !o->is_known || !k->particles || !k->is_thrown || !made->bearings)
+    if (!made->groups || !made->stamp || !made->apart || !o->is_known || !k->particles || !k->is_thrown ||
+        !made->bearings)
         return false;
     made->masks = made->groups + nodes;
     k->number = k->particles + nodes;

@@ -186,6 +186,9 @@ typedef struct mspringi_meetings {
     bool is_known; ///< else what rests on each other has begun before
 } mspringi_meetings;
 
+/// Edges that are kept for each point because it never touches them: those beside its own on a straight outline.
+#define MSPRINGI_KNOWN_APART 6u
+
 struct mspringi_pairs {
     mspring_contact_def def;
     double thickness, friction, restitution, push;
@@ -207,6 +210,7 @@ struct mspringi_pairs {
     double *seen_x, *seen_y; ///< [nodes] where points were then
     uint32_t *stamp;         ///< [particles] what is joined by one or two springs to the point of stamp_of
     uint32_t stamp_of;
+    uint32_t *apart; ///< [particles][MSPRINGI_KNOWN_APART] edges that each was found never to touch; MSPRING_NONE
 
     // The last look.
     double *x, *y; ///< [nodes] where points were
