@@ -557,7 +557,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_create
 /// @threads exclusive   @allocates never
 MSPRING_API void MSPRING_CALL mspring_network_destroy(mspring_network *network);
 
-/// Return the error message of the last call that failed.
+/// Return the error message of a call that failed: the last exclusive one, or the first shared one after it.
 /// As mspring_builder_error(). An exclusive call clears it first, so "" follows if that succeeds. A shared call that
 /// fails sets it, unless one has done so since the last exclusive call. So it stays as it is until the next of these.
 /// @threads shared   @allocates never

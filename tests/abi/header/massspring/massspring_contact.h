@@ -68,7 +68,8 @@ MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact
 /// does if more than an eighth of capacity and 1024 may touch in a substep.
 /// @param def  copied; NULL: no contact, the default. Groups of particles and colliders of the host are forgotten.
 /// @threads exclusive   @allocates yes; about 530 bytes for a particle, 3300 more for one of the outline, 40 for a
-///          spring. With an implicit or a direct solver, also as the fallback, 60 and 1900 more.   @errors ARGUMENT (the message names the field), STRUCT, MEMORY, BUSY
+///          spring. With an implicit or a direct solver, also as the fallback, 60 and 1900 more.
+/// @errors ARGUMENT (the message names the field), STRUCT, MEMORY, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_contact(
     mspring_network *network, const mspring_contact_def *def);
 
