@@ -90,7 +90,8 @@ static void ten_bars_fall_asleep(void **state) {
     bodies_free(b);
 }
 
-/// Fragments of 1 to 6 particles, 1:30 in mass, that fall into a box of three rows of pinned particles.
+/// Fragments of 1 to 6 particles, 1:30 in mass, that fall into a box of three rows of pinned particles. Its corners
+/// are closed: through a gap of more than two thicknesses a particle rolls out, and falls for ever.
 static bodies *fragments(uint32_t count) {
     uint64_t seed = 77;
     bodies *b = bodies_begin(DT / 40);
@@ -99,7 +100,7 @@ static bodies *fragments(uint32_t count) {
     for (int side = -1; side <= 1; side += 2)
         (void)bodies_add(
             b, &(bodies_lattice){
-                   .width = 1, .height = height, .x = side * 20.0, .y = height / 2.0, .spacing = 1, .f = 0.1});
+                   .width = 1, .height = height, .x = side * 20.0, .y = height / 2.0 - 1, .spacing = 1, .f = 0.1});
     for (uint32_t i = 0; i < count; i++)
         (void)bodies_add(b, &(bodies_lattice){.width = 1 + (uint32_t)(support_random_between(&seed, 0, 2.999)),
                                               .height = 1 + (uint32_t)(support_random_between(&seed, 0, 1.999)),
@@ -112,12 +113,13 @@ static bodies *fragments(uint32_t count) {
     return b;
 }
 
+/// When the last of them lies still is chance: here after 57 s, and after 17 s between walls of 160 m.
 static void fragments_come_to_rest(void **state) {
     (void)state;
     bodies *b = fragments(500);
     mspring_network *network = pile_up(b, 0.1f);
     bodies_measure last;
-    assert_true(settle(b, network, 60, "500 fragments", &last));
+    assert_true(settle(b, network, 120, "500 fragments", &last));
     mspring_network_destroy(network);
     bodies_free(b);
 }
