@@ -20,19 +20,21 @@
 ///                             hardening / (1 + hardening) of that before it. It is kinematic (Prager): what was
 ///                             stretched yields sooner when it is pressed.
 ///     MSPRING_PLASTIC_LIMIT   0 to 0.9; default MSPRING_PLASTIC_LIMIT_DEFAULT. Beyond it a spring is elastic again.
-///     MSPRING_PLASTIC_STRAIN  p, -0.9 to 0.9. Set 0 to straighten a spring, or another value to dent it. Writing it
-///                             ends a ramp. Frames (MSPRING_SNAPSHOT_FRAME) hold it: it is no edit to them.
+///     MSPRING_PLASTIC_STRAIN  p, -0.9 to 0.9. Set 0 to straighten a spring, or another value to dent it. What springs
+///                             back yields again, unless it may not yield until it rests. Writing it ends a ramp.
+///                             Frames (MSPRING_SNAPSHOT_FRAME) hold it: it is no edit to them.
 ///
 /// To set any of them allocates, the first time. A spring that was broken and is restored keeps its plastic strain. If
 /// you write MSPRING_REST_LENGTH, the plastic strain stays: r0 changes by the same factor. A spring breaks by its total
 /// strain, (L - r0) / r0, but is stressed and relaxes by the strain in force. A weld never yields, nor does a spring on
 /// a ramp.
 ///
-/// Springs yield in each substep of any solver. Where the explicit solver is used, a blow leaves the same dent whatever
-/// the number of substeps. Implicit and direct substeps damp a blow before it can dent. They follow slow loads. A blow
-/// that lasts 16 substeps leaves nine tenths of its dent, a shorter one less. mspring_network_settle() gives
-/// MSPRING_ERROR_EQUILIBRIUM where a spring would yield on the way to rest. mspring_network_tune() compares as if they
-/// did not, unless a scene has MSPRING_TUNE_SCENE_BREAKING. The guide examples/guides/materials.md has examples.
+/// Springs yield in each substep of any solver. Where the explicit solver is used, dents hardly depend on the number of
+/// substeps, if these are well below the stability limit. Implicit and direct substeps damp a blow before it can dent.
+/// They follow slow loads. A blow that lasts 16 substeps leaves nine tenths of its dent, a shorter one less.
+/// mspring_network_settle() gives MSPRING_ERROR_EQUILIBRIUM where a spring would yield on the way to rest.
+/// mspring_network_tune() compares as if they did not, unless a scene has MSPRING_TUNE_SCENE_BREAKING. The guide
+/// examples/guides/materials.md has examples.
 ///
 /// **Springs that only pull, or only push.** Give a definition the flag MSPRING_SPRING_PULL_ONLY or
 /// MSPRING_SPRING_PUSH_ONLY: a slack cable does not push, a prop that stands on the ground does not hold it. With L the
@@ -75,7 +77,7 @@ typedef struct mspring_plasticity {
     uint32_t struct_size;
     uint32_t bent_springs; ///< springs whose plastic strain is not 0 now
     uint64_t yield_count;  ///< springs that yielded in a step, summed over all steps
-    double dissipated;     ///< energy that yielding has turned into heat, J; it never falls
+    double dissipated;     ///< energy that yielding has turned into heat, J; no step lowers it
 } mspring_plasticity;
 
 /// Read the report of what has yielded. Takes a pass over all springs.

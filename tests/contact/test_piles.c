@@ -95,12 +95,12 @@ static void ten_bars_fall_asleep(void **state) {
 static bodies *fragments(uint32_t count) {
     uint64_t seed = 77;
     bodies *b = bodies_begin(DT / 40);
-    const uint32_t width = 41, height = 60;
+    const uint32_t width = 39, height = 60; // the walls begin beside the floor
     (void)bodies_add(b, &(bodies_lattice){.width = width, .height = 1, .y = -1, .spacing = 1, .f = 0.1});
     for (int side = -1; side <= 1; side += 2)
         (void)bodies_add(
             b, &(bodies_lattice){
-                   .width = 1, .height = height, .x = side * 20.0, .y = height / 2.0 - 1, .spacing = 1, .f = 0.1});
+                   .width = 1, .height = height, .x = side * 20.0, .y = height / 2.0 - 1.5, .spacing = 1, .f = 0.1});
     for (uint32_t i = 0; i < count; i++)
         (void)bodies_add(b, &(bodies_lattice){.width = 1 + (uint32_t)(support_random_between(&seed, 0, 2.999)),
                                               .height = 1 + (uint32_t)(support_random_between(&seed, 0, 1.999)),
