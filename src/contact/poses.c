@@ -65,8 +65,7 @@ void mspringi_colliders_place(const mspring_network *network, mspringi_pairs *pa
     all->is_placed = true;
 }
 
-/* -------------------------------------------------------------------------------------------------------- a step
- */
+/* ---------------------------------------------------------------------------------------------------- a step */
 
 void mspringi_colliders_begin(const mspring_network *network, mspringi_pairs *pairs, uint32_t substeps) {
     mspringi_colliders *all = &pairs->colliders;

@@ -12,8 +12,7 @@
 #include "store/rests.h"
 #include "store/springs.h"
 
-/* ------------------------------------------------------------------------------------------------------- marking
- */
+/* --------------------------------------------------------------------------------------------------- marking */
 
 void mspringi_mark_take(mspring_network *network, mspringi_mark *mark, uint32_t group) {
     const mspringi_groups *g = &network->groups;

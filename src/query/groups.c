@@ -31,8 +31,7 @@ mspring_result mspring_network_get_group_flags(const mspring_network *network, u
     return MSPRING_OK;
 }
 
-/* -------------------------------------------------------------------------------------------------- observations
- */
+/* ---------------------------------------------------------------------------------------------- observations */
 
 static mspring_result check_observation(const mspring_network *network, uint32_t first, uint32_t count,
                                         const uint32_t *particles, uint32_t particle_count, const double *rows,

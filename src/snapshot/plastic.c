@@ -74,8 +74,7 @@ static void yielding_load(mspring_network *network, const uint8_t *from, size_t 
 const mspringi_section mspringi_section_yielding = {"yiel",        "yield strains", true,         yielding_size,
                                                     yielding_save, yielding_check,  yielding_load};
 
-/* ------------------------------------------------------------------------------------------ what they have become
- */
+/* -------------------------------------------------------------------------------------- what they have become */
 
 // Counts, and if some spring is bent, rest lengths: frames have none of these otherwise.
 typedef struct counts {

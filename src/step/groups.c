@@ -6,8 +6,7 @@
 
 #include "store/growth.h"
 
-/* ---------------------------------------------------------------------------------------------- what they ask for
- */
+/* ------------------------------------------------------------------------------------------ what they ask for */
 
 static mspring_result refuse(mspring_network *network, const char *what) {
     return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "groups of particles need %s", what);

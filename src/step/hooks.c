@@ -294,8 +294,7 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
     }
 }
 
-/* ------------------------------------------------------------------------------------------- what was out of reach
- */
+/* --------------------------------------------------------------------------------------- what was out of reach */
 
 static void begin(mspring_network *network, const mspringi_attempt *attempt) {
     (void)attempt;

@@ -591,9 +591,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_se
 /// Set all settings or, on error, none. To change one, get them, change it and set them:
 ///
 ///     mspring_settings settings = {.struct_size = sizeof settings};
-///     (void)mspring_network_get_settings(network, &settings);
+///     mspring_result result = mspring_network_get_settings(network, &settings);
 ///     settings.gravity_y = -1.6f;
-///     if (mspring_network_set_settings(network, &settings) != MSPRING_OK) ...
+///     if (!result) result = mspring_network_set_settings(network, &settings);
 ///
 /// A value that is set already changes nothing. A new gravity, sleep_speed, sleep_time or relax_fraction wakes all.
 /// @threads exclusive   @allocates what a guard or sleep needs, the first time   @errors ARGUMENT (the message
