@@ -22,12 +22,12 @@
 #define HOT_SUBSTEPS 8
 
 /// An edge this many times as long as the mean is a long one.
-#define LONG 4.0
+#define LONG_EDGE 4.0
 
 /// A list goes so many times as far beyond the thickness as is needed. Where few may touch soon, one in SPARSE of
 /// the outline's points, it goes further, and is made less often.
-#define FAR 2.0
-#define FARTHER 6.0
+#define REACH 2.0
+#define SPARSE_REACH 6.0
 #define SPARSE 4u
 
 /// Beyond this many cells all lies in one.
@@ -156,7 +156,7 @@ static double size_cells(mspringi_pairs *pairs, double reach) {
     double sum = 0.0, longest = 0.0;
     for (uint32_t e = 0; e < pairs->outline.edge_count; ++e)
         sum += length_of(pairs, e);
-    const double most = LONG * (sum / (double)pairs->outline.edge_count + reach);
+    const double most = LONG_EDGE * (sum / (double)pairs->outline.edge_count + reach);
     cells->long_count = 0;
     for (uint32_t e = 0; e < pairs->outline.edge_count; ++e) {
         const double length = length_of(pairs, e);
@@ -411,7 +411,7 @@ bool mspringi_near_renew(const mspring_network *network, mspringi_pairs *pairs) 
     if (!pairs->is_listed || !(answered(pairs) >= needed(pairs))) {
         const bool is_sparse = pairs->is_listed && SPARSE * (uint64_t)pairs->hot_count < pairs->outline.point_count;
         const double most = needed(pairs),
-                     more = pairs->thickness + (is_sparse ? FARTHER : FAR) * (most - pairs->thickness);
+                     more = pairs->thickness + (is_sparse ? SPARSE_REACH : REACH) * (most - pairs->thickness);
         pairs->is_listed = make_list(network, pairs, more) || make_list(network, pairs, most);
         pairs->is_full = !pairs->is_listed;
     }
